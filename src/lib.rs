@@ -1,0 +1,7 @@
+//! A 2D finite-element contact solver whose interfaces obey the time-dependent
+//! super/subloading-surface friction law.
+
+pub mod friction;
+pub mod material;
+pub mod mesh;
+pub mod shape;
