@@ -52,10 +52,7 @@ impl ElementKind {
     /// Local nodes of edge `edge`: (start, end), counter-clockwise, and the middle node of a quadratic element.
     pub fn edge(self, edge: usize) -> ([usize; 2], Option<usize>) {
         let n = self.corners();
-        (
-            [edge, (edge + 1) % n],
-            (self.nodes() > n).then_some(n + edge),
-        )
+        ([edge, (edge + 1) % n], (self.nodes() > n).then_some(n + edge))
     }
 
     /// Reference coordinates of the element's centre.
@@ -81,15 +78,10 @@ impl ElementKind {
                     4.0 * y * z,
                 ]
             }
-            Self::Q4 => CORNERS
-                .iter()
-                .map(|[a, b]| 0.25 * (1.0 + a * x) * (1.0 + b * y))
-                .collect(),
+            Self::Q4 => CORNERS.iter().map(|[a, b]| 0.25 * (1.0 + a * x) * (1.0 + b * y)).collect(),
             Self::Q8 => {
-                let mut n: Vec<f64> = CORNERS
-                    .iter()
-                    .map(|[a, b]| 0.25 * (1.0 + a * x) * (1.0 + b * y) * (a * x + b * y - 1.0))
-                    .collect();
+                let mut n: Vec<f64> =
+                    CORNERS.iter().map(|[a, b]| 0.25 * (1.0 + a * x) * (1.0 + b * y) * (a * x + b * y - 1.0)).collect();
                 n.extend([
                     0.5 * (1.0 - x * x) * (1.0 - y),
                     0.5 * (1.0 + x) * (1.0 - y * y),
@@ -98,10 +90,7 @@ impl ElementKind {
                 ]);
                 n
             }
-            Self::Q9 => Q9_NODES
-                .iter()
-                .map(|&[a, b]| lagrange3(a, x).0 * lagrange3(b, y).0)
-                .collect(),
+            Self::Q9 => Q9_NODES.iter().map(|&[a, b]| lagrange3(a, x).0 * lagrange3(b, y).0).collect(),
         }
     }
 
@@ -120,10 +109,7 @@ impl ElementKind {
                     [-4.0 * y, 4.0 * (z - y)],
                 ]
             }
-            Self::Q4 => CORNERS
-                .iter()
-                .map(|[a, b]| [0.25 * a * (1.0 + b * y), 0.25 * b * (1.0 + a * x)])
-                .collect(),
+            Self::Q4 => CORNERS.iter().map(|[a, b]| [0.25 * a * (1.0 + b * y), 0.25 * b * (1.0 + a * x)]).collect(),
             Self::Q8 => {
                 let mut d: Vec<[f64; 2]> = CORNERS
                     .iter()
@@ -155,10 +141,7 @@ impl ElementKind {
     /// Quadrature of the stiffness (full integration: T3 1, T6 3, Q4 4, Q8 and Q9 9 points).
     pub fn quadrature(self) -> Vec<QuadraturePoint> {
         match self {
-            Self::T3 => vec![QuadraturePoint {
-                at: [1.0 / 3.0; 2],
-                weight: 0.5,
-            }],
+            Self::T3 => vec![QuadraturePoint { at: [1.0 / 3.0; 2], weight: 0.5 }],
             Self::T6 => triangle_rule(&[(1.0 / 6.0, 1.0 / 6.0)]),
             Self::Q4 => square_rule(2),
             Self::Q8 | Self::Q9 => square_rule(3),
@@ -181,25 +164,12 @@ impl ElementKind {
 }
 
 const CORNERS: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
-const Q9_NODES: [[f64; 2]; 9] = [
-    [-1.0, -1.0],
-    [1.0, -1.0],
-    [1.0, 1.0],
-    [-1.0, 1.0],
-    [0.0, -1.0],
-    [1.0, 0.0],
-    [0.0, 1.0],
-    [-1.0, 0.0],
-    [0.0, 0.0],
-];
+const Q9_NODES: [[f64; 2]; 9] =
+    [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [0.0, -1.0], [1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, 0.0]];
 
 /// Quadratic Lagrange polynomial of the node at −1, 0 or 1, and its derivative, at x.
 fn lagrange3(node: f64, x: f64) -> (f64, f64) {
-    if node == 0.0 {
-        (1.0 - x * x, -2.0 * x)
-    } else {
-        (0.5 * x * (x + node), x + 0.5 * node)
-    }
+    if node == 0.0 { (1.0 - x * x, -2.0 * x) } else { (0.5 * x * (x + node), x + 0.5 * node) }
 }
 
 /// Symmetric triangle rule: each (a, weight) stands for the three points with barycentric coordinates (a, a, 1 − 2a).
@@ -216,12 +186,7 @@ fn triangle_rule(orbits: &[(f64, f64)]) -> Vec<QuadraturePoint> {
 fn square_rule(n: usize) -> Vec<QuadraturePoint> {
     let line = gauss(n);
     line.iter()
-        .flat_map(|&(y, wy)| {
-            line.iter().map(move |&(x, wx)| QuadraturePoint {
-                at: [x, y],
-                weight: wx * wy,
-            })
-        })
+        .flat_map(|&(y, wy)| line.iter().map(move |&(x, wx)| QuadraturePoint { at: [x, y], weight: wx * wy }))
         .collect()
 }
 
@@ -242,10 +207,7 @@ pub fn gauss(n: usize) -> Vec<(f64, f64)> {
         }
         4 => {
             let (near, far) = ((6.0f64 / 5.0).sqrt(), 30.0f64.sqrt());
-            let (a, b) = (
-                (3.0 / 7.0 - 2.0 / 7.0 * near).sqrt(),
-                (3.0 / 7.0 + 2.0 / 7.0 * near).sqrt(),
-            );
+            let (a, b) = ((3.0 / 7.0 - 2.0 / 7.0 * near).sqrt(), (3.0 / 7.0 + 2.0 / 7.0 * near).sqrt());
             let (wa, wb) = ((18.0 + far) / 36.0, (18.0 - far) / 36.0);
             vec![(-b, wb), (-a, wa), (a, wa), (b, wb)]
         }
@@ -273,13 +235,8 @@ pub fn edge_derivatives(nodes: usize, x: f64) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    const KINDS: [ElementKind; 5] = [
-        ElementKind::T3,
-        ElementKind::T6,
-        ElementKind::Q4,
-        ElementKind::Q8,
-        ElementKind::Q9,
-    ];
+    const KINDS: [ElementKind; 5] =
+        [ElementKind::T3, ElementKind::T6, ElementKind::Q4, ElementKind::Q8, ElementKind::Q9];
 
     #[test]
     fn shape_functions_sum_to_one_and_derivatives_match_differences() {
@@ -292,10 +249,7 @@ mod tests {
                 hi[axis] += h;
                 lo[axis] -= h;
                 for (a, (p, m)) in kind.values(hi).iter().zip(kind.values(lo)).enumerate() {
-                    assert!(
-                        ((p - m) / (2.0 * h) - d[a][axis]).abs() < 1e-9,
-                        "{kind:?} node {a}"
-                    );
+                    assert!(((p - m) / (2.0 * h) - d[a][axis]).abs() < 1e-9, "{kind:?} node {a}");
                 }
             }
         }
@@ -312,37 +266,23 @@ mod tests {
         ] {
             for i in 0..=degree {
                 for j in 0..=degree - i {
-                    let sum: f64 = rule
-                        .iter()
-                        .map(|p| p.weight * p.at[0].powi(i) * p.at[1].powi(j))
-                        .sum();
+                    let sum: f64 = rule.iter().map(|p| p.weight * p.at[0].powi(i) * p.at[1].powi(j)).sum();
                     let exact = if kind.corners() == 3 {
                         factorial(i) * factorial(j) / factorial(i + j + 2)
                     } else {
                         let line = |k: i32| {
-                            if k % 2 == 0 {
-                                2.0 / f64::from(k + 1)
-                            } else {
-                                0.0
-                            }
+                            if k % 2 == 0 { 2.0 / f64::from(k + 1) } else { 0.0 }
                         };
                         line(i) * line(j)
                     };
-                    assert!(
-                        (sum - exact).abs() < 1e-13,
-                        "{kind:?} x^{i} y^{j}: {sum} for {exact}"
-                    );
+                    assert!((sum - exact).abs() < 1e-13, "{kind:?} x^{i} y^{j}: {sum} for {exact}");
                 }
             }
         }
         for n in 1..=4 {
             for k in 0..2 * n as i32 {
                 let sum: f64 = gauss(n).iter().map(|(x, w)| w * x.powi(k)).sum();
-                let exact = if k % 2 == 0 {
-                    2.0 / f64::from(k + 1)
-                } else {
-                    0.0
-                };
+                let exact = if k % 2 == 0 { 2.0 / f64::from(k + 1) } else { 0.0 };
                 assert!((sum - exact).abs() < 1e-14);
             }
         }

@@ -31,11 +31,7 @@ impl FrictionState {
     /// R = |q|/(μ p): how far the traction is from the peak surface; 0 where nothing is pressed [-]
     pub fn ratio(&self) -> f64 {
         let strength = self.mu * self.pressure;
-        if strength > 0.0 {
-            self.traction.abs() / strength
-        } else {
-            0.0
-        }
+        if strength > 0.0 { self.traction.abs() / strength } else { 0.0 }
     }
 }
 
@@ -65,9 +61,7 @@ pub struct FrictionResponse {
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum LawFailure {
     /// The increment itself is not a finite number.
-    #[error(
-        "friction was asked for a slip {slip}, pressure {pressure} and time {dt} that are not all finite"
-    )]
+    #[error("friction was asked for a slip {slip}, pressure {pressure} and time {dt} that are not all finite")]
     NotFinite {
         /// slip increment [L]
         slip: f64,
@@ -87,9 +81,5 @@ pub trait FrictionLaw: Debug + Send + Sync {
     ///
     /// # Errors
     /// [`LawFailure`] when the increment is not finite.
-    fn respond(
-        &self,
-        old: &FrictionState,
-        sliding: Sliding,
-    ) -> Result<FrictionResponse, LawFailure>;
+    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Result<FrictionResponse, LawFailure>;
 }
