@@ -1,1 +1,59 @@
-fn main() {}
+//! The command line: prints the error, sets the exit code.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use fecontact::command::{self, Failure};
+
+/// 2D finite-element contact with the time-dependent super/subloading-surface friction law.
+#[derive(Parser)]
+#[command(version)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Run a case; results go to a folder
+    Run {
+        /// The case file (JSON)
+        case: PathBuf,
+        /// Folder of the results [default: out/<case name>]
+        #[arg(long)]
+        out: Option<PathBuf>,
+        /// Threads [default: all cores]
+        #[arg(long)]
+        threads: Option<usize>,
+        /// No progress
+        #[arg(long)]
+        quiet: bool,
+    },
+    /// Read a case and its mesh, check everything, print what was understood; solve nothing
+    Check {
+        /// The case file (JSON)
+        case: PathBuf,
+    },
+    /// Print the JSON Schema of the case file
+    Schema,
+}
+
+fn main() -> ExitCode {
+    let result = match Arguments::parse().command {
+        Command::Run { case, out, threads, quiet } => command::run(&case, out, threads, quiet),
+        Command::Check { case } => command::check(&case),
+        Command::Schema => command::schema(),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Failure::Stopped(message)) => {
+            eprintln!("stopped: {message}");
+            ExitCode::from(1)
+        }
+        Err(Failure::BadInput(message)) => {
+            eprintln!("error: {message}");
+            ExitCode::from(2)
+        }
+    }
+}

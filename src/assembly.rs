@@ -1,0 +1,518 @@
+//! Residual and tangent of the model at a trial displacement.
+//!
+//! ```text
+//! F(u) = internal + contact − loads
+//! r    = (1 − α_f) F₁ + α_f F₀ + M ((1 − α_m) a₁ + α_m a₀)        free dofs
+//! r    = w (u − ū)                                                prescribed dofs, w: a stiffness for scale
+//! ```
+//!
+//! Elements and contact points are evaluated in parallel and added in a fixed order: the same bits on any number of
+//! threads.
+
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, Vector2};
+use rayon::prelude::*;
+
+use crate::contact::force::{ContactState, Increment, Status};
+use crate::contact::pair::PairResponse;
+use crate::contact::surface::Master;
+use crate::element::pressure::follower_pressure;
+use crate::error::TrialFailure;
+use crate::linear::{BlockPosition, Pattern, SparseMatrix};
+use crate::material::InvertedElement;
+use crate::model::{Model, Step};
+use crate::newton::Request;
+use crate::state::State;
+use crate::system::{Contribution, System};
+use crate::time::Coefficients;
+
+/// One increment to be solved: from where, to when, under which step.
+#[derive(Clone, Copy, Debug)]
+pub struct Trial<'a> {
+    /// committed state
+    pub old: &'a State,
+    /// the step
+    pub step: &'a Step,
+    /// t at the end of the increment [T]
+    pub time: f64,
+    /// Δt [T]
+    pub dt: f64,
+}
+
+/// What was found at the last evaluated displacement, for the accepted state.
+#[derive(Clone, Debug, Default)]
+pub struct Evaluation {
+    /// F [F]
+    pub force: Vec<f64>,
+    /// loads [F]
+    pub loads: Vec<f64>,
+    /// F + M a, at a prescribed dof the reaction [F]
+    pub balance: Vec<f64>,
+    /// v [L/T]
+    pub velocity: Vec<f64>,
+    /// a [L/T²]
+    pub acceleration: Vec<f64>,
+    /// trial states of all contact points
+    pub contacts: Vec<Vec<ContactState>>,
+    /// ∫ W dV [F·L]
+    pub strain_energy: f64,
+}
+
+/// Numbers of contact points by status.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ContactCounts {
+    /// open
+    pub open: usize,
+    /// sticking
+    pub stick: usize,
+    /// slipping
+    pub slip: usize,
+}
+
+impl ContactCounts {
+    /// Count the points of all pairs.
+    pub fn of(contacts: &[Vec<ContactState>]) -> Self {
+        let mut counts = Self::default();
+        for state in contacts.iter().flatten() {
+            match state.status() {
+                Status::Open => counts.open += 1,
+                Status::Stick => counts.stick += 1,
+                Status::Slip => counts.slip += 1,
+            }
+        }
+        counts
+    }
+}
+
+/// Seconds spent by phase.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Seconds {
+    /// solids, loads and sums
+    pub assembly: f64,
+    /// search, friction and contact forces
+    pub contact: f64,
+}
+
+/// Assembles a model; owns the pattern and the buffers that are used again.
+pub struct Assembler<'m> {
+    model: &'m Model,
+    pattern: Arc<Pattern>,
+    /// Position of the block of every node pair of every element, in the current pattern
+    blocks: Vec<BlockPosition>,
+    /// Where each element's blocks start
+    block_starts: Vec<usize>,
+    mass: Option<SparseMatrix>,
+    /// w of prescribed dofs [F/L]
+    weight: f64,
+    /// Largest distance in the model: scale of round-off [L]
+    size: f64,
+    /// Sum of the forces' magnitudes at each dof [F]
+    magnitudes: Vec<f64>,
+    /// What was found at the last evaluated displacement
+    pub evaluation: Evaluation,
+    /// Time spent
+    pub seconds: Seconds,
+}
+
+/// Elements whose forces and tangents are held at once before they are added.
+const BATCH: usize = 4096;
+
+impl<'m> Assembler<'m> {
+    /// An assembler of a model.
+    pub fn new(model: &'m Model) -> Self {
+        let block_starts = std::iter::once(0)
+            .chain(model.mesh.elements.iter().scan(0, |sum, element| {
+                *sum += element.nodes.len().pow(2);
+                Some(*sum)
+            }))
+            .collect();
+        let stiffness = model.bodies.iter().map(|body| body.material.stiffness());
+        let springs = model.steps.iter().flat_map(|step| step.loads.springs.iter().map(|spring| spring.stiffness));
+        let mut assembler = Self {
+            model,
+            pattern: Arc::new(Pattern::new(model.mesh.nodes.len(), std::iter::empty())),
+            blocks: Vec::new(),
+            block_starts,
+            mass: None,
+            weight: stiffness.chain(springs).fold(f64::MIN_POSITIVE, f64::max),
+            size: model.mesh.nodes.iter().fold(0.0, |size, x| size.max(x.norm())),
+            magnitudes: vec![0.0; model.dofs()],
+            evaluation: Evaluation::default(),
+            seconds: Seconds::default(),
+        };
+        assembler.set_pattern(&[]);
+        assembler
+    }
+
+    /// A system on the current pattern.
+    pub fn system(&self) -> System {
+        System {
+            residual: vec![0.0; self.model.dofs()],
+            tangent: SparseMatrix::zero(self.pattern.clone()),
+            forces: 0.0,
+            round_off: 0.0,
+        }
+    }
+
+    /// Couple the nodes of all elements, loads and the given groups; find every element's blocks in the new pattern.
+    fn set_pattern(&mut self, groups: &[Vec<usize>]) {
+        let model = self.model;
+        let elements = model.mesh.elements.iter().map(|element| &element.nodes[..]);
+        let edges = model.steps.iter().flat_map(|step| step.loads.pressures.iter().flat_map(|load| &load.edges));
+        let all = elements.chain(edges.map(|edge| &edge[..])).chain(groups.iter().map(|group| &group[..]));
+        let pattern = Pattern::new(model.mesh.nodes.len(), all);
+        self.blocks.clear();
+        for element in &model.mesh.elements {
+            for &column in &element.nodes {
+                let block = |&row| pattern.block(row, column).expect("the pattern couples all nodes of an element");
+                self.blocks.extend(element.nodes.iter().map(block));
+            }
+        }
+        self.pattern = Arc::new(pattern);
+        self.mass = None;
+    }
+
+    /// Residual, and tangent on request, at the displacement `u`.
+    ///
+    /// # Errors
+    /// [`TrialFailure`] when an element inverts, a friction law fails, or a load has no value.
+    pub fn evaluate(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        first_iterate: bool,
+        request: Request,
+        system: &mut System,
+    ) -> Result<(), TrialFailure> {
+        let x = self.model.positions(u);
+        let clock = std::time::Instant::now();
+        let increment = Increment { dt: trial.dt, first_iterate };
+        let responses = self.contacts(trial.old, increment, &x)?;
+        self.seconds.contact += clock.elapsed().as_secs_f64();
+
+        let clock = std::time::Instant::now();
+        let tangent = request == Request::Tangent;
+        if tangent {
+            self.cover(&responses, trial.old);
+            if !Arc::ptr_eq(&system.tangent.pattern, &self.pattern) {
+                system.tangent = SparseMatrix::zero(self.pattern.clone());
+            }
+            system.tangent.clear();
+        }
+        let mut values = tangent.then_some(&mut system.tangent);
+        self.magnitudes.fill(0.0);
+        let mut force = vec![0.0; u.len()];
+        let strain_energy = self.add_solids(u, &mut force, values.as_deref_mut())?;
+        for (_, contribution) in responses.iter().flatten() {
+            if let Some(contribution) = contribution {
+                self.add(contribution, &mut force, values.as_deref_mut());
+            }
+        }
+        let loads = self.add_loads(trial, u, &x, &mut force, values.as_deref_mut())?;
+        self.evaluation.contacts =
+            responses.into_iter().map(|pair| pair.into_iter().map(|(state, _)| state).collect()).collect();
+        self.evaluation.strain_energy = strain_energy;
+        self.evaluation.loads = loads;
+        self.evaluation.force = force;
+        self.balance(trial, u, values, &mut system.residual);
+        self.prescribe(trial, u, tangent, system)?;
+        self.measure(system, &x);
+        self.seconds.assembly += clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    fn contacts(&self, old: &State, increment: Increment, x: &[Vector2<f64>]) -> Result<Vec<PairResponse>, TrialFailure> {
+        let pairs = self.model.contacts.iter().zip(&old.contacts);
+        pairs
+            .map(|(pair, old)| {
+                pair.respond(old, increment, x).map_err(|(point, cause)| TrialFailure::Friction {
+                    contact: pair.name.clone(),
+                    point,
+                    cause,
+                })
+            })
+            .collect()
+    }
+
+    /// Make sure the pattern has room for all contact points. If it has not, it gets room for one segment more on
+    /// either side of each foot, so that it seldom changes as points slide.
+    fn cover(&mut self, responses: &[PairResponse], old: &State) {
+        let coupled = |contribution: &Contribution| {
+            let nodes = &contribution.nodes;
+            nodes.iter().all(|&a| nodes.iter().all(|&b| self.pattern.block(a, b).is_some()))
+        };
+        if responses.iter().flatten().filter_map(|(_, contribution)| contribution.as_ref()).all(coupled) {
+            return;
+        }
+        let mut groups = Vec::new();
+        for ((pair, responses), old) in self.model.contacts.iter().zip(responses).zip(&old.contacts) {
+            for ((slave, (state, contribution)), old) in pair.points.iter().zip(responses).zip(old) {
+                let Some(foot) = state.foot.or(old.foot) else { continue };
+                let mut nodes: Vec<usize> = slave.position.iter().map(|&(node, _)| node).collect();
+                nodes.extend(contribution.iter().flat_map(|contribution| &contribution.nodes));
+                if let Master::Mesh(surface) = &pair.master {
+                    let around = [Some(foot.segment), surface.previous(foot.segment), surface.next(foot.segment)];
+                    nodes.extend(around.into_iter().flatten().flat_map(|segment| surface.segments[segment]));
+                }
+                nodes.sort_unstable();
+                nodes.dedup();
+                groups.push(nodes);
+            }
+        }
+        self.set_pattern(&groups);
+    }
+
+    /// Add internal forces and tangents of the solids; returns the stored energy.
+    fn add_solids(
+        &mut self,
+        u: &[f64],
+        force: &mut [f64],
+        mut tangent: Option<&mut SparseMatrix>,
+    ) -> Result<f64, TrialFailure> {
+        let model = self.model;
+        let widest = model.mesh.elements.iter().map(|element| element.nodes.len()).max().unwrap_or(0);
+        let dofs = 2 * widest;
+        let batch = BATCH.min(model.mesh.elements.len());
+        let mut forces = vec![0.0; batch * dofs];
+        let mut tangents = vec![0.0; if tangent.is_some() { batch * dofs * dofs } else { batch }];
+        let stride = tangents.len() / batch.max(1);
+        let mut energy = 0.0;
+        for first in (0..model.mesh.elements.len()).step_by(BATCH) {
+            let elements = first..(first + BATCH).min(model.mesh.elements.len());
+            let wants_tangent = tangent.is_some();
+            let energies: Vec<Result<f64, InvertedElement>> = elements
+                .clone()
+                .into_par_iter()
+                .zip(forces.par_chunks_mut(dofs).zip(tangents.par_chunks_mut(stride)))
+                .with_min_len(64)
+                .map(|(e, (force, tangent))| {
+                    let nodes = &model.mesh.elements[e].nodes;
+                    let mut local = [Vector2::zeros(); 9];
+                    for (local, &node) in local.iter_mut().zip(nodes) {
+                        *local = Vector2::new(u[2 * node], u[2 * node + 1]);
+                    }
+                    let n = 2 * nodes.len();
+                    let (solid, material) = (&model.solids[e], &*model.bodies[model.body_of_element[e]].material);
+                    if wants_tangent {
+                        solid.force_and_tangent(material, &local[..nodes.len()], &mut force[..n], &mut tangent[..n * n])
+                    } else {
+                        solid.force(material, &local[..nodes.len()], &mut force[..n])
+                    }
+                })
+                .collect();
+            for (k, (e, stored)) in elements.zip(energies).enumerate() {
+                energy += stored.map_err(|inverted| self.inverted(e, inverted))?;
+                let nodes = &model.mesh.elements[e].nodes;
+                let local = &forces[k * dofs..];
+                for (a, &node) in nodes.iter().enumerate() {
+                    for i in 0..2 {
+                        force[2 * node + i] += local[2 * a + i];
+                        self.magnitudes[2 * node + i] += local[2 * a + i].abs();
+                    }
+                }
+                if let Some(tangent) = tangent.as_deref_mut() {
+                    let n = nodes.len();
+                    let blocks = &self.blocks[self.block_starts[e]..self.block_starts[e + 1]];
+                    add_blocks(tangent, blocks, &tangents[k * stride..k * stride + 4 * n * n], n);
+                }
+            }
+        }
+        Ok(energy)
+    }
+
+    fn inverted(&self, element: usize, inverted: InvertedElement) -> TrialFailure {
+        let body = self.model.bodies[self.model.body_of_element[element]].name.clone();
+        TrialFailure::Inverted { element, body, jacobian: inverted.jacobian }
+    }
+
+    /// Add one contribution to the forces and the tangent.
+    fn add(&mut self, contribution: &Contribution, force: &mut [f64], tangent: Option<&mut SparseMatrix>) {
+        let nodes = &contribution.nodes;
+        for (a, &node) in nodes.iter().enumerate() {
+            for i in 0..2 {
+                force[2 * node + i] += contribution.force[2 * a + i];
+                self.magnitudes[2 * node + i] += contribution.force[2 * a + i].abs();
+            }
+        }
+        if let Some(tangent) = tangent {
+            let pattern = &self.pattern;
+            let block = |row, column| pattern.block(row, column).expect("the pattern was extended to cover this point");
+            let blocks: Vec<BlockPosition> =
+                nodes.iter().flat_map(|&column| nodes.iter().map(move |&row| block(row, column))).collect();
+            add_blocks(tangent, &blocks, contribution.tangent.as_slice(), nodes.len());
+        }
+    }
+
+    /// Subtract the loads from the forces; returns the loads.
+    fn add_loads(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        x: &[Vector2<f64>],
+        force: &mut [f64],
+        mut tangent: Option<&mut SparseMatrix>,
+    ) -> Result<Vec<f64>, TrialFailure> {
+        let Trial { old, step, time, .. } = trial;
+        let internal = force.to_vec();
+        let undefined = |dof: usize| TrialFailure::Undefined { node: dof / 2, time };
+        for load in &step.loads.dead {
+            for &(node, weight, position) in &load.shares {
+                force[2 * node + load.component] -= weight * load.amplitude.value(position, time);
+            }
+        }
+        for load in &step.loads.pressures {
+            for edge in &load.edges {
+                let middle = edge.iter().map(|&node| self.model.mesh.nodes[node]).sum::<Vector2<f64>>() / edge.len() as f64;
+                let contribution = follower_pressure(edge, load.amplitude.value(middle, time), x);
+                self.add(&contribution, force, tangent.as_deref_mut());
+            }
+        }
+        for spring in &step.loads.springs {
+            let position = self.model.mesh.nodes[spring.dof / 2];
+            let driver = spring.driver.as_ref().map_or(0.0, |driver| driver.value(position, time));
+            force[spring.dof] -= spring.stiffness * (driver - u[spring.dof]);
+            if let Some(tangent) = tangent.as_deref_mut() {
+                tangent.add_diagonal(spring.dof, spring.stiffness);
+            }
+        }
+        for &dof in &step.released {
+            force[dof] -= old.step_start.reaction[dof] * (1.0 - step.span.share(time));
+        }
+        let loads: Vec<f64> = internal.iter().zip(&*force).map(|(internal, force)| internal - force).collect();
+        for (dof, load) in loads.iter().enumerate() {
+            if !load.is_finite() {
+                return Err(undefined(dof));
+            }
+            self.magnitudes[dof] += load.abs();
+        }
+        Ok(loads)
+    }
+
+    /// Velocities, accelerations, and the out-of-balance force of every dof as if none were prescribed.
+    fn balance(&mut self, trial: Trial, u: &[f64], tangent: Option<&mut SparseMatrix>, residual: &mut Vec<f64>) {
+        let Trial { old, step, dt, .. } = trial;
+        let Some(scheme) = step.scheme.coefficients() else {
+            self.evaluation.velocity = vec![0.0; u.len()];
+            self.evaluation.acceleration = vec![0.0; u.len()];
+            self.evaluation.balance.clone_from(&self.evaluation.force);
+            residual.clone_from(&self.evaluation.force);
+            return;
+        };
+        let (velocity, acceleration) = self.rates(trial, u, scheme);
+        let blend = |old: f64, new: f64, weight: f64| weight * old + (1.0 - weight) * new;
+        let weighted: Vec<f64> =
+            old.acceleration.iter().zip(&acceleration).map(|(&a0, &a1)| blend(a0, a1, scheme.alpha_m)).collect();
+        let prescribed = prescribed_dofs(step, u.len());
+        let mass = self.mass();
+        let (inertia, weighted_inertia) = (mass.multiply(&acceleration), mass.multiply(&weighted));
+        if let Some(tangent) = tangent {
+            let c = (1.0 - scheme.alpha_m) * scheme.dacceleration(dt);
+            // A prescribed dof's acceleration is a backward difference of its motion (see `rates`).
+            let held = (1.0 - scheme.alpha_m) / (dt * dt);
+            for value in &mut tangent.values {
+                *value *= 1.0 - scheme.alpha_f;
+            }
+            let mut k = 0;
+            for column in 0..mass.size() {
+                let c = if prescribed[column] { held } else { c };
+                for _ in 0..2 * mass.pattern.neighbours(column / 2).len() {
+                    tangent.values[k] += c * mass.values[k];
+                    k += 1;
+                }
+            }
+        }
+        let force = &self.evaluation.force;
+        *residual = (0..u.len())
+            .map(|dof| blend(old.force[dof], force[dof], scheme.alpha_f) + weighted_inertia[dof])
+            .collect();
+        for (magnitude, inertia) in self.magnitudes.iter_mut().zip(&inertia) {
+            *magnitude += inertia.abs();
+        }
+        self.evaluation.balance = force.iter().zip(&inertia).map(|(force, inertia)| force + inertia).collect();
+        self.evaluation.velocity = velocity;
+        self.evaluation.acceleration = acceleration;
+    }
+
+    /// Velocity and acceleration at `u`. A prescribed dof follows its support: v and a are backward differences, so a
+    /// support that starts with a jerk does not ring.
+    fn rates(&self, trial: Trial, u: &[f64], scheme: Coefficients) -> (Vec<f64>, Vec<f64>) {
+        let Trial { old, step, dt, .. } = trial;
+        let prescribed = prescribed_dofs(step, u.len());
+        (0..u.len())
+            .map(|dof| {
+                let increment = u[dof] - old.displacement[dof];
+                let (v, a) = (old.velocity[dof], old.acceleration[dof]);
+                if prescribed[dof] {
+                    (increment / dt, (increment / dt - v) / dt)
+                } else {
+                    scheme.rates(increment, (v, a), dt)
+                }
+            })
+            .unzip()
+    }
+
+    /// Replace the equations of prescribed dofs by w (u − ū) = 0.
+    fn prescribe(&self, trial: Trial, u: &[f64], tangent: bool, system: &mut System) -> Result<(), TrialFailure> {
+        for support in &trial.step.supports {
+            let dof = support.dof;
+            let start = trial.old.step_start.displacement[dof];
+            let target = support.value(self.model.mesh.nodes[dof / 2], trial.time, start);
+            if !target.is_finite() {
+                return Err(TrialFailure::Undefined { node: dof / 2, time: trial.time });
+            }
+            system.residual[dof] = self.weight * (u[dof] - target);
+            if tangent {
+                system.tangent.replace_row(dof, self.weight);
+            }
+        }
+        Ok(())
+    }
+
+    /// Norm of the forces at work, and of the residual that round-off in the positions alone can leave.
+    fn measure(&self, system: &mut System, x: &[Vector2<f64>]) {
+        system.forces = crate::linear::norm(&self.magnitudes);
+        let extent = x.iter().fold(self.size, |size, x| size.max(x.norm()));
+        let solids = self.weight.powi(2) * x.len() as f64;
+        let points = self.model.contacts.iter().flat_map(|pair| pair.points.iter().map(move |point| (pair, point)));
+        let contacts: f64 = points.map(|(pair, point)| (pair.alpha_n * point.current_length(x)).powi(2)).sum();
+        system.round_off = f64::EPSILON * extent * (solids + contacts).sqrt();
+    }
+
+    /// The consistent mass matrix on the current pattern.
+    pub fn mass(&mut self) -> &SparseMatrix {
+        let model = self.model;
+        let (blocks, starts, pattern) = (&self.blocks, &self.block_starts, &self.pattern);
+        self.mass.get_or_insert_with(|| {
+            let mut mass = SparseMatrix::zero(pattern.clone());
+            for (e, element) in model.mesh.elements.iter().enumerate() {
+                let n = element.nodes.len();
+                let density = model.bodies[model.body_of_element[e]].material.density();
+                let local = DMatrix::from_column_slice(n, n, &model.solids[e].consistent_mass(density));
+                add_blocks(&mut mass, &blocks[starts[e]..starts[e + 1]], local.kronecker(&DMatrix::identity(2, 2)).as_slice(), n);
+            }
+            mass
+        })
+    }
+}
+
+/// Which dofs a step prescribes.
+pub fn prescribed_dofs(step: &Step, dofs: usize) -> Vec<bool> {
+    let mut prescribed = vec![false; dofs];
+    for support in &step.supports {
+        prescribed[support.dof] = true;
+    }
+    prescribed
+}
+
+/// Add a dense tangent of `n` nodes (column-major, two dofs a node) at the given blocks (column by column).
+fn add_blocks(matrix: &mut SparseMatrix, blocks: &[BlockPosition], local: &[f64], n: usize) {
+    for (k, block) in blocks.iter().enumerate() {
+        let (row, column) = (k % n, k / n);
+        for j in 0..2 {
+            for i in 0..2 {
+                matrix.values[block.value(i, j)] += local[(2 * column + j) * 2 * n + 2 * row + i];
+            }
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! Supports and loads: what is prescribed or applied at a node, and how it varies in time and space.
+
+use exmex::{Express, FlatEx};
+use nalgebra::{Rotation2, Vector2};
+
+/// How a prescribed quantity varies, as given in the case.
+#[derive(Clone, Debug)]
+pub enum Drive {
+    /// A constant: reached at the end of the step, linearly from the value at its start
+    Constant(f64),
+    /// A rate: value at the start of the step plus rate × time since [1/T]
+    Rate(f64),
+    /// (time, value) pairs in run time, linear between, constant outside
+    Table(Vec<[f64; 2]>),
+    /// An expression in the reference position x, y and the run time t
+    Expression(Expression),
+}
+
+/// A parsed expression in x, y and t.
+#[derive(Clone, Debug)]
+pub struct Expression(FlatEx<f64>);
+
+impl Expression {
+    /// Parse an expression.
+    ///
+    /// # Errors
+    /// What the parser could not read, or the first variable that is none of x, y, t.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let parsed = exmex::parse::<f64>(text).map_err(|error| error.to_string())?;
+        match parsed.var_names().iter().find(|name| !["t", "x", "y"].contains(&name.as_str())) {
+            Some(name) => Err(format!("`{name}` is not one of the variables x, y, t")),
+            None => Ok(Self(parsed)),
+        }
+    }
+
+    /// Value at a reference position and time; NaN where the expression is not defined.
+    fn value(&self, position: Vector2<f64>, time: f64) -> f64 {
+        let of = |name: &String| match name.as_str() {
+            "t" => time,
+            "x" => position.x,
+            _ => position.y,
+        };
+        let variables: Vec<f64> = self.0.var_names().iter().map(of).collect();
+        self.0.eval(&variables).unwrap_or(f64::NAN)
+    }
+}
+
+/// The time span of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Span {
+    /// start [T]
+    pub start: f64,
+    /// end [T]
+    pub end: f64,
+}
+
+impl Span {
+    /// Share of the span that has passed, 0 to 1.
+    pub fn share(&self, time: f64) -> f64 {
+        if self.end > self.start { ((time - self.start) / (self.end - self.start)).clamp(0.0, 1.0) } else { 1.0 }
+    }
+}
+
+impl Drive {
+    /// Value at a reference position and run time, `start` being the value at the start of the step.
+    pub fn value(&self, position: Vector2<f64>, time: f64, span: Span, start: f64) -> f64 {
+        match self {
+            Self::Constant(end) => start + (end - start) * span.share(time),
+            Self::Rate(rate) => start + rate * (time - span.start),
+            Self::Table(table) => interpolate(table, time),
+            Self::Expression(expression) => expression.value(position, time),
+        }
+    }
+}
+
+fn interpolate(table: &[[f64; 2]], time: f64) -> f64 {
+    let after = table.partition_point(|[t, _]| *t <= time);
+    match (after.checked_sub(1).and_then(|k| table.get(k)), table.get(after)) {
+        (Some([t0, v0]), Some([t1, v1])) => v0 + (v1 - v0) * (time - t0) / (t1 - t0),
+        (Some([_, v]), None) | (None, Some([_, v])) => *v,
+        (None, None) => 0.0,
+    }
+}
+
+/// A drive over one step, and what it took over from at the step's start.
+#[derive(Clone, Debug)]
+pub struct Amplitude {
+    /// how it varies
+    pub drive: Drive,
+    /// the step
+    pub span: Span,
+    /// what drove the quantity in the step before; zero if nothing did
+    pub before: Option<Box<Amplitude>>,
+}
+
+impl Amplitude {
+    /// Value at a reference position and run time.
+    pub fn value(&self, position: Vector2<f64>, time: f64) -> f64 {
+        let start = self.before.as_ref().map_or(0.0, |before| before.value(position, self.span.start));
+        self.drive.value(position, time, self.span, start)
+    }
+}
+
+/// A prescribed displacement of one dof.
+#[derive(Clone, Debug)]
+pub struct Prescribed {
+    /// the dof, 2 × node + component
+    pub dof: usize,
+    /// its motion
+    pub motion: Motion,
+}
+
+/// Motion of a prescribed dof.
+#[derive(Clone, Debug)]
+pub enum Motion {
+    /// Displacement, counted from the one at the start of the step where the drive says so [L]
+    Displacement(Drive, Span),
+    /// Rigid rotation about a fixed point: u = (Q(θ) − I)(X − X_c), θ counter-clockwise [rad]
+    Rotation {
+        /// X_c
+        about: Vector2<f64>,
+        /// θ
+        angle: Amplitude,
+    },
+}
+
+impl Prescribed {
+    /// ū at a run time, for the node's reference position and its displacement at the start of the step [L].
+    pub fn value(&self, position: Vector2<f64>, time: f64, start: f64) -> f64 {
+        match &self.motion {
+            Motion::Displacement(drive, span) => drive.value(position, time, *span, start),
+            Motion::Rotation { about, angle } => {
+                let arm = position - about;
+                let turned = Rotation2::new(angle.value(position, time)) * arm;
+                (turned - arm)[self.dof % 2]
+            }
+        }
+    }
+}
+
+/// A load that does not depend on the deformation: traction, gravity or nodal force.
+#[derive(Clone, Debug)]
+pub struct DeadLoad {
+    /// 0 for x, 1 for y
+    pub component: usize,
+    /// value per unit of `weight`
+    pub amplitude: Amplitude,
+    /// (node, weight, reference position where the amplitude is taken)
+    pub shares: Vec<(usize, f64, Vector2<f64>)>,
+}
+
+/// Pressure on edges that follows the surface.
+#[derive(Clone, Debug)]
+pub struct FollowerPressure {
+    /// pressure, positive toward the body [F/L²]
+    pub amplitude: Amplitude,
+    /// edges, body on the left
+    pub edges: Vec<Vec<usize>>,
+}
+
+/// A spring from a node to the ground or to a moving driver: force k (u_driver − u).
+#[derive(Clone, Debug)]
+pub struct Spring {
+    /// dof it acts on
+    pub dof: usize,
+    /// k [F/L]
+    pub stiffness: f64,
+    /// displacement of the far end; `None` is the ground [L]
+    pub driver: Option<Amplitude>,
+}
+
+/// Everything that acts on the model in one step.
+#[derive(Clone, Debug, Default)]
+pub struct Loads {
+    /// forces that stay as they are
+    pub dead: Vec<DeadLoad>,
+    /// forces that turn with the surface
+    pub pressures: Vec<FollowerPressure>,
+    /// springs
+    pub springs: Vec<Spring>,
+}

@@ -1,0 +1,557 @@
+//! From the case as written to the model that is solved, with every check that needs the mesh.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use nalgebra::Vector2;
+
+use super::error::{CaseError, Complaint};
+use super::file::{
+    Case, Components, ContactInput, DriveInput, Formulation, IncrementsInput, LoadInput, MasterInput, MeshSource,
+    Method, Place, StepInput,
+};
+use super::supported;
+use crate::boundary::{Amplitude, DeadLoad, Drive, Expression, FollowerPressure, Loads, Motion, Prescribed, Span, Spring};
+use crate::contact::pair::ContactPair;
+use crate::contact::surface::{Master, Plane, Surface, gauss_points, in_order, nodal_points};
+use crate::element::solid::SolidElement;
+use crate::mesh::{Edge, Group, Mesh, gmsh};
+use crate::model::{Body, Increments, Model, Step, WatchedSet};
+use crate::newton;
+use crate::shape;
+
+/// Largest number of Newton iterations that makes sense to allow.
+const MOST_ITERATIONS: usize = 1000;
+
+type Checked<T> = Result<T, Complaint>;
+
+/// Read the mesh of a case, check everything, and build the model. `path` is the case file.
+///
+/// # Errors
+/// [`CaseError`] names file, key, value and what to do.
+pub fn build(case: &Case, path: &Path) -> Result<Model, CaseError> {
+    let mesh = read_mesh(case, path)?;
+    build_on(case, mesh).map_err(|complaint| complaint.in_file(path))
+}
+
+fn read_mesh(case: &Case, path: &Path) -> Result<Mesh, CaseError> {
+    match &case.mesh {
+        MeshSource::Inline(mesh) => mesh.build().map_err(|error| Complaint::new("mesh", error).in_file(path)),
+        MeshSource::File(file) => {
+            let mesh_path = path.parent().unwrap_or(Path::new("")).join(file);
+            gmsh::read(&mesh_path).map_err(|error| Complaint::new("mesh", error).in_file(path))
+        }
+    }
+}
+
+fn build_on(case: &Case, mesh: Mesh) -> Checked<Model> {
+    let (bodies, body_of_element) = bodies(case, &mesh)?;
+    let solids = solids(case, &mesh, &bodies, &body_of_element)?;
+    let mut model = Model {
+        title: case.title.clone(),
+        initial_velocity: vec![0.0; 2 * mesh.nodes.len()],
+        mesh,
+        bodies,
+        body_of_element,
+        solids,
+        contacts: Vec::new(),
+        steps: Vec::new(),
+        watch: Vec::new(),
+        newton: newton_settings(case)?,
+    };
+    model.contacts = contacts(case, &model)?;
+    model.steps = steps(case, &model)?;
+    model.initial_velocity = initial_velocity(case, &model)?;
+    model.watch = case.watch.iter().enumerate().map(|(k, name)| watched(&model.mesh, k, name)).collect::<Checked<_>>()?;
+    if case.output.every == 0 {
+        return Err(Complaint::new("output.every", "is 0: must be at least 1"));
+    }
+    supported::check(case, &model)?;
+    Ok(model)
+}
+
+fn newton_settings(case: &Case) -> Checked<newton::Settings> {
+    let newton = &case.newton;
+    if !(newton.tolerance > 0.0 && newton.tolerance < 1.0) {
+        let message = format!("is {}: must be between 0 and 1 (1e-8 is the default)", newton.tolerance);
+        return Err(Complaint::new("newton.tolerance", message));
+    }
+    if !(1..=MOST_ITERATIONS).contains(&newton.max_iterations) {
+        let message = format!("is {}: must be 1 to {MOST_ITERATIONS}", newton.max_iterations);
+        return Err(Complaint::new("newton.max_iterations", message));
+    }
+    Ok(newton::Settings { tolerance: newton.tolerance, max_iterations: newton.max_iterations })
+}
+
+fn bodies(case: &Case, mesh: &Mesh) -> Checked<(Vec<Body>, Vec<usize>)> {
+    let mut bodies = Vec::new();
+    let mut body_of_element = vec![usize::MAX; mesh.elements.len()];
+    for (name, input) in &case.bodies {
+        let place = format!("bodies.{name}");
+        let group = mesh.group(name).map_err(|error| Complaint::new(&place, error))?;
+        let Group::Elements(elements) = group else {
+            return Err(Complaint::new(place, format!("`{name}` is a group of {}, not of solid elements", kind(group))));
+        };
+        let material = input.material.build().map_err(|error| Complaint::new(format!("{place}.material"), error))?;
+        for &element in elements {
+            body_of_element[element] = bodies.len();
+        }
+        bodies.push(Body { name: name.clone(), material, elements: elements.clone(), nodes: mesh.nodes_of(group) });
+    }
+    match body_of_element.iter().position(|&body| body == usize::MAX) {
+        Some(element) => {
+            let name = mesh.body_of(element).unwrap_or("?");
+            Err(Complaint::new("bodies", format!("`{name}` of the mesh has no material: add \"{name}\": {{\"material\": …}}")))
+        }
+        None => Ok((bodies, body_of_element)),
+    }
+}
+
+fn solids(case: &Case, mesh: &Mesh, bodies: &[Body], body_of_element: &[usize]) -> Checked<Vec<SolidElement>> {
+    let mut solids = Vec::with_capacity(mesh.elements.len());
+    for (element, &body) in mesh.elements.iter().zip(body_of_element) {
+        let name = &bodies[body].name;
+        let f_bar = case.bodies[name].element == Formulation::FBar;
+        let positions: Vec<Vector2<f64>> = element.nodes.iter().map(|&node| mesh.nodes[node]).collect();
+        let solid = SolidElement::new(element.kind, f_bar, &positions)
+            .map_err(|error| Complaint::new(format!("bodies.{name}.element"), error))?;
+        solids.push(solid);
+    }
+    Ok(solids)
+}
+
+fn kind(group: &Group) -> &'static str {
+    match group {
+        Group::Elements(_) => "solid elements",
+        Group::Edges(_) => "edges",
+        Group::Nodes(_) => "points",
+    }
+}
+
+/// The edges of a group, which must be a group of edges.
+fn edges<'m>(mesh: &'m Mesh, name: &str, place: &str) -> Checked<&'m [Edge]> {
+    match mesh.group(name).map_err(|error| Complaint::new(place, error))? {
+        Group::Edges(edges) => Ok(edges),
+        group => Err(Complaint::new(place, format!("`{name}` is a group of {}, not of edges", kind(group)))),
+    }
+}
+
+fn node_lists(edges: &[Edge]) -> Vec<Vec<usize>> {
+    edges.iter().map(|edge| edge.nodes.clone()).collect()
+}
+
+fn contacts(case: &Case, model: &Model) -> Checked<Vec<ContactPair>> {
+    case.contacts.iter().map(|(name, input)| contact(name, input, model)).collect()
+}
+
+fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPair> {
+    let place = format!("contacts.{name}");
+    let mesh = &model.mesh;
+    let slave = edges(mesh, &input.slave, &format!("{place}.slave"))?;
+    let master = match &input.master {
+        MasterInput::Group(group) => {
+            let master = edges(mesh, group, &format!("{place}.master"))?;
+            check_disjoint(&place, &input.slave, slave, group, master, mesh)?;
+            Master::Mesh(Surface::new(&node_lists(master)))
+        }
+        MasterInput::Plane { plane } => {
+            let normal = Vector2::from(plane.normal);
+            let length = normal.norm();
+            if !(length > 0.0 && length.is_finite()) {
+                return Err(Complaint::new(format!("{place}.master.plane.normal"), "is [0, 0]: must have a direction"));
+            }
+            Master::Plane(Plane { point: Vector2::from(plane.point), normal: normal / length })
+        }
+    };
+    let slave_edges = in_order(&node_lists(slave));
+    let points = match input.method {
+        Method::NodeToSegment => nodal_points(&slave_edges),
+        Method::GaussToSegment => {
+            if !(2..=4).contains(&input.points) {
+                return Err(Complaint::new(format!("{place}.points"), format!("is {}: must be 2, 3 or 4", input.points)));
+            }
+            gauss_points(&slave_edges, input.points)
+        }
+    };
+    let alpha_n = match input.normal.alpha_n {
+        Some(given) if given > 0.0 => given,
+        Some(given) => {
+            let message = format!("is {given}: must be positive (leave it out for 10 E/h)");
+            return Err(Complaint::new(format!("{place}.normal.alpha_n"), message));
+        }
+        None => default_stiffness(model, slave),
+    };
+    let law = input.friction.build(0.5 * alpha_n).map_err(|error| Complaint::new(format!("{place}.friction"), error))?;
+    Ok(ContactPair { name: name.into(), points, master, alpha_n, law })
+}
+
+/// α_n = 10 E/h, the mean over the elements behind the slave; h is the depth of an element behind its edge.
+fn default_stiffness(model: &Model, slave: &[Edge]) -> f64 {
+    let behind = |edge: &Edge| {
+        let [a, b] = [0, 1].map(|end| model.mesh.nodes[edge.nodes[end]]);
+        let depth = model.solids[edge.element].volume() / (b - a).norm();
+        10.0 * model.bodies[model.body_of_element[edge.element]].material.stiffness() / depth
+    };
+    slave.iter().map(behind).sum::<f64>() / slave.len() as f64
+}
+
+/// Slave and master must be different edges: a surface does not touch itself here.
+fn check_disjoint(place: &str, slave: &str, own: &[Edge], master: &str, other: &[Edge], mesh: &Mesh) -> Checked<()> {
+    let nodes: BTreeSet<usize> = own.iter().flat_map(|edge| edge.nodes.iter().copied()).collect();
+    match other.iter().find(|edge| edge.nodes[..2].iter().all(|node| nodes.contains(node))) {
+        Some(edge) => {
+            let tags: Vec<u64> = edge.nodes[..2].iter().map(|&node| mesh.node_tags[node]).collect();
+            let message = format!(
+                "the edge between nodes {} and {} is both slave (`{slave}`) and master (`{master}`): \
+                 the two sides of a contact need edges and nodes of their own",
+                tags[0], tags[1]
+            );
+            Err(Complaint::new(place, message))
+        }
+        None => Ok(()),
+    }
+}
+
+fn initial_velocity(case: &Case, model: &Model) -> Checked<Vec<f64>> {
+    let mut velocity = vec![0.0; model.dofs()];
+    for (name, value) in &case.initial_velocity {
+        let place = format!("initial_velocity.{name}");
+        let Some(body) = model.bodies.iter().find(|body| body.name == *name) else {
+            let known: Vec<&str> = model.bodies.iter().map(|body| body.name.as_str()).collect();
+            return Err(Complaint::new(place, format!("there is no body `{name}`; the bodies are {}", known.join(", "))));
+        };
+        for &node in &body.nodes {
+            velocity[2 * node..2 * node + 2].copy_from_slice(value);
+        }
+    }
+    Ok(velocity)
+}
+
+fn watched(mesh: &Mesh, k: usize, name: &str) -> Checked<WatchedSet> {
+    let group = mesh.group(name).map_err(|error| Complaint::new(format!("watch[{k}]"), error))?;
+    Ok(WatchedSet { name: name.into(), nodes: mesh.nodes_of(group) })
+}
+
+fn steps(case: &Case, model: &Model) -> Checked<Vec<Step>> {
+    if case.steps.is_empty() {
+        return Err(Complaint::new("steps", "is empty: give at least one step"));
+    }
+    let mut builder = StepBuilder { model, start: 0.0, increments: None, supports: BTreeMap::new(), loads: BTreeMap::new() };
+    case.steps.iter().enumerate().map(|(k, step)| builder.next(&format!("steps[{k}]"), step)).collect()
+}
+
+/// What one step hands on to the next.
+struct StepBuilder<'m> {
+    model: &'m Model,
+    start: f64,
+    increments: Option<IncrementsInput>,
+    supports: BTreeMap<usize, Prescribed>,
+    loads: BTreeMap<(String, LoadKind), LoadInForce>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum LoadKind {
+    Pressure,
+    Traction,
+    Gravity,
+    Force,
+    Spring,
+}
+
+/// A load with the amplitudes that the next step takes over from.
+#[derive(Clone, Default)]
+struct LoadInForce {
+    dead: Vec<DeadLoad>,
+    pressures: Vec<FollowerPressure>,
+    springs: Vec<Spring>,
+}
+
+impl StepBuilder<'_> {
+    fn next(&mut self, place: &str, input: &StepInput) -> Checked<Step> {
+        if !(input.duration > 0.0 && input.duration.is_finite()) {
+            let message = format!("is {}: must be positive", input.duration);
+            return Err(Complaint::new(format!("{place}.duration"), message));
+        }
+        input.scheme.check().map_err(|error| Complaint::new(format!("{place}.scheme"), error))?;
+        let span = Span { start: self.start, end: self.start + input.duration };
+        self.start = span.end;
+        self.increments = input.dt.or(self.increments);
+        let increments = increments(&format!("{place}.dt"), self.increments, input.duration)?;
+        let released = self.supports(place, input, span)?;
+        for (k, load) in input.loads.iter().enumerate() {
+            self.load(&format!("{place}.loads[{k}]"), load, span)?;
+        }
+        let mut loads = Loads::default();
+        for load in self.loads.values() {
+            loads.dead.extend(load.dead.iter().cloned());
+            loads.pressures.extend(load.pressures.iter().cloned());
+            loads.springs.extend(load.springs.iter().cloned());
+        }
+        let supports = self.supports.values().cloned().collect();
+        Ok(Step { name: input.name.clone(), span, scheme: input.scheme, increments, supports, released, loads })
+    }
+
+    /// Take over the supports of the step before, replace those named again, and list the dofs that are freed.
+    fn supports(&mut self, place: &str, input: &StepInput, span: Span) -> Checked<Vec<usize>> {
+        let before = self.supports.clone();
+        for support in self.supports.values_mut() {
+            if let Motion::Displacement(_, own) = &mut support.motion {
+                *own = span;
+            }
+        }
+        for (k, support) in input.supports.iter().enumerate() {
+            let place = format!("{place}.supports[{k}]");
+            let nodes = nodes_at(&self.model.mesh, &support.on, &format!("{place}.on"))?;
+            let directions = [("ux", 0, &support.ux), ("uy", 1, &support.uy)];
+            if support.rotation.is_none() && directions.iter().all(|(_, _, given)| given.is_none()) {
+                return Err(Complaint::new(place, "prescribes nothing: give ux, uy or rotation"));
+            }
+            for (key, component, given) in directions {
+                let Some(given) = given else { continue };
+                if matches!(support.rotation, Some(Some(_))) {
+                    return Err(Complaint::new(place, format!("gives rotation and {key}: a rotation prescribes both directions")));
+                }
+                let drive = given.as_ref().map(|given| drive(given, &format!("{place}.{key}"))).transpose()?;
+                for &node in &nodes {
+                    let motion = drive.clone().map(|drive| Motion::Displacement(drive, span));
+                    self.set(2 * node + component, motion);
+                }
+            }
+            let Some(rotation) = &support.rotation else { continue };
+            let motion = match rotation {
+                None => None,
+                Some(rotation) => {
+                    let turning = |support: &Prescribed| match &support.motion {
+                        Motion::Rotation { angle, .. } => Some(Box::new(angle.clone())),
+                        Motion::Displacement(..) => None,
+                    };
+                    let before = nodes.first().and_then(|node| before.get(&(2 * node))).and_then(turning);
+                    let drive = drive(&rotation.angle, &format!("{place}.rotation.angle"))?;
+                    let angle = Amplitude { drive, span, before };
+                    Some(Motion::Rotation { about: Vector2::from(rotation.about), angle })
+                }
+            };
+            for &node in &nodes {
+                for dof in [2 * node, 2 * node + 1] {
+                    self.set(dof, motion.clone());
+                }
+            }
+        }
+        Ok(before.into_keys().filter(|dof| !self.supports.contains_key(dof)).collect())
+    }
+
+    fn set(&mut self, dof: usize, motion: Option<Motion>) {
+        match motion {
+            Some(motion) => self.supports.insert(dof, Prescribed { dof, motion }),
+            None => self.supports.remove(&dof),
+        };
+    }
+
+    fn load(&mut self, place: &str, input: &LoadInput, span: Span) -> Checked<()> {
+        let given = [
+            input.pressure.is_some(),
+            input.traction.is_some(),
+            input.gravity.is_some(),
+            input.force.is_some(),
+            input.spring.is_some(),
+        ];
+        if given.iter().filter(|given| **given).count() != 1 {
+            let message = "must give exactly one of pressure, traction, gravity, force, spring";
+            return Err(Complaint::new(place, message));
+        }
+        if let Some(pressure) = &input.pressure {
+            self.pressure(place, input, pressure.as_ref(), span)?;
+        }
+        if let Some(traction) = &input.traction {
+            let shares = |place: &str| Ok(edge_shares(&self.model.mesh, edges(&self.model.mesh, &group_at(input, place)?, place)?));
+            self.dead(place, input, (LoadKind::Traction, "traction"), traction.as_ref(), shares(&format!("{place}.on"))?, span)?;
+        }
+        if let Some(gravity) = &input.gravity {
+            let shares = self.body_shares(&group_at(input, place)?, &format!("{place}.on"))?;
+            self.dead(place, input, (LoadKind::Gravity, "gravity"), gravity.as_ref(), shares, span)?;
+        }
+        if let Some(force) = &input.force {
+            let mesh = &self.model.mesh;
+            let nodes = nodes_at(mesh, &input.on, &format!("{place}.on"))?;
+            let shares = nodes.into_iter().map(|node| (node, 1.0, mesh.nodes[node])).collect();
+            self.dead(place, input, (LoadKind::Force, "force"), force.as_ref(), shares, span)?;
+        }
+        if let Some(spring) = &input.spring {
+            self.spring(place, input, spring.as_ref(), span)?;
+        }
+        Ok(())
+    }
+
+    fn pressure(&mut self, place: &str, input: &LoadInput, given: Option<&DriveInput>, span: Span) -> Checked<()> {
+        let name = group_at(input, place)?;
+        let edges = node_lists(edges(&self.model.mesh, &name, &format!("{place}.on"))?);
+        let key = (name, LoadKind::Pressure);
+        let before = self.loads.get(&key).and_then(|load| load.pressures.first()).map(|load| load.amplitude.clone());
+        let amplitude = amplitude(given, before, &format!("{place}.pressure"), span)?;
+        let pressures = amplitude.map(|amplitude| FollowerPressure { amplitude, edges }).into_iter().collect();
+        self.loads.insert(key, LoadInForce { pressures, ..Default::default() });
+        Ok(())
+    }
+
+    fn dead(
+        &mut self,
+        place: &str,
+        input: &LoadInput,
+        (kind, key): (LoadKind, &str),
+        given: Option<&Components>,
+        shares: Vec<(usize, f64, Vector2<f64>)>,
+        span: Span,
+    ) -> Checked<()> {
+        let entry = (input.on.to_string(), kind);
+        let before = self.loads.remove(&entry).unwrap_or_default();
+        let mut load = LoadInForce::default();
+        for (component, name) in ["x", "y"].into_iter().enumerate() {
+            let given = given.and_then(|given| if component == 0 { given.x.as_ref() } else { given.y.as_ref() });
+            let before = before.dead.iter().find(|load| load.component == component).map(|load| load.amplitude.clone());
+            let amplitude = amplitude(given, before, &format!("{place}.{key}.{name}"), span)?;
+            load.dead.extend(amplitude.map(|amplitude| DeadLoad { component, amplitude, shares: shares.clone() }));
+        }
+        self.loads.insert(entry, load);
+        Ok(())
+    }
+
+    fn spring(&mut self, place: &str, input: &LoadInput, given: Option<&super::file::SpringInput>, span: Span) -> Checked<()> {
+        let nodes = nodes_at(&self.model.mesh, &input.on, &format!("{place}.on"))?;
+        let key = (input.on.to_string(), LoadKind::Spring);
+        let before = self.loads.remove(&key).unwrap_or_default();
+        let Some(given) = given else { return Ok(()) };
+        let mut load = LoadInForce::default();
+        for (component, (name, stiffness)) in [("kx", given.kx), ("ky", given.ky)].into_iter().enumerate() {
+            if !(stiffness >= 0.0 && stiffness.is_finite()) {
+                let message = format!("is {stiffness}: must be zero or positive");
+                return Err(Complaint::new(format!("{place}.spring.{name}"), message));
+            }
+            if stiffness == 0.0 {
+                continue;
+            }
+            let driver = given.driver.as_ref().and_then(|d| if component == 0 { d.x.as_ref() } else { d.y.as_ref() });
+            let old = before.springs.iter().find(|spring| spring.dof % 2 == component).and_then(|s| s.driver.clone());
+            let driver = amplitude(driver, old, &format!("{place}.spring.driver"), span)?;
+            let at = |&node: &usize| Spring { dof: 2 * node + component, stiffness, driver: driver.clone() };
+            load.springs.extend(nodes.iter().map(at));
+        }
+        self.loads.insert(key, load);
+        Ok(())
+    }
+
+    /// Consistent nodal shares of a force per mass on a body: ∫ ρ N_a dV at the quadrature points.
+    fn body_shares(&self, name: &str, place: &str) -> Checked<Vec<(usize, f64, Vector2<f64>)>> {
+        let Some(body) = self.model.bodies.iter().find(|body| body.name == name) else {
+            let known: Vec<&str> = self.model.bodies.iter().map(|body| body.name.as_str()).collect();
+            return Err(Complaint::new(place, format!("there is no body `{name}`; the bodies are {}", known.join(", "))));
+        };
+        let density = body.material.density();
+        if density == 0.0 {
+            let message = format!("gravity needs a mass: give bodies.{name}.material.density");
+            return Err(Complaint::new(place, message));
+        }
+        let mesh = &self.model.mesh;
+        let mut shares = Vec::new();
+        for &e in &body.elements {
+            let element = &mesh.elements[e];
+            let masses = self.model.solids[e].consistent_mass(density);
+            let n = element.nodes.len();
+            for (a, &node) in element.nodes.iter().enumerate() {
+                let mass = (0..n).map(|b| masses[a * n + b]).sum();
+                shares.push((node, mass, mesh.nodes[node]));
+            }
+        }
+        Ok(shares)
+    }
+}
+
+fn group_at(input: &LoadInput, place: &str) -> Checked<String> {
+    match &input.on {
+        Place::Group(name) => Ok(name.clone()),
+        Place::Node { node } => {
+            Err(Complaint::new(format!("{place}.on"), format!("node {node} cannot carry this load: name a group")))
+        }
+    }
+}
+
+fn nodes_at(mesh: &Mesh, on: &Place, place: &str) -> Checked<Vec<usize>> {
+    match on {
+        Place::Group(name) => Ok(mesh.nodes_of(mesh.group(name).map_err(|error| Complaint::new(place, error))?)),
+        Place::Node { node } => match mesh.node_tags.iter().position(|tag| tag == node) {
+            Some(node) => Ok(vec![node]),
+            None => Err(Complaint::new(place, format!("the mesh has no node {node}"))),
+        },
+    }
+}
+
+/// Consistent nodal shares of a traction: ∫ N_a |X'| dξ at the Gauss points.
+fn edge_shares(mesh: &Mesh, edges: &[Edge]) -> Vec<(usize, f64, Vector2<f64>)> {
+    let mut shares = Vec::new();
+    for Edge { nodes, .. } in edges {
+        for (xi, weight) in shape::gauss(nodes.len()) {
+            let values = shape::edge_values(nodes.len(), xi);
+            let slopes = shape::edge_derivatives(nodes.len(), xi);
+            let sum = |weights: &[f64]| nodes.iter().zip(weights).map(|(&node, w)| mesh.nodes[node] * *w).sum::<Vector2<f64>>();
+            let (position, stretch) = (sum(&values), sum(&slopes).norm());
+            shares.extend(nodes.iter().zip(&values).map(|(&node, n)| (node, weight * n * stretch, position)));
+        }
+    }
+    shares
+}
+
+/// The drive of this step on top of what was in force before; nothing if there is neither.
+fn amplitude(
+    given: Option<&DriveInput>,
+    before: Option<Amplitude>,
+    place: &str,
+    span: Span,
+) -> Checked<Option<Amplitude>> {
+    let drive = match (given, &before) {
+        (Some(given), _) => drive(given, place)?,
+        // Freed: ramped to zero over the step.
+        (None, Some(_)) => Drive::Constant(0.0),
+        (None, None) => return Ok(None),
+    };
+    Ok(Some(Amplitude { drive, span, before: before.map(Box::new) }))
+}
+
+fn drive(input: &DriveInput, place: &str) -> Checked<Drive> {
+    Ok(match input {
+        DriveInput::Constant(value) => Drive::Constant(*value),
+        DriveInput::Rate { rate } => Drive::Rate(*rate),
+        DriveInput::Expression(text) => {
+            let complain = |error| Complaint::new(place, format!("\"{text}\" cannot be read: {error}"));
+            Drive::Expression(Expression::parse(text).map_err(complain)?)
+        }
+        DriveInput::Table { table } => {
+            if table.is_empty() {
+                return Err(Complaint::new(place, "the table is empty: give pairs [time, value]"));
+            }
+            if let Some(pair) = table.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
+                let message = format!("the times of the table must ascend: {} follows {}", pair[1][0], pair[0][0]);
+                return Err(Complaint::new(place, message));
+            }
+            Drive::Table(table.clone())
+        }
+    })
+}
+
+fn increments(place: &str, input: Option<IncrementsInput>, duration: f64) -> Checked<Increments> {
+    let input = input.unwrap_or(IncrementsInput { initial: 0.1 * duration, min: None, max: None });
+    let min = input.min.unwrap_or(1e-3 * input.initial);
+    let max = input.max.unwrap_or(input.initial);
+    for (name, value) in [("initial", input.initial), ("min", min), ("max", max)] {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(Complaint::new(format!("{place}.{name}"), format!("is {value}: must be positive")));
+        }
+    }
+    if min > max {
+        let message = format!("min = {min} is above max = {max}: increments must have room between them");
+        return Err(Complaint::new(place, message));
+    }
+    if input.initial > max || input.initial < min {
+        let message = format!("initial = {} must lie between min = {min} and max = {max}", input.initial);
+        return Err(Complaint::new(place, message));
+    }
+    Ok(Increments { initial: input.initial, min, max })
+}

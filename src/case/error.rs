@@ -1,0 +1,38 @@
+//! Bad input, with the place where it stands and what to do.
+
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+/// Something in a case that cannot be run.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{}: {}{message}", file.display(), if place.is_empty() { String::new() } else { format!("{place}: ") })]
+pub struct CaseError {
+    /// the case or mesh file
+    pub file: PathBuf,
+    /// path of the key, such as `bodies.block.material`
+    pub place: String,
+    /// what is wrong, and what to do
+    pub message: String,
+}
+
+/// A complaint about a place in the case; the file is added at the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Complaint {
+    /// path of the key
+    pub place: String,
+    /// what is wrong, and what to do
+    pub message: String,
+}
+
+impl Complaint {
+    /// A complaint.
+    pub fn new(place: impl Into<String>, message: impl ToString) -> Self {
+        Self { place: place.into(), message: message.to_string() }
+    }
+
+    /// With the file it is about.
+    pub fn in_file(self, file: &Path) -> CaseError {
+        CaseError { file: file.to_owned(), place: self.place, message: self.message }
+    }
+}

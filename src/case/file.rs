@@ -1,0 +1,333 @@
+//! The case file as it is written: JSON types, with the text that the schema shows.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Deserializer};
+
+use crate::friction::FrictionParameters;
+use crate::material::MaterialParameters;
+use crate::mesh::InlineMesh;
+use crate::time::Scheme;
+
+/// A case: mesh, bodies, contacts and steps.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Case {
+    /// What the case shows, in a line
+    #[serde(default)]
+    pub title: String,
+    /// Labels of the units used, for readers; any consistent set will do
+    #[serde(default)]
+    pub units: BTreeMap<String, String>,
+    /// Path of a gmsh MSH 4.1 file relative to the case file, or a small mesh given in place
+    pub mesh: MeshSource,
+    /// Bodies by the name of their mesh group
+    pub bodies: BTreeMap<String, BodyInput>,
+    /// Contacts by a name of your choice
+    #[serde(default)]
+    pub contacts: BTreeMap<String, ContactInput>,
+    /// Initial velocity [x, y] of whole bodies
+    #[serde(default)]
+    pub initial_velocity: BTreeMap<String, [f64; 2]>,
+    /// Steps, one after the other
+    pub steps: Vec<StepInput>,
+    /// Groups whose mean displacement and reaction go to the history
+    #[serde(default)]
+    pub watch: Vec<String>,
+    /// When Newton's method stops
+    #[serde(default)]
+    pub newton: NewtonInput,
+    /// What is written
+    #[serde(default)]
+    pub output: OutputInput,
+}
+
+/// A mesh file or a mesh in place.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "expected the path of a mesh file, or a mesh {\"nodes\": …, \"elements\": …, \"edges\": …}")]
+pub enum MeshSource {
+    /// Path relative to the case file
+    File(String),
+    /// Mesh in place
+    Inline(InlineMesh),
+}
+
+/// A body.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BodyInput {
+    /// Bulk law
+    pub material: MaterialParameters,
+    /// Element formulation
+    #[serde(default)]
+    pub element: Formulation,
+}
+
+/// How the elements of a body are integrated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Formulation {
+    /// Displacements only, full integration
+    #[default]
+    Displacement,
+    /// Q4 with the mean dilatation of the centre (F-bar): does not lock for ν → 1/2
+    FBar,
+}
+
+/// A contact pair.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ContactInput {
+    /// Edge group whose points are kept out of the master; the finer or softer side
+    pub slave: String,
+    /// Edge group, or a rigid plane
+    pub master: MasterInput,
+    /// Where contact is evaluated
+    #[serde(default)]
+    pub method: Method,
+    /// Gauss points a slave edge (gauss_to_segment), 2 to 4
+    #[serde(default = "two")]
+    pub points: usize,
+    /// Normal contact
+    #[serde(default)]
+    pub normal: NormalInput,
+    /// Friction law
+    pub friction: FrictionParameters,
+}
+
+fn two() -> usize {
+    2
+}
+
+/// The master side.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "expected an edge group, or {\"plane\": {\"point\": [x, y], \"normal\": [x, y]}}")]
+pub enum MasterInput {
+    /// Edge group of the mesh
+    Group(String),
+    /// Rigid plane
+    Plane {
+        /// the plane
+        plane: PlaneInput,
+    },
+}
+
+/// A rigid half-space.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlaneInput {
+    /// A point of its surface [L]
+    pub point: [f64; 2],
+    /// Direction out of the solid, of any length
+    pub normal: [f64; 2],
+}
+
+/// Where contact is evaluated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// At the slave's nodes, with tributary lengths
+    NodeToSegment,
+    /// At Gauss points of the slave's edges
+    #[default]
+    GaussToSegment,
+}
+
+/// Normal contact.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NormalInput {
+    /// α_n: pressure per penetration [F/L³]; 10 E/h of the elements behind the slave unless given
+    pub alpha_n: Option<f64>,
+}
+
+/// A step.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StepInput {
+    /// Name in messages and results
+    pub name: String,
+    /// Length of the step [T]
+    pub duration: f64,
+    /// Time scheme
+    #[serde(default)]
+    pub scheme: Scheme,
+    /// Increments; inherited from the step before unless given
+    pub dt: Option<IncrementsInput>,
+    /// Supports; inherited, and replaced where the same group and direction is named again
+    #[serde(default)]
+    pub supports: Vec<SupportInput>,
+    /// Loads; inherited, and replaced where the same group and kind is named again
+    #[serde(default)]
+    pub loads: Vec<LoadInput>,
+}
+
+/// Increments of a step.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct IncrementsInput {
+    /// First increment [T]
+    pub initial: f64,
+    /// A failed increment is not cut below this [T]; initial/1000 unless given
+    pub min: Option<f64>,
+    /// Increments do not grow beyond this [T]; initial unless given
+    pub max: Option<f64>,
+}
+
+/// A support on a group or a node.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SupportInput {
+    /// Where
+    pub on: Place,
+    /// Displacement in x [L]; null frees it
+    #[serde(default, deserialize_with = "present")]
+    pub ux: Option<Option<DriveInput>>,
+    /// Displacement in y [L]; null frees it
+    #[serde(default, deserialize_with = "present")]
+    pub uy: Option<Option<DriveInput>>,
+    /// Rigid rotation about a point, instead of ux and uy; null frees it
+    #[serde(default, deserialize_with = "present")]
+    pub rotation: Option<Option<RotationInput>>,
+}
+
+/// A group or a single node.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "expected the name of a group, or {\"node\": tag}")]
+pub enum Place {
+    /// Group of the mesh
+    Group(String),
+    /// Single node
+    Node {
+        /// its tag in the mesh file (its number from 0 in a mesh given in place)
+        node: u64,
+    },
+}
+
+impl std::fmt::Display for Place {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            Self::Group(name) => f.write_str(name),
+            Self::Node { node } => write!(f, "node {node}"),
+        }
+    }
+}
+
+/// A rigid rotation.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RotationInput {
+    /// Centre [L]
+    pub about: [f64; 2],
+    /// Angle, counter-clockwise [rad]
+    pub angle: DriveInput,
+}
+
+/// How a quantity varies.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(
+    untagged,
+    deny_unknown_fields,
+    expecting = "expected a number, an expression in x, y, t such as \"0.01*y*t\", {\"rate\": v}, or {\"table\": [[t, v], …]}"
+)]
+pub enum DriveInput {
+    /// Value at the end of the step, reached linearly
+    Constant(f64),
+    /// Expression in the reference position x, y and the run time t
+    Expression(String),
+    /// Value at the start of the step plus rate × time since
+    Rate {
+        /// the rate [1/T]
+        rate: f64,
+    },
+    /// Pairs of run time and value
+    Table {
+        /// (time, value), times ascending
+        table: Vec<[f64; 2]>,
+    },
+}
+
+/// A load: exactly one kind an entry.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LoadInput {
+    /// Where
+    pub on: Place,
+    /// Pressure on edges that follows the surface, positive toward the body [F/L²]
+    #[serde(default, deserialize_with = "present")]
+    pub pressure: Option<Option<DriveInput>>,
+    /// Traction on reference edges that keeps its direction [F/L²]
+    #[serde(default, deserialize_with = "present")]
+    pub traction: Option<Option<Components>>,
+    /// Acceleration of gravity on a body [L/T²]
+    #[serde(default, deserialize_with = "present")]
+    pub gravity: Option<Option<Components>>,
+    /// Force on every node of the group [F]
+    #[serde(default, deserialize_with = "present")]
+    pub force: Option<Option<Components>>,
+    /// Spring at every node of the group, to the ground or to a moving driver
+    #[serde(default, deserialize_with = "present")]
+    pub spring: Option<Option<SpringInput>>,
+}
+
+/// Components of a vector; zero unless given.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Components {
+    /// x component
+    pub x: Option<DriveInput>,
+    /// y component
+    pub y: Option<DriveInput>,
+}
+
+/// A spring.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SpringInput {
+    /// Stiffness in x [F/L]
+    #[serde(default)]
+    pub kx: f64,
+    /// Stiffness in y [F/L]
+    #[serde(default)]
+    pub ky: f64,
+    /// Displacement of the far end; the ground unless given [L]
+    pub driver: Option<Components>,
+}
+
+/// When Newton's method stops.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct NewtonInput {
+    /// Out-of-balance force relative to the forces at work
+    pub tolerance: f64,
+    /// Linear solves an increment before it is cut
+    pub max_iterations: usize,
+}
+
+impl Default for NewtonInput {
+    fn default() -> Self {
+        Self { tolerance: 1e-8, max_iterations: 25 }
+    }
+}
+
+/// What is written.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct OutputInput {
+    /// Fields are written every n-th increment, and at the end of each step
+    pub every: usize,
+    /// Whether fields are written at all
+    pub fields: bool,
+}
+
+impl Default for OutputInput {
+    fn default() -> Self {
+        Self { every: 1, fields: true }
+    }
+}
+
+/// Tell a key that is `null` (Some(None)) from one that is absent (None, by default).
+fn present<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Option<T>>, D::Error> {
+    Option::deserialize(deserializer).map(Some)
+}

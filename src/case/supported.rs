@@ -1,0 +1,83 @@
+//! Bodies that float in a static step: found from the supports before anything is solved.
+
+use nalgebra::{Matrix3, RowVector3, Vector2};
+
+use super::error::Complaint;
+use super::file::Case;
+use crate::contact::surface::{Master, Surface};
+use crate::model::{Model, Step};
+
+/// Share of the stiffest rigid motion below which a motion counts as free.
+const FREE: f64 = 1e-10;
+
+/// Every group of bodies joined by contact must be held against x, y and rotation by supports or springs in every
+/// static step. A group that touches a rigid plane is left to the solver.
+pub fn check(case: &Case, model: &Model) -> Result<(), Complaint> {
+    for (k, step) in model.steps.iter().enumerate().filter(|(_, step)| step.scheme.coefficients().is_none()) {
+        for group in joined_bodies(model) {
+            let Some(motion) = free_motion(model, step, &group) else { continue };
+            let names: Vec<String> = group.iter().map(|&body| format!("`{}`", model.bodies[body].name)).collect();
+            let held = if case.steps[k].supports.is_empty() && step.supports.is_empty() {
+                "there is no support at all"
+            } else {
+                "the supports do not hold it"
+            };
+            let message = format!(
+                "{} can move freely {motion}: {held}; a static step needs supports or springs against every rigid motion",
+                names.join(" with ")
+            );
+            return Err(Complaint::new(format!("steps[{k}].supports"), message));
+        }
+    }
+    Ok(())
+}
+
+/// Groups of bodies joined by contacts; those that touch a rigid plane are left out.
+fn joined_bodies(model: &Model) -> Vec<Vec<usize>> {
+    let body_at = |node: usize| model.bodies.iter().position(|body| body.nodes.binary_search(&node).is_ok());
+    let mut group: Vec<usize> = (0..model.bodies.len()).collect();
+    let mut on_plane = vec![false; model.bodies.len()];
+    for pair in &model.contacts {
+        let slave = pair.points.first().and_then(|point| point.position.first()).and_then(|&(node, _)| body_at(node));
+        let Some(slave) = slave else { continue };
+        match &pair.master {
+            Master::Plane(_) => on_plane[slave] = true,
+            Master::Mesh(Surface { segments, .. }) => {
+                let Some(master) = segments.first().and_then(|ends| body_at(ends[0])) else { continue };
+                let (from, to) = (group[slave], group[master]);
+                group.iter_mut().filter(|g| **g == from).for_each(|g| *g = to);
+            }
+        }
+    }
+    let members = |g: usize| (0..group.len()).filter(|&body| group[body] == g).collect::<Vec<_>>();
+    let groups = (0..group.len()).map(members).filter(|bodies| !bodies.is_empty());
+    groups.filter(|bodies| !bodies.iter().any(|&body| on_plane[body])).collect()
+}
+
+/// A rigid motion of the bodies that no prescribed dof and no spring resists.
+fn free_motion(model: &Model, step: &Step, bodies: &[usize]) -> Option<String> {
+    let nodes: Vec<usize> = bodies.iter().flat_map(|&body| model.bodies[body].nodes.iter().copied()).collect();
+    let centre = nodes.iter().map(|&n| model.mesh.nodes[n]).sum::<Vector2<f64>>() / nodes.len() as f64;
+    let radius = nodes.iter().fold(f64::MIN_POSITIVE, |r, &n| r.max((model.mesh.nodes[n] - centre).norm()));
+    let held = step.supports.iter().map(|support| support.dof).chain(step.loads.springs.iter().map(|spring| spring.dof));
+    let mut resistance = Matrix3::zeros();
+    for dof in held {
+        let node = dof / 2;
+        if !bodies.iter().any(|&body| model.bodies[body].nodes.binary_search(&node).is_ok()) {
+            continue;
+        }
+        let arm = (model.mesh.nodes[node] - centre) / radius;
+        let row = if dof % 2 == 0 { RowVector3::new(1.0, 0.0, -arm.y) } else { RowVector3::new(0.0, 1.0, arm.x) };
+        resistance += row.transpose() * row;
+    }
+    let eigen = resistance.symmetric_eigen();
+    let (weakest, value) = eigen.eigenvalues.argmin();
+    if value > FREE * eigen.eigenvalues.amax() {
+        return None;
+    }
+    let motion = eigen.eigenvectors.column(weakest);
+    let words = ["along x", "along y", "in rotation"];
+    let strongest = motion.amax();
+    let free: Vec<&str> = (0..3).filter(|&i| motion[i].abs() > 0.1 * strongest).map(|i| words[i]).collect();
+    Some(free.join(" with "))
+}

@@ -1,0 +1,138 @@
+//! The commands behind the command line.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use crate::case::{self, CaseError};
+use crate::error::Error;
+use crate::model::Model;
+use crate::output::Observer;
+use crate::output::fields::Fields;
+use crate::output::history::History;
+use crate::output::newton_log::NewtonLog;
+use crate::output::progress::Progress;
+use crate::output::summary::Summary;
+use crate::output::warnings::Warnings;
+use crate::run;
+
+/// Why a command did not end well.
+#[derive(Debug)]
+pub enum Failure {
+    /// It stopped while solving; results so far are kept.
+    Stopped(String),
+    /// The input is bad; nothing was written.
+    BadInput(String),
+}
+
+impl From<CaseError> for Failure {
+    fn from(error: CaseError) -> Self {
+        Self::BadInput(error.to_string())
+    }
+}
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        Self::Stopped(error.to_string())
+    }
+}
+
+/// `fecontact run`.
+///
+/// # Errors
+/// [`Failure`].
+pub fn run(path: &Path, out: Option<PathBuf>, threads: Option<usize>, quiet: bool) -> Result<(), Failure> {
+    use_threads(threads)?;
+    let case = case::read(path)?;
+    let model = case::build(&case, path)?;
+    let folder = out.unwrap_or_else(|| Path::new("out").join(path.file_stem().unwrap_or("case".as_ref())));
+    prepare(&folder)?;
+
+    let mut history = History::create(&folder, &model)?;
+    let mut newton_log = NewtonLog::create(&folder)?;
+    let mut warnings = Warnings::default();
+    let mut fields = match case.output.fields {
+        true => Some(Fields::create(&folder, &model, &model.initial_state(), case.output.every)?),
+        false => None,
+    };
+    let mut progress = (!quiet).then(Progress::new);
+    let mut observers: Vec<&mut dyn Observer> = vec![&mut history, &mut newton_log, &mut warnings];
+    observers.extend(fields.as_mut().map(|fields| fields as &mut dyn Observer));
+    observers.extend(progress.as_mut().map(|progress| progress as &mut dyn Observer));
+
+    let (report, result) = run::run(&model, &mut observers);
+    drop(progress);
+    let name = path.display().to_string();
+    let summary = Summary::new(&name, &model, report, result.as_ref().err(), warnings.list);
+    summary.write(&folder)?;
+    if !quiet {
+        conclude(&summary, &model, &folder);
+    }
+    result?;
+    Ok(())
+}
+
+/// The last lines of a run on stderr.
+fn conclude(summary: &Summary, model: &Model, folder: &Path) {
+    for warning in &summary.warnings {
+        eprintln!("warning: {warning}");
+    }
+    let report = &summary.report;
+    eprintln!(
+        "{} increments, {} cut-backs, {} linear solves of {} dofs in {:.2} s; results in {}",
+        report.increments,
+        report.cutbacks,
+        report.newton_iterations,
+        model.dofs(),
+        report.wall_s.total,
+        folder.display()
+    );
+}
+
+/// `fecontact check`.
+///
+/// # Errors
+/// [`Failure::BadInput`].
+pub fn check(path: &Path) -> Result<(), Failure> {
+    let case = case::read(path)?;
+    let model = case::build(&case, path)?;
+    print(&case::report(&case, &model));
+    Ok(())
+}
+
+/// `fecontact schema`.
+///
+/// # Errors
+/// None: the schema is always there.
+pub fn schema() -> Result<(), Failure> {
+    print(&format!("{:#}\n", case::schema()));
+    Ok(())
+}
+
+/// Print to stdout; a reader that has gone away (`| head`) is no error.
+fn print(text: &str) {
+    let _ = std::io::stdout().write_all(text.as_bytes());
+}
+
+fn use_threads(threads: Option<usize>) -> Result<(), Failure> {
+    let Some(threads) = threads else { return Ok(()) };
+    if threads == 0 {
+        return Err(Failure::BadInput("--threads 0: give at least 1, or leave it out for all cores".into()));
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    pool.map_err(|error| Failure::BadInput(format!("--threads {threads}: {error}")))
+}
+
+/// Make the output folder, and remove the frames of an earlier run.
+fn prepare(folder: &Path) -> Result<(), Failure> {
+    let bad = |cause: std::io::Error| {
+        Failure::BadInput(format!("{}: cannot be made the output folder: {cause}", folder.display()))
+    };
+    std::fs::create_dir_all(folder).map_err(bad)?;
+    for frames in ["solid", "contact"] {
+        let Ok(entries) = std::fs::read_dir(folder.join(frames)) else { continue };
+        for path in entries.flatten().map(|entry| entry.path()).filter(|path| path.extension() == Some("vtu".as_ref())) {
+            std::fs::remove_file(path).map_err(bad)?;
+        }
+    }
+    Ok(())
+}

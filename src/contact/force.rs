@@ -1,0 +1,153 @@
+//! Traction at one contact point, the forces it puts on the nodes, and their tangent.
+//!
+//! ```text
+//! p = −α_n g (g < 0),   q from the friction law,   t = p n − q s
+//! f_a = −w_a t ℓ                                      ℓ: current length, x_s − x_foot = Σ w_a x_a
+//! δt = (δp − q δθ) n − (δq + p δθ) s,   δp = −α_n δg,   δq = ∂q/∂Δu_t δΔu_t + ∂q/∂p δp
+//! ```
+//!
+//! In an increment that starts open only the slip after touch counts: Δu_t g₁/(g₁ − g₀).
+
+use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
+
+use super::kinematics::{Kinematics, kinematics};
+use super::pair::ContactPair;
+use super::projection::Projection;
+use super::surface::{MasterPoint, SlavePoint};
+use crate::friction::{FrictionResponse, FrictionState, LawFailure, Sliding};
+use crate::system::Contribution;
+
+/// Memory of one contact point between increments.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ContactState {
+    /// What friction remembers
+    pub friction: FrictionState,
+    /// Foot on the master, open or closed; `None` where no part of the master faces the point
+    pub foot: Option<MasterPoint>,
+    /// g at the foot [L]
+    pub gap: f64,
+}
+
+/// Whether a point is open, sticks or slips.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// No pressure
+    Open,
+    /// Pressed, and held by friction
+    Stick,
+    /// Plastic slip in this increment at R ≥ 0.9
+    Slip,
+}
+
+impl ContactState {
+    /// Open, stick or slip. The super/subloading law slips plastically a little whenever it is loaded, so only plastic
+    /// slip near the peak surface counts as slipping.
+    pub fn status(&self) -> Status {
+        let friction = &self.friction;
+        if friction.pressure <= 0.0 {
+            Status::Open
+        } else if friction.plastic_increment != 0.0 && friction.ratio() >= 0.9 {
+            Status::Slip
+        } else {
+            Status::Stick
+        }
+    }
+}
+
+/// Increment of a contact point: where it comes from and how long it takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Increment {
+    /// Δt [T]
+    pub dt: f64,
+    /// The first iterate takes a zero gap as closed and sticking: Newton would otherwise cycle at p = 0
+    pub first_iterate: bool,
+}
+
+/// Contact closes at a zero gap when it is below this share of the length the point stands for.
+const TOUCH: f64 = 1e-9;
+
+/// The trial state of one point and, if closed, what it adds to the equations.
+pub fn respond(
+    pair: &ContactPair,
+    slave: &SlavePoint,
+    projection: Option<Projection>,
+    old: &ContactState,
+    increment: Increment,
+    x: &[Vector2<f64>],
+) -> Result<(ContactState, Option<Contribution>), LawFailure> {
+    let closed = projection.filter(|p| p.gap < 0.0 || touches(slave, p, old, increment, x));
+    let Some(projection) = closed else {
+        let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.dt };
+        let friction = pair.law.respond(&old.friction, sliding)?.state;
+        let state = ContactState { friction, foot: projection.map(|p| p.foot), gap: projection.map_or(0.0, |p| p.gap) };
+        return Ok((state, None));
+    };
+    let mut kinematics = kinematics(slave, &pair.master, &projection, old.foot, x);
+    count_slip_after_touch(&mut kinematics, old.gap, projection.gap);
+    let pressure = (-pair.alpha_n * projection.gap).max(0.0);
+    let sliding = Sliding { slip: kinematics.slip, pressure, dt: increment.dt };
+    let mut response = pair.law.respond(&old.friction, sliding)?;
+    if pressure == 0.0 {
+        response.dtraction_dslip = pair.law.stiffness();
+    }
+    let state = ContactState { friction: response.state, foot: Some(projection.foot), gap: projection.gap };
+    Ok((state, Some(contribution(&kinematics, &response, pair.alpha_n))))
+}
+
+fn touches(
+    slave: &SlavePoint,
+    projection: &Projection,
+    old: &ContactState,
+    increment: Increment,
+    x: &[Vector2<f64>],
+) -> bool {
+    let zero = TOUCH * slave.current_length(x);
+    increment.first_iterate && old.foot.is_some() && old.gap.abs() <= zero && projection.gap <= zero
+}
+
+fn count_slip_after_touch(kinematics: &mut Kinematics, old_gap: f64, gap: f64) {
+    if old_gap > 0.0 && gap < 0.0 {
+        let share = gap / (gap - old_gap);
+        let dshare = -old_gap / (gap - old_gap).powi(2);
+        kinematics.dslip *= share;
+        kinematics.dslip += &kinematics.dgap * (dshare * kinematics.slip);
+        kinematics.slip *= share;
+    }
+}
+
+/// Nodal forces of the traction and their exact derivative.
+fn contribution(k: &Kinematics, response: &FrictionResponse, alpha_n: f64) -> Contribution {
+    let FrictionState { traction: q, pressure: p, .. } = response.state;
+    let traction = k.normal * p - k.tangent * q;
+    let dpressure = &k.dgap * -alpha_n;
+    let dq = &k.dslip * response.dtraction_dslip + &dpressure * response.dtraction_dpressure;
+    let along_normal = &dpressure - &k.drotation * q;
+    let along_tangent = -(dq + &k.drotation * p);
+    // δ(t ℓ), one row a component
+    let dforce = |i: usize| {
+        (&along_normal * k.normal[i] + &along_tangent * k.tangent[i]) * k.length + &k.dlength * traction[i]
+    };
+    let rows = [dforce(0), dforce(1)];
+
+    let mut result = Contribution::zero(k.nodes.clone());
+    let add = |result: &mut Contribution, node: usize, i: usize, row: &nalgebra::DVector<f64>, factor: f64| {
+        for (column, value) in row.iter().enumerate() {
+            result.tangent[(2 * node + i, column)] += factor * value;
+        }
+    };
+    for (node, &w) in k.relative.iter().enumerate() {
+        for (i, row) in rows.iter().enumerate() {
+            result.force[2 * node + i] = -w * traction[i] * k.length;
+            add(&mut result, node, i, row, -w);
+        }
+    }
+    if let Some((dfoot, [start, end])) = &k.dfoot {
+        for i in 0..2 {
+            let force = traction[i] * k.length;
+            add(&mut result, *start, i, dfoot, -force);
+            add(&mut result, *end, i, dfoot, force);
+        }
+    }
+    result
+}

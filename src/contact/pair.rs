@@ -1,0 +1,92 @@
+//! A slave surface, its master, and the laws between them, evaluated point by point.
+
+use std::ops::Range;
+
+use nalgebra::Vector2;
+use rayon::prelude::*;
+
+use super::force::{ContactState, Increment, respond};
+use super::search::Index;
+use super::surface::{Master, SlavePoint};
+use crate::friction::{FrictionLaw, FrictionState, LawFailure};
+use crate::system::Contribution;
+
+/// Two surfaces that may touch.
+#[derive(Debug)]
+pub struct ContactPair {
+    /// Name in the case file
+    pub name: String,
+    /// Points of the slave surface, in order along it
+    pub points: Vec<SlavePoint>,
+    /// The master
+    pub master: Master,
+    /// α_n: normal penalty stiffness [F/L³]
+    pub alpha_n: f64,
+    /// The friction law
+    pub law: Box<dyn FrictionLaw>,
+}
+
+/// Trial states and contributions of all points of a pair, in their order.
+pub type PairResponse = Vec<(ContactState, Option<Contribution>)>;
+
+impl ContactPair {
+    /// States at the start of a run: each point projected at the reference positions, friction at rest.
+    pub fn initial_states(&self, x: &[Vector2<f64>]) -> Vec<ContactState> {
+        let index = Index::new(&self.master, x);
+        let at_rest = |slave| {
+            let projection = index.project(slave, x);
+            ContactState {
+                friction: self.law.initial_state(),
+                foot: projection.map(|p| p.foot),
+                gap: projection.map_or(0.0, |p| p.gap),
+            }
+        };
+        self.points.iter().map(at_rest).collect()
+    }
+
+    /// Every point's trial state and contribution at the positions `x`; pure, and the same for any number of threads.
+    ///
+    /// # Errors
+    /// The number of the first point whose friction law fails, and why.
+    pub fn respond(
+        &self,
+        old: &[ContactState],
+        increment: Increment,
+        x: &[Vector2<f64>],
+    ) -> Result<PairResponse, (usize, LawFailure)> {
+        let index = Index::new(&self.master, x);
+        let one = |(k, (slave, old)): (usize, (&SlavePoint, &ContactState))| {
+            respond(self, slave, index.project(slave, x), old, increment, x).map_err(|failure| (k, failure))
+        };
+        // The first failure by number, whatever thread met it.
+        let all: Vec<_> = self.points.par_iter().zip(old).enumerate().map(one).collect();
+        all.into_iter().collect()
+    }
+}
+
+impl ContactPair {
+    /// Elastic part of the slip, q/α_t; 0 for a frictionless contact [L].
+    pub fn elastic_slip(&self, friction: &FrictionState) -> f64 {
+        let stiffness = self.law.stiffness();
+        if stiffness > 0.0 { friction.traction / stiffness } else { 0.0 }
+    }
+
+    /// Ranges of points that follow each other along an unbroken surface.
+    pub fn lines(&self) -> Vec<Range<usize>> {
+        let nodes = |point: &SlavePoint| -> Vec<usize> {
+            point.length.iter().flat_map(|share| share.tangent.iter().map(|&(node, _)| node)).collect()
+        };
+        let joined = |a: usize, b: usize| {
+            let after = nodes(&self.points[b]);
+            nodes(&self.points[a]).iter().any(|node| after.contains(node))
+        };
+        let mut lines: Vec<Range<usize>> = Vec::new();
+        for k in 0..self.points.len() {
+            match lines.last_mut() {
+                Some(line) if joined(k - 1, k) => line.end = k + 1,
+                _ => lines.push(k..k + 1),
+            }
+        }
+        lines
+    }
+}

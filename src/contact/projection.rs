@@ -1,0 +1,91 @@
+//! The foot of a point on one segment or plane: closest point, gap and normal.
+
+use nalgebra::Vector2;
+
+use super::surface::{MasterPoint, Plane, Surface};
+
+/// Where a slave point meets the master.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Projection {
+    /// The foot
+    pub foot: MasterPoint,
+    /// g = (x − x_foot)·n, negative when penetrating [L]
+    pub gap: f64,
+    /// n: unit normal out of the master
+    pub normal: Vector2<f64>,
+    /// What the foot is bound to
+    pub bound: Bound,
+}
+
+/// What a foot moves with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bound {
+    /// It slides on a straight segment
+    Segment,
+    /// It stays at a node between two segments
+    Node(usize),
+    /// It slides on a rigid plane
+    Plane,
+}
+
+/// The first and last segment of a surface reach beyond its end by this share of their length: a slave that ends flush
+/// with its master stays in contact when it bulges by a trifle; farther out it is off the edge, and open.
+pub const OVERHANG: f64 = 0.05;
+
+/// s: n turned by −90°.
+pub fn tangent_of(normal: Vector2<f64>) -> Vector2<f64> {
+    Vector2::new(normal.y, -normal.x)
+}
+
+/// n: s turned by +90°.
+pub fn normal_of(tangent: Vector2<f64>) -> Vector2<f64> {
+    Vector2::new(-tangent.y, tangent.x)
+}
+
+/// Foot of `point` on one segment at the current nodal positions `x`; `None` past the end of the surface.
+pub fn on_segment(point: Vector2<f64>, surface: &Surface, segment: usize, x: &[Vector2<f64>]) -> Option<Projection> {
+    let [a, b] = surface.segments[segment];
+    let along = x[b] - x[a];
+    let xi = (point - x[a]).dot(&along) / along.norm_squared();
+    let neighbour = if xi < 0.0 { surface.previous(segment) } else { surface.next(segment) };
+    match neighbour {
+        Some(neighbour) if !(0.0..=1.0).contains(&xi) => Some(at_node(point, surface, segment, neighbour, xi, x)),
+        _ if !(-OVERHANG..=1.0 + OVERHANG).contains(&xi) => None,
+        _ => {
+            let normal = normal_of(along.normalize());
+            let gap = (point - x[a]).dot(&normal);
+            Some(Projection { foot: MasterPoint { segment, xi }, gap, normal, bound: Bound::Segment })
+        }
+    }
+}
+
+/// Closest point is the node between two segments: outside a convex corner or, penetrating, inside a concave one.
+fn at_node(
+    point: Vector2<f64>,
+    surface: &Surface,
+    segment: usize,
+    neighbour: usize,
+    xi: f64,
+    x: &[Vector2<f64>],
+) -> Projection {
+    let direction = |segment: usize| {
+        let [a, b] = surface.segments[segment];
+        (x[b] - x[a]).normalize()
+    };
+    let mean = normal_of(direction(segment) + direction(neighbour));
+    let (end, xi) = if xi < 0.0 { (0, 0.0) } else { (1, 1.0) };
+    let node = surface.segments[segment][end];
+    let offset = point - x[node];
+    let side = if offset.dot(&mean) < 0.0 { -1.0 } else { 1.0 };
+    let gap = side * offset.norm();
+    // A point exactly on the node has no direction of its own.
+    let normal = if gap == 0.0 { mean.normalize() } else { offset / gap };
+    Projection { foot: MasterPoint { segment, xi }, gap, normal, bound: Bound::Node(node) }
+}
+
+/// Foot of `point` on a rigid plane.
+pub fn on_plane(point: Vector2<f64>, plane: &Plane) -> Projection {
+    let offset = point - plane.point;
+    let foot = MasterPoint { segment: 0, xi: offset.dot(&tangent_of(plane.normal)) };
+    Projection { foot, gap: offset.dot(&plane.normal), normal: plane.normal, bound: Bound::Plane }
+}

@@ -1,0 +1,54 @@
+//! Which part of the master a slave point meets: the nearest segment that faces it.
+
+use nalgebra::Vector2;
+use rstar::RTree;
+use rstar::primitives::{GeomWithData, Line};
+
+use super::projection::{Projection, normal_of, on_plane, on_segment};
+use super::surface::{Master, Plane, SlavePoint, Surface};
+
+/// A slave and a segment face each other when the cosine between their outward normals is below this: the sides of a
+/// body do not touch what its bottom rests on.
+const FACING: f64 = -0.1;
+
+/// Segments looked at before a point is called free. Nearest come first, so more than a few mean that nothing faces it.
+const CANDIDATES: usize = 8;
+
+/// The master in a spatial index at the current positions.
+pub enum Index<'a> {
+    /// Segments of a mesh surface in an R-tree
+    Mesh(&'a Surface, RTree<GeomWithData<Line<[f64; 2]>, usize>>),
+    /// A plane needs none
+    Plane(&'a Plane),
+}
+
+impl<'a> Index<'a> {
+    /// Index the master at the nodal positions `x`, O(N log N).
+    pub fn new(master: &'a Master, x: &[Vector2<f64>]) -> Self {
+        match master {
+            Master::Plane(plane) => Self::Plane(plane),
+            Master::Mesh(surface) => {
+                let line = |[a, b]: [usize; 2]| Line::new(x[a].into(), x[b].into());
+                let lines = surface.segments.iter().enumerate().map(|(k, &ends)| GeomWithData::new(line(ends), k));
+                Self::Mesh(surface, RTree::bulk_load(lines.collect()))
+            }
+        }
+    }
+
+    /// The foot of a slave point, if a part of the master faces it, O(log N).
+    pub fn project(&self, slave: &SlavePoint, x: &[Vector2<f64>]) -> Option<Projection> {
+        let point = slave.at(x);
+        match self {
+            Self::Plane(plane) => Some(on_plane(point, plane)),
+            Self::Mesh(surface, tree) => {
+                let outward = slave.outward(x).normalize();
+                let facing = |segment: usize| {
+                    let [a, b] = surface.segments[segment];
+                    normal_of((x[b] - x[a]).normalize()).dot(&outward) < FACING
+                };
+                let nearest = tree.nearest_neighbor_iter([point.x, point.y]).take(CANDIDATES).map(|line| line.data);
+                nearest.filter(|&segment| facing(segment)).find_map(|segment| on_segment(point, surface, segment, x))
+            }
+        }
+    }
+}

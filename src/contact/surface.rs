@@ -1,0 +1,221 @@
+//! The two sides of a contact: points of the slave surface, and the master as a chain of segments or a rigid plane.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
+
+use crate::shape;
+
+/// A linear combination of nodal positions, Σ w_a x_a.
+pub type Weights = Vec<(usize, f64)>;
+
+/// Σ w_a x_a at the current nodal positions.
+pub fn combine(weights: &[(usize, f64)], x: &[Vector2<f64>]) -> Vector2<f64> {
+    weights.iter().map(|&(node, w)| x[node] * w).sum()
+}
+
+/// One edge's share of the length that a slave point stands for: `factor` × |Σ w_a x_a|.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LengthShare {
+    /// Quadrature weight
+    pub factor: f64,
+    /// Weights of the tangent vector dx/dξ
+    pub tangent: Weights,
+}
+
+/// A point of the slave surface where contact is evaluated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SlavePoint {
+    /// Shape functions of the point
+    pub position: Weights,
+    /// Its current length is the sum of these shares (thickness 1) [L]
+    pub length: Vec<LengthShare>,
+}
+
+impl SlavePoint {
+    /// Current position.
+    pub fn at(&self, x: &[Vector2<f64>]) -> Vector2<f64> {
+        combine(&self.position, x)
+    }
+
+    /// Current length that the point stands for [L].
+    pub fn current_length(&self, x: &[Vector2<f64>]) -> f64 {
+        self.length.iter().map(|share| share.factor * combine(&share.tangent, x).norm()).sum()
+    }
+
+    /// Direction out of the slave body (not normalized): the edge direction, body on its left, turned by −90°.
+    pub fn outward(&self, x: &[Vector2<f64>]) -> Vector2<f64> {
+        let along: Vector2<f64> = self.length.iter().map(|share| combine(&share.tangent, x) * share.factor).sum();
+        Vector2::new(along.y, -along.x)
+    }
+}
+
+/// The points of a slave surface: Gauss points of each edge, or its nodes.
+///
+/// `edges` are (start, end[, middle]) with the body on the left, in order along the surface.
+pub fn gauss_points(edges: &[Vec<usize>], per_edge: usize) -> Vec<SlavePoint> {
+    let rule = shape::gauss(per_edge);
+    edges.iter().flat_map(|edge| rule.iter().map(|&(xi, weight)| edge_point(edge, xi, weight))).collect()
+}
+
+/// Nodes with their tributary lengths: the end-point rule (linear edges) or Simpson's (quadratic edges).
+pub fn nodal_points(edges: &[Vec<usize>]) -> Vec<SlavePoint> {
+    let mut points: Vec<(usize, SlavePoint)> = Vec::new();
+    for edge in edges {
+        let ends = [(edge[0], -1.0), (edge[1], 1.0)];
+        let stations: Vec<(usize, f64, f64)> = match edge.get(2) {
+            None => ends.map(|(node, xi)| (node, xi, 1.0)).to_vec(),
+            Some(&middle) => vec![(ends[0].0, -1.0, 1.0 / 3.0), (middle, 0.0, 4.0 / 3.0), (ends[1].0, 1.0, 1.0 / 3.0)],
+        };
+        for (node, xi, weight) in stations {
+            let share = edge_point(edge, xi, weight).length;
+            match points.iter_mut().rev().find(|(other, _)| *other == node) {
+                Some((_, point)) => point.length.extend(share),
+                None => points.push((node, SlavePoint { position: vec![(node, 1.0)], length: share })),
+            }
+        }
+    }
+    points.into_iter().map(|(_, point)| point).collect()
+}
+
+fn edge_point(edge: &[usize], xi: f64, weight: f64) -> SlavePoint {
+    let with = |values: Vec<f64>| edge.iter().copied().zip(values).collect();
+    SlavePoint {
+        position: with(shape::edge_values(edge.len(), xi)),
+        length: vec![LengthShare { factor: weight, tangent: with(shape::edge_derivatives(edge.len(), xi)) }],
+    }
+}
+
+/// A material point of the master: segment and coordinate along it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MasterPoint {
+    /// Segment number (0 for a plane)
+    pub segment: usize,
+    /// 0 … 1 along the segment; on a plane the distance from its given point along s [-] or [L]
+    pub xi: f64,
+}
+
+/// The master side.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Master {
+    /// A surface of the mesh
+    Mesh(Surface),
+    /// A rigid half-space at rest
+    Plane(Plane),
+}
+
+/// A rigid half-space: a point of its surface and its unit normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane {
+    /// A point of the surface [L]
+    pub point: Vector2<f64>,
+    /// Unit normal, out of the solid
+    pub normal: Vector2<f64>,
+}
+
+/// Straight segments of a mesh surface, each running along s (the body on its right), chains in order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Surface {
+    /// Start and end node of each segment
+    pub segments: Vec<[usize; 2]>,
+    /// The chain each segment belongs to
+    chain_of: Vec<usize>,
+    chains: Vec<Chain>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Chain {
+    first: usize,
+    length: usize,
+    closed: bool,
+}
+
+/// The way along a surface from one material point to another: segments with the signed share of each that is covered.
+pub type Path = Vec<(usize, f64)>;
+
+impl Surface {
+    /// A surface from edges with the body on their left; a quadratic edge becomes two segments.
+    pub fn new(edges: &[Vec<usize>]) -> Self {
+        let mut pending: Vec<[usize; 2]> = Vec::new();
+        for edge in edges {
+            match edge.get(2) {
+                None => pending.push([edge[1], edge[0]]),
+                Some(&middle) => pending.extend([[edge[1], middle], [middle, edge[0]]]),
+            }
+        }
+        let mut surface = Self::default();
+        for chain in chains(&pending) {
+            let closed = chain.len() > 1 && chain[chain.len() - 1][1] == chain[0][0];
+            surface.chain_of.extend(chain.iter().map(|_| surface.chains.len()));
+            surface.chains.push(Chain { first: surface.segments.len(), length: chain.len(), closed });
+            surface.segments.extend(chain);
+        }
+        surface
+    }
+
+    /// The segment after `segment` along s, if there is one.
+    pub fn next(&self, segment: usize) -> Option<usize> {
+        let chain = self.chains[self.chain_of[segment]];
+        let k = segment - chain.first + 1;
+        if k < chain.length { Some(segment + 1) } else { chain.closed.then_some(chain.first) }
+    }
+
+    /// The segment before `segment` along s, if there is one.
+    pub fn previous(&self, segment: usize) -> Option<usize> {
+        let chain = self.chains[self.chain_of[segment]];
+        let last = chain.first + chain.length - 1;
+        if segment > chain.first { Some(segment - 1) } else { chain.closed.then_some(last) }
+    }
+
+    /// The way from one material point to another, the shorter one round a closed chain; `None` between chains.
+    pub fn path(&self, from: MasterPoint, to: MasterPoint) -> Option<Path> {
+        let chain = self.chains[self.chain_of[from.segment]];
+        if self.chain_of[to.segment] != self.chain_of[from.segment] {
+            return None;
+        }
+        if from.segment == to.segment {
+            return Some(vec![(from.segment, to.xi - from.xi)]);
+        }
+        let forward = (to.segment + chain.length - from.segment) % chain.length;
+        let ahead = if chain.closed { forward <= chain.length / 2 } else { to.segment > from.segment };
+        let (sign, first, last) = if ahead { (1.0, 1.0 - from.xi, to.xi) } else { (-1.0, from.xi, 1.0 - to.xi) };
+        let mut path = vec![(from.segment, sign * first)];
+        let mut at = from.segment;
+        loop {
+            at = if ahead { self.next(at)? } else { self.previous(at)? };
+            if at == to.segment {
+                path.push((at, sign * last));
+                return Some(path);
+            }
+            path.push((at, sign));
+        }
+    }
+}
+
+/// Edges of a slave surface in order along the surface, chain after chain.
+pub fn in_order(edges: &[Vec<usize>]) -> Vec<Vec<usize>> {
+    let by_ends: BTreeMap<[usize; 2], &Vec<usize>> = edges.iter().map(|edge| ([edge[0], edge[1]], edge)).collect();
+    let ends: Vec<[usize; 2]> = edges.iter().map(|edge| [edge[0], edge[1]]).collect();
+    chains(&ends).concat().iter().filter_map(|pair| by_ends.get(pair).map(|&edge| edge.clone())).collect()
+}
+
+/// Join directed pairs end to start; open chains begin where nothing leads to, closed ones anywhere.
+fn chains(pairs: &[[usize; 2]]) -> Vec<Vec<[usize; 2]>> {
+    let mut by_start: BTreeMap<usize, usize> = pairs.iter().enumerate().map(|(k, p)| (p[0], k)).collect();
+    let ends: BTreeSet<usize> = pairs.iter().map(|p| p[1]).collect();
+    let heads = pairs.iter().filter(|p| !ends.contains(&p[0])).chain(pairs).map(|p| p[0]);
+    let mut result = Vec::new();
+    for head in heads {
+        let mut chain = Vec::new();
+        let mut at = head;
+        while let Some(k) = by_start.remove(&at) {
+            chain.push(pairs[k]);
+            at = pairs[k][1];
+        }
+        if !chain.is_empty() {
+            result.push(chain);
+        }
+    }
+    result
+}

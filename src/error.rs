@@ -1,0 +1,104 @@
+//! Failures while solving: those a smaller increment may cure, and those that end the run.
+
+use thiserror::Error;
+
+use crate::friction::LawFailure;
+use crate::linear::SingularMatrix;
+use crate::newton::NewtonFailure;
+
+/// Why the equations could not be evaluated at a trial state.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum TrialFailure {
+    /// An element has no volume left.
+    #[error("element {element} of body `{body}` is turned inside out (J = {jacobian:.3e})")]
+    Inverted {
+        /// element number in the mesh
+        element: usize,
+        /// its body
+        body: String,
+        /// det F
+        jacobian: f64,
+    },
+    /// A friction law could not answer.
+    #[error("contact `{contact}`, point {point}: {cause}")]
+    Friction {
+        /// contact pair
+        contact: String,
+        /// slave point
+        point: usize,
+        /// what the law said
+        cause: LawFailure,
+    },
+    /// A support or load expression has no finite value.
+    #[error("a support or load at node {node} is not a finite number at time {time}: check its expression")]
+    Undefined {
+        /// node number
+        node: usize,
+        /// run time
+        time: f64,
+    },
+}
+
+/// Why one increment failed; a smaller one may succeed.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum StepFailure {
+    /// Newton's method found no equilibrium.
+    #[error(transparent)]
+    Newton(#[from] NewtonFailure<TrialFailure>),
+    /// The mass matrix of the initial acceleration is singular.
+    #[error("initial acceleration: {0} (does every body have a density?)")]
+    Mass(SingularMatrix),
+    /// The state at the start of a dynamic step cannot be evaluated.
+    #[error(transparent)]
+    Start(TrialFailure),
+    /// A body is held by nothing.
+    #[error("{0}; give it a support, a spring, or contact that is closed at the start")]
+    Floating(String),
+    /// A trial state lost the contact that held a body.
+    #[error("the iterations lost contact: {0}")]
+    ContactLost(String),
+}
+
+impl StepFailure {
+    /// Whether a smaller increment has a chance.
+    pub fn is_retryable(&self) -> bool {
+        matches!(self, Self::Newton(_) | Self::ContactLost(_))
+    }
+}
+
+/// Why a run stopped.
+#[derive(Debug, Error)]
+pub enum Error {
+    /// An increment cannot be made small enough.
+    #[error("step `{step}` stopped at time {time}: {cause} (increment {dt:.3e}, smallest allowed {min:.3e})")]
+    StepTooSmall {
+        /// step
+        step: String,
+        /// time reached
+        time: f64,
+        /// increment that failed
+        dt: f64,
+        /// smallest allowed increment
+        min: f64,
+        /// why it failed
+        cause: StepFailure,
+    },
+    /// No smaller increment can help.
+    #[error("step `{step}` stopped at time {time}: {cause}")]
+    Unsolvable {
+        /// step
+        step: String,
+        /// time reached
+        time: f64,
+        /// why
+        cause: StepFailure,
+    },
+    /// A result file could not be written.
+    #[error("{path}: {cause}")]
+    Output {
+        /// the file
+        path: std::path::PathBuf,
+        /// what the system said
+        cause: String,
+    },
+}

@@ -1,0 +1,58 @@
+//! Bodies that nothing holds: motions without resistance, named.
+//!
+//! The rigid motions Φ of all bodies (x, y, rotation) are tried on the tangent: A = Φᵀ K Φ, scaled by ΦᵀD Φ with D the
+//! diagonal of |K|. A vanishing singular value of A is a motion that meets no force.
+
+use nalgebra::{DMatrix, DVector, Vector2};
+
+use crate::linear::SparseMatrix;
+use crate::model::Model;
+
+/// Relative stiffness below which a motion counts as free: far above round-off, far below any contact penalty.
+const FREE: f64 = 1e-12;
+
+const MOTIONS: [&str; 3] = ["along x", "along y", "in rotation"];
+
+/// The first motion that the tangent at `u` does not resist, in words.
+pub fn null_motion(model: &Model, u: &[f64], tangent: &SparseMatrix) -> Option<String> {
+    let x = model.positions(u);
+    let modes: Vec<Vec<f64>> = model.bodies.iter().flat_map(|body| rigid_motions(&body.nodes, &x)).collect();
+    let diagonal = tangent.diagonal();
+    let scales: Vec<f64> =
+        modes.iter().map(|mode| mode.iter().zip(&diagonal).map(|(m, d)| m * m * d.abs()).sum::<f64>().sqrt()).collect();
+    if scales.is_empty() || scales.iter().any(|scale| *scale == 0.0 || !scale.is_finite()) {
+        return None;
+    }
+    let images: Vec<Vec<f64>> = modes.iter().map(|mode| tangent.multiply(mode)).collect();
+    let resistance = DMatrix::from_fn(modes.len(), modes.len(), |i, j| {
+        modes[i].iter().zip(&images[j]).map(|(m, k)| m * k).sum::<f64>() / (scales[i] * scales[j])
+    });
+    let decomposed = resistance.svd(false, true);
+    let (smallest, value) = decomposed.singular_values.argmin();
+    let motion = decomposed.v_t?.row(smallest).transpose();
+    (value < FREE).then(|| describe(model, &motion))
+}
+
+/// Unit motions of a set of nodes along x, along y, and about their centre.
+fn rigid_motions(nodes: &[usize], x: &[Vector2<f64>]) -> [Vec<f64>; 3] {
+    let centre = nodes.iter().map(|&node| x[node]).sum::<Vector2<f64>>() / nodes.len().max(1) as f64;
+    let radius = nodes.iter().fold(f64::MIN_POSITIVE, |r, &node| r.max((x[node] - centre).norm()));
+    let mut modes = [0, 1, 2].map(|_| vec![0.0; 2 * x.len()]);
+    for &node in nodes {
+        let arm = (x[node] - centre) / radius;
+        modes[0][2 * node] = 1.0;
+        modes[1][2 * node + 1] = 1.0;
+        modes[2][2 * node] = -arm.y;
+        modes[2][2 * node + 1] = arm.x;
+    }
+    modes
+}
+
+fn describe(model: &Model, motion: &DVector<f64>) -> String {
+    let largest = motion.amax();
+    let free: Vec<String> = (0..motion.len())
+        .filter(|&k| motion[k].abs() > 0.1 * largest)
+        .map(|k| format!("body `{}` {}", model.bodies[k / 3].name, MOTIONS[k % 3]))
+        .collect();
+    format!("nothing resists the motion of {}", free.join(" with "))
+}

@@ -1,0 +1,173 @@
+//! Compressed-column matrix with 2×2 blocks: each node has two unknowns, and the pattern is symmetric.
+
+use std::sync::Arc;
+
+/// Which nodes are coupled. Row and column nodes are the same set: the pattern is symmetric, the values are not.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pattern {
+    /// Start of each column node's list in `rows`; length nodes + 1
+    starts: Vec<usize>,
+    /// Row nodes coupled with each column node, ascending, the node itself included
+    rows: Vec<usize>,
+}
+
+/// Where the 2×2 block of a (row node, column node) pair lies in the values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BlockPosition {
+    first: u32,
+    column_length: u32,
+}
+
+impl BlockPosition {
+    /// Index of the value at (row dof `i`, column dof `j`) of the block, i, j ∈ {0, 1}.
+    pub fn value(self, i: usize, j: usize) -> usize {
+        self.first as usize + j * self.column_length as usize + i
+    }
+}
+
+impl Pattern {
+    /// Pattern of a set of node groups: all nodes of a group are coupled with each other.
+    pub fn new<'a>(nodes: usize, groups: impl Iterator<Item = &'a [usize]> + Clone) -> Self {
+        let mut counts = vec![1; nodes];
+        for group in groups.clone() {
+            for &node in group {
+                counts[node] += group.len();
+            }
+        }
+        let mut neighbours: Vec<Vec<usize>> = counts.iter().map(|&n| Vec::with_capacity(n)).collect();
+        for (node, list) in neighbours.iter_mut().enumerate() {
+            list.push(node);
+        }
+        for group in groups {
+            for &node in group {
+                neighbours[node].extend_from_slice(group);
+            }
+        }
+        let mut starts = vec![0];
+        let mut rows = Vec::new();
+        for list in &mut neighbours {
+            list.sort_unstable();
+            list.dedup();
+            rows.extend_from_slice(list);
+            starts.push(rows.len());
+        }
+        Self { starts, rows }
+    }
+
+    /// Number of nodes.
+    pub fn nodes(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Nodes coupled with `node`, ascending, itself included.
+    pub fn neighbours(&self, node: usize) -> &[usize] {
+        &self.rows[self.starts[node]..self.starts[node + 1]]
+    }
+
+    /// Number of stored values.
+    pub fn values(&self) -> usize {
+        4 * self.rows.len()
+    }
+
+    /// Position of the block (row node, column node), if the two are coupled.
+    pub fn block(&self, row: usize, column: usize) -> Option<BlockPosition> {
+        let neighbours = self.neighbours(column);
+        let k = neighbours.binary_search(&row).ok()?;
+        let first = 4 * self.starts[column] + 2 * k;
+        Some(BlockPosition { first: first as u32, column_length: 2 * neighbours.len() as u32 })
+    }
+
+    /// Scalar column starts and row indices (compressed columns, rows ascending).
+    pub fn scalar(&self) -> (Vec<usize>, Vec<usize>) {
+        let mut columns = vec![0];
+        let mut rows = Vec::with_capacity(self.values());
+        for node in 0..self.nodes() {
+            for _ in 0..2 {
+                rows.extend(self.neighbours(node).iter().flat_map(|&row| [2 * row, 2 * row + 1]));
+                columns.push(rows.len());
+            }
+        }
+        (columns, rows)
+    }
+}
+
+/// Values on a shared pattern.
+#[derive(Clone, Debug)]
+pub struct SparseMatrix {
+    /// The pattern; two matrices have the same one if the pointers are equal
+    pub pattern: Arc<Pattern>,
+    /// Values, column by column
+    pub values: Vec<f64>,
+}
+
+impl SparseMatrix {
+    /// The zero matrix on a pattern.
+    pub fn zero(pattern: Arc<Pattern>) -> Self {
+        let values = vec![0.0; pattern.values()];
+        Self { pattern, values }
+    }
+
+    /// Number of rows and columns.
+    pub fn size(&self) -> usize {
+        2 * self.pattern.nodes()
+    }
+
+    /// Set every value to zero.
+    pub fn clear(&mut self) {
+        self.values.fill(0.0);
+    }
+
+    /// Add `value` times the identity to the block of one dof: A_ii += value.
+    pub fn add_diagonal(&mut self, dof: usize, value: f64) {
+        let (node, d) = (dof / 2, dof % 2);
+        if let Some(block) = self.pattern.block(node, node) {
+            self.values[block.value(d, d)] += value;
+        }
+    }
+
+    /// The diagonal.
+    pub fn diagonal(&self) -> Vec<f64> {
+        (0..self.size())
+            .map(|dof| {
+                let (node, d) = (dof / 2, dof % 2);
+                self.pattern.block(node, node).map_or(0.0, |block| self.values[block.value(d, d)])
+            })
+            .collect()
+    }
+
+    /// Replace the row of `dof` by `diagonal` on the diagonal and zeros elsewhere.
+    pub fn replace_row(&mut self, dof: usize, diagonal: f64) {
+        let (node, d) = (dof / 2, dof % 2);
+        // The pattern is symmetric: the columns that meet this row are the neighbours of its node.
+        for k in self.pattern.starts[node]..self.pattern.starts[node + 1] {
+            let column = self.pattern.rows[k];
+            if let Some(block) = self.pattern.block(node, column) {
+                for j in 0..2 {
+                    self.values[block.value(d, j)] = if column == node && j == d { diagonal } else { 0.0 };
+                }
+            }
+        }
+    }
+
+    /// A x.
+    pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
+        let mut y = vec![0.0; x.len()];
+        let mut k = 0;
+        for node in 0..self.pattern.nodes() {
+            let rows = self.pattern.neighbours(node);
+            for x in &x[2 * node..2 * node + 2] {
+                for &row in rows {
+                    y[2 * row] += self.values[k] * x;
+                    y[2 * row + 1] += self.values[k + 1] * x;
+                    k += 2;
+                }
+            }
+        }
+        y
+    }
+
+    /// b − A x.
+    pub fn residual(&self, x: &[f64], b: &[f64]) -> Vec<f64> {
+        self.multiply(x).iter().zip(b).map(|(ax, b)| b - ax).collect()
+    }
+}

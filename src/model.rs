@@ -1,0 +1,122 @@
+//! The problem to solve: mesh, bodies, contact pairs, and the steps with their supports, loads and schemes.
+
+use nalgebra::Vector2;
+
+use crate::boundary::{Loads, Prescribed, Span};
+use crate::contact::pair::ContactPair;
+use crate::element::solid::SolidElement;
+use crate::material::Material;
+use crate::mesh::Mesh;
+use crate::newton;
+use crate::state::{Energy, State, StepStart};
+use crate::time::Scheme;
+
+/// A body: a material on a group of elements.
+#[derive(Debug)]
+pub struct Body {
+    /// name of its group
+    pub name: String,
+    /// bulk law
+    pub material: Box<dyn Material>,
+    /// its elements
+    pub elements: Vec<usize>,
+    /// its nodes, ascending
+    pub nodes: Vec<usize>,
+}
+
+/// How increments are chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Increments {
+    /// first Δt [T]
+    pub initial: f64,
+    /// below this a failed increment stops the run [T]
+    pub min: f64,
+    /// never above this [T]
+    pub max: f64,
+}
+
+/// A step: a time span with its supports, loads, scheme and increments.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// name, for messages and output
+    pub name: String,
+    /// time span
+    pub span: Span,
+    /// scheme
+    pub scheme: Scheme,
+    /// increments
+    pub increments: Increments,
+    /// prescribed dofs, ascending
+    pub supports: Vec<Prescribed>,
+    /// dofs that were prescribed in the step before and are free now; their reaction is ramped off
+    pub released: Vec<usize>,
+    /// loads and springs
+    pub loads: Loads,
+}
+
+/// A set of nodes whose mean displacement and reaction the history reports.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WatchedSet {
+    /// name of the group
+    pub name: String,
+    /// its nodes
+    pub nodes: Vec<usize>,
+}
+
+/// The model; it does not change while it is solved.
+#[derive(Debug)]
+pub struct Model {
+    /// title in the case file
+    pub title: String,
+    /// mesh
+    pub mesh: Mesh,
+    /// bodies
+    pub bodies: Vec<Body>,
+    /// body of each element
+    pub body_of_element: Vec<usize>,
+    /// integration geometry of each element
+    pub solids: Vec<SolidElement>,
+    /// contact pairs
+    pub contacts: Vec<ContactPair>,
+    /// steps, in order
+    pub steps: Vec<Step>,
+    /// watched sets
+    pub watch: Vec<WatchedSet>,
+    /// initial velocity of every dof [L/T]
+    pub initial_velocity: Vec<f64>,
+    /// when Newton's method stops
+    pub newton: newton::Settings,
+}
+
+impl Model {
+    /// Number of dofs, two a node.
+    pub fn dofs(&self) -> usize {
+        2 * self.mesh.nodes.len()
+    }
+
+    /// Current positions x = X + u.
+    pub fn positions(&self, displacement: &[f64]) -> Vec<Vector2<f64>> {
+        let moved = self.mesh.nodes.iter().zip(displacement.chunks_exact(2));
+        moved.map(|(position, u)| position + Vector2::new(u[0], u[1])).collect()
+    }
+
+    /// The state at rest before the first increment.
+    pub fn initial_state(&self) -> State {
+        let zero = vec![0.0; self.dofs()];
+        State {
+            time: 0.0,
+            increment: 0,
+            dt: 0.0,
+            displacement: zero.clone(),
+            velocity: self.initial_velocity.clone(),
+            acceleration: zero.clone(),
+            force: zero.clone(),
+            external: zero.clone(),
+            reaction: zero.clone(),
+            contacts: self.contacts.iter().map(|pair| pair.initial_states(&self.mesh.nodes)).collect(),
+            last_increment: None,
+            step_start: StepStart { displacement: zero.clone(), reaction: zero },
+            energy: Energy::default(),
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! Newton's method for r(u) = 0; knows no finite elements.
+//!
+//! ```text
+//! K(u_k) Δu = −r(u_k),   u_{k+1} = u_k + Δu        until ‖r‖ ≤ tolerance × ‖forces at work‖
+//! ```
+//!
+//! The tangent is consistent, so the residual falls quadratically near the solution. A residual that has reached
+//! round-off also ends the iteration: nothing is gained by fighting it.
+
+use thiserror::Error;
+
+use crate::linear::{self, LinearSolver, SingularMatrix, norm};
+use crate::system::System;
+
+/// When to stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// ‖r‖/‖forces at work‖ of a solution [-]
+    pub tolerance: f64,
+    /// Linear solves before giving up
+    pub max_iterations: usize,
+}
+
+/// One linear solve, and where it led.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Iteration {
+    /// ‖r‖/‖forces at work‖ after the correction; NaN if the corrected state could not be evaluated [-]
+    pub residual: f64,
+    /// Largest entry of the correction [L]
+    pub correction: f64,
+    /// ‖K Δu + r‖/‖r‖ of the linear solve [-]
+    pub linear_residual: f64,
+}
+
+/// Why no solution was found; `E` is why the equations could not be evaluated.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum NewtonFailure<E> {
+    /// The equations could not be evaluated at a trial state.
+    #[error("{0}")]
+    Evaluation(E),
+    /// The linear system is singular.
+    #[error("{0}")]
+    Singular(#[from] SingularMatrix),
+    /// The residual grows.
+    #[error("Newton's method diverges (relative residual {residual:.1e} after {iterations} iterations)")]
+    Diverged {
+        /// last relative residual
+        residual: f64,
+        /// linear solves so far
+        iterations: usize,
+    },
+    /// The iterations are used up.
+    #[error("no equilibrium within {iterations} iterations (relative residual {residual:.1e})")]
+    TooManyIterations {
+        /// last relative residual
+        residual: f64,
+        /// linear solves so far
+        iterations: usize,
+    },
+}
+
+/// What is asked of the equations at a trial displacement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Request {
+    /// The residual is enough.
+    Residual,
+    /// The tangent as well.
+    Tangent,
+}
+
+/// The iterations made, and the solution or why there is none.
+pub type Outcome<E> = (Vec<Iteration>, Result<Vec<f64>, NewtonFailure<E>>);
+
+/// Growth of the residual over its largest start value that counts as divergence.
+const DIVERGENCE: f64 = 1e4;
+
+/// Solve r(u) = 0 from the start value `u`. `evaluate` fills the system at a displacement.
+pub fn solve<E>(
+    mut u: Vec<f64>,
+    settings: Settings,
+    solver: &mut dyn LinearSolver,
+    system: &mut System,
+    mut evaluate: impl FnMut(&[f64], Request, &mut System) -> Result<(), E>,
+) -> Outcome<E> {
+    let mut iterations: Vec<Iteration> = Vec::new();
+    let result = (|| {
+        evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
+        let mut largest_start = 0.0f64;
+        loop {
+            let size = norm(&system.residual);
+            let residual = size / system.forces.max(f64::MIN_POSITIVE);
+            let done = iterations.len();
+            if let Some(last) = iterations.last_mut() {
+                last.residual = residual;
+            }
+            if size <= settings.tolerance * system.forces || size <= system.round_off {
+                return Ok(());
+            }
+            if done <= 2 {
+                largest_start = largest_start.max(size);
+            }
+            if !size.is_finite() || size > DIVERGENCE * largest_start {
+                return Err(NewtonFailure::Diverged { residual, iterations: done });
+            }
+            if done == settings.max_iterations {
+                return Err(NewtonFailure::TooManyIterations { residual, iterations: done });
+            }
+            evaluate(&u, Request::Tangent, system).map_err(NewtonFailure::Evaluation)?;
+            let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();
+            let solution = linear::solve(solver, &system.tangent, &right)?;
+            let correction = solution.x.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+            for (u, x) in u.iter_mut().zip(&solution.x) {
+                *u += x;
+            }
+            iterations.push(Iteration { residual: f64::NAN, correction, linear_residual: solution.residual });
+            evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
+        }
+    })();
+    (iterations, result.map(|()| u))
+}

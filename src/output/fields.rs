@@ -1,0 +1,236 @@
+//! `solid.pvd` and `contact.pvd`: what ParaView shows, one VTU file a frame.
+
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+
+use nalgebra::Vector2;
+use vtkio::IOBuffer;
+use vtkio::model::{
+    Attribute, Attributes, ByteOrder, CellType, Cells, DataArray, DataSet, UnstructuredGridPiece, Version,
+    VertexNumbers, Vtk,
+};
+
+use super::csv::failed;
+use super::{Attempt, Observer};
+use crate::contact::force::{ContactState, Status};
+use crate::contact::pair::ContactPair;
+use crate::error::Error;
+use crate::model::Model;
+use crate::shape::ElementKind;
+use crate::state::State;
+
+/// Writes frames of the solids and of the interfaces.
+#[derive(Debug)]
+pub struct Fields {
+    every: usize,
+    solid: Collection,
+    contact: Option<Collection>,
+}
+
+/// A time series of VTU files and the `.pvd` that lists them.
+#[derive(Debug)]
+struct Collection {
+    folder: PathBuf,
+    name: &'static str,
+    frames: Vec<(f64, String)>,
+}
+
+impl Fields {
+    /// Start the series in `folder`, with the state at rest as the first frame; then every n-th accepted increment and
+    /// the last of each step are written.
+    ///
+    /// # Errors
+    /// [`Error::Output`] when a file cannot be written.
+    pub fn create(folder: &Path, model: &Model, start: &State, every: usize) -> Result<Self, Error> {
+        let contact = (!model.contacts.is_empty()).then(|| Collection::create(folder, "contact")).transpose()?;
+        let mut fields = Self { every, solid: Collection::create(folder, "solid")?, contact };
+        fields.write(model, start)?;
+        Ok(fields)
+    }
+
+    fn write(&mut self, model: &Model, state: &State) -> Result<(), Error> {
+        self.solid.write(state.time, solid_frame(model, state))?;
+        match &mut self.contact {
+            Some(contact) => contact.write(state.time, contact_frame(model, state)),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Observer for Fields {
+    fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
+        match attempt.accepted {
+            Some(state) if state.increment % self.every == 0 || state.time >= attempt.step.span.end => {
+                self.write(model, state)
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Collection {
+    fn create(folder: &Path, name: &'static str) -> Result<Self, Error> {
+        let frames = folder.join(name);
+        std::fs::create_dir_all(&frames).map_err(|cause| failed(&frames, &cause))?;
+        Ok(Self { folder: folder.to_owned(), name, frames: Vec::new() })
+    }
+
+    /// Write one frame and list it, so that a running or killed run can be looked at.
+    fn write(&mut self, time: f64, piece: UnstructuredGridPiece) -> Result<(), Error> {
+        let file = format!("{}/{:05}.vtu", self.name, self.frames.len());
+        let path = self.folder.join(&file);
+        let vtk = Vtk {
+            version: Version::new_xml(1, 0),
+            title: String::new(),
+            byte_order: ByteOrder::LittleEndian,
+            data: DataSet::inline(piece),
+            file_path: None,
+        };
+        let out = File::create(&path).map_err(|cause| failed(&path, &cause))?;
+        vtk.write_xml(BufWriter::new(out)).map_err(|cause| failed(&path, &cause))?;
+        self.frames.push((time, file));
+        self.list()
+    }
+
+    fn list(&self) -> Result<(), Error> {
+        let mut text = String::from("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n");
+        for (time, file) in &self.frames {
+            text += &format!("<DataSet timestep=\"{time}\" part=\"0\" file=\"{file}\"/>\n");
+        }
+        text += "</Collection>\n</VTKFile>\n";
+        let path = self.folder.join(format!("{}.pvd", self.name));
+        std::fs::write(&path, text).map_err(|cause| failed(&path, &cause))
+    }
+}
+
+fn solid_frame(model: &Model, state: &State) -> UnstructuredGridPiece {
+    let elements = &model.mesh.elements;
+    let stresses = nodal_stresses(model, state);
+    let von_mises: Vec<f64> = stresses.iter().map(|&[xx, yy, zz, xy]| {
+        (0.5 * ((xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2)) + 3.0 * xy * xy).sqrt()
+    }).collect();
+    let pressure: Vec<f64> = stresses.iter().map(|[xx, yy, zz, _]| -(xx + yy + zz) / 3.0).collect();
+    let body: Vec<i32> = model.body_of_element.iter().map(|&body| body as i32).collect();
+    UnstructuredGridPiece {
+        points: points(&model.mesh.nodes),
+        cells: cells(elements.iter().map(|element| (cell_type(element.kind), element.nodes.clone()))),
+        data: Attributes {
+            point: vec![
+                vectors("displacement", &state.displacement),
+                vectors("velocity", &state.velocity),
+                vectors("acceleration", &state.acceleration),
+                vectors("reaction", &state.reaction),
+                array("stress", 4, stresses.concat()),
+                array("von_mises", 1, von_mises),
+                array("pressure", 1, pressure),
+            ],
+            // A body has one material, and a material serves one body: the two ids agree.
+            cell: vec![array("body", 1, body.clone()), array("material", 1, body)],
+        },
+    }
+}
+
+/// Cauchy stress (xx, yy, zz, xy) at the nodes, averaged over the elements that meet there. An element that the
+/// material law cannot answer leaves no trace: it never occurs in an accepted state.
+fn nodal_stresses(model: &Model, state: &State) -> Vec<[f64; 4]> {
+    let mut sums = vec![([0.0; 4], 0.0); model.mesh.nodes.len()];
+    for (e, element) in model.mesh.elements.iter().enumerate() {
+        let u: Vec<Vector2<f64>> =
+            element.nodes.iter().map(|&n| Vector2::new(state.displacement[2 * n], state.displacement[2 * n + 1])).collect();
+        let material = &*model.bodies[model.body_of_element[e]].material;
+        for (stress, &node) in model.solids[e].nodal_stresses(material, &u).iter().flatten().zip(&element.nodes) {
+            let (sum, count) = &mut sums[node];
+            for (sum, part) in sum.iter_mut().zip([stress.xx, stress.yy, stress.zz, stress.xy]) {
+                *sum += part;
+            }
+            *count += 1.0;
+        }
+    }
+    sums.into_iter().map(|(sum, count)| sum.map(|s| if count > 0.0 { s / count } else { 0.0 })).collect()
+}
+
+fn contact_frame(model: &Model, state: &State) -> UnstructuredGridPiece {
+    let points_of = |pair: &ContactPair, x: &[Vector2<f64>]| pair.points.iter().map(|p| p.at(x)).collect::<Vec<_>>();
+    let reference: Vec<Vector2<f64>> =
+        model.contacts.iter().flat_map(|pair| points_of(pair, &model.mesh.nodes)).collect();
+    let x = model.positions(&state.displacement);
+    let current: Vec<Vector2<f64>> = model.contacts.iter().flat_map(|pair| points_of(pair, &x)).collect();
+    let displacement: Vec<f64> = reference.iter().zip(&current).flat_map(|(a, b)| [b.x - a.x, b.y - a.y]).collect();
+
+    let mut lines = Vec::new();
+    let mut contact_id: Vec<i32> = Vec::new();
+    let mut first = 0;
+    for (number, pair) in model.contacts.iter().enumerate() {
+        for line in pair.lines() {
+            lines.push((CellType::PolyLine, line.map(|k| first + k).collect::<Vec<_>>()));
+            contact_id.push(number as i32);
+        }
+        first += pair.points.len();
+    }
+    let all: Vec<(&ContactPair, &ContactState)> =
+        model.contacts.iter().zip(&state.contacts).flat_map(|(pair, states)| states.iter().map(move |s| (pair, s))).collect();
+    let scalar = |name: &str, value: &dyn Fn(&ContactPair, &ContactState) -> f64| {
+        array(name, 1, all.iter().map(|(pair, state)| value(pair, state)).collect::<Vec<f64>>())
+    };
+    let rate = if state.dt > 0.0 { 1.0 / state.dt } else { 0.0 };
+    UnstructuredGridPiece {
+        points: points(&reference),
+        cells: cells(lines.into_iter()),
+        data: Attributes {
+            point: vec![
+                vectors("displacement", &displacement),
+                scalar("gap", &|_, s| s.gap),
+                scalar("pressure", &|_, s| s.friction.pressure),
+                scalar("traction", &|_, s| s.friction.traction),
+                scalar("slip", &|_, s| s.friction.plastic_slip),
+                scalar("elastic_slip", &|pair, s| pair.elastic_slip(&s.friction)),
+                scalar("slip_rate", &|_, s| s.friction.plastic_increment * rate),
+                scalar("R", &|_, s| s.friction.ratio()),
+                scalar("mu", &|_, s| s.friction.mu),
+                scalar("structure", &|pair, s| pair.law.structure(s.friction.mu)),
+                scalar("state", &|_, s| match s.status() {
+                    Status::Open => 0.0,
+                    Status::Stick => 1.0,
+                    Status::Slip => 2.0,
+                }),
+                scalar("dissipation", &|_, s| s.friction.dissipation),
+            ],
+            cell: vec![array("contact", 1, contact_id)],
+        },
+    }
+}
+
+fn points(positions: &[Vector2<f64>]) -> IOBuffer {
+    IOBuffer::F64(positions.iter().flat_map(|x| [x.x, x.y, 0.0]).collect())
+}
+
+fn cells(cells: impl Iterator<Item = (CellType, Vec<usize>)>) -> Cells {
+    let (mut connectivity, mut offsets, mut types) = (Vec::new(), Vec::new(), Vec::new());
+    for (kind, nodes) in cells {
+        connectivity.extend(nodes.iter().map(|&node| node as u64));
+        offsets.push(connectivity.len() as u64);
+        types.push(kind);
+    }
+    Cells { cell_verts: VertexNumbers::XML { connectivity, offsets }, types }
+}
+
+fn cell_type(kind: ElementKind) -> CellType {
+    match kind {
+        ElementKind::T3 => CellType::Triangle,
+        ElementKind::T6 => CellType::QuadraticTriangle,
+        ElementKind::Q4 => CellType::Quad,
+        ElementKind::Q8 => CellType::QuadraticQuad,
+        ElementKind::Q9 => CellType::BiquadraticQuad,
+    }
+}
+
+fn array(name: &str, components: u32, values: impl Into<IOBuffer>) -> Attribute {
+    Attribute::DataArray(DataArray::scalars(name, components).with_data(values))
+}
+
+/// A vector of two components a node, as the three that VTK wants.
+fn vectors(name: &str, values: &[f64]) -> Attribute {
+    let three: Vec<f64> = values.chunks_exact(2).flat_map(|v| [v[0], v[1], 0.0]).collect();
+    array(name, 3, three)
+}

@@ -1,0 +1,108 @@
+//! `history.csv`: a row per accepted increment.
+
+use std::path::Path;
+
+use nalgebra::Vector2;
+
+use super::csv::Table;
+use super::{Attempt, Observer};
+use crate::contact::force::{ContactState, Status};
+use crate::contact::pair::ContactPair;
+use crate::error::Error;
+use crate::model::{Model, WatchedSet};
+use crate::state::State;
+
+/// Writes `history.csv`.
+#[derive(Debug)]
+pub struct History(Table);
+
+const INCREMENT: [&str; 4] = ["time", "dt", "step", "iterations"];
+const ENERGIES: [&str; 7] = [
+    "kinetic",
+    "strain",
+    "contact_elastic",
+    "friction_dissipation",
+    "damping_dissipation",
+    "external_work",
+    "energy_error",
+];
+const CONTACT: [&str; 7] = [
+    "normal_force",
+    "tangential_force",
+    "contact_length",
+    "slip_fraction",
+    "mean_slip",
+    "max_penetration",
+    "max_elastic_slip",
+];
+const WATCHED: [&str; 4] = ["ux", "uy", "fx", "fy"];
+
+impl History {
+    /// Create `history.csv` in `folder`.
+    ///
+    /// # Errors
+    /// [`Error::Output`] when it cannot be written.
+    pub fn create(folder: &Path, model: &Model) -> Result<Self, Error> {
+        let of = |name: &str, columns: &[&str]| columns.iter().map(|c| format!("{name}.{c}")).collect::<Vec<_>>();
+        let mut header: Vec<String> = INCREMENT.iter().chain(&ENERGIES).map(|c| (*c).into()).collect();
+        header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &CONTACT)));
+        header.extend(model.watch.iter().flat_map(|set| of(&set.name, &WATCHED)));
+        Ok(Self(Table::create(&folder.join("history.csv"), &header)?))
+    }
+}
+
+impl Observer for History {
+    fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
+        let Some(state) = attempt.accepted else { return Ok(()) };
+        let x = model.positions(&state.displacement);
+        let energy = &state.energy;
+        let mut row = vec![state.time.to_string(), state.dt.to_string(), attempt.step.name.clone()];
+        row.push(attempt.iterations.len().to_string());
+        let mut numbers = vec![
+            energy.kinetic,
+            energy.strain,
+            energy.contact_elastic,
+            energy.friction_dissipation,
+            energy.damping_dissipation,
+            energy.external_work,
+            energy.error(),
+        ];
+        for (pair, states) in model.contacts.iter().zip(&state.contacts) {
+            numbers.extend(contact_row(pair, states, &x));
+        }
+        for set in &model.watch {
+            numbers.extend(watched_row(set, state));
+        }
+        row.extend(numbers.iter().map(f64::to_string));
+        self.0.line(&row.join(","))?;
+        self.0.flush()
+    }
+}
+
+/// The columns of one contact: forces are ∫ p ds and ∫ q ds, the mean slip is taken over the closed length.
+fn contact_row(pair: &ContactPair, states: &[ContactState], x: &[Vector2<f64>]) -> [f64; 7] {
+    let (mut normal, mut tangential, mut closed, mut slipping, mut slip) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    let (mut penetration, mut elastic_slip) = (0.0f64, 0.0f64);
+    for (point, state) in pair.points.iter().zip(states) {
+        let (friction, length) = (&state.friction, point.current_length(x));
+        if state.status() == Status::Open {
+            continue;
+        }
+        normal += length * friction.pressure;
+        tangential += length * friction.traction;
+        closed += length;
+        slipping += if state.status() == Status::Slip { length } else { 0.0 };
+        slip += length * friction.plastic_slip;
+        penetration = penetration.max(-state.gap);
+        elastic_slip = elastic_slip.max(pair.elastic_slip(friction).abs());
+    }
+    let share = |part: f64| if closed > 0.0 { part / closed } else { 0.0 };
+    [normal, tangential, closed, share(slipping), share(slip), penetration, elastic_slip]
+}
+
+/// Mean displacement and total reaction of a watched set.
+fn watched_row(set: &WatchedSet, state: &State) -> [f64; 4] {
+    let total = |values: &[f64], i: usize| set.nodes.iter().map(|&node| values[2 * node + i]).sum::<f64>();
+    let mean = |i| total(&state.displacement, i) / set.nodes.len() as f64;
+    [mean(0), mean(1), total(&state.reaction, 0), total(&state.reaction, 1)]
+}

@@ -1,0 +1,40 @@
+//! What a run leaves behind: observers of every attempt, and the files they write.
+
+mod csv;
+pub mod fields;
+pub mod history;
+pub mod newton_log;
+pub mod progress;
+pub mod summary;
+pub mod warnings;
+
+use crate::error::Error;
+use crate::model::{Model, Step};
+use crate::state::State;
+use crate::step::IterationRecord;
+
+/// An attempt at one increment, accepted or not.
+#[derive(Clone, Copy, Debug)]
+pub struct Attempt<'a> {
+    /// the step
+    pub step: &'a Step,
+    /// 1 for the first attempt at this increment
+    pub number: usize,
+    /// the state it started from
+    pub old: &'a State,
+    /// its length [T]
+    pub dt: f64,
+    /// its linear solves
+    pub iterations: &'a [IterationRecord],
+    /// the new state, if it was accepted
+    pub accepted: Option<&'a State>,
+}
+
+/// Somebody who watches a run.
+pub trait Observer {
+    /// Called after every attempt.
+    ///
+    /// # Errors
+    /// [`Error::Output`] when a file cannot be written; it ends the run.
+    fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error>;
+}

@@ -1,0 +1,103 @@
+//! `summary.json`: how a run ended and what it took.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::csv::failed;
+use crate::error::Error;
+use crate::model::Model;
+
+/// Counts and times of a run.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct RunReport {
+    /// accepted increments
+    pub increments: usize,
+    /// failed attempts
+    pub cutbacks: usize,
+    /// linear solves, those of failed attempts included
+    pub newton_iterations: usize,
+    /// matrix factorizations
+    pub factorizations: usize,
+    /// wall time by phase
+    pub wall_s: WallSeconds,
+}
+
+/// Wall time by phase [s].
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct WallSeconds {
+    /// everything
+    pub total: f64,
+    /// solids, loads, sums
+    pub assembly: f64,
+    /// search, friction, contact forces
+    pub contact: f64,
+    /// factorization and solution
+    pub linear: f64,
+    /// observers
+    pub output: f64,
+}
+
+/// The content of `summary.json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// "completed" or "stopped"
+    pub status: &'static str,
+    /// why it stopped
+    pub reason: Option<String>,
+    /// version of the program
+    pub version: &'static str,
+    /// the case file
+    pub case: String,
+    /// number of dofs
+    pub dofs: usize,
+    /// number of nodes
+    pub nodes: usize,
+    /// number of elements
+    pub elements: usize,
+    /// number of contact points
+    pub contact_points: usize,
+    /// counts and times
+    #[serde(flatten)]
+    pub report: RunReport,
+    /// largest resident memory of the process, where the system tells [MiB]
+    pub peak_memory_mib: Option<f64>,
+    /// warnings
+    pub warnings: Vec<String>,
+}
+
+impl Summary {
+    /// Summarize a finished or stopped run.
+    pub fn new(case: &str, model: &Model, report: RunReport, stopped: Option<&Error>, warnings: Vec<String>) -> Self {
+        Self {
+            status: if stopped.is_none() { "completed" } else { "stopped" },
+            reason: stopped.map(ToString::to_string),
+            version: env!("CARGO_PKG_VERSION"),
+            case: case.into(),
+            dofs: model.dofs(),
+            nodes: model.mesh.nodes.len(),
+            elements: model.mesh.elements.len(),
+            contact_points: model.contacts.iter().map(|pair| pair.points.len()).sum(),
+            report,
+            peak_memory_mib: peak_memory_mib(),
+            warnings,
+        }
+    }
+
+    /// Write `summary.json` into `folder`.
+    ///
+    /// # Errors
+    /// [`Error::Output`] when it cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<(), Error> {
+        let path = folder.join("summary.json");
+        let text = serde_json::to_string_pretty(self).map_err(|cause| failed(&path, &cause))?;
+        std::fs::write(&path, text + "\n").map_err(|cause| failed(&path, &cause))
+    }
+}
+
+/// Largest resident set so far, from the Linux process status.
+fn peak_memory_mib() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    Some(line.trim().trim_end_matches("kB").trim().parse::<f64>().ok()? / 1024.0)
+}

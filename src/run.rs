@@ -1,0 +1,88 @@
+//! The run: step after step, increment after increment, with cut-back, and observers that see every attempt.
+
+use std::time::Instant;
+
+use crate::error::Error;
+use crate::linear::SparseLu;
+use crate::model::{Model, Step};
+use crate::output::summary::RunReport;
+use crate::output::{Attempt, Observer};
+use crate::state::State;
+use crate::step::{Workspace, advance, begin};
+
+/// An increment solved in this many iterations or fewer was easy: the next one may be longer.
+const EASY: usize = 4;
+/// Growth of the increment after an easy one.
+const GROWTH: f64 = 1.5;
+/// Cut of the increment after a failed one.
+const CUT: f64 = 0.5;
+
+/// Run all steps of a model. The report comes back from a stopped run as well.
+///
+/// # Errors
+/// [`Error`] when an increment cannot be made small enough, or an observer cannot write.
+pub fn run(model: &Model, observers: &mut [&mut dyn Observer]) -> (RunReport, Result<State, Error>) {
+    let clock = Instant::now();
+    let mut report = RunReport::default();
+    let mut work = Workspace::new(model, Box::<SparseLu>::default());
+    let mut state = model.initial_state();
+    let mut result = Ok(());
+    for step in &model.steps {
+        result = run_step(model, step, &mut state, &mut work, observers, &mut report);
+        if result.is_err() {
+            break;
+        }
+    }
+    report.wall_s.assembly = work.assembler.seconds.assembly;
+    report.wall_s.contact = work.assembler.seconds.contact;
+    report.wall_s.linear = work.linear_seconds;
+    report.wall_s.total = clock.elapsed().as_secs_f64();
+    (report, result.map(|()| state))
+}
+
+fn run_step(
+    model: &Model,
+    step: &Step,
+    state: &mut State,
+    work: &mut Workspace,
+    observers: &mut [&mut dyn Observer],
+    report: &mut RunReport,
+) -> Result<(), Error> {
+    let name = || step.name.clone();
+    *state = begin(model, step, state, work)
+        .map_err(|cause| Error::Unsolvable { step: name(), time: state.time, cause })?;
+    let mut dt = step.increments.initial;
+    let mut attempt = 1;
+    while state.time < step.span.end {
+        dt = dt.min(step.increments.max).min(step.span.end - state.time);
+        let (iterations, outcome) = advance(model, step, state, dt, work);
+        report.newton_iterations += iterations.len();
+        report.factorizations += iterations.len();
+        let told = Attempt { step, number: attempt, old: state, dt, iterations: &iterations, accepted: outcome.as_ref().ok() };
+        let clock = Instant::now();
+        for observer in observers.iter_mut() {
+            observer.record(model, &told)?;
+        }
+        report.wall_s.output += clock.elapsed().as_secs_f64();
+        match outcome {
+            Ok(accepted) => {
+                *state = accepted;
+                report.increments += 1;
+                attempt = 1;
+                dt = if iterations.len() <= EASY { dt * GROWTH } else { dt };
+            }
+            Err(cause) if !cause.is_retryable() => {
+                return Err(Error::Unsolvable { step: name(), time: state.time, cause });
+            }
+            Err(cause) if CUT * dt < step.increments.min => {
+                return Err(Error::StepTooSmall { step: name(), time: state.time, dt, min: step.increments.min, cause });
+            }
+            Err(_) => {
+                report.cutbacks += 1;
+                attempt += 1;
+                dt *= CUT;
+            }
+        }
+    }
+    Ok(())
+}

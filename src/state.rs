@@ -1,0 +1,83 @@
+//! Everything increment n + 1 needs from increment n. A new state replaces the old one when it is accepted; dropping it
+//! is the whole of a roll-back.
+
+use serde::{Deserialize, Serialize};
+
+use crate::contact::force::ContactState;
+
+/// The accepted state at the end of an increment.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// t [T]
+    pub time: f64,
+    /// accepted increments so far
+    pub increment: usize,
+    /// length of the last increment, 0 at the start [T]
+    pub dt: f64,
+    /// u: displacement of every dof [L]
+    pub displacement: Vec<f64>,
+    /// v [L/T]
+    pub velocity: Vec<f64>,
+    /// a [L/T²]
+    pub acceleration: Vec<f64>,
+    /// F: internal + contact − external forces [F]
+    pub force: Vec<f64>,
+    /// Forces put on the nodes from outside: loads, and reactions at prescribed dofs [F]
+    pub external: Vec<f64>,
+    /// Reactions: what the supports put on the nodes [F]
+    pub reaction: Vec<f64>,
+    /// One list a contact pair, one entry a slave point
+    pub contacts: Vec<Vec<ContactState>>,
+    /// Displacement increment of the last increment of this step; `None` at its start
+    pub last_increment: Option<LastIncrement>,
+    /// Values at the start of the current step
+    pub step_start: StepStart,
+    /// Energies
+    pub energy: Energy,
+}
+
+/// The last accepted increment, from which the next start value is extrapolated.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LastIncrement {
+    /// Δt [T]
+    pub dt: f64,
+    /// Δu [L]
+    pub displacement: Vec<f64>,
+}
+
+/// What supports remember from the start of a step.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StepStart {
+    /// u at the start of the step [L]
+    pub displacement: Vec<f64>,
+    /// reactions at the start of the step [F]
+    pub reaction: Vec<f64>,
+}
+
+/// Energies [F·L]; the dissipations and the external work are totals since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Energy {
+    /// ½ vᵀ M v
+    pub kinetic: f64,
+    /// ∫ W dV
+    pub strain: f64,
+    /// ∫ (α_n g²/2 + q²/(2 α_t)) ds of the closed contact points
+    pub contact_elastic: f64,
+    /// ∫ q v^p ds dt
+    pub friction_dissipation: f64,
+    /// work of dampers
+    pub damping_dissipation: f64,
+    /// work of loads, springs and supports on the model
+    pub external_work: f64,
+    /// kinetic + strain + contact energy at the start of the run
+    pub initial: f64,
+}
+
+impl Energy {
+    /// external work + initial − (kinetic + strain + contact) − dissipation: 0 for an exact integration.
+    pub fn error(&self) -> f64 {
+        self.external_work + self.initial
+            - (self.kinetic + self.strain + self.contact_elastic)
+            - (self.friction_dissipation + self.damping_dissipation)
+    }
+}

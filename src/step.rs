@@ -1,0 +1,206 @@
+//! One increment: old state → new state.
+
+use nalgebra::Vector2;
+
+use crate::assembly::{Assembler, ContactCounts, Trial, prescribed_dofs};
+use crate::contact::force::ContactState;
+use crate::error::StepFailure;
+use crate::floating::null_motion;
+use crate::linear::{self, LinearSolver};
+use crate::model::{Model, Step};
+use crate::newton::{self, Iteration, Request};
+use crate::state::{LastIncrement, State, StepStart};
+use crate::system::System;
+
+/// What is kept from one increment to the next to save work; it does not change any answer.
+pub struct Workspace<'m> {
+    /// assembles the equations
+    pub assembler: Assembler<'m>,
+    /// solves them
+    pub solver: Box<dyn LinearSolver>,
+    system: System,
+    /// Seconds spent in linear solves
+    pub linear_seconds: f64,
+}
+
+impl<'m> Workspace<'m> {
+    /// A workspace for a model.
+    pub fn new(model: &'m Model, solver: Box<dyn LinearSolver>) -> Self {
+        let assembler = Assembler::new(model);
+        let system = assembler.system();
+        Self { assembler, solver, system, linear_seconds: 0.0 }
+    }
+}
+
+/// One row of the convergence record.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IterationRecord {
+    /// residual, correction, linear residual
+    pub newton: Iteration,
+    /// contact states after the correction
+    pub contacts: ContactCounts,
+}
+
+/// Begin a step: remember displacements and reactions, and find the accelerations if dynamics starts here.
+///
+/// # Errors
+/// [`StepFailure`] when the initial state cannot be evaluated or a body has no mass.
+pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> Result<State, StepFailure> {
+    let mut state = old.clone();
+    state.step_start = StepStart { displacement: old.displacement.clone(), reaction: old.reaction.clone() };
+    state.last_increment = None;
+    let resting = old.acceleration.iter().all(|a| *a == 0.0);
+    if step.scheme.coefficients().is_some() && resting {
+        state.acceleration = initial_acceleration(step, &state, work)?;
+        state.force.clone_from(&work.assembler.evaluation.force);
+    }
+    if state.increment == 0 {
+        state.energy.kinetic = kinetic_energy(step, &state, work);
+        state.energy.contact_elastic = contact_energy(model, &state.contacts, &model.positions(&state.displacement));
+        state.energy.initial = state.energy.kinetic + state.energy.contact_elastic;
+    }
+    Ok(state)
+}
+
+/// a₀ = −M⁻¹ F₀ at the free dofs, 0 at the prescribed ones.
+fn initial_acceleration(step: &Step, state: &State, work: &mut Workspace) -> Result<Vec<f64>, StepFailure> {
+    let quasi_static = Step { scheme: crate::time::Scheme::Static, ..step.clone() };
+    let trial = Trial { old: state, step: &quasi_static, time: state.time, dt: 0.0 };
+    work.assembler
+        .evaluate(trial, &state.displacement, false, Request::Residual, &mut work.system)
+        .map_err(StepFailure::Start)?;
+    let mut right: Vec<f64> = work.assembler.evaluation.force.iter().map(|f| -f).collect();
+    let mut mass = work.assembler.mass().clone();
+    let scale = mass.diagonal().into_iter().fold(0.0, f64::max);
+    for (dof, _) in prescribed_dofs(step, right.len()).into_iter().enumerate().filter(|(_, held)| *held) {
+        mass.replace_row(dof, scale);
+        right[dof] = 0.0;
+    }
+    Ok(linear::solve(&mut *work.solver, &mass, &right).map_err(StepFailure::Mass)?.x)
+}
+
+/// Solve one increment of length `dt` from the state `old`; pure but for the workspace's buffers.
+///
+/// The start value is the last increment extrapolated. The record of the iterations comes back from a failed attempt as well.
+pub fn advance(
+    model: &Model,
+    step: &Step,
+    old: &State,
+    dt: f64,
+    work: &mut Workspace,
+) -> (Vec<IterationRecord>, Result<State, StepFailure>) {
+    // The last increment of a step ends on its end, not within round-off of it.
+    let time = if old.time + dt > step.span.end - 1e-9 * dt { step.span.end } else { old.time + dt };
+    let trial = Trial { old, step, time, dt: time - old.time };
+    let Workspace { assembler, solver, system, linear_seconds } = work;
+    let mut first_iterate = true;
+    let mut counts = Vec::new();
+    let mut floating = None;
+    let spent = assembler.seconds.assembly + assembler.seconds.contact;
+    let clock = std::time::Instant::now();
+    let (iterations, result) =
+        newton::solve(start_value(old, trial.dt), model.newton, &mut **solver, system, |u, request, system| {
+            assembler.evaluate(trial, u, first_iterate, request, system)?;
+            if request == Request::Tangent {
+                if first_iterate && old.last_increment.is_none() {
+                    floating = null_motion(model, u, &system.tangent);
+                }
+                first_iterate = false;
+            } else if !first_iterate {
+                counts.push(ContactCounts::of(&assembler.evaluation.contacts));
+            }
+            Ok(())
+        });
+    let assembled = assembler.seconds.assembly + assembler.seconds.contact - spent;
+    *linear_seconds += clock.elapsed().as_secs_f64() - assembled;
+    counts.resize(iterations.len(), ContactCounts::default());
+    let iterations =
+        iterations.into_iter().zip(counts).map(|(newton, contacts)| IterationRecord { newton, contacts }).collect();
+    match (floating, result) {
+        (Some(floating), _) => (iterations, Err(StepFailure::Floating(floating))),
+        // A trial state may have lost the contact that held a body: worth saying, and worth a smaller increment.
+        (None, Err(failure)) => {
+            let loose = null_motion(model, &old.displacement, &system.tangent);
+            (iterations, Err(loose.map_or(failure.into(), StepFailure::ContactLost)))
+        }
+        (None, Ok(u)) => (iterations, Ok(accept(model, trial, u, work))),
+    }
+}
+
+/// u_n + Δu_last Δt/Δt_last within a step, u_n at its start.
+fn start_value(old: &State, dt: f64) -> Vec<f64> {
+    let Some(last) = &old.last_increment else { return old.displacement.clone() };
+    let share = dt / last.dt;
+    old.displacement.iter().zip(&last.displacement).map(|(u, du)| u + share * du).collect()
+}
+
+/// The new state at the converged displacement `u`.
+fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> State {
+    let Trial { old, step, time, dt } = trial;
+    let evaluation = std::mem::take(&mut work.assembler.evaluation);
+    let mut reaction = vec![0.0; u.len()];
+    for support in &step.supports {
+        reaction[support.dof] = evaluation.balance[support.dof];
+    }
+    let external: Vec<f64> = evaluation.loads.iter().zip(&reaction).map(|(load, reaction)| load + reaction).collect();
+    let increment: Vec<f64> = u.iter().zip(&old.displacement).map(|(new, old)| new - old).collect();
+    let work_done: f64 =
+        (0..u.len()).map(|dof| 0.5 * (old.external[dof] + external[dof]) * increment[dof]).sum();
+    let x = model.positions(&u);
+    let contact_elastic = contact_energy(model, &evaluation.contacts, &x);
+    let dissipated = friction_dissipation(model, old, &evaluation.contacts, &x);
+    let mut state = State {
+        time,
+        increment: old.increment + 1,
+        dt,
+        displacement: u,
+        velocity: evaluation.velocity,
+        acceleration: evaluation.acceleration,
+        force: evaluation.force,
+        external,
+        reaction,
+        contacts: evaluation.contacts,
+        last_increment: Some(LastIncrement { dt, displacement: increment }),
+        step_start: old.step_start.clone(),
+        energy: old.energy,
+    };
+    state.energy.external_work += work_done;
+    state.energy.strain = evaluation.strain_energy;
+    state.energy.contact_elastic = contact_elastic;
+    state.energy.friction_dissipation += dissipated;
+    state.energy.kinetic = kinetic_energy(step, &state, work);
+    state
+}
+
+fn kinetic_energy(step: &Step, state: &State, work: &mut Workspace) -> f64 {
+    if step.scheme.coefficients().is_none() {
+        return 0.0;
+    }
+    let momentum = work.assembler.mass().multiply(&state.velocity);
+    0.5 * momentum.iter().zip(&state.velocity).map(|(p, v)| p * v).sum::<f64>()
+}
+
+/// ∫ (α_n g²/2 + q²/(2 α_t)) ds of the closed points at the positions `x`.
+fn contact_energy(model: &Model, contacts: &[Vec<ContactState>], x: &[Vector2<f64>]) -> f64 {
+    let mut energy = 0.0;
+    for (pair, states) in model.contacts.iter().zip(contacts) {
+        for (point, ContactState { friction, .. }) in pair.points.iter().zip(states) {
+            let normal = 0.5 * friction.pressure.powi(2) / pair.alpha_n;
+            let stiffness = pair.law.stiffness();
+            let tangential = if stiffness > 0.0 { 0.5 * friction.traction.powi(2) / stiffness } else { 0.0 };
+            energy += point.current_length(x) * (normal + tangential);
+        }
+    }
+    energy
+}
+
+/// What friction dissipated from `old` to `new`.
+fn friction_dissipation(model: &Model, old: &State, new: &[Vec<ContactState>], x: &[Vector2<f64>]) -> f64 {
+    let mut dissipated = 0.0;
+    for ((pair, new), old) in model.contacts.iter().zip(new).zip(&old.contacts) {
+        for ((point, new), old) in pair.points.iter().zip(new).zip(old) {
+            dissipated += point.current_length(x) * (new.friction.dissipation - old.friction.dissipation);
+        }
+    }
+    dissipated
+}
