@@ -1,10 +1,21 @@
 //! Nodes, solid elements, and the named groups that a case refers to.
+//!
+//! A mesh comes from a gmsh file ([`gmsh::read`]) or from the case file ([`InlineMesh::build`]). Both readers only fill
+//! in a raw mesh; one check turns it into a [`Mesh`], so that a mesh keeps its promises wherever it comes from.
+
+mod check;
+mod error;
+pub mod gmsh;
+mod inline;
 
 use std::collections::BTreeMap;
 
 use nalgebra::Vector2;
 
 use crate::shape::ElementKind;
+
+pub use error::{MeshError, UnknownGroup};
+pub use inline::InlineMesh;
 
 /// A solid element: its kind and its nodes, counter-clockwise.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,15 +38,15 @@ pub struct Edge {
 /// A named set of the mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Group {
-    /// Solid elements (a gmsh physical surface), by element number
+    /// Solid elements (a gmsh physical surface), by element number, ascending
     Elements(Vec<usize>),
     /// Boundary edges (a gmsh physical curve)
     Edges(Vec<Edge>),
-    /// Single nodes (a gmsh physical point)
+    /// Single nodes (a gmsh physical point), ascending
     Nodes(Vec<usize>),
 }
 
-/// A checked mesh: every node is used, every element is counter-clockwise and has positive area.
+/// A checked mesh: every node is used, every element is counter-clockwise, has positive area and belongs to one body.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     /// X: reference position of each node [L]
@@ -44,6 +55,60 @@ pub struct Mesh {
     pub node_tags: Vec<u64>,
     /// Solid elements
     pub elements: Vec<Element>,
+    /// The tag each element has in the mesh file (inline: its place in its list), for messages
+    pub element_tags: Vec<u64>,
     /// Named groups
     pub groups: BTreeMap<String, Group>,
+}
+
+impl Mesh {
+    /// The group of this name.
+    ///
+    /// # Errors
+    /// [`UnknownGroup`] lists the groups there are.
+    pub fn group(&self, name: &str) -> Result<&Group, UnknownGroup> {
+        self.groups.get(name).ok_or_else(|| UnknownGroup {
+            name: name.into(),
+            nearest: self.nearest_name(name),
+            groups: self.groups.keys().cloned().collect(),
+        })
+    }
+
+    /// The nodes of a group, ascending, each once.
+    pub fn nodes_of(&self, group: &Group) -> Vec<usize> {
+        let mut nodes: Vec<usize> = match group {
+            Group::Elements(elements) => elements.iter().flat_map(|&e| &self.elements[e].nodes).copied().collect(),
+            Group::Edges(edges) => edges.iter().flat_map(|edge| &edge.nodes).copied().collect(),
+            Group::Nodes(nodes) => nodes.clone(),
+        };
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+
+    /// The body (the group of elements) that an element belongs to.
+    pub fn body_of(&self, element: usize) -> Option<&str> {
+        let holds = |group: &Group| matches!(group, Group::Elements(list) if list.binary_search(&element).is_ok());
+        self.groups.iter().find(|(_, group)| holds(group)).map(|(name, _)| name.as_str())
+    }
+
+    /// Lower left and upper right corner of the box around all nodes [L].
+    pub fn bounding_box(&self) -> [Vector2<f64>; 2] {
+        let corner = |pick: fn(Vector2<f64>, Vector2<f64>) -> Vector2<f64>| {
+            self.nodes.iter().copied().reduce(pick).unwrap_or_default()
+        };
+        [corner(|a, b| a.inf(&b)), corner(|a, b| a.sup(&b))]
+    }
+
+    /// Diagonal of the box around all nodes, the size of the model [L].
+    pub fn diagonal(&self) -> f64 {
+        let [low, high] = self.bounding_box();
+        (high - low).norm()
+    }
+
+    fn nearest_name(&self, name: &str) -> Option<String> {
+        let likeness = |other: &str| strsim::jaro_winkler(name, other);
+        let nearest = self.groups.keys().max_by(|a, b| likeness(a).total_cmp(&likeness(b)))?;
+        (likeness(nearest) > 0.7).then(|| nearest.clone())
+    }
 }

@@ -1,0 +1,284 @@
+//! What can be wrong with a mesh, said so that it can be mended.
+
+use std::io;
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+/// Why a mesh was refused.
+#[derive(Debug, Error)]
+pub enum MeshError {
+    /// Any of the others, in a file.
+    #[error("{}: {cause}", file.display())]
+    InFile {
+        /// the mesh file
+        file: PathBuf,
+        /// what is wrong with it
+        cause: Box<MeshError>,
+    },
+
+    /// Nothing is at this path.
+    #[error("there is no such mesh file; check the path")]
+    NoFile,
+    /// The path leads to a folder or a device.
+    #[error("this is not a file but a {0}; name the .msh file itself")]
+    NotAFile(&'static str),
+    /// The system would not let us read.
+    #[error("the mesh file cannot be read: {0}")]
+    Unreadable(io::Error),
+
+    /// Something other than a gmsh mesh.
+    #[error("this is not a gmsh mesh: it does not begin with $MeshFormat; {EXPORT}")]
+    NotGmsh,
+    /// A gmsh mesh of another version.
+    #[error("the mesh is in MSH format {0}, and only 4.1 is read; {EXPORT}")]
+    Version(String),
+    /// The line below `$MeshFormat` makes no sense.
+    #[error("the format line of the mesh is `{0}`, where `4.1 0 8` or `4.1 1 8` was expected; {EXPORT}")]
+    Format(String),
+    /// A section is not there.
+    #[error("the mesh has no ${0} section: the file is incomplete or was cut short; {EXPORT}")]
+    NoSection(&'static str),
+    /// A section has no end.
+    #[error("the ${0} section has no $End{0}: the file was cut short; {EXPORT}")]
+    Truncated(&'static str),
+    /// A count that the file is too small to hold.
+    #[error("the ${section} section claims {claimed} entries, more than a file of {bytes} bytes can hold; {EXPORT}")]
+    ImpossibleCount {
+        /// section without the dollar
+        section: &'static str,
+        /// count in its header
+        claimed: u64,
+        /// size of the file
+        bytes: usize,
+    },
+    /// The header of a section and its blocks disagree.
+    #[error("the ${section} section claims {claimed} entries but holds {found}; {EXPORT}")]
+    WrongCount {
+        /// section without the dollar
+        section: &'static str,
+        /// count in its header
+        claimed: u64,
+        /// sum over its blocks
+        found: usize,
+    },
+    /// The parser gave up.
+    #[error("the mesh cannot be understood at {at}: {what}; {EXPORT}")]
+    Malformed {
+        /// line or byte
+        at: String,
+        /// what the parser was reading and what it says
+        what: String,
+    },
+    /// Nodes with coordinates on their curve or surface.
+    #[error("the nodes carry parametric coordinates; export with Mesh.SaveParametric = 0")]
+    Parametric,
+    /// A third dimension.
+    #[error(
+        "node {node} has z = {z} where node {first} has z = {first_z}: not a plane mesh; \
+         all nodes must share one z, the model lies in x and y"
+    )]
+    NotPlane {
+        /// tag of the first node
+        first: u64,
+        /// its z
+        first_z: f64,
+        /// tag of the node that differs
+        node: u64,
+        /// its z
+        z: f64,
+    },
+    /// An element that the solver does not have.
+    #[error(
+        "element {element} is a {kind} (gmsh type {number}); only triangles with 3 or 6 nodes, quadrilaterals with \
+         4, 8 or 9, lines with 2 or 3 and points are read: mesh in 2D with Mesh.ElementOrder = 1 or 2"
+    )]
+    UnsupportedElement {
+        /// tag of the element
+        element: u64,
+        /// what gmsh calls the type
+        kind: String,
+        /// gmsh's number of the type
+        number: i32,
+    },
+    /// Elements without a body.
+    #[error(
+        "{count} elements (the first is {first}) belong to no physical surface; put each surface into a \
+         Physical Surface(\"name\"), or export without Mesh.SaveAll"
+    )]
+    NoBody {
+        /// how many
+        count: usize,
+        /// tag of the first
+        first: u64,
+    },
+    /// Elements with two bodies.
+    #[error(
+        "element {element} belongs to the physical surfaces `{first}` and `{second}`; an element has one body: \
+         take its surface out of one of them"
+    )]
+    TwoBodies {
+        /// tag of the element
+        element: u64,
+        /// a body
+        first: String,
+        /// another one
+        second: String,
+    },
+
+    /// Nothing to solve for.
+    #[error("the mesh has no triangles or quadrilaterals, and no named points; mesh it in 2D (gmsh -2)")]
+    NoElements,
+    /// One name for two groups.
+    #[error("two groups of the mesh are named `{0}`; give each its own name")]
+    SameName(String),
+    /// A group without members.
+    #[error("the group `{0}` is empty; mesh what it names, or remove it")]
+    EmptyGroup(String),
+    /// A tag that two nodes share.
+    #[error("two nodes have the tag {0}; renumber the mesh")]
+    SameNodeTag(u64),
+    /// A coordinate that is no number.
+    #[error("node {0} has a coordinate that is not finite")]
+    NotFinite(u64),
+    /// A node that does not exist.
+    #[error("{cell} of `{group}` uses node {node}, which the mesh does not have")]
+    UnknownNode {
+        /// kind and tag of what uses it
+        cell: String,
+        /// its group
+        group: String,
+        /// tag of the node
+        node: u64,
+    },
+    /// A number of nodes that no element or edge has.
+    #[error("{cell} of `{group}` has {count} nodes; {expected}")]
+    NodeCount {
+        /// kind and tag of what has them
+        cell: String,
+        /// its group
+        group: String,
+        /// how many it has
+        count: usize,
+        /// how many there may be
+        expected: &'static str,
+    },
+    /// An element that uses a node twice.
+    #[error("element {element} of `{group}` is collapsed: it uses node {node} twice; remesh there")]
+    RepeatedNode {
+        /// tag of the element
+        element: u64,
+        /// its body
+        group: String,
+        /// tag of the node
+        node: u64,
+    },
+    /// An element without area, or folded.
+    #[error(
+        "element {element} of `{group}` has zero or negative area at a quadrature point: it is collapsed, folded or \
+         badly curved; remesh there"
+    )]
+    Collapsed {
+        /// tag of the element
+        element: u64,
+        /// its body
+        group: String,
+    },
+    /// The same element twice.
+    #[error(
+        "element {first} of `{first_group}` and element {second} of `{second_group}` have the same corners; \
+         remove one of them"
+    )]
+    Duplicate {
+        /// tag of an element
+        first: u64,
+        /// its body
+        first_group: String,
+        /// tag of the other element
+        second: u64,
+        /// its body
+        second_group: String,
+    },
+    /// A line that bounds nothing.
+    #[error(
+        "line {line} of `{group}` is not an edge of any element; the group must lie on the boundary of a meshed \
+         physical surface"
+    )]
+    EdgeOutside {
+        /// tag of the line
+        line: u64,
+        /// its group
+        group: String,
+    },
+    /// A line inside a body.
+    #[error(
+        "line {line} of `{group}` lies inside `{body}`, between two of its elements; an edge group must lie on the \
+         boundary of one body"
+    )]
+    EdgeInside {
+        /// tag of the line
+        line: u64,
+        /// its group
+        group: String,
+        /// the body around it
+        body: String,
+    },
+    /// A line between two bodies that are glued together.
+    #[error(
+        "line {line} of `{group}` lies between `{first}` and `{second}`, which share its nodes and so cannot slide \
+         or part; contact needs separate nodes on the two sides: draw the curve once for each body (in gmsh without \
+         Coherence or fragments)"
+    )]
+    EdgeShared {
+        /// tag of the line
+        line: u64,
+        /// its group
+        group: String,
+        /// body on one side
+        first: String,
+        /// body on the other side
+        second: String,
+    },
+    /// A line of another order than its element.
+    #[error(
+        "line {line} of `{group}` does not have the same middle node as the edge of its element; \
+         mesh curves and surfaces at the same order"
+    )]
+    EdgeOrder {
+        /// tag of the line
+        line: u64,
+        /// its group
+        group: String,
+    },
+    /// The same line twice in one group.
+    #[error("line {line} of `{group}` is in the group twice; remove the curve that repeats it")]
+    EdgeRepeated {
+        /// tag of the line
+        line: u64,
+        /// its group
+        group: String,
+    },
+}
+
+const EXPORT: &str =
+    "export it anew with `gmsh -2 -format msh41 file.geo`, or Mesh.MshFileVersion = 4.1 in the .geo file";
+
+/// A name that no group of the mesh has.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("the mesh has no group `{name}`{}; it has {}", suggestion(nearest), listing(groups))]
+pub struct UnknownGroup {
+    /// the name that was asked for
+    pub name: String,
+    /// the group whose name resembles it most
+    pub nearest: Option<String>,
+    /// the groups there are
+    pub groups: Vec<String>,
+}
+
+fn suggestion(nearest: &Option<String>) -> String {
+    nearest.as_ref().map_or_else(String::new, |name| format!(" (did you mean `{name}`?)"))
+}
+
+fn listing(groups: &[String]) -> String {
+    if groups.is_empty() { "no groups at all".into() } else { format!("`{}`", groups.join("`, `")) }
+}
