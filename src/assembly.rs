@@ -487,9 +487,8 @@ impl<'m> Assembler<'m> {
             let mut mass = SparseMatrix::zero(pattern.clone());
             for (e, element) in model.mesh.elements.iter().enumerate() {
                 let n = element.nodes.len();
-                let density = model.bodies[model.body_of_element[e]].material.density();
-                let local = DMatrix::from_column_slice(n, n, &model.solids[e].consistent_mass(density));
-                add_blocks(&mut mass, &blocks[starts[e]..starts[e + 1]], local.kronecker(&DMatrix::identity(2, 2)).as_slice(), n);
+                let both = model.element_mass(e).kronecker(&DMatrix::identity(2, 2));
+                add_blocks(&mut mass, &blocks[starts[e]..starts[e + 1]], both.as_slice(), n);
             }
             mass
         })

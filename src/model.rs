@@ -1,12 +1,12 @@
 //! The problem to solve: mesh, bodies, contact pairs, and the steps with their supports, loads and schemes.
 
-use nalgebra::Vector2;
+use nalgebra::{DMatrix, Vector2};
 
 use crate::boundary::{Loads, Prescribed, Span};
 use crate::contact::pair::ContactPair;
-use crate::element::solid::SolidElement;
+use crate::element::{SolidElement, consistent_mass};
 use crate::material::Material;
-use crate::mesh::Mesh;
+use crate::mesh::{Element, Mesh};
 use crate::newton;
 use crate::state::{Energy, State, StepStart};
 use crate::time::Scheme;
@@ -98,6 +98,14 @@ impl Model {
     pub fn positions(&self, displacement: &[f64]) -> Vec<Vector2<f64>> {
         let moved = self.mesh.nodes.iter().zip(displacement.chunks_exact(2));
         moved.map(|(position, u)| position + Vector2::new(u[0], u[1])).collect()
+    }
+
+    /// Consistent mass matrix of an element, the same for both directions [M].
+    pub fn element_mass(&self, element: usize) -> DMatrix<f64> {
+        let Element { kind, nodes } = &self.mesh.elements[element];
+        let positions: Vec<Vector2<f64>> = nodes.iter().map(|&node| self.mesh.nodes[node]).collect();
+        let density = self.bodies[self.body_of_element[element]].material.density();
+        consistent_mass(*kind, &positions, density).expect("elements are checked when the model is built")
     }
 
     /// The state at rest before the first increment.

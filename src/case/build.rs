@@ -14,7 +14,7 @@ use super::supported;
 use crate::boundary::{Amplitude, DeadLoad, Drive, Expression, FollowerPressure, Loads, Motion, Prescribed, Span, Spring};
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::{Master, Plane, Surface, gauss_points, in_order, nodal_points};
-use crate::element::solid::SolidElement;
+use crate::element::{SolidElement, consistent_mass};
 use crate::mesh::{Edge, Group, Mesh, gmsh};
 use crate::model::{Body, Increments, Model, Step, WatchedSet};
 use crate::newton;
@@ -113,9 +113,9 @@ fn solids(case: &Case, mesh: &Mesh, bodies: &[Body], body_of_element: &[usize]) 
         let name = &bodies[body].name;
         let f_bar = case.bodies[name].element == Formulation::FBar;
         let positions: Vec<Vector2<f64>> = element.nodes.iter().map(|&node| mesh.nodes[node]).collect();
-        let solid = SolidElement::new(element.kind, f_bar, &positions)
-            .map_err(|error| Complaint::new(format!("bodies.{name}.element"), error))?;
-        solids.push(solid);
+        let complain = |error| Complaint::new(format!("bodies.{name}.element"), error);
+        solids.push(SolidElement::new(element.kind, f_bar, &positions).map_err(complain)?);
+        consistent_mass(element.kind, &positions, 1.0).map_err(complain)?;
     }
     Ok(solids)
 }
@@ -445,20 +445,17 @@ impl StepBuilder<'_> {
             let known: Vec<&str> = self.model.bodies.iter().map(|body| body.name.as_str()).collect();
             return Err(Complaint::new(place, format!("there is no body `{name}`; the bodies are {}", known.join(", "))));
         };
-        let density = body.material.density();
-        if density == 0.0 {
+        if body.material.density() == 0.0 {
             let message = format!("gravity needs a mass: give bodies.{name}.material.density");
             return Err(Complaint::new(place, message));
         }
         let mesh = &self.model.mesh;
         let mut shares = Vec::new();
         for &e in &body.elements {
-            let element = &mesh.elements[e];
-            let masses = self.model.solids[e].consistent_mass(density);
-            let n = element.nodes.len();
-            for (a, &node) in element.nodes.iter().enumerate() {
-                let mass = (0..n).map(|b| masses[a * n + b]).sum();
-                shares.push((node, mass, mesh.nodes[node]));
+            let masses = self.model.element_mass(e);
+            for (a, &node) in mesh.elements[e].nodes.iter().enumerate() {
+                // Row sum: ∫ ρ N_a dV.
+                shares.push((node, masses.row(a).sum(), mesh.nodes[node]));
             }
         }
         Ok(shares)

@@ -25,7 +25,7 @@ fn write_report(out: &mut String, case: &Case, model: &Model) -> std::fmt::Resul
     writeln!(out, "groups: {}", groups.join(", "))?;
     for body in &model.bodies {
         let input = &case.bodies[&body.name];
-        writeln!(out, "body {}: {} elements, {}", body.name, body.elements.len(), input.material)?;
+        writeln!(out, "body {}: {} elements, {}", body.name, body.elements.len(), json(&input.material))?;
     }
     for pair in &model.contacts {
         write_contact(out, pair, model, case)?;
@@ -38,7 +38,7 @@ fn write_report(out: &mut String, case: &Case, model: &Model) -> std::fmt::Resul
             step.name,
             step.span.start,
             step.span.end,
-            step.scheme,
+            json(&step.scheme),
             increments.initial,
             increments.min,
             increments.max,
@@ -61,7 +61,7 @@ fn write_contact(out: &mut String, pair: &crate::contact::pair::ContactPair, mod
         pair.points.len(),
         pair.alpha_n,
         pair.law.stiffness(),
-        case.contacts[&pair.name].friction,
+        json(&case.contacts[&pair.name].friction),
     )?;
     if let Some(limit) = pair.law.uniqueness_limit() {
         writeln!(out, "  one answer as long as the pressure stays below {limit:.6e}")?;
@@ -81,4 +81,9 @@ fn write_contact(out: &mut String, pair: &crate::contact::pair::ContactPair, mod
         writeln!(out, "  warning: initial overlap of {overlap:.3e}; it presses from the first increment on")?;
     }
     Ok(())
+}
+
+/// The parameters as they stand in the case.
+fn json(parameters: &impl serde::Serialize) -> String {
+    serde_json::to_string(parameters).unwrap_or_default()
 }

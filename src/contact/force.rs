@@ -47,7 +47,7 @@ impl ContactState {
         let friction = &self.friction;
         if friction.pressure <= 0.0 {
             Status::Open
-        } else if friction.plastic_increment != 0.0 && friction.ratio() >= 0.9 {
+        } else if friction.plastic_increment != 0.0 && (friction.mu == 0.0 || friction.ratio() >= 0.9) {
             Status::Slip
         } else {
             Status::Stick
