@@ -56,7 +56,7 @@ impl Observer for History {
         let Some(state) = attempt.accepted else { return Ok(()) };
         let x = model.positions(&state.displacement);
         let energy = &state.energy;
-        let mut row = vec![state.time.to_string(), state.dt.to_string(), attempt.step.name.clone()];
+        let mut row = vec![format!("{:?}", state.time), format!("{:?}", state.dt), attempt.step.name.clone()];
         row.push(attempt.iterations.len().to_string());
         let mut numbers = vec![
             energy.kinetic,
@@ -73,7 +73,7 @@ impl Observer for History {
         for set in &model.watch {
             numbers.extend(watched_row(set, state));
         }
-        row.extend(numbers.iter().map(f64::to_string));
+        row.extend(numbers.iter().map(|number| format!("{number:?}")));
         self.0.line(&row.join(","))?;
         self.0.flush()
     }

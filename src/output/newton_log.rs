@@ -28,7 +28,7 @@ impl Observer for NewtonLog {
         for (k, iteration) in attempt.iterations.iter().enumerate() {
             let (newton, contacts) = (&iteration.newton, &iteration.contacts);
             self.0.line(&format!(
-                "{},{},{},{},{time},{},{},{},{},{},{}",
+                "{},{},{},{},{time:?},{:?},{:?},{},{},{},{:?}",
                 attempt.step.name,
                 attempt.old.increment + 1,
                 attempt.number,
