@@ -14,7 +14,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, Vector2};
 use rayon::prelude::*;
 
-use crate::contact::force::{ContactState, Increment, Status};
+use crate::contact::force::{ContactState, Presume, Status};
 use crate::contact::pair::PairResponse;
 use crate::contact::surface::Master;
 use crate::element::pressure::follower_pressure;
@@ -85,6 +85,14 @@ impl ContactCounts {
     }
 }
 
+/// What the last linear solve of an increment started from at one contact point.
+#[derive(Clone, Copy, Debug, Default)]
+struct Iterate {
+    /// plastic slip of the increment [L]
+    slip: f64,
+    presumed: Presume,
+}
+
 /// Seconds spent by phase.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Seconds {
@@ -109,6 +117,8 @@ pub struct Assembler<'m> {
     size: f64,
     /// Sum of the forces' magnitudes at each dof [F]
     magnitudes: Vec<f64>,
+    /// One entry a contact point, empty before the first linear solve of an increment
+    iterates: Vec<Vec<Iterate>>,
     /// What was found at the last evaluated displacement
     pub evaluation: Evaluation,
     /// Time spent
@@ -138,6 +148,7 @@ impl<'m> Assembler<'m> {
             weight: stiffness.chain(springs).fold(f64::MIN_POSITIVE, f64::max),
             size: model.mesh.nodes.iter().fold(0.0, |size, x| size.max(x.norm())),
             magnitudes: vec![0.0; model.dofs()],
+            iterates: Vec::new(),
             evaluation: Evaluation::default(),
             seconds: Seconds::default(),
         };
@@ -181,18 +192,19 @@ impl<'m> Assembler<'m> {
         &mut self,
         trial: Trial,
         u: &[f64],
-        first_iterate: bool,
         request: Request,
         system: &mut System,
     ) -> Result<(), TrialFailure> {
         let x = self.model.positions(u);
         let clock = std::time::Instant::now();
-        let increment = Increment { dt: trial.dt, first_iterate };
-        let responses = self.contacts(trial.old, increment, &x)?;
+        let tangent = request == Request::Tangent;
+        if tangent {
+            self.presume();
+        }
+        let responses = self.contacts(trial, tangent, &x)?;
         self.seconds.contact += clock.elapsed().as_secs_f64();
 
         let clock = std::time::Instant::now();
-        let tangent = request == Request::Tangent;
         if tangent {
             self.cover(&responses, trial.old);
             if !Arc::ptr_eq(&system.tangent.pattern, &self.pattern) {
@@ -222,11 +234,37 @@ impl<'m> Assembler<'m> {
         Ok(())
     }
 
-    fn contacts(&self, old: &State, increment: Increment, x: &[Vector2<f64>]) -> Result<Vec<PairResponse>, TrialFailure> {
-        let pairs = self.model.contacts.iter().zip(&old.contacts);
+    /// Forget the iterates of the increment before: the next tangent is the first of an increment.
+    pub fn start_increment(&mut self) {
+        self.iterates.clear();
+    }
+
+    /// What the next linear solve presumes about each point, from its last two iterates.
+    fn presume(&mut self) {
+        let first = self.iterates.is_empty();
+        self.iterates.resize_with(self.model.contacts.len(), Vec::new);
+        for (iterates, states) in self.iterates.iter_mut().zip(&self.evaluation.contacts) {
+            iterates.resize_with(states.len(), Iterate::default);
+            for (iterate, state) in iterates.iter_mut().zip(states) {
+                let slip = state.friction.plastic_increment;
+                let reversed = iterate.slip * slip < 0.0 && iterate.presumed == Presume::Nothing;
+                iterate.presumed = match (first, reversed) {
+                    (true, _) => Presume::Touch,
+                    (false, true) => Presume::Stick,
+                    (false, false) => Presume::Nothing,
+                };
+                iterate.slip = slip;
+            }
+        }
+    }
+
+    /// Respond of all pairs; a tangent is taken with the presumptions, a residual that may be accepted without.
+    fn contacts(&self, trial: Trial, presuming: bool, x: &[Vector2<f64>]) -> Result<Vec<PairResponse>, TrialFailure> {
+        let pairs = self.model.contacts.iter().zip(&trial.old.contacts).enumerate();
         pairs
-            .map(|(pair, old)| {
-                pair.respond(old, increment, x).map_err(|(point, cause)| TrialFailure::Friction {
+            .map(|(number, (pair, old))| {
+                let presumed = |k: usize| if presuming { self.iterates[number][k].presumed } else { Presume::Nothing };
+                pair.respond(old, trial.dt, presumed, x).map_err(|(point, cause)| TrialFailure::Friction {
                     contact: pair.name.clone(),
                     point,
                     cause,

@@ -67,7 +67,7 @@ fn initial_acceleration(step: &Step, state: &State, work: &mut Workspace) -> Res
     let quasi_static = Step { scheme: crate::time::Scheme::Static, ..step.clone() };
     let trial = Trial { old: state, step: &quasi_static, time: state.time, dt: 0.0 };
     work.assembler
-        .evaluate(trial, &state.displacement, false, Request::Residual, &mut work.system)
+        .evaluate(trial, &state.displacement, Request::Residual, &mut work.system)
         .map_err(StepFailure::Start)?;
     let mut right: Vec<f64> = work.assembler.evaluation.force.iter().map(|f| -f).collect();
     let mut mass = work.assembler.mass().clone();
@@ -93,6 +93,7 @@ pub fn advance(
     let time = if old.time + dt > step.span.end - 1e-9 * dt { step.span.end } else { old.time + dt };
     let trial = Trial { old, step, time, dt: time - old.time };
     let Workspace { assembler, solver, system, linear_seconds } = work;
+    assembler.start_increment();
     let mut first_iterate = true;
     let mut counts = Vec::new();
     let mut floating = None;
@@ -100,7 +101,7 @@ pub fn advance(
     let clock = std::time::Instant::now();
     let (iterations, result) =
         newton::solve(start_value(old, trial.dt), model.newton, &mut **solver, system, |u, request, system| {
-            assembler.evaluate(trial, u, first_iterate, request, system)?;
+            assembler.evaluate(trial, u, request, system)?;
             if request == Request::Tangent {
                 if first_iterate && old.last_increment.is_none() {
                     floating = null_motion(model, u, &system.tangent);

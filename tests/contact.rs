@@ -1,6 +1,6 @@
 //! Contact: exact tangents, feet at corners and past ends.
 
-use fecontact::contact::force::{ContactState, Increment, Status, respond};
+use fecontact::contact::force::{ContactState, Increment, Presume, Status, respond};
 use fecontact::contact::pair::ContactPair;
 use fecontact::contact::projection::Bound;
 use fecontact::contact::search::Index;
@@ -34,7 +34,7 @@ fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
 
 fn evaluate(pair: &ContactPair, k: usize, old: &ContactState, x: &Positions) -> (ContactState, Option<Contribution>) {
     let index = Index::new(&pair.master, x);
-    let increment = Increment { dt: 0.3, first_iterate: false };
+    let increment = Increment { dt: 0.3, presume: Presume::Nothing };
     respond(pair, &pair.points[k], index.project(&pair.points[k], x), old, increment, x).expect("a finite increment")
 }
 

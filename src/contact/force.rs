@@ -55,13 +55,27 @@ impl ContactState {
     }
 }
 
-/// Increment of a contact point: where it comes from and how long it takes.
+/// Increment of a contact point, and what the iteration presumes about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Increment {
     /// Δt [T]
     pub dt: f64,
-    /// The first iterate takes a zero gap as closed and sticking: Newton would otherwise cycle at p = 0
-    pub first_iterate: bool,
+    /// Presumption about the point
+    pub presume: Presume,
+}
+
+/// What Newton's method presumes about a point, for the sake of convergence; an accepted state presumes nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Presume {
+    /// The laws answer as they are
+    #[default]
+    Nothing,
+    /// A zero gap is closed and sticks: it would open and close for ever at p = 0
+    Touch,
+    /// The point sticks, q = q₀ + α_t Δu_t whatever its size. From one iterate to the next it slipped one way and then
+    /// the other, past the narrow and stiff range of sticking that lies between: the tangents on both sides are soft,
+    /// and Newton's method would jump to and fro for ever.
+    Stick,
 }
 
 /// Contact closes at a zero gap when it is below this share of the length the point stands for.
@@ -88,8 +102,13 @@ pub fn respond(
     let pressure = (-pair.alpha_n * projection.gap).max(0.0);
     let sliding = Sliding { slip: kinematics.slip, pressure, dt: increment.dt };
     let mut response = pair.law.respond(&old.friction, sliding)?;
-    if pressure == 0.0 {
-        response.dtraction_dslip = pair.law.stiffness();
+    let stiffness = pair.law.stiffness();
+    if increment.presume == Presume::Stick {
+        response.state.traction = old.friction.traction + stiffness * sliding.slip;
+        response.dtraction_dpressure = 0.0;
+    }
+    if increment.presume == Presume::Stick || pressure == 0.0 {
+        response.dtraction_dslip = stiffness;
     }
     let state = ContactState { friction: response.state, foot: Some(projection.foot), gap: projection.gap };
     Ok((state, Some(contribution(&kinematics, &response, pair.alpha_n))))
@@ -103,7 +122,7 @@ fn touches(
     x: &[Vector2<f64>],
 ) -> bool {
     let zero = TOUCH * slave.current_length(x);
-    increment.first_iterate && old.foot.is_some() && old.gap.abs() <= zero && projection.gap <= zero
+    increment.presume == Presume::Touch && old.foot.is_some() && old.gap.abs() <= zero && projection.gap <= zero
 }
 
 fn count_slip_after_touch(kinematics: &mut Kinematics, old_gap: f64, gap: f64) {

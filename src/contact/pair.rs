@@ -5,7 +5,7 @@ use std::ops::Range;
 use nalgebra::Vector2;
 use rayon::prelude::*;
 
-use super::force::{ContactState, Increment, respond};
+use super::force::{ContactState, Increment, Presume, respond};
 use super::search::Index;
 use super::surface::{Master, SlavePoint};
 use crate::friction::{FrictionLaw, FrictionState, LawFailure};
@@ -44,18 +44,21 @@ impl ContactPair {
         self.points.iter().map(at_rest).collect()
     }
 
-    /// Every point's trial state and contribution at the positions `x`; pure, and the same for any number of threads.
+    /// Every point's trial state and contribution at the positions `x`, each with its own presumption; pure, and the
+    /// same for any number of threads.
     ///
     /// # Errors
     /// The number of the first point whose friction law fails, and why.
     pub fn respond(
         &self,
         old: &[ContactState],
-        increment: Increment,
+        dt: f64,
+        presumed: impl Fn(usize) -> Presume + Sync,
         x: &[Vector2<f64>],
     ) -> Result<PairResponse, (usize, LawFailure)> {
         let index = Index::new(&self.master, x);
         let one = |(k, (slave, old)): (usize, (&SlavePoint, &ContactState))| {
+            let increment = Increment { dt, presume: presumed(k) };
             respond(self, slave, index.project(slave, x), old, increment, x).map_err(|failure| (k, failure))
         };
         // The first failure by number, whatever thread met it.
