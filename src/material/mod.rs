@@ -1,9 +1,31 @@
 //! The bulk-law contract: stress and tangent of a hyperelastic material in plane strain.
+//!
+//! | law | stored energy W per reference volume |
+//! |---|---|
+//! | [`Linear`] | ½ ε:C:ε, small strains and rotations only |
+//! | [`SaintVenantKirchhoff`] | λ/2 (tr E)² + G E:E |
+//! | [`NeoHookean`] | G/2 (I₁ − 3 − 2 ln J) + λ/2 (ln J)² |
+//! | [`Hencky`] | G ‖ln V‖² + λ/2 (ln J)² |
+//!
+//! All have the same two constants, λ and G, and the same response to small strains.
 
 use std::fmt::Debug;
 
 use nalgebra::{Matrix2, Matrix4};
 use thiserror::Error;
+
+mod hencky;
+mod isotropic;
+mod linear;
+mod neo_hookean;
+mod parameters;
+mod saint_venant_kirchhoff;
+
+pub use hencky::Hencky;
+pub use linear::Linear;
+pub use neo_hookean::NeoHookean;
+pub use parameters::{ElasticConstants, InvalidParameter, Lame, MaterialParameters};
+pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
 
 /// Stress, tangent and stored energy at one deformation gradient (plane strain: F₃₃ = 1).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,6 +38,32 @@ pub struct MaterialResponse {
     pub energy: f64,
     /// σ_zz: out-of-plane Cauchy stress [F/L²]
     pub stress_zz: f64,
+}
+
+/// σ: Cauchy stress, tension positive [F/L²]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CauchyStress {
+    /// σ_xx
+    pub xx: f64,
+    /// σ_yy
+    pub yy: f64,
+    /// σ_zz, out of plane
+    pub zz: f64,
+    /// σ_xy
+    pub xy: f64,
+}
+
+impl CauchyStress {
+    /// p = −tr σ / 3, positive in compression [F/L²]
+    pub fn pressure(&self) -> f64 {
+        -(self.xx + self.yy + self.zz) / 3.0
+    }
+
+    /// σ_v = √(3/2 dev σ : dev σ) [F/L²]
+    pub fn von_mises(&self) -> f64 {
+        let differences = (self.xx - self.yy).powi(2) + (self.yy - self.zz).powi(2) + (self.zz - self.xx).powi(2);
+        (0.5 * differences + 3.0 * self.xy.powi(2)).sqrt()
+    }
 }
 
 /// The deformation has no volume left: J = det F ≤ 0, or not a number.
@@ -39,4 +87,14 @@ pub trait Material: Debug + Send + Sync {
     /// # Errors
     /// [`InvertedElement`] when det F is not positive.
     fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement>;
+
+    /// σ = P Fᵀ / J
+    ///
+    /// # Errors
+    /// As [`Material::respond`].
+    fn cauchy_stress(&self, deformation: &Matrix2<f64>) -> Result<CauchyStress, InvertedElement> {
+        let response = self.respond(deformation)?;
+        let sigma = response.stress * deformation.transpose() / deformation.determinant();
+        Ok(CauchyStress { xx: sigma.m11, yy: sigma.m22, zz: response.stress_zz, xy: sigma.m12 })
+    }
 }

@@ -1,0 +1,83 @@
+//! Isotropic laws in plane strain: functions of two invariants of F.
+
+use nalgebra::{Matrix2, Vector4};
+
+use super::{InvertedElement, MaterialResponse};
+
+/// The two invariants that an isotropic law sees in plane strain, and their derivatives.
+///
+/// ```text
+/// J = λ₁ λ₂ = det F                       ∂J/∂F = cof F                          (1)
+/// m = (λ₁ − λ₂)² = F:F − 2J = D:D / 2     ∂m/∂F = 2D,   D = F − cof F            (2)
+/// ```
+///
+/// with the principal stretches λ₁, λ₂. D and J − 1 are small differences of the components of F, so stresses
+/// that come from them do not lose digits when the strain is small, and vanish under rotation.
+pub(super) struct Invariants {
+    /// J
+    pub jacobian: f64,
+    /// J − 1
+    pub volume_strain: f64,
+    /// ln J
+    pub ln_jacobian: f64,
+    /// m
+    pub distortion: f64,
+    cofactor: Matrix2<f64>,
+    deviation: Matrix2<f64>,
+}
+
+/// W(m, J) and its derivatives.
+pub(super) struct Energy {
+    pub w: f64,
+    pub w_m: f64,
+    pub w_j: f64,
+    pub w_mm: f64,
+    pub w_mj: f64,
+    pub w_jj: f64,
+}
+
+impl Invariants {
+    pub(super) fn of(deformation: &Matrix2<f64>) -> Result<Self, InvertedElement> {
+        let jacobian = deformation.determinant();
+        if !(jacobian > 0.0 && jacobian.is_finite()) {
+            return Err(InvertedElement { jacobian });
+        }
+        let displacement_gradient = deformation - Matrix2::identity();
+        let volume_strain = displacement_gradient.trace() + displacement_gradient.determinant();
+        let ln_jacobian = if volume_strain.abs() < 0.5 { volume_strain.ln_1p() } else { jacobian.ln() };
+        let cofactor = cofactor(deformation);
+        let deviation = deformation - cofactor;
+        let distortion = 0.5 * deviation.norm_squared();
+        Ok(Self { jacobian, volume_strain, ln_jacobian, distortion, cofactor, deviation })
+    }
+
+    /// Stress and tangent of the law with energy W(m, J), by the chain rule.
+    ///
+    /// ```text
+    /// P = 2 W_m D + W_J cof F                                                            (3)
+    /// A = 2 W_m ∂D/∂F + W_J ∂cof F/∂F                                                    (4)
+    ///     + 4 W_mm D ⊗ D + 2 W_mJ (D ⊗ cof F + cof F ⊗ D) + W_JJ cof F ⊗ cof F
+    /// ```
+    pub(super) fn response(&self, energy: &Energy, stress_zz: f64) -> MaterialResponse {
+        let Energy { w, w_m, w_j, w_mm, w_mj, w_jj } = *energy;
+        let stress = 2.0 * w_m * self.deviation + w_j * self.cofactor;
+
+        let d = Vector4::from_column_slice(self.deviation.as_slice());
+        let c = Vector4::from_column_slice(self.cofactor.as_slice());
+        let by_d = 4.0 * w_mm * d + 2.0 * w_mj * c;
+        let by_c = 2.0 * w_mj * d + w_jj * c;
+        let mut tangent = d * by_d.transpose() + c * by_c.transpose();
+        // cof is linear in F: (F₁₁, F₂₁, F₁₂, F₂₂) → (F₂₂, −F₁₂, −F₂₁, F₁₁)
+        let of_cofactor = w_j - 2.0 * w_m;
+        for (i, sign) in [1.0, -1.0, -1.0, 1.0].into_iter().enumerate() {
+            tangent[(i, i)] += 2.0 * w_m;
+            tangent[(i, 3 - i)] += sign * of_cofactor;
+        }
+        MaterialResponse { stress, tangent, energy: w, stress_zz }
+    }
+}
+
+/// cof F = J F⁻ᵀ
+fn cofactor(f: &Matrix2<f64>) -> Matrix2<f64> {
+    Matrix2::new(f.m22, -f.m21, -f.m12, f.m11)
+}
