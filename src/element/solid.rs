@@ -1,0 +1,292 @@
+//! A solid element at large displacements: total Lagrangian, fully integrated, with F-bar for Q4.
+
+use nalgebra::{DMatrix, Matrix2, Matrix4, Vector2};
+
+use super::{ElementError, gradients};
+use crate::material::{CauchyStress, InvertedElement, Material, MaterialResponse};
+use crate::shape::ElementKind;
+
+/// A solid element: what its reference geometry says at the quadrature points.
+///
+/// ```text
+/// F = 1 + Σ_a u_a ⊗ ∂N_a/∂X                              deformation gradient              (1)
+/// f_ai = ∫ P_iJ N_a,J dV                                 internal force                    (2)
+/// K_ai,bk = ∫ N_a,J A_iJkL N_b,L dV,   A = ∂P/∂F         tangent ∂f_ai/∂u_bk               (3)
+/// ```
+///
+/// F-bar (Q4 only) lets every point have the volume change of the centre, so that nearly incompressible materials
+/// do not lock. The law sees F̄, and its Cauchy stress acts on the true geometry:
+///
+/// ```text
+/// F̄ = r F,   r = √(J₀/J),   J₀ = det F₀ at the centre                                      (4)
+/// P = P(F̄) / r                                                                             (5)
+/// dP = A:dF + ½ (F₀⁻ᵀ:dF₀ − F⁻ᵀ:dF) (A:F − P),   A = A(F̄)                                  (6)
+/// ```
+///
+/// These forces have no potential: the tangent is not symmetric, and the stored energy ∫ W(F̄) dV is the work of the
+/// forces only where J = J₀. [`Linear`](crate::material::Linear) with F-bar is linear only in the limit of small
+/// strains.
+///
+/// Source: de Souza Neto, Perić, Dutko & Owen (1996), Int. J. Solids Struct. 33, 3277,
+/// doi:10.1016/0020-7683(95)00259-6.
+#[derive(Clone, Debug)]
+pub struct SolidElement {
+    kind: ElementKind,
+    /// ∂N_a/∂X of all nodes at the first quadrature point, then at the second, … [1/L]
+    gradients: Vec<Vector2<f64>>,
+    /// Reference volume of each quadrature point: weight × det(∂X/∂ξ) [L²]
+    volumes: Vec<f64>,
+    /// ∂N_a/∂X at the centre, for F-bar [1/L]
+    centre: Option<Vec<Vector2<f64>>>,
+}
+
+/// The centre of an F-bar element at the current displacements.
+struct Centre<'a> {
+    gradients: &'a [Vector2<f64>],
+    jacobian: f64,
+    /// F₀⁻ᵀ
+    inverse: Matrix2<f64>,
+}
+
+impl SolidElement {
+    /// The element of `kind` on the reference `positions` of its nodes.
+    ///
+    /// # Errors
+    /// [`ElementError::Degenerate`] when det(∂X/∂ξ) is not positive at a quadrature point,
+    /// [`ElementError::FBarNeedsQ4`] when F-bar is asked of another kind.
+    pub fn new(kind: ElementKind, f_bar: bool, positions: &[Vector2<f64>]) -> Result<Self, ElementError> {
+        debug_assert_eq!(positions.len(), kind.nodes());
+        if f_bar && kind != ElementKind::Q4 {
+            return Err(ElementError::FBarNeedsQ4 { kind });
+        }
+        let mut element = Self { kind, gradients: Vec::new(), volumes: Vec::new(), centre: None };
+        for point in kind.quadrature() {
+            let (gradients, jacobian) = gradients(kind, point.at, positions)?;
+            element.gradients.extend(gradients);
+            element.volumes.push(point.weight * jacobian);
+        }
+        if f_bar {
+            element.centre = Some(gradients(kind, kind.centre(), positions)?.0);
+        }
+        Ok(element)
+    }
+
+    /// Kind of the element.
+    pub fn kind(&self) -> ElementKind {
+        self.kind
+    }
+
+    /// Reference volume (area times thickness 1) [L²]
+    pub fn volume(&self) -> f64 {
+        self.volumes.iter().sum()
+    }
+
+    /// Writes the internal force (2) at nodal displacements `u` over `force`; returns the stored energy.
+    ///
+    /// # Errors
+    /// [`InvertedElement`] when the material is turned inside out at a quadrature point.
+    pub fn force(
+        &self,
+        material: &dyn Material,
+        u: &[Vector2<f64>],
+        force: &mut [f64],
+    ) -> Result<f64, InvertedElement> {
+        self.evaluate(material, u, force, None)
+    }
+
+    /// As [`SolidElement::force`], and writes the tangent (3) over `tangent`, column by column.
+    ///
+    /// # Errors
+    /// [`InvertedElement`] when the material is turned inside out at a quadrature point.
+    pub fn force_and_tangent(
+        &self,
+        material: &dyn Material,
+        u: &[Vector2<f64>],
+        force: &mut [f64],
+        tangent: &mut [f64],
+    ) -> Result<f64, InvertedElement> {
+        self.evaluate(material, u, force, Some(tangent))
+    }
+
+    /// Cauchy stress at each quadrature point.
+    ///
+    /// # Errors
+    /// [`InvertedElement`] when the material is turned inside out at a quadrature point.
+    pub fn stresses(&self, material: &dyn Material, u: &[Vector2<f64>]) -> Result<Vec<CauchyStress>, InvertedElement> {
+        let centre = self.centre(u)?;
+        self.points()
+            .map(|(gradients, _)| {
+                let deformation = deformation_gradient(gradients, u);
+                let seen = match &centre {
+                    Some(centre) => centre.stretch(&deformation)? * deformation,
+                    None => deformation,
+                };
+                material.cauchy_stress(&seen)
+            })
+            .collect()
+    }
+
+    /// Cauchy stress at each node: the (bi)linear function nearest to the stresses at the quadrature points.
+    ///
+    /// # Errors
+    /// [`InvertedElement`] when the material is turned inside out at a quadrature point.
+    pub fn nodal_stresses(
+        &self,
+        material: &dyn Material,
+        u: &[Vector2<f64>],
+    ) -> Result<Vec<CauchyStress>, InvertedElement> {
+        let stresses = self.stresses(material, u)?;
+        let points = DMatrix::from_fn(stresses.len(), 4, |point, component| {
+            let CauchyStress { xx, yy, zz, xy } = stresses[point];
+            [xx, yy, zz, xy][component]
+        });
+        let corners = corner_fit(self.kind) * points;
+        let at = |values: &[usize]| {
+            let mean = |component| values.iter().map(|&a| corners[(a, component)]).sum::<f64>() / values.len() as f64;
+            CauchyStress { xx: mean(0), yy: mean(1), zz: mean(2), xy: mean(3) }
+        };
+        let n = self.kind.corners();
+        let mut nodal: Vec<_> = (0..n).map(|a| at(&[a])).collect();
+        if self.kind.nodes() > n {
+            nodal.extend((0..n).map(|edge| at(&self.kind.edge(edge).0)));
+        }
+        if self.kind == ElementKind::Q9 {
+            nodal.push(at(&[0, 1, 2, 3]));
+        }
+        Ok(nodal)
+    }
+
+    fn evaluate(
+        &self,
+        material: &dyn Material,
+        u: &[Vector2<f64>],
+        force: &mut [f64],
+        mut tangent: Option<&mut [f64]>,
+    ) -> Result<f64, InvertedElement> {
+        force.fill(0.0);
+        if let Some(tangent) = &mut tangent {
+            tangent.fill(0.0);
+        }
+        let centre = self.centre(u)?;
+        let mut energy = 0.0;
+        for (gradients, volume) in self.points() {
+            let deformation = deformation_gradient(gradients, u);
+            let response = match &centre {
+                Some(centre) => centre.respond(material, &deformation)?,
+                None => material.respond(&deformation)?,
+            };
+            energy += volume * response.energy;
+            add_force(gradients, &(volume * response.stress), force);
+            if let Some(tangent) = &mut tangent {
+                add_tangent(gradients, &(volume * response.tangent), tangent);
+                if let Some(centre) = &centre {
+                    centre.add_tangent(gradients, &deformation, volume, &response, tangent);
+                }
+            }
+        }
+        Ok(energy)
+    }
+
+    /// Gradients and volume of each quadrature point.
+    fn points(&self) -> impl Iterator<Item = (&[Vector2<f64>], f64)> {
+        self.gradients.chunks_exact(self.kind.nodes()).zip(self.volumes.iter().copied())
+    }
+
+    fn centre(&self, u: &[Vector2<f64>]) -> Result<Option<Centre<'_>>, InvertedElement> {
+        let Some(gradients) = &self.centre else { return Ok(None) };
+        let deformation = deformation_gradient(gradients, u);
+        let jacobian = positive_jacobian(&deformation)?;
+        Ok(Some(Centre { gradients, jacobian, inverse: inverse_transpose(&deformation, jacobian) }))
+    }
+}
+
+impl Centre<'_> {
+    /// r = √(J₀/J) of (4)
+    fn stretch(&self, deformation: &Matrix2<f64>) -> Result<f64, InvertedElement> {
+        Ok((self.jacobian / positive_jacobian(deformation)?).sqrt())
+    }
+
+    /// The law at F̄, with the stress (5).
+    fn respond(
+        &self,
+        material: &dyn Material,
+        deformation: &Matrix2<f64>,
+    ) -> Result<MaterialResponse, InvertedElement> {
+        let stretch = self.stretch(deformation)?;
+        let mut response = material.respond(&(stretch * deformation))?;
+        response.stress /= stretch;
+        Ok(response)
+    }
+
+    /// Adds the second term of (6), a dyad of a nodal force and a nodal volume change.
+    fn add_tangent(
+        &self,
+        gradients: &[Vector2<f64>],
+        deformation: &Matrix2<f64>,
+        volume: f64,
+        response: &MaterialResponse,
+        tangent: &mut [f64],
+    ) {
+        let inverse = inverse_transpose(deformation, deformation.determinant());
+        let stress = 0.5 * volume * (contract(&response.tangent, deformation) - response.stress);
+        let columns = tangent.chunks_exact_mut(4 * gradients.len());
+        for ((columns, at_centre), here) in columns.zip(self.gradients).zip(gradients) {
+            let volume_change = self.inverse * at_centre - inverse * here;
+            for (column, change) in columns.chunks_exact_mut(2 * gradients.len()).zip(&volume_change) {
+                add_force(gradients, &(*change * stress), column);
+            }
+        }
+    }
+}
+
+/// F of (1)
+fn deformation_gradient(gradients: &[Vector2<f64>], u: &[Vector2<f64>]) -> Matrix2<f64> {
+    u.iter().zip(gradients).fold(Matrix2::identity(), |sum, (u, gradient)| sum + u * gradient.transpose())
+}
+
+/// f_ai += P_iJ N_a,J
+fn add_force(gradients: &[Vector2<f64>], stress: &Matrix2<f64>, force: &mut [f64]) {
+    for (force, gradient) in force.chunks_exact_mut(2).zip(gradients) {
+        let f = stress * gradient;
+        force[0] += f.x;
+        force[1] += f.y;
+    }
+}
+
+/// K_ai,bk += N_a,J A_iJkL N_b,L: each column (b, k) is the force of the stress A_iJkL N_b,L.
+fn add_tangent(gradients: &[Vector2<f64>], tangent: &Matrix4<f64>, element: &mut [f64]) {
+    let mut columns = element.chunks_exact_mut(2 * gradients.len());
+    for gradient in gradients {
+        for k in 0..2 {
+            let stress = tangent.column(k) * gradient.x + tangent.column(k + 2) * gradient.y;
+            let stress = Matrix2::new(stress[0], stress[2], stress[1], stress[3]);
+            add_force(gradients, &stress, columns.next().expect("two columns for each node"));
+        }
+    }
+}
+
+/// A_iJkL F_kL
+fn contract(tangent: &Matrix4<f64>, f: &Matrix2<f64>) -> Matrix2<f64> {
+    let stress =
+        tangent.column(0) * f.m11 + tangent.column(1) * f.m21 + tangent.column(2) * f.m12 + tangent.column(3) * f.m22;
+    Matrix2::new(stress[0], stress[2], stress[1], stress[3])
+}
+
+/// F⁻ᵀ
+fn inverse_transpose(f: &Matrix2<f64>, jacobian: f64) -> Matrix2<f64> {
+    Matrix2::new(f.m22, -f.m21, -f.m12, f.m11) / jacobian
+}
+
+fn positive_jacobian(deformation: &Matrix2<f64>) -> Result<f64, InvertedElement> {
+    let jacobian = deformation.determinant();
+    if jacobian > 0.0 && jacobian.is_finite() { Ok(jacobian) } else { Err(InvertedElement { jacobian }) }
+}
+
+/// Corner values of the (bi)linear function that fits values at the quadrature points best: corners × points.
+fn corner_fit(kind: ElementKind) -> DMatrix<f64> {
+    let linear = if kind.corners() == 3 { ElementKind::T3 } else { ElementKind::Q4 };
+    let points = kind.quadrature();
+    let values = points.iter().flat_map(|point| linear.values(point.at));
+    let interpolation = DMatrix::from_row_iterator(points.len(), kind.corners(), values);
+    interpolation.pseudo_inverse(1e-9).expect("1e-9 is not negative")
+}
