@@ -270,6 +270,32 @@ fn forces_balance_and_turn_with_the_element() {
     }
 }
 
+/// Σ_a f_a ⊗ x_a = ∫ σ dv over the current element, whatever the stress field.
+#[test]
+fn stresses_are_those_that_cause_the_forces() {
+    for (kind, f_bar) in VARIANTS {
+        let positions = distorted_element(kind);
+        let element = SolidElement::new(kind, f_bar, &positions).unwrap();
+        let u = wild(kind.nodes(), 0.04);
+        let x: Vec<_> = positions.iter().zip(&u).map(|(x, u)| x + u).collect();
+        for material in materials().skip(1) {
+            let mut force = vec![0.0; 2 * kind.nodes()];
+            element.force(&*material, &u, &mut force).unwrap();
+            let virial: Matrix2<f64> =
+                force.chunks(2).zip(&x).map(|(f, x)| Vector2::new(f[0], f[1]) * x.transpose()).sum();
+            let stresses = element.stresses(&*material, &u).unwrap();
+            let mut integral = Matrix2::zeros();
+            for (point, stress) in kind.quadrature().iter().zip(stresses) {
+                let derivatives = kind.derivatives(point.at).into_iter().map(Vector2::from);
+                let map: Matrix2<f64> = x.iter().zip(derivatives).map(|(x, d)| x * d.transpose()).sum();
+                let sigma = Matrix2::new(stress.xx, stress.xy, stress.xy, stress.yy);
+                integral += point.weight * map.determinant() * sigma;
+            }
+            assert!((virial - integral).amax() < 1e-14 * E, "{kind:?} f_bar {f_bar}: {virial} {integral}");
+        }
+    }
+}
+
 #[test]
 fn only_the_three_rigid_motions_are_free() {
     for (kind, f_bar) in VARIANTS {
