@@ -50,4 +50,3 @@ fn gradients(
         _ => Err(ElementError::Degenerate { jacobian }),
     }
 }
-pub mod pressure;

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, Matrix2, Matrix4, Vector2};
 
 use super::{ElementError, gradients};
-use crate::material::{CauchyStress, InvertedElement, Material, MaterialResponse};
+use crate::material::{CauchyStress, InvertedElement, Material, MaterialResponse, cofactor, positive_jacobian};
 use crate::shape::ElementKind;
 
 /// A solid element: what its reference geometry says at the quadrature points.
@@ -45,7 +45,7 @@ struct Centre<'a> {
     gradients: &'a [Vector2<f64>],
     jacobian: f64,
     /// F₀⁻ᵀ
-    inverse: Matrix2<f64>,
+    inverse_transpose: Matrix2<f64>,
 }
 
 impl SolidElement {
@@ -196,7 +196,7 @@ impl SolidElement {
         let Some(gradients) = &self.centre else { return Ok(None) };
         let deformation = deformation_gradient(gradients, u);
         let jacobian = positive_jacobian(&deformation)?;
-        Ok(Some(Centre { gradients, jacobian, inverse: inverse_transpose(&deformation, jacobian) }))
+        Ok(Some(Centre { gradients, jacobian, inverse_transpose: cofactor(&deformation) / jacobian }))
     }
 }
 
@@ -227,11 +227,11 @@ impl Centre<'_> {
         response: &MaterialResponse,
         tangent: &mut [f64],
     ) {
-        let inverse = inverse_transpose(deformation, deformation.determinant());
+        let inverse_transpose = cofactor(deformation) / deformation.determinant();
         let stress = 0.5 * volume * (contract(&response.tangent, deformation) - response.stress);
         let columns = tangent.chunks_exact_mut(4 * gradients.len());
         for ((columns, at_centre), here) in columns.zip(self.gradients).zip(gradients) {
-            let volume_change = self.inverse * at_centre - inverse * here;
+            let volume_change = self.inverse_transpose * at_centre - inverse_transpose * here;
             for (column, change) in columns.chunks_exact_mut(2 * gradients.len()).zip(&volume_change) {
                 add_force(gradients, &(*change * stress), column);
             }
@@ -270,16 +270,6 @@ fn contract(tangent: &Matrix4<f64>, f: &Matrix2<f64>) -> Matrix2<f64> {
     let stress =
         tangent.column(0) * f.m11 + tangent.column(1) * f.m21 + tangent.column(2) * f.m12 + tangent.column(3) * f.m22;
     Matrix2::new(stress[0], stress[2], stress[1], stress[3])
-}
-
-/// F⁻ᵀ
-fn inverse_transpose(f: &Matrix2<f64>, jacobian: f64) -> Matrix2<f64> {
-    Matrix2::new(f.m22, -f.m21, -f.m12, f.m11) / jacobian
-}
-
-fn positive_jacobian(deformation: &Matrix2<f64>) -> Result<f64, InvertedElement> {
-    let jacobian = deformation.determinant();
-    if jacobian > 0.0 && jacobian.is_finite() { Ok(jacobian) } else { Err(InvertedElement { jacobian }) }
 }
 
 /// Corner values of the (bi)linear function that fits values at the quadrature points best: corners × points.

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix2, Vector4};
 
-use super::{InvertedElement, MaterialResponse};
+use super::{InvertedElement, MaterialResponse, cofactor, positive_jacobian};
 
 /// The two invariants that an isotropic law sees in plane strain, and their derivatives.
 ///
@@ -38,10 +38,7 @@ pub(super) struct Energy {
 
 impl Invariants {
     pub(super) fn of(deformation: &Matrix2<f64>) -> Result<Self, InvertedElement> {
-        let jacobian = deformation.determinant();
-        if !(jacobian > 0.0 && jacobian.is_finite()) {
-            return Err(InvertedElement { jacobian });
-        }
+        let jacobian = positive_jacobian(deformation)?;
         let displacement_gradient = deformation - Matrix2::identity();
         let volume_strain = displacement_gradient.trace() + displacement_gradient.determinant();
         let ln_jacobian = if volume_strain.abs() < 0.5 { volume_strain.ln_1p() } else { jacobian.ln() };
@@ -75,9 +72,4 @@ impl Invariants {
         }
         MaterialResponse { stress, tangent, energy: w, stress_zz }
     }
-}
-
-/// cof F = J F⁻ᵀ
-fn cofactor(f: &Matrix2<f64>) -> Matrix2<f64> {
-    Matrix2::new(f.m22, -f.m21, -f.m12, f.m11)
 }

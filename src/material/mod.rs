@@ -74,6 +74,18 @@ pub struct InvertedElement {
     pub jacobian: f64,
 }
 
+/// J = det F, known to be positive and finite.
+pub(crate) fn positive_jacobian(deformation: &Matrix2<f64>) -> Result<f64, InvertedElement> {
+    let jacobian = deformation.determinant();
+    if jacobian > 0.0 && jacobian.is_finite() { Ok(jacobian) } else { Err(InvertedElement { jacobian }) }
+}
+
+/// cof F = J F⁻ᵀ = ∂J/∂F
+pub(crate) fn cofactor(deformation: &Matrix2<f64>) -> Matrix2<f64> {
+    let f = deformation;
+    Matrix2::new(f.m22, -f.m21, -f.m12, f.m11)
+}
+
 /// A bulk law without memory: P and ∂P/∂F at F (plane strain).
 pub trait Material: Debug + Send + Sync {
     /// ρ₀: mass per reference volume [M/L³]

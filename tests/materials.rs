@@ -1,0 +1,265 @@
+//! The bulk laws against their energies, closed forms, differences, and the constants they refuse.
+
+use fecontact::material::{InvertedElement, Material, MaterialParameters};
+use nalgebra::{Matrix2, Matrix4, Rotation2, Vector4};
+use serde_json::json;
+
+const MODELS: [&str; 4] = ["linear", "saint_venant_kirchhoff", "neo_hookean", "hencky"];
+const E: f64 = 2.0;
+const NU: f64 = 0.3;
+const LAMBDA: f64 = E * NU / ((1.0 + NU) * (1.0 - 2.0 * NU));
+const G: f64 = E / (2.0 * (1.0 + NU));
+
+fn material(model: &str) -> Box<dyn Material> {
+    let parameters: MaterialParameters = serde_json::from_value(json!({"model": model, "E": E, "nu": NU})).unwrap();
+    parameters.build().unwrap()
+}
+
+fn rotation(angle: f64) -> Matrix2<f64> {
+    Rotation2::new(angle).into_inner()
+}
+
+/// F = R(α) diag(λ₁, λ₂) R(β) over stretches from 0.5 to 2: equal, nearly equal and different ones.
+fn deformations() -> Vec<Matrix2<f64>> {
+    let pairs = [
+        (1.0, 1.0),
+        (1.0, 1.0 + 1e-10),
+        (1.0 + 1e-6, 1.0 - 1e-6),
+        (1.02, 0.99),
+        (0.7, 0.7),
+        (0.7, 0.7 + 1e-8),
+        (1.6, 1.6 * 1.1 - 1e-4),
+        (1.0, 1.1052),
+        (0.5, 2.0),
+        (2.0, 2.0),
+        (0.5, 0.6),
+        (1.3, 0.8),
+        (2.0, 1.7),
+    ];
+    let angles = [0.0, 0.4, 1.9, -2.8];
+    let turned =
+        |a: f64, b: f64| move |(s, t): (f64, f64)| rotation(a) * Matrix2::from_diagonal(&[s, t].into()) * rotation(b);
+    angles.iter().flat_map(|&a| angles.iter().flat_map(move |&b| pairs.map(turned(a, b)))).collect()
+}
+
+/// ∂(value)/∂F by central differences, column k + 2L for F_kL.
+fn by_difference<const N: usize>(f: &Matrix2<f64>, value: impl Fn(&Matrix2<f64>) -> [f64; N]) -> [[f64; 4]; N] {
+    let h = 1e-5;
+    let mut derivative = [[0.0; 4]; N];
+    for column in 0..4 {
+        let (mut hi, mut lo) = (*f, *f);
+        hi[column] += h;
+        lo[column] -= h;
+        for (row, (p, m)) in value(&hi).into_iter().zip(value(&lo)).enumerate() {
+            derivative[row][column] = (p - m) / (2.0 * h);
+        }
+    }
+    derivative
+}
+
+#[test]
+fn stress_is_the_derivative_of_the_energy() {
+    for model in MODELS {
+        let material = material(model);
+        for f in deformations() {
+            let [expected] = by_difference(&f, |f| [material.respond(f).unwrap().energy]);
+            let error =
+                Vector4::from_column_slice(material.respond(&f).unwrap().stress.as_slice()) - Vector4::from(expected);
+            assert!(error.amax() < 1e-8, "{model} at {f}: {error}");
+        }
+    }
+}
+
+#[test]
+fn tangent_is_the_derivative_of_the_stress() {
+    for model in MODELS {
+        let material = material(model);
+        for f in deformations() {
+            let rows: [[f64; 4]; 4] =
+                by_difference(&f, |f| material.respond(f).unwrap().stress.as_slice().try_into().unwrap());
+            let tangent = material.respond(&f).unwrap().tangent;
+            let error = tangent - Matrix4::from_fn(|i, j| rows[i][j]);
+            assert!(error.amax() < 2e-8, "{model} at {f}: {error}");
+            assert!((tangent - tangent.transpose()).amax() < 1e-13 * tangent.amax(), "{model}: not symmetric");
+        }
+    }
+}
+
+#[test]
+fn rotation_causes_no_stress() {
+    for model in &MODELS[1..] {
+        let material = material(model);
+        for step in -20..=20 {
+            let response = material.respond(&rotation(0.157 * f64::from(step))).unwrap();
+            assert!(response.stress.amax() < 2e-15 * E, "{model}: {}", response.stress);
+            assert!(response.stress_zz.abs() < 2e-15 * E);
+            assert!(response.energy.abs() < 1e-30 * E, "{model}: {}", response.energy);
+        }
+    }
+    let strained = material("linear").respond(&rotation(0.5)).unwrap();
+    assert!(strained.stress.amax() > 0.1 * E, "the linear law is for small rotations only");
+}
+
+#[test]
+fn stress_turns_with_the_body() {
+    let q = rotation(1.234);
+    for model in &MODELS[1..] {
+        let material = material(model);
+        for f in deformations() {
+            let (here, turned) = (material.respond(&f).unwrap(), material.respond(&(q * f)).unwrap());
+            let error = (turned.stress - q * here.stress).amax();
+            assert!(error < 1e-14 * (E + here.stress.amax()), "{model} at {f}: {error}");
+            assert!((turned.stress_zz - here.stress_zz).abs() < 1e-14 * (E + here.stress_zz.abs()));
+
+            let moment = here.stress * f.transpose();
+            assert!((moment - moment.transpose()).amax() < 1e-14 * (E + moment.amax()), "{model}: P Fᵀ not symmetric");
+        }
+    }
+}
+
+#[test]
+fn all_laws_are_linear_at_small_strain_to_the_last_digits() {
+    let h = Matrix2::new(0.3, 0.8, -0.4, -0.7);
+    let linear = material("linear");
+    for model in MODELS {
+        let material = material(model);
+        let at_rest = material.respond(&Matrix2::identity()).unwrap();
+        assert_eq!(at_rest.stress, Matrix2::zeros(), "{model}");
+        assert_eq!(at_rest.energy, 0.0);
+        let difference = at_rest.tangent - linear.respond(&Matrix2::identity()).unwrap().tangent;
+        assert!(difference.amax() < 1e-14 * E, "{model}: {difference}");
+        assert!((material.stiffness() - (LAMBDA + 2.0 * G)).abs() < 1e-14 * E);
+        for size in [1e-3, 1e-5, 1e-7] {
+            let f = Matrix2::identity() + size * h;
+            let (here, expected) = (material.respond(&f).unwrap(), linear.respond(&f).unwrap());
+            assert!((here.stress - expected.stress).amax() < 4.0 * E * size * size, "{model} at {size}");
+            assert!((here.stress_zz - expected.stress_zz).abs() < 4.0 * E * size * size);
+            assert!((here.energy - expected.energy).abs() < 4.0 * E * size.powi(3), "{model} at {size}");
+        }
+    }
+}
+
+/// F = diag(s, 1): (P₁₁, P₂₂, σ_zz, W), each worked out by hand from the law as it is published.
+#[test]
+fn uniaxial_strain_has_its_closed_form() {
+    for s in [0.5, 0.9, 1.0, 1.1, 2.0f64] {
+        let (m, ln, green) = (LAMBDA + 2.0 * G, s.ln(), 0.5 * (s * s - 1.0));
+        let closed = [
+            ("linear", [m * (s - 1.0), LAMBDA * (s - 1.0), LAMBDA * (s - 1.0), 0.5 * m * (s - 1.0).powi(2)]),
+            ("saint_venant_kirchhoff", [s * m * green, LAMBDA * green, LAMBDA * green / s, 0.5 * m * green * green]),
+            (
+                "neo_hookean",
+                [
+                    G * (s - 1.0 / s) + LAMBDA * ln / s,
+                    LAMBDA * ln,
+                    LAMBDA * ln / s,
+                    0.5 * G * (s * s - 1.0 - 2.0 * ln) + 0.5 * LAMBDA * ln * ln,
+                ],
+            ),
+            ("hencky", [m * ln / s, LAMBDA * ln, LAMBDA * ln / s, 0.5 * m * ln * ln]),
+        ];
+        for (model, expected) in closed {
+            let r = material(model).respond(&Matrix2::new(s, 0.0, 0.0, 1.0)).unwrap();
+            let actual = [r.stress.m11, r.stress.m22, r.stress_zz, r.energy];
+            for (a, e) in actual.into_iter().zip(expected) {
+                assert!((a - e).abs() < 1e-13 * E, "{model} at {s}: {actual:?} for {expected:?}");
+            }
+            assert!(r.stress.m12.abs() + r.stress.m21.abs() < 1e-15 * E);
+        }
+    }
+}
+
+/// Pure shear diag(s, 1/s): Hencky's Kirchhoff stress is 2 G ln s, whatever the size of s.
+#[test]
+fn hencky_is_linear_in_logarithmic_strain() {
+    for s in [1.0 + 1e-9, 1.01, 1.5, 4.0f64] {
+        let stress = material("hencky").cauchy_stress(&Matrix2::new(s, 0.0, 0.0, 1.0 / s)).unwrap();
+        let expected = 2.0 * G * s.ln();
+        assert!((stress.xx - expected).abs() < 1e-7 * expected, "{s}: {stress:?}");
+        assert!((stress.yy + expected).abs() < 1e-7 * expected);
+    }
+}
+
+#[test]
+fn cauchy_stress_has_its_pressure_and_von_mises() {
+    let stress = material("neo_hookean").cauchy_stress(&Matrix2::new(1.2, 0.3, 0.0, 0.9)).unwrap();
+    let (f, j): (_, f64) = (Matrix2::new(1.2, 0.3, 0.0, 0.9), 1.08);
+    let expected =
+        (G * (f * f.transpose() - Matrix2::identity()) + Matrix2::from_diagonal_element(LAMBDA * j.ln())) / j;
+    assert!((stress.xx - expected.m11).abs() < 1e-14 && (stress.yy - expected.m22).abs() < 1e-14);
+    assert!((stress.xy - expected.m12).abs() < 1e-14 && (stress.zz - LAMBDA * j.ln() / j).abs() < 1e-14);
+    let p = stress.pressure();
+    let deviator = [stress.xx + p, stress.yy + p, stress.zz + p];
+    let squares: f64 = deviator.iter().map(|s| s * s).sum::<f64>() + 2.0 * stress.xy * stress.xy;
+    assert!(deviator.iter().sum::<f64>().abs() < 1e-14);
+    assert!((stress.von_mises() - (1.5 * squares).sqrt()).abs() < 1e-14);
+}
+
+#[test]
+fn no_volume_is_refused() {
+    let nan = Matrix2::new(1.0, f64::NAN, 0.0, 1.0);
+    for model in &MODELS[1..] {
+        let material = material(model);
+        let mirrored = Matrix2::new(-1.0, 0.0, 0.0, 2.0);
+        assert_eq!(material.respond(&mirrored), Err(InvertedElement { jacobian: -2.0 }), "{model}");
+        assert!(material.respond(&Matrix2::zeros()).is_err(), "{model}");
+        assert!(material.respond(&nan).is_err(), "{model}");
+        assert!(material.respond(&Matrix2::new(f64::INFINITY, 0.0, 0.0, 1.0)).is_err(), "{model}");
+    }
+    assert!(material("linear").respond(&Matrix2::new(-1.0, 0.0, 0.0, 1.0)).is_ok());
+    assert!(material("linear").respond(&nan).is_err());
+}
+
+#[test]
+fn impossible_constants_are_named() {
+    for (constants, message) in [
+        (json!({"E": 0.0, "nu": 0.3}), "\"E\" is 0, but it must be positive and finite"),
+        (json!({"E": -5.0, "nu": 0.3}), "\"E\" is -5, but it must be positive and finite"),
+        (json!({"E": 1.0, "nu": -1.0}), "\"nu\" is -1, but it must be greater than -1 and less than 0.5"),
+        (
+            json!({"E": 1.0, "nu": 0.5}),
+            "\"nu\" is 0.5, but it must be less than 0.5: an incompressible material is not possible in this \
+             formulation; use 0.49 with \"element\": \"f_bar\"",
+        ),
+        (
+            json!({"E": 1.0, "nu": 0.2, "density": -1.0}),
+            "\"density\" is -1, but it must be zero or positive, and finite",
+        ),
+    ] {
+        for model in MODELS {
+            let mut case = constants.clone();
+            case["model"] = json!(model);
+            let parameters: MaterialParameters = serde_json::from_value(case).unwrap();
+            assert_eq!(parameters.build().unwrap_err().to_string(), message);
+        }
+    }
+    for (key, value) in [("E", f64::NAN), ("E", f64::INFINITY), ("nu", f64::NAN), ("density", f64::INFINITY)] {
+        let mut constants = fecontact::material::ElasticConstants { young: 1.0, poisson: 0.2, density: 1.0 };
+        match key {
+            "E" => constants.young = value,
+            "nu" => constants.poisson = value,
+            _ => constants.density = value,
+        }
+        assert_eq!(MaterialParameters::Hencky(constants).build().unwrap_err().name, key);
+    }
+}
+
+#[test]
+fn the_case_file_is_read_as_its_schema_says() {
+    let schema = serde_json::to_value(schemars::schema_for!(MaterialParameters)).unwrap();
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    for (case, good) in [
+        (json!({"model": "neo_hookean", "E": 1.0, "nu": 0.3, "density": 2.0}), true),
+        (json!({"model": "saint_venant_kirchhoff", "E": 1.0, "nu": 0.3}), true),
+        (json!({"model": "neohookean", "E": 1.0, "nu": 0.3}), false),
+        (json!({"model": "linear", "E": 1.0}), false),
+        (json!({"model": "linear", "E": 1.0, "nu": 0.3, "rho": 1.0}), false),
+        (json!({"E": 1.0, "nu": 0.3}), false),
+    ] {
+        assert_eq!(validator.is_valid(&case), good, "schema: {case}");
+        assert_eq!(serde_json::from_value::<MaterialParameters>(case.clone()).is_ok(), good, "reader: {case}");
+    }
+    let dense: MaterialParameters =
+        serde_json::from_value(json!({"model": "hencky", "E": 1.0, "nu": 0.3, "density": 2.5})).unwrap();
+    assert_eq!(dense.build().unwrap().density(), 2.5);
+}
