@@ -20,10 +20,15 @@ use super::{Mesh, MeshError};
 /// # Errors
 /// [`MeshError::InFile`] says what is wrong with which file and how to mend it.
 pub fn read(path: &Path) -> Result<Mesh, MeshError> {
-    load(path)
-        .and_then(parse)
-        .and_then(check::finish)
-        .map_err(|cause| MeshError::InFile { file: path.into(), cause: Box::new(cause) })
+    load(path).and_then(from_bytes).map_err(|cause| MeshError::InFile { file: path.into(), cause: Box::new(cause) })
+}
+
+/// The mesh in the content of a gmsh file, as [`read`] gives it.
+///
+/// # Errors
+/// [`MeshError`] says what is wrong.
+pub fn from_bytes(bytes: Vec<u8>) -> Result<Mesh, MeshError> {
+    parse(bytes).and_then(check::finish)
 }
 
 fn load(path: &Path) -> Result<Vec<u8>, MeshError> {
@@ -46,9 +51,12 @@ fn refusal(error: std::io::Error) -> MeshError {
 
 fn parse(mut bytes: Vec<u8>) -> Result<RawMesh, MeshError> {
     let encoding = encoding(&bytes)?;
-    check_counts(&bytes, encoding, "Entities")?;
-    let node_count = check_counts(&bytes, encoding, "Nodes")?;
-    let element_count = check_counts(&bytes, encoding, "Elements")?;
+    checked_count(&bytes, encoding, "Entities")?;
+    let node_count = checked_count(&bytes, encoding, "Nodes")?;
+    let element_count = checked_count(&bytes, encoding, "Elements")?;
+    if node_count == 0 || element_count == 0 {
+        return Err(MeshError::NoElements);
+    }
     let names = physical_names(&bytes)?;
     keep_node_tags(&mut bytes, encoding)?;
     let file = mshio::parse_msh_bytes(&bytes).map_err(|error| explain(&bytes, encoding, &error))?;
@@ -103,16 +111,21 @@ fn required_section(bytes: &[u8], name: &'static str) -> Result<Range<usize>, Me
     section(bytes, name)?.ok_or(MeshError::NoSection(name))
 }
 
-/// Refuses counts in a section's header that the file is too small for; the second of them, the number of nodes or
-/// elements, is returned. Tags in the header (the third and fourth number of nodes and elements) may be anything.
-fn check_counts(bytes: &[u8], encoding: Encoding, name: &'static str) -> Result<u64, MeshError> {
+/// The number of nodes or elements that a section's header claims (of curves, for the entities).
+///
+/// Refuses counts that the file is too small for. Only the counts are looked at: tags follow them in the header of the
+/// nodes and elements, and they may be anything.
+fn checked_count(bytes: &[u8], encoding: Encoding, name: &'static str) -> Result<u64, MeshError> {
     let content = &bytes[required_section(bytes, name)?];
     let counts = leading_numbers(content, encoding, if name == "Entities" { 4 } else { 2 });
-    // The shortest entry, an ASCII entity or element, is four bytes long.
-    match counts.iter().find(|&&count| count > bytes.len() as u64 / 4) {
-        Some(&claimed) => Err(MeshError::ImpossibleCount { section: name, claimed, bytes: bytes.len() }),
-        None => Ok(counts.get(1).copied().unwrap_or_default()),
+    // The shortest entry, an element in ASCII, is four bytes long.
+    if let Some(&claimed) = counts.iter().find(|&&count| count > bytes.len() as u64 / 4) {
+        return Err(MeshError::ImpossibleCount { section: name, claimed, bytes: bytes.len() });
     }
+    counts.get(1).copied().ok_or_else(|| MeshError::Malformed {
+        at: format!("${name}"),
+        what: "the section does not begin with its counts".into(),
+    })
 }
 
 /// Up to `count` unsigned numbers at the beginning; fewer if something else stands there.
@@ -139,8 +152,8 @@ fn keep_node_tags(bytes: &mut [u8], encoding: Encoding) -> Result<(), MeshError>
     let content = &mut bytes[range];
     match encoding {
         Encoding::Ascii => {
-            let words = content.split_mut(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
-            if let Some([first, rest @ ..]) = words.skip(1).next() {
+            let mut words = content.split_mut(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+            if let Some([first, rest @ ..]) = words.nth(1) {
                 *first = b'1';
                 rest.fill(b' ');
             }
