@@ -28,7 +28,14 @@
 //! - Sums run in a fixed order: the same input gives the same bits on any number of threads.
 //! - A module imports only from lower layers; `tests/layers.rs` holds the list.
 
+pub mod assembly;
+pub mod boundary;
+pub mod case;
+pub mod command;
+pub mod contact;
 pub mod element;
+pub mod error;
+pub mod floating;
 pub mod friction;
 pub mod linear;
 pub mod material;

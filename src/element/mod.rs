@@ -8,6 +8,7 @@ use thiserror::Error;
 use crate::shape::ElementKind;
 
 mod mass;
+pub mod pressure;
 mod solid;
 
 pub use mass::{consistent_mass, lumped_mass};
