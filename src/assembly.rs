@@ -85,12 +85,38 @@ impl ContactCounts {
     }
 }
 
-/// What the last linear solve of an increment started from at one contact point.
+/// What the linear solves of an increment started from at one contact point, and what is concluded.
 #[derive(Clone, Copy, Debug, Default)]
 struct Iterate {
-    /// plastic slip of the increment [L]
+    /// plastic slip of the increment at the last solve [L]
     slip: f64,
+    /// segments of the last two solves
+    segments: [Option<usize>; 2],
     presumed: Presume,
+    /// Segment the point stays on for the rest of the increment. Between two segments that meet in a ridge the closest
+    /// point jumps, and with it the normal: a point near the bisector would go to and fro without end, because the
+    /// forces on either side leave a jump in which no equilibrium lies.
+    held: Option<usize>,
+}
+
+impl Iterate {
+    /// Take note of the state at which the next linear solve starts.
+    fn note(&mut self, state: &ContactState, first: bool) {
+        let slip = state.friction.plastic_increment;
+        let reversed = self.slip * slip < 0.0 && self.presumed == Presume::Nothing;
+        self.presumed = match (first, reversed) {
+            (true, _) => Presume::Touch,
+            (false, true) => Presume::Stick,
+            (false, false) => Presume::Nothing,
+        };
+        self.slip = slip;
+        let segment = state.foot.map(|foot| foot.segment);
+        let [last, before] = self.segments;
+        if segment.is_some() && segment == before && segment != last {
+            self.held = segment;
+        }
+        self.segments = [segment, last];
+    }
 }
 
 /// Seconds spent by phase.
@@ -246,24 +272,21 @@ impl<'m> Assembler<'m> {
         for (iterates, states) in self.iterates.iter_mut().zip(&self.evaluation.contacts) {
             iterates.resize_with(states.len(), Iterate::default);
             for (iterate, state) in iterates.iter_mut().zip(states) {
-                let slip = state.friction.plastic_increment;
-                let reversed = iterate.slip * slip < 0.0 && iterate.presumed == Presume::Nothing;
-                iterate.presumed = match (first, reversed) {
-                    (true, _) => Presume::Touch,
-                    (false, true) => Presume::Stick,
-                    (false, false) => Presume::Nothing,
-                };
-                iterate.slip = slip;
+                iterate.note(state, first);
             }
         }
     }
 
-    /// Respond of all pairs; a tangent is taken with the presumptions, a residual that may be accepted without.
+    /// Trial states of all pairs; a tangent is taken with the presumptions, a residual that may be accepted without.
     fn contacts(&self, trial: Trial, presuming: bool, x: &[Vector2<f64>]) -> Result<Vec<PairResponse>, TrialFailure> {
         let pairs = self.model.contacts.iter().zip(&trial.old.contacts).enumerate();
         pairs
             .map(|(number, (pair, old))| {
-                let presumed = |k: usize| if presuming { self.iterates[number][k].presumed } else { Presume::Nothing };
+                let iterate = |k: usize| self.iterates.get(number).map_or(Iterate::default(), |pair| pair[k]);
+                let presumed = |k: usize| {
+                    let Iterate { presumed, held, .. } = iterate(k);
+                    (if presuming { presumed } else { Presume::Nothing }, held)
+                };
                 pair.respond(old, trial.dt, presumed, x).map_err(|(point, cause)| TrialFailure::Friction {
                     contact: pair.name.clone(),
                     point,
@@ -401,7 +424,8 @@ impl<'m> Assembler<'m> {
         }
         for load in &step.loads.pressures {
             for edge in &load.edges {
-                let middle = edge.iter().map(|&node| self.model.mesh.nodes[node]).sum::<Vector2<f64>>() / edge.len() as f64;
+                let middle =
+                    edge.iter().map(|&node| self.model.mesh.nodes[node]).sum::<Vector2<f64>>() / edge.len() as f64;
                 let contribution = follower_pressure(edge, load.amplitude.value(middle, time), x);
                 self.add(&contribution, force, tangent.as_deref_mut());
             }
@@ -461,9 +485,8 @@ impl<'m> Assembler<'m> {
             }
         }
         let force = &self.evaluation.force;
-        *residual = (0..u.len())
-            .map(|dof| blend(old.force[dof], force[dof], scheme.alpha_f) + weighted_inertia[dof])
-            .collect();
+        *residual =
+            (0..u.len()).map(|dof| blend(old.force[dof], force[dof], scheme.alpha_f) + weighted_inertia[dof]).collect();
         for (magnitude, inertia) in self.magnitudes.iter_mut().zip(&inertia) {
             *magnitude += inertia.abs();
         }

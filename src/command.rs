@@ -130,7 +130,8 @@ fn prepare(folder: &Path) -> Result<(), Failure> {
     std::fs::create_dir_all(folder).map_err(bad)?;
     for frames in ["solid", "contact"] {
         let Ok(entries) = std::fs::read_dir(folder.join(frames)) else { continue };
-        for path in entries.flatten().map(|entry| entry.path()).filter(|path| path.extension() == Some("vtu".as_ref())) {
+        for path in entries.flatten().map(|entry| entry.path()).filter(|path| path.extension() == Some("vtu".as_ref()))
+        {
             std::fs::remove_file(path).map_err(bad)?;
         }
     }

@@ -49,8 +49,8 @@ fn run_step(
     report: &mut RunReport,
 ) -> Result<(), Error> {
     let name = || step.name.clone();
-    *state = begin(model, step, state, work)
-        .map_err(|cause| Error::Unsolvable { step: name(), time: state.time, cause })?;
+    *state =
+        begin(model, step, state, work).map_err(|cause| Error::Unsolvable { step: name(), time: state.time, cause })?;
     let mut dt = step.increments.initial;
     let mut attempt = 1;
     while state.time < step.span.end {
@@ -58,7 +58,8 @@ fn run_step(
         let (iterations, outcome) = advance(model, step, state, dt, work);
         report.newton_iterations += iterations.len();
         report.factorizations += iterations.len();
-        let told = Attempt { step, number: attempt, old: state, dt, iterations: &iterations, accepted: outcome.as_ref().ok() };
+        let told =
+            Attempt { step, number: attempt, old: state, dt, iterations: &iterations, accepted: outcome.as_ref().ok() };
         let clock = Instant::now();
         for observer in observers.iter_mut() {
             observer.record(model, &told)?;
@@ -75,7 +76,13 @@ fn run_step(
                 return Err(Error::Unsolvable { step: name(), time: state.time, cause });
             }
             Err(cause) if CUT * dt < step.increments.min => {
-                return Err(Error::StepTooSmall { step: name(), time: state.time, dt, min: step.increments.min, cause });
+                return Err(Error::StepTooSmall {
+                    step: name(),
+                    time: state.time,
+                    dt,
+                    min: step.increments.min,
+                    cause,
+                });
             }
             Err(_) => {
                 report.cutbacks += 1;

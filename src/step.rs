@@ -145,8 +145,7 @@ fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> Sta
     }
     let external: Vec<f64> = evaluation.loads.iter().zip(&reaction).map(|(load, reaction)| load + reaction).collect();
     let increment: Vec<f64> = u.iter().zip(&old.displacement).map(|(new, old)| new - old).collect();
-    let work_done: f64 =
-        (0..u.len()).map(|dof| 0.5 * (old.external[dof] + external[dof]) * increment[dof]).sum();
+    let work_done: f64 = (0..u.len()).map(|dof| 0.5 * (old.external[dof] + external[dof]) * increment[dof]).sum();
     let x = model.positions(&u);
     let contact_elastic = contact_energy(model, &evaluation.contacts, &x);
     let dissipated = friction_dissipation(model, old, &evaluation.contacts, &x);

@@ -28,14 +28,16 @@ fn wavy() -> (Vec<Vec<usize>>, Positions) {
 
 /// A pair with α_n = 1000 and, unless given, α_t = 700.
 fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
-    let law = serde_json::from_str::<FrictionParameters>(law).expect("a law").build(700.0).expect("parameters in range");
+    let law =
+        serde_json::from_str::<FrictionParameters>(law).expect("a law").build(700.0).expect("parameters in range");
     ContactPair { name: "test".into(), points, master, alpha_n: 1000.0, law }
 }
 
 fn evaluate(pair: &ContactPair, k: usize, old: &ContactState, x: &Positions) -> (ContactState, Option<Contribution>) {
     let index = Index::new(&pair.master, x);
     let increment = Increment { dt: 0.3, presume: Presume::Nothing };
-    respond(pair, &pair.points[k], index.project(&pair.points[k], x), old, increment, x).expect("a finite increment")
+    respond(pair, &pair.points[k], index.project(&pair.points[k], None, x), old, increment, x)
+        .expect("a finite increment")
 }
 
 /// Forces of one point on the given nodes.
@@ -70,7 +72,7 @@ fn check_tangent(pair: &ContactPair, k: usize, old: &ContactState, x: &Positions
 
 /// A committed state whose foot lies `back` before the present one.
 fn pulled(pair: &ContactPair, k: usize, x: &Positions, back: f64, friction: FrictionState, gap: f64) -> ContactState {
-    let foot = Index::new(&pair.master, x).project(&pair.points[k], x).expect("the point faces the master").foot;
+    let foot = Index::new(&pair.master, x).project(&pair.points[k], None, x).expect("the point faces the master").foot;
     let at = foot.segment as f64 + foot.xi - back;
     let foot = match &pair.master {
         Master::Mesh(_) => MasterPoint { segment: at.floor() as usize, xi: at - at.floor() },
@@ -129,9 +131,10 @@ fn tangent_equals_differences_on_a_plane() {
 /// A valley: a point has gone through its bottom, and the closest point is the node there.
 #[test]
 fn tangent_equals_differences_at_a_concave_corner() {
-    let x = [(-1.0, 0.5), (0.0, 0.0), (1.0, 0.5), (-0.3, -0.101), (0.3, -0.1)].map(|(x, y)| Vector2::new(x, y)).to_vec();
+    let x =
+        [(-1.0, 0.5), (0.0, 0.0), (1.0, 0.5), (-0.3, -0.101), (0.3, -0.1)].map(|(x, y)| Vector2::new(x, y)).to_vec();
     let pair = pair(gauss_points(&[vec![3, 4]], 3), Master::Mesh(Surface::new(&[vec![1, 0], vec![2, 1]])), SUPER);
-    let foot = Index::new(&pair.master, &x).project(&pair.points[1], &x).expect("a foot");
+    let foot = Index::new(&pair.master, &x).project(&pair.points[1], None, &x).expect("a foot");
     assert!(foot.gap < 0.0 && foot.bound == Bound::Node(1));
     let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.law.initial_state() };
     let old = ContactState { friction: pressed, foot: Some(MasterPoint { segment: 0, xi: 0.9 }), gap: -0.05 };

@@ -11,7 +11,9 @@ use super::file::{
     Method, Place, StepInput,
 };
 use super::supported;
-use crate::boundary::{Amplitude, DeadLoad, Drive, Expression, FollowerPressure, Loads, Motion, Prescribed, Span, Spring};
+use crate::boundary::{
+    Amplitude, DeadLoad, Drive, Expression, FollowerPressure, Loads, Motion, Prescribed, Span, Spring,
+};
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::{Master, Plane, Surface, gauss_points, in_order, nodal_points};
 use crate::element::{SolidElement, consistent_mass};
@@ -62,7 +64,8 @@ fn build_on(case: &Case, mesh: Mesh) -> Checked<Model> {
     model.contacts = contacts(case, &model)?;
     model.steps = steps(case, &model)?;
     model.initial_velocity = initial_velocity(case, &model)?;
-    model.watch = case.watch.iter().enumerate().map(|(k, name)| watched(&model.mesh, k, name)).collect::<Checked<_>>()?;
+    model.watch =
+        case.watch.iter().enumerate().map(|(k, name)| watched(&model.mesh, k, name)).collect::<Checked<_>>()?;
     if case.output.every == 0 {
         return Err(Complaint::new("output.every", "is 0: must be at least 1"));
     }
@@ -90,7 +93,10 @@ fn bodies(case: &Case, mesh: &Mesh) -> Checked<(Vec<Body>, Vec<usize>)> {
         let place = format!("bodies.{name}");
         let group = mesh.group(name).map_err(|error| Complaint::new(&place, error))?;
         let Group::Elements(elements) = group else {
-            return Err(Complaint::new(place, format!("`{name}` is a group of {}, not of solid elements", kind(group))));
+            return Err(Complaint::new(
+                place,
+                format!("`{name}` is a group of {}, not of solid elements", kind(group)),
+            ));
         };
         let material = input.material.build().map_err(|error| Complaint::new(format!("{place}.material"), error))?;
         for &element in elements {
@@ -101,7 +107,10 @@ fn bodies(case: &Case, mesh: &Mesh) -> Checked<(Vec<Body>, Vec<usize>)> {
     match body_of_element.iter().position(|&body| body == usize::MAX) {
         Some(element) => {
             let name = mesh.body_of(element).unwrap_or("?");
-            Err(Complaint::new("bodies", format!("`{name}` of the mesh has no material: add \"{name}\": {{\"material\": …}}")))
+            Err(Complaint::new(
+                "bodies",
+                format!("`{name}` of the mesh has no material: add \"{name}\": {{\"material\": …}}"),
+            ))
         }
         None => Ok((bodies, body_of_element)),
     }
@@ -168,7 +177,10 @@ fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPa
         Method::NodeToSegment => nodal_points(&slave_edges),
         Method::GaussToSegment => {
             if !(2..=4).contains(&input.points) {
-                return Err(Complaint::new(format!("{place}.points"), format!("is {}: must be 2, 3 or 4", input.points)));
+                return Err(Complaint::new(
+                    format!("{place}.points"),
+                    format!("is {}: must be 2, 3 or 4", input.points),
+                ));
             }
             gauss_points(&slave_edges, input.points)
         }
@@ -181,7 +193,8 @@ fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPa
         }
         None => default_stiffness(model, slave),
     };
-    let law = input.friction.build(0.5 * alpha_n).map_err(|error| Complaint::new(format!("{place}.friction"), error))?;
+    let law =
+        input.friction.build(0.5 * alpha_n).map_err(|error| Complaint::new(format!("{place}.friction"), error))?;
     Ok(ContactPair { name: name.into(), points, master, alpha_n, law })
 }
 
@@ -218,7 +231,10 @@ fn initial_velocity(case: &Case, model: &Model) -> Checked<Vec<f64>> {
         let place = format!("initial_velocity.{name}");
         let Some(body) = model.bodies.iter().find(|body| body.name == *name) else {
             let known: Vec<&str> = model.bodies.iter().map(|body| body.name.as_str()).collect();
-            return Err(Complaint::new(place, format!("there is no body `{name}`; the bodies are {}", known.join(", "))));
+            return Err(Complaint::new(
+                place,
+                format!("there is no body `{name}`; the bodies are {}", known.join(", ")),
+            ));
         };
         for &node in &body.nodes {
             velocity[2 * node..2 * node + 2].copy_from_slice(value);
@@ -236,7 +252,8 @@ fn steps(case: &Case, model: &Model) -> Checked<Vec<Step>> {
     if case.steps.is_empty() {
         return Err(Complaint::new("steps", "is empty: give at least one step"));
     }
-    let mut builder = StepBuilder { model, start: 0.0, increments: None, supports: BTreeMap::new(), loads: BTreeMap::new() };
+    let mut builder =
+        StepBuilder { model, start: 0.0, increments: None, supports: BTreeMap::new(), loads: BTreeMap::new() };
     case.steps.iter().enumerate().map(|(k, step)| builder.next(&format!("steps[{k}]"), step)).collect()
 }
 
@@ -309,7 +326,10 @@ impl StepBuilder<'_> {
             for (key, component, given) in directions {
                 let Some(given) = given else { continue };
                 if matches!(support.rotation, Some(Some(_))) {
-                    return Err(Complaint::new(place, format!("gives rotation and {key}: a rotation prescribes both directions")));
+                    return Err(Complaint::new(
+                        place,
+                        format!("gives rotation and {key}: a rotation prescribes both directions"),
+                    ));
                 }
                 let drive = given.as_ref().map(|given| drive(given, &format!("{place}.{key}"))).transpose()?;
                 for &node in &nodes {
@@ -363,8 +383,17 @@ impl StepBuilder<'_> {
             self.pressure(place, input, pressure.as_ref(), span)?;
         }
         if let Some(traction) = &input.traction {
-            let shares = |place: &str| Ok(edge_shares(&self.model.mesh, edges(&self.model.mesh, &group_at(input, place)?, place)?));
-            self.dead(place, input, (LoadKind::Traction, "traction"), traction.as_ref(), shares(&format!("{place}.on"))?, span)?;
+            let shares = |place: &str| {
+                Ok(edge_shares(&self.model.mesh, edges(&self.model.mesh, &group_at(input, place)?, place)?))
+            };
+            self.dead(
+                place,
+                input,
+                (LoadKind::Traction, "traction"),
+                traction.as_ref(),
+                shares(&format!("{place}.on"))?,
+                span,
+            )?;
         }
         if let Some(gravity) = &input.gravity {
             let shares = self.body_shares(&group_at(input, place)?, &format!("{place}.on"))?;
@@ -415,7 +444,13 @@ impl StepBuilder<'_> {
         Ok(())
     }
 
-    fn spring(&mut self, place: &str, input: &LoadInput, given: Option<&super::file::SpringInput>, span: Span) -> Checked<()> {
+    fn spring(
+        &mut self,
+        place: &str,
+        input: &LoadInput,
+        given: Option<&super::file::SpringInput>,
+        span: Span,
+    ) -> Checked<()> {
         let nodes = nodes_at(&self.model.mesh, &input.on, &format!("{place}.on"))?;
         let key = (input.on.to_string(), LoadKind::Spring);
         let before = self.loads.remove(&key).unwrap_or_default();
@@ -443,7 +478,10 @@ impl StepBuilder<'_> {
     fn body_shares(&self, name: &str, place: &str) -> Checked<Vec<(usize, f64, Vector2<f64>)>> {
         let Some(body) = self.model.bodies.iter().find(|body| body.name == name) else {
             let known: Vec<&str> = self.model.bodies.iter().map(|body| body.name.as_str()).collect();
-            return Err(Complaint::new(place, format!("there is no body `{name}`; the bodies are {}", known.join(", "))));
+            return Err(Complaint::new(
+                place,
+                format!("there is no body `{name}`; the bodies are {}", known.join(", ")),
+            ));
         };
         if body.material.density() == 0.0 {
             let message = format!("gravity needs a mass: give bodies.{name}.material.density");
@@ -488,7 +526,9 @@ fn edge_shares(mesh: &Mesh, edges: &[Edge]) -> Vec<(usize, f64, Vector2<f64>)> {
         for (xi, weight) in shape::gauss(nodes.len()) {
             let values = shape::edge_values(nodes.len(), xi);
             let slopes = shape::edge_derivatives(nodes.len(), xi);
-            let sum = |weights: &[f64]| nodes.iter().zip(weights).map(|(&node, w)| mesh.nodes[node] * *w).sum::<Vector2<f64>>();
+            let sum = |weights: &[f64]| {
+                nodes.iter().zip(weights).map(|(&node, w)| mesh.nodes[node] * *w).sum::<Vector2<f64>>()
+            };
             let (position, stretch) = (sum(&values), sum(&slopes).norm());
             shares.extend(nodes.iter().zip(&values).map(|(&node, n)| (node, weight * n * stretch, position)));
         }

@@ -45,7 +45,10 @@ pub struct Case {
 
 /// A mesh file or a mesh in place.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(untagged, expecting = "expected the path of a mesh file, or a mesh {\"nodes\": …, \"elements\": …, \"edges\": …}")]
+#[serde(
+    untagged,
+    expecting = "expected the path of a mesh file, or a mesh {\"nodes\": …, \"elements\": …, \"edges\": …}"
+)]
 pub enum MeshSource {
     /// Path relative to the case file
     File(String),

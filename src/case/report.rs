@@ -48,7 +48,12 @@ fn write_report(out: &mut String, case: &Case, model: &Model) -> std::fmt::Resul
     Ok(())
 }
 
-fn write_contact(out: &mut String, pair: &crate::contact::pair::ContactPair, model: &Model, case: &Case) -> std::fmt::Result {
+fn write_contact(
+    out: &mut String,
+    pair: &crate::contact::pair::ContactPair,
+    model: &Model,
+    case: &Case,
+) -> std::fmt::Result {
     let master = match &pair.master {
         Master::Mesh(surface) => format!("{} segments", surface.segments.len()),
         Master::Plane(plane) => format!("a rigid plane with normal ({:.6}, {:.6})", plane.normal.x, plane.normal.y),

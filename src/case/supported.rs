@@ -59,7 +59,8 @@ fn free_motion(model: &Model, step: &Step, bodies: &[usize]) -> Option<String> {
     let nodes: Vec<usize> = bodies.iter().flat_map(|&body| model.bodies[body].nodes.iter().copied()).collect();
     let centre = nodes.iter().map(|&n| model.mesh.nodes[n]).sum::<Vector2<f64>>() / nodes.len() as f64;
     let radius = nodes.iter().fold(f64::MIN_POSITIVE, |r, &n| r.max((model.mesh.nodes[n] - centre).norm()));
-    let held = step.supports.iter().map(|support| support.dof).chain(step.loads.springs.iter().map(|spring| spring.dof));
+    let held =
+        step.supports.iter().map(|support| support.dof).chain(step.loads.springs.iter().map(|spring| spring.dof));
     let mut resistance = Matrix3::zeros();
     for dof in held {
         let node = dof / 2;

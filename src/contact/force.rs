@@ -64,7 +64,7 @@ pub struct Increment {
     pub presume: Presume,
 }
 
-/// What Newton's method presumes about a point, for the sake of convergence; an accepted state presumes nothing.
+/// What the next linear solve presumes about a point, for the sake of convergence; an accepted state presumes nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Presume {
     /// The laws answer as they are
@@ -144,9 +144,8 @@ fn contribution(k: &Kinematics, response: &FrictionResponse, alpha_n: f64) -> Co
     let along_normal = &dpressure - &k.drotation * q;
     let along_tangent = -(dq + &k.drotation * p);
     // δ(t ℓ), one row a component
-    let dforce = |i: usize| {
-        (&along_normal * k.normal[i] + &along_tangent * k.tangent[i]) * k.length + &k.dlength * traction[i]
-    };
+    let dforce =
+        |i: usize| (&along_normal * k.normal[i] + &along_tangent * k.tangent[i]) * k.length + &k.dlength * traction[i];
     let rows = [dforce(0), dforce(1)];
 
     let mut result = Contribution::zero(k.nodes.clone());

@@ -34,7 +34,7 @@ impl ContactPair {
     pub fn initial_states(&self, x: &[Vector2<f64>]) -> Vec<ContactState> {
         let index = Index::new(&self.master, x);
         let at_rest = |slave| {
-            let projection = index.project(slave, x);
+            let projection = index.project(slave, None, x);
             ContactState {
                 friction: self.law.initial_state(),
                 foot: projection.map(|p| p.foot),
@@ -44,8 +44,8 @@ impl ContactPair {
         self.points.iter().map(at_rest).collect()
     }
 
-    /// Every point's trial state and contribution at the positions `x`, each with its own presumption; pure, and the
-    /// same for any number of threads.
+    /// Every point's trial state and contribution at the positions `x`, each with its own presumption and, if it is
+    /// held on one, its segment; pure, and the same for any number of threads.
     ///
     /// # Errors
     /// The number of the first point whose friction law fails, and why.
@@ -53,13 +53,14 @@ impl ContactPair {
         &self,
         old: &[ContactState],
         dt: f64,
-        presumed: impl Fn(usize) -> Presume + Sync,
+        presumed: impl Fn(usize) -> (Presume, Option<usize>) + Sync,
         x: &[Vector2<f64>],
     ) -> Result<PairResponse, (usize, LawFailure)> {
         let index = Index::new(&self.master, x);
         let one = |(k, (slave, old)): (usize, (&SlavePoint, &ContactState))| {
-            let increment = Increment { dt, presume: presumed(k) };
-            respond(self, slave, index.project(slave, x), old, increment, x).map_err(|failure| (k, failure))
+            let (presume, held) = presumed(k);
+            respond(self, slave, index.project(slave, held, x), old, Increment { dt, presume }, x)
+                .map_err(|failure| (k, failure))
         };
         // The first failure by number, whatever thread met it.
         let all: Vec<_> = self.points.par_iter().zip(old).enumerate().map(one).collect();

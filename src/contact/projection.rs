@@ -51,12 +51,32 @@ pub fn on_segment(point: Vector2<f64>, surface: &Surface, segment: usize, x: &[V
     match neighbour {
         Some(neighbour) if !(0.0..=1.0).contains(&xi) => Some(at_node(point, surface, segment, neighbour, xi, x)),
         _ if !(-OVERHANG..=1.0 + OVERHANG).contains(&xi) => None,
-        _ => {
-            let normal = normal_of(along.normalize());
-            let gap = (point - x[a]).dot(&normal);
-            Some(Projection { foot: MasterPoint { segment, xi }, gap, normal, bound: Bound::Segment })
-        }
+        _ => Some(on_line(point, surface, segment, x)),
     }
+}
+
+/// Foot of `point` on the straight line through a segment.
+fn on_line(point: Vector2<f64>, surface: &Surface, segment: usize, x: &[Vector2<f64>]) -> Projection {
+    let [a, b] = surface.segments[segment];
+    let along = x[b] - x[a];
+    let xi = (point - x[a]).dot(&along) / along.norm_squared();
+    let normal = normal_of(along.normalize());
+    let gap = (point - x[a]).dot(&normal);
+    Projection { foot: MasterPoint { segment, xi }, gap, normal, bound: Bound::Segment }
+}
+
+/// A point held on a segment may pass its ends by this share of its length.
+const HELD: f64 = 0.1;
+
+/// Foot of `point` on a segment it is held on, as long as it stays near.
+pub fn on_held_segment(
+    point: Vector2<f64>,
+    surface: &Surface,
+    segment: usize,
+    x: &[Vector2<f64>],
+) -> Option<Projection> {
+    let projection = on_line(point, surface, segment, x);
+    (-HELD..=1.0 + HELD).contains(&projection.foot.xi).then_some(projection)
 }
 
 /// Closest point is the node between two segments: outside a convex corner or, penetrating, inside a concave one.

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use rstar::RTree;
 use rstar::primitives::{GeomWithData, Line};
 
-use super::projection::{Projection, normal_of, on_plane, on_segment};
+use super::projection::{Projection, normal_of, on_held_segment, on_plane, on_segment};
 use super::surface::{Master, Plane, SlavePoint, Surface};
 
 /// A slave and a segment face each other when the cosine between their outward normals is below this: the sides of a
@@ -35,12 +35,16 @@ impl<'a> Index<'a> {
         }
     }
 
-    /// The foot of a slave point, if a part of the master faces it, O(log N).
-    pub fn project(&self, slave: &SlavePoint, x: &[Vector2<f64>]) -> Option<Projection> {
+    /// The foot of a slave point, if a part of the master faces it, O(log N). `held` is a segment to stay on if the
+    /// point is still near it.
+    pub fn project(&self, slave: &SlavePoint, held: Option<usize>, x: &[Vector2<f64>]) -> Option<Projection> {
         let point = slave.at(x);
         match self {
             Self::Plane(plane) => Some(on_plane(point, plane)),
             Self::Mesh(surface, tree) => {
+                if let Some(held) = held.and_then(|segment| on_held_segment(point, surface, segment, x)) {
+                    return Some(held);
+                }
                 let outward = slave.outward(x).normalize();
                 let facing = |segment: usize| {
                     let [a, b] = surface.segments[segment];

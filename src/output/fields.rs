@@ -94,7 +94,8 @@ impl Collection {
     }
 
     fn list(&self) -> Result<(), Error> {
-        let mut text = String::from("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n");
+        let mut text =
+            String::from("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n");
         for (time, file) in &self.frames {
             text += &format!("<DataSet timestep=\"{time}\" part=\"0\" file=\"{file}\"/>\n");
         }
@@ -107,9 +108,12 @@ impl Collection {
 fn solid_frame(model: &Model, state: &State) -> UnstructuredGridPiece {
     let elements = &model.mesh.elements;
     let stresses = nodal_stresses(model, state);
-    let von_mises: Vec<f64> = stresses.iter().map(|&[xx, yy, zz, xy]| {
-        (0.5 * ((xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2)) + 3.0 * xy * xy).sqrt()
-    }).collect();
+    let von_mises: Vec<f64> = stresses
+        .iter()
+        .map(|&[xx, yy, zz, xy]| {
+            (0.5 * ((xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2)) + 3.0 * xy * xy).sqrt()
+        })
+        .collect();
     let pressure: Vec<f64> = stresses.iter().map(|[xx, yy, zz, _]| -(xx + yy + zz) / 3.0).collect();
     let body: Vec<i32> = model.body_of_element.iter().map(|&body| body as i32).collect();
     UnstructuredGridPiece {
@@ -136,8 +140,11 @@ fn solid_frame(model: &Model, state: &State) -> UnstructuredGridPiece {
 fn nodal_stresses(model: &Model, state: &State) -> Vec<[f64; 4]> {
     let mut sums = vec![([0.0; 4], 0.0); model.mesh.nodes.len()];
     for (e, element) in model.mesh.elements.iter().enumerate() {
-        let u: Vec<Vector2<f64>> =
-            element.nodes.iter().map(|&n| Vector2::new(state.displacement[2 * n], state.displacement[2 * n + 1])).collect();
+        let u: Vec<Vector2<f64>> = element
+            .nodes
+            .iter()
+            .map(|&n| Vector2::new(state.displacement[2 * n], state.displacement[2 * n + 1]))
+            .collect();
         let material = &*model.bodies[model.body_of_element[e]].material;
         for (stress, &node) in model.solids[e].nodal_stresses(material, &u).iter().flatten().zip(&element.nodes) {
             let (sum, count) = &mut sums[node];
@@ -168,8 +175,12 @@ fn contact_frame(model: &Model, state: &State) -> UnstructuredGridPiece {
         }
         first += pair.points.len();
     }
-    let all: Vec<(&ContactPair, &ContactState)> =
-        model.contacts.iter().zip(&state.contacts).flat_map(|(pair, states)| states.iter().map(move |s| (pair, s))).collect();
+    let all: Vec<(&ContactPair, &ContactState)> = model
+        .contacts
+        .iter()
+        .zip(&state.contacts)
+        .flat_map(|(pair, states)| states.iter().map(move |s| (pair, s)))
+        .collect();
     let scalar = |name: &str, value: &dyn Fn(&ContactPair, &ContactState) -> f64| {
         array(name, 1, all.iter().map(|(pair, state)| value(pair, state)).collect::<Vec<f64>>())
     };
