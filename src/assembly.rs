@@ -475,14 +475,8 @@ impl<'m> Assembler<'m> {
             for value in &mut tangent.values {
                 *value *= 1.0 - scheme.alpha_f;
             }
-            let mut k = 0;
-            for column in 0..mass.size() {
-                let c = if prescribed[column] { held } else { c };
-                for _ in 0..2 * mass.pattern.neighbours(column / 2).len() {
-                    tangent.values[k] += c * mass.values[k];
-                    k += 1;
-                }
-            }
+            let factors: Vec<f64> = prescribed.iter().map(|prescribed| if *prescribed { held } else { c }).collect();
+            tangent.add_columns(mass, &factors);
         }
         let force = &self.evaluation.force;
         *residual =

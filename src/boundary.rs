@@ -18,7 +18,7 @@ pub enum Drive {
 
 /// A parsed expression in x, y and t.
 #[derive(Clone, Debug)]
-pub struct Expression(FlatEx<f64>);
+pub struct Expression(Box<FlatEx<f64>>);
 
 impl Expression {
     /// Parse an expression.
@@ -29,7 +29,7 @@ impl Expression {
         let parsed = exmex::parse::<f64>(text).map_err(|error| error.to_string())?;
         match parsed.var_names().iter().find(|name| !["t", "x", "y"].contains(&name.as_str())) {
             Some(name) => Err(format!("`{name}` is not one of the variables x, y, t")),
-            None => Ok(Self(parsed)),
+            None => Ok(Self(Box::new(parsed))),
         }
     }
 

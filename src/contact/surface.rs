@@ -44,6 +44,12 @@ impl SlavePoint {
         self.length.iter().map(|share| share.factor * combine(&share.tangent, x).norm()).sum()
     }
 
+    /// Current length of the longest edge the point belongs to [L].
+    pub fn edge_length(&self, x: &[Vector2<f64>]) -> f64 {
+        // dx/dξ on an edge from −1 to 1 is half its length.
+        2.0 * self.length.iter().map(|share| combine(&share.tangent, x).norm()).fold(0.0, f64::max)
+    }
+
     /// Direction out of the slave body (not normalized): the edge direction, body on its left, turned by −90°.
     pub fn outward(&self, x: &[Vector2<f64>]) -> Vector2<f64> {
         let along: Vector2<f64> = self.length.iter().map(|share| combine(&share.tangent, x) * share.factor).sum();

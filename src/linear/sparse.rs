@@ -125,6 +125,17 @@ impl SparseMatrix {
         }
     }
 
+    /// Add another matrix on the same pattern, each column times its factor.
+    pub fn add_columns(&mut self, other: &SparseMatrix, factors: &[f64]) {
+        let mut k = 0;
+        for (column, factor) in factors.iter().enumerate() {
+            for _ in 0..2 * other.pattern.neighbours(column / 2).len() {
+                self.values[k] += factor * other.values[k];
+                k += 1;
+            }
+        }
+    }
+
     /// The diagonal.
     pub fn diagonal(&self) -> Vec<f64> {
         (0..self.size())

@@ -1,10 +1,17 @@
 //! Things a user should know about a result: deep penetration, and pressure past the law's uniqueness bound.
 
+use std::collections::BTreeSet;
+
+use nalgebra::Vector2;
+
 use super::{Attempt, Observer};
+use crate::contact::force::ContactState;
+use crate::contact::pair::ContactPair;
+use crate::contact::surface::SlavePoint;
 use crate::error::Error;
 use crate::model::Model;
 
-/// Penetration, as a share of the length a contact point stands for, that is worth a warning.
+/// Penetration, as a share of the slave's edge, that is worth a warning.
 const DEEP: f64 = 0.01;
 
 /// Collects warnings; each kind once a contact, where it is met first.
@@ -12,8 +19,13 @@ const DEEP: f64 = 0.01;
 pub struct Warnings {
     /// the warnings so far
     pub list: Vec<String>,
-    deep: Vec<usize>,
-    ambiguous: Vec<usize>,
+    given: BTreeSet<(usize, Kind)>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    DeepPenetration,
+    SeveralAnswers,
 }
 
 impl Observer for Warnings {
@@ -21,35 +33,39 @@ impl Observer for Warnings {
         let Some(state) = attempt.accepted else { return Ok(()) };
         let x = model.positions(&state.displacement);
         for (number, (pair, states)) in model.contacts.iter().zip(&state.contacts).enumerate() {
-            let place = |k: usize| {
-                let at = pair.points[k].at(&x);
-                format!("contact `{}` at ({:.6}, {:.6}), t = {}", pair.name, at.x, at.y, state.time)
-            };
-            if !self.deep.contains(&number) {
-                let depth = |k: &usize| -states[*k].gap / pair.points[*k].current_length(&x);
-                if let Some(k) = (0..states.len()).find(|k| states[*k].friction.pressure > 0.0 && depth(k) > DEEP) {
-                    self.deep.push(number);
-                    let share = 100.0 * depth(&k);
-                    self.list.push(format!(
-                        "{}: the penetration {:.3e} is {share:.1} % of the length of the contact point; raise alpha_n",
-                        place(k),
-                        -states[k].gap,
-                    ));
-                }
-            }
-            let Some(limit) = pair.law.uniqueness_limit() else { continue };
-            if !self.ambiguous.contains(&number) {
-                if let Some(k) = (0..states.len()).find(|k| states[*k].friction.pressure > limit) {
-                    self.ambiguous.push(number);
-                    self.list.push(format!(
-                        "{}: the pressure {:.6e} passes {limit:.6e}, above which weakening may outrun the contact \
-                         stiffness and the answer snaps; raise alpha_t",
-                        place(k),
-                        states[k].friction.pressure,
-                    ));
+            for (point, contact) in pair.points.iter().zip(states).filter(|(_, c)| c.friction.pressure > 0.0) {
+                for (kind, message) in concerns(pair, point, contact, &x) {
+                    if self.given.insert((number, kind)) {
+                        let at = point.at(&x);
+                        let place = format!("contact `{}` at ({:.6}, {:.6}), t = {}", pair.name, at.x, at.y, state.time);
+                        self.list.push(format!("{place}: {message}"));
+                    }
                 }
             }
         }
         Ok(())
     }
+}
+
+/// What is worth a warning at one closed point.
+fn concerns(
+    pair: &ContactPair,
+    point: &SlavePoint,
+    contact: &ContactState,
+    x: &[Vector2<f64>],
+) -> impl Iterator<Item = (Kind, String)> {
+    let (gap, pressure) = (contact.gap, contact.friction.pressure);
+    let share = -gap / point.edge_length(x);
+    let deep = (share > DEEP).then(|| {
+        let percent = 100.0 * share;
+        format!("the penetration {:.3e} is {percent:.1} % of the slave's edge; raise alpha_n", -gap)
+    });
+    let several = pair.law.uniqueness_limit().filter(|limit| pressure > *limit).map(|limit| {
+        format!(
+            "the pressure {pressure:.6e} passes {limit:.6e}, above which weakening may outrun the contact stiffness and \
+             the answer snaps; raise alpha_t"
+        )
+    });
+    let deep = deep.map(|message| (Kind::DeepPenetration, message));
+    deep.into_iter().chain(several.map(|message| (Kind::SeveralAnswers, message)))
 }
