@@ -14,6 +14,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, Vector2};
 use rayon::prelude::*;
 
+use crate::configuration::Configuration;
 use crate::contact::force::{ContactState, Presume, Status};
 use crate::contact::pair::PairResponse;
 use crate::contact::surface::Master;
@@ -139,8 +140,6 @@ pub struct Assembler<'m> {
     mass: Option<SparseMatrix>,
     /// w of prescribed dofs [F/L]
     weight: f64,
-    /// Largest distance in the model: scale of round-off [L]
-    size: f64,
     /// Sum of the forces' magnitudes at each dof [F]
     magnitudes: Vec<f64>,
     /// One entry a contact point, empty before the first linear solve of an increment
@@ -172,7 +171,6 @@ impl<'m> Assembler<'m> {
             block_starts,
             mass: None,
             weight: stiffness.chain(springs).fold(f64::MIN_POSITIVE, f64::max),
-            size: model.mesh.nodes.iter().fold(0.0, |size, x| size.max(x.norm())),
             magnitudes: vec![0.0; model.dofs()],
             iterates: Vec::new(),
             evaluation: Evaluation::default(),
@@ -221,7 +219,7 @@ impl<'m> Assembler<'m> {
         request: Request,
         system: &mut System,
     ) -> Result<(), TrialFailure> {
-        let x = self.model.positions(u);
+        let x = self.model.configuration(u);
         let clock = std::time::Instant::now();
         let tangent = request == Request::Tangent;
         if tangent {
@@ -278,7 +276,7 @@ impl<'m> Assembler<'m> {
     }
 
     /// Trial states of all pairs; a tangent is taken with the presumptions, a residual that may be accepted without.
-    fn contacts(&self, trial: Trial, presuming: bool, x: &[Vector2<f64>]) -> Result<Vec<PairResponse>, TrialFailure> {
+    fn contacts(&self, trial: Trial, presuming: bool, x: &Configuration) -> Result<Vec<PairResponse>, TrialFailure> {
         let pairs = self.model.contacts.iter().zip(&trial.old.contacts).enumerate();
         pairs
             .map(|(number, (pair, old))| {
@@ -410,7 +408,7 @@ impl<'m> Assembler<'m> {
         &mut self,
         trial: Trial,
         u: &[f64],
-        x: &[Vector2<f64>],
+        x: &Configuration,
         force: &mut [f64],
         mut tangent: Option<&mut SparseMatrix>,
     ) -> Result<Vec<f64>, TrialFailure> {
@@ -525,13 +523,12 @@ impl<'m> Assembler<'m> {
     }
 
     /// Norm of the forces at work, and of the residual that round-off in the positions alone can leave.
-    fn measure(&self, system: &mut System, x: &[Vector2<f64>]) {
+    fn measure(&self, system: &mut System, x: &Configuration) {
         system.forces = crate::linear::norm(&self.magnitudes);
-        let extent = x.iter().fold(self.size, |size, x| size.max(x.norm()));
-        let solids = self.weight.powi(2) * x.len() as f64;
+        let solids = self.weight.powi(2) * self.model.mesh.nodes.len() as f64;
         let points = self.model.contacts.iter().flat_map(|pair| pair.points.iter().map(move |point| (pair, point)));
         let contacts: f64 = points.map(|(pair, point)| (pair.alpha_n * point.current_length(x)).powi(2)).sum();
-        system.round_off = f64::EPSILON * extent * (solids + contacts).sqrt();
+        system.round_off = f64::EPSILON * x.extent() * (solids + contacts).sqrt();
     }
 
     /// The consistent mass matrix on the current pattern.

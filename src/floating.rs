@@ -5,6 +5,7 @@
 
 use nalgebra::{DMatrix, DVector, Vector2};
 
+use crate::configuration::Configuration;
 use crate::linear::SparseMatrix;
 use crate::model::Model;
 
@@ -15,8 +16,8 @@ const MOTIONS: [&str; 3] = ["along x", "along y", "in rotation"];
 
 /// The first motion that the tangent at `u` does not resist, in words.
 pub fn null_motion(model: &Model, u: &[f64], tangent: &SparseMatrix) -> Option<String> {
-    let x = model.positions(u);
-    let modes: Vec<Vec<f64>> = model.bodies.iter().flat_map(|body| rigid_motions(&body.nodes, &x)).collect();
+    let x = model.configuration(u);
+    let modes: Vec<Vec<f64>> = model.bodies.iter().flat_map(|body| rigid_motions(&body.nodes, &x, u.len())).collect();
     let diagonal = tangent.diagonal();
     let scales: Vec<f64> =
         modes.iter().map(|mode| mode.iter().zip(&diagonal).map(|(m, d)| m * m * d.abs()).sum::<f64>().sqrt()).collect();
@@ -34,12 +35,12 @@ pub fn null_motion(model: &Model, u: &[f64], tangent: &SparseMatrix) -> Option<S
 }
 
 /// Unit motions of a set of nodes along x, along y, and about their centre.
-fn rigid_motions(nodes: &[usize], x: &[Vector2<f64>]) -> [Vec<f64>; 3] {
-    let centre = nodes.iter().map(|&node| x[node]).sum::<Vector2<f64>>() / nodes.len().max(1) as f64;
-    let radius = nodes.iter().fold(f64::MIN_POSITIVE, |r, &node| r.max((x[node] - centre).norm()));
-    let mut modes = [0, 1, 2].map(|_| vec![0.0; 2 * x.len()]);
+fn rigid_motions(nodes: &[usize], x: &Configuration, dofs: usize) -> [Vec<f64>; 3] {
+    let centre = nodes.iter().map(|&node| x.at(node)).sum::<Vector2<f64>>() / nodes.len().max(1) as f64;
+    let radius = nodes.iter().fold(f64::MIN_POSITIVE, |r, &node| r.max((x.at(node) - centre).norm()));
+    let mut modes = [0, 1, 2].map(|_| vec![0.0; dofs]);
     for &node in nodes {
-        let arm = (x[node] - centre) / radius;
+        let arm = (x.at(node) - centre) / radius;
         modes[0][2 * node] = 1.0;
         modes[1][2 * node + 1] = 1.0;
         modes[2][2 * node] = -arm.y;

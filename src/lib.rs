@@ -32,6 +32,7 @@ pub mod assembly;
 pub mod boundary;
 pub mod case;
 pub mod command;
+pub mod configuration;
 pub mod contact;
 pub mod element;
 pub mod error;

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, Vector2};
 
 use crate::boundary::{Loads, Prescribed, Span};
+use crate::configuration::Configuration;
 use crate::contact::pair::ContactPair;
 use crate::element::{SolidElement, consistent_mass};
 use crate::material::Material;
@@ -94,10 +95,9 @@ impl Model {
         2 * self.mesh.nodes.len()
     }
 
-    /// Current positions x = X + u.
-    pub fn positions(&self, displacement: &[f64]) -> Vec<Vector2<f64>> {
-        let moved = self.mesh.nodes.iter().zip(displacement.chunks_exact(2));
-        moved.map(|(position, u)| position + Vector2::new(u[0], u[1])).collect()
+    /// The configuration x = X + u.
+    pub fn configuration(&self, displacement: &[f64]) -> Configuration<'_> {
+        Configuration::new(&self.mesh.nodes, displacement)
     }
 
     /// Consistent mass matrix of an element, the same for both directions [M].
@@ -121,7 +121,11 @@ impl Model {
             force: zero.clone(),
             external: zero.clone(),
             reaction: zero.clone(),
-            contacts: self.contacts.iter().map(|pair| pair.initial_states(&self.mesh.nodes)).collect(),
+            contacts: self
+                .contacts
+                .iter()
+                .map(|pair| pair.initial_states(&Configuration::undeformed(&self.mesh.nodes)))
+                .collect(),
             last_increment: None,
             step_start: StepStart { displacement: zero.clone(), reaction: zero },
             energy: Energy::default(),

@@ -1,8 +1,7 @@
 //! One increment: old state → new state.
 
-use nalgebra::Vector2;
-
 use crate::assembly::{Assembler, ContactCounts, Trial, prescribed_dofs};
+use crate::configuration::Configuration;
 use crate::contact::force::ContactState;
 use crate::error::StepFailure;
 use crate::floating::null_motion;
@@ -56,7 +55,8 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
     }
     if state.increment == 0 {
         state.energy.kinetic = kinetic_energy(step, &state, work);
-        state.energy.contact_elastic = contact_energy(model, &state.contacts, &model.positions(&state.displacement));
+        state.energy.contact_elastic =
+            contact_energy(model, &state.contacts, &model.configuration(&state.displacement));
         state.energy.initial = state.energy.kinetic + state.energy.contact_elastic;
     }
     Ok(state)
@@ -146,7 +146,7 @@ fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> Sta
     let external: Vec<f64> = evaluation.loads.iter().zip(&reaction).map(|(load, reaction)| load + reaction).collect();
     let increment: Vec<f64> = u.iter().zip(&old.displacement).map(|(new, old)| new - old).collect();
     let work_done: f64 = (0..u.len()).map(|dof| 0.5 * (old.external[dof] + external[dof]) * increment[dof]).sum();
-    let x = model.positions(&u);
+    let x = model.configuration(&u);
     let contact_elastic = contact_energy(model, &evaluation.contacts, &x);
     let dissipated = friction_dissipation(model, old, &evaluation.contacts, &x);
     let mut state = State {
@@ -180,8 +180,8 @@ fn kinetic_energy(step: &Step, state: &State, work: &mut Workspace) -> f64 {
     0.5 * momentum.iter().zip(&state.velocity).map(|(p, v)| p * v).sum::<f64>()
 }
 
-/// ∫ (α_n g²/2 + q²/(2 α_t)) ds of the closed points at the positions `x`.
-fn contact_energy(model: &Model, contacts: &[Vec<ContactState>], x: &[Vector2<f64>]) -> f64 {
+/// ∫ (α_n g²/2 + q²/(2 α_t)) ds of the closed points in the configuration `x`.
+fn contact_energy(model: &Model, contacts: &[Vec<ContactState>], x: &Configuration) -> f64 {
     let mut energy = 0.0;
     for (pair, states) in model.contacts.iter().zip(contacts) {
         for (point, ContactState { friction, .. }) in pair.points.iter().zip(states) {
@@ -195,7 +195,7 @@ fn contact_energy(model: &Model, contacts: &[Vec<ContactState>], x: &[Vector2<f6
 }
 
 /// What friction dissipated from `old` to `new`.
-fn friction_dissipation(model: &Model, old: &State, new: &[Vec<ContactState>], x: &[Vector2<f64>]) -> f64 {
+fn friction_dissipation(model: &Model, old: &State, new: &[Vec<ContactState>], x: &Configuration) -> f64 {
     let mut dissipated = 0.0;
     for ((pair, new), old) in model.contacts.iter().zip(new).zip(&old.contacts) {
         for ((point, new), old) in pair.points.iter().zip(new).zip(old) {

@@ -1,5 +1,6 @@
 //! Contact: exact tangents, feet at corners and past ends.
 
+use fecontact::configuration::Configuration;
 use fecontact::contact::force::{ContactState, Increment, Presume, Status, respond};
 use fecontact::contact::pair::ContactPair;
 use fecontact::contact::projection::Bound;
@@ -34,6 +35,7 @@ fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
 }
 
 fn evaluate(pair: &ContactPair, k: usize, old: &ContactState, x: &Positions) -> (ContactState, Option<Contribution>) {
+    let x = &Configuration::undeformed(x);
     let index = Index::new(&pair.master, x);
     let increment = Increment { dt: 0.3, presume: Presume::Nothing };
     respond(pair, &pair.points[k], index.project(&pair.points[k], None, x), old, increment, x)
@@ -72,6 +74,7 @@ fn check_tangent(pair: &ContactPair, k: usize, old: &ContactState, x: &Positions
 
 /// A committed state whose foot lies `back` before the present one.
 fn pulled(pair: &ContactPair, k: usize, x: &Positions, back: f64, friction: FrictionState, gap: f64) -> ContactState {
+    let x = &Configuration::undeformed(x);
     let foot = Index::new(&pair.master, x).project(&pair.points[k], None, x).expect("the point faces the master").foot;
     let at = foot.segment as f64 + foot.xi - back;
     let foot = match &pair.master {
@@ -134,7 +137,8 @@ fn tangent_equals_differences_at_a_concave_corner() {
     let x =
         [(-1.0, 0.5), (0.0, 0.0), (1.0, 0.5), (-0.3, -0.101), (0.3, -0.1)].map(|(x, y)| Vector2::new(x, y)).to_vec();
     let pair = pair(gauss_points(&[vec![3, 4]], 3), Master::Mesh(Surface::new(&[vec![1, 0], vec![2, 1]])), SUPER);
-    let foot = Index::new(&pair.master, &x).project(&pair.points[1], None, &x).expect("a foot");
+    let at = &Configuration::undeformed(&x);
+    let foot = Index::new(&pair.master, at).project(&pair.points[1], None, at).expect("a foot");
     assert!(foot.gap < 0.0 && foot.bound == Bound::Node(1));
     let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.law.initial_state() };
     let old = ContactState { friction: pressed, foot: Some(MasterPoint { segment: 0, xi: 0.9 }), gap: -0.05 };
@@ -148,7 +152,7 @@ fn open_points_add_nothing() {
         slave.y += 1.0;
     }
     let pair = pair(gauss_points(&[vec![6, 7], vec![7, 8]], 2), Master::Mesh(Surface::new(&edges)), SUPER);
-    let states = pair.initial_states(&x);
+    let states = pair.initial_states(&Configuration::undeformed(&x));
     for (k, old) in states.iter().enumerate() {
         let (state, contribution) = evaluate(&pair, k, old, &x);
         assert!(contribution.is_none() && state.status() == Status::Open && state.gap > 0.5);

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::file::Case;
+use crate::configuration::Configuration;
 use crate::contact::surface::Master;
 use crate::model::Model;
 
@@ -71,7 +72,7 @@ fn write_contact(
     if let Some(limit) = pair.law.uniqueness_limit() {
         writeln!(out, "  one answer as long as the pressure stays below {limit:.6e}")?;
     }
-    let states = pair.initial_states(&model.mesh.nodes);
+    let states = pair.initial_states(&Configuration::undeformed(&model.mesh.nodes));
     let gaps: Vec<f64> = states.iter().filter(|state| state.foot.is_some()).map(|state| state.gap).collect();
     let free = states.len() - gaps.len();
     match gaps.iter().copied().reduce(f64::min).zip(gaps.iter().copied().reduce(f64::max)) {

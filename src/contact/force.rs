@@ -8,13 +8,11 @@
 //!
 //! In an increment that starts open only the slip after touch counts: Δu_t g₁/(g₁ − g₀).
 
-use nalgebra::Vector2;
-use serde::{Deserialize, Serialize};
-
 use super::kinematics::{Kinematics, kinematics};
 use super::pair::ContactPair;
 use super::projection::Projection;
 use super::surface::{MasterPoint, SlavePoint};
+use crate::configuration::Configuration;
 use crate::friction::{FrictionResponse, FrictionState, LawFailure, Sliding};
 use crate::system::Contribution;
 
@@ -88,7 +86,7 @@ pub fn respond(
     projection: Option<Projection>,
     old: &ContactState,
     increment: Increment,
-    x: &[Vector2<f64>],
+    x: &Configuration,
 ) -> Result<(ContactState, Option<Contribution>), LawFailure> {
     let closed = projection.filter(|p| p.gap < 0.0 || touches(slave, p, old, increment, x));
     let Some(projection) = closed else {
@@ -119,7 +117,7 @@ fn touches(
     projection: &Projection,
     old: &ContactState,
     increment: Increment,
-    x: &[Vector2<f64>],
+    x: &Configuration,
 ) -> bool {
     let zero = TOUCH * slave.current_length(x);
     increment.presume == Presume::Touch && old.foot.is_some() && old.gap.abs() <= zero && projection.gap <= zero

@@ -14,7 +14,8 @@
 use nalgebra::{DVector, Vector2};
 
 use super::projection::{Bound, Projection, tangent_of};
-use super::surface::{Master, MasterPoint, SlavePoint, Surface, combine};
+use super::surface::{Master, MasterPoint, SlavePoint, Surface};
+use crate::configuration::Configuration;
 
 /// Kinematics of one contact point and the variations with respect to its nodes' displacements.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,7 +50,7 @@ pub fn kinematics(
     master: &Master,
     projection: &Projection,
     from: Option<MasterPoint>,
-    x: &[Vector2<f64>],
+    x: &Configuration,
 ) -> Kinematics {
     match master {
         Master::Plane(_) => on_plane(slave, projection, from, x),
@@ -57,7 +58,7 @@ pub fn kinematics(
     }
 }
 
-fn on_plane(slave: &SlavePoint, projection: &Projection, from: Option<MasterPoint>, x: &[Vector2<f64>]) -> Kinematics {
+fn on_plane(slave: &SlavePoint, projection: &Projection, from: Option<MasterPoint>, x: &Configuration) -> Kinematics {
     let mut k = Kinematics::of_slave(slave, projection.normal, &[], x);
     let (n, s) = (k.normal, k.tangent);
     k.vary(&slave.position, n, |k| &mut k.dgap);
@@ -73,7 +74,7 @@ fn on_surface(
     surface: &Surface,
     projection: &Projection,
     from: Option<MasterPoint>,
-    x: &[Vector2<f64>],
+    x: &Configuration,
 ) -> Kinematics {
     let MasterPoint { segment, xi } = projection.foot;
     let path = from.and_then(|from| surface.path(from, projection.foot)).unwrap_or_default();
@@ -92,7 +93,7 @@ fn on_surface(
     }
     k.vary(&relative, n, |k| &mut k.dgap);
 
-    let along = x[b] - x[a];
+    let along = x.between(a, b);
     let length = along.norm();
     match projection.bound {
         Bound::Node(_) if gap != 0.0 => k.vary(&relative, -s / gap, |k| &mut k.drotation),
@@ -112,7 +113,7 @@ fn on_surface(
     }
     for (j, share) in path {
         let [a, b] = surface.segments[j];
-        let along = x[b] - x[a];
+        let along = x.between(a, b);
         let length = along.norm();
         k.slip += share * length;
         k.vary(&[(a, -1.0), (b, 1.0)], along * (share / length), |k| &mut k.dslip);
@@ -125,7 +126,7 @@ fn on_surface(
 
 impl Kinematics {
     /// The slave's part: its nodes, their weights, its length; everything else zero.
-    fn of_slave(slave: &SlavePoint, normal: Vector2<f64>, masters: &[usize], x: &[Vector2<f64>]) -> Self {
+    fn of_slave(slave: &SlavePoint, normal: Vector2<f64>, masters: &[usize], x: &Configuration) -> Self {
         let shares = slave.length.iter().flat_map(|share| &share.tangent);
         let mut nodes: Vec<usize> = Vec::new();
         for node in slave.position.iter().chain(shares).map(|&(node, _)| node).chain(masters.iter().copied()) {
@@ -152,7 +153,7 @@ impl Kinematics {
             k.relative[at] += w;
         }
         for share in &slave.length {
-            let along = combine(&share.tangent, x);
+            let along = x.combine(&share.tangent);
             k.vary(&share.tangent, along * (share.factor / along.norm()), |k| &mut k.dlength);
         }
         k

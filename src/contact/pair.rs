@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use super::force::{ContactState, Increment, Presume, respond};
 use super::search::Index;
 use super::surface::{Master, SlavePoint};
+use crate::configuration::Configuration;
 use crate::friction::{FrictionLaw, FrictionState, LawFailure};
 use crate::system::Contribution;
 
@@ -30,8 +30,8 @@ pub struct ContactPair {
 pub type PairResponse = Vec<(ContactState, Option<Contribution>)>;
 
 impl ContactPair {
-    /// States at the start of a run: each point projected at the reference positions, friction at rest.
-    pub fn initial_states(&self, x: &[Vector2<f64>]) -> Vec<ContactState> {
+    /// States at the start of a run: each point projected in the configuration `x`, friction at rest.
+    pub fn initial_states(&self, x: &Configuration) -> Vec<ContactState> {
         let index = Index::new(&self.master, x);
         let at_rest = |slave| {
             let projection = index.project(slave, None, x);
@@ -44,7 +44,7 @@ impl ContactPair {
         self.points.iter().map(at_rest).collect()
     }
 
-    /// Every point's trial state and contribution at the positions `x`, each with its own presumption and, if it is
+    /// Every point's trial state and contribution in the configuration `x`, each with its own presumption and, if it is
     /// held on one, its segment; pure, and the same for any number of threads.
     ///
     /// # Errors
@@ -54,7 +54,7 @@ impl ContactPair {
         old: &[ContactState],
         dt: f64,
         presumed: impl Fn(usize) -> (Presume, Option<usize>) + Sync,
-        x: &[Vector2<f64>],
+        x: &Configuration,
     ) -> Result<PairResponse, (usize, LawFailure)> {
         let index = Index::new(&self.master, x);
         let one = |(k, (slave, old)): (usize, (&SlavePoint, &ContactState))| {

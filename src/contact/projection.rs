@@ -2,7 +2,8 @@
 
 use nalgebra::Vector2;
 
-use super::surface::{MasterPoint, Plane, Surface};
+use super::surface::{MasterPoint, Plane, SlavePoint, Surface};
+use crate::configuration::Configuration;
 
 /// Where a slave point meets the master.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,60 +43,55 @@ pub fn normal_of(tangent: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-tangent.y, tangent.x)
 }
 
-/// Foot of `point` on one segment at the current nodal positions `x`; `None` past the end of the surface.
-pub fn on_segment(point: Vector2<f64>, surface: &Surface, segment: usize, x: &[Vector2<f64>]) -> Option<Projection> {
+/// Foot of a slave point on one segment in the configuration `x`; `None` past the end of the surface.
+pub fn on_segment(slave: &SlavePoint, surface: &Surface, segment: usize, x: &Configuration) -> Option<Projection> {
     let [a, b] = surface.segments[segment];
-    let along = x[b] - x[a];
-    let xi = (point - x[a]).dot(&along) / along.norm_squared();
+    let along = x.between(a, b);
+    let xi = slave.offset(a, x).dot(&along) / along.norm_squared();
     let neighbour = if xi < 0.0 { surface.previous(segment) } else { surface.next(segment) };
     match neighbour {
-        Some(neighbour) if !(0.0..=1.0).contains(&xi) => Some(at_node(point, surface, segment, neighbour, xi, x)),
+        Some(neighbour) if !(0.0..=1.0).contains(&xi) => Some(at_node(slave, surface, segment, neighbour, xi, x)),
         _ if !(-OVERHANG..=1.0 + OVERHANG).contains(&xi) => None,
-        _ => Some(on_line(point, surface, segment, x)),
+        _ => Some(on_line(slave, surface, segment, x)),
     }
 }
 
-/// Foot of `point` on the straight line through a segment.
-fn on_line(point: Vector2<f64>, surface: &Surface, segment: usize, x: &[Vector2<f64>]) -> Projection {
+/// Foot of a slave point on the straight line through a segment.
+fn on_line(slave: &SlavePoint, surface: &Surface, segment: usize, x: &Configuration) -> Projection {
     let [a, b] = surface.segments[segment];
-    let along = x[b] - x[a];
-    let xi = (point - x[a]).dot(&along) / along.norm_squared();
+    let (along, offset) = (x.between(a, b), slave.offset(a, x));
+    let xi = offset.dot(&along) / along.norm_squared();
     let normal = normal_of(along.normalize());
-    let gap = (point - x[a]).dot(&normal);
+    let gap = offset.dot(&normal);
     Projection { foot: MasterPoint { segment, xi }, gap, normal, bound: Bound::Segment }
 }
 
 /// A point held on a segment may pass its ends by this share of its length.
 const HELD: f64 = 0.1;
 
-/// Foot of `point` on a segment it is held on, as long as it stays near.
-pub fn on_held_segment(
-    point: Vector2<f64>,
-    surface: &Surface,
-    segment: usize,
-    x: &[Vector2<f64>],
-) -> Option<Projection> {
-    let projection = on_line(point, surface, segment, x);
+/// Foot of a slave point on a segment it is held on, as long as it stays near.
+pub fn on_held_segment(slave: &SlavePoint, surface: &Surface, segment: usize, x: &Configuration) -> Option<Projection> {
+    let projection = on_line(slave, surface, segment, x);
     (-HELD..=1.0 + HELD).contains(&projection.foot.xi).then_some(projection)
 }
 
 /// Closest point is the node between two segments: outside a convex corner or, penetrating, inside a concave one.
 fn at_node(
-    point: Vector2<f64>,
+    slave: &SlavePoint,
     surface: &Surface,
     segment: usize,
     neighbour: usize,
     xi: f64,
-    x: &[Vector2<f64>],
+    x: &Configuration,
 ) -> Projection {
     let direction = |segment: usize| {
         let [a, b] = surface.segments[segment];
-        (x[b] - x[a]).normalize()
+        x.between(a, b).normalize()
     };
     let mean = normal_of(direction(segment) + direction(neighbour));
     let (end, xi) = if xi < 0.0 { (0, 0.0) } else { (1, 1.0) };
     let node = surface.segments[segment][end];
-    let offset = point - x[node];
+    let offset = slave.offset(node, x);
     let side = if offset.dot(&mean) < 0.0 { -1.0 } else { 1.0 };
     let gap = side * offset.norm();
     // A point exactly on the node has no direction of its own.

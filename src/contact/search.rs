@@ -1,11 +1,11 @@
 //! Which part of the master a slave point meets: the nearest segment that faces it.
 
-use nalgebra::Vector2;
 use rstar::RTree;
 use rstar::primitives::{GeomWithData, Line};
 
 use super::projection::{Projection, normal_of, on_held_segment, on_plane, on_segment};
 use super::surface::{Master, Plane, SlavePoint, Surface};
+use crate::configuration::Configuration;
 
 /// A slave and a segment face each other when the cosine between their outward normals is below this: the sides of a
 /// body do not touch what its bottom rests on.
@@ -23,12 +23,12 @@ pub enum Index<'a> {
 }
 
 impl<'a> Index<'a> {
-    /// Index the master at the nodal positions `x`, O(N log N).
-    pub fn new(master: &'a Master, x: &[Vector2<f64>]) -> Self {
+    /// Index the master in the configuration `x`, O(N log N).
+    pub fn new(master: &'a Master, x: &Configuration) -> Self {
         match master {
             Master::Plane(plane) => Self::Plane(plane),
             Master::Mesh(surface) => {
-                let line = |[a, b]: [usize; 2]| Line::new(x[a].into(), x[b].into());
+                let line = |[a, b]: [usize; 2]| Line::new(x.at(a).into(), x.at(b).into());
                 let lines = surface.segments.iter().enumerate().map(|(k, &ends)| GeomWithData::new(line(ends), k));
                 Self::Mesh(surface, RTree::bulk_load(lines.collect()))
             }
@@ -37,21 +37,21 @@ impl<'a> Index<'a> {
 
     /// The foot of a slave point, if a part of the master faces it, O(log N). `held` is a segment to stay on if the
     /// point is still near it.
-    pub fn project(&self, slave: &SlavePoint, held: Option<usize>, x: &[Vector2<f64>]) -> Option<Projection> {
+    pub fn project(&self, slave: &SlavePoint, held: Option<usize>, x: &Configuration) -> Option<Projection> {
         let point = slave.at(x);
         match self {
             Self::Plane(plane) => Some(on_plane(point, plane)),
             Self::Mesh(surface, tree) => {
-                if let Some(held) = held.and_then(|segment| on_held_segment(point, surface, segment, x)) {
+                if let Some(held) = held.and_then(|segment| on_held_segment(slave, surface, segment, x)) {
                     return Some(held);
                 }
                 let outward = slave.outward(x).normalize();
                 let facing = |segment: usize| {
                     let [a, b] = surface.segments[segment];
-                    normal_of((x[b] - x[a]).normalize()).dot(&outward) < FACING
+                    normal_of(x.between(a, b).normalize()).dot(&outward) < FACING
                 };
                 let nearest = tree.nearest_neighbor_iter([point.x, point.y]).take(CANDIDATES).map(|line| line.data);
-                nearest.filter(|&segment| facing(segment)).find_map(|segment| on_segment(point, surface, segment, x))
+                nearest.filter(|&segment| facing(segment)).find_map(|segment| on_segment(slave, surface, segment, x))
             }
         }
     }

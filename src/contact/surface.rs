@@ -5,15 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
+use crate::configuration::Configuration;
 use crate::shape;
 
 /// A linear combination of nodal positions, Σ w_a x_a.
 pub type Weights = Vec<(usize, f64)>;
-
-/// Σ w_a x_a at the current nodal positions.
-pub fn combine(weights: &[(usize, f64)], x: &[Vector2<f64>]) -> Vector2<f64> {
-    weights.iter().map(|&(node, w)| x[node] * w).sum()
-}
 
 /// One edge's share of the length that a slave point stands for: `factor` × |Σ w_a x_a|.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,24 +31,29 @@ pub struct SlavePoint {
 
 impl SlavePoint {
     /// Current position.
-    pub fn at(&self, x: &[Vector2<f64>]) -> Vector2<f64> {
-        combine(&self.position, x)
+    pub fn at(&self, x: &Configuration) -> Vector2<f64> {
+        x.combine(&self.position)
+    }
+
+    /// x − x_node.
+    pub fn offset(&self, node: usize, x: &Configuration) -> Vector2<f64> {
+        self.position.iter().map(|&(own, w)| x.between(node, own) * w).sum()
     }
 
     /// Current length that the point stands for [L].
-    pub fn current_length(&self, x: &[Vector2<f64>]) -> f64 {
-        self.length.iter().map(|share| share.factor * combine(&share.tangent, x).norm()).sum()
+    pub fn current_length(&self, x: &Configuration) -> f64 {
+        self.length.iter().map(|share| share.factor * x.combine(&share.tangent).norm()).sum()
     }
 
     /// Current length of the longest edge the point belongs to [L].
-    pub fn edge_length(&self, x: &[Vector2<f64>]) -> f64 {
+    pub fn edge_length(&self, x: &Configuration) -> f64 {
         // dx/dξ on an edge from −1 to 1 is half its length.
-        2.0 * self.length.iter().map(|share| combine(&share.tangent, x).norm()).fold(0.0, f64::max)
+        2.0 * self.length.iter().map(|share| x.combine(&share.tangent).norm()).fold(0.0, f64::max)
     }
 
     /// Direction out of the slave body (not normalized): the edge direction, body on its left, turned by −90°.
-    pub fn outward(&self, x: &[Vector2<f64>]) -> Vector2<f64> {
-        let along: Vector2<f64> = self.length.iter().map(|share| combine(&share.tangent, x) * share.factor).sum();
+    pub fn outward(&self, x: &Configuration) -> Vector2<f64> {
+        let along: Vector2<f64> = self.length.iter().map(|share| x.combine(&share.tangent) * share.factor).sum();
         Vector2::new(along.y, -along.x)
     }
 }

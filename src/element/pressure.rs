@@ -6,18 +6,17 @@
 //!
 //! as internal force: the load −p n̂ da moved to the left-hand side. It is linear in x', so its tangent is exact.
 
-use nalgebra::Vector2;
-
+use crate::configuration::Configuration;
 use crate::shape;
 use crate::system::Contribution;
 
 /// Internal force and tangent of pressure `p` (positive toward the body) on one edge at the nodal positions `x`.
-pub fn follower_pressure(edge: &[usize], p: f64, x: &[Vector2<f64>]) -> Contribution {
+pub fn follower_pressure(edge: &[usize], p: f64, x: &Configuration) -> Contribution {
     let mut result = Contribution::zero(edge.to_vec());
     for (xi, weight) in shape::gauss(edge.len()) {
         let values = shape::edge_values(edge.len(), xi);
         let slopes = shape::edge_derivatives(edge.len(), xi);
-        let along: Vector2<f64> = edge.iter().zip(&slopes).map(|(&node, d)| x[node] * *d).sum();
+        let along = x.combine(&edge.iter().copied().zip(slopes.iter().copied()).collect::<Vec<_>>());
         for (a, n) in values.iter().enumerate() {
             let factor = p * n * weight;
             result.force[2 * a] += factor * along.y;

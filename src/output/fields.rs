@@ -13,6 +13,7 @@ use vtkio::model::{
 
 use super::csv::failed;
 use super::{Attempt, Observer};
+use crate::configuration::Configuration;
 use crate::contact::force::{ContactState, Status};
 use crate::contact::pair::ContactPair;
 use crate::error::Error;
@@ -158,10 +159,10 @@ fn nodal_stresses(model: &Model, state: &State) -> Vec<[f64; 4]> {
 }
 
 fn contact_frame(model: &Model, state: &State) -> UnstructuredGridPiece {
-    let points_of = |pair: &ContactPair, x: &[Vector2<f64>]| pair.points.iter().map(|p| p.at(x)).collect::<Vec<_>>();
-    let reference: Vec<Vector2<f64>> =
-        model.contacts.iter().flat_map(|pair| points_of(pair, &model.mesh.nodes)).collect();
-    let x = model.positions(&state.displacement);
+    let points_of = |pair: &ContactPair, x: &Configuration| pair.points.iter().map(|p| p.at(x)).collect::<Vec<_>>();
+    let undeformed = Configuration::undeformed(&model.mesh.nodes);
+    let reference: Vec<Vector2<f64>> = model.contacts.iter().flat_map(|pair| points_of(pair, &undeformed)).collect();
+    let x = model.configuration(&state.displacement);
     let current: Vec<Vector2<f64>> = model.contacts.iter().flat_map(|pair| points_of(pair, &x)).collect();
     let displacement: Vec<f64> = reference.iter().zip(&current).flat_map(|(a, b)| [b.x - a.x, b.y - a.y]).collect();
 

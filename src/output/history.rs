@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use nalgebra::Vector2;
-
 use super::csv::Table;
 use super::{Attempt, Observer};
+use crate::configuration::Configuration;
 use crate::contact::force::{ContactState, Status};
 use crate::contact::pair::ContactPair;
 use crate::error::Error;
@@ -54,7 +53,7 @@ impl History {
 impl Observer for History {
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
-        let x = model.positions(&state.displacement);
+        let x = model.configuration(&state.displacement);
         let energy = &state.energy;
         let mut row = vec![format!("{:?}", state.time), format!("{:?}", state.dt), attempt.step.name.clone()];
         row.push(attempt.iterations.len().to_string());
@@ -80,7 +79,7 @@ impl Observer for History {
 }
 
 /// The columns of one contact: forces are ∫ p ds and ∫ q ds, the mean slip is taken over the closed length.
-fn contact_row(pair: &ContactPair, states: &[ContactState], x: &[Vector2<f64>]) -> [f64; 7] {
+fn contact_row(pair: &ContactPair, states: &[ContactState], x: &Configuration) -> [f64; 7] {
     let (mut normal, mut tangential, mut closed, mut slipping, mut slip) = (0.0, 0.0, 0.0, 0.0, 0.0);
     let (mut penetration, mut elastic_slip) = (0.0f64, 0.0f64);
     for (point, state) in pair.points.iter().zip(states) {

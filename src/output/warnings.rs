@@ -2,9 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use nalgebra::Vector2;
-
 use super::{Attempt, Observer};
+use crate::configuration::Configuration;
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
@@ -31,13 +30,14 @@ enum Kind {
 impl Observer for Warnings {
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
-        let x = model.positions(&state.displacement);
+        let x = model.configuration(&state.displacement);
         for (number, (pair, states)) in model.contacts.iter().zip(&state.contacts).enumerate() {
             for (point, contact) in pair.points.iter().zip(states).filter(|(_, c)| c.friction.pressure > 0.0) {
                 for (kind, message) in concerns(pair, point, contact, &x) {
                     if self.given.insert((number, kind)) {
                         let at = point.at(&x);
-                        let place = format!("contact `{}` at ({:.6}, {:.6}), t = {}", pair.name, at.x, at.y, state.time);
+                        let place =
+                            format!("contact `{}` at ({:.6}, {:.6}), t = {}", pair.name, at.x, at.y, state.time);
                         self.list.push(format!("{place}: {message}"));
                     }
                 }
@@ -52,7 +52,7 @@ fn concerns(
     pair: &ContactPair,
     point: &SlavePoint,
     contact: &ContactState,
-    x: &[Vector2<f64>],
+    x: &Configuration,
 ) -> impl Iterator<Item = (Kind, String)> {
     let (gap, pressure) = (contact.gap, contact.friction.pressure);
     let share = -gap / point.edge_length(x);

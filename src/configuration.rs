@@ -1,0 +1,47 @@
+//! The current configuration x = X + u.
+
+use nalgebra::Vector2;
+
+/// Current nodal positions, kept as X and u.
+///
+/// Differences and combinations are taken of X and of u before the two are added. The round-off of x itself, ε|X|, would
+/// be felt through a stiff contact penalty as noise in the residual; that of u is smaller by |u|/|X|.
+#[derive(Clone, Debug)]
+pub struct Configuration<'a> {
+    reference: &'a [Vector2<f64>],
+    displacement: Vec<Vector2<f64>>,
+}
+
+impl<'a> Configuration<'a> {
+    /// Positions X displaced by u, two dofs a node.
+    pub fn new(reference: &'a [Vector2<f64>], displacement: &[f64]) -> Self {
+        Self { reference, displacement: displacement.chunks_exact(2).map(|u| Vector2::new(u[0], u[1])).collect() }
+    }
+
+    /// The reference configuration, u = 0.
+    pub fn undeformed(reference: &'a [Vector2<f64>]) -> Self {
+        Self { reference, displacement: vec![Vector2::zeros(); reference.len()] }
+    }
+
+    /// x of a node.
+    pub fn at(&self, node: usize) -> Vector2<f64> {
+        self.reference[node] + self.displacement[node]
+    }
+
+    /// x_to − x_from.
+    pub fn between(&self, from: usize, to: usize) -> Vector2<f64> {
+        (self.reference[to] - self.reference[from]) + (self.displacement[to] - self.displacement[from])
+    }
+
+    /// Σ w_a x_a.
+    pub fn combine(&self, weights: &[(usize, f64)]) -> Vector2<f64> {
+        let of =
+            |positions: &[Vector2<f64>]| weights.iter().map(|&(node, w)| positions[node] * w).sum::<Vector2<f64>>();
+        of(self.reference) + of(&self.displacement)
+    }
+
+    /// Largest distance of a node from the origin [L].
+    pub fn extent(&self) -> f64 {
+        (0..self.reference.len()).fold(0.0, |extent, node| self.at(node).norm().max(extent))
+    }
+}
