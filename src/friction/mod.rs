@@ -4,11 +4,28 @@
 //! interface, never nodes or meshes, so the same law serves a finite-element interface, a point mass or a test.
 //!
 //! Signs: `q` resists positive slip of the slave along +s; pressure is positive in compression.
+//!
+//! Laws: [`SuperSubloading`], [`Coulomb`], [`Frictionless`]; [`FrictionParameters`] reads any of them from a case.
+
+mod approach;
+mod coulomb;
+mod exponential_integral;
+mod frictionless;
+mod parameters;
+mod peak;
+mod root;
+mod super_subloading;
 
 use std::fmt::Debug;
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
+
+pub use approach::Approach;
+pub use coulomb::{Coulomb, CoulombParameters};
+pub use frictionless::Frictionless;
+pub use parameters::{FrictionParameters, InvalidParameter};
+pub use super_subloading::{SuperSubloading, SuperSubloadingParameters};
 
 /// What friction remembers at one contact point between increments.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -33,6 +50,39 @@ impl FrictionState {
         let strength = self.mu * self.pressure;
         if strength > 0.0 { self.traction.abs() / strength } else { 0.0 }
     }
+
+    /// The state after the surfaces have parted: the elastic energy q²/(2 α_t) of the contact spring is lost.
+    fn parted(self, mu: f64, stiffness: f64) -> Self {
+        let lost = self.traction * self.traction / (2.0 * stiffness);
+        let dissipation = self.dissipation + lost;
+        Self { traction: 0.0, pressure: 0.0, mu, plastic_increment: 0.0, dissipation, ..self }
+    }
+
+    /// The state after an increment whose slip was all elastic.
+    fn stuck(self, traction: f64, pressure: f64, mu: f64) -> Self {
+        Self { traction, pressure, mu, plastic_increment: 0.0, ..self }
+    }
+
+    /// The state after plastic slip has brought the traction down from the elastic `trial` to `traction`.
+    ///
+    /// ```text
+    /// Δλ = (|q_tr| − |q|)/α_t                   plastic slip, along sgn q
+    /// ΔW = ½ (⟨q₀ sgn q⟩ + |q|) Δλ ≥ 0          work dissipated; plastic slip starts from q = 0 after a reversal
+    /// ```
+    /// Without a reversal the work ½(q₀ + q)Δu of the increment is exactly the elastic energy gained plus ΔW.
+    fn slid(self, trial: f64, traction: f64, pressure: f64, mu: f64, stiffness: f64) -> Self {
+        let sign = traction.signum();
+        let slip = ((trial - traction) * sign / stiffness).max(0.0);
+        let work = 0.5 * ((self.traction * sign).max(0.0) + traction.abs()) * slip;
+        Self {
+            traction,
+            pressure,
+            mu,
+            plastic_slip: self.plastic_slip + sign * slip,
+            plastic_increment: sign * slip,
+            dissipation: self.dissipation + work,
+        }
+    }
 }
 
 /// Relative motion of the two surfaces during one increment.
@@ -46,6 +96,20 @@ pub struct Sliding {
     pub dt: f64,
 }
 
+impl Sliding {
+    /// Refuses what no law can answer.
+    fn checked(self) -> Result<Self, LawFailure> {
+        let Self { slip, pressure, dt } = self;
+        if !(slip.is_finite() && pressure.is_finite() && dt.is_finite()) {
+            return Err(LawFailure::NotFinite { slip, pressure, dt });
+        }
+        if dt < 0.0 {
+            return Err(LawFailure::NegativeTime { dt });
+        }
+        Ok(self)
+    }
+}
+
 /// The answer of a law to one increment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionResponse {
@@ -55,6 +119,20 @@ pub struct FrictionResponse {
     pub dtraction_dslip: f64,
     /// ∂q/∂p [-]
     pub dtraction_dpressure: f64,
+}
+
+impl FrictionResponse {
+    /// Refuses numbers that have overflowed, and those of a committed state that was not finite.
+    fn checked(self) -> Result<Self, LawFailure> {
+        let FrictionState { traction, pressure, mu, plastic_slip, plastic_increment, dissipation } = self.state;
+        let state = [traction, pressure, mu, plastic_slip, plastic_increment, dissipation];
+        let tangent = [self.dtraction_dslip, self.dtraction_dpressure];
+        if state.iter().chain(&tangent).all(|number| number.is_finite()) {
+            Ok(self)
+        } else {
+            Err(LawFailure::Overflow { traction })
+        }
+    }
 }
 
 /// Why a law could not answer; the increment is tried again with a smaller step.
@@ -70,6 +148,18 @@ pub enum LawFailure {
         /// increment length [T]
         dt: f64,
     },
+    /// The increment goes back in time.
+    #[error("friction was asked for an increment of negative time {dt}")]
+    NegativeTime {
+        /// increment length [T]
+        dt: f64,
+    },
+    /// The state was not finite, or the increment is so large that it no longer is.
+    #[error("the friction state is not finite: the traction is {traction}")]
+    Overflow {
+        /// q: traction [F/L²]
+        traction: f64,
+    },
 }
 
 /// A friction law, integrated over one increment. Pure: the same `old` and `sliding` give the same answer.
@@ -80,6 +170,12 @@ pub trait FrictionLaw: Debug + Send + Sync {
     /// q and the state variables at the end of the increment, with the consistent tangent ∂q/∂Δu_t, ∂q/∂p.
     ///
     /// # Errors
-    /// [`LawFailure`] when the increment is not finite.
+    /// [`LawFailure`] when the increment or the answer is not finite, or time goes backwards.
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Result<FrictionResponse, LawFailure>;
+
+    /// α_t: tangential contact stiffness; the contact stores q²/(2 α_t). 0 without friction [F/L³]
+    fn stiffness(&self) -> f64;
+
+    /// Pressure from which the rate problem may have several answers, if there is one [F/L²]
+    fn uniqueness_limit(&self) -> Option<f64>;
 }

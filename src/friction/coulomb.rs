@@ -1,0 +1,74 @@
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::parameters::require_positive;
+use super::{FrictionLaw, FrictionResponse, FrictionState, InvalidParameter, LawFailure, Sliding};
+
+/// Parameters of [`Coulomb`] as the case file writes them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CoulombParameters {
+    /// μ: friction coefficient, μ > 0 [-]
+    pub mu: f64,
+    /// α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies [F/L³]
+    #[serde(default)]
+    pub alpha_t: Option<f64>,
+}
+
+/// Coulomb friction on an elastic contact: sticks below μ p, slides at μ p.
+///
+/// ```text
+/// q̇ = α_t (v − λ sgn q)                      slip = elastic + plastic
+/// |q| ≤ μ p,   λ ≥ 0,   λ (|q| − μ p) = 0     sticking or sliding
+/// ```
+/// An increment is elastic if the trial q₀ + α_t Δu is not above μ p, else q = μ p along the trial.
+///
+/// # Errors
+/// [`LawFailure`] when the increment or the answer is not finite, or time goes backwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coulomb {
+    mu: f64,
+    alpha_t: f64,
+}
+
+impl Coulomb {
+    /// The law with its parameters checked; `default_alpha_t` serves where they give no `alpha_t`.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`] when a parameter is out of its range.
+    pub fn new(parameters: &CoulombParameters, default_alpha_t: f64) -> Result<Self, InvalidParameter> {
+        let law = Self { mu: parameters.mu, alpha_t: parameters.alpha_t.unwrap_or(default_alpha_t) };
+        require_positive("mu", law.mu)?;
+        require_positive("alpha_t", law.alpha_t)?;
+        Ok(law)
+    }
+}
+
+impl FrictionLaw for Coulomb {
+    fn initial_state(&self) -> FrictionState {
+        FrictionState { mu: self.mu, ..FrictionState::default() }
+    }
+
+    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Result<FrictionResponse, LawFailure> {
+        let Self { mu, alpha_t } = *self;
+        let Sliding { slip, pressure, .. } = sliding.checked()?;
+        let trial = old.traction + alpha_t * slip;
+        let (state, dtraction_dslip, dtraction_dpressure) = if pressure <= 0.0 {
+            (old.parted(mu, alpha_t), 0.0, 0.0)
+        } else if trial.abs() <= mu * pressure {
+            (old.stuck(trial, pressure, mu), alpha_t, 0.0)
+        } else {
+            let sign = trial.signum();
+            (old.slid(trial, sign * mu * pressure, pressure, mu, alpha_t), 0.0, sign * mu)
+        };
+        FrictionResponse { state, dtraction_dslip, dtraction_dpressure }.checked()
+    }
+
+    fn stiffness(&self) -> f64 {
+        self.alpha_t
+    }
+
+    fn uniqueness_limit(&self) -> Option<f64> {
+        None
+    }
+}

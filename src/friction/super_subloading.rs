@@ -1,0 +1,338 @@
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::parameters::{require, require_not_negative, require_positive};
+use super::peak::{Evolution, Peak};
+use super::root::bracketed_newton;
+use super::{Approach, FrictionLaw, FrictionResponse, FrictionState, InvalidParameter, LawFailure, Sliding};
+
+/// Parameters of [`SuperSubloading`] as the case file writes them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SuperSubloadingParameters {
+    /// μ_s: static friction coefficient, μ_s ≥ μ_k [-]
+    pub mu_s: f64,
+    /// μ_k: kinetic friction coefficient, μ_k > 0 [-]
+    pub mu_k: f64,
+    /// α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies [F/L³]
+    #[serde(default)]
+    pub alpha_t: Option<f64>,
+    /// r: rate at which R approaches 1 with plastic slip, r > 0 [1/L]
+    pub r: f64,
+    /// κ: loss of structure with plastic slip, κ ≥ 0 [1/L]
+    #[serde(default)]
+    pub kappa: f64,
+    /// ξ: recovery of structure with time, ξ ≥ 0 [1/T]
+    #[serde(default)]
+    pub xi: f64,
+    /// m: exponent of the loss, m > 0 [-]
+    #[serde(default = "one")]
+    pub m: f64,
+    /// n: exponent of the recovery, n > 0 [-]
+    #[serde(default = "one")]
+    pub n: f64,
+    /// 1/R*₀: structure at first touch, from 1 (μ = μ_k) to μ_s/μ_k (μ = μ_s, the default) [-]
+    #[serde(default)]
+    pub structure: Option<f64>,
+    /// U(R): how R approaches 1
+    #[serde(default)]
+    pub approach: Approach,
+    /// R_e: elastic core, no plastic slip for R ≤ R_e, 0 ≤ R_e < 1 [-]
+    #[serde(default)]
+    pub elastic_core: f64,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// Super/subloading friction: slip weakens the interface, rest heals it.
+///
+/// ```text
+/// q̇ = α_t (v − λ sgn q)                               slip = elastic + plastic     (1)
+/// Ṙ = U(R) λ,   R = |q|/(μ p),   U = −r ln R           approach to full sliding     (2)
+/// μ̇ = −κ (μ/μ_k − 1)^m λ + ξ (1 − μ/μ_s)^n             weakening, recovery          (3)
+/// ```
+/// λ ≥ 0 is the rate of plastic slip; R falls freely while λ = 0. With an elastic core R_e, ln R becomes
+/// ln (R − R_e)/(1 − R_e); [`Approach`] offers a second U. Units: q, p [F/L²], α_t [F/L³], λ and v [L/T],
+/// r and κ [1/L], ξ [1/T], all others [-].
+///
+/// An increment Δu, p₀ → p, Δt is elastic if the trial traction q_tr = q₀ + α_t Δu stays at or below R_s μ_tr p. Here
+/// R_s = max(R₀, R_e), with 0 for R₀ if q changes sign on the way or nothing was pressed, and μ_tr is μ aged without
+/// slip. Otherwise the plastic slip Δλ is the *smallest* root of one scalar equation,
+/// ```text
+/// G(Δλ) = |q_tr| − α_t Δλ − R(Δλ) μ(Δλ) p = 0,   0 < Δλ ≤ |q_tr|/α_t                (4)
+/// ```
+/// with R from (2) integrated exactly and μ from (3) by backward Euler ([`Approach`] and `peak.rs`). G is positive at
+/// the left end and not at the right, so a bracketed Newton method cannot fail. G falls throughout, and the root is
+/// the only one, while α_t exceeds R p |dμ/dΔλ|; where this cannot be guaranteed ([`FrictionLaw::uniqueness_limit`]),
+/// bounds of the slope of G single out the first root. The tangent is that of (4),
+/// ```text
+/// D = α_t + p (U μ + R ∂μ/∂Δλ),   ∂q/∂Δu = α_t (1 − α_t/D),   ∂q/∂p = sgn(q_tr) α_t R μ/D.
+/// ```
+///
+/// # Errors
+/// [`LawFailure`] when the increment or the answer is not finite, or time goes backwards.
+///
+/// Source: Yasuike, Toyoda & Noda, eqs 10–20; Toyoda, Yasuike & Noda (2024), Tribology International 191:109080;
+/// Ozaki & Hashiguchi (2010), Tribology International 43:2120.
+#[derive(Clone, Copy, Debug)]
+pub struct SuperSubloading {
+    alpha_t: f64,
+    r: f64,
+    elastic_core: f64,
+    approach: Approach,
+    evolution: Evolution,
+    initial_mu: f64,
+}
+
+/// y = (R − R_e)/(1 − R_e) below which slip is taken as elastic: small enough to mean R = R_e.
+const LEAST_Y: f64 = 1e-100;
+
+/// Residual of (4), relative to |q_tr|, at which it is solved.
+const TOLERANCE: f64 = 1e-14;
+
+/// Trial tractions above the elastic limit by less than this, relative, are round-off.
+const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
+
+/// Least D/α_t: where two roots of (4) merge D is 0, and known only to the square root of the round-off.
+const LEAST_SLOPE: f64 = 1e-8;
+
+/// Most pieces of the bracket that are examined for the first root.
+const MAX_PIECES: usize = 1000;
+
+/// Pieces of the bracket narrower than this hold roots that cannot be told apart.
+const LEAST_PIECE: f64 = 1e-12;
+
+impl SuperSubloading {
+    /// The law with its parameters checked; `default_alpha_t` serves where they give no `alpha_t`.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`] when a parameter is out of its range.
+    pub fn new(parameters: &SuperSubloadingParameters, default_alpha_t: f64) -> Result<Self, InvalidParameter> {
+        let SuperSubloadingParameters { mu_s, mu_k, r, kappa, xi, m, n, approach, elastic_core, .. } = *parameters;
+        let alpha_t = parameters.alpha_t.unwrap_or(default_alpha_t);
+        require_positive("mu_k", mu_k)?;
+        require("mu_s", mu_s, mu_s >= mu_k, format!("it must be finite and not less than \"mu_k\", which is {mu_k}"))?;
+        require_positive("alpha_t", alpha_t)?;
+        require_positive("r", r)?;
+        require_not_negative("kappa", kappa)?;
+        require_not_negative("xi", xi)?;
+        require_positive("m", m)?;
+        require_positive("n", n)?;
+        let core_fits = (0.0..1.0).contains(&elastic_core);
+        require("elastic_core", elastic_core, core_fits, "it must be zero or positive, and less than 1")?;
+        let most = mu_s / mu_k;
+        let structure = parameters.structure.unwrap_or(most);
+        let structure_fits = (1.0..=most * (1.0 + ROUND_OFF)).contains(&structure);
+        require("structure", structure, structure_fits, format!("it must lie between 1 and mu_s/mu_k = {most}"))?;
+        Ok(Self {
+            alpha_t,
+            r,
+            elastic_core,
+            approach,
+            evolution: Evolution { mu_s, mu_k, kappa, m, xi, n },
+            initial_mu: (mu_k * structure).min(mu_s),
+        })
+    }
+
+    /// Plastic slip from the traction `start_ratio`·μ p: solves (4).
+    fn slide(&self, old: &FrictionState, trial: f64, start_y: f64, sliding: Sliding) -> FrictionResponse {
+        let Sliding { pressure, dt, .. } = sliding;
+        let path = if start_y < 1.0 {
+            let zeta = self.approach.coordinate(start_y);
+            Path::Approaching { from: zeta, distance: self.approach.at(zeta).distance }
+        } else {
+            Path::FullSliding
+        };
+        let increment = Increment { law: self, path, trial: trial.abs(), pressure, old_mu: old.mu, dt };
+        let Point { ratio, peak, slope, .. } = increment.solve();
+        let strength = ratio * peak.mu;
+        let traction = trial.signum() * strength * pressure;
+        let softness = self.alpha_t / slope.max(LEAST_SLOPE * self.alpha_t);
+        FrictionResponse {
+            state: old.slid(trial, traction, pressure, peak.mu, self.alpha_t),
+            dtraction_dslip: self.alpha_t * (1.0 - softness),
+            dtraction_dpressure: trial.signum() * strength * softness,
+        }
+    }
+}
+
+impl FrictionLaw for SuperSubloading {
+    fn initial_state(&self) -> FrictionState {
+        FrictionState { mu: self.initial_mu, ..FrictionState::default() }
+    }
+
+    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Result<FrictionResponse, LawFailure> {
+        let Sliding { slip, pressure, dt } = sliding.checked()?;
+        let old = FrictionState { mu: old.mu.clamp(self.evolution.mu_k, self.evolution.mu_s), ..*old };
+        let mu = self.evolution.after(old.mu, 0.0, dt).mu;
+        if pressure <= 0.0 {
+            let state = old.parted(mu, self.alpha_t);
+            return FrictionResponse { state, dtraction_dslip: 0.0, dtraction_dpressure: 0.0 }.checked();
+        }
+        let trial = old.traction + self.alpha_t * slip;
+        let reversed = trial * old.traction.signum() < 0.0;
+        let ratio = if reversed { 0.0 } else { old.ratio().min(1.0) };
+        let start_y = ((ratio - self.elastic_core) / (1.0 - self.elastic_core)).max(LEAST_Y);
+        let start_ratio = self.elastic_core + (1.0 - self.elastic_core) * start_y;
+        if trial.abs() <= start_ratio * mu * pressure * (1.0 + ROUND_OFF) {
+            let state = old.stuck(trial, pressure, mu);
+            return FrictionResponse { state, dtraction_dslip: self.alpha_t, dtraction_dpressure: 0.0 }.checked();
+        }
+        self.slide(&old, trial, start_y, sliding).checked()
+    }
+
+    fn stiffness(&self) -> f64 {
+        self.alpha_t
+    }
+
+    fn uniqueness_limit(&self) -> Option<f64> {
+        let Evolution { mu_s, .. } = self.evolution;
+        let pressure = self.alpha_t / self.evolution.after(mu_s, 0.0, 0.0).steepest();
+        pressure.is_finite().then_some(pressure)
+    }
+}
+
+/// How R follows from plastic slip within one increment.
+#[derive(Clone, Copy, Debug)]
+enum Path {
+    /// R rises towards 1 from the coordinate ζ = `from`, where T = `distance`.
+    Approaching { from: f64, distance: f64 },
+    /// R = 1; the coordinate is the plastic slip itself.
+    FullSliding,
+}
+
+/// Equation (4) of one increment, along a coordinate of plastic slip.
+struct Increment<'a> {
+    law: &'a SuperSubloading,
+    path: Path,
+    /// |q_tr|
+    trial: f64,
+    pressure: f64,
+    old_mu: f64,
+    dt: f64,
+}
+
+/// Equation (4) at one plastic slip.
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    /// ζ, or Δλ in full sliding
+    coordinate: f64,
+    /// Δλ: plastic slip [L]
+    slip: f64,
+    /// dΔλ/d(coordinate)
+    stretch: f64,
+    /// R [-]
+    ratio: f64,
+    /// U = dR/dΔλ [1/L]
+    rate: f64,
+    /// μ and ∂μ/∂Δλ
+    peak: Peak,
+    /// G [F/L²]
+    residual: f64,
+    /// D = −dG/dΔλ [F/L³]
+    slope: f64,
+}
+
+impl Increment<'_> {
+    fn at(&self, coordinate: f64) -> Point {
+        let SuperSubloading { alpha_t, r, elastic_core, approach, .. } = *self.law;
+        let (slip, stretch, ratio, rate) = match self.path {
+            Path::Approaching { distance, .. } => {
+                let here = approach.at(coordinate);
+                let length = (1.0 - elastic_core) / r;
+                let slip = ((here.distance - distance) * length).max(0.0);
+                (slip, here.stretch * length, elastic_core + (1.0 - elastic_core) * here.y, r * here.rate)
+            }
+            Path::FullSliding => (coordinate, 1.0, 1.0, 0.0),
+        };
+        let peak = self.law.evolution.after(self.old_mu, slip, self.dt);
+        Point {
+            coordinate,
+            slip,
+            stretch,
+            ratio,
+            rate,
+            peak,
+            residual: self.trial - alpha_t * slip - ratio * peak.mu * self.pressure,
+            slope: alpha_t + self.pressure * (rate * peak.mu + ratio * peak.slope()),
+        }
+    }
+
+    /// The smallest root of (4).
+    fn solve(&self) -> Point {
+        let start = self.at(self.start());
+        let unique = self.pressure * start.peak.steepest() < self.law.alpha_t;
+        let bracket = if unique { (start.coordinate, self.end()) } else { self.first_root_bracket(start) };
+        let mut point = start;
+        bracketed_newton(bracket, self.guess(&start), TOLERANCE * self.trial, |coordinate| {
+            point = self.at(coordinate);
+            (point.residual, -point.slope * point.stretch)
+        });
+        point
+    }
+
+    /// Coordinate of no plastic slip, where G > 0.
+    fn start(&self) -> f64 {
+        match self.path {
+            Path::Approaching { from, .. } => from,
+            Path::FullSliding => 0.0,
+        }
+    }
+
+    /// Coordinate of all slip plastic or more, where G < 0.
+    fn end(&self) -> f64 {
+        self.coordinate_beyond(self.trial / self.law.alpha_t)
+    }
+
+    /// A coordinate of at least this plastic slip.
+    fn coordinate_beyond(&self, slip: f64) -> f64 {
+        match self.path {
+            Path::Approaching { distance, .. } => {
+                self.law.approach.beyond(distance + slip * self.law.r / (1.0 - self.law.elastic_core))
+            }
+            Path::FullSliding => slip,
+        }
+    }
+
+    fn guess(&self, start: &Point) -> f64 {
+        start.coordinate + start.residual / (start.slope * start.stretch)
+    }
+
+    /// A bracket that holds the smallest root of (4), and no other unless they cannot be told apart.
+    ///
+    /// Pieces of the bracket are examined from the left with bounds D₋ ≤ D ≤ D₊ of the slope on each: it holds one
+    /// root or none if D₋ > 0, none if G stays positive between the lines of slope −D₊ from its left end and −D₋ from
+    /// its right, and is halved otherwise.
+    fn first_root_bracket(&self, start: Point) -> (f64, f64) {
+        let end = self.end();
+        let mut left = start;
+        let mut right = self.at(end);
+        for _ in 0..MAX_PIECES {
+            let width = right.coordinate - left.coordinate;
+            let (least, most) = self.slope_bounds(&left, &right);
+            let narrow = width <= LEAST_PIECE * (1.0 + left.coordinate.abs());
+            if right.residual <= 0.0 && (least > 0.0 || narrow) {
+                return (left.coordinate, right.coordinate);
+            }
+            let crossing_needs = left.residual / most.max(0.0) + right.residual / (-least).max(0.0);
+            let rootless = right.residual > 0.0 && (least > 0.0 || crossing_needs > right.slip - left.slip);
+            if rootless || narrow {
+                left = right;
+                right = self.at(end.min(left.coordinate + 2.0 * width));
+            } else {
+                right = self.at(left.coordinate + 0.5 * width);
+            }
+        }
+        (left.coordinate, end)
+    }
+
+    /// Least and greatest D between two points, from the monotony of U, R, μ and |∂μ/∂Δλ|.
+    fn slope_bounds(&self, left: &Point, right: &Point) -> (f64, f64) {
+        let (flattest, steepest) = left.peak.steepness_until(&right.peak);
+        let least = right.rate * right.peak.mu - right.ratio * steepest;
+        let most = left.rate * left.peak.mu - left.ratio * flattest;
+        (self.law.alpha_t + self.pressure * least, self.law.alpha_t + self.pressure * most)
+    }
+}
