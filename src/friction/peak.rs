@@ -55,12 +55,13 @@ impl Evolution {
             self.solve(old, weakening, recovery)
         };
         let mu = mu.clamp(mu_k, mu_s);
-        let (excess, deficit) = (mu / mu_k - 1.0, 1.0 - mu / mu_s);
+        let (loss, loss_slope) = power(mu / mu_k - 1.0, m);
+        let (_, gain_slope) = power(1.0 - mu / mu_s, n);
         Peak {
             mu,
-            loss: kappa * power(excess, m),
-            loss_slope: if kappa > 0.0 { kappa * m * power(excess, m - 1.0) / mu_k } else { 0.0 },
-            gain_slope: if recovery > 0.0 { recovery * n * power(deficit, n - 1.0) / mu_s } else { 0.0 },
+            loss: kappa * loss,
+            loss_slope: scaled(loss_slope, kappa / mu_k),
+            gain_slope: scaled(gain_slope, recovery / mu_s),
             slip,
         }
     }
@@ -71,18 +72,10 @@ impl Evolution {
         let mut mu = old;
         bracketed_newton((mu_k, mu_s), old, f64::EPSILON * mu_k, |trial| {
             mu = trial;
-            let (excess, deficit) = (mu / mu_k - 1.0, 1.0 - mu / mu_s);
-            let mut value = old - mu;
-            let mut slope = -1.0;
-            // A term without a factor must not contribute 0·∞ where its slope is infinite.
-            if weakening > 0.0 {
-                value -= weakening * power(excess, m);
-                slope -= weakening * m * power(excess, m - 1.0) / mu_k;
-            }
-            if recovery > 0.0 {
-                value += recovery * power(deficit, n);
-                slope -= recovery * n * power(deficit, n - 1.0) / mu_s;
-            }
+            let (loss, loss_slope) = power(mu / mu_k - 1.0, m);
+            let (gain, gain_slope) = power(1.0 - mu / mu_s, n);
+            let value = old - mu - weakening * loss + recovery * gain;
+            let slope = -1.0 - scaled(loss_slope, weakening / mu_k) - scaled(gain_slope, recovery / mu_s);
             (value, slope)
         });
         mu
@@ -110,17 +103,23 @@ impl Peak {
     }
 
     fn loss_stiffness(&self, loss_slope: f64) -> f64 {
-        if self.slip > 0.0 { self.slip * loss_slope } else { 0.0 }
+        scaled(loss_slope, self.slip)
     }
 }
 
-/// base^exponent, without the cost of a general power where the exponent is 1 or 0.
-fn power(base: f64, exponent: f64) -> f64 {
-    if exponent == 1.0 {
-        base
-    } else if exponent == 0.0 {
-        1.0
+/// x^k and its derivative, which is infinite at x = 0 for k < 1.
+fn power(x: f64, k: f64) -> (f64, f64) {
+    if k == 1.0 {
+        (x, 1.0)
+    } else if x > 0.0 {
+        let value = x.powf(k);
+        (value, k * value / x)
     } else {
-        base.powf(exponent)
+        (0.0, if k < 1.0 { f64::INFINITY } else { 0.0 })
     }
+}
+
+/// A slope times a factor; a term without a factor counts for nothing even where its slope is infinite.
+fn scaled(slope: f64, factor: f64) -> f64 {
+    if factor > 0.0 { slope * factor } else { 0.0 }
 }
