@@ -555,14 +555,19 @@ struct Derivative {
 }
 
 impl Derivative {
-    /// Whether central differences of fourth order agree, for some change of the argument large enough to see beyond round-off and
-    /// small enough to stay on one branch, with D > 0.05 α_t; `None` if there is no such change.
+    /// Whether central differences of fourth order agree, for some change of the argument large enough to see beyond
+    /// round-off and small enough to stay on one branch where D > 0.05 α_t and ∂q/∂Δu hardly turns; `None` if there
+    /// is no such change.
     fn agrees(&self, respond: impl Fn(f64) -> (Option<f64>, FrictionResponse), alpha_t: f64) -> Option<bool> {
         let (branch, answer) = respond(0.0);
         let sharp = |answer: &FrictionResponse| 1.0 - answer.dtraction_dslip / alpha_t >= 20.0;
         if sharp(&answer) || self.largest == 0.0 {
             return None;
         }
+        let resolved = |(side, point): &(Option<f64>, FrictionResponse)| {
+            let turn = (point.dtraction_dslip - answer.dtraction_dslip).abs();
+            *side == branch && !sharp(point) && turn < 0.01 * alpha_t
+        };
         let mut agreement = [1e-2, 1e-1, 1e-3, 1.0, 1e-4, 1e-5]
             .into_iter()
             .map(|factor| factor * self.largest)
@@ -572,8 +577,7 @@ impl Derivative {
                 let [a, b, c, d] = points.map(|(_, answer)| answer.state.traction);
                 let difference = (a - 8.0 * b + 8.0 * c - d) / (12.0 * h);
                 let agrees = (difference - self.value).abs() < 1e-5 * self.scale;
-                let one_branch = points.iter().all(|(side, answer)| *side == branch && !sharp(answer));
-                one_branch.then_some(agrees)
+                points.iter().all(resolved).then_some(agrees)
             });
         let first = agreement.next()?;
         Some(first || agreement.any(|agrees| agrees))
