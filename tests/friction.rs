@@ -607,7 +607,7 @@ fn a_million_random_increments_are_answered_with_their_tangent() {
             let (dslip, dpressure) = (answer.dtraction_dslip, answer.dtraction_dpressure);
             let trial = (old.traction + alpha_t * slip).abs();
             let noise =
-                1e-14 * (trial / alpha_t + 1.0 / parameters.r) * dslip.abs() + 1e-15 * answer.state.traction.abs();
+                5e-14 * (trial / alpha_t + 1.0 / parameters.r) * dslip.abs() + 1e-15 * answer.state.traction.abs();
             let length = (1.0 / parameters.r).min(answer.state.mu * pressure.abs() / alpha_t);
             let by_slip = Derivative {
                 value: dslip,
@@ -723,7 +723,7 @@ fn scan(parameters: &SuperSubloadingParameters, old: &FrictionState, slip: f64, 
         let ratio = 1.0 - (1.0 - start) * (-25.0 * f64::from(i) / f64::from(points)).exp();
         ((distance(approach, ratio) - origin) / r, ratio)
     });
-    let last = near.clone().last().expect("points").0;
+    let last = near.clone().next_back().expect("points").0;
     let rest = (trial / alpha_t - last).max(0.0);
     let far = (1..=points).map(|i| (last + rest * f64::from(i) / f64::from(points), 1.0));
     let values: Vec<_> = near.chain(far).map(|(slip, ratio)| (slip, residual(slip, ratio))).collect();

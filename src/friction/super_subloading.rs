@@ -93,7 +93,7 @@ pub struct SuperSubloading {
 const LEAST_Y: f64 = 1e-100;
 
 /// Residual of (4), relative to |q_tr|, at which it is solved.
-const TOLERANCE: f64 = 1e-14;
+const TOLERANCE: f64 = 3e-14;
 
 /// Trial tractions above the elastic limit by less than this, relative, are round-off.
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
@@ -309,16 +309,19 @@ impl Increment<'_> {
         }
     }
 
-    /// A Newton step from the start; but from rest, where U is infinite, the elastic answer as far as there is one.
+    /// A first coordinate: a Newton step from the start or, near R = R_e where U is infinite, the elastic answer if
+    /// there is one, else the least plastic slip possible.
     fn guess(&self, start: &Point) -> f64 {
         let law = self.law;
         let strength = start.peak.mu * self.pressure;
-        if start.reach.ratio - law.elastic_core > 0.1 * (1.0 - law.elastic_core) {
-            return start.reach.coordinate + start.residual / (start.slope * start.reach.stretch);
+        let y = |ratio: f64| (ratio - law.elastic_core) / (1.0 - law.elastic_core);
+        if y(start.reach.ratio) > 0.05 {
+            start.reach.coordinate + start.residual / (start.slope * start.reach.stretch)
+        } else if self.trial < 0.9 * strength {
+            law.approach.locate(y(self.trial / strength)).0
+        } else {
+            self.path.beyond(law, (self.trial - strength).max(0.0) / law.alpha_t)
         }
-        let y = (self.trial / strength - law.elastic_core) / (1.0 - law.elastic_core);
-        let slip = (self.trial - strength).max(0.0) / law.alpha_t;
-        law.approach.locate(y.min(0.9)).0.max(self.path.beyond(law, slip))
     }
 
     /// A bracket that holds the smallest root of (4), and no other unless they cannot be told apart.
