@@ -556,7 +556,7 @@ struct Derivative {
 
 impl Derivative {
     /// Whether central differences of fourth order agree, for some change of the argument large enough to see beyond
-    /// round-off and small enough to stay on one branch where D > 0.05 α_t and ∂q/∂Δu hardly turns; `None` if there
+    /// round-off and small enough to stay on one branch where D > 0.05 α_t and the tangent hardly turns; `None` if there
     /// is no such change.
     fn agrees(&self, respond: impl Fn(f64) -> (Option<f64>, FrictionResponse), alpha_t: f64) -> Option<bool> {
         let (branch, answer) = respond(0.0);
@@ -565,8 +565,9 @@ impl Derivative {
             return None;
         }
         let resolved = |(side, point): &(Option<f64>, FrictionResponse)| {
-            let turn = (point.dtraction_dslip - answer.dtraction_dslip).abs();
-            *side == branch && !sharp(point) && turn < 0.01 * alpha_t
+            let turn = (point.dtraction_dslip - answer.dtraction_dslip).abs() / alpha_t;
+            let tilt = (point.dtraction_dpressure - answer.dtraction_dpressure).abs() / answer.state.mu;
+            *side == branch && !sharp(point) && turn < 2e-3 && tilt < 2e-3
         };
         let mut agreement = [1e-2, 1e-1, 1e-3, 1.0, 1e-4, 1e-5]
             .into_iter()
