@@ -197,13 +197,18 @@ fn ageing_at_rest_converges_to_its_closed_forms() {
         let error = |steps| (loaded(&law, 0.0, time, steps).mu - 0.4 * (1.0 - deficit)).abs();
         assert_first_order(error(200), error(400), &format!("ageing, n = {n}"));
         assert!(error(20_000) < 1e-5);
+        let aged = loaded(&law, 0.0, time, 200);
+        let (fresh, stronger) = (law.initial_state(), respond(&law, &aged, 0.02, PRESSURE, 0.0).state.traction);
+        assert!(stronger > 1.1 * respond(&law, &fresh, 0.02, PRESSURE, 0.0).state.traction, "rest strengthens");
     }
 }
 
 #[test]
 fn recovery_with_a_small_exponent_ends_at_the_static_coefficient() {
     let law = law(&SuperSubloadingParameters { xi: 0.4, n: 0.5, structure: Some(1.0), ..PAPER });
-    assert_close(loaded(&law, 0.0, 1e6, 10).mu, 0.4, 1e-9, "μ");
+    let rested = loaded(&law, 0.0, 1e6, 10);
+    assert_close(rested.mu, 0.4, 1e-9, "μ");
+    assert!(respond(&law, &rested, 0.05, PRESSURE, 0.0).state.traction > 0.2 * PRESSURE);
 }
 
 #[test]
@@ -480,7 +485,7 @@ fn tangents_agree_with_differences() {
 
 fn random_parameters(random: &mut Random) -> SuperSubloadingParameters {
     let mu_k = random.magnitude(-2.0, 0.0);
-    let exponent = |random: &mut Random| if random.chance(0.5) { 1.0 } else { random.between(0.3, 3.0) };
+    let exponent = |random: &mut Random| if random.chance(0.7) { 1.0 } else { random.between(0.3, 3.0) };
     let or_zero = |random: &mut Random, low, high| if random.chance(0.2) { 0.0 } else { random.magnitude(low, high) };
     SuperSubloadingParameters {
         mu_s: if random.chance(0.1) { mu_k } else { mu_k * random.between(1.0, 5.0) },
@@ -587,7 +592,7 @@ impl Derivative {
 
 #[test]
 fn a_million_random_increments_are_answered_with_their_tangent() {
-    const LAWS: u64 = 20_000;
+    const LAWS: u64 = 18_200;
     const INCREMENTS: usize = 55;
     let compared = AtomicUsize::new(0);
     (0..LAWS).into_par_iter().for_each(|seed| {
@@ -655,13 +660,13 @@ fn absurd_increments_are_answered_or_refused() {
                 for old in states {
                     if let Ok(answer) = law.respond(&old, Sliding { slip, pressure, dt }) {
                         check_answer(&PAPER, &old, &answer);
-                        answered += 1;
+                        answered += i32::from(answer.state.traction > 0.0);
                     }
                 }
             }
         }
     }
-    assert!(answered > 500, "only {answered} were answered");
+    assert!(answered > 100, "only {answered} were answered with friction");
     let backwards = law.respond(&law.initial_state(), Sliding { slip: 0.0, pressure: 1.0, dt: -1.0 });
     assert_eq!(backwards, Err(LawFailure::NegativeTime { dt: -1.0 }));
 }
