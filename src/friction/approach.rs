@@ -68,12 +68,20 @@ impl Approach {
         }
     }
 
-    /// ζ at y, 0 < y < 1.
-    pub(super) fn coordinate(self, y: f64) -> f64 {
+    /// ζ, T and their derivatives at y, 0 < y < 1.
+    pub(super) fn locate(self, y: f64) -> (f64, Progress) {
         match self {
-            Self::Logarithmic => -(-y.ln()).ln(),
-            Self::Cotangent if y < 0.5 => (0.5 * PI * y).tan().ln(),
-            Self::Cotangent => -(0.5 * PI * (1.0 - y)).tan().ln(),
+            Self::Logarithmic => {
+                let w = -y.ln();
+                let zeta = -w.ln();
+                (zeta, Progress { y, distance: e1(w, -zeta, y), stretch: y, rate: w })
+            }
+            Self::Cotangent => {
+                // Whichever of the two angles is exact in floating point.
+                let cotangent = if y < 0.5 { 1.0 / (0.5 * PI * y).tan() } else { (0.5 * PI * (1.0 - y)).tan() };
+                let zeta = -cotangent.ln();
+                (zeta, Self::Cotangent.at(zeta))
+            }
         }
     }
 

@@ -64,10 +64,6 @@ impl FrictionLaw for Coulomb {
         FrictionResponse { state, dtraction_dslip, dtraction_dpressure }.checked()
     }
 
-    fn structure(&self, _mu: f64) -> f64 {
-        1.0
-    }
-
     fn stiffness(&self) -> f64 {
         self.alpha_t
     }

@@ -22,10 +22,6 @@ impl FrictionLaw for Frictionless {
         FrictionResponse { state, dtraction_dslip: 0.0, dtraction_dpressure: 0.0 }.checked()
     }
 
-    fn structure(&self, _mu: f64) -> f64 {
-        1.0
-    }
-
     fn stiffness(&self) -> f64 {
         0.0
     }

@@ -176,9 +176,6 @@ pub trait FrictionLaw: Debug + Send + Sync {
     /// α_t: tangential contact stiffness; the contact stores q²/(2 α_t). 0 without friction [F/L³]
     fn stiffness(&self) -> f64;
 
-    /// 1/R* = μ/μ_k: degree of structure that belongs to a peak coefficient; 1 for a law without structure [-]
-    fn structure(&self, mu: f64) -> f64;
-
     /// Pressure from which the rate problem may have several answers, if there is one [F/L²]
     fn uniqueness_limit(&self) -> Option<f64>;
 }

@@ -11,18 +11,15 @@ use super::root::bracketed_newton;
 /// slipping, and steady sliding is met exactly at any increment length. Its equation has one root in [μ_k, μ_s].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Evolution {
-    /// μ_s: static coefficient [-]
-    pub mu_s: f64,
-    /// μ_k: kinetic coefficient [-]
-    pub mu_k: f64,
-    /// κ: weakening with plastic slip [1/L]
-    pub kappa: f64,
-    /// m: exponent of weakening [-]
-    pub m: f64,
-    /// ξ: recovery with time [1/T]
-    pub xi: f64,
-    /// n: exponent of recovery [-]
-    pub n: f64,
+    mu_s: f64,
+    mu_k: f64,
+    kappa: f64,
+    xi: f64,
+    m: f64,
+    n: f64,
+    /// 1/μ_s and 1/μ_k: divisions are what an evaluation would spend most of its time on.
+    per_mu_s: f64,
+    per_mu_k: f64,
 }
 
 /// μ at the end of an increment with plastic slip Δλ, and what its change with Δλ is made of.
@@ -41,49 +38,53 @@ pub(super) struct Peak {
 }
 
 impl Evolution {
+    /// μ_s, μ_k [-], κ [1/L], ξ [1/T], m and n [-]
+    pub(super) fn new(mu_s: f64, mu_k: f64, kappa: f64, xi: f64, m: f64, n: f64) -> Self {
+        Self { mu_s, mu_k, kappa, xi, m, n, per_mu_s: 1.0 / mu_s, per_mu_k: 1.0 / mu_k }
+    }
+
+    /// μ as it may be: between μ_k and μ_s.
+    pub(super) fn clamp(&self, mu: f64) -> f64 {
+        mu.clamp(self.mu_k, self.mu_s)
+    }
+
     /// μ after plastic slip `slip` and time `dt`, from `old`.
     ///
     /// ```text
     /// μ = μ₀ − κ Δλ (μ/μ_k − 1)^m + ξ Δt (1 − μ/μ_s)^n
     /// ```
     pub(super) fn after(&self, old: f64, slip: f64, dt: f64) -> Peak {
-        let Self { mu_s, mu_k, kappa, m, xi, n } = *self;
-        let (weakening, recovery) = (kappa * slip, xi * dt);
-        let mu = if m == 1.0 && n == 1.0 {
-            (old + weakening + recovery) / (1.0 + weakening / mu_k + recovery / mu_s)
+        let (weakening, recovery) = (self.kappa * slip, self.xi * dt);
+        let mu = self.clamp(if self.m == 1.0 && self.n == 1.0 {
+            (old + weakening + recovery) / (1.0 + weakening * self.per_mu_k + recovery * self.per_mu_s)
         } else {
             self.solve(old, weakening, recovery)
-        };
-        let mu = mu.clamp(mu_k, mu_s);
-        let (excess, deficit) = (mu / mu_k - 1.0, 1.0 - mu / mu_s);
-        Peak {
-            mu,
-            loss: kappa * power(excess, m),
-            loss_slope: if kappa > 0.0 { kappa * m * power(excess, m - 1.0) / mu_k } else { 0.0 },
-            gain_slope: if recovery > 0.0 { recovery * n * power(deficit, n - 1.0) / mu_s } else { 0.0 },
-            slip,
-        }
+        });
+        let ((loss, loss_slope), (_, gain_slope)) = (self.loss(mu), self.gain(mu));
+        let stiffening = scaled(loss_slope, self.kappa);
+        Peak { mu, loss: self.kappa * loss, loss_slope: stiffening, gain_slope: scaled(gain_slope, recovery), slip }
+    }
+
+    /// (μ/μ_k − 1)^m and its derivative.
+    fn loss(&self, mu: f64) -> (f64, f64) {
+        let (value, slope) = power((mu - self.mu_k) * self.per_mu_k, self.m);
+        (value, slope * self.per_mu_k)
+    }
+
+    /// (1 − μ/μ_s)^n and minus its derivative.
+    fn gain(&self, mu: f64) -> (f64, f64) {
+        let (value, slope) = power((self.mu_s - mu) * self.per_mu_s, self.n);
+        (value, slope * self.per_mu_s)
     }
 
     /// Root of the backward-Euler equation for exponents other than 1.
     fn solve(&self, old: f64, weakening: f64, recovery: f64) -> f64 {
-        let Self { mu_s, mu_k, m, n, .. } = *self;
         let mut mu = old;
-        bracketed_newton((mu_k, mu_s), old, f64::EPSILON * mu_k, |trial| {
+        bracketed_newton((self.mu_k, self.mu_s), old, f64::EPSILON * self.mu_k, |trial| {
             mu = trial;
-            let (excess, deficit) = (mu / mu_k - 1.0, 1.0 - mu / mu_s);
-            let mut value = old - mu;
-            let mut slope = -1.0;
-            // A term without a factor must not contribute 0·∞ where its slope is infinite.
-            if weakening > 0.0 {
-                value -= weakening * power(excess, m);
-                slope -= weakening * m * power(excess, m - 1.0) / mu_k;
-            }
-            if recovery > 0.0 {
-                value += recovery * power(deficit, n);
-                slope -= recovery * n * power(deficit, n - 1.0) / mu_s;
-            }
-            (value, slope)
+            let ((loss, loss_slope), (gain, gain_slope)) = (self.loss(mu), self.gain(mu));
+            let value = old - mu - weakening * loss + recovery * gain;
+            (value, -1.0 - scaled(loss_slope, weakening) - scaled(gain_slope, recovery))
         });
         mu
     }
@@ -110,17 +111,23 @@ impl Peak {
     }
 
     fn loss_stiffness(&self, loss_slope: f64) -> f64 {
-        if self.slip > 0.0 { self.slip * loss_slope } else { 0.0 }
+        scaled(loss_slope, self.slip)
     }
 }
 
-/// base^exponent, without the cost of a general power where the exponent is 1 or 0.
-fn power(base: f64, exponent: f64) -> f64 {
-    if exponent == 1.0 {
-        base
-    } else if exponent == 0.0 {
-        1.0
+/// x^k and its derivative, which is infinite at x = 0 for k < 1.
+fn power(x: f64, k: f64) -> (f64, f64) {
+    if k == 1.0 {
+        (x, 1.0)
+    } else if x > 0.0 {
+        let value = x.powf(k);
+        (value, k * value / x)
     } else {
-        base.powf(exponent)
+        (0.0, if k < 1.0 { f64::INFINITY } else { 0.0 })
     }
+}
+
+/// A slope times a factor; a term without a factor counts for nothing even where its slope is infinite.
+fn scaled(slope: f64, factor: f64) -> f64 {
+    if factor > 0.0 { slope * factor } else { 0.0 }
 }

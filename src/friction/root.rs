@@ -14,7 +14,7 @@ pub(super) fn bracketed_newton(
     tolerance: f64,
     mut f: impl FnMut(f64) -> (f64, f64),
 ) {
-    let resolution = f64::EPSILON * low.abs().max(high.abs());
+    let resolution = 8.0 * f64::EPSILON * low.abs().max(high.abs());
     let mut step = high - low;
     let mut x = if low < guess && guess < high { guess } else { low + 0.5 * step };
     for _ in 0..MAX_EVALUATIONS {

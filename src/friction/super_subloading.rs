@@ -1,6 +1,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::approach::Progress;
 use super::parameters::{require, require_not_negative, require_positive};
 use super::peak::{Evolution, Peak};
 use super::root::bracketed_newton;
@@ -81,6 +82,8 @@ pub struct SuperSubloading {
     alpha_t: f64,
     r: f64,
     elastic_core: f64,
+    /// (1 − R_e)/r: plastic slip per T [L]
+    length: f64,
     approach: Approach,
     evolution: Evolution,
     initial_mu: f64,
@@ -90,7 +93,7 @@ pub struct SuperSubloading {
 const LEAST_Y: f64 = 1e-100;
 
 /// Residual of (4), relative to |q_tr|, at which it is solved.
-const TOLERANCE: f64 = 1e-14;
+const TOLERANCE: f64 = 3e-14;
 
 /// Trial tractions above the elastic limit by less than this, relative, are round-off.
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
@@ -130,24 +133,31 @@ impl SuperSubloading {
             alpha_t,
             r,
             elastic_core,
+            length: (1.0 - elastic_core) / r,
             approach,
-            evolution: Evolution { mu_s, mu_k, kappa, m, xi, n },
+            evolution: Evolution::new(mu_s, mu_k, kappa, xi, m, n),
             initial_mu: (mu_k * structure).min(mu_s),
         })
     }
 
-    /// Plastic slip from the traction `start_ratio`·μ p: solves (4).
+    /// The point at ζ of the path that starts at T = `origin`.
+    fn reach(&self, zeta: f64, here: &Progress, origin: f64) -> Reach {
+        Reach {
+            coordinate: zeta,
+            slip: ((here.distance - origin) * self.length).max(0.0),
+            stretch: here.stretch * self.length,
+            ratio: self.elastic_core + (1.0 - self.elastic_core) * here.y,
+            rate: self.r * here.rate,
+        }
+    }
+
+    /// An increment with plastic slip, which starts at y: solves (4).
     fn slide(&self, old: &FrictionState, trial: f64, start_y: f64, sliding: Sliding) -> FrictionResponse {
         let Sliding { pressure, dt, .. } = sliding;
-        let path = if start_y < 1.0 {
-            let zeta = self.approach.coordinate(start_y);
-            Path::Approaching { from: zeta, distance: self.approach.at(zeta).distance }
-        } else {
-            Path::FullSliding
-        };
+        let (path, start) = Path::from(self, start_y);
         let increment = Increment { law: self, path, trial: trial.abs(), pressure, old_mu: old.mu, dt };
-        let Point { ratio, peak, slope, .. } = increment.solve();
-        let strength = ratio * peak.mu;
+        let Point { reach, peak, slope, .. } = increment.solve(start);
+        let strength = reach.ratio * peak.mu;
         let traction = trial.signum() * strength * pressure;
         let softness = self.alpha_t / slope.max(LEAST_SLOPE * self.alpha_t);
         FrictionResponse {
@@ -165,7 +175,7 @@ impl FrictionLaw for SuperSubloading {
 
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Result<FrictionResponse, LawFailure> {
         let Sliding { slip, pressure, dt } = sliding.checked()?;
-        let old = FrictionState { mu: old.mu.clamp(self.evolution.mu_k, self.evolution.mu_s), ..*old };
+        let old = FrictionState { mu: self.evolution.clamp(old.mu), ..*old };
         let mu = self.evolution.after(old.mu, 0.0, dt).mu;
         if pressure <= 0.0 {
             let state = old.parted(mu, self.alpha_t);
@@ -183,17 +193,13 @@ impl FrictionLaw for SuperSubloading {
         self.slide(&old, trial, start_y, sliding).checked()
     }
 
-    fn structure(&self, mu: f64) -> f64 {
-        mu / self.evolution.mu_k
-    }
-
     fn stiffness(&self) -> f64 {
         self.alpha_t
     }
 
     fn uniqueness_limit(&self) -> Option<f64> {
-        let Evolution { mu_s, .. } = self.evolution;
-        let pressure = self.alpha_t / self.evolution.after(mu_s, 0.0, 0.0).steepest();
+        let static_mu = self.evolution.clamp(f64::INFINITY);
+        let pressure = self.alpha_t / self.evolution.after(static_mu, 0.0, 0.0).steepest();
         pressure.is_finite().then_some(pressure)
     }
 }
@@ -201,10 +207,52 @@ impl FrictionLaw for SuperSubloading {
 /// How R follows from plastic slip within one increment.
 #[derive(Clone, Copy, Debug)]
 enum Path {
-    /// R rises towards 1 from the coordinate ζ = `from`, where T = `distance`.
-    Approaching { from: f64, distance: f64 },
+    /// R rises towards 1 along the coordinate ζ, from T = `origin`.
+    Approaching { origin: f64 },
     /// R = 1; the coordinate is the plastic slip itself.
     FullSliding,
+}
+
+/// A point of the path.
+#[derive(Clone, Copy, Debug)]
+struct Reach {
+    /// ζ, or Δλ in full sliding
+    coordinate: f64,
+    /// Δλ: plastic slip [L]
+    slip: f64,
+    /// dΔλ/d(coordinate)
+    stretch: f64,
+    /// R [-]
+    ratio: f64,
+    /// U = dR/dΔλ [1/L]
+    rate: f64,
+}
+
+impl Path {
+    /// The path from y, and where it starts.
+    fn from(law: &SuperSubloading, y: f64) -> (Self, Reach) {
+        if y < 1.0 {
+            let (zeta, here) = law.approach.locate(y);
+            (Self::Approaching { origin: here.distance }, law.reach(zeta, &here, here.distance))
+        } else {
+            (Self::FullSliding, Self::FullSliding.at(law, 0.0))
+        }
+    }
+
+    fn at(self, law: &SuperSubloading, coordinate: f64) -> Reach {
+        match self {
+            Self::Approaching { origin } => law.reach(coordinate, &law.approach.at(coordinate), origin),
+            Self::FullSliding => Reach { coordinate, slip: coordinate, stretch: 1.0, ratio: 1.0, rate: 0.0 },
+        }
+    }
+
+    /// A coordinate of at least this plastic slip.
+    fn beyond(self, law: &SuperSubloading, slip: f64) -> f64 {
+        match self {
+            Self::Approaching { origin } => law.approach.beyond(origin + slip / law.length),
+            Self::FullSliding => slip,
+        }
+    }
 }
 
 /// Equation (4) of one increment, along a coordinate of plastic slip.
@@ -218,19 +266,10 @@ struct Increment<'a> {
     dt: f64,
 }
 
-/// Equation (4) at one plastic slip.
+/// Equation (4) at one point of the path.
 #[derive(Clone, Copy, Debug)]
 struct Point {
-    /// ζ, or Δλ in full sliding
-    coordinate: f64,
-    /// Δλ: plastic slip [L]
-    slip: f64,
-    /// dΔλ/d(coordinate)
-    stretch: f64,
-    /// R [-]
-    ratio: f64,
-    /// U = dR/dΔλ [1/L]
-    rate: f64,
+    reach: Reach,
     /// μ and ∂μ/∂Δλ
     peak: Peak,
     /// G [F/L²]
@@ -240,68 +279,49 @@ struct Point {
 }
 
 impl Increment<'_> {
+    /// The smallest root of (4), on the path from `start`.
+    fn solve(&self, start: Reach) -> Point {
+        let start = self.point(start);
+        let unique = self.pressure * start.peak.steepest() < self.law.alpha_t;
+        let end = self.path.beyond(self.law, self.trial / self.law.alpha_t);
+        let bracket = if unique { (start.reach.coordinate, end) } else { self.first_root_bracket(start, end) };
+        let mut point = start;
+        bracketed_newton(bracket, self.guess(&start), TOLERANCE * self.trial, |coordinate| {
+            point = self.at(coordinate);
+            (point.residual, -point.slope * point.reach.stretch)
+        });
+        point
+    }
+
     fn at(&self, coordinate: f64) -> Point {
-        let SuperSubloading { alpha_t, r, elastic_core, approach, .. } = *self.law;
-        let (slip, stretch, ratio, rate) = match self.path {
-            Path::Approaching { distance, .. } => {
-                let here = approach.at(coordinate);
-                let length = (1.0 - elastic_core) / r;
-                let slip = ((here.distance - distance) * length).max(0.0);
-                (slip, here.stretch * length, elastic_core + (1.0 - elastic_core) * here.y, r * here.rate)
-            }
-            Path::FullSliding => (coordinate, 1.0, 1.0, 0.0),
-        };
+        self.point(self.path.at(self.law, coordinate))
+    }
+
+    fn point(&self, reach: Reach) -> Point {
+        let Reach { slip, ratio, rate, .. } = reach;
         let peak = self.law.evolution.after(self.old_mu, slip, self.dt);
+        let alpha_t = self.law.alpha_t;
         Point {
-            coordinate,
-            slip,
-            stretch,
-            ratio,
-            rate,
+            reach,
             peak,
             residual: self.trial - alpha_t * slip - ratio * peak.mu * self.pressure,
             slope: alpha_t + self.pressure * (rate * peak.mu + ratio * peak.slope()),
         }
     }
 
-    /// The smallest root of (4).
-    fn solve(&self) -> Point {
-        let start = self.at(self.start());
-        let unique = self.pressure * start.peak.steepest() < self.law.alpha_t;
-        let bracket = if unique { (start.coordinate, self.end()) } else { self.first_root_bracket(start) };
-        let mut point = start;
-        bracketed_newton(bracket, self.guess(&start), TOLERANCE * self.trial, |coordinate| {
-            point = self.at(coordinate);
-            (point.residual, -point.slope * point.stretch)
-        });
-        point
-    }
-
-    /// Coordinate of no plastic slip, where G > 0.
-    fn start(&self) -> f64 {
-        match self.path {
-            Path::Approaching { from, .. } => from,
-            Path::FullSliding => 0.0,
-        }
-    }
-
-    /// Coordinate of all slip plastic or more, where G < 0.
-    fn end(&self) -> f64 {
-        self.coordinate_beyond(self.trial / self.law.alpha_t)
-    }
-
-    /// A coordinate of at least this plastic slip.
-    fn coordinate_beyond(&self, slip: f64) -> f64 {
-        match self.path {
-            Path::Approaching { distance, .. } => {
-                self.law.approach.beyond(distance + slip * self.law.r / (1.0 - self.law.elastic_core))
-            }
-            Path::FullSliding => slip,
-        }
-    }
-
+    /// A first coordinate: a Newton step from the start or, near R = R_e where U is infinite, the elastic answer if
+    /// there is one, else the least plastic slip possible.
     fn guess(&self, start: &Point) -> f64 {
-        start.coordinate + start.residual / (start.slope * start.stretch)
+        let law = self.law;
+        let strength = start.peak.mu * self.pressure;
+        let y = |ratio: f64| (ratio - law.elastic_core) / (1.0 - law.elastic_core);
+        if y(start.reach.ratio) > 0.05 {
+            start.reach.coordinate + start.residual / (start.slope * start.reach.stretch)
+        } else if self.trial < 0.9 * strength {
+            law.approach.locate(y(self.trial / strength)).0
+        } else {
+            self.path.beyond(law, (self.trial - strength).max(0.0) / law.alpha_t)
+        }
     }
 
     /// A bracket that holds the smallest root of (4), and no other unless they cannot be told apart.
@@ -309,34 +329,33 @@ impl Increment<'_> {
     /// Pieces of the bracket are examined from the left with bounds D₋ ≤ D ≤ D₊ of the slope on each: it holds one
     /// root or none if D₋ > 0, none if G stays positive between the lines of slope −D₊ from its left end and −D₋ from
     /// its right, and is halved otherwise.
-    fn first_root_bracket(&self, start: Point) -> (f64, f64) {
-        let end = self.end();
+    fn first_root_bracket(&self, start: Point, end: f64) -> (f64, f64) {
         let mut left = start;
         let mut right = self.at(end);
         for _ in 0..MAX_PIECES {
-            let width = right.coordinate - left.coordinate;
+            let (low, high) = (left.reach.coordinate, right.reach.coordinate);
             let (least, most) = self.slope_bounds(&left, &right);
-            let narrow = width <= LEAST_PIECE * (1.0 + left.coordinate.abs());
+            let narrow = high - low <= LEAST_PIECE * (1.0 + low.abs());
             if right.residual <= 0.0 && (least > 0.0 || narrow) {
-                return (left.coordinate, right.coordinate);
+                return (low, high);
             }
             let crossing_needs = left.residual / most.max(0.0) + right.residual / (-least).max(0.0);
-            let rootless = right.residual > 0.0 && (least > 0.0 || crossing_needs > right.slip - left.slip);
+            let rootless = right.residual > 0.0 && (least > 0.0 || crossing_needs > right.reach.slip - left.reach.slip);
             if rootless || narrow {
                 left = right;
-                right = self.at(end.min(left.coordinate + 2.0 * width));
+                right = self.at(end.min(high + 2.0 * (high - low)));
             } else {
-                right = self.at(left.coordinate + 0.5 * width);
+                right = self.at(low + 0.5 * (high - low));
             }
         }
-        (left.coordinate, end)
+        (left.reach.coordinate, end)
     }
 
     /// Least and greatest D between two points, from the monotony of U, R, μ and |∂μ/∂Δλ|.
     fn slope_bounds(&self, left: &Point, right: &Point) -> (f64, f64) {
         let (flattest, steepest) = left.peak.steepness_until(&right.peak);
-        let least = right.rate * right.peak.mu - right.ratio * steepest;
-        let most = left.rate * left.peak.mu - left.ratio * flattest;
+        let least = right.reach.rate * right.peak.mu - right.reach.ratio * steepest;
+        let most = left.reach.rate * left.peak.mu - left.reach.ratio * flattest;
         (self.law.alpha_t + self.pressure * least, self.law.alpha_t + self.pressure * most)
     }
 }
