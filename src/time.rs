@@ -13,7 +13,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::parameter::InvalidParameter;
+use crate::parameter::{InvalidParameter, require};
 
 /// Time scheme of a step, as the case file names it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -79,17 +79,15 @@ impl Scheme {
     /// # Errors
     /// [`InvalidParameter`] names the one that is out of range.
     pub fn check(self) -> Result<(), InvalidParameter> {
-        let check = |ok: bool, name, value, allowed| {
-            if ok { Ok(()) } else { Err(InvalidParameter { name, value, allowed }) }
-        };
         match self {
             Self::Static => Ok(()),
             Self::Newmark { beta, gamma } => {
-                check(gamma >= 0.5, "gamma", gamma, "at least 0.5 (less adds energy)")?;
-                check(beta > 0.0, "beta", beta, "positive (0.25 is the trapezoidal rule)")
+                require("gamma", gamma, gamma >= 0.5, "it must be at least 0.5: less adds energy")?;
+                require("beta", beta, beta > 0.0, "it must be positive; 0.25 is the trapezoidal rule")
             }
             Self::Hht { alpha } => {
-                check((-1.0 / 3.0..=0.0).contains(&alpha), "alpha", alpha, "between -1/3 and 0 (0 does not damp)")
+                let fits = (-1.0 / 3.0..=0.0).contains(&alpha);
+                require("alpha", alpha, fits, "it must be between -1/3 and 0; 0 does not damp")
             }
         }
     }

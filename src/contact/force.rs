@@ -8,6 +8,8 @@
 //!
 //! In an increment that starts open only the slip after touch counts: Δu_t g₁/(g₁ − g₀).
 
+use serde::{Deserialize, Serialize};
+
 use super::kinematics::{Kinematics, kinematics};
 use super::pair::ContactPair;
 use super::projection::Projection;

@@ -1,8 +1,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::parameters::require_positive;
-use super::{FrictionLaw, FrictionResponse, FrictionState, InvalidParameter, LawFailure, Sliding};
+use super::{FrictionLaw, FrictionResponse, FrictionState, LawFailure, Sliding};
+use crate::parameter::{InvalidParameter, require_positive};
 
 /// Parameters of [`Coulomb`] as the case file writes them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -66,6 +66,10 @@ impl FrictionLaw for Coulomb {
 
     fn stiffness(&self) -> f64 {
         self.alpha_t
+    }
+
+    fn structure(&self, _mu: f64) -> f64 {
+        1.0
     }
 
     fn uniqueness_limit(&self) -> Option<f64> {

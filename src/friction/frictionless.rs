@@ -26,6 +26,10 @@ impl FrictionLaw for Frictionless {
         0.0
     }
 
+    fn structure(&self, _mu: f64) -> f64 {
+        1.0
+    }
+
     fn uniqueness_limit(&self) -> Option<f64> {
         None
     }

@@ -24,7 +24,7 @@ use thiserror::Error;
 pub use approach::Approach;
 pub use coulomb::{Coulomb, CoulombParameters};
 pub use frictionless::Frictionless;
-pub use parameters::{FrictionParameters, InvalidParameter};
+pub use parameters::FrictionParameters;
 pub use super_subloading::{SuperSubloading, SuperSubloadingParameters};
 
 /// What friction remembers at one contact point between increments.
@@ -175,6 +175,9 @@ pub trait FrictionLaw: Debug + Send + Sync {
 
     /// α_t: tangential contact stiffness; the contact stores q²/(2 α_t). 0 without friction [F/L³]
     fn stiffness(&self) -> f64;
+
+    /// 1/R* = μ/μ_k: degree of structure that belongs to a peak coefficient; 1 for a law without structure [-]
+    fn structure(&self, mu: f64) -> f64;
 
     /// Pressure from which the rate problem may have several answers, if there is one [F/L²]
     fn uniqueness_limit(&self) -> Option<f64>;

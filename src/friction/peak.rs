@@ -12,7 +12,7 @@ use super::root::bracketed_newton;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Evolution {
     mu_s: f64,
-    mu_k: f64,
+    pub(super) mu_k: f64,
     kappa: f64,
     xi: f64,
     m: f64,

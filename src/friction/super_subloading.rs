@@ -2,10 +2,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::approach::Progress;
-use super::parameters::{require, require_not_negative, require_positive};
 use super::peak::{Evolution, Peak};
 use super::root::bracketed_newton;
-use super::{Approach, FrictionLaw, FrictionResponse, FrictionState, InvalidParameter, LawFailure, Sliding};
+use super::{Approach, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Sliding};
+use crate::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 
 /// Parameters of [`SuperSubloading`] as the case file writes them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -195,6 +195,10 @@ impl FrictionLaw for SuperSubloading {
 
     fn stiffness(&self) -> f64 {
         self.alpha_t
+    }
+
+    fn structure(&self, mu: f64) -> f64 {
+        mu / self.evolution.mu_k
     }
 
     fn uniqueness_limit(&self) -> Option<f64> {

@@ -1,6 +1,7 @@
 use nalgebra::{Matrix2, Matrix4};
 
-use super::{CauchyStress, ElasticConstants, InvalidParameter, InvertedElement, Lame, Material, MaterialResponse};
+use super::{CauchyStress, ElasticConstants, InvertedElement, Lame, Material, MaterialResponse};
+use crate::parameter::InvalidParameter;
 
 /// Linear elasticity: stress proportional to the small strain, whatever the rotation.
 ///

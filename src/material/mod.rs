@@ -24,7 +24,7 @@ mod saint_venant_kirchhoff;
 pub use hencky::Hencky;
 pub use linear::Linear;
 pub use neo_hookean::NeoHookean;
-pub use parameters::{ElasticConstants, InvalidParameter, Lame, MaterialParameters};
+pub use parameters::{ElasticConstants, Lame, MaterialParameters};
 pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
 
 /// Stress, tangent and stored energy at one deformation gradient (plane strain: F₃₃ = 1).

@@ -2,9 +2,9 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
 use super::{Hencky, Linear, Material, NeoHookean, SaintVenantKirchhoff};
+use crate::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 
 /// A bulk material: its law and its constants.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -44,18 +44,6 @@ pub struct Lame {
     pub shear: f64,
 }
 
-/// A material constant that is not allowed.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[error("\"{name}\" is {value}, but {allowed}")]
-pub struct InvalidParameter {
-    /// key in the case file
-    pub name: &'static str,
-    /// what the case file says
-    pub value: f64,
-    /// what may be said
-    pub allowed: &'static str,
-}
-
 impl MaterialParameters {
     /// The law with its constants checked.
     ///
@@ -78,24 +66,12 @@ impl ElasticConstants {
     /// [`InvalidParameter`] when a constant is out of its range.
     pub fn lame(&self) -> Result<Lame, InvalidParameter> {
         let Self { young, poisson, density } = *self;
-        let refuse = |name, value, allowed| Err(InvalidParameter { name, value, allowed });
-        if !(young > 0.0 && young.is_finite()) {
-            return refuse("E", young, "it must be positive and finite");
-        }
-        if poisson >= 0.5 {
-            return refuse(
-                "nu",
-                poisson,
-                "it must be less than 0.5: an incompressible material is not possible in this formulation; \
-                 use 0.49 with \"element\": \"f_bar\"",
-            );
-        }
-        if poisson.is_nan() || poisson <= -1.0 {
-            return refuse("nu", poisson, "it must be greater than -1 and less than 0.5");
-        }
-        if !(density >= 0.0 && density.is_finite()) {
-            return refuse("density", density, "it must be zero or positive, and finite");
-        }
+        require_positive("E", young)?;
+        let incompressible = "it must be less than 0.5: an incompressible material is not possible in this formulation; \
+                              use 0.49 with \"element\": \"f_bar\"";
+        require("nu", poisson, poisson < 0.5, incompressible)?;
+        require("nu", poisson, poisson > -1.0, "it must be greater than -1 and less than 0.5")?;
+        require_not_negative("density", density)?;
         Ok(Lame {
             lambda: young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)),
             shear: young / (2.0 * (1.0 + poisson)),

@@ -1,7 +1,8 @@
 use nalgebra::Matrix2;
 
 use super::isotropic::{Energy, Invariants};
-use super::{ElasticConstants, InvalidParameter, InvertedElement, Lame, Material, MaterialResponse};
+use super::{ElasticConstants, InvertedElement, Lame, Material, MaterialResponse};
+use crate::parameter::InvalidParameter;
 
 /// Saint Venant–Kirchhoff: second Piola–Kirchhoff stress proportional to the Green strain.
 ///
