@@ -382,6 +382,7 @@ impl<'m> Assembler<'m> {
 
     fn inverted(&self, element: usize, inverted: InvertedElement) -> TrialFailure {
         let body = self.model.bodies[self.model.body_of_element[element]].name.clone();
+        let element = self.model.mesh.element_tags[element];
         TrialFailure::Inverted { element, body, jacobian: inverted.jacobian }
     }
 
@@ -414,7 +415,7 @@ impl<'m> Assembler<'m> {
     ) -> Result<Vec<f64>, TrialFailure> {
         let Trial { old, step, time, .. } = trial;
         let internal = force.to_vec();
-        let undefined = |dof: usize| TrialFailure::Undefined { node: dof / 2, time };
+        let undefined = |dof: usize| TrialFailure::Undefined { node: self.model.mesh.node_tags[dof / 2], time };
         for load in &step.loads.dead {
             for &(node, weight, position) in &load.shares {
                 force[2 * node + load.component] -= weight * load.amplitude.value(position, time);
@@ -512,7 +513,7 @@ impl<'m> Assembler<'m> {
             let start = trial.old.step_start.displacement[dof];
             let target = support.value(self.model.mesh.nodes[dof / 2], trial.time, start);
             if !target.is_finite() {
-                return Err(TrialFailure::Undefined { node: dof / 2, time: trial.time });
+                return Err(TrialFailure::Undefined { node: self.model.mesh.node_tags[dof / 2], time: trial.time });
             }
             system.residual[dof] = self.weight * (u[dof] - target);
             if tangent {

@@ -15,6 +15,12 @@ use crate::output::summary::Summary;
 use crate::output::warnings::Warnings;
 use crate::run;
 
+/// More threads than this are a slip of the keyboard.
+const MOST_THREADS: usize = 1024;
+
+/// What a run writes beside its frames; an earlier run's must not be taken for this one's.
+const RESULTS: [&str; 5] = ["summary.json", "history.csv", "newton.csv", "solid.pvd", "contact.pvd"];
+
 /// Why a command did not end well.
 #[derive(Debug)]
 pub enum Failure {
@@ -115,25 +121,26 @@ fn print(text: &str) {
 
 fn use_threads(threads: Option<usize>) -> Result<(), Failure> {
     let Some(threads) = threads else { return Ok(()) };
-    if threads == 0 {
-        return Err(Failure::BadInput("--threads 0: give at least 1, or leave it out for all cores".into()));
+    if !(1..=MOST_THREADS).contains(&threads) {
+        let message = format!("--threads {threads}: give 1 to {MOST_THREADS}, or leave it out for all cores");
+        return Err(Failure::BadInput(message));
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     pool.map_err(|error| Failure::BadInput(format!("--threads {threads}: {error}")))
 }
 
-/// Make the output folder, and remove the frames of an earlier run.
+/// Make the output folder, and remove the results of an earlier run.
 fn prepare(folder: &Path) -> Result<(), Failure> {
-    let bad = |cause: std::io::Error| {
-        Failure::BadInput(format!("{}: cannot be made the output folder: {cause}", folder.display()))
+    let bad = |what: &Path, cause: std::io::Error| {
+        let message = format!("{}: --out: results cannot be written here: {cause}", what.display());
+        Failure::BadInput(message)
     };
-    std::fs::create_dir_all(folder).map_err(bad)?;
+    std::fs::create_dir_all(folder).map_err(|cause| bad(folder, cause))?;
+    let mut old: Vec<PathBuf> = RESULTS.iter().map(|name| folder.join(name)).filter(|path| path.exists()).collect();
     for frames in ["solid", "contact"] {
         let Ok(entries) = std::fs::read_dir(folder.join(frames)) else { continue };
-        for path in entries.flatten().map(|entry| entry.path()).filter(|path| path.extension() == Some("vtu".as_ref()))
-        {
-            std::fs::remove_file(path).map_err(bad)?;
-        }
+        let paths = entries.flatten().map(|entry| entry.path());
+        old.extend(paths.filter(|path| path.extension() == Some("vtu".as_ref())));
     }
-    Ok(())
+    old.iter().try_for_each(|path| std::fs::remove_file(path).map_err(|cause| bad(path, cause)))
 }

@@ -12,8 +12,8 @@ pub enum TrialFailure {
     /// An element has no volume left.
     #[error("element {element} of body `{body}` is turned inside out (J = {jacobian:.3e})")]
     Inverted {
-        /// element number in the mesh
-        element: usize,
+        /// its tag in the mesh file
+        element: u64,
         /// its body
         body: String,
         /// det F
@@ -32,8 +32,8 @@ pub enum TrialFailure {
     /// A support or load expression has no finite value.
     #[error("a support or load at node {node} is not a finite number at time {time}: check its expression")]
     Undefined {
-        /// node number
-        node: usize,
+        /// its tag in the mesh file
+        node: u64,
         /// run time
         time: f64,
     },

@@ -41,6 +41,9 @@ pub enum NewtonFailure<E> {
     /// The linear system is singular.
     #[error("{0}")]
     Singular(#[from] SingularMatrix),
+    /// Numbers beyond double precision, against which any residual would look small.
+    #[error("the forces are too large for double precision; check the stiffnesses, loads and units")]
+    Overflow,
     /// The residual grows.
     #[error("Newton's method diverges (relative residual {residual:.1e} after {iterations} iterations)")]
     Diverged {
@@ -90,6 +93,9 @@ pub fn solve<E>(
             let size = norm(&system.residual);
             let residual = size / system.forces.max(f64::MIN_POSITIVE);
             let done = iterations.len();
+            if !(system.forces.is_finite() && system.round_off.is_finite()) {
+                return Err(NewtonFailure::Overflow);
+            }
             if let Some(last) = iterations.last_mut() {
                 last.residual = residual;
             }

@@ -8,9 +8,9 @@ use nalgebra::Vector2;
 use super::error::{CaseError, Complaint};
 use super::file::{
     Case, Components, ContactInput, DriveInput, Formulation, IncrementsInput, LoadInput, MasterInput, MeshSource,
-    Method, Place, StepInput,
+    Method, NodeInput, Place, RigidInput, SpringInput, StepInput, TimeInput,
 };
-use super::supported;
+use super::{names, supported};
 use crate::boundary::{
     Amplitude, DeadLoad, Drive, Expression, FollowerPressure, Loads, Motion, Prescribed, Span, Spring,
 };
@@ -24,6 +24,15 @@ use crate::shape;
 
 /// Largest number of Newton iterations that makes sense to allow.
 const MOST_ITERATIONS: usize = 1000;
+
+/// Longest expression that is read; the parser recurses into its brackets [bytes].
+const LONGEST_EXPRESSION: usize = 1000;
+
+/// Shortest increment as a share of the run time at its end: below it, round-off would swallow the increment.
+const SHORTEST_INCREMENT: f64 = 16.0 * f64::EPSILON;
+
+/// Stiffnesses outside this range cannot be squared in double precision.
+const STIFFNESSES: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
 
 type Checked<T> = Result<T, Complaint>;
 
@@ -47,6 +56,7 @@ fn read_mesh(case: &Case, path: &Path) -> Result<Mesh, CaseError> {
 }
 
 fn build_on(case: &Case, mesh: Mesh) -> Checked<Model> {
+    names::check(case)?;
     let (bodies, body_of_element) = bodies(case, &mesh)?;
     let solids = solids(case, &mesh, &bodies, &body_of_element)?;
     let mut model = Model {
@@ -67,7 +77,8 @@ fn build_on(case: &Case, mesh: Mesh) -> Checked<Model> {
     model.watch =
         case.watch.iter().enumerate().map(|(k, name)| watched(&model.mesh, k, name)).collect::<Checked<_>>()?;
     if case.output.every == 0 {
-        return Err(Complaint::new("output.every", "is 0: must be at least 1"));
+        let message = "is 0: must be at least 1 (to write no fields, give \"fields\": false)";
+        return Err(Complaint::new("output.every", message));
     }
     supported::check(case, &model)?;
     Ok(model)
@@ -99,6 +110,7 @@ fn bodies(case: &Case, mesh: &Mesh) -> Checked<(Vec<Body>, Vec<usize>)> {
             ));
         };
         let material = input.material.build().map_err(|error| Complaint::new(format!("{place}.material"), error))?;
+        check_stiffness(&format!("{place}.material"), "the stiffness lambda + 2 G", material.stiffness())?;
         for &element in elements {
             body_of_element[element] = bodies.len();
         }
@@ -163,39 +175,44 @@ fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPa
             check_disjoint(&place, &input.slave, slave, group, master, mesh)?;
             Master::Mesh(Surface::new(&node_lists(master)))
         }
-        MasterInput::Plane { plane } => {
-            let normal = Vector2::from(plane.normal);
-            let length = normal.norm();
-            if !(length > 0.0 && length.is_finite()) {
-                return Err(Complaint::new(format!("{place}.master.plane.normal"), "is [0, 0]: must have a direction"));
-            }
-            Master::Plane(Plane { point: Vector2::from(plane.point), normal: normal / length })
+        MasterInput::Rigid(RigidInput { plane }) => {
+            let given = Vector2::from(plane.normal);
+            let Some(normal) = given.try_normalize(0.0).filter(|normal| normal.norm() > 0.5) else {
+                let message = format!("is [{}, {}]: must have a direction, such as [0, 1]", given.x, given.y);
+                return Err(Complaint::new(format!("{place}.master.plane.normal"), message));
+            };
+            Master::Plane(Plane { point: Vector2::from(plane.point), normal })
         }
     };
     let slave_edges = in_order(&node_lists(slave));
+    if !(2..=4).contains(&input.points) {
+        return Err(Complaint::new(format!("{place}.points"), format!("is {}: must be 2, 3 or 4", input.points)));
+    }
     let points = match input.method {
         Method::NodeToSegment => nodal_points(&slave_edges),
-        Method::GaussToSegment => {
-            if !(2..=4).contains(&input.points) {
-                return Err(Complaint::new(
-                    format!("{place}.points"),
-                    format!("is {}: must be 2, 3 or 4", input.points),
-                ));
-            }
-            gauss_points(&slave_edges, input.points)
-        }
+        Method::GaussToSegment => gauss_points(&slave_edges, input.points),
     };
-    let alpha_n = match input.normal.alpha_n {
-        Some(given) if given > 0.0 => given,
-        Some(given) => {
-            let message = format!("is {given}: must be positive (leave it out for 10 E/h)");
-            return Err(Complaint::new(format!("{place}.normal.alpha_n"), message));
-        }
-        None => default_stiffness(model, slave),
-    };
+    let alpha_n = input.normal.alpha_n.unwrap_or_else(|| default_stiffness(model, slave));
+    if alpha_n <= 0.0 {
+        let message = format!("is {alpha_n}: must be positive (leave it out for 10 E/h)");
+        return Err(Complaint::new(format!("{place}.normal.alpha_n"), message));
+    }
     let law =
         input.friction.build(0.5 * alpha_n).map_err(|error| Complaint::new(format!("{place}.friction"), error))?;
+    check_stiffness(&format!("{place}.normal"), "alpha_n", alpha_n)?;
+    if law.stiffness() > 0.0 {
+        check_stiffness(&format!("{place}.friction"), "alpha_t", law.stiffness())?;
+    }
     Ok(ContactPair { name: name.into(), points, master, alpha_n, law })
+}
+
+fn check_stiffness(place: &str, name: &str, value: f64) -> Checked<()> {
+    if STIFFNESSES.contains(&value) {
+        return Ok(());
+    }
+    let (low, high) = (STIFFNESSES.start(), STIFFNESSES.end());
+    let message = format!("{name} is {value:.6e}: it must lie between {low:e} and {high:e}; choose other units");
+    Err(Complaint::new(place, message))
 }
 
 /// α_n = 10 E/h, the mean over the elements behind the slave; h is the depth of an element behind its edge.
@@ -293,7 +310,7 @@ impl StepBuilder<'_> {
         let span = Span { start: self.start, end: self.start + input.duration };
         self.start = span.end;
         self.increments = input.dt.or(self.increments);
-        let increments = increments(&format!("{place}.dt"), self.increments, input.duration)?;
+        let increments = increments(&format!("{place}.dt"), self.increments, input.duration, span.end)?;
         let released = self.supports(place, input, span)?;
         for (k, load) in input.loads.iter().enumerate() {
             self.load(&format!("{place}.loads[{k}]"), load, span)?;
@@ -332,6 +349,9 @@ impl StepBuilder<'_> {
                     ));
                 }
                 let drive = given.as_ref().map(|given| drive(given, &format!("{place}.{key}"))).transpose()?;
+                if drive.is_none() && !nodes.iter().any(|node| before.contains_key(&(2 * node + component))) {
+                    return Err(frees_nothing(&format!("{place}.{key}"), &support.on));
+                }
                 for &node in &nodes {
                     let motion = drive.clone().map(|drive| Motion::Displacement(drive, span));
                     self.set(2 * node + component, motion);
@@ -339,6 +359,9 @@ impl StepBuilder<'_> {
             }
             let Some(rotation) = &support.rotation else { continue };
             let motion = match rotation {
+                None if !nodes.iter().any(|node| before.contains_key(&(2 * node))) => {
+                    return Err(frees_nothing(&format!("{place}.rotation"), &support.on));
+                }
                 None => None,
                 Some(rotation) => {
                     let turning = |support: &Prescribed| match &support.motion {
@@ -368,16 +391,20 @@ impl StepBuilder<'_> {
     }
 
     fn load(&mut self, place: &str, input: &LoadInput, span: Span) -> Checked<()> {
-        let given = [
-            input.pressure.is_some(),
-            input.traction.is_some(),
-            input.gravity.is_some(),
-            input.force.is_some(),
-            input.spring.is_some(),
+        let ends = [
+            (LoadKind::Pressure, input.pressure.as_ref().map(Option::is_none)),
+            (LoadKind::Traction, input.traction.as_ref().map(Option::is_none)),
+            (LoadKind::Gravity, input.gravity.as_ref().map(Option::is_none)),
+            (LoadKind::Force, input.force.as_ref().map(Option::is_none)),
+            (LoadKind::Spring, input.spring.as_ref().map(Option::is_none)),
         ];
-        if given.iter().filter(|given| **given).count() != 1 {
+        let mut given = ends.into_iter().filter_map(|(kind, ends)| Some((kind, ends?)));
+        let (Some((kind, ends)), None) = (given.next(), given.next()) else {
             let message = "must give exactly one of pressure, traction, gravity, force, spring";
             return Err(Complaint::new(place, message));
+        };
+        if ends && !self.loads.contains_key(&(input.on.to_string(), kind)) {
+            return Err(frees_nothing(place, &input.on));
         }
         if let Some(pressure) = &input.pressure {
             self.pressure(place, input, pressure.as_ref(), span)?;
@@ -444,13 +471,7 @@ impl StepBuilder<'_> {
         Ok(())
     }
 
-    fn spring(
-        &mut self,
-        place: &str,
-        input: &LoadInput,
-        given: Option<&super::file::SpringInput>,
-        span: Span,
-    ) -> Checked<()> {
+    fn spring(&mut self, place: &str, input: &LoadInput, given: Option<&SpringInput>, span: Span) -> Checked<()> {
         let nodes = nodes_at(&self.model.mesh, &input.on, &format!("{place}.on"))?;
         let key = (input.on.to_string(), LoadKind::Spring);
         let before = self.loads.remove(&key).unwrap_or_default();
@@ -500,10 +521,14 @@ impl StepBuilder<'_> {
     }
 }
 
+fn frees_nothing(place: &str, on: &Place) -> Complaint {
+    Complaint::new(place, format!("null ends what an earlier step gave, but none gave this on {on}: check the name"))
+}
+
 fn group_at(input: &LoadInput, place: &str) -> Checked<String> {
     match &input.on {
         Place::Group(name) => Ok(name.clone()),
-        Place::Node { node } => {
+        Place::Node(NodeInput { node }) => {
             Err(Complaint::new(format!("{place}.on"), format!("node {node} cannot carry this load: name a group")))
         }
     }
@@ -512,7 +537,7 @@ fn group_at(input: &LoadInput, place: &str) -> Checked<String> {
 fn nodes_at(mesh: &Mesh, on: &Place, place: &str) -> Checked<Vec<usize>> {
     match on {
         Place::Group(name) => Ok(mesh.nodes_of(mesh.group(name).map_err(|error| Complaint::new(place, error))?)),
-        Place::Node { node } => match mesh.node_tags.iter().position(|tag| tag == node) {
+        Place::Node(NodeInput { node }) => match mesh.node_tags.iter().position(|tag| tag == node) {
             Some(node) => Ok(vec![node]),
             None => Err(Complaint::new(place, format!("the mesh has no node {node}"))),
         },
@@ -555,12 +580,16 @@ fn amplitude(
 fn drive(input: &DriveInput, place: &str) -> Checked<Drive> {
     Ok(match input {
         DriveInput::Constant(value) => Drive::Constant(*value),
-        DriveInput::Rate { rate } => Drive::Rate(*rate),
+        DriveInput::InTime(TimeInput::Rate(rate)) => Drive::Rate(*rate),
         DriveInput::Expression(text) => {
+            if text.len() > LONGEST_EXPRESSION {
+                let message = format!("the expression is longer than {LONGEST_EXPRESSION} characters: use a table");
+                return Err(Complaint::new(place, message));
+            }
             let complain = |error| Complaint::new(place, format!("\"{text}\" cannot be read: {error}"));
             Drive::Expression(Expression::parse(text).map_err(complain)?)
         }
-        DriveInput::Table { table } => {
+        DriveInput::InTime(TimeInput::Table(table)) => {
             if table.is_empty() {
                 return Err(Complaint::new(place, "the table is empty: give pairs [time, value]"));
             }
@@ -573,7 +602,7 @@ fn drive(input: &DriveInput, place: &str) -> Checked<Drive> {
     })
 }
 
-fn increments(place: &str, input: Option<IncrementsInput>, duration: f64) -> Checked<Increments> {
+fn increments(place: &str, input: Option<IncrementsInput>, duration: f64, end: f64) -> Checked<Increments> {
     let input = input.unwrap_or(IncrementsInput { initial: 0.1 * duration, min: None, max: None });
     let min = input.min.unwrap_or(1e-3 * input.initial);
     let max = input.max.unwrap_or(input.initial);
@@ -589,6 +618,11 @@ fn increments(place: &str, input: Option<IncrementsInput>, duration: f64) -> Che
     if input.initial > max || input.initial < min {
         let message = format!("initial = {} must lie between min = {min} and max = {max}", input.initial);
         return Err(Complaint::new(place, message));
+    }
+    let least = SHORTEST_INCREMENT * end;
+    if min < least {
+        let message = format!("is {min:e}: at the time {end:e} increments below {least:.1e} are lost in round-off");
+        return Err(Complaint::new(format!("{place}.min"), message));
     }
     Ok(Increments { initial: input.initial, min, max })
 }

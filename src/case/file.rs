@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer};
 
+use super::choice::Choice;
 use crate::friction::FrictionParameters;
 use crate::material::MaterialParameters;
 use crate::mesh::InlineMesh;
@@ -44,16 +45,20 @@ pub struct Case {
 }
 
 /// A mesh file or a mesh in place.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(
-    untagged,
-    expecting = "expected the path of a mesh file, or a mesh {\"nodes\": …, \"elements\": …, \"edges\": …}"
-)]
+#[derive(Clone, Debug, JsonSchema)]
+#[schemars(untagged)]
 pub enum MeshSource {
     /// Path relative to the case file
     File(String),
     /// Mesh in place
     Inline(InlineMesh),
+}
+
+impl<'de> Deserialize<'de> for MeshSource {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let expecting = "the path of a mesh file, or a mesh {\"nodes\": …, \"elements\": …, \"edges\": …}";
+        Choice { expecting, number: None, text: Self::File, object: Self::Inline }.read(deserializer)
+    }
 }
 
 /// A body.
@@ -104,16 +109,28 @@ fn two() -> usize {
 }
 
 /// The master side.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(untagged, expecting = "expected an edge group, or {\"plane\": {\"point\": [x, y], \"normal\": [x, y]}}")]
+#[derive(Clone, Debug, JsonSchema)]
+#[schemars(untagged)]
 pub enum MasterInput {
     /// Edge group of the mesh
     Group(String),
-    /// Rigid plane
-    Plane {
-        /// the plane
-        plane: PlaneInput,
-    },
+    /// Rigid body given by a formula
+    Rigid(RigidInput),
+}
+
+impl<'de> Deserialize<'de> for MasterInput {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let expecting = "the name of an edge group, or {\"plane\": {\"point\": [x, y], \"normal\": [x, y]}}";
+        Choice { expecting, number: None, text: Self::Group, object: Self::Rigid }.read(deserializer)
+    }
+}
+
+/// A rigid body given by a formula.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RigidInput {
+    /// A half-space
+    pub plane: PlaneInput,
 }
 
 /// A rigid half-space.
@@ -196,23 +213,35 @@ pub struct SupportInput {
 }
 
 /// A group or a single node.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(untagged, expecting = "expected the name of a group, or {\"node\": tag}")]
+#[derive(Clone, Debug, PartialEq, JsonSchema)]
+#[schemars(untagged)]
 pub enum Place {
     /// Group of the mesh
     Group(String),
     /// Single node
-    Node {
-        /// its tag in the mesh file (its number from 0 in a mesh given in place)
-        node: u64,
-    },
+    Node(NodeInput),
+}
+
+impl<'de> Deserialize<'de> for Place {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let expecting = "the name of a group, or {\"node\": tag}";
+        Choice { expecting, number: None, text: Self::Group, object: Self::Node }.read(deserializer)
+    }
+}
+
+/// A single node.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NodeInput {
+    /// Its tag in the mesh file (its number from 0 in a mesh given in place)
+    pub node: u64,
 }
 
 impl std::fmt::Display for Place {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         match self {
             Self::Group(name) => f.write_str(name),
-            Self::Node { node } => write!(f, "node {node}"),
+            Self::Node(NodeInput { node }) => write!(f, "node {node}"),
         }
     }
 }
@@ -228,27 +257,34 @@ pub struct RotationInput {
 }
 
 /// How a quantity varies.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(
-    untagged,
-    deny_unknown_fields,
-    expecting = "expected a number, an expression in x, y, t such as \"0.01*y*t\", {\"rate\": v}, or {\"table\": [[t, v], …]}"
-)]
+#[derive(Clone, Debug, JsonSchema)]
+#[schemars(untagged)]
 pub enum DriveInput {
     /// Value at the end of the step, reached linearly
     Constant(f64),
     /// Expression in the reference position x, y and the run time t
     Expression(String),
-    /// Value at the start of the step plus rate × time since
-    Rate {
-        /// the rate [1/T]
-        rate: f64,
-    },
-    /// Pairs of run time and value
-    Table {
-        /// (time, value), times ascending
-        table: Vec<[f64; 2]>,
-    },
+    /// Variation in time
+    InTime(TimeInput),
+}
+
+impl<'de> Deserialize<'de> for DriveInput {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let expecting =
+            "a number, an expression in x, y, t such as \"0.01*y*t\", {\"rate\": v}, or {\"table\": [[t, v], …]}";
+        Choice { expecting, number: Some(Self::Constant), text: Self::Expression, object: Self::InTime }
+            .read(deserializer)
+    }
+}
+
+/// A variation in time.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum TimeInput {
+    /// Value at the start of the step plus rate × time since [1/T]
+    Rate(f64),
+    /// Pairs of run time and value, times ascending; linear between, constant outside
+    Table(Vec<[f64; 2]>),
 }
 
 /// A load: exactly one kind an entry.

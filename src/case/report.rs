@@ -1,95 +1,321 @@
 //! What `check` prints: how the case was understood.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use super::file::Case;
-use crate::configuration::Configuration;
-use crate::contact::surface::Master;
-use crate::model::Model;
+use serde::Serialize;
+use serde_json::Value;
+
+use super::file::{
+    BodyInput, Case, Components, DriveInput, Formulation, LoadInput, MasterInput, MeshSource, Method, SpringInput,
+    StepInput, TimeInput,
+};
+use crate::contact::pair::ContactPair;
+use crate::mesh::Group;
+use crate::model::{Model, Step};
+use crate::shape::ElementKind;
 
 /// A readable account of a checked case.
 pub fn report(case: &Case, model: &Model) -> String {
+    let mut warnings = Vec::new();
     let mut text = String::new();
-    // Writing to a String cannot fail.
-    let _ = write_report(&mut text, case, model);
+    if !model.title.is_empty() {
+        text += &format!("{}\n\n", model.title);
+    }
+    section(&mut text, "units", case.units.iter().map(|(of, unit)| format!("{of} in {unit}")).collect());
+    section(&mut text, "mesh", mesh(case, model));
+    section(&mut text, "groups", groups(model));
+    section(&mut text, "bodies", bodies(case));
+    section(&mut text, "contacts", contacts(case, model, &mut warnings));
+    section(&mut text, "steps", steps(case, model));
+    section(&mut text, "newton", vec![newton(case)]);
+    section(&mut text, "output", output(case));
+    section(&mut text, "warnings", if warnings.is_empty() { vec!["none".into()] } else { warnings });
     text
 }
 
-fn write_report(out: &mut String, case: &Case, model: &Model) -> std::fmt::Result {
-    if !model.title.is_empty() {
-        writeln!(out, "{}", model.title)?;
+/// Lines behind a heading in the margin; nothing if there are none.
+fn section(text: &mut String, heading: &str, lines: Vec<String>) {
+    for (k, line) in lines.iter().enumerate() {
+        let heading = if k == 0 { heading } else { "" };
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{heading:<10}{line}");
     }
-    writeln!(out, "{} nodes, {} elements, {} dofs", model.mesh.nodes.len(), model.mesh.elements.len(), model.dofs())?;
-    let [low, high] = model.mesh.bounding_box();
-    writeln!(out, "x from {} to {}, y from {} to {}", low.x, high.x, low.y, high.y)?;
-    let groups: Vec<&str> = model.mesh.groups.keys().map(String::as_str).collect();
-    writeln!(out, "groups: {}", groups.join(", "))?;
-    for body in &model.bodies {
-        let input = &case.bodies[&body.name];
-        writeln!(out, "body {}: {} elements, {}", body.name, body.elements.len(), json(&input.material))?;
-    }
-    for pair in &model.contacts {
-        write_contact(out, pair, model, case)?;
-    }
-    for step in &model.steps {
-        let increments = &step.increments;
-        writeln!(
-            out,
-            "step {}: t = {} to {}, {}, increments {} ({} to {}), {} prescribed dofs",
-            step.name,
-            step.span.start,
-            step.span.end,
-            json(&step.scheme),
-            increments.initial,
-            increments.min,
-            increments.max,
-            step.supports.len(),
-        )?;
-    }
-    Ok(())
 }
 
-fn write_contact(
-    out: &mut String,
-    pair: &crate::contact::pair::ContactPair,
-    model: &Model,
-    case: &Case,
-) -> std::fmt::Result {
-    let master = match &pair.master {
-        Master::Mesh(surface) => format!("{} segments", surface.segments.len()),
-        Master::Plane(plane) => format!("a rigid plane with normal ({:.6}, {:.6})", plane.normal.x, plane.normal.y),
-    };
-    let given = if case.contacts[&pair.name].normal.alpha_n.is_some() { "given" } else { "10 E/h" };
-    writeln!(
-        out,
-        "contact {}: {} points against {master}, alpha_n = {:.6e} ({given}), alpha_t = {:.6e}, {}",
-        pair.name,
-        pair.points.len(),
-        pair.alpha_n,
-        pair.law.stiffness(),
-        json(&case.contacts[&pair.name].friction),
-    )?;
-    if let Some(limit) = pair.law.uniqueness_limit() {
-        writeln!(out, "  one answer as long as the pressure stays below {limit:.6e}")?;
+/// Rows with their cells padded to the width of the widest in their column.
+fn aligned(rows: &[[String; 2]]) -> Vec<String> {
+    let width = rows.iter().map(|[name, _]| name.chars().count()).max().unwrap_or(0);
+    rows.iter().map(|[name, rest]| format!("{name:<width$}  {rest}")).collect()
+}
+
+/// A number with at most six digits, in powers of ten where it is very large or small.
+fn number(value: f64) -> String {
+    let rounded = format!("{value:.5e}").parse().unwrap_or(value);
+    match rounded {
+        0.0 => "0".into(),
+        value if (1e-3..1e5).contains(&f64::abs(value)) => format!("{value}"),
+        value => format!("{value:e}"),
     }
+}
+
+fn count(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
+fn mesh(case: &Case, model: &Model) -> Vec<String> {
+    let source = match &case.mesh {
+        MeshSource::File(file) => file.as_str(),
+        MeshSource::Inline(_) => "given in the case file",
+    };
+    let mut kinds: Vec<(ElementKind, usize)> = Vec::new();
+    for element in &model.mesh.elements {
+        match kinds.iter_mut().find(|(kind, _)| *kind == element.kind) {
+            Some((_, count)) => *count += 1,
+            None => kinds.push((element.kind, 1)),
+        }
+    }
+    let kinds: Vec<String> = kinds.iter().map(|(kind, count)| format!("{count} {kind:?}")).collect();
+    let [low, high] = model.mesh.bounding_box();
+    let [x0, x1, y0, y1] = [low.x, high.x, low.y, high.y].map(number);
+    vec![
+        source.into(),
+        format!(
+            "{}, {} ({}), {}",
+            count(model.mesh.nodes.len(), "node"),
+            count(model.mesh.elements.len(), "element"),
+            kinds.join(", "),
+            count(model.dofs(), "dof")
+        ),
+        format!("x from {x0} to {x1}, y from {y0} to {y1}"),
+    ]
+}
+
+fn groups(model: &Model) -> Vec<String> {
+    let size = |group: &Group| match group {
+        Group::Elements(elements) => count(elements.len(), "element"),
+        Group::Edges(edges) => count(edges.len(), "edge"),
+        Group::Nodes(nodes) => count(nodes.len(), "point"),
+    };
+    aligned(&model.mesh.groups.iter().map(|(name, group)| [name.clone(), size(group)]).collect::<Vec<_>>())
+}
+
+fn bodies(case: &Case) -> Vec<String> {
+    let row = |(name, input): (&String, &BodyInput)| {
+        let f_bar = if input.element == Formulation::FBar { ", f_bar elements" } else { "" };
+        [name.clone(), format!("{}{f_bar}", parameters(&input.material, "model", &[]))]
+    };
+    let mut lines = aligned(&case.bodies.iter().map(row).collect::<Vec<_>>());
+    for (name, [vx, vy]) in &case.initial_velocity {
+        lines.push(format!("{name} starts with the velocity ({}, {})", number(*vx), number(*vy)));
+    }
+    lines
+}
+
+/// The law named by `tag`, and its parameters but those in `skip`.
+fn parameters(law: &impl Serialize, tag: &str, skip: &[&str]) -> String {
+    let Ok(Value::Object(fields)) = serde_json::to_value(law) else { return String::new() };
+    let name = fields.get(tag).and_then(Value::as_str).unwrap_or_default();
+    let shown = fields.iter().filter(|(key, value)| *key != tag && !skip.contains(&key.as_str()) && !value.is_null());
+    let shown: Vec<String> = shown.map(|(key, value)| format!("{key} {}", plain(value))).collect();
+    if shown.is_empty() { name.into() } else { format!("{name}: {}", shown.join(", ")) }
+}
+
+fn plain(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        value => value.as_f64().map_or_else(|| value.to_string(), number),
+    }
+}
+
+fn contacts(case: &Case, model: &Model, warnings: &mut Vec<String>) -> Vec<String> {
+    let mut lines = Vec::new();
+    for pair in &model.contacts {
+        lines.push(pair.name.clone());
+        lines.extend(contact(case, pair).into_iter().map(|line| format!("  {line}")));
+        lines.push(format!("  {}", initial_gaps(model, pair, warnings)));
+    }
+    lines
+}
+
+fn contact(case: &Case, pair: &ContactPair) -> Vec<String> {
+    let input = &case.contacts[&pair.name];
+    let master = match &input.master {
+        MasterInput::Group(group) => group.clone(),
+        MasterInput::Rigid(rigid) => {
+            let [point, normal] = [rigid.plane.point, rigid.plane.normal].map(|v| v.map(number).join(", "));
+            format!("the rigid plane through ({point}) with the normal ({normal})")
+        }
+    };
+    let where_evaluated = match input.method {
+        Method::GaussToSegment => format!("gauss_to_segment, {} points an edge", input.points),
+        Method::NodeToSegment => "node_to_segment, a point at each node".into(),
+    };
+    let alpha_n = if input.normal.alpha_n.is_some() { "given" } else { "10 E/h of the elements behind the slave" };
+    let mut lines = vec![
+        format!("slave {} against master {master}", input.slave),
+        format!("{where_evaluated}: {}", count(pair.points.len(), "contact point")),
+        format!("alpha_n {} ({alpha_n})", number(pair.alpha_n)),
+    ];
+    let given = serde_json::to_value(input.friction).ok().and_then(|law| law.get("alpha_t").cloned());
+    if let Some(given) = given {
+        let chosen = if given.is_null() { "alpha_n/2" } else { "given" };
+        lines.push(format!("alpha_t {} ({chosen})", number(pair.law.stiffness())));
+    }
+    lines.push(format!("friction {}", parameters(&input.friction, "law", &["alpha_t"])));
+    if let Some(limit) = pair.law.uniqueness_limit() {
+        let limit = number(limit);
+        lines.push(format!(
+            "one answer while the pressure stays below {limit}; above, slip may weaken faster than alpha_t"
+        ));
+    }
+    lines
+}
+
+fn initial_gaps(model: &Model, pair: &ContactPair, warnings: &mut Vec<String>) -> String {
     let states = pair.initial_states(&Configuration::undeformed(&model.mesh.nodes));
     let gaps: Vec<f64> = states.iter().filter(|state| state.foot.is_some()).map(|state| state.gap).collect();
-    let free = states.len() - gaps.len();
-    match gaps.iter().copied().reduce(f64::min).zip(gaps.iter().copied().reduce(f64::max)) {
-        Some((low, high)) => writeln!(out, "  initial gap from {low:.3e} to {high:.3e}")?,
-        None => writeln!(out, "  warning: no point of the slave faces the master")?,
+    let [low, high] =
+        [gaps.iter().copied().fold(f64::INFINITY, f64::min), gaps.iter().copied().fold(f64::NEG_INFINITY, f64::max)];
+    let mut warn = |message: String| warnings.push(format!("contact `{}`: {message}", pair.name));
+    let beside = count(states.len() - gaps.len(), "contact point");
+    if gaps.is_empty() {
+        warn("no point of the slave faces the master; check which groups are named, and where they lie".into());
+        return format!("initial gap: {beside}, and none faces the master");
     }
-    if free > 0 && !gaps.is_empty() {
-        writeln!(out, "  {free} points face no part of the master")?;
+    if gaps.len() < states.len() {
+        warn(format!("{beside} of the slave face no part of the master"));
     }
-    let overlap = gaps.iter().fold(0.0f64, |m, g| m.max(-g));
-    if overlap > 0.0 {
-        writeln!(out, "  warning: initial overlap of {overlap:.3e}; it presses from the first increment on")?;
+    if low < 0.0 {
+        warn(format!("surfaces overlap by up to {} at the start, and press from the first increment on", number(-low)));
     }
-    Ok(())
+    match low == high {
+        true => format!("initial gap {} everywhere", number(low)),
+        false => format!("initial gap from {} to {}", number(low), number(high)),
+    }
 }
 
-/// The parameters as they stand in the case.
-fn json(parameters: &impl serde::Serialize) -> String {
-    serde_json::to_string(parameters).unwrap_or_default()
+fn steps(case: &Case, model: &Model) -> Vec<String> {
+    let mut lines = Vec::new();
+    let (mut supports, mut loads) = (InForce::new(), InForce::new());
+    for (step, input) in model.steps.iter().zip(&case.steps) {
+        lines.push(step.name.clone());
+        lines.extend(step_lines(step).map(|line| format!("  {line}")));
+        supports.step(written_supports(input));
+        loads.step(input.loads.iter().map(written_load));
+        lines.extend(supports.lines("held").into_iter().chain(loads.lines("loaded")).map(|line| format!("  {line}")));
+        lines.push(format!("  {} prescribed", count(step.supports.len(), "dof")));
+    }
+    lines
+}
+
+fn step_lines(step: &Step) -> [String; 2] {
+    let increments = &step.increments;
+    let scheme = match serde_json::to_value(step.scheme) {
+        Ok(Value::Object(scheme)) => scheme.iter().map(|(name, numbers)| format!("{name} {numbers}")).collect(),
+        scheme => scheme.map(|name| plain(&name)).unwrap_or_default(),
+    };
+    let [initial, min, max] = [increments.initial, increments.min, increments.max].map(number);
+    [
+        format!("time {} to {}, {scheme}", number(step.span.start), number(step.span.end)),
+        format!("increments start at {initial}, at least {min}, at most {max}"),
+    ]
+}
+
+/// What is in force in a step, by place and kind, as it was last written; `null` ends it.
+struct InForce(BTreeMap<(String, &'static str), Written>);
+
+struct Written {
+    text: String,
+    kept: bool,
+}
+
+/// Place, kind and value of one entry of a step.
+type Entry = (String, &'static str, Option<String>);
+
+impl InForce {
+    fn new() -> Self {
+        Self(BTreeMap::new())
+    }
+
+    fn step(&mut self, entries: impl IntoIterator<Item = Entry>) {
+        self.0.values_mut().for_each(|written| written.kept = true);
+        for (on, kind, text) in entries {
+            match text {
+                Some(text) => self.0.insert((on, kind), Written { text, kept: false }),
+                None => self.0.remove(&(on, kind)),
+            };
+        }
+    }
+
+    fn lines(&self, verb: &str) -> Vec<String> {
+        let kept = |written: &Written| if written.kept { " (kept)" } else { "" };
+        let line = |((on, kind), written): (&(String, &str), &Written)| {
+            format!("{verb} {on}: {kind} {}{}", written.text, kept(written))
+        };
+        self.0.iter().map(line).collect()
+    }
+}
+
+fn written_supports(step: &StepInput) -> Vec<Entry> {
+    let mut entries: Vec<Entry> = Vec::new();
+    for support in &step.supports {
+        let mut add = |kind, text| entries.push((support.on.to_string(), kind, text));
+        for (kind, given) in [("ux", &support.ux), ("uy", &support.uy)] {
+            if let Some(given) = given {
+                add(kind, given.as_ref().map(drive));
+            }
+        }
+        if let Some(given) = &support.rotation {
+            let turning = |about: [f64; 2], angle| format!("{angle} about ({})", about.map(number).join(", "));
+            add("rotation", given.as_ref().map(|given| turning(given.about, drive(&given.angle))));
+        }
+    }
+    entries
+}
+
+fn written_load(load: &LoadInput) -> Entry {
+    let LoadInput { on, pressure, traction, gravity, force, spring } = load;
+    let (kind, text) = if let Some(pressure) = pressure {
+        ("pressure", pressure.as_ref().map(drive))
+    } else if let Some(spring) = spring {
+        let stiffness = |spring: &SpringInput| format!("kx {}, ky {}", number(spring.kx), number(spring.ky));
+        ("spring", spring.as_ref().map(stiffness))
+    } else if let Some(traction) = traction {
+        ("traction", traction.as_ref().map(components))
+    } else if let Some(gravity) = gravity {
+        ("gravity", gravity.as_ref().map(components))
+    } else {
+        ("force", force.as_ref().and_then(Option::as_ref).map(components))
+    };
+    (on.to_string(), kind, text)
+}
+
+fn components(of: &Components) -> String {
+    let part = |part: &Option<DriveInput>| part.as_ref().map_or("0".into(), drive);
+    format!("({}, {})", part(&of.x), part(&of.y))
+}
+
+fn drive(drive: &DriveInput) -> String {
+    match drive {
+        DriveInput::Constant(value) => number(*value),
+        DriveInput::Expression(text) => format!("\"{text}\""),
+        DriveInput::InTime(TimeInput::Rate(rate)) => format!("at the rate {}", number(*rate)),
+        DriveInput::InTime(TimeInput::Table(table)) => format!("by a table of {}", count(table.len(), "time")),
+    }
+}
+
+fn newton(case: &Case) -> String {
+    let newton = case.newton;
+    format!("tolerance {}, at most {}", number(newton.tolerance), count(newton.max_iterations, "iteration"))
+}
+
+fn output(case: &Case) -> Vec<String> {
+    let fields = match (case.output.fields, case.output.every) {
+        (false, _) => "no fields".into(),
+        (true, 1) => "fields at every increment".into(),
+        (true, every) => format!("fields every {every} increments, and at the end of each step"),
+    };
+    let watched = if case.watch.is_empty() { "no group".into() } else { case.watch.join(", ") };
+    vec![format!("history watches {watched}"), fields]
 }

@@ -1,4 +1,7 @@
-//! Bodies that float in a static step: found from the supports before anything is solved.
+//! What nothing holds or carries, found before anything is solved: bodies that float in a static step, bodies without
+//! mass in a dynamic one, and nodes outside all bodies.
+
+use std::collections::BTreeSet;
 
 use nalgebra::{Matrix3, RowVector3, Vector2};
 
@@ -10,9 +13,56 @@ use crate::model::{Model, Step};
 /// Share of the stiffest rigid motion below which a motion counts as free.
 const FREE: f64 = 1e-10;
 
+/// Every motion must meet stiffness or, in a dynamic step, mass.
+pub fn check(case: &Case, model: &Model) -> Result<(), Complaint> {
+    for (k, step) in model.steps.iter().enumerate() {
+        check_lone_nodes(k, step, model)?;
+        if step.scheme.coefficients().is_some() {
+            check_mass(k, step, model)?;
+        }
+    }
+    check_floating(case, model)
+}
+
+/// A node of no body meets nothing but its supports and springs.
+fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Result<(), Complaint> {
+    let mut held = vec![false; model.dofs()];
+    let nodes = model.bodies.iter().flat_map(|body| &body.nodes);
+    nodes.for_each(|&node| held[2 * node..2 * node + 2].fill(true));
+    step.supports.iter().for_each(|support| held[support.dof] = true);
+    step.loads.springs.iter().for_each(|spring| held[spring.dof] = true);
+    match held.iter().position(|held| !held) {
+        Some(dof) => Err(Complaint::new(
+            format!("steps[{k}].supports"),
+            format!(
+                "node {} belongs to no element and is free along {}: hold it by a support or a spring",
+                model.mesh.node_tags[dof / 2],
+                ["x", "y"][dof % 2]
+            ),
+        )),
+        None => Ok(()),
+    }
+}
+
+/// Accelerations follow from masses, so a body that may move needs one.
+fn check_mass(k: usize, step: &Step, model: &Model) -> Result<(), Complaint> {
+    let prescribed = |dof: usize| step.supports.iter().any(|support| support.dof == dof);
+    let massless = model.bodies.iter().find(|body| {
+        body.material.density() == 0.0
+            && body.nodes.iter().any(|node| !prescribed(2 * node) || !prescribed(2 * node + 1))
+    });
+    match massless {
+        Some(body) => Err(Complaint::new(
+            format!("bodies.{}.material.density", body.name),
+            format!("is 0, but the dynamic step `{}` (steps[{k}]) needs a mass: give a density", step.name),
+        )),
+        None => Ok(()),
+    }
+}
+
 /// Every group of bodies joined by contact must be held against x, y and rotation by supports or springs in every
 /// static step. A group that touches a rigid plane is left to the solver.
-pub fn check(case: &Case, model: &Model) -> Result<(), Complaint> {
+fn check_floating(case: &Case, model: &Model) -> Result<(), Complaint> {
     for (k, step) in model.steps.iter().enumerate().filter(|(_, step)| step.scheme.coefficients().is_none()) {
         for group in joined_bodies(model) {
             let Some(motion) = free_motion(model, step, &group) else { continue };
@@ -35,17 +85,18 @@ pub fn check(case: &Case, model: &Model) -> Result<(), Complaint> {
 /// Groups of bodies joined by contacts; those that touch a rigid plane are left out.
 fn joined_bodies(model: &Model) -> Vec<Vec<usize>> {
     let body_at = |node: usize| model.bodies.iter().position(|body| body.nodes.binary_search(&node).is_ok());
+    let bodies_of = |nodes: &mut dyn Iterator<Item = usize>| nodes.filter_map(body_at).collect::<BTreeSet<_>>();
     let mut group: Vec<usize> = (0..model.bodies.len()).collect();
     let mut on_plane = vec![false; model.bodies.len()];
     for pair in &model.contacts {
-        let slave = pair.points.first().and_then(|point| point.position.first()).and_then(|&(node, _)| body_at(node));
-        let Some(slave) = slave else { continue };
+        let slaves = bodies_of(&mut pair.points.iter().flat_map(|point| point.position.iter().map(|&(node, _)| node)));
         match &pair.master {
-            Master::Plane(_) => on_plane[slave] = true,
+            Master::Plane(_) => slaves.iter().for_each(|&slave| on_plane[slave] = true),
             Master::Mesh(Surface { segments, .. }) => {
-                let Some(master) = segments.first().and_then(|ends| body_at(ends[0])) else { continue };
-                let (from, to) = (group[slave], group[master]);
-                group.iter_mut().filter(|g| **g == from).for_each(|g| *g = to);
+                // A group of edges may run along several bodies.
+                let masters = bodies_of(&mut segments.iter().map(|ends| ends[0]));
+                let joined: Vec<usize> = slaves.iter().chain(&masters).map(|&body| group[body]).collect();
+                group.iter_mut().filter(|g| joined.contains(g)).for_each(|g| *g = joined[0]);
             }
         }
     }

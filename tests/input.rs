@@ -1,0 +1,607 @@
+//! Bad input, and runs that cannot go on: every failure has a face.
+//!
+//! Bad input ends with exit code 2, a message that names file, key and value, and nothing written. A run that stops
+//! ends with exit code 1, says when and why, and keeps what it computed.
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+/// A block of three elements on a ground of two.
+fn good() -> Value {
+    json!({
+        "mesh": {
+            "nodes": [
+                [0, -1], [2, -1], [4, -1], [0, 0], [2, 0], [4, 0],
+                [0.5, 0], [1.5, 0], [2.5, 0], [3.5, 0], [0.5, 1], [1.5, 1], [2.5, 1], [3.5, 1]
+            ],
+            "elements": {
+                "ground": [[0, 1, 4, 3], [1, 2, 5, 4]],
+                "block": [[6, 7, 11, 10], [7, 8, 12, 11], [8, 9, 13, 12]]
+            },
+            "edges": {
+                "ground_bottom": [[0, 1], [1, 2]], "ground_top": [[3, 4], [4, 5]],
+                "block_bottom": [[6, 7], [7, 8], [8, 9]], "block_top": [[10, 11], [11, 12], [12, 13]]
+            }
+        },
+        "bodies": {
+            "ground": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
+            "block": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}}
+        },
+        "contacts": {"base": {
+            "slave": "block_bottom", "master": "ground_top",
+            "normal": {"alpha_n": 1e5},
+            "friction": {"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "alpha_t": 1e5, "r": 100, "kappa": 10}
+        }},
+        "steps": [{
+            "name": "press", "duration": 1, "dt": {"initial": 0.5, "min": 0.01, "max": 0.5},
+            "supports": [{"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0, "uy": -0.001}]
+        }],
+        "watch": ["block_top"]
+    })
+}
+
+/// The good case with the values at these JSON pointers set.
+fn with(edits: &[(&str, Value)]) -> Value {
+    let mut case = good();
+    for (pointer, value) in edits {
+        let (parent, key) = pointer.rsplit_once('/').expect("a pointer begins with a slash");
+        match case.pointer_mut(parent) {
+            Some(Value::Object(object)) => drop(object.insert(key.into(), value.clone())),
+            Some(Value::Array(list)) => list[key.parse::<usize>().expect("an index")] = value.clone(),
+            _ => panic!("nothing at {parent}"),
+        }
+    }
+    case
+}
+
+fn without(pointer: &str) -> Value {
+    let mut case = good();
+    let (parent, key) = pointer.rsplit_once('/').expect("a pointer begins with a slash");
+    let parent = case.pointer_mut(parent).and_then(Value::as_object_mut).expect("an object");
+    parent.remove(key).expect("the key is there");
+    case
+}
+
+fn fecontact(folder: &Path, arguments: &[&str]) -> Output {
+    let output = Command::new(env!("CARGO_BIN_EXE_fecontact")).current_dir(folder).args(arguments).output();
+    let output = output.expect("the program starts");
+    assert!(!stderr(&output).contains("panicked"), "{arguments:?}: {}", stderr(&output));
+    output
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn write(folder: &Path, name: &str, content: impl AsRef<[u8]>) {
+    fs::write(folder.join(name), content).expect("the temporary folder can be written");
+}
+
+/// The command must end with exit code 2 and one error line that holds all the fragments, and leave no results.
+fn refused(folder: &Path, arguments: &[&str], fragments: &[&str]) {
+    let output = fecontact(folder, arguments);
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?} {fragments:?}: {message}");
+    assert!(message.starts_with("error: "), "{message}");
+    assert!(message.len() < 2000, "a message of {} bytes", message.len());
+    for fragment in fragments {
+        assert!(message.contains(fragment), "`{fragment}` is not in: {message}");
+    }
+    assert!(!folder.join("out").exists(), "results were written: {message}");
+}
+
+fn refused_case(case: impl AsRef<[u8]>, fragments: &[&str]) {
+    let folder = TempDir::new().expect("a temporary folder");
+    write(folder.path(), "bad.json", case);
+    for command in ["run", "check"] {
+        refused(folder.path(), &[command, "bad.json"], &[&["error: bad.json: "], fragments].concat());
+    }
+}
+
+fn refused_edits(edits: &[(&str, Value)], fragments: &[&str]) {
+    refused_case(with(edits).to_string(), fragments);
+}
+
+#[test]
+fn the_good_case_is_good() {
+    let folder = TempDir::new().unwrap();
+    write(folder.path(), "good.json", good().to_string());
+    for arguments in [["check", "good.json"], ["run", "good.json"]] {
+        let output = fecontact(folder.path(), &arguments);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    }
+}
+
+#[test]
+fn unknown_keys_are_named_with_the_nearest() {
+    for (pointer, place, nearest) in [
+        ("/contact", "contact: ", "contacts"),
+        ("/bodies/block/materail", "bodies.block.materail: ", "material"),
+        ("/bodies/block/material/NU", "bodies.block.material.NU: ", "nu"),
+        ("/contacts/base/slaves", "contacts.base.slaves: ", "slave"),
+        ("/contacts/base/normal/alpha", "contacts.base.normal.alpha: ", "alpha_n"),
+        ("/contacts/base/friction/mus", "contacts.base.friction.mus: ", "mu_s"),
+        ("/steps/0/schema", "steps[0].schema: ", "scheme"),
+        ("/steps/0/dt/minimum", "steps[0].dt.minimum: ", "min"),
+        ("/steps/0/supports/1/u", "steps[0].supports[1].u: ", "ux"),
+        ("/mesh/node", "mesh.node: ", "nodes"),
+        ("/newton", "newton.", "tolerance"),
+        ("/output", "output.", "every"),
+    ] {
+        let value = match pointer {
+            "/newton" => json!({"tolerence": 1e-6}),
+            "/output" => json!({"evry": 2}),
+            _ => json!(1),
+        };
+        refused_edits(&[(pointer, value)], &[place, "is not known here", &format!("did you mean `{nearest}`?")]);
+    }
+    let support = |ux: Value| ("/steps/0/supports/1/ux", ux);
+    refused_edits(&[support(json!({"rat": 1}))], &["steps[0].supports[1].ux", "`rat`", "did you mean `rate`?"]);
+    refused_edits(&[support(json!({"rate": 1, "table": []}))], &["steps[0].supports[1].ux", "2 entries"]);
+    refused_edits(&[("/steps/0/supports/1/on", json!({"nod": 1}))], &["supports[1].on.nod", "did you mean `node`?"]);
+    let master = json!({"plane": {"point": [0, 0], "norm": [0, 1]}});
+    refused_edits(&[("/contacts/base/master", master)], &["contacts.base.master.plane.norm", "`normal`"]);
+}
+
+#[test]
+fn wrong_types_are_named() {
+    for (pointer, value, fragments) in [
+        ("/title", json!(3), ["title: ", "is 3, but must be text in quotes"]),
+        ("/bodies/block/material/E", json!("soft"), ["bodies.block.material.E: ", "\"soft\", but must be a number"]),
+        ("/bodies/block/material/nu", json!([0.3]), ["bodies.block.material.nu: ", "a list […], but must be a number"]),
+        ("/contacts/base/friction/mu_s", json!(null), ["contacts.base.friction.mu_s: ", "null, but must be a number"]),
+        ("/contacts/base/points", json!(2.5), ["contacts.base.points: ", "2.5, but must be a whole number"]),
+        ("/contacts/base/points", json!(-2), ["contacts.base.points: ", "-2, but must be a whole number"]),
+        ("/contacts/base/friction/approach", json!("linear"), ["contacts.base.friction.approach: ", "`logarithmic`"]),
+        ("/contacts/base/friction/law", json!("colomb"), ["contacts.base.friction.law: ", "did you mean `coulomb`?"]),
+        ("/contacts/base/method", json!("gauss"), ["contacts.base.method: ", "did you mean `gauss_to_segment`?"]),
+        ("/contacts/base/master", json!(7), ["contacts.base.master: ", "is 7, but must be the name of an edge group"]),
+        ("/bodies/block/material/model", json!("neohooke"), ["bodies.block.material.model: ", "`neo_hookean`"]),
+        ("/steps/0/dt", json!([0.1]), ["steps[0].dt: ", "is a list […], but must be an object {…}"]),
+        ("/steps", json!({}), ["steps: ", "an object {…}, but must be a list"]),
+        ("/steps/0/duration", json!("1 s"), ["steps[0].duration: ", "\"1 s\", but must be a number"]),
+        ("/steps/0/supports/0/uy", json!({}), ["steps[0].supports[0].uy: ", "an object {…} with exactly one key"]),
+        ("/steps/0/supports/0/uy", json!(true), ["steps[0].supports[0].uy: ", "true, but must be a number, an expr"]),
+        ("/steps/0/supports/0/uy", json!({"rate": "x"}), ["steps[0].supports[0].uy", "\"x\", but must be a number"]),
+        ("/initial_velocity", json!({"block": [1, 2, 3]}), ["initial_velocity.block: ", "has 3 entries"]),
+        ("/mesh", json!(["a.msh"]), ["mesh: ", "a list […], but must be the path of a mesh file"]),
+        ("/mesh/nodes/3", json!([1]), ["mesh.nodes[3]", "has 1 entries, but must have 2 numbers"]),
+        ("/output", json!({"fields": 0}), ["output.fields: ", "0, but must be true or false"]),
+    ] {
+        refused_edits(&[(pointer, value)], &fragments);
+    }
+    for (pointer, place, key) in [
+        ("/mesh", "bad.json: ", "mesh"),
+        ("/bodies/block/material/E", "bodies.block.material: ", "E"),
+        ("/bodies/block/material/model", "bodies.block.material: ", "model"),
+        ("/steps/0/name", "steps[0]: ", "name"),
+        ("/contacts/base/slave", "contacts.base: ", "slave"),
+    ] {
+        refused_case(without(pointer).to_string(), &[place, &format!("the key `{key}` is missing here")]);
+    }
+}
+
+#[test]
+fn text_that_is_no_case_is_refused() {
+    refused_case("", &["is empty"]);
+    refused_case(" \n", &["is empty"]);
+    refused_case([0xff, 0xfe, 0x00], &["is not a text file"]);
+    refused_case("mesh: a.msh", &["no JSON value stands at line 1, column 1"]);
+    refused_case("[1, 2]", &["is a list […], but must be an object {…}"]);
+    refused_case("3", &["is 3, but must be an object {…}"]);
+    let text = good().to_string();
+    for length in [1, 20, text.len() / 2, text.len() - 1] {
+        refused_case(&text[..length], &["ends too early, at line 1"]);
+    }
+    refused_case(format!("{text} {text}"), &["goes on after the end"]);
+    refused_case(text.replacen("\"duration\":1", "\"duration\":NaN", 1), &["steps[0].duration: ", "no NaN"]);
+    refused_case(text.replacen("\"duration\":1", "\"duration\":1e999", 1), &["steps[0].duration: ", "too large"]);
+    refused_case("[".repeat(100_000), &["this is not JSON: recursion limit exceeded"]);
+    refused_case(format!("{{\"{}\": 1}}", "x".repeat(1 << 20)), &["is not known here"]);
+}
+
+#[test]
+fn a_key_that_stands_twice_is_refused() {
+    let body = r#"{"material":{"model":"linear","E":1,"nu":0.3}}"#;
+    let text = format!(r#"{{"mesh":"a.msh","bodies":{{"block":{body},"block":{body}}},"steps":[]}}"#);
+    refused_case(text, &["bodies: ", "the key `block` stands here twice"]);
+    refused_case(r#"{"contacts":{"base":{},"base":{}}}"#, &["contacts: ", "the key `base` stands here twice"]);
+    refused_case(r#"{"title":"a","title":"b"}"#, &["the key `title` stands here twice"]);
+}
+
+#[test]
+fn bodies_are_checked() {
+    let material = |key: &str, value: f64| (format!("/bodies/block/material/{key}"), json!(value));
+    for (key, value, allowed) in [
+        ("nu", 0.5, "less than 0.5"),
+        ("nu", -1.0, "greater than -1"),
+        ("E", -1.0, "must be positive"),
+        ("E", 0.0, "must be positive"),
+        ("density", -1e-9, "zero or positive"),
+    ] {
+        let (pointer, value) = material(key, value);
+        refused_edits(&[(&pointer, value)], &["bodies.block.material: ", key, allowed]);
+    }
+    for value in [1e300, 1e-300] {
+        let (pointer, value) = material("E", value);
+        refused_edits(&[(&pointer, value)], &["bodies.block.material: ", "must lie between 1e-100 and 1e100"]);
+    }
+    refused_case(without("/bodies/block").to_string(), &["bodies: ", "`block` of the mesh has no material"]);
+    refused_edits(
+        &[("/bodies/blok", json!({"material": {"model": "linear", "E": 1, "nu": 0}}))],
+        &["bodies.blok: ", "no group `blok` (did you mean `block`?)", "`ground_top`"],
+    );
+    refused_edits(
+        &[("/bodies/block_top", json!({"material": {"model": "linear", "E": 1, "nu": 0}}))],
+        &["bodies.block_top: ", "a group of edges, not of solid elements"],
+    );
+    let triangles = json!([[6, 7, 10], [7, 8, 11], [8, 9, 12]]);
+    let edges = json!({"block_bottom": [[6, 7], [7, 8], [8, 9]], "ground_top": [[3, 4]], "ground_bottom": [[0, 1]]});
+    refused_edits(
+        &[("/mesh/elements/block", triangles), ("/mesh/edges", edges), ("/bodies/block/element", json!("f_bar"))],
+        &["bodies.block.element: ", "f_bar", "Q4", "not for T3"],
+    );
+}
+
+#[test]
+fn contacts_are_checked() {
+    let friction = |key: &str| format!("/contacts/base/friction/{key}");
+    for (key, value, allowed) in [
+        ("mu_s", 0.1, "not less than \"mu_k\", which is 0.2"),
+        ("mu_k", 0.0, "must be positive"),
+        ("alpha_t", 0.0, "must be positive"),
+        ("alpha_t", -1e5, "must be positive"),
+        ("structure", 2.5, "must lie between 1 and mu_s/mu_k = 2"),
+        ("structure", 0.5, "must lie between 1 and mu_s/mu_k = 2"),
+        ("r", 0.0, "must be positive"),
+        ("kappa", -1.0, "zero or positive"),
+        ("elastic_core", 1.0, "less than 1"),
+    ] {
+        refused_edits(&[(&friction(key), json!(value))], &["contacts.base.friction: ", key, allowed]);
+    }
+    for (value, allowed) in [(0.0, "must be positive"), (-1.0, "must be positive"), (1e300, "choose other units")] {
+        let edits = [("/contacts/base/normal/alpha_n", json!(value))];
+        refused_edits(&edits, &["contacts.base.normal", "alpha_n", allowed]);
+    }
+    refused_edits(&[(&friction("alpha_t"), json!(1e300))], &["contacts.base.friction: ", "alpha_t is 1.000000e300"]);
+    refused_edits(&[("/contacts/base/points", json!(7))], &["contacts.base.points: ", "is 7: must be 2, 3 or 4"]);
+    for normal in [json!([0, 0]), json!([1e-300, 0])] {
+        let plane = json!({"plane": {"point": [0, 0], "normal": normal}});
+        refused_edits(&[("/contacts/base/master", plane)], &["contacts.base.master.plane.normal: ", "a direction"]);
+    }
+    refused_edits(
+        &[("/contacts/base/slave", json!("block_botom"))],
+        &["contacts.base.slave: ", "no group `block_botom` (did you mean `block_bottom`?); it has `block`, `block_"],
+    );
+    refused_edits(&[("/contacts/base/slave", json!("block"))], &["contacts.base.slave: ", "not of edges"]);
+    refused_edits(
+        &[("/contacts/base/master", json!("block_bottom"))],
+        &["contacts.base: ", "the edge between nodes 6 and 7 is both slave (`block_bottom`) and master"],
+    );
+}
+
+#[test]
+fn steps_are_checked() {
+    for (pointer, value, fragments) in [
+        ("/steps", json!([]), ["steps: ", "at least one step"]),
+        ("/steps/0/duration", json!(0), ["steps[0].duration: ", "is 0: must be positive"]),
+        ("/steps/0/duration", json!(-1), ["steps[0].duration: ", "is -1: must be positive"]),
+        ("/steps/0/duration", json!(1e300), ["steps[0].dt.min: ", "lost in round-off"]),
+        ("/steps/0/dt/min", json!(0.6), ["steps[0].dt: ", "min = 0.6 is above max = 0.5"]),
+        ("/steps/0/dt/min", json!(0), ["steps[0].dt.min: ", "must be positive"]),
+        ("/steps/0/dt/initial", json!(-0.1), ["steps[0].dt.initial: ", "must be positive"]),
+        ("/steps/0/dt/max", json!(0.1), ["steps[0].dt: ", "initial = 0.5 must lie between"]),
+        ("/steps/0/scheme", json!("newmrk"), ["steps[0].scheme", "did you mean `newmark`?"]),
+        (
+            "/steps/0/scheme",
+            json!({"hht": {"alpha": -0.9}}),
+            ["steps[0].scheme: ", "alpha = -0.9: must be between -1/3"],
+        ),
+        ("/steps/0/scheme", json!({"newmark": {"gamma": 0.1}}), ["steps[0].scheme: ", "gamma = 0.1: must be at least"]),
+        ("/steps/0/scheme", json!({"hht": {}}), ["steps[0].scheme.hht", "the key `alpha` is missing"]),
+        ("/steps/0/scheme", json!({"hht": {"alpha": -0.1}}), ["bodies.block.material.density: ", "needs a mass"]),
+        ("/steps/0/name", json!(""), ["steps[0].name: ", "is empty"]),
+        ("/steps/0/name", json!("press, drag"), ["steps[0].name: ", "','"]),
+        ("/steps/0/name", json!("press\ndrag"), ["steps[0].name: ", "'\\n'"]),
+        ("/watch/0", json!("block_tip"), ["watch[0]: ", "did you mean `block_top`?"]),
+        ("/watch", json!(["block_top", "block_top"]), ["watch[1]: ", "watched already"]),
+        ("/output", json!({"every": 0}), ["output.every: ", "must be at least 1"]),
+        ("/newton", json!({"tolerance": 0}), ["newton.tolerance: ", "between 0 and 1"]),
+        ("/newton", json!({"max_iterations": 0}), ["newton.max_iterations: ", "1 to 1000"]),
+        ("/initial_velocity", json!({"brick": [0, 1]}), ["initial_velocity.brick: ", "the bodies are block, ground"]),
+    ] {
+        refused_edits(&[(pointer, value)], &fragments);
+    }
+    let contact = good()["contacts"]["base"].clone();
+    refused_edits(&[("/contacts", json!({"a,b": contact}))], &["contacts: ", "\"a,b\"", "','"]);
+}
+
+#[test]
+fn supports_are_checked() {
+    refused_edits(
+        &[("/steps/0/supports", json!([]))],
+        &["steps[0].supports: ", "`block` with `ground`", "there is no support at all"],
+    );
+    let alone = [("/contacts", json!({}))];
+    let floating = json!([{"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0}]);
+    refused_edits(
+        &[&alone[..], &[("/steps/0/supports", floating)]].concat(),
+        &["steps[0].supports: ", "`block` can move freely along y", "supports do not hold it"],
+    );
+    let turning = json!([{"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": {"node": 10}, "ux": 0, "uy": 0}]);
+    refused_edits(
+        &[&alone[..], &[("/steps/0/supports", turning)]].concat(),
+        &["steps[0].supports: ", "`block` can move freely", "in rotation"],
+    );
+    for (support, fragments) in [
+        (json!({"on": "top", "ux": 0}), ["steps[0].supports[1].on: ", "no group `top`"]),
+        (json!({"on": {"node": 99}, "ux": 0}), ["steps[0].supports[1].on: ", "the mesh has no node 99"]),
+        (json!({"on": "block_top"}), ["steps[0].supports[1]: ", "prescribes nothing: give ux, uy or rotation"]),
+        (json!({"on": "block_top", "ux": null}), ["steps[0].supports[1].ux: ", "null ends what an earlier step gave"]),
+        (json!({"on": "block_top", "rotation": null}), ["supports[1].rotation: ", "null ends what an earlier step"]),
+        (
+            json!({"on": "block_top", "ux": 0, "rotation": {"about": [0, 0], "angle": 1}}),
+            ["steps[0].supports[1]: ", "gives rotation and ux"],
+        ),
+    ] {
+        refused_edits(&[("/steps/0/supports/1", support)], &fragments);
+    }
+    let mut nodes = good()["mesh"]["nodes"].clone();
+    nodes.as_array_mut().expect("a list").push(json!([9, 9]));
+    refused_edits(
+        &[("/mesh/nodes", nodes), ("/mesh/points", json!({"lone": [14]}))],
+        &["steps[0].supports: ", "node 14 belongs to no element and is free along x"],
+    );
+}
+
+#[test]
+fn amplitudes_are_checked() {
+    for (value, fragment) in [
+        (json!("0.01*z"), "`z` is not one of the variables x, y, t"),
+        (json!("sin("), "\"sin(\" cannot be read"),
+        (json!(""), "cannot be read"),
+        (json!("1 +"), "cannot be read"),
+        (json!("(".repeat(2000)), "longer than 1000 characters"),
+        (json!({"table": []}), "the table is empty"),
+        (json!({"table": [[1, 0], [0, 1]]}), "times of the table must ascend: 0 follows 1"),
+        (json!({"table": [[0, 0], [0, 1]]}), "times of the table must ascend"),
+    ] {
+        refused_edits(&[("/steps/0/supports/1/uy", value)], &["steps[0].supports[1].uy", fragment]);
+    }
+}
+
+#[test]
+fn loads_are_checked() {
+    for (load, fragments) in [
+        (json!({"on": "block", "pressure": 1}), ["steps[0].loads[0].on: ", "of solid elements, not of edges"]),
+        (json!({"on": "block", "gravity": {"y": -9.81}}), ["loads[0].on: ", "give bodies.block.material.density"]),
+        (json!({"on": "block_top", "gravity": {"y": 1}}), ["loads[0].on: ", "there is no body `block_top`"]),
+        (json!({"on": "block_top", "pressure": 1, "force": {"x": 1}}), ["loads[0]: ", "exactly one of pressure"]),
+        (json!({"on": "block_top"}), ["loads[0]: ", "exactly one of pressure"]),
+        (json!({"on": {"node": 3}, "pressure": 1}), ["loads[0].on: ", "node 3 cannot carry this load"]),
+        (json!({"on": "block_top", "spring": {"kx": -1}}), ["loads[0].spring.kx: ", "must be zero or positive"]),
+        (json!({"on": "block_top", "traction": {"z": 1}}), ["loads[0].traction.z: ", "is not known here"]),
+        (json!({"on": "block_top", "pressure": null}), ["loads[0]: ", "null ends what an earlier step gave"]),
+    ] {
+        refused_edits(&[("/steps/0/loads", json!([load]))], &fragments);
+    }
+}
+
+#[test]
+fn files_that_are_no_meshes_are_refused() {
+    let folder = TempDir::new().unwrap();
+    write(folder.path(), "old.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n");
+    write(folder.path(), "cut.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n4 4 1 0\n1 0 0 0 0\n");
+    write(folder.path(), "empty.msh", "");
+    fs::create_dir(folder.path().join("folder.msh")).unwrap();
+    for (mesh, fragments) in [
+        ("nowhere.msh", ["nowhere.msh: ", "there is no such mesh file"]),
+        ("folder.msh", ["folder.msh: ", "not a file but a folder"]),
+        ("old.msh", ["old.msh: ", "MSH format 2.2, and only 4.1 is read"]),
+        ("cut.msh", ["cut.msh: ", "the file was cut short"]),
+        ("empty.msh", ["empty.msh: ", "not a gmsh mesh"]),
+    ] {
+        write(folder.path(), "bad.json", with(&[("/mesh", json!(mesh))]).to_string());
+        refused(folder.path(), &["run", "bad.json"], &[&["error: bad.json: mesh: "], &fragments[..]].concat());
+    }
+}
+
+#[test]
+fn a_hundred_megabytes_of_garbage_are_refused_at_once() {
+    let folder = TempDir::new().unwrap();
+    let mut file = fs::File::create(folder.path().join("garbage")).unwrap();
+    let block: Vec<u8> = (0..1u32 << 20).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
+    (0..100).for_each(|_| file.write_all(&block).unwrap());
+    drop(file);
+    let clock = std::time::Instant::now();
+    refused(folder.path(), &["run", "garbage"], &["error: garbage: ", "larger than 16 MiB"]);
+    write(folder.path(), "bad.json", with(&[("/mesh", json!("garbage"))]).to_string());
+    refused(folder.path(), &["run", "bad.json"], &["garbage", "not a gmsh mesh"]);
+    assert!(clock.elapsed().as_secs() < 10, "it took {:?}", clock.elapsed());
+}
+
+#[test]
+fn paths_and_arguments_are_checked() {
+    let folder = TempDir::new().unwrap();
+    write(folder.path(), "good.json", good().to_string());
+    write(folder.path(), "file", "");
+    refused(folder.path(), &["run", "nowhere.json"], &["nowhere.json: ", "there is no such case file"]);
+    refused(folder.path(), &["run", "."], &["error: .: ", "is a folder"]);
+    refused(folder.path(), &["run", "good.json", "--out", "file/results"], &["file/results: --out: results cannot"]);
+    refused(folder.path(), &["run", "good.json", "--out", "file"], &["file: --out: results cannot be written here"]);
+    refused(folder.path(), &["run", "good.json", "--out", ""], &["--out"]);
+    refused(folder.path(), &["run", "good.json", "--threads", "0"], &["--threads 0: give 1 to"]);
+    refused(folder.path(), &["run", "good.json", "--threads", "1000000"], &["--threads 1000000: give 1 to"]);
+    refused(folder.path(), &["run", "good.json", "--threads", "-1"], &["-1"]);
+    refused(folder.path(), &["run", "good.json", "--threads", "many"], &["many"]);
+    refused(folder.path(), &["walk"], &["walk"]);
+}
+
+/// The command must stop with exit code 1 and all the fragments on stderr and in `summary.json`; gives the rows of
+/// `history.csv`.
+fn stopped(case: &Value, fragments: &[&str]) -> usize {
+    let folder = TempDir::new().unwrap();
+    write(folder.path(), "case.json", case.to_string());
+    let output = fecontact(folder.path(), &["run", "case.json"]);
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    let summary = fs::read_to_string(folder.path().join("out/case/summary.json")).unwrap();
+    let summary: Value = serde_json::from_str(&summary).unwrap();
+    assert_eq!(summary["status"], "stopped");
+    let reason = summary["reason"].as_str().unwrap();
+    for fragment in fragments {
+        assert!(message.contains(fragment), "`{fragment}` is not in: {message}");
+        assert!(reason.contains(fragment), "`{fragment}` is not in the summary: {reason}");
+    }
+    let rows = history_rows(&folder.path().join("out/case"));
+    assert_eq!(summary["increments"], json!(rows));
+    rows
+}
+
+/// Rows below the header of `history.csv`, each with as many cells.
+fn history_rows(results: &Path) -> usize {
+    let text = fs::read_to_string(results.join("history.csv")).unwrap();
+    let columns = text.lines().next().unwrap().split(',').count();
+    assert!(text.ends_with('\n') && text.lines().all(|row| row.split(',').count() == columns), "{text}");
+    text.lines().count() - 1
+}
+
+#[test]
+fn a_body_that_floats_while_solving_is_named_with_its_motion() {
+    let mut case = with(&[
+        ("/steps/0/supports", json!([{"on": "ground_bottom", "ux": 0, "uy": 0}])),
+        ("/steps/0/loads", json!([{"on": "block_top", "pressure": 1}])),
+    ]);
+    for node in 6..14 {
+        let y = &mut case["mesh"]["nodes"][node][1];
+        *y = json!(y.as_f64().unwrap() + 0.1);
+    }
+    let rows = stopped(&case, &["step `press` stopped at time 0", "nothing resists the motion of body `block`"]);
+    assert_eq!(rows, 0);
+}
+
+#[test]
+fn a_load_that_turns_elements_inside_out_stops_with_step_time_and_element() {
+    let mut case = with(&[
+        ("/contacts", json!({})),
+        ("/bodies/block/material/model", json!("saint_venant_kirchhoff")),
+        ("/steps/0/dt", json!({"initial": 0.1, "min": 0.02})),
+    ]);
+    case["steps"][0]["supports"] = json!([
+        {"on": "ground_bottom", "ux": 0, "uy": 0},
+        {"on": "block_bottom", "ux": 0, "uy": 0},
+        {"on": "block_top", "ux": 0, "uy": -2}
+    ]);
+    let rows = stopped(&case, &["step `press` stopped at time 0.", "element ", "body `block` is turned inside out"]);
+    assert!(rows >= 1);
+}
+
+#[test]
+fn an_expression_without_a_value_names_its_node() {
+    let case = with(&[("/steps/0/supports/1/uy", json!("-0.001*ln(0.75 - t)"))]);
+    let rows =
+        stopped(&case, &["a support or load at node 1", "is not a finite number at time", "check its expression"]);
+    assert!(rows >= 1);
+    let case = with(&[("/steps/0/loads", json!([{"on": "block_top", "pressure": "1/(t - t)"}]))]);
+    assert_eq!(stopped(&case, &["a support or load at node", "check its expression"]), 0);
+}
+
+#[test]
+fn numbers_beyond_double_precision_stop_the_run() {
+    let fragment = "step `press` stopped at time 0: ";
+    for value in [-1e300, 1e300] {
+        stopped(&with(&[("/steps/0/supports/1/uy", json!(value))]), &[fragment]);
+    }
+    let load = |load: Value| with(&[("/steps/0/loads", json!([load]))]);
+    stopped(&load(json!({"on": "ground_top", "force": {"x": 1e300}})), &[fragment, "too large for double precision"]);
+    stopped(&load(json!({"on": "ground_top", "pressure": -1e300})), &[fragment, "too large for double precision"]);
+    refused_edits(&[("/mesh/nodes/6", json!([-1e300, 1e300]))], &["mesh: element 0 of `block`"]);
+}
+
+#[test]
+fn results_are_overwritten_and_paths_may_hold_spaces() {
+    let folder = TempDir::new().unwrap();
+    let inside = folder.path().join("my cases");
+    fs::create_dir(&inside).unwrap();
+    write(&inside, "a case.json", good().to_string());
+    let absolute = folder.path().join("my results");
+    for out in ["../my results", absolute.to_str().unwrap()] {
+        let output = fecontact(&inside, &["run", "a case.json", "--quiet", "--out", out]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        assert_eq!(stderr(&output), "");
+        assert_eq!(history_rows(&absolute), 2);
+        assert!(absolute.join("solid/00002.vtu").exists() && absolute.join("solid.pvd").exists());
+    }
+    write(&absolute, "notes.txt", "mine");
+    let quick = with(&[("/output", json!({"fields": false}))]).to_string();
+    write(&inside, "a case.json", &quick);
+    fecontact(&inside, &["run", "a case.json", "--out", "../my results"]);
+    assert!(!absolute.join("solid.pvd").exists() && !absolute.join("solid/00000.vtu").exists(), "old frames are gone");
+    assert!(absolute.join("notes.txt").exists(), "what is not ours stays");
+
+    fecontact(&inside, &["run", "a case.json"]);
+    assert!(inside.join("out/a case/summary.json").exists());
+}
+
+#[test]
+fn bad_input_leaves_earlier_results_alone() {
+    let folder = TempDir::new().unwrap();
+    write(folder.path(), "case.json", good().to_string());
+    fecontact(folder.path(), &["run", "case.json"]);
+    let before = fs::read(folder.path().join("out/case/summary.json")).unwrap();
+    write(folder.path(), "case.json", "{}");
+    assert_eq!(fecontact(folder.path(), &["run", "case.json"]).status.code(), Some(2));
+    assert_eq!(fs::read(folder.path().join("out/case/summary.json")).unwrap(), before);
+}
+
+#[test]
+fn check_tells_what_was_understood() {
+    let folder = TempDir::new().unwrap();
+    let mut case = with(&[("/contacts/base/normal", json!({})), ("/mesh/nodes/6/1", json!(-0.01))]);
+    case["contacts"]["base"]["friction"].as_object_mut().unwrap().remove("alpha_t");
+    write(folder.path(), "case.json", case.to_string());
+    let output = fecontact(folder.path(), &["check", "case.json"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    for part in [
+        "14 nodes, 5 elements (5 Q4), 28 dofs",
+        "block_bottom   3 edges",
+        "neo_hookean: E 1000",
+        "6 contact points",
+        "alpha_n 13439.4 (10 E/h of the elements behind the slave)",
+        "alpha_t 6719.72 (alpha_n/2)",
+        "surfaces overlap by up to 0.007",
+        "increments start at 0.5, at least 0.01, at most 0.5",
+        "held block_top: uy -0.001",
+    ] {
+        assert!(text.contains(part), "`{part}` is not in:\n{text}");
+    }
+    assert!(!folder.path().join("out").exists());
+}
+
+proptest::proptest! {
+    #[test]
+    fn no_text_makes_the_expression_parser_panic(text in "[-+*/^()xyt0-9. a-z{},πé]{0,40}") {
+        let _ = fecontact::boundary::Expression::parse(&text);
+    }
+
+    #[test]
+    fn no_slip_of_the_keyboard_makes_the_reader_panic(
+        place in 0.0..1.0f64,
+        removed in 0..4usize,
+        typed in "[-0-9.eE{}\\[\\]\",:a-z]{0,3}",
+    ) {
+        let mut text = good().to_string();
+        let start = (place * text.len() as f64) as usize;
+        text.replace_range(start..(start + removed).min(text.len()), &typed);
+        let folder = TempDir::new().unwrap();
+        let path = folder.path().join("case.json");
+        fs::write(&path, text).unwrap();
+        let model = fecontact::case::read(&path).and_then(|case| fecontact::case::build(&case, &path));
+        let _ = model.map_err(|error| error.to_string());
+    }
+}

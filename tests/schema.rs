@@ -1,0 +1,89 @@
+//! The schema that `fecontact schema` prints: it accepts the cases of this repository, refuses bad ones, and explains
+//! every key.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::{Value, json};
+
+fn schema() -> Value {
+    let output = Command::new(env!("CARGO_BIN_EXE_fecontact")).arg("schema").output().unwrap();
+    assert!(output.status.success());
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn cases(folder: &Path) -> Vec<PathBuf> {
+    let paths = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let (folders, files): (Vec<_>, Vec<_>) = paths.partition(|path| path.is_dir());
+    let files = files.into_iter().filter(|path| path.extension() == Some("json".as_ref()));
+    files.chain(folders.iter().flat_map(|folder| cases(folder))).collect()
+}
+
+#[test]
+fn every_case_is_valid() {
+    let validator = jsonschema::validator_for(&schema()).unwrap();
+    let cases = cases(&Path::new(env!("CARGO_MANIFEST_DIR")).join("cases"));
+    assert!(!cases.is_empty());
+    for path in cases {
+        let case: Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
+        let errors: Vec<String> =
+            validator.iter_errors(&case).map(|error| format!("{}: {error}", error.instance_path())).collect();
+        assert!(errors.is_empty(), "{}: {errors:?}", path.display());
+    }
+}
+
+#[test]
+fn bad_cases_are_not() {
+    let validator = jsonschema::validator_for(&schema()).unwrap();
+    let good = json!({
+        "mesh": "a.msh",
+        "bodies": {"block": {"material": {"model": "linear", "E": 1, "nu": 0.3}}},
+        "contacts": {"base": {"slave": "a", "master": "b", "friction": {"law": "coulomb", "mu": 0.3}}},
+        "steps": [{"name": "press", "duration": 1, "supports": [{"on": "top", "ux": 0, "uy": {"rate": 1}}]}]
+    });
+    assert!(validator.is_valid(&good));
+    for (pointer, key, value) in [
+        ("", "contact", json!({})),
+        ("", "steps", json!({})),
+        ("", "mesh", json!(3)),
+        ("/bodies/block", "colour", json!("red")),
+        ("/bodies/block/material", "young", json!(1)),
+        ("/bodies/block/material", "E", json!("soft")),
+        ("/bodies/block/material", "model", json!("rubber")),
+        ("/contacts/base", "points", json!(2.5)),
+        ("/contacts/base", "master", json!({"plane": {"point": [0, 0]}})),
+        ("/contacts/base/friction", "mus", json!(1)),
+        ("/steps/0", "scheme", json!("newmrk")),
+        ("/steps/0", "dt", json!({"min": 1})),
+        ("/steps/0/supports/0", "uz", json!(0)),
+        ("/steps/0/supports/0", "ux", json!({"rat": 1})),
+        ("/steps/0/supports/0", "on", json!({"node": -1})),
+    ] {
+        let mut bad = good.clone();
+        bad.pointer_mut(pointer).unwrap()[key] = value.clone();
+        assert!(!validator.is_valid(&bad), "{pointer}/{key}: {value} is accepted");
+    }
+}
+
+#[test]
+fn every_key_is_explained() {
+    let mut silent = Vec::new();
+    find_silent(&schema(), "", &mut silent);
+    assert!(silent.is_empty(), "no description at {silent:#?}");
+}
+
+fn find_silent(schema: &Value, place: &str, silent: &mut Vec<String>) {
+    for (key, property) in schema.get("properties").and_then(Value::as_object).into_iter().flatten() {
+        if property.get("description").and_then(Value::as_str).is_none_or(str::is_empty) {
+            silent.push(format!("{place}/{key}"));
+        }
+    }
+    match schema {
+        Value::Object(object) => {
+            object.iter().for_each(|(key, value)| find_silent(value, &format!("{place}/{key}"), silent))
+        }
+        Value::Array(list) => list.iter().for_each(|value| find_silent(value, place, silent)),
+        _ => {}
+    }
+}
