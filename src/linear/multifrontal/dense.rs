@@ -6,7 +6,7 @@ use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
 use faer::{Accum, MatMut, MatRef, Par};
 
 /// Columns that are eliminated one by one; more are halved, so that most of the work is a matrix product.
-const NARROW: usize = 16;
+const NARROW: usize = 8;
 
 /// Operations of a product that is not worth sharing out.
 const SMALL_PRODUCT: usize = 1 << 22;

@@ -134,9 +134,9 @@ impl Supernode {
         let width = self.width();
         let size = width * (width + 1) / 2 + width * self.below;
         let allowed = match width {
-            ..=4 => 1.0,
-            ..=8 => 0.8,
-            ..=32 => 0.1,
+            0..=4 => 1.0,
+            5..=8 => 0.8,
+            9..=32 => 0.1,
             _ => 0.05,
         };
         self.zeros as f64 <= allowed * size as f64
