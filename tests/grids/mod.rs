@@ -7,9 +7,9 @@ use fecontact::linear::{Pattern, SparseMatrix};
 /// Add the 2×2 matrix `k` at a pair of nodes.
 pub fn add(matrix: &mut SparseMatrix, row: usize, column: usize, k: [[f64; 2]; 2]) {
     let block = matrix.pattern.block(row, column).expect("the nodes are coupled");
-    for i in 0..2 {
-        for j in 0..2 {
-            matrix.values[block.value(i, j)] += k[i][j];
+    for (i, values) in k.into_iter().enumerate() {
+        for (j, value) in values.into_iter().enumerate() {
+            matrix.values[block.value(i, j)] += value;
         }
     }
 }
