@@ -1,9 +1,11 @@
 //! Sparse matrices of two unknowns a node, and the linear solvers behind one trait.
 
 mod lu;
+mod multifrontal;
 mod sparse;
 
 pub use lu::SparseLu;
+pub use multifrontal::Multifrontal;
 pub use sparse::{BlockPosition, Pattern, SparseMatrix};
 
 use thiserror::Error;
@@ -26,35 +28,88 @@ pub trait LinearSolver {
 
     /// Overwrite b with A⁻¹ b of the last factorized matrix.
     fn solve(&mut self, b: &mut [f64]);
+
+    /// Pivots of the last factorization that vanished and were replaced: what [`solve`](Self::solve) gives needs
+    /// refinement then, and may not satisfy the equations even so.
+    fn perturbed_pivots(&self) -> usize {
+        0
+    }
 }
 
 /// A solution and how well it satisfies its equations.
 pub struct Solution {
     /// x
     pub x: Vec<f64>,
-    /// ‖A x − b‖/‖b‖ after one step of iterative refinement [-]
+    /// ‖A x − b‖/‖b‖ after iterative refinement [-]
     pub residual: f64,
+    /// maxᵢ |b − A x|ᵢ / (|A| |x| + |b|)ᵢ: the relative change of the values of A and b that makes x exact [-]
+    pub backward_error: f64,
+    /// Pivots that vanished and were replaced
+    pub perturbed_pivots: usize,
 }
 
-/// Factorize A, solve A x = b and refine once.
+/// Backward error that needs no refinement.
+const EXACT: f64 = 1e-14;
+
+/// Most steps of refinement.
+const REFINEMENTS: usize = 3;
+
+/// Backward error above which a system with vanished pivots counts as singular.
+const HOPELESS: f64 = 1e-6;
+
+/// Factorize A, solve A x = b and refine x until its backward error is small or no longer falls.
+///
+/// ```text
+/// d = (L U)⁻¹ (b − A x),   x ← x + d
+/// ```
+///
+/// A system whose matrix lost pivots may still have a solution; see [`Solution::perturbed_pivots`].
 ///
 /// # Errors
-/// [`SingularMatrix`] when the factorization fails or the solution is not finite.
+/// [`SingularMatrix`] when the factorization fails, the solution is not finite, or pivots vanished and refinement
+/// cannot make up for them.
+///
+/// Source: Arioli, Demmel & Duff (1989), Solving sparse linear systems with sparse backward error, doi:10.1137/0610013.
 pub fn solve(solver: &mut dyn LinearSolver, matrix: &SparseMatrix, b: &[f64]) -> Result<Solution, SingularMatrix> {
     solver.factorize(matrix)?;
     let mut x = b.to_vec();
     solver.solve(&mut x);
-    let mut correction = matrix.residual(&x, b);
-    solver.solve(&mut correction);
-    for (x, d) in x.iter_mut().zip(&correction) {
-        *x += d;
+    let (mut residual, mut backward_error) = backward_error(matrix, &x, b);
+    for _ in 0..REFINEMENTS {
+        if backward_error <= EXACT {
+            break;
+        }
+        let mut correction = residual.clone();
+        solver.solve(&mut correction);
+        let refined: Vec<f64> = x.iter().zip(&correction).map(|(x, d)| x + d).collect();
+        let (new_residual, new_error) = self::backward_error(matrix, &refined, b);
+        if new_error >= backward_error {
+            break;
+        }
+        (x, residual, backward_error) = (refined, new_residual, new_error);
     }
     if !x.iter().all(|v| v.is_finite()) {
         return Err(SingularMatrix { detail: "the solution is not finite: a pivot vanished".into() });
     }
+    let perturbed_pivots = solver.perturbed_pivots();
     let size = norm(b);
-    let residual = if size > 0.0 { norm(&matrix.residual(&x, b)) / size } else { 0.0 };
-    Ok(Solution { x, residual })
+    let residual = if size > 0.0 { norm(&residual) / size } else { 0.0 };
+    if perturbed_pivots > 0 && residual > HOPELESS {
+        return Err(SingularMatrix { detail: format!("{perturbed_pivots} pivots vanished") });
+    }
+    Ok(Solution { x, residual, backward_error, perturbed_pivots })
+}
+
+/// b − A x and its largest share of |A| |x| + |b|.
+fn backward_error(matrix: &SparseMatrix, x: &[f64], b: &[f64]) -> (Vec<f64>, f64) {
+    let (residual, sizes) = matrix.residual_and_size(x, b);
+    let share = |(r, size): (&f64, &f64)| match *r {
+        0.0 => 0.0,
+        r if r.is_finite() => r.abs() / size,
+        _ => f64::INFINITY,
+    };
+    let largest = residual.iter().zip(&sizes).map(share).fold(0.0, f64::max);
+    (residual, largest)
 }
 
 /// Euclidean norm ‖v‖.

@@ -69,6 +69,18 @@ impl Pattern {
         4 * self.rows.len()
     }
 
+    /// Starts of the columns and the row nodes in them (compressed columns of the node graph).
+    pub(super) fn columns(&self) -> (&[usize], &[usize]) {
+        (&self.starts, &self.rows)
+    }
+
+    /// Positions of the blocks in the column of `node`, in the order of [`Self::neighbours`].
+    pub(super) fn column(&self, node: usize) -> impl Iterator<Item = BlockPosition> {
+        let blocks = self.starts[node + 1] - self.starts[node];
+        let first = 4 * self.starts[node];
+        (0..blocks).map(move |k| BlockPosition { first: (first + 2 * k) as u32, column_length: 2 * blocks as u32 })
+    }
+
     /// Position of the block (row node, column node), if the two are coupled.
     pub fn block(&self, row: usize, column: usize) -> Option<BlockPosition> {
         let neighbours = self.neighbours(column);
@@ -180,5 +192,23 @@ impl SparseMatrix {
     /// b − A x.
     pub fn residual(&self, x: &[f64], b: &[f64]) -> Vec<f64> {
         self.multiply(x).iter().zip(b).map(|(ax, b)| b - ax).collect()
+    }
+
+    /// b − A x and |A| |x| + |b|: the residual, and what each of its terms sums up.
+    pub fn residual_and_size(&self, x: &[f64], b: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let mut residual = b.to_vec();
+        let mut size: Vec<f64> = b.iter().map(|b| b.abs()).collect();
+        let mut values = self.values.chunks_exact(2);
+        for node in 0..self.pattern.nodes() {
+            for x in &x[2 * node..2 * node + 2] {
+                for (&row, pair) in self.pattern.neighbours(node).iter().zip(&mut values) {
+                    for (i, a) in pair.iter().enumerate() {
+                        residual[2 * row + i] -= a * x;
+                        size[2 * row + i] += (a * x).abs();
+                    }
+                }
+            }
+        }
+        (residual, size)
     }
 }

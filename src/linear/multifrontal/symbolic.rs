@@ -1,0 +1,262 @@
+//! What depends on the pattern alone: fronts, their rows, and where every value goes.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::super::{BlockPosition, Pattern, SingularMatrix};
+use super::order::order;
+use super::tree::{Elimination, Supernode, supernodes};
+
+/// A dense front: `pivots` unknowns are eliminated, `below` unknowns get the contribution.
+///
+/// ```text
+/// [F₁₁ F₁₂]   pivots        F₁₁ = P L₁₁ U₁₁
+/// [F₂₁ F₂₂]   below         F₂₂ − L₂₁ U₁₂ goes to the parent
+/// ```
+pub struct Front {
+    /// First unknown eliminated here, in the order of elimination
+    pub first: usize,
+    /// Number of unknowns eliminated here
+    pub pivots: usize,
+    /// Nodes below the pivots, as positions in the order of elimination, ascending
+    pub rows: Vec<u32>,
+    /// Row in the parent's front of the first unknown of each node in `rows`
+    pub to_parent: Vec<u32>,
+    /// The fronts whose contributions are added to this one
+    pub children: Vec<u32>,
+    /// Where the factors lie: L (all rows × pivots), then U₁₂ (pivots × below), by columns
+    pub values: Range<usize>,
+    /// The blocks of A that go to the columns of the pivots
+    pub lower: Range<usize>,
+    /// The blocks of A that go to U₁₂
+    pub upper: Range<usize>,
+}
+
+impl Front {
+    /// Unknowns below the pivots.
+    pub fn below(&self) -> usize {
+        2 * self.rows.len()
+    }
+
+    /// Rows of the front.
+    pub fn size(&self) -> usize {
+        self.pivots + self.below()
+    }
+
+    /// Floating-point operations: LU of the pivots, both panels, the contribution.
+    fn work(&self) -> f64 {
+        let (k, r) = (self.pivots as f64, self.below() as f64);
+        2.0 / 3.0 * k * k * k + 2.0 * k * k * r + 2.0 * k * r * r
+    }
+}
+
+/// A 2×2 block of A and the place of its first value in the panel it goes to.
+pub struct Entry {
+    pub block: BlockPosition,
+    pub target: u32,
+}
+
+/// Fronts in postorder: children before parents, every subtree contiguous.
+pub struct Symbolic {
+    pub pattern: Arc<Pattern>,
+    /// Node at each position of the order of elimination
+    pub nodes: Vec<usize>,
+    pub fronts: Vec<Front>,
+    pub entries: Vec<Entry>,
+    /// Ranges of fronts that are whole subtrees, light enough to share out among threads. The fronts between are heavy.
+    pub forests: Vec<Range<usize>>,
+    /// The most values that contributions hold at a time
+    pub contributions: usize,
+}
+
+impl Symbolic {
+    pub fn new(pattern: Arc<Pattern>) -> Result<Self, SingularMatrix> {
+        let elimination = Elimination::new(&pattern, order(&pattern)?);
+        let supernodes = supernodes(&elimination);
+        let mut fronts = fronts(&pattern, &elimination, &supernodes);
+        let entries = entries(&pattern, &elimination, &mut fronts);
+        let forests = forests(&fronts);
+        let contributions = largest_stack(&fronts, &forests);
+        Ok(Self { pattern, nodes: elimination.nodes, fronts, entries, forests, contributions })
+    }
+
+    /// Number of values in the factors.
+    pub fn values(&self) -> usize {
+        self.fronts.last().map_or(0, |front| front.values.end)
+    }
+}
+
+/// Row structure: what A couples with the pivots, and what the children pass on.
+fn fronts(pattern: &Pattern, elimination: &Elimination, supernodes: &[Supernode]) -> Vec<Front> {
+    let owner = owners(supernodes, elimination.nodes.len());
+    let mut fronts: Vec<Front> = Vec::with_capacity(supernodes.len());
+    let mut families: Vec<Vec<u32>> = vec![Vec::new(); supernodes.len()];
+    let mut seen = vec![usize::MAX; elimination.nodes.len()];
+    let mut start = 0;
+    for (s, &Supernode { first, end, below, .. }) in supernodes.iter().enumerate() {
+        let mut rows = Vec::with_capacity(below);
+        let mut add = |position: usize| {
+            if position >= end && seen[position] != s {
+                seen[position] = s;
+                rows.push(position as u32);
+            }
+        };
+        for &node in &elimination.nodes[first..end] {
+            pattern.neighbours(node).iter().for_each(|&neighbour| add(elimination.positions[neighbour]));
+        }
+        let children = std::mem::take(&mut families[s]);
+        for &child in &children {
+            fronts[child as usize].rows.iter().for_each(|&row| add(row as usize));
+        }
+        rows.sort_unstable();
+        for &child in &children {
+            let child = &mut fronts[child as usize];
+            child.to_parent = places(&child.rows, first, end, &rows);
+        }
+        if let Some(&row) = rows.first() {
+            families[owner[row as usize]].push(s as u32);
+        }
+        let pivots = 2 * (end - first);
+        let length = pivots * (pivots + 4 * rows.len());
+        let values = start..start + length;
+        start += length;
+        fronts.push(Front {
+            first: 2 * first,
+            pivots,
+            rows,
+            to_parent: Vec::new(),
+            children,
+            values,
+            lower: 0..0,
+            upper: 0..0,
+        });
+    }
+    fronts
+}
+
+/// The supernode of each position.
+fn owners(supernodes: &[Supernode], positions: usize) -> Vec<usize> {
+    let mut owners = vec![0; positions];
+    for (s, supernode) in supernodes.iter().enumerate() {
+        owners[supernode.first..supernode.end].fill(s);
+    }
+    owners
+}
+
+/// Where the nodes `wanted` lie in a front of the positions `first..end` and then `rows`. All lists ascend.
+fn places(wanted: &[u32], first: usize, end: usize, rows: &[u32]) -> Vec<u32> {
+    let mut k = 0;
+    let place = |&position: &u32| {
+        let position = position as usize;
+        if position < end {
+            return 2 * (position - first) as u32;
+        }
+        while (rows[k] as usize) < position {
+            k += 1;
+        }
+        2 * (end - first + k) as u32
+    };
+    wanted.iter().map(place).collect()
+}
+
+/// Each block of A goes to the front that eliminates the first of its two nodes.
+fn entries(pattern: &Pattern, elimination: &Elimination, fronts: &mut [Front]) -> Vec<Entry> {
+    let Elimination { nodes, positions, .. } = elimination;
+    let mut entries = Vec::with_capacity(pattern.values() / 4);
+    let mut place = vec![0; nodes.len()];
+    for front in fronts {
+        let (first, end) = (front.first / 2, (front.first + front.pivots) / 2);
+        let (size, pivots) = (front.size(), front.pivots);
+        for (k, position) in (first..end).chain(front.rows.iter().map(|&row| row as usize)).enumerate() {
+            place[position] = 2 * k;
+        }
+        let start = entries.len();
+        for column in first..end {
+            for (&row, block) in pattern.neighbours(nodes[column]).iter().zip(pattern.column(nodes[column])) {
+                if positions[row] >= first {
+                    let target = place[positions[row]] + place[column] * size;
+                    entries.push(Entry { block, target: target as u32 });
+                }
+            }
+        }
+        front.lower = start..entries.len();
+        for row in first..end {
+            for &column in pattern.neighbours(nodes[row]).iter().filter(|&&column| positions[column] >= end) {
+                if let Some(block) = pattern.block(nodes[row], column) {
+                    let target = place[row] + (place[positions[column]] - pivots) * pivots;
+                    entries.push(Entry { block, target: target as u32 });
+                }
+            }
+        }
+        front.upper = front.lower.end..entries.len();
+    }
+    entries
+}
+
+/// Share of the whole work below which subtrees are lumped together. Fixed, so that the sums do not depend on threads.
+const FOREST_SHARE: f64 = 1.0 / 32.0;
+
+/// Whole subtrees, neighbours lumped up to a share of the work, from the first front to the last.
+fn forests(fronts: &[Front]) -> Vec<Range<usize>> {
+    let (first, work) = subtrees(fronts);
+    let limit = FOREST_SHARE * fronts.iter().map(Front::work).sum::<f64>();
+    let mut forests: Vec<Range<usize>> = Vec::new();
+    let mut lumped = 0.0;
+    let mut end = fronts.len();
+    while end > 0 {
+        let root = end - 1;
+        if work[root] > limit {
+            end = root;
+            continue;
+        }
+        match forests.last_mut() {
+            Some(forest) if forest.start == end && lumped + work[root] <= limit => {
+                forest.start = first[root];
+                lumped += work[root];
+            }
+            _ => {
+                forests.push(first[root]..end);
+                lumped = work[root];
+            }
+        }
+        end = first[root];
+    }
+    forests.reverse();
+    forests
+}
+
+/// First front of each subtree and the work of it all.
+fn subtrees(fronts: &[Front]) -> (Vec<usize>, Vec<f64>) {
+    let mut first: Vec<usize> = Vec::with_capacity(fronts.len());
+    let mut work: Vec<f64> = Vec::with_capacity(fronts.len());
+    for (f, front) in fronts.iter().enumerate() {
+        first.push(front.children.first().map_or(f, |&child| first[child as usize]));
+        work.push(front.work() + front.children.iter().map(|&child| work[child as usize]).sum::<f64>());
+    }
+    (first, work)
+}
+
+/// The most values that contributions hold: first those of all forests, then of the heavy fronts, one after another.
+fn largest_stack(fronts: &[Front], forests: &[Range<usize>]) -> usize {
+    let contribution = |f: usize| fronts[f].below().pow(2);
+    let run = |range: Range<usize>, mut held: usize| {
+        let mut peak = held;
+        for f in range {
+            held += contribution(f);
+            peak = peak.max(held);
+            held -= fronts[f].children.iter().map(|&child| contribution(child as usize)).sum::<usize>();
+        }
+        (peak, held)
+    };
+    let light: Vec<(usize, usize)> = forests.iter().map(|forest| run(forest.clone(), 0)).collect();
+    let mut held: usize = light.iter().map(|&(_, left)| left).sum();
+    let mut peak = held + light.iter().map(|&(peak, left)| peak - left).max().unwrap_or(0);
+    let mut done = 0;
+    for forest in forests.iter().cloned().chain(std::iter::once(fronts.len()..fronts.len())) {
+        let (heavy, left) = run(done..forest.start, held);
+        peak = peak.max(heavy);
+        held = left;
+        done = forest.end;
+    }
+    peak
+}
