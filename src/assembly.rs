@@ -517,10 +517,12 @@ impl<'m> Assembler<'m> {
     fn prescribe(&self, trial: Trial, u: &[f64], tangent: bool, system: &mut System) -> Result<(), TrialFailure> {
         for support in &trial.step.supports {
             let dof = support.dof;
-            let start = trial.old.step_start.displacement[dof];
-            let target = support.value(self.model.mesh.nodes[dof / 2], trial.time, start);
+            let node = dof / 2;
+            let start = &trial.old.step_start.displacement[2 * node..][..2];
+            let start = Vector2::new(start[0], start[1]);
+            let target = support.value(self.model.mesh.nodes[node], trial.time, trial.step.span, start);
             if !target.is_finite() {
-                return Err(TrialFailure::Undefined { node: dof / 2, time: trial.time });
+                return Err(TrialFailure::Undefined { node, time: trial.time });
             }
             system.residual[dof] = self.weight * (u[dof] - target);
             if tangent {
