@@ -253,7 +253,7 @@ impl<'m> Assembler<'m> {
         self.evaluation.force = force;
         self.balance(trial, u, values, &mut system.residual);
         self.prescribe(trial, u, tangent, system)?;
-        self.measure(system, &x);
+        self.measure(trial, u, system, &x);
         self.seconds.assembly += clock.elapsed().as_secs_f64();
         Ok(())
     }
@@ -510,10 +510,12 @@ impl<'m> Assembler<'m> {
     fn prescribe(&self, trial: Trial, u: &[f64], tangent: bool, system: &mut System) -> Result<(), TrialFailure> {
         for support in &trial.step.supports {
             let dof = support.dof;
-            let start = trial.old.step_start.displacement[dof];
-            let target = support.value(self.model.mesh.nodes[dof / 2], trial.time, start);
+            let node = dof / 2;
+            let start = &trial.old.step_start.displacement[2 * node..][..2];
+            let start = Vector2::new(start[0], start[1]);
+            let target = support.value(self.model.mesh.nodes[node], trial.time, trial.step.span, start);
             if !target.is_finite() {
-                return Err(TrialFailure::Undefined { node: self.model.mesh.node_tags[dof / 2], time: trial.time });
+                return Err(TrialFailure::Undefined { node: self.model.mesh.node_tags[node], time: trial.time });
             }
             system.residual[dof] = self.weight * (u[dof] - target);
             if tangent {
@@ -523,13 +525,20 @@ impl<'m> Assembler<'m> {
         Ok(())
     }
 
-    /// Norm of the forces at work, and of the residual that round-off in the positions alone can leave.
-    fn measure(&self, system: &mut System, x: &Configuration) {
+    /// Norm of the forces at work, and of the residual that round-off in the positions alone can leave: in the forces
+    /// of solids and contacts, and in the accelerations, which are differences of displacements over Δt².
+    fn measure(&mut self, trial: Trial, u: &[f64], system: &mut System, x: &Configuration) {
         system.forces = crate::linear::norm(&self.magnitudes);
         let solids = self.weight.powi(2) * self.model.mesh.nodes.len() as f64;
         let points = self.model.contacts.iter().flat_map(|pair| pair.points.iter().map(move |point| (pair, point)));
         let contacts: f64 = points.map(|(pair, point)| (pair.alpha_n * point.current_length(x)).powi(2)).sum();
         system.round_off = f64::EPSILON * x.extent() * (solids + contacts).sqrt();
+        if let Some(scheme) = trial.step.scheme.coefficients() {
+            let velocity = &trial.old.velocity;
+            let way: Vec<f64> = u.iter().zip(velocity).map(|(u, v)| u.abs() + (trial.dt * v).abs()).collect();
+            let inertia = crate::linear::norm(&self.mass().multiply(&way)) * scheme.dacceleration(trial.dt);
+            system.round_off += f64::EPSILON * inertia;
+        }
     }
 
     /// The consistent mass matrix on the current pattern.

@@ -96,8 +96,16 @@ pub struct Amplitude {
 impl Amplitude {
     /// Value at a reference position and run time.
     pub fn value(&self, position: Vector2<f64>, time: f64) -> f64 {
-        let start = self.before.as_ref().map_or(0.0, |before| before.value(position, self.span.start));
-        self.drive.value(position, time, self.span, start)
+        self.drive.value(position, time, self.span, self.taken_over(position))
+    }
+
+    /// Value at the start of a step: what was taken over if the drive is new in this step, else its own.
+    fn at_start_of(&self, step: Span, position: Vector2<f64>) -> f64 {
+        if step.start > self.span.start { self.value(position, step.start) } else { self.taken_over(position) }
+    }
+
+    fn taken_over(&self, position: Vector2<f64>) -> f64 {
+        self.before.as_ref().map_or(0.0, |before| before.value(position, self.span.start))
     }
 }
 
@@ -115,9 +123,10 @@ pub struct Prescribed {
 pub enum Motion {
     /// Displacement, counted from the one at the start of the step where the drive says so [L]
     Displacement(Drive, Span),
-    /// Rigid rotation about a fixed point: u = (Q(θ) − I)(X − X_c), θ counter-clockwise [rad]
+    /// Rigid rotation about a fixed point of what is there at the start of the step, θ counter-clockwise [rad]:
+    /// u = u₀ + (Q(θ − θ₀) − I)(X + u₀ − x_c)
     Rotation {
-        /// X_c
+        /// x_c
         about: Vector2<f64>,
         /// θ
         angle: Amplitude,
@@ -125,14 +134,15 @@ pub enum Motion {
 }
 
 impl Prescribed {
-    /// ū at a run time, for the node's reference position and its displacement at the start of the step [L].
-    pub fn value(&self, position: Vector2<f64>, time: f64, start: f64) -> f64 {
+    /// ū at a time within `step`, for the node's reference position and its displacement at the start of the step [L].
+    pub fn value(&self, position: Vector2<f64>, time: f64, step: Span, start: Vector2<f64>) -> f64 {
+        let component = self.dof % 2;
         match &self.motion {
-            Motion::Displacement(drive, span) => drive.value(position, time, *span, start),
+            Motion::Displacement(drive, span) => drive.value(position, time, *span, start[component]),
             Motion::Rotation { about, angle } => {
-                let arm = position - about;
-                let turned = Rotation2::new(angle.value(position, time)) * arm;
-                (turned - arm)[self.dof % 2]
+                let arm = position + start - about;
+                let turn = angle.value(position, time) - angle.at_start_of(step, position);
+                (start + Rotation2::new(turn) * arm - arm)[component]
             }
         }
     }

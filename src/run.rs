@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use crate::error::Error;
-use crate::linear::SparseLu;
+use crate::linear::Multifrontal;
 use crate::model::{Model, Step};
 use crate::output::summary::RunReport;
 use crate::output::{Attempt, Observer};
@@ -24,7 +24,7 @@ const CUT: f64 = 0.5;
 pub fn run(model: &Model, observers: &mut [&mut dyn Observer]) -> (RunReport, Result<State, Error>) {
     let clock = Instant::now();
     let mut report = RunReport::default();
-    let mut work = Workspace::new(model, Box::<SparseLu>::default());
+    let mut work = Workspace::new(model, Box::<Multifrontal>::default());
     let mut state = model.initial_state();
     let mut result = Ok(());
     for step in &model.steps {

@@ -49,9 +49,11 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
     state.step_start = StepStart { displacement: old.displacement.clone(), reaction: old.reaction.clone() };
     state.last_increment = None;
     let resting = old.acceleration.iter().all(|a| *a == 0.0);
-    if step.scheme.coefficients().is_some() && resting {
-        state.acceleration = initial_acceleration(step, &state, work)?;
-        state.force.clone_from(&work.assembler.evaluation.force);
+    match step.scheme.coefficients() {
+        Some(_) if resting => start_dynamics(step, &mut state, work)?,
+        // The reaction of a freed support has become a load.
+        Some(_) => step.released.iter().for_each(|&dof| state.force[dof] -= old.reaction[dof]),
+        None => {}
     }
     if state.increment == 0 {
         state.energy.kinetic = kinetic_energy(step, &state, work);
@@ -62,21 +64,34 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
     Ok(state)
 }
 
-/// a₀ = −M⁻¹ F₀ at the free dofs, 0 at the prescribed ones.
-fn initial_acceleration(step: &Step, state: &State, work: &mut Workspace) -> Result<Vec<f64>, StepFailure> {
+/// Accelerations, and the forces that go with them, at a moment when dynamics begins: loads may set in with a jump.
+///
+/// ```text
+/// a₀ = −M⁻¹ F₀ at the free dofs, 0 at the prescribed ones, whose reaction is F₀ + M a₀
+/// ```
+fn start_dynamics(step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), StepFailure> {
     let quasi_static = Step { scheme: crate::time::Scheme::Static, ..step.clone() };
     let trial = Trial { old: state, step: &quasi_static, time: state.time, dt: 0.0 };
     work.assembler
         .evaluate(trial, &state.displacement, Request::Residual, &mut work.system)
         .map_err(StepFailure::Start)?;
-    let mut right: Vec<f64> = work.assembler.evaluation.force.iter().map(|f| -f).collect();
+    let force = work.assembler.evaluation.force.clone();
+    state.external.clone_from(&work.assembler.evaluation.loads);
+    let prescribed = prescribed_dofs(step, force.len());
+    let mut right: Vec<f64> = force.iter().map(|f| -f).collect();
     let mut mass = work.assembler.mass().clone();
     let scale = mass.diagonal().into_iter().fold(0.0, f64::max);
-    for (dof, _) in prescribed_dofs(step, right.len()).into_iter().enumerate().filter(|(_, held)| *held) {
+    for (dof, _) in prescribed.iter().enumerate().filter(|(_, held)| **held) {
         mass.replace_row(dof, scale);
         right[dof] = 0.0;
     }
-    Ok(linear::solve(&mut *work.solver, &mass, &right).map_err(StepFailure::Mass)?.x)
+    state.acceleration = linear::solve(&mut *work.solver, &mass, &right).map_err(StepFailure::Mass)?.x;
+    let inertia = work.assembler.mass().multiply(&state.acceleration);
+    for (dof, _) in prescribed.iter().enumerate().filter(|(_, held)| **held) {
+        state.external[dof] += force[dof] + inertia[dof];
+    }
+    state.force = force;
+    Ok(())
 }
 
 /// Solve one increment of length `dt` from the state `old`; pure but for the workspace's buffers.

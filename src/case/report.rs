@@ -10,6 +10,7 @@ use super::file::{
     BodyInput, Case, Components, DriveInput, Formulation, LoadInput, MasterInput, MeshSource, Method, SpringInput,
     StepInput, TimeInput,
 };
+use crate::configuration::Configuration;
 use crate::contact::pair::ContactPair;
 use crate::mesh::Group;
 use crate::model::{Model, Step};

@@ -1,0 +1,152 @@
+//! Small models for tests that drive the whole solver: meshes of blocks, cases as JSON, runs that keep every state.
+#![allow(dead_code, reason = "each test file uses a part")]
+
+use std::path::Path;
+
+use fecontact::case;
+use fecontact::error::Error;
+use fecontact::model::Model;
+use fecontact::output::summary::RunReport;
+use fecontact::output::{Attempt, Observer};
+use fecontact::run::run;
+use fecontact::state::State;
+use nalgebra::{Rotation2, Vector2};
+use serde_json::{Map, Value, json};
+
+/// A mesh of blocks of Q4 elements. A block named `b` brings the groups `b` (elements), `b_bottom`, `b_right`, `b_top`
+/// and `b_left` (edges).
+#[derive(Clone, Debug, Default)]
+pub struct Blocks {
+    pub nodes: Vec<[f64; 2]>,
+    elements: Map<String, Value>,
+    edges: Map<String, Value>,
+}
+
+impl Blocks {
+    /// Add a block of n × m elements, `map` from the unit square to the plane.
+    pub fn block(mut self, name: &str, [n, m]: [usize; 2], map: impl Fn(f64, f64) -> [f64; 2]) -> Self {
+        let first = self.nodes.len();
+        let node = |i: usize, j: usize| first + j * (n + 1) + i;
+        for j in 0..=m {
+            self.nodes.extend((0..=n).map(|i| map(i as f64 / n as f64, j as f64 / m as f64)));
+        }
+        let elements: Vec<[usize; 4]> = (0..n * m)
+            .map(|e| (e % n, e / n))
+            .map(|(i, j)| [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)])
+            .collect();
+        let row = |j: usize| (0..n).map(|i| [node(i, j), node(i + 1, j)]).collect::<Vec<_>>();
+        let column = |i: usize| (0..m).map(|j| [node(i, j), node(i, j + 1)]).collect::<Vec<_>>();
+        self.elements.insert(name.into(), json!(elements));
+        for (side, edges) in [("bottom", row(0)), ("right", column(n)), ("top", row(m)), ("left", column(0))] {
+            self.edges.insert(format!("{name}_{side}"), json!(edges));
+        }
+        self
+    }
+
+    /// Add a rectangle from `low` to `high`.
+    pub fn rectangle(self, name: &str, divisions: [usize; 2], low: [f64; 2], high: [f64; 2]) -> Self {
+        self.block(name, divisions, |s, t| [low[0] + s * (high[0] - low[0]), low[1] + t * (high[1] - low[1])])
+    }
+
+    /// All turned about the origin, counter-clockwise.
+    pub fn turned(mut self, angle: f64) -> Self {
+        for node in &mut self.nodes {
+            *node = turned(*node, angle);
+        }
+        self
+    }
+
+    /// The mesh as a case file has it.
+    pub fn json(&self) -> Value {
+        json!({"nodes": self.nodes, "elements": self.elements, "edges": self.edges})
+    }
+}
+
+/// A vector turned counter-clockwise.
+pub fn turned(v: [f64; 2], angle: f64) -> [f64; 2] {
+    (Rotation2::new(angle) * Vector2::from(v)).into()
+}
+
+/// The model of a case.
+pub fn model(case: &Value) -> Model {
+    let parsed = serde_json::from_value(case.clone()).unwrap_or_else(|error| panic!("{error}"));
+    case::build(&parsed, Path::new("test.json")).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Keeps every accepted state; counts the attempts that failed.
+#[derive(Default)]
+pub struct Record {
+    pub states: Vec<State>,
+    pub failed: usize,
+}
+
+impl Observer for Record {
+    fn record(&mut self, _: &Model, attempt: &Attempt) -> Result<(), Error> {
+        match attempt.accepted {
+            Some(state) => self.states.push(state.clone()),
+            None => self.failed += 1,
+        }
+        Ok(())
+    }
+}
+
+/// What a run left behind.
+pub struct Finished {
+    pub model: Model,
+    pub states: Vec<State>,
+    pub report: RunReport,
+}
+
+impl Finished {
+    pub fn last(&self) -> &State {
+        self.states.last().expect("at least one increment")
+    }
+
+    /// The state at a time that an increment ended on.
+    pub fn at(&self, time: f64) -> &State {
+        let at = |state: &&State| (state.time - time).abs() < 1e-9 * (1.0 + time);
+        self.states.iter().find(at).unwrap_or_else(|| panic!("no increment ended at {time}"))
+    }
+
+    /// Nodes of a group.
+    pub fn nodes(&self, group: &str) -> Vec<usize> {
+        self.model.mesh.nodes_of(self.model.mesh.group(group).expect("a group of the test's mesh"))
+    }
+
+    /// Sum of the reactions on a group.
+    pub fn reaction(&self, group: &str, state: &State) -> [f64; 2] {
+        [0, 1].map(|i| self.nodes(group).iter().map(|&node| state.reaction[2 * node + i]).sum())
+    }
+
+    /// Normal and tangential force of the first contact, ∫ p ds and ∫ q ds.
+    pub fn contact_force(&self, state: &State) -> [f64; 2] {
+        let x = self.model.positions(&state.displacement);
+        let points = self.model.contacts[0].points.iter().zip(&state.contacts[0]);
+        points.fold([0.0, 0.0], |[n, t], (point, contact)| {
+            let length = point.current_length(&x);
+            [n + length * contact.friction.pressure, t + length * contact.friction.traction]
+        })
+    }
+}
+
+/// Run a case to its end.
+pub fn finish(case: &Value) -> Finished {
+    let model = model(case);
+    let mut record = Record::default();
+    let (report, result) = run(&model, &mut [&mut record]);
+    result.unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(record.failed, report.cutbacks);
+    Finished { model, states: record.states, report }
+}
+
+/// Largest |a − b|.
+pub fn distance(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(b).fold(0.0, |largest, (a, b)| largest.max((a - b).abs()))
+}
+
+/// Assert |a − b| ≤ tolerance, and say what was compared.
+#[track_caller]
+pub fn close(what: &str, a: f64, b: f64, tolerance: f64) {
+    assert!((a - b).abs() <= tolerance, "{what}: {a:e}, expected {b:e} ± {tolerance:e} (off by {:e})", a - b);
+}
