@@ -6,6 +6,7 @@ mod common;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use common::{Blocks, Finished, close, distance, finish};
+use fecontact::configuration::Configuration;
 use fecontact::element::pressure::follower_pressure;
 use fecontact::state::State;
 use nalgebra::Vector2;
@@ -136,8 +137,9 @@ fn a_rotation_support_turns_without_stress() {
         close("stress", stress, 0.0, 1e-6);
     }
     for state in [run.at(2.0), run.last()] {
-        let x = run.model.positions(&state.displacement);
-        for (x, reference) in x.iter().zip(&run.model.mesh.nodes) {
+        let x = run.model.configuration(&state.displacement);
+        for (node, reference) in run.model.mesh.nodes.iter().enumerate() {
+            let x = x.at(node);
             let arm = reference - Vector2::new(2.0, -1.0);
             close("x", (x - Vector2::new(2.0 - arm.y, -1.0 + arm.x)).norm(), 0.0, 1e-7);
         }
@@ -180,13 +182,13 @@ fn follower_pressure_is_closed_and_has_an_exact_tangent() {
     for edges in [linear, quadratic] {
         let mut total = Vector2::zeros();
         for edge in &edges {
-            let result = follower_pressure(edge, 3.0, &contour);
+            let result = follower_pressure(edge, 3.0, &Configuration::undeformed(&contour));
             total += result.force.as_slice().chunks(2).map(|f| Vector2::new(f[0], f[1])).sum::<Vector2<f64>>();
             for column in 0..2 * edge.len() {
                 let moved = |h: f64| {
                     let mut x = contour.clone();
                     x[edge[column / 2]][column % 2] += h;
-                    follower_pressure(edge, 3.0, &x).force
+                    follower_pressure(edge, 3.0, &Configuration::undeformed(&x)).force
                 };
                 let difference = (moved(0.5) - moved(-0.5)) - result.tangent.column(column);
                 close("tangent", difference.amax(), 0.0, 1e-13);
@@ -213,8 +215,7 @@ fn follower_pressure_turns_with_the_body() {
     }));
     let (before, after) = (run.at(1.0), run.last());
     let top = run.nodes("body_top");
-    let x = run.model.positions(&before.displacement);
-    let length = x[top[2]].x - x[top[0]].x;
+    let length = run.model.configuration(&before.displacement).between(top[0], top[2]).x;
     let [fx, fy] = run.reaction("body_bottom", before);
     close("Fx", fx, 0.0, 1e-9);
     close("Fy", fy, 2.0 * length, 1e-9);

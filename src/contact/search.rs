@@ -3,7 +3,7 @@
 use rstar::RTree;
 use rstar::primitives::{GeomWithData, Line};
 
-use super::projection::{Projection, normal_of, on_held_segment, on_plane, on_segment};
+use super::projection::{Bound, Projection, normal_of, on_held_segment, on_plane, on_segment};
 use super::surface::{Master, Plane, SlavePoint, Surface};
 use crate::configuration::Configuration;
 
@@ -51,7 +51,13 @@ impl<'a> Index<'a> {
                     normal_of(x.between(a, b).normalize()).dot(&outward) < FACING
                 };
                 let nearest = tree.nearest_neighbor_iter([point.x, point.y]).take(CANDIDATES).map(|line| line.data);
-                nearest.filter(|&segment| facing(segment)).find_map(|segment| on_segment(slave, surface, segment, x))
+                let mut facing = nearest.filter(|&segment| facing(segment)).enumerate();
+                // A node is the foot only of a point that nothing nearer faces: past the end of a surface, where the
+                // last segment has no foot, each inner node would be one, far away and deep.
+                facing.find_map(|(rank, segment)| {
+                    let found = on_segment(slave, surface, segment, x)?;
+                    (rank == 0 || found.bound == Bound::Segment).then_some(found)
+                })
             }
         }
     }

@@ -120,7 +120,7 @@ impl Finished {
 
     /// Normal and tangential force of the first contact, ∫ p ds and ∫ q ds.
     pub fn contact_force(&self, state: &State) -> [f64; 2] {
-        let x = self.model.positions(&state.displacement);
+        let x = self.model.configuration(&state.displacement);
         let points = self.model.contacts[0].points.iter().zip(&state.contacts[0]);
         points.fold([0.0, 0.0], |[n, t], (point, contact)| {
             let length = point.current_length(&x);
