@@ -300,7 +300,7 @@ fn steps_are_checked() {
         (
             "/steps/0/scheme",
             json!({"hht": {"alpha": -0.9}}),
-            ["steps[0].scheme: ", "alpha = -0.9: must be between -1/3"],
+            ["steps[0].scheme: ", "\"alpha\" is -0.9, but it must be between -1/3"],
         ),
         ("/steps/0/scheme", json!({"newmark": {"gamma": 0.1}}), ["steps[0].scheme: ", "gamma = 0.1: must be at least"]),
         ("/steps/0/scheme", json!({"hht": {}}), ["steps[0].scheme.hht", "the key `alpha` is missing"]),
