@@ -255,7 +255,7 @@ impl<'m> Assembler<'m> {
         self.evaluation.force = force;
         self.balance(trial, u, values, &mut system.residual);
         self.prescribe(trial, u, tangent, system)?;
-        self.measure(trial, u, system, &x);
+        self.measure(trial, system, &x);
         self.seconds.assembly += clock.elapsed().as_secs_f64();
         Ok(())
     }
@@ -534,17 +534,22 @@ impl<'m> Assembler<'m> {
 
     /// Norm of the forces at work, and of the residual that round-off in the positions alone can leave: in the forces
     /// of solids and contacts, and in the accelerations, which are differences of displacements over Δt².
-    fn measure(&mut self, trial: Trial, u: &[f64], system: &mut System, x: &[Vector2<f64>]) {
+    ///
+    /// Positions count up to ten times the extent of the committed state: an iterate farther away is lost, and must not
+    /// pass for imprecise.
+    fn measure(&mut self, trial: Trial, system: &mut System, x: &[Vector2<f64>]) {
+        let Trial { old, step, dt, .. } = trial;
         system.forces = crate::linear::norm(&self.magnitudes);
-        let extent = x.iter().fold(self.size, |size, x| size.max(x.norm()));
+        let extent_of = |x: &[Vector2<f64>]| x.iter().fold(self.size, |size, x| size.max(x.norm()));
+        let extent = extent_of(x).min(10.0 * extent_of(&self.model.positions(&old.displacement)));
         let solids = self.weight.powi(2) * x.len() as f64;
         let points = self.model.contacts.iter().flat_map(|pair| pair.points.iter().map(move |point| (pair, point)));
         let contacts: f64 = points.map(|(pair, point)| (pair.alpha_n * point.current_length(x)).powi(2)).sum();
         system.round_off = f64::EPSILON * extent * (solids + contacts).sqrt();
-        if let Some(scheme) = trial.step.scheme.coefficients() {
-            let velocity = &trial.old.velocity;
-            let way: Vec<f64> = u.iter().zip(velocity).map(|(u, v)| u.abs() + (trial.dt * v).abs()).collect();
-            let inertia = crate::linear::norm(&self.mass().multiply(&way)) * scheme.dacceleration(trial.dt);
+        if let Some(scheme) = step.scheme.coefficients() {
+            let way: Vec<f64> =
+                old.displacement.iter().zip(&old.velocity).map(|(u, v)| u.abs() + (dt * v).abs()).collect();
+            let inertia = crate::linear::norm(&self.mass().multiply(&way)) * scheme.dacceleration(dt);
             system.round_off += f64::EPSILON * inertia;
         }
     }
