@@ -253,7 +253,7 @@ impl<'m> Assembler<'m> {
         self.evaluation.force = force;
         self.balance(trial, u, values, &mut system.residual);
         self.prescribe(trial, u, tangent, system)?;
-        self.measure(trial, u, system, &x);
+        self.measure(trial, system, &x);
         self.seconds.assembly += clock.elapsed().as_secs_f64();
         Ok(())
     }
@@ -527,16 +527,21 @@ impl<'m> Assembler<'m> {
 
     /// Norm of the forces at work, and of the residual that round-off in the positions alone can leave: in the forces
     /// of solids and contacts, and in the accelerations, which are differences of displacements over Δt².
-    fn measure(&mut self, trial: Trial, u: &[f64], system: &mut System, x: &Configuration) {
+    ///
+    /// Positions count up to ten times the extent of the committed state: an iterate farther away is lost, and must not
+    /// pass for imprecise.
+    fn measure(&mut self, trial: Trial, system: &mut System, x: &Configuration) {
+        let Trial { old, step, dt, .. } = trial;
         system.forces = crate::linear::norm(&self.magnitudes);
+        let extent = x.extent().min(10.0 * self.model.configuration(&old.displacement).extent());
         let solids = self.weight.powi(2) * self.model.mesh.nodes.len() as f64;
         let points = self.model.contacts.iter().flat_map(|pair| pair.points.iter().map(move |point| (pair, point)));
         let contacts: f64 = points.map(|(pair, point)| (pair.alpha_n * point.current_length(x)).powi(2)).sum();
-        system.round_off = f64::EPSILON * x.extent() * (solids + contacts).sqrt();
-        if let Some(scheme) = trial.step.scheme.coefficients() {
-            let velocity = &trial.old.velocity;
-            let way: Vec<f64> = u.iter().zip(velocity).map(|(u, v)| u.abs() + (trial.dt * v).abs()).collect();
-            let inertia = crate::linear::norm(&self.mass().multiply(&way)) * scheme.dacceleration(trial.dt);
+        system.round_off = f64::EPSILON * extent * (solids + contacts).sqrt();
+        if let Some(scheme) = step.scheme.coefficients() {
+            let way: Vec<f64> =
+                old.displacement.iter().zip(&old.velocity).map(|(u, v)| u.abs() + (dt * v).abs()).collect();
+            let inertia = crate::linear::norm(&self.mass().multiply(&way)) * scheme.dacceleration(dt);
             system.round_off += f64::EPSILON * inertia;
         }
     }

@@ -343,3 +343,38 @@ fn a_block_slides_off_the_edge() {
         close("stress", largest(&vertical_stress(&run, run.last())), 0.0, 1e-6);
     }
 }
+
+/// A short block is pushed over a ridge and through a valley under a dead traction of 5 on its top. The run ends whatever
+/// the corner, and the ground carries the load at every increment: 5 × the length of the top. (Iterations that lose contact
+/// throw the block far away; such a state must not pass for equilibrium.)
+#[test]
+fn a_block_passes_a_ridge_and_a_valley() {
+    for slope in [-0.1, 0.1] {
+        let top = |x: f64| slope * x.abs();
+        let block = |s: f64| -0.75 + 0.3 * s;
+        let run = finish(&json!({
+            "mesh": Blocks::default()
+                .block("ground", [20, 3], |s, t| [2.0 * s - 1.0, -0.5 + t * (0.5 + top(2.0 * s - 1.0))])
+                .block("block", [5, 3], |s, t| [block(s), top(block(s)) + 0.2 * t]).json(),
+            "bodies": {
+                "ground": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
+                "block": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
+            },
+            "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "friction": {"law": "coulomb", "mu": 0.2}}},
+            "steps": [
+                {"name": "press", "duration": 1, "dt": {"initial": 0.25},
+                 "supports": [{"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0}],
+                 "loads": [{"on": "block_top", "traction": {"y": -5}}]},
+                {"name": "push", "duration": 1, "dt": {"initial": 0.02, "min": 1e-7}, "supports": [{"on": "block_top", "ux": 1.2}]},
+            ],
+        }));
+        println!(
+            "{} increments, {} cut-backs, {} iterations",
+            run.report.increments, run.report.cutbacks, run.report.newton_iterations
+        );
+        let load = 5.0 * 0.3 * slope.hypot(1.0);
+        for state in run.states.iter().filter(|state| state.time > 1.0) {
+            close("vertical reaction", run.reaction("ground_bottom", state)[1], load, 1e-6 * load);
+        }
+    }
+}
