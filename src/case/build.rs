@@ -194,7 +194,7 @@ fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPa
     };
     let alpha_n = input.normal.alpha_n.unwrap_or_else(|| default_stiffness(model, slave));
     if alpha_n <= 0.0 {
-        let message = format!("is {alpha_n}: must be positive (leave it out for 10 E/h)");
+        let message = format!("is {alpha_n}: must be positive (leave it out for 10 (λ + 2G)/h)");
         return Err(Complaint::new(format!("{place}.normal.alpha_n"), message));
     }
     let law =
@@ -215,7 +215,7 @@ fn check_stiffness(place: &str, name: &str, value: f64) -> Checked<()> {
     Err(Complaint::new(place, message))
 }
 
-/// α_n = 10 E/h, the mean over the elements behind the slave; h is the depth of an element behind its edge.
+/// α_n = 10 (λ + 2G)/h, the mean over the elements behind the slave; h is the depth of an element behind its edge.
 fn default_stiffness(model: &Model, slave: &[Edge]) -> f64 {
     let behind = |edge: &Edge| {
         let [a, b] = [0, 1].map(|end| model.mesh.nodes[edge.nodes[end]]);

@@ -158,7 +158,7 @@ pub enum Method {
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NormalInput {
-    /// α_n: pressure per penetration [F/L³]; 10 E/h of the elements behind the slave unless given
+    /// α_n: pressure per penetration [F/L³]; 10 (λ + 2G)/h of the elements behind the slave unless given
     pub alpha_n: Option<f64>,
 }
 

@@ -152,7 +152,8 @@ fn contact(case: &Case, pair: &ContactPair) -> Vec<String> {
         Method::GaussToSegment => format!("gauss_to_segment, {} points an edge", input.points),
         Method::NodeToSegment => "node_to_segment, a point at each node".into(),
     };
-    let alpha_n = if input.normal.alpha_n.is_some() { "given" } else { "10 E/h of the elements behind the slave" };
+    let alpha_n =
+        if input.normal.alpha_n.is_some() { "given" } else { "10 (λ + 2G)/h of the elements behind the slave" };
     let mut lines = vec![
         format!("slave {} against master {master}", input.slave),
         format!("{where_evaluated}: {}", count(pair.points.len(), "contact point")),
