@@ -169,6 +169,9 @@ pub struct Assembler<'m> {
 /// Elements whose forces and tangents are held at once before they are added.
 const BATCH: usize = 4096;
 
+/// Elements that are done sooner than another thread wakes up.
+const FEW: usize = 64;
+
 impl<'m> Assembler<'m> {
     /// An assembler of a model.
     pub fn new(model: &'m Model) -> Self {
@@ -356,26 +359,27 @@ impl<'m> Assembler<'m> {
         for first in (0..model.mesh.elements.len()).step_by(BATCH) {
             let elements = first..(first + BATCH).min(model.mesh.elements.len());
             let wants_tangent = tangent.is_some();
-            let energies: Vec<Result<f64, InvertedElement>> = elements
-                .clone()
-                .into_par_iter()
-                .zip(forces.par_chunks_mut(dofs).zip(tangents.par_chunks_mut(stride)))
-                .with_min_len(64)
-                .map(|(e, (force, tangent))| {
-                    let nodes = &model.mesh.elements[e].nodes;
-                    let mut local = [Vector2::zeros(); 9];
-                    for (local, &node) in local.iter_mut().zip(nodes) {
-                        *local = Vector2::new(u[2 * node], u[2 * node + 1]);
-                    }
-                    let n = 2 * nodes.len();
-                    let (solid, material) = (&model.solids[e], &*model.bodies[model.body_of_element[e]].material);
-                    if wants_tangent {
-                        solid.force_and_tangent(material, &local[..nodes.len()], &mut force[..n], &mut tangent[..n * n])
-                    } else {
-                        solid.force(material, &local[..nodes.len()], &mut force[..n])
-                    }
-                })
-                .collect();
+            let one = |(e, (force, tangent)): (usize, (&mut [f64], &mut [f64]))| {
+                let nodes = &model.mesh.elements[e].nodes;
+                let mut local = [Vector2::zeros(); 9];
+                for (local, &node) in local.iter_mut().zip(nodes) {
+                    *local = Vector2::new(u[2 * node], u[2 * node + 1]);
+                }
+                let n = 2 * nodes.len();
+                let (solid, material) = (&model.solids[e], &*model.bodies[model.body_of_element[e]].material);
+                if wants_tangent {
+                    solid.force_and_tangent(material, &local[..nodes.len()], &mut force[..n], &mut tangent[..n * n])
+                } else {
+                    solid.force(material, &local[..nodes.len()], &mut force[..n])
+                }
+            };
+            let energies: Vec<Result<f64, InvertedElement>> = if elements.len() < FEW {
+                let arrays = forces.chunks_mut(dofs).zip(tangents.chunks_mut(stride));
+                elements.clone().zip(arrays).map(one).collect()
+            } else {
+                let arrays = forces.par_chunks_mut(dofs).zip(tangents.par_chunks_mut(stride));
+                elements.clone().into_par_iter().zip(arrays).with_min_len(FEW).map(one).collect()
+            };
             for (k, (e, stored)) in elements.zip(energies).enumerate() {
                 energy += stored.map_err(|inverted| self.inverted(e, inverted))?;
                 let nodes = &model.mesh.elements[e].nodes;

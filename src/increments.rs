@@ -34,11 +34,11 @@ const GROWTH: f64 = 1.5;
 /// An event is located to this many times the allowed error.
 pub const EVENT_LOCATION: f64 = 10.0;
 /// Part of the length that the error allows which is taken: the estimate is one of several terms.
-const SAFETY: f64 = 0.9;
+const SAFETY: f64 = 0.8;
 /// Most that one estimate shortens the next attempt: far from the solution the estimate is not of third order.
 const LEAST_SHARE: f64 = 0.1;
 /// A change that is not worth having: increments of one length keep the orders of the scheme.
-const WORTHWHILE: f64 = 1.1;
+const WORTHWHILE: f64 = 1.25;
 
 /// What becomes of a solved increment.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -154,11 +154,12 @@ fn solve(model: &Model, trial: Trial, work: &mut Workspace) -> (Vec<IterationRec
     (iterations, result)
 }
 
-/// Where Newton's method starts: within a static step the last increment goes on at its pace, in dynamics
-/// u₀ + Δt v₀ + ½ Δt² a₀.
+/// Where Newton's method starts: the last increment of the step goes on at its pace. Under error control it is
+/// u₀ + Δt v₀ + ½ Δt² a₀, which no accepted increment leaves by much more than the allowed error; where increments do not
+/// resolve the motion it would be far off.
 fn start_value(Trial { old, step, dt, .. }: Trial) -> Vec<f64> {
     let State { displacement, velocity, acceleration, .. } = old;
-    if step.scheme.coefficients().is_some() {
+    if step.increments.error.is_some() {
         let rates = velocity.iter().zip(acceleration);
         return displacement.iter().zip(rates).map(|(u, (v, a))| u + dt * (v + 0.5 * dt * a)).collect();
     }
