@@ -27,7 +27,7 @@ use crate::model::{Model, Step};
 use crate::newton::Request;
 use crate::state::State;
 use crate::system::{Contribution, System};
-use crate::time::Coefficients;
+use crate::time::{Coefficients, supported_rates};
 
 /// One increment to be solved: from where, to when, under which step.
 #[derive(Clone, Copy, Debug)]
@@ -51,9 +51,21 @@ impl<'a> Trial<'a> {
 
     /// ū of a support at the end of the increment; not finite where its expression has no value [L].
     pub fn prescribed(&self, support: &Prescribed, model: &Model) -> f64 {
+        let (position, start) = self.place(support, model);
+        support.value(position, self.time, self.step.span, start)
+    }
+
+    /// ū of a support at the start, thirds and end of the increment [L].
+    pub fn thirds(&self, support: &Prescribed, model: &Model) -> [f64; 4] {
+        let (position, start) = self.place(support, model);
+        support.thirds(position, [self.time - self.dt, self.time], self.step.span, start)
+    }
+
+    /// Reference position of a support, and its displacement at the start of the step.
+    fn place(&self, support: &Prescribed, model: &Model) -> (Vector2<f64>, Vector2<f64>) {
         let node = support.dof / 2;
         let start = &self.old.step_start.displacement[2 * node..][..2];
-        support.value(model.mesh.nodes[node], self.time, self.step.span, Vector2::new(start[0], start[1]))
+        (model.mesh.nodes[node], Vector2::new(start[0], start[1]))
     }
 }
 
@@ -484,17 +496,16 @@ impl<'m> Assembler<'m> {
         let blend = |old: f64, new: f64, weight: f64| weight * old + (1.0 - weight) * new;
         let weighted: Vec<f64> =
             old.acceleration.iter().zip(&acceleration).map(|(&a0, &a1)| blend(a0, a1, scheme.alpha_m)).collect();
-        let prescribed = prescribed_dofs(step, u.len());
         let mass = self.mass();
         let (inertia, weighted_inertia) = (mass.multiply(&acceleration), mass.multiply(&weighted));
         if let Some(tangent) = tangent {
             let c = (1.0 - scheme.alpha_m) * scheme.dacceleration(dt);
-            // A prescribed dof's acceleration is a backward difference of its motion (see `rates`).
-            let held = (1.0 - scheme.alpha_m) / (dt * dt);
             for value in &mut tangent.values {
                 *value *= 1.0 - scheme.alpha_f;
             }
-            let factors: Vec<f64> = prescribed.iter().map(|prescribed| if *prescribed { held } else { c }).collect();
+            // A prescribed dof's acceleration is its support's.
+            let mut factors = vec![c; u.len()];
+            step.supports.iter().for_each(|support| factors[support.dof] = 0.0);
             tangent.add_columns(mass, &factors);
         }
         let force = &self.evaluation.force;
@@ -508,22 +519,18 @@ impl<'m> Assembler<'m> {
         self.evaluation.acceleration = acceleration;
     }
 
-    /// Velocity and acceleration at `u`. A prescribed dof follows its support: v and a are backward differences, so a
-    /// support that starts with a jerk does not ring.
+    /// Velocity and acceleration at `u`; prescribed dofs have those of their supports.
     fn rates(&self, trial: Trial, u: &[f64], scheme: Coefficients) -> (Vec<f64>, Vec<f64>) {
         let Trial { old, step, dt, .. } = trial;
-        let prescribed = prescribed_dofs(step, u.len());
-        (0..u.len())
-            .map(|dof| {
-                let increment = u[dof] - old.displacement[dof];
-                let (v, a) = (old.velocity[dof], old.acceleration[dof]);
-                if prescribed[dof] {
-                    (increment / dt, (increment / dt - v) / dt)
-                } else {
-                    scheme.rates(increment, (v, a), dt)
-                }
-            })
-            .unzip()
+        let free =
+            |dof: usize| scheme.rates(u[dof] - old.displacement[dof], (old.velocity[dof], old.acceleration[dof]), dt);
+        let (mut velocity, mut acceleration): (Vec<f64>, Vec<f64>) = (0..u.len()).map(free).unzip();
+        for support in &step.supports {
+            let dof = support.dof;
+            let places = trial.thirds(support, self.model);
+            (velocity[dof], acceleration[dof]) = supported_rates(places, old.velocity[dof], dt);
+        }
+        (velocity, acceleration)
     }
 
     /// Replace the equations of prescribed dofs by w (u − ū) = 0.
@@ -577,15 +584,6 @@ impl<'m> Assembler<'m> {
             mass
         })
     }
-}
-
-/// Which dofs a step prescribes.
-pub fn prescribed_dofs(step: &Step, dofs: usize) -> Vec<bool> {
-    let mut prescribed = vec![false; dofs];
-    for support in &step.supports {
-        prescribed[support.dof] = true;
-    }
-    prescribed
 }
 
 /// Add a dense tangent of `n` nodes (column-major, two dofs a node) at the given blocks (column by column).

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::assembly::{Assembler, ContactCounts, Trial, prescribed_dofs};
+use crate::assembly::{Assembler, ContactCounts, Trial};
 use crate::configuration::Configuration;
 use crate::contact::force::ContactState;
 use crate::error::StepFailure;
@@ -12,6 +12,7 @@ use crate::model::{Model, Step};
 use crate::newton::{self, Iteration, NewtonFailure, Request};
 use crate::state::{LastIncrement, State, StepStart};
 use crate::system::System;
+use crate::time::start_acceleration;
 
 /// What is kept from one increment to the next to save work; it does not change any answer.
 pub struct Workspace<'m> {
@@ -52,7 +53,7 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
     state.last_increment = None;
     let resting = old.acceleration.iter().all(|a| *a == 0.0);
     match step.scheme.coefficients() {
-        Some(_) if resting => start_dynamics(step, &mut state, work)?,
+        Some(_) if resting => start_dynamics(model, step, &mut state, work)?,
         // The reaction of a freed support has become a load.
         Some(_) => step.released.iter().for_each(|&dof| state.force[dof] -= old.reaction[dof]),
         None => {}
@@ -69,9 +70,9 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
 /// Accelerations, and the forces that go with them, at a moment when dynamics begins: loads may set in with a jump.
 ///
 /// ```text
-/// a₀ = −M⁻¹ F₀ at the free dofs, 0 at the prescribed ones, whose reaction is F₀ + M a₀
+/// M a₀ = −F₀ at the free dofs; a₀ of the supports at the prescribed ones, whose reaction is F₀ + M a₀
 /// ```
-fn start_dynamics(step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), StepFailure> {
+fn start_dynamics(model: &Model, step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), StepFailure> {
     let quasi_static = Step { scheme: crate::time::Scheme::Static, ..step.clone() };
     let trial = Trial { old: state, step: &quasi_static, time: state.time, dt: 0.0 };
     work.assembler
@@ -79,18 +80,19 @@ fn start_dynamics(step: &Step, state: &mut State, work: &mut Workspace) -> Resul
         .map_err(StepFailure::Start)?;
     let force = work.assembler.evaluation.force.clone();
     state.external.clone_from(&work.assembler.evaluation.loads);
-    let prescribed = prescribed_dofs(step, force.len());
     let mut right: Vec<f64> = force.iter().map(|f| -f).collect();
     let mut mass = work.assembler.mass().clone();
     let scale = mass.diagonal().into_iter().fold(0.0, f64::max);
-    for (dof, _) in prescribed.iter().enumerate().filter(|(_, held)| **held) {
-        mass.replace_row(dof, scale);
-        right[dof] = 0.0;
+    let dt = step.increments.initial;
+    let first = Trial { old: state, step, time: state.time + dt, dt };
+    for support in &step.supports {
+        mass.replace_row(support.dof, scale);
+        right[support.dof] = scale * start_acceleration(first.thirds(support, model), dt);
     }
     state.acceleration = linear::solve(&mut *work.solver, &mass, &right).map_err(StepFailure::Mass)?.x;
     let inertia = work.assembler.mass().multiply(&state.acceleration);
-    for (dof, _) in prescribed.iter().enumerate().filter(|(_, held)| **held) {
-        state.external[dof] += force[dof] + inertia[dof];
+    for support in &step.supports {
+        state.external[support.dof] += force[support.dof] + inertia[support.dof];
     }
     state.force = force;
     Ok(())
