@@ -494,8 +494,11 @@ impl<'m> Assembler<'m> {
         };
         let (velocity, acceleration) = self.rates(trial, u, scheme);
         let blend = |old: f64, new: f64, weight: f64| weight * old + (1.0 - weight) * new;
-        let weighted: Vec<f64> =
+        let mut weighted: Vec<f64> =
             old.acceleration.iter().zip(&acceleration).map(|(&a0, &a1)| blend(a0, a1, scheme.alpha_m)).collect();
+        for Prescribed { dof, .. } in &step.supports {
+            weighted[*dof] = blend(old.acceleration[*dof], acceleration[*dof], scheme.alpha_f);
+        }
         let mass = self.mass();
         let (inertia, weighted_inertia) = (mass.multiply(&acceleration), mass.multiply(&weighted));
         if let Some(tangent) = tangent {

@@ -30,11 +30,12 @@
 //! a₁ = (v₁ − v₀)/Δt + ½ (ā₁ − ā₀)                                                                            (5)
 //! ```
 //! with ā the support's acceleration: of second order where the motion is smooth, and where the velocity jumps, from the
-//! step before or at a kink, the jump is spread over the increment.
+//! step before or at a kink, the jump is spread over the increment. In (1) the accelerations of supports are weighted
+//! with α_f like the forces: they belong to t, those of free dofs to the time t + (α_m − α_f) Δt, to second order.
 //!
 //! # Local error
-//! An acceleration of (1) belongs to the time t + (α_m − α_f) Δt, to second order. With this, the displacement of one
-//! increment from exact start values is in error by
+//! With accelerations of the time t + (α_m − α_f) Δt, the displacement of one increment from exact start values is in
+//! error by
 //! ```text
 //! e = C Δt³ u⃛ + O(Δt⁴) ≈ C Δt² (a₁ − a₀),   C = β − 1/6 − ½ (α_f − α_m)                                     (6)
 //! ```
