@@ -56,6 +56,7 @@ pub fn run(path: &Path, out: Option<PathBuf>, threads: Option<usize>, quiet: boo
     let mut history = History::create(&folder, &model)?;
     let mut newton_log = NewtonLog::create(&folder)?;
     let mut warnings = Warnings::default();
+    warnings.list.extend(case::lost_velocity(&model));
     let mut fields = match case.output.fields {
         true => Some(Fields::create(&folder, &model, &model.initial_state(), case.output.every)?),
         false => None,

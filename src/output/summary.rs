@@ -55,6 +55,8 @@ pub struct Summary {
     pub nodes: usize,
     /// number of elements
     pub elements: usize,
+    /// number of point masses
+    pub point_masses: usize,
     /// number of contact points
     pub contact_points: usize,
     /// counts and times
@@ -77,6 +79,7 @@ impl Summary {
             dofs: model.dofs(),
             nodes: model.mesh.nodes.len(),
             elements: model.mesh.elements.len(),
+            point_masses: model.point_masses.iter().map(|point| point.nodes.len()).sum(),
             contact_points: model.contacts.iter().map(|pair| pair.points.len()).sum(),
             report,
             peak_memory_mib: peak_memory_mib(),
