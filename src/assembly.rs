@@ -567,13 +567,15 @@ impl<'m> Assembler<'m> {
         let points = self.model.contacts.iter().flat_map(|pair| pair.points.iter().map(move |point| (pair, point)));
         let contacts: f64 = points.map(|(pair, point)| (pair.alpha_n * point.current_length(x)).powi(2)).sum();
         system.round_off = f64::EPSILON * extent * (solids + contacts).sqrt();
-        if let Some(scheme) = step.scheme.coefficients() {
-            let way: Vec<f64> =
-                old.displacement.iter().zip(&old.velocity).map(|(u, v)| u.abs() + (dt * v).abs()).collect();
+        let way: Vec<f64> = old.displacement.iter().zip(&old.velocity).map(|(u, v)| u.abs() + (dt * v).abs()).collect();
+        let scheme = step.scheme.coefficients();
+        if let Some(scheme) = scheme {
             let inertia = crate::linear::norm(&self.mass().multiply(&way)) * scheme.dacceleration(dt);
-            let dashpots = step.loads.dashpots.iter().map(|dashpot| (dashpot.coefficient * way[dashpot.dof]).powi(2));
-            let damping = dashpots.sum::<f64>().sqrt() * scheme.dvelocity(dt);
-            system.round_off += f64::EPSILON * (inertia + damping);
+            system.round_off += f64::EPSILON * inertia;
+        }
+        let dvelocity = scheme.map_or(1.0 / dt, |scheme| scheme.dvelocity(dt));
+        for dashpot in &step.loads.dashpots {
+            system.round_off += f64::EPSILON * dashpot.coefficient * dvelocity * way[dashpot.dof];
         }
     }
 
