@@ -14,6 +14,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, Vector2};
 use rayon::prelude::*;
 
+use crate::boundary::Prescribed;
 use crate::configuration::Configuration;
 use crate::contact::force::{ContactState, Presume, Status};
 use crate::contact::pair::PairResponse;
@@ -39,6 +40,21 @@ pub struct Trial<'a> {
     pub time: f64,
     /// Δt [T]
     pub dt: f64,
+}
+
+impl<'a> Trial<'a> {
+    /// The increment to the time t + θ Δt at which the scheme asks for equilibrium.
+    pub fn ahead(self) -> Trial<'a> {
+        let theta = self.step.scheme.theta();
+        if theta == 1.0 { self } else { Self { time: self.old.time + theta * self.dt, dt: theta * self.dt, ..self } }
+    }
+
+    /// ū of a support at the end of the increment; not finite where its expression has no value [L].
+    pub fn prescribed(&self, support: &Prescribed, model: &Model) -> f64 {
+        let node = support.dof / 2;
+        let start = &self.old.step_start.displacement[2 * node..][..2];
+        support.value(model.mesh.nodes[node], self.time, self.step.span, Vector2::new(start[0], start[1]))
+    }
 }
 
 /// What was found at the last evaluated displacement, for the accepted state.
@@ -539,12 +555,9 @@ impl<'m> Assembler<'m> {
     fn prescribe(&self, trial: Trial, u: &[f64], tangent: bool, system: &mut System) -> Result<(), TrialFailure> {
         for support in &trial.step.supports {
             let dof = support.dof;
-            let node = dof / 2;
-            let start = &trial.old.step_start.displacement[2 * node..][..2];
-            let start = Vector2::new(start[0], start[1]);
-            let target = support.value(self.model.mesh.nodes[node], trial.time, trial.step.span, start);
+            let target = trial.prescribed(support, self.model);
             if !target.is_finite() {
-                return Err(TrialFailure::Undefined { node: self.model.mesh.node_tags[node], time: trial.time });
+                return Err(TrialFailure::Undefined { node: self.model.mesh.node_tags[dof / 2], time: trial.time });
             }
             system.residual[dof] = self.weight * (u[dof] - target);
             if tangent {

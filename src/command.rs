@@ -85,9 +85,10 @@ fn conclude(summary: &Summary, model: &Model, folder: &Path) {
     }
     let report = &summary.report;
     eprintln!(
-        "{} increments, {} cut-backs, {} linear solves of {} dofs in {:.2} s; results in {}",
+        "{} increments, {} cut-backs, {} rejected, {} linear solves of {} dofs in {:.2} s; results in {}",
         report.increments,
         report.cutbacks,
+        report.rejected,
         report.newton_iterations,
         model.dofs(),
         report.wall_s.total,

@@ -1,5 +1,7 @@
 //! The problem to solve: mesh, bodies, contact pairs, and the steps with their supports, loads and schemes.
 
+use std::sync::Arc;
+
 use nalgebra::{DMatrix, Vector2};
 
 use crate::boundary::{Loads, Prescribed, Span};
@@ -45,6 +47,8 @@ pub struct Increments {
     pub min: f64,
     /// never above this [T]
     pub max: f64,
+    /// local error of a displacement that an increment of a dynamic step may make; `None` lets the iterations decide [L]
+    pub error: Option<f64>,
 }
 
 /// A step: a time span with its supports, loads, scheme and increments.
@@ -141,7 +145,7 @@ impl Model {
                 .map(|pair| pair.initial_states(&Configuration::undeformed(&self.mesh.nodes)))
                 .collect(),
             last_increment: None,
-            step_start: StepStart { displacement: zero.clone(), reaction: zero },
+            step_start: Arc::new(StepStart { displacement: zero.clone(), reaction: zero }),
             energy: Energy::default(),
         }
     }

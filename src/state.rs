@@ -1,6 +1,8 @@
 //! Everything increment n + 1 needs from increment n. A new state replaces the old one when it is accepted; dropping it
 //! is the whole of a roll-back.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use crate::contact::force::ContactState;
@@ -32,8 +34,8 @@ pub struct State {
     pub contacts: Vec<Vec<ContactState>>,
     /// Displacement increment of the last increment of this step; `None` at its start
     pub last_increment: Option<LastIncrement>,
-    /// Values at the start of the current step
-    pub step_start: StepStart,
+    /// Values at the start of the current step, the same for all its states
+    pub step_start: Arc<StepStart>,
     /// Energies
     pub energy: Energy,
 }

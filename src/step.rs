@@ -1,5 +1,7 @@
 //! One increment: old state → new state.
 
+use std::sync::Arc;
+
 use crate::assembly::{Assembler, ContactCounts, Trial, prescribed_dofs};
 use crate::configuration::Configuration;
 use crate::contact::force::ContactState;
@@ -7,7 +9,7 @@ use crate::error::StepFailure;
 use crate::floating::null_motion;
 use crate::linear::{self, LinearSolver};
 use crate::model::{Model, Step};
-use crate::newton::{self, Iteration, Request};
+use crate::newton::{self, Iteration, NewtonFailure, Request};
 use crate::state::{LastIncrement, State, StepStart};
 use crate::system::System;
 
@@ -47,7 +49,7 @@ pub struct IterationRecord {
 /// [`StepFailure`] when the initial state cannot be evaluated or a body has no mass.
 pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> Result<State, StepFailure> {
     let mut state = old.clone();
-    state.step_start = StepStart { displacement: old.displacement.clone(), reaction: old.reaction.clone() };
+    state.step_start = Arc::new(StepStart { displacement: old.displacement.clone(), reaction: old.reaction.clone() });
     state.last_increment = None;
     let resting = old.acceleration.iter().all(|a| *a == 0.0);
     match step.scheme.coefficients() {
@@ -115,7 +117,7 @@ fn evaluate_forces(step: &Step, state: &mut State, work: &mut Workspace) -> Resu
 
 /// Solve one increment of length `dt` from the state `old`; pure but for the workspace's buffers.
 ///
-/// The start value is the last increment extrapolated. The record of the iterations comes back from a failed attempt as well.
+/// The record of the iterations comes back from a failed attempt as well.
 pub fn advance(
     model: &Model,
     step: &Step,
@@ -125,7 +127,15 @@ pub fn advance(
 ) -> (Vec<IterationRecord>, Result<State, StepFailure>) {
     // The last increment of a step ends on its end, not within round-off of it.
     let time = if old.time + dt > step.span.end - 1e-9 * dt { step.span.end } else { old.time + dt };
-    let trial = Trial { old, step, time, dt: time - old.time };
+    let increment = Trial { old, step, time, dt: time - old.time };
+    let (iterations, equilibrium) = solve(model, increment.ahead(), work);
+    let new = equilibrium.and_then(|u| reach_end(model, increment, u, work)).map(|u| accept(model, increment, u, work));
+    (iterations, new)
+}
+
+/// Equilibrium at the time of a trial, wherever the scheme asks for it.
+fn solve(model: &Model, trial: Trial, work: &mut Workspace) -> (Vec<IterationRecord>, Result<Vec<f64>, StepFailure>) {
+    let old = trial.old;
     let Workspace { assembler, solver, system, linear_seconds } = work;
     assembler.start_increment();
     let mut first_iterate = true;
@@ -134,7 +144,7 @@ pub fn advance(
     let spent = assembler.seconds.assembly + assembler.seconds.contact;
     let clock = std::time::Instant::now();
     let (iterations, result) =
-        newton::solve(start_value(old, trial.dt), model.newton, &mut **solver, system, |u, request, system| {
+        newton::solve(start_value(trial), model.newton, &mut **solver, system, |u, request, system| {
             assembler.evaluate(trial, u, request, system)?;
             if request == Request::Tangent {
                 if first_iterate && old.last_increment.is_none() {
@@ -151,22 +161,49 @@ pub fn advance(
     counts.resize(iterations.len(), ContactCounts::default());
     let iterations =
         iterations.into_iter().zip(counts).map(|(newton, contacts)| IterationRecord { newton, contacts }).collect();
-    match (floating, result) {
-        (Some(floating), _) => (iterations, Err(StepFailure::Floating(floating))),
+    let result = match (floating, result) {
+        (Some(floating), _) => Err(StepFailure::Floating(floating)),
         // A trial state may have lost the contact that held a body: worth saying, and worth a smaller increment.
         (None, Err(failure)) => {
             let loose = null_motion(model, &old.displacement, &system.tangent);
-            (iterations, Err(loose.map_or(failure.into(), StepFailure::ContactLost)))
+            Err(loose.map_or(failure.into(), StepFailure::ContactLost))
         }
-        (None, Ok(u)) => (iterations, Ok(accept(model, trial, u, work))),
-    }
+        (None, Ok(u)) => Ok(u),
+    };
+    (iterations, result)
 }
 
-/// u_n + Δu_last Δt/Δt_last within a step, u_n at its start.
-fn start_value(old: &State, dt: f64) -> Vec<f64> {
-    let Some(last) = &old.last_increment else { return old.displacement.clone() };
+/// Where Newton's method starts: within a static step the last increment goes on at its pace, in dynamics
+/// u₀ + Δt v₀ + ½ Δt² a₀.
+fn start_value(Trial { old, step, dt, .. }: Trial) -> Vec<f64> {
+    let State { displacement, velocity, acceleration, .. } = old;
+    if step.scheme.coefficients().is_some() {
+        let rates = velocity.iter().zip(acceleration);
+        return displacement.iter().zip(rates).map(|(u, (v, a))| u + dt * (v + 0.5 * dt * a)).collect();
+    }
+    let Some(last) = &old.last_increment else { return displacement.clone() };
     let share = dt / last.dt;
-    old.displacement.iter().zip(&last.displacement).map(|(u, du)| u + share * du).collect()
+    displacement.iter().zip(&last.displacement).map(|(u, du)| u + share * du).collect()
+}
+
+/// Displacement at the end of an increment from the equilibrium `u` that was just found ahead of it, and everything
+/// else evaluated there; `u` itself unless the scheme looks beyond the end.
+fn reach_end(model: &Model, end: Trial, u: Vec<f64>, work: &mut Workspace) -> Result<Vec<f64>, StepFailure> {
+    let Trial { old, step, dt, .. } = end;
+    let theta = step.scheme.theta();
+    let Some(scheme) = step.scheme.coefficients().filter(|_| theta > 1.0) else { return Ok(u) };
+    let ahead = &work.assembler.evaluation.acceleration;
+    let reach = |dof: usize| {
+        let (v, a) = (old.velocity[dof], old.acceleration[dof]);
+        old.displacement[dof] + scheme.increment((v, a), a + (ahead[dof] - a) / theta, dt)
+    };
+    let mut u: Vec<f64> = (0..u.len()).map(reach).collect();
+    for support in &step.supports {
+        u[support.dof] = end.prescribed(support, model);
+    }
+    let evaluated = work.assembler.evaluate(end, &u, Request::Residual, &mut work.system);
+    evaluated.map_err(|failure| StepFailure::Newton(NewtonFailure::Evaluation(failure)))?;
+    Ok(u)
 }
 
 /// The new state at the converged displacement `u`.

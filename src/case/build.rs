@@ -21,6 +21,7 @@ use crate::mesh::{Edge, Group, Mesh, gmsh};
 use crate::model::{Body, Increments, Model, PointMass, Step, WatchedSet};
 use crate::newton;
 use crate::shape;
+use crate::time::Scheme;
 
 /// Largest number of Newton iterations that makes sense to allow.
 const MOST_ITERATIONS: usize = 1000;
@@ -367,7 +368,7 @@ impl StepBuilder<'_> {
         let span = Span { start: self.start, end: self.start + input.duration };
         self.start = span.end;
         self.increments = input.dt.or(self.increments);
-        let increments = increments(&format!("{place}.dt"), self.increments, input.duration, span.end)?;
+        let increments = increments(&format!("{place}.dt"), self.increments, span, input.scheme)?;
         let released = self.supports(place, input, span)?;
         for (k, load) in input.loads.iter().enumerate() {
             self.load(&format!("{place}.loads[{k}]"), load, span)?;
@@ -702,11 +703,17 @@ fn drive(input: &DriveInput, place: &str) -> Checked<Drive> {
     })
 }
 
-fn increments(place: &str, input: Option<IncrementsInput>, duration: f64, end: f64) -> Checked<Increments> {
-    let input = input.unwrap_or(IncrementsInput { initial: 0.1 * duration, min: None, max: None });
-    let min = input.min.unwrap_or(1e-3 * input.initial);
-    let max = input.max.unwrap_or(input.initial);
-    for (name, value) in [("initial", input.initial), ("min", min), ("max", max)] {
+fn increments(place: &str, input: Option<IncrementsInput>, span: Span, scheme: Scheme) -> Checked<Increments> {
+    let duration = span.end - span.start;
+    let input = input.unwrap_or(IncrementsInput { initial: 0.1 * duration, min: None, max: None, error: None });
+    let least = SHORTEST_INCREMENT * span.end;
+    let (default_min, default_max) = match input.error {
+        None => (1e-3 * input.initial, input.initial),
+        Some(_) => ((1e-6 * input.initial).max(least), input.initial.max(0.1 * duration)),
+    };
+    let (min, max) = (input.min.unwrap_or(default_min), input.max.unwrap_or(default_max));
+    let positive = [("initial", Some(input.initial)), ("min", Some(min)), ("max", Some(max)), ("error", input.error)];
+    for (name, value) in positive.into_iter().filter_map(|(name, value)| Some((name, value?))) {
         if !(value > 0.0 && value.is_finite()) {
             return Err(Complaint::new(format!("{place}.{name}"), format!("is {value}: must be positive")));
         }
@@ -719,10 +726,20 @@ fn increments(place: &str, input: Option<IncrementsInput>, duration: f64, end: f
         let message = format!("initial = {} must lie between min = {min} and max = {max}", input.initial);
         return Err(Complaint::new(place, message));
     }
-    let least = SHORTEST_INCREMENT * end;
     if min < least {
+        let end = span.end;
         let message = format!("is {min:e}: at the time {end:e} increments below {least:.1e} are lost in round-off");
         return Err(Complaint::new(format!("{place}.min"), message));
     }
-    Ok(Increments { initial: input.initial, min, max })
+    if input.error.is_some() && scheme.error_constant().is_none() {
+        let message = match scheme {
+            Scheme::Static => {
+                "needs a dynamic scheme: a static step has no error in time; give it a \"dt\" without error"
+            }
+            Scheme::Wilson { .. } => "wilson has no estimate of its error: take newmark, hht or generalized_alpha",
+            _ => "newmark with beta near 1/6 has no estimate of its error: take another beta",
+        };
+        return Err(Complaint::new(format!("{place}.error"), message));
+    }
+    Ok(Increments { initial: input.initial, min, max, error: input.error })
 }

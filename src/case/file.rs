@@ -232,10 +232,13 @@ pub struct StepInput {
 pub struct IncrementsInput {
     /// First increment [T]
     pub initial: f64,
-    /// A failed increment is not cut below this [T]; initial/1000 unless given
+    /// Increments are not cut below this [T]; initial/1000 unless given, with `error` initial/10⁶
     pub min: Option<f64>,
-    /// Increments do not grow beyond this [T]; initial unless given
+    /// Increments do not grow beyond this [T]; initial unless given, with `error` a tenth of the step
     pub max: Option<f64>,
+    /// Dynamic steps only: increments are as long as the estimated error that each makes in a displacement stays below
+    /// this [L], and events of contact (slip sets in, stops or turns round) are located to ten times this
+    pub error: Option<f64>,
 }
 
 /// A support on a group or a node.

@@ -13,6 +13,7 @@ use super::file::{
 use super::initial::lost_velocity;
 use crate::configuration::Configuration;
 use crate::contact::pair::ContactPair;
+use crate::increments::EVENT_LOCATION;
 use crate::mesh::Group;
 use crate::model::{Model, PointMass, Step};
 use crate::shape::ElementKind;
@@ -228,7 +229,7 @@ fn steps(case: &Case, model: &Model) -> Vec<String> {
     let (mut supports, mut loads) = (InForce::new(), InForce::new());
     for (step, input) in model.steps.iter().zip(&case.steps) {
         lines.push(step.name.clone());
-        lines.extend(step_lines(step).map(|line| format!("  {line}")));
+        lines.extend(step_lines(step).into_iter().map(|line| format!("  {line}")));
         supports.step(written_supports(input));
         loads.step(input.loads.iter().map(written_load));
         lines.extend(supports.lines("held").into_iter().chain(loads.lines("loaded")).map(|line| format!("  {line}")));
@@ -237,17 +238,22 @@ fn steps(case: &Case, model: &Model) -> Vec<String> {
     lines
 }
 
-fn step_lines(step: &Step) -> [String; 2] {
+fn step_lines(step: &Step) -> Vec<String> {
     let increments = &step.increments;
     let scheme = match serde_json::to_value(step.scheme) {
         Ok(Value::Object(scheme)) => scheme.iter().map(|(name, numbers)| format!("{name} {numbers}")).collect(),
         scheme => scheme.map(|name| plain(&name)).unwrap_or_default(),
     };
     let [initial, min, max] = [increments.initial, increments.min, increments.max].map(number);
-    [
+    let mut lines = vec![
         format!("time {} to {}, {scheme}", number(step.span.start), number(step.span.end)),
         format!("increments start at {initial}, at least {min}, at most {max}"),
-    ]
+    ];
+    lines.extend(increments.error.map(|error| {
+        let located = number(EVENT_LOCATION * error);
+        format!("each in error by at most {} in a displacement, events of contact located to {located}", number(error))
+    }));
+    lines
 }
 
 /// What is in force in a step, by place and kind, as it was last written; `null` ends it.

@@ -13,8 +13,10 @@ use crate::model::Model;
 pub struct RunReport {
     /// accepted increments
     pub increments: usize,
-    /// failed attempts
+    /// attempts that could not be solved
     pub cutbacks: usize,
+    /// attempts that were solved, and repeated because their error was too large or they met an event of contact
+    pub rejected: usize,
     /// linear solves, those of failed attempts included
     pub newton_iterations: usize,
     /// matrix factorizations
