@@ -33,6 +33,11 @@ impl Expression {
         }
     }
 
+    /// Whether x or y stands in it.
+    pub fn depends_on_position(&self) -> bool {
+        self.0.var_names().iter().any(|name| name != "t")
+    }
+
     /// Value at a reference position and time; NaN where the expression is not defined.
     fn value(&self, position: Vector2<f64>, time: f64) -> f64 {
         let of = |name: &String| match name.as_str() {
