@@ -14,6 +14,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, Vector2};
 use rayon::prelude::*;
 
+use crate::boundary::Prescribed;
 use crate::configuration::Configuration;
 use crate::contact::force::{ContactState, Presume, Status};
 use crate::contact::pair::PairResponse;
@@ -41,6 +42,21 @@ pub struct Trial<'a> {
     pub dt: f64,
 }
 
+impl<'a> Trial<'a> {
+    /// The increment to the time t + θ Δt at which the scheme asks for equilibrium.
+    pub fn ahead(self) -> Trial<'a> {
+        let theta = self.step.scheme.theta();
+        if theta == 1.0 { self } else { Self { time: self.old.time + theta * self.dt, dt: theta * self.dt, ..self } }
+    }
+
+    /// ū of a support at the end of the increment; not finite where its expression has no value [L].
+    pub fn prescribed(&self, support: &Prescribed, model: &Model) -> f64 {
+        let node = support.dof / 2;
+        let start = &self.old.step_start.displacement[2 * node..][..2];
+        support.value(model.mesh.nodes[node], self.time, self.step.span, Vector2::new(start[0], start[1]))
+    }
+}
+
 /// What was found at the last evaluated displacement, for the accepted state.
 #[derive(Clone, Debug, Default)]
 pub struct Evaluation {
@@ -48,6 +64,8 @@ pub struct Evaluation {
     pub force: Vec<f64>,
     /// loads [F]
     pub loads: Vec<f64>,
+    /// forces of dashpots on the nodes [F]
+    pub damping: Vec<f64>,
     /// F + M a, at a prescribed dof the reaction [F]
     pub balance: Vec<f64>,
     /// v [L/T]
@@ -162,15 +180,13 @@ impl<'m> Assembler<'m> {
                 Some(*sum)
             }))
             .collect();
-        let stiffness = model.bodies.iter().map(|body| body.material.stiffness());
-        let springs = model.steps.iter().flat_map(|step| step.loads.springs.iter().map(|spring| spring.stiffness));
         let mut assembler = Self {
             model,
             pattern: Arc::new(Pattern::new(model.mesh.nodes.len(), std::iter::empty())),
             blocks: Vec::new(),
             block_starts,
             mass: None,
-            weight: stiffness.chain(springs).fold(f64::MIN_POSITIVE, f64::max),
+            weight: weight(model),
             magnitudes: vec![0.0; model.dofs()],
             iterates: Vec::new(),
             evaluation: Evaluation::default(),
@@ -246,6 +262,7 @@ impl<'m> Assembler<'m> {
             }
         }
         let loads = self.add_loads(trial, u, &x, &mut force, values.as_deref_mut())?;
+        self.add_dashpots(trial, u, &mut force, values.as_deref_mut())?;
         self.evaluation.contacts =
             responses.into_iter().map(|pair| pair.into_iter().map(|(state, _)| state).collect()).collect();
         self.evaluation.strain_energy = strain_energy;
@@ -450,6 +467,34 @@ impl<'m> Assembler<'m> {
         Ok(loads)
     }
 
+    /// Subtract the forces of the dashpots.
+    fn add_dashpots(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        force: &mut [f64],
+        mut tangent: Option<&mut SparseMatrix>,
+    ) -> Result<(), TrialFailure> {
+        let mut damping = vec![0.0; u.len()];
+        for dashpot in &trial.step.loads.dashpots {
+            let dof = dashpot.dof;
+            let driver = dashpot.driver_velocity(self.model.mesh.nodes[dof / 2], trial.time);
+            let (velocity, dvelocity) = velocity(trial, u, dof);
+            let pull = dashpot.coefficient * (driver - velocity);
+            if !pull.is_finite() {
+                return Err(TrialFailure::Undefined { node: self.model.mesh.node_tags[dof / 2], time: trial.time });
+            }
+            force[dof] -= pull;
+            damping[dof] += pull;
+            self.magnitudes[dof] += pull.abs();
+            if let Some(tangent) = tangent.as_deref_mut() {
+                tangent.add_diagonal(dof, dashpot.coefficient * dvelocity);
+            }
+        }
+        self.evaluation.damping = damping;
+        Ok(())
+    }
+
     /// Velocities, accelerations, and the out-of-balance force of every dof as if none were prescribed.
     fn balance(&mut self, trial: Trial, u: &[f64], tangent: Option<&mut SparseMatrix>, residual: &mut Vec<f64>) {
         let Trial { old, step, dt, .. } = trial;
@@ -510,12 +555,9 @@ impl<'m> Assembler<'m> {
     fn prescribe(&self, trial: Trial, u: &[f64], tangent: bool, system: &mut System) -> Result<(), TrialFailure> {
         for support in &trial.step.supports {
             let dof = support.dof;
-            let node = dof / 2;
-            let start = &trial.old.step_start.displacement[2 * node..][..2];
-            let start = Vector2::new(start[0], start[1]);
-            let target = support.value(self.model.mesh.nodes[node], trial.time, trial.step.span, start);
+            let target = trial.prescribed(support, self.model);
             if !target.is_finite() {
-                return Err(TrialFailure::Undefined { node: self.model.mesh.node_tags[node], time: trial.time });
+                return Err(TrialFailure::Undefined { node: self.model.mesh.node_tags[dof / 2], time: trial.time });
             }
             system.residual[dof] = self.weight * (u[dof] - target);
             if tangent {
@@ -542,11 +584,13 @@ impl<'m> Assembler<'m> {
             let way: Vec<f64> =
                 old.displacement.iter().zip(&old.velocity).map(|(u, v)| u.abs() + (dt * v).abs()).collect();
             let inertia = crate::linear::norm(&self.mass().multiply(&way)) * scheme.dacceleration(dt);
-            system.round_off += f64::EPSILON * inertia;
+            let dashpots = step.loads.dashpots.iter().map(|dashpot| (dashpot.coefficient * way[dashpot.dof]).powi(2));
+            let damping = dashpots.sum::<f64>().sqrt() * scheme.dvelocity(dt);
+            system.round_off += f64::EPSILON * (inertia + damping);
         }
     }
 
-    /// The consistent mass matrix on the current pattern.
+    /// The mass matrix on the current pattern: consistent in the elements, and the point masses on the diagonal.
     pub fn mass(&mut self) -> &SparseMatrix {
         let model = self.model;
         let (blocks, starts, pattern) = (&self.blocks, &self.block_starts, &self.pattern);
@@ -557,8 +601,36 @@ impl<'m> Assembler<'m> {
                 let both = model.element_mass(e).kronecker(&DMatrix::identity(2, 2));
                 add_blocks(&mut mass, &blocks[starts[e]..starts[e + 1]], both.as_slice(), n);
             }
+            for point in &model.point_masses {
+                let dofs = point.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
+                dofs.for_each(|dof| mass.add_diagonal(dof, point.mass));
+            }
             mass
         })
+    }
+}
+
+/// w: the largest stiffness of the materials and springs; a model of points alone has that of its contacts.
+fn weight(model: &Model) -> f64 {
+    let materials = model.bodies.iter().map(|body| body.material.stiffness());
+    let springs = model.steps.iter().flat_map(|step| step.loads.springs.iter().map(|spring| spring.stiffness));
+    let contacts = model.contacts.iter().flat_map(|pair| pair.points.iter().map(|point| pair.alpha_n * point.area));
+    let largest = |stiffness: &mut dyn Iterator<Item = f64>| stiffness.reduce(f64::max).filter(|w| *w > 0.0);
+    largest(&mut materials.chain(springs)).or_else(|| largest(&mut { contacts })).unwrap_or(1.0)
+}
+
+/// v of one dof at the end of the increment, and ∂v/∂u: what the scheme says (see [`Assembler::rates`]) or, in statics,
+/// the mean of the increment. An increment of no length leaves v as it is.
+fn velocity(trial: Trial, u: &[f64], dof: usize) -> (f64, f64) {
+    let Trial { old, step, dt, .. } = trial;
+    let increment = u[dof] - old.displacement[dof];
+    let prescribed = || step.supports.binary_search_by_key(&dof, |support| support.dof).is_ok();
+    match step.scheme.coefficients() {
+        _ if dt == 0.0 => (old.velocity[dof], 0.0),
+        Some(scheme) if !prescribed() => {
+            (scheme.rates(increment, (old.velocity[dof], old.acceleration[dof]), dt).0, scheme.dvelocity(dt))
+        }
+        _ => (increment / dt, 1.0 / dt),
     }
 }
 

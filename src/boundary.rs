@@ -179,6 +179,24 @@ pub struct Spring {
     pub driver: Option<Amplitude>,
 }
 
+/// A dashpot from a node to the ground or to a moving driver: force c (v_driver − v).
+#[derive(Clone, Debug)]
+pub struct Dashpot {
+    /// dof it acts on
+    pub dof: usize,
+    /// c [F T/L]
+    pub coefficient: f64,
+    /// velocity of the far end; `None` is the ground [L/T]
+    pub driver: Option<Amplitude>,
+}
+
+impl Dashpot {
+    /// v_driver, for the node's reference position [L/T].
+    pub fn driver_velocity(&self, position: Vector2<f64>, time: f64) -> f64 {
+        self.driver.as_ref().map_or(0.0, |driver| driver.value(position, time))
+    }
+}
+
 /// Everything that acts on the model in one step.
 #[derive(Clone, Debug, Default)]
 pub struct Loads {
@@ -188,4 +206,6 @@ pub struct Loads {
     pub pressures: Vec<FollowerPressure>,
     /// springs
     pub springs: Vec<Spring>,
+    /// dashpots
+    pub dashpots: Vec<Dashpot>,
 }

@@ -56,6 +56,7 @@ pub fn run(path: &Path, out: Option<PathBuf>, threads: Option<usize>, quiet: boo
     let mut history = History::create(&folder, &model)?;
     let mut newton_log = NewtonLog::create(&folder)?;
     let mut warnings = Warnings::default();
+    warnings.list.extend(case::lost_velocity(&model));
     let mut fields = match case.output.fields {
         true => Some(Fields::create(&folder, &model, &model.initial_state(), case.output.every)?),
         false => None,
@@ -84,9 +85,10 @@ fn conclude(summary: &Summary, model: &Model, folder: &Path) {
     }
     let report = &summary.report;
     eprintln!(
-        "{} increments, {} cut-backs, {} linear solves of {} dofs in {:.2} s; results in {}",
+        "{} increments, {} cut-backs, {} rejected, {} linear solves of {} dofs in {:.2} s; results in {}",
         report.increments,
         report.cutbacks,
+        report.rejected,
         report.newton_iterations,
         model.dofs(),
         report.wall_s.total,

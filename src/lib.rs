@@ -3,8 +3,8 @@
 //! # The way through the house
 //!
 //! Reading order: `main` → [`command`] → [`case`] (JSON → checks → model) → [`model`] → [`run`] (steps, increments,
-//! cut-back) → [`step`] (one increment: old state → new state) → [`newton`] → [`assembly`] → {[`element`] →
-//! [`material`]} and {[`contact`] → [`friction`]}; then up again: accepted [`state`] → [`output`].
+//! cut-back; [`increments`] says how long) → [`step`] (one increment: old state → new state) → [`newton`] → [`assembly`]
+//! → {[`element`] → [`material`]} and {[`contact`] → [`friction`]}; then up again: accepted [`state`] → [`output`].
 //!
 //! # Signs
 //!
@@ -38,6 +38,7 @@ pub mod element;
 pub mod error;
 pub mod floating;
 pub mod friction;
+pub mod increments;
 pub mod linear;
 pub mod material;
 pub mod mesh;

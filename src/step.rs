@@ -1,5 +1,7 @@
 //! One increment: old state → new state.
 
+use std::sync::Arc;
+
 use crate::assembly::{Assembler, ContactCounts, Trial, prescribed_dofs};
 use crate::configuration::Configuration;
 use crate::contact::force::ContactState;
@@ -7,7 +9,7 @@ use crate::error::StepFailure;
 use crate::floating::null_motion;
 use crate::linear::{self, LinearSolver};
 use crate::model::{Model, Step};
-use crate::newton::{self, Iteration, Request};
+use crate::newton::{self, Iteration, NewtonFailure, Request};
 use crate::state::{LastIncrement, State, StepStart};
 use crate::system::System;
 
@@ -40,19 +42,23 @@ pub struct IterationRecord {
     pub contacts: ContactCounts,
 }
 
-/// Begin a step: remember displacements and reactions, and find the accelerations if dynamics starts here.
+/// Begin a step: remember displacements and reactions, and find the forces and accelerations that the run or dynamics
+/// starts with.
 ///
 /// # Errors
 /// [`StepFailure`] when the initial state cannot be evaluated or a body has no mass.
 pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> Result<State, StepFailure> {
     let mut state = old.clone();
-    state.step_start = StepStart { displacement: old.displacement.clone(), reaction: old.reaction.clone() };
+    state.step_start = Arc::new(StepStart { displacement: old.displacement.clone(), reaction: old.reaction.clone() });
     state.last_increment = None;
     let resting = old.acceleration.iter().all(|a| *a == 0.0);
     match step.scheme.coefficients() {
         Some(_) if resting => start_dynamics(step, &mut state, work)?,
         // The reaction of a freed support has become a load.
         Some(_) => step.released.iter().for_each(|&dof| state.force[dof] -= old.reaction[dof]),
+        None if old.increment == 0 && model.contacts.iter().any(|pair| pair.initial.is_some()) => {
+            start_loaded(step, &mut state, work)?;
+        }
         None => {}
     }
     if state.increment == 0 {
@@ -70,13 +76,8 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
 /// a₀ = −M⁻¹ F₀ at the free dofs, 0 at the prescribed ones, whose reaction is F₀ + M a₀
 /// ```
 fn start_dynamics(step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), StepFailure> {
-    let quasi_static = Step { scheme: crate::time::Scheme::Static, ..step.clone() };
-    let trial = Trial { old: state, step: &quasi_static, time: state.time, dt: 0.0 };
-    work.assembler
-        .evaluate(trial, &state.displacement, Request::Residual, &mut work.system)
-        .map_err(StepFailure::Start)?;
-    let force = work.assembler.evaluation.force.clone();
-    state.external.clone_from(&work.assembler.evaluation.loads);
+    evaluate_forces(step, state, work)?;
+    let force = &state.force;
     let prescribed = prescribed_dofs(step, force.len());
     let mut right: Vec<f64> = force.iter().map(|f| -f).collect();
     let mut mass = work.assembler.mass().clone();
@@ -90,13 +91,33 @@ fn start_dynamics(step: &Step, state: &mut State, work: &mut Workspace) -> Resul
     for (dof, _) in prescribed.iter().enumerate().filter(|(_, held)| **held) {
         state.external[dof] += force[dof] + inertia[dof];
     }
-    state.force = force;
+    Ok(())
+}
+
+/// The forces at the start of a static run whose contacts are closed already: loads and reactions balance them.
+fn start_loaded(step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), StepFailure> {
+    evaluate_forces(step, state, work)?;
+    step.supports.iter().for_each(|support| state.external[support.dof] += state.force[support.dof]);
+    Ok(())
+}
+
+/// Forces of the state as it is, under the loads that the step puts on it at this time.
+fn evaluate_forces(step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), StepFailure> {
+    let quasi_static = Step { scheme: crate::time::Scheme::Static, ..step.clone() };
+    let trial = Trial { old: state, step: &quasi_static, time: state.time, dt: 0.0 };
+    work.assembler
+        .evaluate(trial, &state.displacement, Request::Residual, &mut work.system)
+        .map_err(StepFailure::Start)?;
+    let evaluation = &work.assembler.evaluation;
+    state.force.clone_from(&evaluation.force);
+    state.external.clone_from(&evaluation.loads);
+    state.damping.clone_from(&evaluation.damping);
     Ok(())
 }
 
 /// Solve one increment of length `dt` from the state `old`; pure but for the workspace's buffers.
 ///
-/// The start value is the last increment extrapolated. The record of the iterations comes back from a failed attempt as well.
+/// The record of the iterations comes back from a failed attempt as well.
 pub fn advance(
     model: &Model,
     step: &Step,
@@ -106,7 +127,15 @@ pub fn advance(
 ) -> (Vec<IterationRecord>, Result<State, StepFailure>) {
     // The last increment of a step ends on its end, not within round-off of it.
     let time = if old.time + dt > step.span.end - 1e-9 * dt { step.span.end } else { old.time + dt };
-    let trial = Trial { old, step, time, dt: time - old.time };
+    let increment = Trial { old, step, time, dt: time - old.time };
+    let (iterations, equilibrium) = solve(model, increment.ahead(), work);
+    let new = equilibrium.and_then(|u| reach_end(model, increment, u, work)).map(|u| accept(model, increment, u, work));
+    (iterations, new)
+}
+
+/// Equilibrium at the time of a trial, wherever the scheme asks for it.
+fn solve(model: &Model, trial: Trial, work: &mut Workspace) -> (Vec<IterationRecord>, Result<Vec<f64>, StepFailure>) {
+    let old = trial.old;
     let Workspace { assembler, solver, system, linear_seconds } = work;
     assembler.start_increment();
     let mut first_iterate = true;
@@ -115,7 +144,7 @@ pub fn advance(
     let spent = assembler.seconds.assembly + assembler.seconds.contact;
     let clock = std::time::Instant::now();
     let (iterations, result) =
-        newton::solve(start_value(old, trial.dt), model.newton, &mut **solver, system, |u, request, system| {
+        newton::solve(start_value(trial), model.newton, &mut **solver, system, |u, request, system| {
             assembler.evaluate(trial, u, request, system)?;
             if request == Request::Tangent {
                 if first_iterate && old.last_increment.is_none() {
@@ -132,22 +161,49 @@ pub fn advance(
     counts.resize(iterations.len(), ContactCounts::default());
     let iterations =
         iterations.into_iter().zip(counts).map(|(newton, contacts)| IterationRecord { newton, contacts }).collect();
-    match (floating, result) {
-        (Some(floating), _) => (iterations, Err(StepFailure::Floating(floating))),
+    let result = match (floating, result) {
+        (Some(floating), _) => Err(StepFailure::Floating(floating)),
         // A trial state may have lost the contact that held a body: worth saying, and worth a smaller increment.
         (None, Err(failure)) => {
             let loose = null_motion(model, &old.displacement, &system.tangent);
-            (iterations, Err(loose.map_or(failure.into(), StepFailure::ContactLost)))
+            Err(loose.map_or(failure.into(), StepFailure::ContactLost))
         }
-        (None, Ok(u)) => (iterations, Ok(accept(model, trial, u, work))),
-    }
+        (None, Ok(u)) => Ok(u),
+    };
+    (iterations, result)
 }
 
-/// u_n + Δu_last Δt/Δt_last within a step, u_n at its start.
-fn start_value(old: &State, dt: f64) -> Vec<f64> {
-    let Some(last) = &old.last_increment else { return old.displacement.clone() };
+/// Where Newton's method starts: within a static step the last increment goes on at its pace, in dynamics
+/// u₀ + Δt v₀ + ½ Δt² a₀.
+fn start_value(Trial { old, step, dt, .. }: Trial) -> Vec<f64> {
+    let State { displacement, velocity, acceleration, .. } = old;
+    if step.scheme.coefficients().is_some() {
+        let rates = velocity.iter().zip(acceleration);
+        return displacement.iter().zip(rates).map(|(u, (v, a))| u + dt * (v + 0.5 * dt * a)).collect();
+    }
+    let Some(last) = &old.last_increment else { return displacement.clone() };
     let share = dt / last.dt;
-    old.displacement.iter().zip(&last.displacement).map(|(u, du)| u + share * du).collect()
+    displacement.iter().zip(&last.displacement).map(|(u, du)| u + share * du).collect()
+}
+
+/// Displacement at the end of an increment from the equilibrium `u` that was just found ahead of it, and everything
+/// else evaluated there; `u` itself unless the scheme looks beyond the end.
+fn reach_end(model: &Model, end: Trial, u: Vec<f64>, work: &mut Workspace) -> Result<Vec<f64>, StepFailure> {
+    let Trial { old, step, dt, .. } = end;
+    let theta = step.scheme.theta();
+    let Some(scheme) = step.scheme.coefficients().filter(|_| theta > 1.0) else { return Ok(u) };
+    let ahead = &work.assembler.evaluation.acceleration;
+    let reach = |dof: usize| {
+        let (v, a) = (old.velocity[dof], old.acceleration[dof]);
+        old.displacement[dof] + scheme.increment((v, a), a + (ahead[dof] - a) / theta, dt)
+    };
+    let mut u: Vec<f64> = (0..u.len()).map(reach).collect();
+    for support in &step.supports {
+        u[support.dof] = end.prescribed(support, model);
+    }
+    let evaluated = work.assembler.evaluate(end, &u, Request::Residual, &mut work.system);
+    evaluated.map_err(|failure| StepFailure::Newton(NewtonFailure::Evaluation(failure)))?;
+    Ok(u)
 }
 
 /// The new state at the converged displacement `u`.
@@ -160,7 +216,12 @@ fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> Sta
     }
     let external: Vec<f64> = evaluation.loads.iter().zip(&reaction).map(|(load, reaction)| load + reaction).collect();
     let increment: Vec<f64> = u.iter().zip(&old.displacement).map(|(new, old)| new - old).collect();
-    let work_done: f64 = (0..u.len()).map(|dof| 0.5 * (old.external[dof] + external[dof]) * increment[dof]).sum();
+    let mean_work = |old: &[f64], new: &[f64]| -> f64 {
+        (0..u.len()).map(|dof| 0.5 * (old[dof] + new[dof]) * increment[dof]).sum()
+    };
+    let work_done = mean_work(&old.external, &external);
+    let damped = mean_work(&old.damping, &evaluation.damping);
+    let driven = work_of_drivers(model, trial, &increment);
     let x = model.configuration(&u);
     let contact_elastic = contact_energy(model, &evaluation.contacts, &x);
     let dissipated = friction_dissipation(model, old, &evaluation.contacts, &x);
@@ -173,18 +234,34 @@ fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> Sta
         acceleration: evaluation.acceleration,
         force: evaluation.force,
         external,
+        damping: evaluation.damping,
         reaction,
         contacts: evaluation.contacts,
         last_increment: Some(LastIncrement { dt, displacement: increment }),
         step_start: old.step_start.clone(),
         energy: old.energy,
     };
-    state.energy.external_work += work_done;
+    state.energy.external_work += work_done + driven;
+    state.energy.damping_dissipation += driven - damped;
     state.energy.strain = evaluation.strain_energy;
     state.energy.contact_elastic = contact_elastic;
     state.energy.friction_dissipation += dissipated;
     state.energy.kinetic = kinetic_energy(step, &state, work);
     state
+}
+
+/// What the drivers of dashpots put in over an increment: mean force × way of the driver.
+fn work_of_drivers(model: &Model, trial: Trial, increment: &[f64]) -> f64 {
+    let Trial { old, step, time, dt } = trial;
+    let driven = step.loads.dashpots.iter().filter(|dashpot| dashpot.driver.is_some());
+    driven
+        .map(|dashpot| {
+            let position = model.mesh.nodes[dashpot.dof / 2];
+            let [v0, v1] = [old.time, time].map(|time| dashpot.driver_velocity(position, time));
+            let velocity = 0.5 * (v0 + v1);
+            dashpot.coefficient * (velocity * dt - increment[dashpot.dof]) * velocity
+        })
+        .sum()
 }
 
 fn kinetic_energy(step: &Step, state: &State, work: &mut Workspace) -> f64 {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Module → layer. A new module must be listed.
-const LAYERS: [(&str, u32); 24] = [
+const LAYERS: [(&str, u32); 25] = [
     ("parameter", 0),
     ("configuration", 1),
     ("shape", 1),
@@ -24,6 +24,7 @@ const LAYERS: [(&str, u32); 24] = [
     ("assembly", 6),
     ("floating", 6),
     ("step", 7),
+    ("increments", 8),
     ("output", 8),
     ("run", 9),
     ("case", 10),

@@ -5,6 +5,7 @@ mod choice;
 mod error;
 mod explain;
 pub mod file;
+mod initial;
 mod names;
 mod read;
 mod report;
@@ -12,6 +13,7 @@ mod supported;
 
 pub use build::build;
 pub use error::CaseError;
+pub use initial::lost_velocity;
 pub use read::read;
 pub use report::report;
 

@@ -28,6 +28,8 @@ pub struct Attempt<'a> {
     pub iterations: &'a [IterationRecord],
     /// the new state, if it was accepted
     pub accepted: Option<&'a State>,
+    /// estimated local error of a displacement, in steps under error control [L]
+    pub local_error: Option<f64>,
 }
 
 /// Somebody who watches a run.

@@ -53,7 +53,7 @@ impl Observer for Progress {
                     state.time, counts.open, counts.stick, counts.slip
                 )
             }
-            None => format!("{step}  t {time:.6}  dt {dt:.3e}  failed after {solves} iterations"),
+            None => format!("{step}  t {time:.6}  dt {dt:.3e}  repeated after {solves} iterations"),
         };
         match &self.0 {
             Some(bar) => {

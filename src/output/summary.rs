@@ -13,8 +13,10 @@ use crate::model::Model;
 pub struct RunReport {
     /// accepted increments
     pub increments: usize,
-    /// failed attempts
+    /// attempts that could not be solved
     pub cutbacks: usize,
+    /// attempts that were solved, and repeated because their error was too large or they met an event of contact
+    pub rejected: usize,
     /// linear solves, those of failed attempts included
     pub newton_iterations: usize,
     /// matrix factorizations
@@ -55,6 +57,8 @@ pub struct Summary {
     pub nodes: usize,
     /// number of elements
     pub elements: usize,
+    /// number of point masses
+    pub point_masses: usize,
     /// number of contact points
     pub contact_points: usize,
     /// counts and times
@@ -77,6 +81,7 @@ impl Summary {
             dofs: model.dofs(),
             nodes: model.mesh.nodes.len(),
             elements: model.mesh.elements.len(),
+            point_masses: model.point_masses.iter().map(|point| point.nodes.len()).sum(),
             contact_points: model.contacts.iter().map(|pair| pair.points.len()).sum(),
             report,
             peak_memory_mib: peak_memory_mib(),
