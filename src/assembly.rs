@@ -76,6 +76,8 @@ pub struct Evaluation {
     pub force: Vec<f64>,
     /// loads [F]
     pub loads: Vec<f64>,
+    /// forces of dashpots on the nodes [F]
+    pub damping: Vec<f64>,
     /// F + M a, at a prescribed dof the reaction [F]
     pub balance: Vec<f64>,
     /// v [L/T]
@@ -174,9 +176,23 @@ pub struct Assembler<'m> {
     iterates: Vec<Vec<Iterate>>,
     /// What was found at the last evaluated displacement
     pub evaluation: Evaluation,
+    buffers: Buffers,
+    /// Segments that the pattern has room for ahead of each foot, when it is set next
+    ahead: usize,
     /// Time spent
     pub seconds: Seconds,
 }
+
+/// What a batch of elements adds, one after another.
+#[derive(Clone, Debug, Default)]
+struct Buffers {
+    forces: Vec<f64>,
+    tangents: Vec<f64>,
+    energies: Vec<Result<f64, InvertedElement>>,
+}
+
+/// Most segments ahead of a foot that the pattern gets room for.
+const FARTHEST: usize = 8;
 
 /// Elements whose forces and tangents are held at once before they are added.
 const BATCH: usize = 4096;
@@ -193,18 +209,18 @@ impl<'m> Assembler<'m> {
                 Some(*sum)
             }))
             .collect();
-        let stiffness = model.bodies.iter().map(|body| body.material.stiffness());
-        let springs = model.steps.iter().flat_map(|step| step.loads.springs.iter().map(|spring| spring.stiffness));
         let mut assembler = Self {
             model,
             pattern: Arc::new(Pattern::new(model.mesh.nodes.len(), std::iter::empty())),
             blocks: Vec::new(),
             block_starts,
             mass: None,
-            weight: stiffness.chain(springs).fold(f64::MIN_POSITIVE, f64::max),
+            weight: weight(model),
             magnitudes: vec![0.0; model.dofs()],
             iterates: Vec::new(),
             evaluation: Evaluation::default(),
+            buffers: Buffers::default(),
+            ahead: 1,
             seconds: Seconds::default(),
         };
         assembler.set_pattern(&[]);
@@ -277,6 +293,7 @@ impl<'m> Assembler<'m> {
             }
         }
         let loads = self.add_loads(trial, u, &x, &mut force, values.as_deref_mut())?;
+        self.add_dashpots(trial, u, &mut force, values.as_deref_mut())?;
         self.evaluation.contacts =
             responses.into_iter().map(|pair| pair.into_iter().map(|(state, _)| state).collect()).collect();
         self.evaluation.strain_energy = strain_energy;
@@ -325,8 +342,9 @@ impl<'m> Assembler<'m> {
             .collect()
     }
 
-    /// Make sure the pattern has room for all contact points. If it has not, it gets room for one segment more on
-    /// either side of each foot, so that it seldom changes as points slide.
+    /// Make sure the pattern has room for all contact points. If it has not, it gets room for one segment more behind
+    /// each foot and a few ahead, where the point slides to. Every time the room turns out too small there will be twice
+    /// as much, so that the pattern seldom changes as points slide.
     fn cover(&mut self, responses: &[PairResponse], old: &State) {
         let coupled = |contribution: &Contribution| {
             let nodes = &contribution.nodes;
@@ -342,14 +360,20 @@ impl<'m> Assembler<'m> {
                 let mut nodes: Vec<usize> = slave.position.iter().map(|&(node, _)| node).collect();
                 nodes.extend(contribution.iter().flat_map(|contribution| &contribution.nodes));
                 if let Master::Mesh(surface) = &pair.master {
-                    let around = [Some(foot.segment), surface.previous(foot.segment), surface.next(foot.segment)];
-                    nodes.extend(around.into_iter().flatten().flat_map(|segment| surface.segments[segment]));
+                    let way = old.foot.and_then(|from| surface.path(from, foot)).unwrap_or_default();
+                    let slip: f64 = way.iter().map(|(_, share)| share).sum();
+                    let [behind, ahead] = if slip < 0.0 { [self.ahead, 1] } else { [1, self.ahead] };
+                    let back = std::iter::successors(Some(foot.segment), |&segment| surface.previous(segment));
+                    let forth = std::iter::successors(Some(foot.segment), |&segment| surface.next(segment));
+                    let around = back.take(1 + behind).chain(forth.take(1 + ahead));
+                    nodes.extend(around.flat_map(|segment| surface.segments[segment]));
                 }
                 nodes.sort_unstable();
                 nodes.dedup();
                 groups.push(nodes);
             }
         }
+        self.ahead = FARTHEST.min(2 * self.ahead);
         self.set_pattern(&groups);
     }
 
@@ -361,12 +385,13 @@ impl<'m> Assembler<'m> {
         mut tangent: Option<&mut SparseMatrix>,
     ) -> Result<f64, TrialFailure> {
         let model = self.model;
+        let wants_tangent = tangent.is_some();
         let widest = model.mesh.elements.iter().map(|element| element.nodes.len()).max().unwrap_or(0);
-        let dofs = 2 * widest;
+        let (dofs, stride) = (2 * widest, if wants_tangent { 4 * widest * widest } else { 1 });
         let batch = BATCH.min(model.mesh.elements.len());
-        let mut forces = vec![0.0; batch * dofs];
-        let mut tangents = vec![0.0; if tangent.is_some() { batch * dofs * dofs } else { batch }];
-        let stride = tangents.len() / batch.max(1);
+        let Buffers { mut forces, mut tangents, mut energies } = std::mem::take(&mut self.buffers);
+        forces.resize(batch * dofs, 0.0);
+        tangents.resize(tangents.len().max(batch * stride), 0.0);
         let mut energy = 0.0;
         for first in (0..model.mesh.elements.len()).step_by(BATCH) {
             let elements = first..(first + BATCH).min(model.mesh.elements.len());
@@ -385,14 +410,14 @@ impl<'m> Assembler<'m> {
                     solid.force(material, &local[..nodes.len()], &mut force[..n])
                 }
             };
-            let energies: Vec<Result<f64, InvertedElement>> = if elements.len() < FEW {
+            if elements.len() < FEW {
                 let arrays = forces.chunks_mut(dofs).zip(tangents.chunks_mut(stride));
-                elements.clone().zip(arrays).map(one).collect()
+                energies.extend(elements.clone().zip(arrays).map(one));
             } else {
                 let arrays = forces.par_chunks_mut(dofs).zip(tangents.par_chunks_mut(stride));
-                elements.clone().into_par_iter().zip(arrays).with_min_len(FEW).map(one).collect()
-            };
-            for (k, (e, stored)) in elements.zip(energies).enumerate() {
+                elements.clone().into_par_iter().zip(arrays).with_min_len(FEW).map(one).collect_into_vec(&mut energies);
+            }
+            for (k, (e, stored)) in elements.zip(energies.drain(..)).enumerate() {
                 energy += stored.map_err(|inverted| self.inverted(e, inverted))?;
                 let nodes = &model.mesh.elements[e].nodes;
                 let local = &forces[k * dofs..];
@@ -409,6 +434,7 @@ impl<'m> Assembler<'m> {
                 }
             }
         }
+        self.buffers = Buffers { forces, tangents, energies };
         Ok(energy)
     }
 
@@ -480,6 +506,34 @@ impl<'m> Assembler<'m> {
             self.magnitudes[dof] += load.abs();
         }
         Ok(loads)
+    }
+
+    /// Subtract the forces of the dashpots.
+    fn add_dashpots(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        force: &mut [f64],
+        mut tangent: Option<&mut SparseMatrix>,
+    ) -> Result<(), TrialFailure> {
+        let mut damping = vec![0.0; u.len()];
+        for dashpot in &trial.step.loads.dashpots {
+            let dof = dashpot.dof;
+            let driver = dashpot.driver_velocity(self.model.mesh.nodes[dof / 2], trial.time);
+            let (velocity, dvelocity) = velocity(self.model, trial, u, dof);
+            let pull = dashpot.coefficient * (driver - velocity);
+            if !pull.is_finite() {
+                return Err(TrialFailure::Undefined { node: self.model.mesh.node_tags[dof / 2], time: trial.time });
+            }
+            force[dof] -= pull;
+            damping[dof] += pull;
+            self.magnitudes[dof] += pull.abs();
+            if let Some(tangent) = tangent.as_deref_mut() {
+                tangent.add_diagonal(dof, dashpot.coefficient * dvelocity);
+            }
+        }
+        self.evaluation.damping = damping;
+        Ok(())
     }
 
     /// Velocities, accelerations, and the out-of-balance force of every dof as if none were prescribed.
@@ -565,15 +619,19 @@ impl<'m> Assembler<'m> {
         let points = self.model.contacts.iter().flat_map(|pair| pair.points.iter().map(move |point| (pair, point)));
         let contacts: f64 = points.map(|(pair, point)| (pair.alpha_n * point.current_length(x)).powi(2)).sum();
         system.round_off = f64::EPSILON * extent * (solids + contacts).sqrt();
-        if let Some(scheme) = step.scheme.coefficients() {
-            let way: Vec<f64> =
-                old.displacement.iter().zip(&old.velocity).map(|(u, v)| u.abs() + (dt * v).abs()).collect();
+        let way: Vec<f64> = old.displacement.iter().zip(&old.velocity).map(|(u, v)| u.abs() + (dt * v).abs()).collect();
+        let scheme = step.scheme.coefficients();
+        if let Some(scheme) = scheme {
             let inertia = crate::linear::norm(&self.mass().multiply(&way)) * scheme.dacceleration(dt);
             system.round_off += f64::EPSILON * inertia;
         }
+        let dvelocity = scheme.map_or(1.0 / dt, |scheme| scheme.dvelocity(dt));
+        for dashpot in &step.loads.dashpots {
+            system.round_off += f64::EPSILON * dashpot.coefficient * dvelocity * way[dashpot.dof];
+        }
     }
 
-    /// The consistent mass matrix on the current pattern.
+    /// The mass matrix on the current pattern: consistent in the elements, and the point masses on the diagonal.
     pub fn mass(&mut self) -> &SparseMatrix {
         let model = self.model;
         let (blocks, starts, pattern) = (&self.blocks, &self.block_starts, &self.pattern);
@@ -584,18 +642,47 @@ impl<'m> Assembler<'m> {
                 let both = model.element_mass(e).kronecker(&DMatrix::identity(2, 2));
                 add_blocks(&mut mass, &blocks[starts[e]..starts[e + 1]], both.as_slice(), n);
             }
+            for point in &model.point_masses {
+                let dofs = point.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
+                dofs.for_each(|dof| mass.add_diagonal(dof, point.mass));
+            }
             mass
         })
     }
 }
 
+/// w: the largest stiffness of the materials and springs; a model of points alone has that of its contacts.
+fn weight(model: &Model) -> f64 {
+    let materials = model.bodies.iter().map(|body| body.material.stiffness());
+    let springs = model.steps.iter().flat_map(|step| step.loads.springs.iter().map(|spring| spring.stiffness));
+    let contacts = model.contacts.iter().flat_map(|pair| pair.points.iter().map(|point| pair.alpha_n * point.area));
+    let largest = |stiffness: &mut dyn Iterator<Item = f64>| stiffness.reduce(f64::max).filter(|w| *w > 0.0);
+    largest(&mut materials.chain(springs)).or_else(|| largest(&mut { contacts })).unwrap_or(1.0)
+}
+
+/// v of one dof at the end of the increment, and ∂v/∂u: what the scheme or the support says (see [`Assembler::rates`])
+/// or, in statics, the mean of the increment. An increment of no length leaves v as it is.
+fn velocity(model: &Model, trial: Trial, u: &[f64], dof: usize) -> (f64, f64) {
+    let Trial { old, step, dt, .. } = trial;
+    let (increment, before) = (u[dof] - old.displacement[dof], old.velocity[dof]);
+    if dt == 0.0 {
+        return (before, 0.0);
+    }
+    let Some(scheme) = step.scheme.coefficients() else { return (increment / dt, 1.0 / dt) };
+    match step.supports.binary_search_by_key(&dof, |support| support.dof) {
+        Ok(support) => (supported_rates(trial.thirds(&step.supports[support], model), before, dt).0, 0.0),
+        Err(_) => (scheme.rates(increment, (before, old.acceleration[dof]), dt).0, scheme.dvelocity(dt)),
+    }
+}
+
 /// Add a dense tangent of `n` nodes (column-major, two dofs a node) at the given blocks (column by column).
 fn add_blocks(matrix: &mut SparseMatrix, blocks: &[BlockPosition], local: &[f64], n: usize) {
-    for (k, block) in blocks.iter().enumerate() {
-        let (row, column) = (k % n, k / n);
-        for j in 0..2 {
-            for i in 0..2 {
-                matrix.values[block.value(i, j)] += local[(2 * column + j) * 2 * n + 2 * row + i];
+    for (columns, blocks) in local.chunks_exact(4 * n).zip(blocks.chunks_exact(n)) {
+        for (j, column) in columns.chunks_exact(2 * n).enumerate() {
+            for (pair, block) in column.chunks_exact(2).zip(blocks) {
+                let target = &mut matrix.values[block.value(0, j)..][..2];
+                target[0] += pair[0];
+                target[1] += pair[1];
             }
         }
     }

@@ -33,6 +33,11 @@ impl Expression {
         }
     }
 
+    /// Whether x or y stands in it.
+    pub fn depends_on_position(&self) -> bool {
+        self.0.var_names().iter().any(|name| name != "t")
+    }
+
     /// Value at a reference position and time; NaN where the expression is not defined.
     fn value(&self, position: Vector2<f64>, time: f64) -> f64 {
         let of = |name: &String| match name.as_str() {
@@ -191,6 +196,24 @@ pub struct Spring {
     pub driver: Option<Amplitude>,
 }
 
+/// A dashpot from a node to the ground or to a moving driver: force c (v_driver − v).
+#[derive(Clone, Debug)]
+pub struct Dashpot {
+    /// dof it acts on
+    pub dof: usize,
+    /// c [F T/L]
+    pub coefficient: f64,
+    /// velocity of the far end; `None` is the ground [L/T]
+    pub driver: Option<Amplitude>,
+}
+
+impl Dashpot {
+    /// v_driver, for the node's reference position [L/T].
+    pub fn driver_velocity(&self, position: Vector2<f64>, time: f64) -> f64 {
+        self.driver.as_ref().map_or(0.0, |driver| driver.value(position, time))
+    }
+}
+
 /// Everything that acts on the model in one step.
 #[derive(Clone, Debug, Default)]
 pub struct Loads {
@@ -200,4 +223,6 @@ pub struct Loads {
     pub pressures: Vec<FollowerPressure>,
     /// springs
     pub springs: Vec<Spring>,
+    /// dashpots
+    pub dashpots: Vec<Dashpot>,
 }

@@ -27,6 +27,17 @@ pub struct Body {
     pub nodes: Vec<usize>,
 }
 
+/// A mass at every node of a group.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PointMass {
+    /// name of the group
+    pub name: String,
+    /// m of each node, the same in both directions [M]
+    pub mass: f64,
+    /// its nodes, ascending
+    pub nodes: Vec<usize>,
+}
+
 /// How increments are chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Increments {
@@ -55,7 +66,7 @@ pub struct Step {
     pub supports: Vec<Prescribed>,
     /// dofs that were prescribed in the step before and are free now; their reaction is ramped off
     pub released: Vec<usize>,
-    /// loads and springs
+    /// loads, springs and dashpots
     pub loads: Loads,
 }
 
@@ -77,6 +88,8 @@ pub struct Model {
     pub mesh: Mesh,
     /// bodies
     pub bodies: Vec<Body>,
+    /// point masses
+    pub point_masses: Vec<PointMass>,
     /// body of each element
     pub body_of_element: Vec<usize>,
     /// integration geometry of each element
@@ -124,6 +137,7 @@ impl Model {
             acceleration: zero.clone(),
             force: zero.clone(),
             external: zero.clone(),
+            damping: zero.clone(),
             reaction: zero.clone(),
             contacts: self
                 .contacts

@@ -43,7 +43,8 @@ pub struct IterationRecord {
     pub contacts: ContactCounts,
 }
 
-/// Begin a step: remember displacements and reactions, and find the accelerations if dynamics starts here.
+/// Begin a step: remember displacements and reactions, and find the forces and accelerations that the run or dynamics
+/// starts with.
 ///
 /// # Errors
 /// [`StepFailure`] when the initial state cannot be evaluated or a body has no mass.
@@ -56,6 +57,9 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
         Some(_) if resting => start_dynamics(model, step, &mut state, work)?,
         // The reaction of a freed support has become a load.
         Some(_) => step.released.iter().for_each(|&dof| state.force[dof] -= old.reaction[dof]),
+        None if old.increment == 0 && model.contacts.iter().any(|pair| pair.initial.is_some()) => {
+            start_loaded(step, &mut state, work)?;
+        }
         None => {}
     }
     if state.increment == 0 {
@@ -73,13 +77,8 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
 /// M a₀ = −F₀ at the free dofs; a₀ of the supports at the prescribed ones, whose reaction is F₀ + M a₀
 /// ```
 fn start_dynamics(model: &Model, step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), StepFailure> {
-    let quasi_static = Step { scheme: crate::time::Scheme::Static, ..step.clone() };
-    let trial = Trial { old: state, step: &quasi_static, time: state.time, dt: 0.0 };
-    work.assembler
-        .evaluate(trial, &state.displacement, Request::Residual, &mut work.system)
-        .map_err(StepFailure::Start)?;
-    let force = work.assembler.evaluation.force.clone();
-    state.external.clone_from(&work.assembler.evaluation.loads);
+    evaluate_forces(step, state, work)?;
+    let force = &state.force;
     let mut right: Vec<f64> = force.iter().map(|f| -f).collect();
     let mut mass = work.assembler.mass().clone();
     let scale = mass.diagonal().into_iter().fold(0.0, f64::max);
@@ -94,7 +93,27 @@ fn start_dynamics(model: &Model, step: &Step, state: &mut State, work: &mut Work
     for support in &step.supports {
         state.external[support.dof] += force[support.dof] + inertia[support.dof];
     }
-    state.force = force;
+    Ok(())
+}
+
+/// The forces at the start of a static run whose contacts are closed already: loads and reactions balance them.
+fn start_loaded(step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), StepFailure> {
+    evaluate_forces(step, state, work)?;
+    step.supports.iter().for_each(|support| state.external[support.dof] += state.force[support.dof]);
+    Ok(())
+}
+
+/// Forces of the state as it is, under the loads that the step puts on it at this time.
+fn evaluate_forces(step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), StepFailure> {
+    let quasi_static = Step { scheme: crate::time::Scheme::Static, ..step.clone() };
+    let trial = Trial { old: state, step: &quasi_static, time: state.time, dt: 0.0 };
+    work.assembler
+        .evaluate(trial, &state.displacement, Request::Residual, &mut work.system)
+        .map_err(StepFailure::Start)?;
+    let evaluation = &work.assembler.evaluation;
+    state.force.clone_from(&evaluation.force);
+    state.external.clone_from(&evaluation.loads);
+    state.damping.clone_from(&evaluation.damping);
     Ok(())
 }
 
@@ -200,7 +219,12 @@ fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> Sta
     }
     let external: Vec<f64> = evaluation.loads.iter().zip(&reaction).map(|(load, reaction)| load + reaction).collect();
     let increment: Vec<f64> = u.iter().zip(&old.displacement).map(|(new, old)| new - old).collect();
-    let work_done: f64 = (0..u.len()).map(|dof| 0.5 * (old.external[dof] + external[dof]) * increment[dof]).sum();
+    let mean_work = |old: &[f64], new: &[f64]| -> f64 {
+        (0..u.len()).map(|dof| 0.5 * (old[dof] + new[dof]) * increment[dof]).sum()
+    };
+    let work_done = mean_work(&old.external, &external);
+    let damped = mean_work(&old.damping, &evaluation.damping);
+    let driven = work_of_drivers(model, trial, &increment);
     let x = model.configuration(&u);
     let contact_elastic = contact_energy(model, &evaluation.contacts, &x);
     let dissipated = friction_dissipation(model, old, &evaluation.contacts, &x);
@@ -213,18 +237,34 @@ fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> Sta
         acceleration: evaluation.acceleration,
         force: evaluation.force,
         external,
+        damping: evaluation.damping,
         reaction,
         contacts: evaluation.contacts,
         last_increment: Some(LastIncrement { dt, displacement: increment }),
         step_start: old.step_start.clone(),
         energy: old.energy,
     };
-    state.energy.external_work += work_done;
+    state.energy.external_work += work_done + driven;
+    state.energy.damping_dissipation += driven - damped;
     state.energy.strain = evaluation.strain_energy;
     state.energy.contact_elastic = contact_elastic;
     state.energy.friction_dissipation += dissipated;
     state.energy.kinetic = kinetic_energy(step, &state, work);
     state
+}
+
+/// What the drivers of dashpots put in over an increment: mean force × way of the driver.
+fn work_of_drivers(model: &Model, trial: Trial, increment: &[f64]) -> f64 {
+    let Trial { old, step, time, dt } = trial;
+    let driven = step.loads.dashpots.iter().filter(|dashpot| dashpot.driver.is_some());
+    driven
+        .map(|dashpot| {
+            let position = model.mesh.nodes[dashpot.dof / 2];
+            let [v0, v1] = [old.time, time].map(|time| dashpot.driver_velocity(position, time));
+            let velocity = 0.5 * (v0 + v1);
+            dashpot.coefficient * (velocity * dt - increment[dashpot.dof]) * velocity
+        })
+        .sum()
 }
 
 fn kinetic_energy(step: &Step, state: &State, work: &mut Workspace) -> f64 {

@@ -31,7 +31,7 @@ fn wavy() -> (Vec<Vec<usize>>, Positions) {
 fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
     let law =
         serde_json::from_str::<FrictionParameters>(law).expect("a law").build(700.0).expect("parameters in range");
-    ContactPair { name: "test".into(), points, master, alpha_n: 1000.0, law }
+    ContactPair { name: "test".into(), points, master, alpha_n: 1000.0, law, initial: None }
 }
 
 fn evaluate(pair: &ContactPair, k: usize, old: &ContactState, x: &Positions) -> (ContactState, Option<Contribution>) {

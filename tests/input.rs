@@ -406,7 +406,7 @@ fn loads_are_checked() {
     for (load, fragments) in [
         (json!({"on": "block", "pressure": 1}), ["steps[0].loads[0].on: ", "of solid elements, not of edges"]),
         (json!({"on": "block", "gravity": {"y": -9.81}}), ["loads[0].on: ", "give bodies.block.material.density"]),
-        (json!({"on": "block_top", "gravity": {"y": 1}}), ["loads[0].on: ", "there is no body `block_top`"]),
+        (json!({"on": "block_top", "gravity": {"y": 1}}), ["loads[0].on: ", "no body or point mass `block_top`"]),
         (json!({"on": "block_top", "pressure": 1, "force": {"x": 1}}), ["loads[0]: ", "exactly one of pressure"]),
         (json!({"on": "block_top"}), ["loads[0]: ", "exactly one of pressure"]),
         (json!({"on": {"node": 3}, "pressure": 1}), ["loads[0].on: ", "node 3 cannot carry this load"]),
@@ -456,7 +456,7 @@ fn paths_and_arguments_are_checked() {
     let folder = TempDir::new().unwrap();
     write(folder.path(), "good.json", good().to_string());
     write(folder.path(), "file", "");
-    refused(folder.path(), &["run", "nowhere.json"], &["nowhere.json: ", "there is no such case file"]);
+    refused(folder.path(), &["run", "nowhere.json"], &["nowhere.json: ", "there is no such file"]);
     refused(folder.path(), &["run", "."], &["error: .: ", "is a folder"]);
     refused(folder.path(), &["run", "good.json", "--out", "file/results"], &["file/results: --out: results cannot"]);
     refused(folder.path(), &["run", "good.json", "--out", "file"], &["file: --out: results cannot be written here"]);

@@ -1,7 +1,7 @@
 //! Traction at one contact point, the forces it puts on the nodes, and their tangent.
 //!
 //! ```text
-//! p = −α_n g (g < 0),   q from the friction law,   t = p n − q s
+//! p = −α_n g (g < 0),   q from the friction law,   t = p n − q s         g: gap of the surfaces − gap at touch
 //! f_a = −w_a t ℓ                                      ℓ: current length, x_s − x_foot = Σ w_a x_a
 //! δt = (δp − q δθ) n − (δq + p δθ) s,   δp = −α_n δg,   δq = ∂q/∂Δu_t δΔu_t + ∂q/∂p δp
 //! ```
@@ -25,7 +25,7 @@ pub struct ContactState {
     pub friction: FrictionState,
     /// Foot on the master, open or closed; `None` where no part of the master faces the point
     pub foot: Option<MasterPoint>,
-    /// g at the foot [L]
+    /// g at the foot; a contact that starts closed counts it from where its points touch [L]
     pub gap: f64,
 }
 
@@ -90,16 +90,16 @@ pub fn respond(
     increment: Increment,
     x: &Configuration,
 ) -> Result<(ContactState, Option<Contribution>), LawFailure> {
-    let closed = projection.filter(|p| p.gap < 0.0 || touches(slave, p, old, increment, x));
+    let gap = projection.map_or(0.0, |p| p.gap - slave.touch);
+    let closed = projection.filter(|_| gap < 0.0 || touches(slave, gap, old, increment, x));
     let Some(projection) = closed else {
         let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.dt };
         let friction = pair.law.respond(&old.friction, sliding)?.state;
-        let state = ContactState { friction, foot: projection.map(|p| p.foot), gap: projection.map_or(0.0, |p| p.gap) };
-        return Ok((state, None));
+        return Ok((ContactState { friction, foot: projection.map(|p| p.foot), gap }, None));
     };
     let mut kinematics = kinematics(slave, &pair.master, &projection, old.foot, x);
-    count_slip_after_touch(&mut kinematics, old.gap, projection.gap);
-    let pressure = (-pair.alpha_n * projection.gap).max(0.0);
+    count_slip_after_touch(&mut kinematics, old.gap, gap);
+    let pressure = (-pair.alpha_n * gap).max(0.0);
     let sliding = Sliding { slip: kinematics.slip, pressure, dt: increment.dt };
     let mut response = pair.law.respond(&old.friction, sliding)?;
     let stiffness = pair.law.stiffness();
@@ -110,19 +110,13 @@ pub fn respond(
     if increment.presume == Presume::Stick || pressure == 0.0 {
         response.dtraction_dslip = stiffness;
     }
-    let state = ContactState { friction: response.state, foot: Some(projection.foot), gap: projection.gap };
+    let state = ContactState { friction: response.state, foot: Some(projection.foot), gap };
     Ok((state, Some(contribution(&kinematics, &response, pair.alpha_n))))
 }
 
-fn touches(
-    slave: &SlavePoint,
-    projection: &Projection,
-    old: &ContactState,
-    increment: Increment,
-    x: &Configuration,
-) -> bool {
+fn touches(slave: &SlavePoint, gap: f64, old: &ContactState, increment: Increment, x: &Configuration) -> bool {
     let zero = TOUCH * slave.current_length(x);
-    increment.presume == Presume::Touch && old.foot.is_some() && old.gap.abs() <= zero && projection.gap <= zero
+    increment.presume == Presume::Touch && old.foot.is_some() && old.gap.abs() <= zero && gap <= zero
 }
 
 fn count_slip_after_touch(kinematics: &mut Kinematics, old_gap: f64, gap: f64) {

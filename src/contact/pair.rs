@@ -25,27 +25,60 @@ pub struct ContactPair {
     pub alpha_n: f64,
     /// The friction law
     pub law: Box<dyn FrictionLaw>,
+    /// Tractions at the start of a contact that starts closed
+    pub initial: Option<InitialTraction>,
 }
 
-/// Points that are answered sooner than other threads wake up.
-const FEW: usize = 16;
+/// Tractions that act at every point of a contact when the run starts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InitialTraction {
+    /// p [F/L²]
+    pub pressure: f64,
+    /// q [F/L²]
+    pub traction: f64,
+}
+
+/// Fewer points than this are not worth waking other threads for.
+const FEW: usize = 64;
 
 /// Trial states and contributions of all points of a pair, in their order.
 pub type PairResponse = Vec<(ContactState, Option<Contribution>)>;
 
 impl ContactPair {
-    /// States at the start of a run: each point projected in the configuration `x`, friction at rest.
+    /// Start closed: from now on every point's gap is counted so that the given pressure acts in the configuration `x`.
+    ///
+    /// ```text
+    /// p = p_init + α_n (g_x − g)        g_x: gap between the surfaces in the configuration x
+    /// ```
+    ///
+    /// # Errors
+    /// The number of the first point that no part of the master faces.
+    pub fn start_closed(&mut self, initial: InitialTraction, x: &Configuration) -> Result<(), usize> {
+        let index = Index::new(&self.master, x);
+        for (k, slave) in self.points.iter_mut().enumerate() {
+            slave.touch = index.project(slave, None, x).ok_or(k)?.gap + initial.pressure / self.alpha_n;
+        }
+        self.initial = Some(initial);
+        Ok(())
+    }
+
+    /// States at the start of a run: each point projected in the configuration `x`, friction at rest or, in a contact
+    /// that starts closed, under its initial tractions.
     pub fn initial_states(&self, x: &Configuration) -> Vec<ContactState> {
         let index = Index::new(&self.master, x);
-        let at_rest = |slave| {
+        let mut friction = self.law.initial_state();
+        if let Some(InitialTraction { pressure, traction }) = self.initial {
+            friction = FrictionState { pressure, traction, ..friction };
+        }
+        let state = |slave: &SlavePoint| {
             let projection = index.project(slave, None, x);
             ContactState {
-                friction: self.law.initial_state(),
+                friction,
                 foot: projection.map(|p| p.foot),
-                gap: projection.map_or(0.0, |p| p.gap),
+                gap: projection.map_or(0.0, |p| p.gap - slave.touch),
             }
         };
-        self.points.iter().map(at_rest).collect()
+        self.points.iter().map(state).collect()
     }
 
     /// Every point's trial state and contribution in the configuration `x`, each with its own presumption and, if it is

@@ -72,8 +72,8 @@ fn concerns(
     x: &Configuration,
 ) -> impl Iterator<Item = (Kind, String)> {
     let (gap, pressure) = (contact.gap, contact.friction.pressure);
-    let share = -gap / point.edge_length(x);
-    let deep = (share > DEEP).then(|| {
+    let share = point.edge_length(x).map(|edge| -gap / edge);
+    let deep = share.filter(|share| *share > DEEP).map(|share| {
         let percent = 100.0 * share;
         format!("the penetration {:.3e} is {percent:.1} % of the slave's edge; raise alpha_n", -gap)
     });
