@@ -58,7 +58,8 @@ pub fn bounded(step: &Step, time: f64, dt: f64) -> f64 {
     let remaining = step.span.end - time;
     let dt = dt.min(step.increments.max);
     let left = (remaining / dt - ROUND_OFF).ceil().max(1.0);
-    if step.increments.error.is_some() && left <= 2.0 { remaining / left } else { dt.min(remaining) }
+    let shared = if step.increments.error.is_some() { 2.0 } else { 1.0 };
+    if left <= shared { remaining / left } else { dt }
 }
 
 /// Judge a solved increment from `old` to `new`; `repeated` says that an attempt at it was given up before.
