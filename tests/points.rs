@@ -353,6 +353,7 @@ fn a_stick_slip_run_turns_with_its_plane() {
     let level = pulled(0.0);
     let slipped = level.last().unwrap().1.plastic_slip;
     assert!(slipped > 0.05, "it slips: {slipped}");
+    close("held at first, while the driver moves by 0.1", level[49].0[0], 0.0, 0.01);
     for angle in [0.3, -1.0, 2.0] {
         for ((u, one), (v, other)) in level.iter().zip(pulled(angle)) {
             close("displacement", distance(u, &v), 0.0, 1e-10);
@@ -589,15 +590,17 @@ fn points_are_written_and_warned_of() {
     assert!(warning.contains("`base` at (0.3") && warning.contains("passes 1.000000e2"), "{warning}");
 }
 
-/// Time, traction, pressure and displacement along x of one point over a run.
+/// Time, traction, pressure, displacement along x and the force that holds it there but for inertia, of one point over a
+/// run.
 #[derive(Default)]
-struct Trace(Vec<[f64; 4]>);
+struct Trace(Vec<[f64; 5]>);
 
 impl Observer for Trace {
     fn record(&mut self, _: &Model, attempt: &Attempt) -> Result<(), Error> {
         let trace = attempt.accepted.map(|state| {
             let friction = &state.contacts[0][0].friction;
-            [state.time, friction.traction, friction.pressure, state.displacement[0]]
+            let held = state.reaction[0] - M * state.acceleration[0];
+            [state.time, friction.traction, friction.pressure, state.displacement[0], held]
         });
         self.0.extend(trace);
         Ok(())
@@ -605,7 +608,7 @@ impl Observer for Trace {
 }
 
 /// A case of `cases/paper` run for a while with increments of one length.
-fn paper(name: &str, [dt, duration]: [f64; 2]) -> Vec<[f64; 4]> {
+fn paper(name: &str, [dt, duration]: [f64; 2]) -> Vec<[f64; 5]> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/paper/{name}.json"));
     let mut case: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
     case["steps"][0]["dt"] = json!({"initial": dt});
@@ -619,7 +622,9 @@ fn paper(name: &str, [dt, duration]: [f64; 2]) -> Vec<[f64; 4]> {
 #[test]
 fn the_first_spring_mass_case_slides_at_the_static_strength() {
     let trace = paper("spring_mass_1", [0.1, 4600.0]);
-    close("q", trace[trace.len() - 1][1], 39.24, 1e-3);
+    let [time, traction, _, u, _] = trace[trace.len() - 1];
+    close("q", traction, 39.24, 1e-3);
+    close("spring", 10.0 * (0.001 * time - u), 39.24, 0.1);
     assert!(trace.iter().all(|[_, traction, ..]| *traction < 39.24 + 1e-6));
 }
 
@@ -655,11 +660,12 @@ fn the_forced_oscillation_is_the_law_along_a_path() {
     let law = law.build(0.0).unwrap();
     let mut friction = FrictionState { traction: 19.62, pressure: 98.1, mu: 0.2, ..law.initial_state() };
     let (mut time, mut way) = (0.0, 0.0);
-    for &[t, traction, pressure, u] in &trace {
+    for &[t, traction, pressure, u, held] in &trace {
         close("u", u, t.sin(), 1e-12);
         close("p", pressure, 98.1, 1e-9);
         friction = law.respond(&friction, Sliding { slip: u - way, pressure: 98.1, dt: t - time }).unwrap().state;
         close("q", traction, friction.traction, 1e-8);
+        close("what drives it", held, friction.traction, 1e-8);
         (time, way) = (t, u);
     }
     let least = trace.iter().fold(0.0f64, |least, row| least.min(row[1]));
