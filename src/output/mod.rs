@@ -3,7 +3,9 @@
 mod csv;
 pub mod fields;
 pub mod history;
+pub mod law;
 pub mod newton_log;
+pub mod plot;
 pub mod progress;
 pub mod summary;
 pub mod warnings;
