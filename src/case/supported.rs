@@ -61,7 +61,8 @@ fn check_mass(k: usize, step: &Step, model: &Model) -> Result<(), Complaint> {
     let points = model.point_masses.iter().flat_map(|point| &point.nodes);
     dense.chain(points).for_each(|&node| carried[node] = true);
     let prescribed = |dof: usize| step.supports.binary_search_by_key(&dof, |support| support.dof).is_ok();
-    let massless = |node: &usize| !carried[*node] && !(prescribed(2 * node) && prescribed(2 * node + 1));
+    let held = |node: usize| prescribed(2 * node) && prescribed(2 * node + 1);
+    let massless = |node: &usize| !(carried[*node] || held(*node));
     let why = format!("the dynamic step `{}` (steps[{k}]) needs a mass", step.name);
     if let Some(body) = model.bodies.iter().find(|body| body.nodes.iter().any(massless)) {
         let message = format!("is 0, but {why}: give a density");
