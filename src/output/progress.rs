@@ -100,6 +100,6 @@ fn message(attempt: &Attempt) -> String {
                 state.time, counts.open, counts.stick, counts.slip
             )
         }
-        None => format!("{step}  t {time:.6}  dt {dt:.3e}  failed after {solves} iterations"),
+        None => format!("{step}  t {time:.6}  dt {dt:.3e}  repeated after {solves} iterations"),
     }
 }
