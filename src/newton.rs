@@ -31,6 +31,8 @@ pub struct Iteration {
     pub correction: f64,
     /// ‖K Δu + r‖/‖r‖ of the linear solve [-]
     pub linear_residual: f64,
+    /// Whether K is new; if not, it is that of the iterate before
+    pub factorized: bool,
 }
 
 /// Why no solution was found; `E` is why the equations could not be evaluated.
@@ -78,6 +80,9 @@ pub type Outcome<E> = (Vec<Iteration>, Result<Vec<f64>, NewtonFailure<E>>);
 /// Growth of the residual over its largest start value that counts as divergence.
 const DIVERGENCE: f64 = 1e4;
 
+/// How much less an old tangent may gain than the iteration before did.
+const OLD_TANGENT: f64 = 10.0;
+
 /// Solve r(u) = 0 from the start value `u`. `evaluate` fills the system at a displacement.
 pub fn solve<E>(
     mut u: Vec<f64>,
@@ -89,7 +94,7 @@ pub fn solve<E>(
     let mut iterations: Vec<Iteration> = Vec::new();
     let result = (|| {
         evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
-        let mut largest_start = 0.0f64;
+        let (mut largest_start, mut before) = (0.0f64, f64::INFINITY);
         loop {
             let size = norm(&system.residual);
             let residual = size / system.forces.max(f64::MIN_POSITIVE);
@@ -113,15 +118,26 @@ pub fn solve<E>(
             if done == settings.max_iterations {
                 return Err(NewtonFailure::TooManyIterations { residual, iterations: done });
             }
-            evaluate(&u, Request::Tangent, system).map_err(NewtonFailure::Evaluation)?;
-            let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();
-            let solution = linear::solve(solver, &system.tangent, &right)?;
-            let correction = solution.x.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-            for (u, x) in u.iter_mut().zip(&solution.x) {
+            let factorized = done == 0 || OLD_TANGENT * size * (size / before) > settings.tolerance * system.forces;
+            let (correction, linear_residual) = if factorized {
+                evaluate(&u, Request::Tangent, system).map_err(NewtonFailure::Evaluation)?;
+                let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();
+                let solution = linear::solve(solver, &system.tangent, &right)?;
+                (solution.x, solution.residual)
+            } else {
+                let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();
+                let mut x = right.clone();
+                solver.solve(&mut x);
+                let left = norm(&system.tangent.residual(&x, &right));
+                (x, left / size)
+            };
+            for (u, x) in u.iter_mut().zip(&correction) {
                 *u += x;
             }
-            iterations.push(Iteration { residual: f64::NAN, correction, linear_residual: solution.residual });
+            let correction = correction.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+            iterations.push(Iteration { residual: f64::NAN, correction, linear_residual, factorized });
             evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
+            before = size;
         }
     })();
     (iterations, result.map(|()| u))

@@ -54,7 +54,7 @@ fn run_step(
         dt = bounded(step, state.time, dt);
         let (iterations, outcome) = advance(model, step, state, dt, work);
         report.newton_iterations += iterations.len();
-        report.factorizations += iterations.len();
+        report.factorizations += iterations.iter().filter(|iteration| iteration.newton.factorized).count();
         let solved = outcome.map(|new| {
             let judgement = judge(model, step, [state, &new], iterations.len(), attempt > 1);
             (new, judgement)

@@ -94,9 +94,15 @@ fn motion(k: f64, c: f64) -> Matrix3<f64> {
     let loss = weakening() / PRESSURE;
     let rigid = 1.0 - weakening() / ALPHA_T;
     Matrix3::new(
-        0.0, 1.0, 0.0, //
-        -k / MASS, -c / MASS, -PRESSURE / MASS, //
-        0.0, -loss / rigid, -rate() / rigid,
+        0.0,
+        1.0,
+        0.0, //
+        -k / MASS,
+        -c / MASS,
+        -PRESSURE / MASS, //
+        0.0,
+        -loss / rigid,
+        -rate() / rigid,
     )
 }
 

@@ -14,6 +14,7 @@
 
 mod dense;
 mod factor;
+mod jobs;
 mod order;
 mod scale;
 mod solve;
@@ -35,7 +36,6 @@ pub struct Multifrontal {
     factors: Factors,
     /// Right-hand side in the order of elimination
     ordered: Vec<f64>,
-    work: Vec<f64>,
 }
 
 impl Multifrontal {
@@ -54,7 +54,8 @@ impl Multifrontal {
     /// scaled matrix. Known once the pattern is analysed, before any of the factors is.
     pub fn memory(&self) -> usize {
         self.symbolic.as_ref().map_or(0, |symbolic| {
-            let values = symbolic.values() + symbolic.contributions + symbolic.pattern.values();
+            let values =
+                symbolic.values() + symbolic.contributions(rayon::current_num_threads()) + symbolic.pattern.values();
             size_of::<f64>() * values + size_of::<Entry>() * symbolic.entries.len()
         })
     }
@@ -81,7 +82,7 @@ impl LinearSolver for Multifrontal {
         self.ordered.clear();
         let dofs = || symbolic.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
         self.ordered.extend(dofs().map(|dof| rows[dof] * b[dof]));
-        solve::substitute(symbolic, &self.factors, &mut self.ordered, &mut self.work);
+        solve::substitute(symbolic, &self.factors, &mut self.ordered);
         for (dof, x) in dofs().zip(&self.ordered) {
             b[dof] = columns[dof] * x;
         }
