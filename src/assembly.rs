@@ -27,7 +27,7 @@ use crate::model::{Model, Step};
 use crate::newton::Request;
 use crate::state::State;
 use crate::system::{Contribution, System};
-use crate::time::Coefficients;
+use crate::time::{Coefficients, supported_rates};
 
 /// One increment to be solved: from where, to when, under which step.
 #[derive(Clone, Copy, Debug)]
@@ -51,9 +51,21 @@ impl<'a> Trial<'a> {
 
     /// ū of a support at the end of the increment; not finite where its expression has no value [L].
     pub fn prescribed(&self, support: &Prescribed, model: &Model) -> f64 {
+        let (position, start) = self.place(support, model);
+        support.value(position, self.time, self.step.span, start)
+    }
+
+    /// ū of a support at the start, thirds and end of the increment [L].
+    pub fn thirds(&self, support: &Prescribed, model: &Model) -> [f64; 4] {
+        let (position, start) = self.place(support, model);
+        support.thirds(position, [self.time - self.dt, self.time], self.step.span, start)
+    }
+
+    /// Reference position of a support, and its displacement at the start of the step.
+    fn place(&self, support: &Prescribed, model: &Model) -> (Vector2<f64>, Vector2<f64>) {
         let node = support.dof / 2;
         let start = &self.old.step_start.displacement[2 * node..][..2];
-        support.value(model.mesh.nodes[node], self.time, self.step.span, Vector2::new(start[0], start[1]))
+        (model.mesh.nodes[node], Vector2::new(start[0], start[1]))
     }
 }
 
@@ -184,6 +196,9 @@ const FARTHEST: usize = 8;
 
 /// Elements whose forces and tangents are held at once before they are added.
 const BATCH: usize = 4096;
+
+/// Elements that are done sooner than another thread wakes up.
+const FEW: usize = 64;
 
 impl<'m> Assembler<'m> {
     /// An assembler of a model.
@@ -377,29 +392,31 @@ impl<'m> Assembler<'m> {
         let Buffers { mut forces, mut tangents, mut energies } = std::mem::take(&mut self.buffers);
         forces.resize(batch * dofs, 0.0);
         tangents.resize(tangents.len().max(batch * stride), 0.0);
+        energies.clear();
         let mut energy = 0.0;
         for first in (0..model.mesh.elements.len()).step_by(BATCH) {
             let elements = first..(first + BATCH).min(model.mesh.elements.len());
-            elements
-                .clone()
-                .into_par_iter()
-                .zip(forces.par_chunks_mut(dofs).zip(tangents.par_chunks_mut(stride)))
-                .with_min_len(64)
-                .map(|(e, (force, tangent))| {
-                    let nodes = &model.mesh.elements[e].nodes;
-                    let mut local = [Vector2::zeros(); 9];
-                    for (local, &node) in local.iter_mut().zip(nodes) {
-                        *local = Vector2::new(u[2 * node], u[2 * node + 1]);
-                    }
-                    let n = 2 * nodes.len();
-                    let (solid, material) = (&model.solids[e], &*model.bodies[model.body_of_element[e]].material);
-                    if wants_tangent {
-                        solid.force_and_tangent(material, &local[..nodes.len()], &mut force[..n], &mut tangent[..n * n])
-                    } else {
-                        solid.force(material, &local[..nodes.len()], &mut force[..n])
-                    }
-                })
-                .collect_into_vec(&mut energies);
+            let one = |(e, (force, tangent)): (usize, (&mut [f64], &mut [f64]))| {
+                let nodes = &model.mesh.elements[e].nodes;
+                let mut local = [Vector2::zeros(); 9];
+                for (local, &node) in local.iter_mut().zip(nodes) {
+                    *local = Vector2::new(u[2 * node], u[2 * node + 1]);
+                }
+                let n = 2 * nodes.len();
+                let (solid, material) = (&model.solids[e], &*model.bodies[model.body_of_element[e]].material);
+                if wants_tangent {
+                    solid.force_and_tangent(material, &local[..nodes.len()], &mut force[..n], &mut tangent[..n * n])
+                } else {
+                    solid.force(material, &local[..nodes.len()], &mut force[..n])
+                }
+            };
+            if elements.len() < FEW {
+                let arrays = forces.chunks_mut(dofs).zip(tangents.chunks_mut(stride));
+                energies.extend(elements.clone().zip(arrays).map(one));
+            } else {
+                let arrays = forces.par_chunks_mut(dofs).zip(tangents.par_chunks_mut(stride));
+                elements.clone().into_par_iter().zip(arrays).with_min_len(FEW).map(one).collect_into_vec(&mut energies);
+            }
             for (k, (e, stored)) in elements.zip(energies.drain(..)).enumerate() {
                 energy += stored.map_err(|inverted| self.inverted(e, inverted))?;
                 let nodes = &model.mesh.elements[e].nodes;
@@ -503,7 +520,7 @@ impl<'m> Assembler<'m> {
         for dashpot in &trial.step.loads.dashpots {
             let dof = dashpot.dof;
             let driver = dashpot.driver_velocity(self.model.mesh.nodes[dof / 2], trial.time);
-            let (velocity, dvelocity) = velocity(trial, u, dof);
+            let (velocity, dvelocity) = velocity(self.model, trial, u, dof);
             let pull = dashpot.coefficient * (driver - velocity);
             if !pull.is_finite() {
                 return Err(TrialFailure::Undefined { node: self.model.mesh.node_tags[dof / 2], time: trial.time });
@@ -531,19 +548,21 @@ impl<'m> Assembler<'m> {
         };
         let (velocity, acceleration) = self.rates(trial, u, scheme);
         let blend = |old: f64, new: f64, weight: f64| weight * old + (1.0 - weight) * new;
-        let weighted: Vec<f64> =
+        let mut weighted: Vec<f64> =
             old.acceleration.iter().zip(&acceleration).map(|(&a0, &a1)| blend(a0, a1, scheme.alpha_m)).collect();
-        let prescribed = prescribed_dofs(step, u.len());
+        for Prescribed { dof, .. } in &step.supports {
+            weighted[*dof] = blend(old.acceleration[*dof], acceleration[*dof], scheme.alpha_f);
+        }
         let mass = self.mass();
         let (inertia, weighted_inertia) = (mass.multiply(&acceleration), mass.multiply(&weighted));
         if let Some(tangent) = tangent {
             let c = (1.0 - scheme.alpha_m) * scheme.dacceleration(dt);
-            // A prescribed dof's acceleration is a backward difference of its motion (see `rates`).
-            let held = (1.0 - scheme.alpha_m) / (dt * dt);
             for value in &mut tangent.values {
                 *value *= 1.0 - scheme.alpha_f;
             }
-            let factors: Vec<f64> = prescribed.iter().map(|prescribed| if *prescribed { held } else { c }).collect();
+            // A prescribed dof's acceleration is its support's.
+            let mut factors = vec![c; u.len()];
+            step.supports.iter().for_each(|support| factors[support.dof] = 0.0);
             tangent.add_columns(mass, &factors);
         }
         let force = &self.evaluation.force;
@@ -557,22 +576,18 @@ impl<'m> Assembler<'m> {
         self.evaluation.acceleration = acceleration;
     }
 
-    /// Velocity and acceleration at `u`. A prescribed dof follows its support: v and a are backward differences, so a
-    /// support that starts with a jerk does not ring.
+    /// Velocity and acceleration at `u`; prescribed dofs have those of their supports.
     fn rates(&self, trial: Trial, u: &[f64], scheme: Coefficients) -> (Vec<f64>, Vec<f64>) {
         let Trial { old, step, dt, .. } = trial;
-        let prescribed = prescribed_dofs(step, u.len());
-        (0..u.len())
-            .map(|dof| {
-                let increment = u[dof] - old.displacement[dof];
-                let (v, a) = (old.velocity[dof], old.acceleration[dof]);
-                if prescribed[dof] {
-                    (increment / dt, (increment / dt - v) / dt)
-                } else {
-                    scheme.rates(increment, (v, a), dt)
-                }
-            })
-            .unzip()
+        let free =
+            |dof: usize| scheme.rates(u[dof] - old.displacement[dof], (old.velocity[dof], old.acceleration[dof]), dt);
+        let (mut velocity, mut acceleration): (Vec<f64>, Vec<f64>) = (0..u.len()).map(free).unzip();
+        for support in &step.supports {
+            let dof = support.dof;
+            let places = trial.thirds(support, self.model);
+            (velocity[dof], acceleration[dof]) = supported_rates(places, old.velocity[dof], dt);
+        }
+        (velocity, acceleration)
     }
 
     /// Replace the equations of prescribed dofs by w (u − ū) = 0.
@@ -604,13 +619,15 @@ impl<'m> Assembler<'m> {
         let points = self.model.contacts.iter().flat_map(|pair| pair.points.iter().map(move |point| (pair, point)));
         let contacts: f64 = points.map(|(pair, point)| (pair.alpha_n * point.current_length(x)).powi(2)).sum();
         system.round_off = f64::EPSILON * extent * (solids + contacts).sqrt();
-        if let Some(scheme) = step.scheme.coefficients() {
-            let way: Vec<f64> =
-                old.displacement.iter().zip(&old.velocity).map(|(u, v)| u.abs() + (dt * v).abs()).collect();
+        let way: Vec<f64> = old.displacement.iter().zip(&old.velocity).map(|(u, v)| u.abs() + (dt * v).abs()).collect();
+        let scheme = step.scheme.coefficients();
+        if let Some(scheme) = scheme {
             let inertia = crate::linear::norm(&self.mass().multiply(&way)) * scheme.dacceleration(dt);
-            let dashpots = step.loads.dashpots.iter().map(|dashpot| (dashpot.coefficient * way[dashpot.dof]).powi(2));
-            let damping = dashpots.sum::<f64>().sqrt() * scheme.dvelocity(dt);
-            system.round_off += f64::EPSILON * (inertia + damping);
+            system.round_off += f64::EPSILON * inertia;
+        }
+        let dvelocity = scheme.map_or(1.0 / dt, |scheme| scheme.dvelocity(dt));
+        for dashpot in &step.loads.dashpots {
+            system.round_off += f64::EPSILON * dashpot.coefficient * dvelocity * way[dashpot.dof];
         }
     }
 
@@ -643,28 +660,19 @@ fn weight(model: &Model) -> f64 {
     largest(&mut materials.chain(springs)).or_else(|| largest(&mut { contacts })).unwrap_or(1.0)
 }
 
-/// v of one dof at the end of the increment, and ∂v/∂u: what the scheme says (see [`Assembler::rates`]) or, in statics,
-/// the mean of the increment. An increment of no length leaves v as it is.
-fn velocity(trial: Trial, u: &[f64], dof: usize) -> (f64, f64) {
+/// v of one dof at the end of the increment, and ∂v/∂u: what the scheme or the support says (see [`Assembler::rates`])
+/// or, in statics, the mean of the increment. An increment of no length leaves v as it is.
+fn velocity(model: &Model, trial: Trial, u: &[f64], dof: usize) -> (f64, f64) {
     let Trial { old, step, dt, .. } = trial;
-    let increment = u[dof] - old.displacement[dof];
-    let prescribed = || step.supports.binary_search_by_key(&dof, |support| support.dof).is_ok();
-    match step.scheme.coefficients() {
-        _ if dt == 0.0 => (old.velocity[dof], 0.0),
-        Some(scheme) if !prescribed() => {
-            (scheme.rates(increment, (old.velocity[dof], old.acceleration[dof]), dt).0, scheme.dvelocity(dt))
-        }
-        _ => (increment / dt, 1.0 / dt),
+    let (increment, before) = (u[dof] - old.displacement[dof], old.velocity[dof]);
+    if dt == 0.0 {
+        return (before, 0.0);
     }
-}
-
-/// Which dofs a step prescribes.
-pub fn prescribed_dofs(step: &Step, dofs: usize) -> Vec<bool> {
-    let mut prescribed = vec![false; dofs];
-    for support in &step.supports {
-        prescribed[support.dof] = true;
+    let Some(scheme) = step.scheme.coefficients() else { return (increment / dt, 1.0 / dt) };
+    match step.supports.binary_search_by_key(&dof, |support| support.dof) {
+        Ok(support) => (supported_rates(trial.thirds(&step.supports[support], model), before, dt).0, 0.0),
+        Err(_) => (scheme.rates(increment, (before, old.acceleration[dof]), dt).0, scheme.dvelocity(dt)),
     }
-    prescribed
 }
 
 /// Add a dense tangent of `n` nodes (column-major, two dofs a node) at the given blocks (column by column).

@@ -16,11 +16,10 @@
 //! - The shortest increment is accepted whatever its error, which is told as a warning if it exceeds ε.
 //!
 //! Nothing much larger than ε can be stepped over unseen: e is a fixed share, at least a twelfth, of what the new
-//! displacement differs from the one extrapolated with the old velocity and acceleration ((5) of [`crate::time`]), and a
+//! displacement differs from the one extrapolated with the old velocity and acceleration ((6) of [`crate::time`]), and a
 //! slip, an arrest or an impact changes the displacement by all it moves. Only what comes and goes within one increment,
 //! such as a short pulse of a load, needs a `max` that meets it.
 
-use crate::assembly::prescribed_dofs;
 use crate::configuration::Configuration;
 use crate::contact::force::{ContactState, Status};
 use crate::contact::pair::ContactPair;
@@ -34,11 +33,14 @@ const GROWTH: f64 = 1.5;
 /// An event is located to this many times the allowed error.
 pub const EVENT_LOCATION: f64 = 10.0;
 /// Part of the length that the error allows which is taken: the estimate is one of several terms.
-const SAFETY: f64 = 0.9;
+const SAFETY: f64 = 0.8;
 /// Most that one estimate shortens the next attempt: far from the solution the estimate is not of third order.
 const LEAST_SHARE: f64 = 0.1;
 /// A change that is not worth having: increments of one length keep the orders of the scheme.
-const WORTHWHILE: f64 = 1.1;
+const WORTHWHILE: f64 = 1.25;
+
+/// Excess of what is left of a step over an increment that is not worth another one.
+const ROUND_OFF: f64 = 1e-6;
 
 /// What becomes of a solved increment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,13 +53,13 @@ pub struct Judgement {
     pub error: Option<f64>,
 }
 
-/// Δt of the next attempt within the bounds of the step: the last increment ends on the end of the step and, under error
-/// control, is not much shorter than the one before.
+/// Δt of the next attempt within the bounds of the step. The last increment ends on the end of the step; under error
+/// control the last two share what is left, so that none is much shorter than the one before.
 pub fn bounded(step: &Step, time: f64, dt: f64) -> f64 {
     let remaining = step.span.end - time;
     let dt = dt.min(step.increments.max);
-    let halves = step.increments.error.is_some() && (dt..2.0 * dt).contains(&remaining);
-    if halves { 0.5 * remaining } else { dt.min(remaining) }
+    let left = (remaining / dt - ROUND_OFF).ceil().max(1.0);
+    if step.increments.error.is_some() && left <= 2.0 { remaining / left } else { dt.min(remaining) }
 }
 
 /// Judge a solved increment from `old` to `new`; `repeated` says that an attempt at it was given up before.
@@ -84,10 +86,10 @@ pub fn judge(model: &Model, step: &Step, [old, new]: [&State; 2], iterations: us
 /// C Δt² |a₁ − a₀|, the largest of all free dofs [L].
 fn local_error(step: &Step, old: &State, new: &State) -> f64 {
     let constant = step.scheme.error_constant().unwrap_or(0.0);
-    let prescribed = prescribed_dofs(step, new.acceleration.len());
-    let changes = new.acceleration.iter().zip(&old.acceleration).map(|(new, old)| (new - old).abs());
-    let free = changes.zip(&prescribed).filter(|(_, prescribed)| !**prescribed);
-    constant * new.dt.powi(2) * free.fold(0.0, |largest: f64, (change, _)| largest.max(change))
+    let rates = new.acceleration.iter().zip(&old.acceleration).enumerate();
+    let free = rates.filter(|(dof, _)| step.supports.binary_search_by_key(dof, |support| support.dof).is_err());
+    let change = free.fold(0.0, |largest: f64, (_, (new, old))| largest.max((new - old).abs()));
+    constant * new.dt.powi(2) * change
 }
 
 /// Largest slip, in the increment, of a point that takes part in an event of its contact; 0 if there is none [L].

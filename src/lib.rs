@@ -6,6 +6,8 @@
 //! cut-back; [`increments`] says how long) → [`step`] (one increment: old state → new state) → [`newton`] → [`assembly`]
 //! → {[`element`] → [`material`]} and {[`contact`] → [`friction`]}; then up again: accepted [`state`] → [`output`].
 //!
+//! A law alone: [`command`] → [`case`] → [`law_driver`] along a [`law_path`] → [`friction`] → [`output`].
+//!
 //! # Signs
 //!
 //! | symbol | in code | meaning |
@@ -39,6 +41,8 @@ pub mod error;
 pub mod floating;
 pub mod friction;
 pub mod increments;
+pub mod law_driver;
+pub mod law_path;
 pub mod linear;
 pub mod material;
 pub mod mesh;

@@ -434,7 +434,7 @@ fn paths_and_arguments_are_checked() {
     let folder = TempDir::new().unwrap();
     write(folder.path(), "good.json", good().to_string());
     write(folder.path(), "file", "");
-    refused(folder.path(), &["run", "nowhere.json"], &["nowhere.json: ", "there is no such case file"]);
+    refused(folder.path(), &["run", "nowhere.json"], &["nowhere.json: ", "there is no such file"]);
     refused(folder.path(), &["run", "."], &["error: .: ", "is a folder"]);
     refused(folder.path(), &["run", "good.json", "--out", "file/results"], &["file/results: --out: results cannot"]);
     refused(folder.path(), &["run", "good.json", "--out", "file"], &["file: --out: results cannot be written here"]);

@@ -678,7 +678,7 @@ fn amplitude(
     Ok(Some(Amplitude { drive, span, before: before.map(Box::new) }))
 }
 
-fn drive(input: &DriveInput, place: &str) -> Checked<Drive> {
+pub(super) fn drive(input: &DriveInput, place: &str) -> Checked<Drive> {
     Ok(match input {
         DriveInput::Constant(value) => Drive::Constant(*value),
         DriveInput::InTime(TimeInput::Rate(rate)) => Drive::Rate(*rate),

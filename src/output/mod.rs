@@ -3,7 +3,9 @@
 mod csv;
 pub mod fields;
 pub mod history;
+pub mod law;
 pub mod newton_log;
+pub mod plot;
 pub mod progress;
 pub mod summary;
 pub mod warnings;
@@ -39,4 +41,12 @@ pub trait Observer {
     /// # Errors
     /// [`Error::Output`] when a file cannot be written; it ends the run.
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error>;
+
+    /// Called once after the last attempt: what is still under way comes to its end.
+    ///
+    /// # Errors
+    /// As [`record`](Self::record).
+    fn finish(&mut self) -> Result<(), Error> {
+        Ok(())
+    }
 }
