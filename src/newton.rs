@@ -10,7 +10,7 @@
 
 use thiserror::Error;
 
-use crate::linear::{self, LinearSolver, LinearFailure, norm};
+use crate::linear::{self, LinearFailure, LinearSolver, norm};
 use crate::system::System;
 
 /// When to stop.

@@ -29,9 +29,7 @@ impl<'a> Index<'a> {
     pub fn new(master: &'a Master, x: &Configuration) -> Self {
         match master {
             Master::Plane(plane) => Self::Plane(plane),
-            Master::Mesh(surface) => {
-                Self::Mesh(surface, Boxes::new(surface, x))
-            }
+            Master::Mesh(surface) => Self::Mesh(surface, Boxes::new(surface, x)),
         }
     }
 

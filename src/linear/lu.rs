@@ -8,7 +8,7 @@ use faer::sparse::linalg::lu::{LuRef, LuSymbolicParams, NumericLu, SymbolicLu, f
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Spec};
 
-use super::{LinearSolver, Pattern, LinearFailure, SparseMatrix};
+use super::{LinearFailure, LinearSolver, Pattern, SparseMatrix};
 
 /// Supernodal LU with partial pivoting for unsymmetric values (faer).
 #[derive(Default)]

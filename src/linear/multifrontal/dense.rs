@@ -57,8 +57,7 @@ impl Panel<'_> {
         let size = self.size();
         if end - start <= NARROW {
             let columns = &mut self.lower[start * size..end * size];
-            let block =
-                Block { columns, size, start, pivots: self.pivots, exchanges: &mut self.exchanges[start..end] };
+            let block = Block { columns, size, start, pivots: self.pivots, exchanges: &mut self.exchanges[start..end] };
             return Arch::new().dispatch(block);
         }
         let middle = start + (end - start) / 2;

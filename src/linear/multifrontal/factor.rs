@@ -104,8 +104,12 @@ impl Numeric<'_> {
         let fronts = &self.symbolic.fronts;
         let front = &fronts[number as usize];
         let passed_on: Vec<Vec<f64>> = front.children.iter().map(|&child| self.waiting.take(child)).collect();
-        let children: Vec<(&Front, &[f64])> =
-            front.children.iter().zip(&passed_on).map(|(&child, values)| (&fronts[child as usize], &values[..])).collect();
+        let children: Vec<(&Front, &[f64])> = front
+            .children
+            .iter()
+            .zip(&passed_on)
+            .map(|(&child, values)| (&fronts[child as usize], &values[..]))
+            .collect();
         let mut below = vec![0.0; front.below() * front.below()];
         self.eliminate(front, part, &children, &mut below);
         self.waiting.put(number, below);
@@ -120,8 +124,7 @@ impl Numeric<'_> {
         sums.add_matrix(&self.symbolic.entries, self.a);
         children.iter().for_each(|(child, values)| sums.add_contribution(child, values));
         let Sums { lower, upper, .. } = sums;
-        let mut panel =
-            Panel { lower, upper, pivots: front.pivots, below: front.below(), exchanges: part.exchanges };
+        let mut panel = Panel { lower, upper, pivots: front.pivots, below: front.below(), exchanges: part.exchanges };
         let replaced = panel.factorize();
         if replaced > 0 {
             self.replaced.fetch_add(replaced, Ordering::Relaxed);

@@ -23,7 +23,7 @@ mod tree;
 
 use std::sync::Arc;
 
-use super::{LinearSolver, Pattern, LinearFailure, SparseMatrix};
+use super::{LinearFailure, LinearSolver, Pattern, SparseMatrix};
 use factor::Factors;
 use scale::Scaling;
 use symbolic::{Entry, Symbolic};
@@ -54,7 +54,8 @@ impl Multifrontal {
     /// scaled matrix. Known once the pattern is analysed, before any of the factors is.
     pub fn memory(&self) -> usize {
         self.symbolic.as_ref().map_or(0, |symbolic| {
-            let values = symbolic.values() + symbolic.contributions(rayon::current_num_threads()) + symbolic.pattern.values();
+            let values =
+                symbolic.values() + symbolic.contributions(rayon::current_num_threads()) + symbolic.pattern.values();
             size_of::<f64>() * values + size_of::<Entry>() * symbolic.entries.len()
         })
     }

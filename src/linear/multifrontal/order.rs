@@ -4,7 +4,7 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::amd;
 
-use super::super::{Pattern, LinearFailure};
+use super::super::{LinearFailure, Pattern};
 
 /// Approximate minimum degree on the node graph: which node to eliminate as the k-th.
 ///

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::super::{BlockPosition, Pattern, LinearFailure};
+use super::super::{BlockPosition, LinearFailure, Pattern};
 use super::order::order;
 use super::tree::{Elimination, Supernode, supernodes};
 
@@ -100,10 +100,12 @@ impl Symbolic {
     pub fn contributions(&self, threads: usize) -> usize {
         let passed_on = |number: usize| self.fronts[number].below().pow(2);
         let rooms = threads * self.forests.iter().map(|forest| forest.room).max().unwrap_or(0);
-        let mut held: usize = self.forests.iter().flat_map(|forest| &forest.roots).map(|&root| passed_on(root as usize)).sum();
+        let mut held: usize =
+            self.forests.iter().flat_map(|forest| &forest.roots).map(|&root| passed_on(root as usize)).sum();
         let mut peak = held;
         let mut done = 0;
-        for end in self.forests.iter().map(|forest| forest.fronts.clone()).chain([self.fronts.len()..self.fronts.len()]) {
+        for end in self.forests.iter().map(|forest| forest.fronts.clone()).chain([self.fronts.len()..self.fronts.len()])
+        {
             for number in done..end.start {
                 held += passed_on(number);
                 peak = peak.max(held);
