@@ -310,6 +310,21 @@ fn steps_are_checked() {
             json!({"newmark": {"gamma": 0.1}}),
             ["steps[0].scheme: ", "\"gamma\" is 0.1, but it must be at least"],
         ),
+        (
+            "/steps/0/scheme",
+            json!({"generalized_alpha": {"rho_infinity": 1.5}}),
+            ["steps[0].scheme: ", "\"rho_infinity\" is 1.5, but it must be between 0 (most damping) and 1"],
+        ),
+        (
+            "/steps/0/scheme",
+            json!({"wilson": {"theta": 1.3}}),
+            ["steps[0].scheme: ", "\"theta\" is 1.3, but it must be between 1.37, below which long increments blow up"],
+        ),
+        ("/steps/0/scheme", json!({"wilson": {"tetha": 1.4}}), ["steps[0].scheme", "did you mean `theta`?"]),
+        ("/steps/0/dt/error", json!(0), ["steps[0].dt.error: ", "is 0: must be positive"]),
+        ("/steps/0/dt/error", json!(-1e-3), ["steps[0].dt.error: ", "is -0.001: must be positive"]),
+        ("/steps/0/dt/error", json!(1e-3), ["steps[0].dt.error: ", "a static step has no error in time"]),
+        ("/steps/0/dt/eror", json!(1e-3), ["steps[0].dt.eror: ", "did you mean `error`?"]),
         ("/steps/0/scheme", json!({"hht": {}}), ["steps[0].scheme.hht", "the key `alpha` is missing"]),
         ("/steps/0/scheme", json!({"hht": {"alpha": -0.1}}), ["bodies.block.material.density: ", "needs a mass"]),
         ("/steps/0/name", json!(""), ["steps[0].name: ", "is empty"]),
@@ -323,6 +338,13 @@ fn steps_are_checked() {
         ("/initial_velocity", json!({"brick": [0, 1]}), ["initial_velocity.brick: ", "the bodies are block, ground"]),
     ] {
         refused_edits(&[(pointer, value)], &fragments);
+    }
+    for (scheme, fragment) in [
+        (json!({"wilson": {}}), "wilson has no estimate of its error: take newmark, hht or generalized_alpha"),
+        (json!({"newmark": {"beta": 0.166}}), "newmark with beta near 1/6 has no estimate"),
+    ] {
+        let edits = [("/steps/0/scheme", scheme), ("/steps/0/dt/error", json!(1e-3))];
+        refused_edits(&edits, &["steps[0].dt.error: ", fragment]);
     }
     let contact = good()["contacts"]["base"].clone();
     refused_edits(&[("/contacts", json!({"a,b": contact}))], &["contacts: ", "\"a,b\"", "','"]);
@@ -754,6 +776,23 @@ fn check_tells_what_was_understood() {
         assert!(text.contains(part), "`{part}` is not in:\n{text}");
     }
     assert!(!folder.path().join("out").exists());
+
+    let mut dynamic = case.clone();
+    for body in ["block", "ground"] {
+        dynamic["bodies"][body]["material"]["density"] = json!(1e-3);
+    }
+    dynamic["steps"][0]["scheme"] = json!({"generalized_alpha": {}});
+    dynamic["steps"][0]["dt"] = json!({"initial": 0.01, "error": 1e-6});
+    write(folder.path(), "dynamic.json", dynamic.to_string());
+    let output = fecontact(folder.path(), &["check", "dynamic.json"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    for part in [
+        "generalized_alpha {\"rho_infinity\":0.8}",
+        "increments start at 0.01, at least 1e-8, at most 0.1",
+        "each in error by at most 1e-6 in a displacement, events of contact located to 1e-5",
+    ] {
+        assert!(text.contains(part), "`{part}` is not in:\n{text}");
+    }
 }
 
 proptest::proptest! {
