@@ -392,10 +392,10 @@ impl<'m> Assembler<'m> {
         let Buffers { mut forces, mut tangents, mut energies } = std::mem::take(&mut self.buffers);
         forces.resize(batch * dofs, 0.0);
         tangents.resize(tangents.len().max(batch * stride), 0.0);
+        energies.clear();
         let mut energy = 0.0;
         for first in (0..model.mesh.elements.len()).step_by(BATCH) {
             let elements = first..(first + BATCH).min(model.mesh.elements.len());
-            let wants_tangent = tangent.is_some();
             let one = |(e, (force, tangent)): (usize, (&mut [f64], &mut [f64]))| {
                 let nodes = &model.mesh.elements[e].nodes;
                 let mut local = [Vector2::zeros(); 9];

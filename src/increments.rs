@@ -8,10 +8,10 @@
 //!   next attempt takes Δt (ε/e)^⅓, with a margin. Accepted increments keep their length where the gain is small.
 //! - An increment in which a contact as a whole begins to slip, stops or turns round is repeated with half its length
 //!   until no point that takes part slips by more than 10 ε in it: the event is then known to 10 ε of displacement.
-//!   A point's direction is that of its plastic slip if its slip rate at the end of the increment still goes that way,
-//!   else 0; a contact's is that of its points if their mean over the closed length exceeds ½ in size. What a point slips is its plastic slip in the
-//!   increment and, if it comes from slip, what it would have slipped at its last rate. So a contact that swings to and
-//!   fro in stick has no events.
+//!   A point's direction is ±1, that of its plastic slip, if its slip rate at the end of the increment still goes that
+//!   way, else 0; a contact has that of its points if the mean over the closed length exceeds ½ in size. What a point
+//!   slips is its plastic slip in the increment and, if it comes from slip, what it would have slipped at its last rate.
+//!   So a contact that swings to and fro in stick has no events.
 //! - An increment after a repeated one does not grow. Halves that are accepted thus walk up to the event and never jump
 //!   over it, and every attempt either moves on or halves the increment.
 //! - The shortest increment is accepted whatever its error, which is told as a warning if it exceeds ε.
@@ -136,7 +136,7 @@ impl Directions {
         let going = |(state, rate): (&ContactState, &f64)| if slip(state) * rate > 0.0 { rate.signum() } else { 0.0 };
         let points: Vec<f64> = states.iter().zip(&rates).map(going).collect();
         let (mut closed, mut forward) = (0.0, 0.0);
-        for (k, state) in states.iter().enumerate().filter(|(_, state)| state.status() != Status::Open) {
+        for k in (0..states.len()).filter(|&k| states[k].status() != Status::Open) {
             let length = pair.points[k].current_length(&x);
             closed += length;
             forward += length * points[k];

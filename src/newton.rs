@@ -10,7 +10,7 @@
 
 use thiserror::Error;
 
-use crate::linear::{self, LinearSolver, SingularMatrix, norm};
+use crate::linear::{self, LinearFailure, LinearSolver, norm};
 use crate::system::System;
 
 /// When to stop.
@@ -33,6 +33,10 @@ pub struct Iteration {
     pub linear_residual: f64,
     /// Whether K is new; if not, it is that of the iterate before
     pub factorized: bool,
+    /// Pivots of K that vanished and were replaced
+    pub perturbed_pivots: usize,
+    /// Whether the fronts of K were not exact enough, and another solver took over
+    pub fallback: bool,
 }
 
 /// Why no solution was found; `E` is why the equations could not be evaluated.
@@ -41,9 +45,9 @@ pub enum NewtonFailure<E> {
     /// The equations could not be evaluated at a trial state.
     #[error("{0}")]
     Evaluation(E),
-    /// The linear system is singular.
+    /// The linear system has no solution.
     #[error("{0}")]
-    Singular(#[from] SingularMatrix),
+    Linear(#[from] LinearFailure),
     /// Numbers beyond double precision, against which any residual would look small.
     #[error("the forces are too large for double precision; check the stiffnesses, loads and units")]
     Overflow,
@@ -119,23 +123,25 @@ pub fn solve<E>(
                 return Err(NewtonFailure::TooManyIterations { residual, iterations: done });
             }
             let factorized = done == 0 || OLD_TANGENT * size * (size / before) > settings.tolerance * system.forces;
-            let (correction, linear_residual) = if factorized {
+            let solution = if factorized {
                 evaluate(&u, Request::Tangent, system).map_err(NewtonFailure::Evaluation)?;
                 let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();
-                let solution = linear::solve(solver, &system.tangent, &right)?;
-                (solution.x, solution.residual)
+                linear::solve(solver, &system.tangent, &right)?
             } else {
                 let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();
-                let mut x = right.clone();
-                solver.solve(&mut x);
-                let left = norm(&system.tangent.residual(&x, &right));
-                (x, left / size)
+                linear::solve_again(solver, &system.tangent, &right)
             };
-            for (u, x) in u.iter_mut().zip(&correction) {
+            for (u, x) in u.iter_mut().zip(&solution.x) {
                 *u += x;
             }
-            let correction = correction.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-            iterations.push(Iteration { residual: f64::NAN, correction, linear_residual, factorized });
+            iterations.push(Iteration {
+                residual: f64::NAN,
+                correction: solution.x.iter().fold(0.0f64, |m, x| m.max(x.abs())),
+                linear_residual: solution.residual,
+                factorized,
+                perturbed_pivots: solution.perturbed_pivots,
+                fallback: solution.fallback,
+            });
             evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
             before = size;
         }

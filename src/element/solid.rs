@@ -1,5 +1,7 @@
 //! A solid element at large displacements: total Lagrangian, fully integrated, with F-bar for Q4.
 
+use std::sync::OnceLock;
+
 use nalgebra::{DMatrix, Matrix2, Matrix4, Vector2};
 
 use super::{ElementError, gradients};
@@ -189,6 +191,12 @@ impl SolidElement {
         let mut blocks = [[[[0.0; 2]; 2]; N]; N];
         for (gradients, &volume) in self.gradients.as_chunks::<N>().0.iter().zip(&self.volumes) {
             let deformation = deformation_gradient(gradients, u);
+            if tangent.is_none() && centre.is_none() {
+                let (stress, stored) = material.stress(&deformation)?;
+                energy += volume * stored;
+                add_force(gradients, &(volume * stress), force);
+                continue;
+            }
             let response = match &centre {
                 Some(centre) => centre.respond(material, &deformation)?,
                 None => material.respond(&deformation)?,
@@ -317,10 +325,13 @@ fn contract(tangent: &Matrix4<f64>, f: &Matrix2<f64>) -> Matrix2<f64> {
 }
 
 /// Corner values of the (bi)linear function that fits values at the quadrature points best: corners × points.
-fn corner_fit(kind: ElementKind) -> DMatrix<f64> {
-    let linear = if kind.corners() == 3 { ElementKind::T3 } else { ElementKind::Q4 };
-    let points = kind.quadrature();
-    let values = points.iter().flat_map(|point| linear.values(point.at));
-    let interpolation = DMatrix::from_row_iterator(points.len(), kind.corners(), values);
-    interpolation.pseudo_inverse(1e-9).expect("1e-9 is not negative")
+fn corner_fit(kind: ElementKind) -> &'static DMatrix<f64> {
+    static FITS: [OnceLock<DMatrix<f64>>; 5] = [const { OnceLock::new() }; 5];
+    FITS[kind as usize].get_or_init(|| {
+        let linear = if kind.corners() == 3 { ElementKind::T3 } else { ElementKind::Q4 };
+        let points = kind.quadrature();
+        let values = points.iter().flat_map(|point| linear.values(point.at));
+        let interpolation = DMatrix::from_row_iterator(points.len(), kind.corners(), values);
+        interpolation.pseudo_inverse(1e-9).expect("1e-9 is not negative")
+    })
 }

@@ -49,6 +49,7 @@ impl Material for Hencky {
         self.lame.constrained_modulus()
     }
 
+    #[inline(always)]
     fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
         let invariants = Invariants::of(deformation)?;
         let Lame { lambda, shear } = self.lame;

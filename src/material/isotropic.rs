@@ -57,7 +57,7 @@ impl Invariants {
     /// A = 2 W_m ∂D/∂F + W_J ∂cof F/∂F                                                    (4)
     ///     + 4 W_mm D ⊗ D + 2 W_mJ (D ⊗ cof F + cof F ⊗ D) + W_JJ cof F ⊗ cof F
     /// ```
-    #[inline]
+    #[inline(always)]
     pub(super) fn response(&self, energy: &Energy, stress_zz: f64) -> MaterialResponse {
         let Energy { w, w_m, w_j, w_mm, w_mj, w_jj } = *energy;
         let stress = 2.0 * w_m * self.deviation + w_j * self.cofactor;

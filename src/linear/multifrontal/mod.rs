@@ -23,7 +23,7 @@ mod tree;
 
 use std::sync::Arc;
 
-use super::{LinearSolver, Pattern, SingularMatrix, SparseMatrix};
+use super::{LinearFailure, LinearSolver, Pattern, SparseMatrix};
 use factor::Factors;
 use scale::Scaling;
 use symbolic::{Entry, Symbolic};
@@ -42,8 +42,8 @@ impl Multifrontal {
     /// Order the unknowns and find the structure of the factors; what is known of this very pattern is kept.
     ///
     /// # Errors
-    /// [`SingularMatrix`] when the pattern is too large for an order of elimination.
-    pub fn analyse(&mut self, pattern: &Arc<Pattern>) -> Result<(), SingularMatrix> {
+    /// [`LinearFailure`] when the pattern is too large for an order of elimination.
+    pub fn analyse(&mut self, pattern: &Arc<Pattern>) -> Result<(), LinearFailure> {
         if self.symbolic.as_ref().is_none_or(|symbolic| !Arc::ptr_eq(&symbolic.pattern, pattern)) {
             self.symbolic = Some(Symbolic::new(pattern.clone())?);
         }
@@ -60,15 +60,38 @@ impl Multifrontal {
         })
     }
 
+    /// Refuse what does not fit, as far as the system tells: it would be killed.
+    fn check_memory(&self, size: usize) -> Result<(), LinearFailure> {
+        const GIB: f64 = (1u64 << 30) as f64;
+        let held = size_of::<f64>() * (self.factors.values.capacity() + self.scaling.values.capacity());
+        let needed = self.memory().saturating_sub(held);
+        match available_memory() {
+            Some(available) if needed > available => Err(LinearFailure::TooLarge {
+                size,
+                needed: self.memory() as f64 / GIB,
+                available: (available + held) as f64 / GIB,
+            }),
+            _ => Ok(()),
+        }
+    }
+
     /// Number of values in L and U, the zeros of relaxed fronts included.
     pub fn fill(&self) -> usize {
         self.symbolic.as_ref().map_or(0, Symbolic::values)
     }
 }
 
+/// Bytes that programs can still take, from the Linux memory status.
+fn available_memory() -> Option<usize> {
+    let status = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    Some(line.trim().trim_end_matches("kB").trim().parse::<usize>().ok()? * 1024)
+}
+
 impl LinearSolver for Multifrontal {
-    fn factorize(&mut self, matrix: &SparseMatrix) -> Result<(), SingularMatrix> {
+    fn factorize(&mut self, matrix: &SparseMatrix) -> Result<(), LinearFailure> {
         self.analyse(&matrix.pattern)?;
+        self.check_memory(matrix.size())?;
         if let Some(symbolic) = &self.symbolic {
             self.scaling.compute(matrix);
             self.factors.compute(symbolic, &self.scaling.values);

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::super::{BlockPosition, Pattern, SingularMatrix};
+use super::super::{BlockPosition, LinearFailure, Pattern};
 use super::order::order;
 use super::tree::{Elimination, Supernode, supernodes};
 
@@ -81,7 +81,7 @@ pub struct Forest {
 }
 
 impl Symbolic {
-    pub fn new(pattern: Arc<Pattern>) -> Result<Self, SingularMatrix> {
+    pub fn new(pattern: Arc<Pattern>) -> Result<Self, LinearFailure> {
         let elimination = Elimination::new(&pattern, order(&pattern)?);
         let supernodes = supernodes(&elimination);
         let mut fronts = fronts(&pattern, &elimination, &supernodes);
