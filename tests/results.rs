@@ -42,7 +42,7 @@ fn run(folder: &Path, case: &Value) -> Output {
 #[test]
 fn history_has_the_promised_columns() {
     let folder = TempDir::new().unwrap();
-    run(folder.path(), &slider(1.0, 0.02));
+    run(folder.path(), &slider(10.0, 0.02));
     let text = fs::read_to_string(folder.path().join("out/case/history.csv")).unwrap();
     let header = "time,dt,step,iterations,kinetic,strain,contact_elastic,friction_dissipation,damping_dissipation,\
                   external_work,energy_error,base.normal_force,base.tangential_force,base.contact_length,\
