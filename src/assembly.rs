@@ -27,7 +27,7 @@ use crate::model::{Model, Step};
 use crate::newton::Request;
 use crate::state::State;
 use crate::system::{Contribution, System};
-use crate::time::Coefficients;
+use crate::time::{Coefficients, supported_rates};
 
 /// One increment to be solved: from where, to when, under which step.
 #[derive(Clone, Copy, Debug)]
@@ -51,9 +51,21 @@ impl<'a> Trial<'a> {
 
     /// ū of a support at the end of the increment; not finite where its expression has no value [L].
     pub fn prescribed(&self, support: &Prescribed, model: &Model) -> f64 {
+        let (position, start) = self.place(support, model);
+        support.value(position, self.time, self.step.span, start)
+    }
+
+    /// ū of a support at the start, thirds and end of the increment [L].
+    pub fn thirds(&self, support: &Prescribed, model: &Model) -> [f64; 4] {
+        let (position, start) = self.place(support, model);
+        support.thirds(position, [self.time - self.dt, self.time], self.step.span, start)
+    }
+
+    /// Reference position of a support, and its displacement at the start of the step.
+    fn place(&self, support: &Prescribed, model: &Model) -> (Vector2<f64>, Vector2<f64>) {
         let node = support.dof / 2;
         let start = &self.old.step_start.displacement[2 * node..][..2];
-        support.value(model.mesh.nodes[node], self.time, self.step.span, Vector2::new(start[0], start[1]))
+        (model.mesh.nodes[node], Vector2::new(start[0], start[1]))
     }
 }
 
@@ -164,12 +176,29 @@ pub struct Assembler<'m> {
     iterates: Vec<Vec<Iterate>>,
     /// What was found at the last evaluated displacement
     pub evaluation: Evaluation,
+    buffers: Buffers,
+    /// Segments that the pattern has room for ahead of each foot, when it is set next
+    ahead: usize,
     /// Time spent
     pub seconds: Seconds,
 }
 
+/// What a batch of elements adds, one after another.
+#[derive(Clone, Debug, Default)]
+struct Buffers {
+    forces: Vec<f64>,
+    tangents: Vec<f64>,
+    energies: Vec<Result<f64, InvertedElement>>,
+}
+
+/// Most segments ahead of a foot that the pattern gets room for.
+const FARTHEST: usize = 8;
+
 /// Elements whose forces and tangents are held at once before they are added.
 const BATCH: usize = 4096;
+
+/// Elements that are done sooner than another thread wakes up.
+const FEW: usize = 64;
 
 impl<'m> Assembler<'m> {
     /// An assembler of a model.
@@ -190,6 +219,8 @@ impl<'m> Assembler<'m> {
             magnitudes: vec![0.0; model.dofs()],
             iterates: Vec::new(),
             evaluation: Evaluation::default(),
+            buffers: Buffers::default(),
+            ahead: 1,
             seconds: Seconds::default(),
         };
         assembler.set_pattern(&[]);
@@ -311,8 +342,9 @@ impl<'m> Assembler<'m> {
             .collect()
     }
 
-    /// Make sure the pattern has room for all contact points. If it has not, it gets room for one segment more on
-    /// either side of each foot, so that it seldom changes as points slide.
+    /// Make sure the pattern has room for all contact points. If it has not, it gets room for one segment more behind
+    /// each foot and a few ahead, where the point slides to. Every time the room turns out too small there will be twice
+    /// as much, so that the pattern seldom changes as points slide.
     fn cover(&mut self, responses: &[PairResponse], old: &State) {
         let coupled = |contribution: &Contribution| {
             let nodes = &contribution.nodes;
@@ -328,14 +360,20 @@ impl<'m> Assembler<'m> {
                 let mut nodes: Vec<usize> = slave.position.iter().map(|&(node, _)| node).collect();
                 nodes.extend(contribution.iter().flat_map(|contribution| &contribution.nodes));
                 if let Master::Mesh(surface) = &pair.master {
-                    let around = [Some(foot.segment), surface.previous(foot.segment), surface.next(foot.segment)];
-                    nodes.extend(around.into_iter().flatten().flat_map(|segment| surface.segments[segment]));
+                    let way = old.foot.and_then(|from| surface.path(from, foot)).unwrap_or_default();
+                    let slip: f64 = way.iter().map(|(_, share)| share).sum();
+                    let [behind, ahead] = if slip < 0.0 { [self.ahead, 1] } else { [1, self.ahead] };
+                    let back = std::iter::successors(Some(foot.segment), |&segment| surface.previous(segment));
+                    let forth = std::iter::successors(Some(foot.segment), |&segment| surface.next(segment));
+                    let around = back.take(1 + behind).chain(forth.take(1 + ahead));
+                    nodes.extend(around.flat_map(|segment| surface.segments[segment]));
                 }
                 nodes.sort_unstable();
                 nodes.dedup();
                 groups.push(nodes);
             }
         }
+        self.ahead = FARTHEST.min(2 * self.ahead);
         self.set_pattern(&groups);
     }
 
@@ -347,37 +385,39 @@ impl<'m> Assembler<'m> {
         mut tangent: Option<&mut SparseMatrix>,
     ) -> Result<f64, TrialFailure> {
         let model = self.model;
+        let wants_tangent = tangent.is_some();
         let widest = model.mesh.elements.iter().map(|element| element.nodes.len()).max().unwrap_or(0);
-        let dofs = 2 * widest;
+        let (dofs, stride) = (2 * widest, if wants_tangent { 4 * widest * widest } else { 1 });
         let batch = BATCH.min(model.mesh.elements.len());
-        let mut forces = vec![0.0; batch * dofs];
-        let mut tangents = vec![0.0; if tangent.is_some() { batch * dofs * dofs } else { batch }];
-        let stride = tangents.len() / batch.max(1);
+        let Buffers { mut forces, mut tangents, mut energies } = std::mem::take(&mut self.buffers);
+        forces.resize(batch * dofs, 0.0);
+        tangents.resize(tangents.len().max(batch * stride), 0.0);
+        energies.clear();
         let mut energy = 0.0;
         for first in (0..model.mesh.elements.len()).step_by(BATCH) {
             let elements = first..(first + BATCH).min(model.mesh.elements.len());
-            let wants_tangent = tangent.is_some();
-            let energies: Vec<Result<f64, InvertedElement>> = elements
-                .clone()
-                .into_par_iter()
-                .zip(forces.par_chunks_mut(dofs).zip(tangents.par_chunks_mut(stride)))
-                .with_min_len(64)
-                .map(|(e, (force, tangent))| {
-                    let nodes = &model.mesh.elements[e].nodes;
-                    let mut local = [Vector2::zeros(); 9];
-                    for (local, &node) in local.iter_mut().zip(nodes) {
-                        *local = Vector2::new(u[2 * node], u[2 * node + 1]);
-                    }
-                    let n = 2 * nodes.len();
-                    let (solid, material) = (&model.solids[e], &*model.bodies[model.body_of_element[e]].material);
-                    if wants_tangent {
-                        solid.force_and_tangent(material, &local[..nodes.len()], &mut force[..n], &mut tangent[..n * n])
-                    } else {
-                        solid.force(material, &local[..nodes.len()], &mut force[..n])
-                    }
-                })
-                .collect();
-            for (k, (e, stored)) in elements.zip(energies).enumerate() {
+            let one = |(e, (force, tangent)): (usize, (&mut [f64], &mut [f64]))| {
+                let nodes = &model.mesh.elements[e].nodes;
+                let mut local = [Vector2::zeros(); 9];
+                for (local, &node) in local.iter_mut().zip(nodes) {
+                    *local = Vector2::new(u[2 * node], u[2 * node + 1]);
+                }
+                let n = 2 * nodes.len();
+                let (solid, material) = (&model.solids[e], &*model.bodies[model.body_of_element[e]].material);
+                if wants_tangent {
+                    solid.force_and_tangent(material, &local[..nodes.len()], &mut force[..n], &mut tangent[..n * n])
+                } else {
+                    solid.force(material, &local[..nodes.len()], &mut force[..n])
+                }
+            };
+            if elements.len() < FEW {
+                let arrays = forces.chunks_mut(dofs).zip(tangents.chunks_mut(stride));
+                energies.extend(elements.clone().zip(arrays).map(one));
+            } else {
+                let arrays = forces.par_chunks_mut(dofs).zip(tangents.par_chunks_mut(stride));
+                elements.clone().into_par_iter().zip(arrays).with_min_len(FEW).map(one).collect_into_vec(&mut energies);
+            }
+            for (k, (e, stored)) in elements.zip(energies.drain(..)).enumerate() {
                 energy += stored.map_err(|inverted| self.inverted(e, inverted))?;
                 let nodes = &model.mesh.elements[e].nodes;
                 let local = &forces[k * dofs..];
@@ -394,6 +434,7 @@ impl<'m> Assembler<'m> {
                 }
             }
         }
+        self.buffers = Buffers { forces, tangents, energies };
         Ok(energy)
     }
 
@@ -479,7 +520,7 @@ impl<'m> Assembler<'m> {
         for dashpot in &trial.step.loads.dashpots {
             let dof = dashpot.dof;
             let driver = dashpot.driver_velocity(self.model.mesh.nodes[dof / 2], trial.time);
-            let (velocity, dvelocity) = velocity(trial, u, dof);
+            let (velocity, dvelocity) = velocity(self.model, trial, u, dof);
             let pull = dashpot.coefficient * (driver - velocity);
             if !pull.is_finite() {
                 return Err(TrialFailure::Undefined { node: self.model.mesh.node_tags[dof / 2], time: trial.time });
@@ -507,19 +548,21 @@ impl<'m> Assembler<'m> {
         };
         let (velocity, acceleration) = self.rates(trial, u, scheme);
         let blend = |old: f64, new: f64, weight: f64| weight * old + (1.0 - weight) * new;
-        let weighted: Vec<f64> =
+        let mut weighted: Vec<f64> =
             old.acceleration.iter().zip(&acceleration).map(|(&a0, &a1)| blend(a0, a1, scheme.alpha_m)).collect();
-        let prescribed = prescribed_dofs(step, u.len());
+        for Prescribed { dof, .. } in &step.supports {
+            weighted[*dof] = blend(old.acceleration[*dof], acceleration[*dof], scheme.alpha_f);
+        }
         let mass = self.mass();
         let (inertia, weighted_inertia) = (mass.multiply(&acceleration), mass.multiply(&weighted));
         if let Some(tangent) = tangent {
             let c = (1.0 - scheme.alpha_m) * scheme.dacceleration(dt);
-            // A prescribed dof's acceleration is a backward difference of its motion (see `rates`).
-            let held = (1.0 - scheme.alpha_m) / (dt * dt);
             for value in &mut tangent.values {
                 *value *= 1.0 - scheme.alpha_f;
             }
-            let factors: Vec<f64> = prescribed.iter().map(|prescribed| if *prescribed { held } else { c }).collect();
+            // A prescribed dof's acceleration is its support's.
+            let mut factors = vec![c; u.len()];
+            step.supports.iter().for_each(|support| factors[support.dof] = 0.0);
             tangent.add_columns(mass, &factors);
         }
         let force = &self.evaluation.force;
@@ -533,22 +576,18 @@ impl<'m> Assembler<'m> {
         self.evaluation.acceleration = acceleration;
     }
 
-    /// Velocity and acceleration at `u`. A prescribed dof follows its support: v and a are backward differences, so a
-    /// support that starts with a jerk does not ring.
+    /// Velocity and acceleration at `u`; prescribed dofs have those of their supports.
     fn rates(&self, trial: Trial, u: &[f64], scheme: Coefficients) -> (Vec<f64>, Vec<f64>) {
         let Trial { old, step, dt, .. } = trial;
-        let prescribed = prescribed_dofs(step, u.len());
-        (0..u.len())
-            .map(|dof| {
-                let increment = u[dof] - old.displacement[dof];
-                let (v, a) = (old.velocity[dof], old.acceleration[dof]);
-                if prescribed[dof] {
-                    (increment / dt, (increment / dt - v) / dt)
-                } else {
-                    scheme.rates(increment, (v, a), dt)
-                }
-            })
-            .unzip()
+        let free =
+            |dof: usize| scheme.rates(u[dof] - old.displacement[dof], (old.velocity[dof], old.acceleration[dof]), dt);
+        let (mut velocity, mut acceleration): (Vec<f64>, Vec<f64>) = (0..u.len()).map(free).unzip();
+        for support in &step.supports {
+            let dof = support.dof;
+            let places = trial.thirds(support, self.model);
+            (velocity[dof], acceleration[dof]) = supported_rates(places, old.velocity[dof], dt);
+        }
+        (velocity, acceleration)
     }
 
     /// Replace the equations of prescribed dofs by w (u − ū) = 0.
@@ -621,37 +660,29 @@ fn weight(model: &Model) -> f64 {
     largest(&mut materials.chain(springs)).or_else(|| largest(&mut { contacts })).unwrap_or(1.0)
 }
 
-/// v of one dof at the end of the increment, and ∂v/∂u: what the scheme says (see [`Assembler::rates`]) or, in statics,
-/// the mean of the increment. An increment of no length leaves v as it is.
-fn velocity(trial: Trial, u: &[f64], dof: usize) -> (f64, f64) {
+/// v of one dof at the end of the increment, and ∂v/∂u: what the scheme or the support says (see [`Assembler::rates`])
+/// or, in statics, the mean of the increment. An increment of no length leaves v as it is.
+fn velocity(model: &Model, trial: Trial, u: &[f64], dof: usize) -> (f64, f64) {
     let Trial { old, step, dt, .. } = trial;
-    let increment = u[dof] - old.displacement[dof];
-    let prescribed = || step.supports.binary_search_by_key(&dof, |support| support.dof).is_ok();
-    match step.scheme.coefficients() {
-        _ if dt == 0.0 => (old.velocity[dof], 0.0),
-        Some(scheme) if !prescribed() => {
-            (scheme.rates(increment, (old.velocity[dof], old.acceleration[dof]), dt).0, scheme.dvelocity(dt))
-        }
-        _ => (increment / dt, 1.0 / dt),
+    let (increment, before) = (u[dof] - old.displacement[dof], old.velocity[dof]);
+    if dt == 0.0 {
+        return (before, 0.0);
     }
-}
-
-/// Which dofs a step prescribes.
-pub fn prescribed_dofs(step: &Step, dofs: usize) -> Vec<bool> {
-    let mut prescribed = vec![false; dofs];
-    for support in &step.supports {
-        prescribed[support.dof] = true;
+    let Some(scheme) = step.scheme.coefficients() else { return (increment / dt, 1.0 / dt) };
+    match step.supports.binary_search_by_key(&dof, |support| support.dof) {
+        Ok(support) => (supported_rates(trial.thirds(&step.supports[support], model), before, dt).0, 0.0),
+        Err(_) => (scheme.rates(increment, (before, old.acceleration[dof]), dt).0, scheme.dvelocity(dt)),
     }
-    prescribed
 }
 
 /// Add a dense tangent of `n` nodes (column-major, two dofs a node) at the given blocks (column by column).
 fn add_blocks(matrix: &mut SparseMatrix, blocks: &[BlockPosition], local: &[f64], n: usize) {
-    for (k, block) in blocks.iter().enumerate() {
-        let (row, column) = (k % n, k / n);
-        for j in 0..2 {
-            for i in 0..2 {
-                matrix.values[block.value(i, j)] += local[(2 * column + j) * 2 * n + 2 * row + i];
+    for (columns, blocks) in local.chunks_exact(4 * n).zip(blocks.chunks_exact(n)) {
+        for (j, column) in columns.chunks_exact(2 * n).enumerate() {
+            for (pair, block) in column.chunks_exact(2).zip(blocks) {
+                let target = &mut matrix.values[block.value(0, j)..][..2];
+                target[0] += pair[0];
+                target[1] += pair[1];
             }
         }
     }

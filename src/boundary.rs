@@ -151,6 +151,18 @@ impl Prescribed {
             }
         }
     }
+
+    /// ū at the start, thirds and end of an increment. What is linear in time is taken straight from end to end: the kinks
+    /// of a table are jumps of the velocity and no accelerations [L].
+    pub fn thirds(&self, position: Vector2<f64>, [t0, t1]: [f64; 2], step: Span, start: Vector2<f64>) -> [f64; 4] {
+        let at = |time: f64| self.value(position, time, step, start);
+        let [first, last] = [t0, t1].map(at);
+        let within = |share: f64| match &self.motion {
+            Motion::Displacement(Drive::Expression(_), _) | Motion::Rotation { .. } => at(t0 + share * (t1 - t0)),
+            Motion::Displacement(..) => first + share * (last - first),
+        };
+        [first, within(1.0 / 3.0), within(2.0 / 3.0), last]
+    }
 }
 
 /// A load that does not depend on the deformation: traction, gravity or nodal force.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::assembly::{Assembler, ContactCounts, Trial, prescribed_dofs};
+use crate::assembly::{Assembler, ContactCounts, Trial};
 use crate::configuration::Configuration;
 use crate::contact::force::ContactState;
 use crate::error::StepFailure;
@@ -12,6 +12,7 @@ use crate::model::{Model, Step};
 use crate::newton::{self, Iteration, NewtonFailure, Request};
 use crate::state::{LastIncrement, State, StepStart};
 use crate::system::System;
+use crate::time::start_acceleration;
 
 /// What is kept from one increment to the next to save work; it does not change any answer.
 pub struct Workspace<'m> {
@@ -53,7 +54,7 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
     state.last_increment = None;
     let resting = old.acceleration.iter().all(|a| *a == 0.0);
     match step.scheme.coefficients() {
-        Some(_) if resting => start_dynamics(step, &mut state, work)?,
+        Some(_) if resting => start_dynamics(model, step, &mut state, work)?,
         // The reaction of a freed support has become a load.
         Some(_) => step.released.iter().for_each(|&dof| state.force[dof] -= old.reaction[dof]),
         None if old.increment == 0 && model.contacts.iter().any(|pair| pair.initial.is_some()) => {
@@ -73,23 +74,24 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
 /// Accelerations, and the forces that go with them, at a moment when dynamics begins: loads may set in with a jump.
 ///
 /// ```text
-/// a₀ = −M⁻¹ F₀ at the free dofs, 0 at the prescribed ones, whose reaction is F₀ + M a₀
+/// M a₀ = −F₀ at the free dofs; a₀ of the supports at the prescribed ones, whose reaction is F₀ + M a₀
 /// ```
-fn start_dynamics(step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), StepFailure> {
+fn start_dynamics(model: &Model, step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), StepFailure> {
     evaluate_forces(step, state, work)?;
     let force = &state.force;
-    let prescribed = prescribed_dofs(step, force.len());
     let mut right: Vec<f64> = force.iter().map(|f| -f).collect();
     let mut mass = work.assembler.mass().clone();
     let scale = mass.diagonal().into_iter().fold(0.0, f64::max);
-    for (dof, _) in prescribed.iter().enumerate().filter(|(_, held)| **held) {
-        mass.replace_row(dof, scale);
-        right[dof] = 0.0;
+    let dt = step.increments.initial;
+    let first = Trial { old: state, step, time: state.time + dt, dt };
+    for support in &step.supports {
+        mass.replace_row(support.dof, scale);
+        right[support.dof] = scale * start_acceleration(first.thirds(support, model), dt);
     }
     state.acceleration = linear::solve(&mut *work.solver, &mass, &right).map_err(StepFailure::Mass)?.x;
     let inertia = work.assembler.mass().multiply(&state.acceleration);
-    for (dof, _) in prescribed.iter().enumerate().filter(|(_, held)| **held) {
-        state.external[dof] += force[dof] + inertia[dof];
+    for support in &step.supports {
+        state.external[support.dof] += force[support.dof] + inertia[support.dof];
     }
     Ok(())
 }
@@ -173,11 +175,12 @@ fn solve(model: &Model, trial: Trial, work: &mut Workspace) -> (Vec<IterationRec
     (iterations, result)
 }
 
-/// Where Newton's method starts: within a static step the last increment goes on at its pace, in dynamics
-/// u₀ + Δt v₀ + ½ Δt² a₀.
+/// Where Newton's method starts: the last increment of the step goes on at its pace. Under error control it is
+/// u₀ + Δt v₀ + ½ Δt² a₀, which no accepted increment leaves by much more than the allowed error; where increments do not
+/// resolve the motion it would be far off.
 fn start_value(Trial { old, step, dt, .. }: Trial) -> Vec<f64> {
     let State { displacement, velocity, acceleration, .. } = old;
-    if step.scheme.coefficients().is_some() {
+    if step.increments.error.is_some() {
         let rates = velocity.iter().zip(acceleration);
         return displacement.iter().zip(rates).map(|(u, (v, a))| u + dt * (v + 0.5 * dt * a)).collect();
     }

@@ -24,15 +24,24 @@
 //! and (2), (3) over Δt give u₁ and v₁. At t + Δt equilibrium is met only to the order of the scheme. It is stable for
 //! every Δt from θ = (1 + √3)/2 = 1.366 on.
 //!
-//! # Local error
-//! An acceleration of (1) belongs to the time t + (α_m − α_f) Δt, to second order. With this, the displacement of one
-//! increment from exact start values is in error by
+//! # Supports
+//! A prescribed dof follows its support and not (2), by which a jerk would ring. Its velocity is that of the support, and
 //! ```text
-//! e = C Δt³ u⃛ + O(Δt⁴) ≈ C Δt² (a₁ − a₀),   C = β − 1/6 − ½ (α_f − α_m)                                     (5)
+//! a₁ = (v₁ − v₀)/Δt + ½ (ā₁ − ā₀)                                                                            (5)
+//! ```
+//! with ā the support's acceleration: of second order where the motion is smooth, and where the velocity jumps, from the
+//! step before or at a kink, the jump is spread over the increment. In (1) the accelerations of supports are weighted
+//! with α_f like the forces: they belong to t, those of free dofs to the time t + (α_m − α_f) Δt, to second order.
+//!
+//! # Local error
+//! With accelerations of the time t + (α_m − α_f) Δt, the displacement of one increment from exact start values is in
+//! error by
+//! ```text
+//! e = C Δt³ u⃛ + O(Δt⁴) ≈ C Δt² (a₁ − a₀),   C = β − 1/6 − ½ (α_f − α_m)                                     (6)
 //! ```
 //! By (2) this is C/β times the way from the Taylor polynomial u₀ + Δt v₀ + ½ Δt² a₀ to u₁: for the trapezoidal rule a
 //! third. So whatever happens within an increment, a slip or an impact, shows in the estimate by what it moves. Wilson-θ
-//! has no term (5): its error is of fourth order and takes accelerations of more than two times to see.
+//! has no term (6): its error is of fourth order and takes accelerations of more than two times to see.
 //!
 //! Sources: Newmark (1959), J. Eng. Mech. Div. ASCE 85, 67; Wilson, Farhoomand & Bathe (1973), Earthquake Eng. Struct. Dyn.
 //! 1, 241; Hilber, Hughes & Taylor (1977), Earthquake Eng. Struct. Dyn. 5, 283; Chung & Hulbert (1993), J. Appl. Mech.
@@ -129,7 +138,7 @@ impl Scheme {
         }
     }
 
-    /// C of (5); `None` where it vanishes or there is no such term.
+    /// C of (6); `None` where it vanishes or there is no such term.
     pub fn error_constant(self) -> Option<f64> {
         let Coefficients { alpha_m, alpha_f, beta, .. } = self.coefficients()?;
         let constant = (beta - 1.0 / 6.0 - 0.5 * (alpha_f - alpha_m)).abs();
@@ -163,7 +172,7 @@ impl Scheme {
     }
 }
 
-/// Below this |C| the estimate (5) says nothing: all others of this file have |C| ≥ 1/12.
+/// Below this |C| the estimate (6) says nothing: all others of this file have |C| ≥ 1/12.
 const LEAST_ERROR_CONSTANT: f64 = 0.01;
 
 impl Coefficients {
@@ -193,4 +202,18 @@ impl Coefficients {
     pub fn increment(&self, (v, a): (f64, f64), a1: f64, dt: f64) -> f64 {
         dt * v + dt * dt * ((0.5 - self.beta) * a + self.beta * a1)
     }
+}
+
+/// (v₁, a₁) by (5) of a dof that comes with `v` into an increment in which its support goes through four places, at its
+/// start, thirds and end.
+pub fn supported_rates(places: [f64; 4], v: f64, dt: f64) -> (f64, f64) {
+    let [start, first, second, end] = places;
+    let v1 = (11.0 * end - 18.0 * second + 9.0 * first - 2.0 * start) / (2.0 * dt);
+    let [a0, a1] = [start_acceleration(places, dt), start_acceleration([end, second, first, start], dt)];
+    (v1, (v1 - v) / dt + 0.5 * (a1 - a0))
+}
+
+/// Acceleration, at the start of an increment, of a support that goes through four places in it.
+pub fn start_acceleration([start, first, second, end]: [f64; 4], dt: f64) -> f64 {
+    9.0 * (2.0 * start - 5.0 * first + 4.0 * second - end) / (dt * dt)
 }

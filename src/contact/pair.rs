@@ -5,6 +5,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::force::{ContactState, Increment, Presume, respond};
+use super::kinematics::kinematics;
 use super::search::Index;
 use super::surface::{Master, SlavePoint};
 use crate::configuration::Configuration;
@@ -108,6 +109,20 @@ impl ContactPair {
 }
 
 impl ContactPair {
+    /// Rate at which each point slips along +s under nodal velocities, the variation of Δu_t; 0 where nothing faces it
+    /// [L/T].
+    pub fn slip_rates(&self, states: &[ContactState], x: &Configuration, velocity: &[f64]) -> Vec<f64> {
+        let index = Index::new(&self.master, x);
+        let rate = |(slave, state): (&SlavePoint, &ContactState)| {
+            let segment = state.foot.map(|foot| foot.segment);
+            let Some(projection) = index.project(slave, segment, x) else { return 0.0 };
+            let k = kinematics(slave, &self.master, &projection, state.foot, x);
+            let dofs = k.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
+            dofs.zip(&k.dslip).map(|(dof, dslip)| velocity[dof] * dslip).sum()
+        };
+        self.points.iter().zip(states).map(rate).collect()
+    }
+
     /// Elastic part of the slip, q/α_t; 0 for a frictionless contact [L].
     pub fn elastic_slip(&self, friction: &FrictionState) -> f64 {
         let stiffness = self.law.stiffness();
