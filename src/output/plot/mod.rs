@@ -152,15 +152,20 @@ impl Units {
     }
 
     fn energy(&self) -> String {
-        self.derived("energy", ["force", "length"], " _")
+        self.derived("energy", ["force", "length"], "·_")
     }
 }
 
-/// Of what a figure is: the title of the case, or the names of the folders that are overlaid.
+/// Of what a figure is: the title of the case, and the names of folders that are overlaid.
 fn subtitle(sources: &[Source]) -> String {
-    match sources {
-        [source] if !source.about.title.is_empty() => source.about.title.clone(),
-        [source] => source.name.clone(),
-        several => several.iter().map(|source| source.name.as_str()).collect::<Vec<_>>().join(" · "),
+    let title = &sources[0].about.title;
+    let names: Vec<&str> = sources.iter().map(|source| source.name.as_str()).collect();
+    match (title.as_str(), sources.len()) {
+        ("", _) => names.join(" · "),
+        (title, 1) => title.into(),
+        (title, _) if sources.iter().all(|source| source.about.title == title) => {
+            format!("{title}: {}", names.join(" · "))
+        }
+        _ => names.join(" · "),
     }
 }
