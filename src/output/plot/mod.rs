@@ -63,18 +63,20 @@ pub fn draw(folders: &[PathBuf], out: &Path) -> Result<Vec<PathBuf>, PlotError> 
         return Err(unreadable(folder, "has neither history.csv nor law.csv: it is no folder of results"));
     }
     let sources = sources(folders)?;
-    let figures = match folders.iter().filter(|folder| is_law(folder)).count() {
-        0 => run::figures(&sources)?,
-        laws if laws == folders.len() => law::figures(&sources)?,
-        _ => return Err(unreadable(&folders[0], "runs and laws driven alone cannot be drawn over each other")),
+    let mut written = Vec::new();
+    let mut write = |name: &str, figure: Figure| {
+        std::fs::create_dir_all(out).map_err(|cause| failed(out, &cause))?;
+        let path = out.join(name);
+        std::fs::write(&path, figure.svg()).map_err(|cause| failed(&path, &cause))?;
+        written.push(path);
+        Ok(())
     };
-    std::fs::create_dir_all(out).map_err(|cause| failed(out, &cause))?;
-    figures.into_iter().map(|(name, figure)| write(&out.join(name), &figure)).collect()
-}
-
-fn write(path: &Path, figure: &Figure) -> Result<PathBuf, PlotError> {
-    std::fs::write(path, figure.svg()).map_err(|cause| failed(path, &cause))?;
-    Ok(path.to_owned())
+    match folders.iter().filter(|folder| is_law(folder)).count() {
+        0 => run::figures(&sources, write)?,
+        laws if laws == folders.len() => write("law.svg", law::figure(&sources)?)?,
+        _ => return Err(unreadable(&folders[0], "runs and laws driven alone cannot be drawn over each other")),
+    }
+    Ok(written)
 }
 
 /// A result folder.

@@ -37,7 +37,7 @@ const HARDEST: usize = 100;
 struct Run<'a> {
     source: &'a Source,
     history: Columns,
-    /// only if there is a `newton.csv`
+    /// only if there is a `newton.csv` with rows
     newton: Option<Columns>,
 }
 
@@ -52,8 +52,8 @@ impl<'a> Run<'a> {
         let history = Columns::read(&source.folder.join("history.csv"), wanted)?;
         history.get("time")?;
         let newton = source.folder.join("newton.csv");
-        let newton = newton.is_file().then(|| Columns::read(&newton, |name| NEWTON.contains(&name)));
-        Ok(Self { source, history, newton: newton.transpose()? })
+        let newton = newton.is_file().then(|| Columns::read(&newton, |name| NEWTON.contains(&name))).transpose()?;
+        Ok(Self { source, history: history.with_rows()?, newton: newton.filter(|newton| !newton.is_empty()) })
     }
 }
 
@@ -63,25 +63,33 @@ struct Runs<'a> {
     units: Units,
 }
 
-/// All figures for which there are data, with their file names.
-pub fn figures(sources: &[Source]) -> Result<Vec<(&'static str, Figure)>, PlotError> {
+/// A figure: its file, its title, and what makes its panels.
+type Recipe<'a> = (&'static str, &'static str, fn(&Runs<'a>) -> Result<Vec<Panel>, PlotError>);
+
+/// Hand on every figure for which there are data, one after the other: the curves of all of them together would fill the
+/// memory.
+pub fn figures(
+    sources: &[Source],
+    mut write: impl FnMut(&str, Figure) -> Result<(), PlotError>,
+) -> Result<(), PlotError> {
     let list = sources.iter().map(Run::read).collect::<Result<Vec<_>, _>>()?;
     let runs = Runs { list, units: Units::of(sources) };
-    let figures = [
-        ("displacement.svg", "Displacement of watched sets", runs.displacements()?),
-        ("friction.svg", "Friction over time", runs.frictions()?),
-        ("friction_path.svg", "Friction over normal force", runs.friction_paths()?),
-        ("slip.svg", "Plastic and elastic slip", runs.slips()?),
-        ("slip_fraction.svg", "Share of the contact that slips", runs.slip_fractions()?),
-        ("energy.svg", "Energies", runs.energies()?),
-        ("newton.svg", "Convergence of Newton's method", runs.convergence()?),
+    let recipes: [Recipe; 7] = [
+        ("displacement.svg", "Displacement of watched sets", Runs::displacements),
+        ("friction.svg", "Friction over time", Runs::frictions),
+        ("friction_path.svg", "Friction over normal force", Runs::friction_paths),
+        ("slip.svg", "Plastic and elastic slip", Runs::slips),
+        ("slip_fraction.svg", "Share of the contact that slips", Runs::slip_fractions),
+        ("energy.svg", "Energies", Runs::energies),
+        ("newton.svg", "Convergence of Newton's method", Runs::convergence),
     ];
-    let drawn = figures.into_iter().filter(|(_, _, panels)| !panels.is_empty());
-    Ok(drawn
-        .map(|(file, title, panels)| {
-            (file, Figure { title: title.into(), subtitle: subtitle(sources), columns: 1, panels })
-        })
-        .collect())
+    for (file, title, panels) in recipes {
+        let panels = panels(&runs)?;
+        if !panels.is_empty() {
+            write(file, Figure { title: title.into(), subtitle: subtitle(sources), columns: 1, panels })?;
+        }
+    }
+    Ok(())
 }
 
 impl Runs<'_> {
@@ -122,8 +130,7 @@ impl Runs<'_> {
     fn displacements(&self) -> Result<Vec<Panel>, PlotError> {
         let mut panels = Vec::new();
         for set in self.owners("ux") {
-            let both = WATCHED.map(|u| self.curves("time", &format!("{set}.{u}"), u));
-            let [ux, uy] = both;
+            let [ux, uy] = WATCHED.map(|u| self.curves("time", &format!("{set}.{u}"), u));
             let both = [("ux", ux?), ("uy", uy?)];
             let largest = both.iter().map(|(_, curves)| size(curves)).fold(0.0, f64::max);
             for (u, curves) in both {
@@ -142,8 +149,9 @@ impl Runs<'_> {
             let backwards = acts_backwards(&curves);
             let normal = self.curves("time", &format!("{contact}.normal_force"), "")?;
             // Runs that are compared have the same law and nearly the same normal force: the bounds of one will do.
+            let normal = normal.first().map_or(&[][..], |curve| &curve.points);
             for (k, (name, mu)) in self.coefficients(&contact).into_iter().enumerate() {
-                let bound = |sign: f64| normal[0].points.iter().map(|[t, n]| [*t, sign * mu * n]).collect();
+                let bound = |sign: f64| normal.iter().map(|[t, n]| [*t, sign * mu * n]).collect();
                 curves.extend(bounds(&format!("{name} × normal force"), backwards, bound, k));
             }
             panels.push(Panel { title: contact, x: self.time(), y: self.force("tangential force"), curves });
