@@ -277,6 +277,7 @@ impl<'m> Assembler<'m> {
 
     /// Trial states of all pairs; a tangent is taken with the presumptions, a residual that may be accepted without.
     fn contacts(&self, trial: Trial, presuming: bool, x: &Configuration) -> Result<Vec<PairResponse>, TrialFailure> {
+        let before = self.model.configuration(&trial.old.displacement);
         let pairs = self.model.contacts.iter().zip(&trial.old.contacts).enumerate();
         pairs
             .map(|(number, (pair, old))| {
@@ -285,7 +286,7 @@ impl<'m> Assembler<'m> {
                     let Iterate { presumed, held, .. } = iterate(k);
                     (if presuming { presumed } else { Presume::Nothing }, held)
                 };
-                pair.respond(old, trial.dt, presumed, x).map_err(|(point, cause)| TrialFailure::Friction {
+                pair.respond(old, &before, trial.dt, presumed, x).map_err(|(point, cause)| TrialFailure::Friction {
                     contact: pair.name.clone(),
                     point,
                     cause,
@@ -312,7 +313,7 @@ impl<'m> Assembler<'m> {
                 nodes.extend(contribution.iter().flat_map(|contribution| &contribution.nodes));
                 if let Master::Mesh(surface) = &pair.master {
                     let around = [Some(foot.segment), surface.previous(foot.segment), surface.next(foot.segment)];
-                    nodes.extend(around.into_iter().flatten().flat_map(|segment| surface.segments[segment]));
+                    nodes.extend(around.into_iter().flatten().flat_map(|segment| surface.segments[segment].nodes()));
                 }
                 nodes.sort_unstable();
                 nodes.dedup();

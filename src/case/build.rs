@@ -7,15 +7,17 @@ use nalgebra::Vector2;
 
 use super::error::{CaseError, Complaint};
 use super::file::{
-    Case, Components, ContactInput, DriveInput, Formulation, IncrementsInput, LoadInput, MasterInput, MeshSource,
-    Method, NodeInput, Place, RigidInput, SpringInput, StepInput, TimeInput,
+    Case, CircleInput, Components, ContactInput, DriveInput, Formulation, IncrementsInput, LoadInput, MasterInput, MeshSource,
+    Method, NodeInput, Place, PlaneInput, PolylineInput, RigidInput, SpringInput, StepInput, TimeInput,
 };
 use super::{names, supported};
 use crate::boundary::{
     Amplitude, DeadLoad, Drive, Expression, FollowerPressure, Loads, Motion, Prescribed, Span, Spring,
 };
 use crate::contact::pair::ContactPair;
-use crate::contact::surface::{Master, Plane, Surface, gauss_points, in_order, nodal_points};
+use crate::contact::mortar::mortar_points;
+use crate::contact::rigid::{Circle, Plane, Polyline, Rigid};
+use crate::contact::surface::{Master, Surface, gauss_points, in_order, nodal_points};
 use crate::element::{SolidElement, consistent_mass};
 use crate::mesh::{Edge, Group, Mesh, gmsh};
 use crate::model::{Body, Increments, Model, Step, WatchedSet};
@@ -175,22 +177,23 @@ fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPa
             check_disjoint(&place, &input.slave, slave, group, master, mesh)?;
             Master::Mesh(Surface::new(&node_lists(master)))
         }
-        MasterInput::Rigid(RigidInput { plane }) => {
-            let given = Vector2::from(plane.normal);
-            let Some(normal) = given.try_normalize(0.0).filter(|normal| normal.norm() > 0.5) else {
-                let message = format!("is [{}, {}]: must have a direction, such as [0, 1]", given.x, given.y);
-                return Err(Complaint::new(format!("{place}.master.plane.normal"), message));
-            };
-            Master::Plane(Plane { point: Vector2::from(plane.point), normal })
-        }
+        MasterInput::Rigid(body) => Master::Rigid(rigid(body, &format!("{place}.master"))?),
     };
     let slave_edges = in_order(&node_lists(slave));
     if !(2..=4).contains(&input.points) {
         return Err(Complaint::new(format!("{place}.points"), format!("is {}: must be 2, 3 or 4", input.points)));
     }
-    let points = match input.method {
-        Method::NodeToSegment => nodal_points(&slave_edges),
-        Method::GaussToSegment => gauss_points(&slave_edges, input.points),
+    let (points, mortar) = match input.method {
+        Method::NodeToSegment => (nodal_points(&slave_edges), None),
+        Method::GaussToSegment => (gauss_points(&slave_edges, input.points), None),
+        Method::Mortar if matches!(master, Master::Rigid(_)) => {
+            let message = "is mortar, which needs an edge group as master: use gauss_to_segment on a rigid body";
+            return Err(Complaint::new(format!("{place}.method"), message));
+        }
+        Method::Mortar => {
+            let (points, mortar) = mortar_points(&slave_edges, &mesh.nodes);
+            (points, Some(mortar))
+        }
     };
     let alpha_n = input.normal.alpha_n.unwrap_or_else(|| default_stiffness(model, slave));
     if alpha_n <= 0.0 {
@@ -203,7 +206,38 @@ fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPa
     if law.stiffness() > 0.0 {
         check_stiffness(&format!("{place}.friction"), "alpha_t", law.stiffness())?;
     }
-    Ok(ContactPair { name: name.into(), points, master, alpha_n, law })
+    Ok(ContactPair { name: name.into(), points, master, mortar, alpha_n, law })
+}
+
+/// A rigid master, with its geometry checked.
+fn rigid(input: &RigidInput, place: &str) -> Checked<Rigid> {
+    match input {
+        RigidInput::Plane(PlaneInput { point, normal }) => {
+            let given = Vector2::from(*normal);
+            let Some(normal) = given.try_normalize(0.0).filter(|normal| normal.norm() > 0.5) else {
+                let message = format!("is [{}, {}]: must have a direction, such as [0, 1]", given.x, given.y);
+                return Err(Complaint::new(format!("{place}.plane.normal"), message));
+            };
+            Ok(Rigid::Plane(Plane { point: Vector2::from(*point), normal }))
+        }
+        RigidInput::Circle(CircleInput { centre, radius, hole }) => {
+            if !(*radius > 0.0 && radius.is_finite()) {
+                return Err(Complaint::new(format!("{place}.circle.radius"), format!("is {radius}: must be positive")));
+            }
+            Ok(Rigid::Circle(Circle { centre: Vector2::from(*centre), radius: *radius, hole: *hole }))
+        }
+        RigidInput::Polyline(PolylineInput { points }) => {
+            let place = format!("{place}.polyline.points");
+            if points.len() < 2 {
+                return Err(Complaint::new(place, format!("has {} points: must have two or more", points.len())));
+            }
+            if let Some(k) = points.windows(2).position(|pair| pair[0] == pair[1]) {
+                let message = format!("points {} and {} are the same: leave one out", k, k + 1);
+                return Err(Complaint::new(place, message));
+            }
+            Ok(Rigid::Polyline(Polyline::new(points.iter().map(|&point| Vector2::from(point)).collect())))
+        }
+    }
 }
 
 fn check_stiffness(place: &str, name: &str, value: f64) -> Checked<()> {

@@ -89,7 +89,7 @@ pub enum Formulation {
 pub struct ContactInput {
     /// Edge group whose points are kept out of the master; the finer or softer side
     pub slave: String,
-    /// Edge group, or a rigid plane
+    /// Edge group, or a rigid body
     pub master: MasterInput,
     /// Where contact is evaluated
     #[serde(default)]
@@ -120,17 +120,21 @@ pub enum MasterInput {
 
 impl<'de> Deserialize<'de> for MasterInput {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let expecting = "the name of an edge group, or {\"plane\": {\"point\": [x, y], \"normal\": [x, y]}}";
+        let expecting = "the name of an edge group, or a rigid body such as {\"plane\": {\"point\": [x, y], \"normal\": [x, y]}}";
         Choice { expecting, number: None, text: Self::Group, object: Self::Rigid }.read(deserializer)
     }
 }
 
-/// A rigid body given by a formula.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RigidInput {
+/// A rigid body at rest, given by a formula.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RigidInput {
     /// A half-space
-    pub plane: PlaneInput,
+    Plane(PlaneInput),
+    /// A disk, or the rim of a hole
+    Circle(CircleInput),
+    /// A body bounded by straight lines
+    Polyline(PolylineInput),
 }
 
 /// A rigid half-space.
@@ -143,6 +147,27 @@ pub struct PlaneInput {
     pub normal: [f64; 2],
 }
 
+/// A rigid circle.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CircleInput {
+    /// Centre [L]
+    pub centre: [f64; 2],
+    /// Radius [L]
+    pub radius: f64,
+    /// Whether the solid is outside the circle
+    #[serde(default)]
+    pub hole: bool,
+}
+
+/// A rigid polyline.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PolylineInput {
+    /// Its corners, the solid on the right of the way; the first again at the end closes it [L]
+    pub points: Vec<[f64; 2]>,
+}
+
 /// Where contact is evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -152,6 +177,8 @@ pub enum Method {
     /// At Gauss points of the slave's edges
     #[default]
     GaussToSegment,
+    /// Averaged around the slave's nodes, integrated exactly over non-matching meshes; the master is an edge group
+    Mortar,
 }
 
 /// Normal contact.

@@ -81,6 +81,17 @@ pub enum Presume {
 /// Contact closes at a zero gap when it is below this share of the length the point stands for.
 const TOUCH: f64 = 1e-9;
 
+/// Where a slave point meets the master: its kinematics, its gap and its foot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Meeting {
+    /// Kinematics, with slip counted from the committed state
+    pub kinematics: Kinematics,
+    /// g [L]
+    pub gap: f64,
+    /// The foot
+    pub foot: MasterPoint,
+}
+
 /// The trial state of one point and, if closed, what it adds to the equations.
 pub fn respond(
     pair: &ContactPair,
@@ -90,16 +101,44 @@ pub fn respond(
     increment: Increment,
     x: &Configuration,
 ) -> Result<(ContactState, Option<Contribution>), LawFailure> {
-    let closed = projection.filter(|p| p.gap < 0.0 || touches(slave, p, old, increment, x));
-    let Some(projection) = closed else {
-        let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.dt };
-        let friction = pair.law.respond(&old.friction, sliding)?.state;
-        let state = ContactState { friction, foot: projection.map(|p| p.foot), gap: projection.map_or(0.0, |p| p.gap) };
-        return Ok((state, None));
-    };
-    let mut kinematics = kinematics(slave, &pair.master, &projection, old.foot, x);
-    count_slip_after_touch(&mut kinematics, old.gap, projection.gap);
-    let pressure = (-pair.alpha_n * projection.gap).max(0.0);
+    let Some(projection) = projection else { return open(pair, None, old, increment) };
+    let (gap, foot) = (projection.gap, projection.foot);
+    if !closes(slave, gap, old, increment, x) {
+        return open(pair, Some((gap, foot)), old, increment);
+    }
+    press(pair, Meeting { kinematics: kinematics(slave, &pair.master, &projection, old.foot, x), gap, foot }, old, increment)
+}
+
+/// Whether a point with this gap carries pressure, or is presumed to.
+pub fn closes(slave: &SlavePoint, gap: f64, old: &ContactState, increment: Increment, x: &Configuration) -> bool {
+    let zero = TOUCH * slave.current_length(x);
+    let touches = increment.presume == Presume::Touch && old.foot.is_some() && old.gap.abs() <= zero && gap <= zero;
+    gap < 0.0 || touches
+}
+
+/// The state of a point without pressure.
+pub fn open(
+    pair: &ContactPair,
+    met: Option<(f64, MasterPoint)>,
+    old: &ContactState,
+    increment: Increment,
+) -> Result<(ContactState, Option<Contribution>), LawFailure> {
+    let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.dt };
+    let friction = pair.law.respond(&old.friction, sliding)?.state;
+    let (gap, foot) = met.unzip();
+    Ok((ContactState { friction, foot, gap: gap.unwrap_or(0.0) }, None))
+}
+
+/// The state of a closed point and what it adds to the equations.
+pub fn press(
+    pair: &ContactPair,
+    meeting: Meeting,
+    old: &ContactState,
+    increment: Increment,
+) -> Result<(ContactState, Option<Contribution>), LawFailure> {
+    let Meeting { mut kinematics, gap, foot } = meeting;
+    count_slip_after_touch(&mut kinematics, old.gap, gap);
+    let pressure = (-pair.alpha_n * gap).max(0.0);
     let sliding = Sliding { slip: kinematics.slip, pressure, dt: increment.dt };
     let mut response = pair.law.respond(&old.friction, sliding)?;
     let stiffness = pair.law.stiffness();
@@ -110,19 +149,8 @@ pub fn respond(
     if increment.presume == Presume::Stick || pressure == 0.0 {
         response.dtraction_dslip = stiffness;
     }
-    let state = ContactState { friction: response.state, foot: Some(projection.foot), gap: projection.gap };
+    let state = ContactState { friction: response.state, foot: Some(foot), gap };
     Ok((state, Some(contribution(&kinematics, &response, pair.alpha_n))))
-}
-
-fn touches(
-    slave: &SlavePoint,
-    projection: &Projection,
-    old: &ContactState,
-    increment: Increment,
-    x: &Configuration,
-) -> bool {
-    let zero = TOUCH * slave.current_length(x);
-    increment.presume == Presume::Touch && old.foot.is_some() && old.gap.abs() <= zero && projection.gap <= zero
 }
 
 fn count_slip_after_touch(kinematics: &mut Kinematics, old_gap: f64, gap: f64) {
@@ -160,11 +188,9 @@ fn contribution(k: &Kinematics, response: &FrictionResponse, alpha_n: f64) -> Co
             add(&mut result, node, i, row, -w);
         }
     }
-    if let Some((dfoot, [start, end])) = &k.dfoot {
+    for (node, dw) in &k.drelative {
         for i in 0..2 {
-            let force = traction[i] * k.length;
-            add(&mut result, *start, i, dfoot, -force);
-            add(&mut result, *end, i, dfoot, force);
+            add(&mut result, *node, i, dw, -traction[i] * k.length);
         }
     }
     result

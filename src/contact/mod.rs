@@ -4,9 +4,12 @@
 //! right-handed. The gap g = (x_slave − x_foot)·n is positive when open, the pressure p positive in compression, and
 //! the traction on the slave is t = p n − q s.
 
+pub mod dual;
 pub mod force;
 pub mod kinematics;
+pub mod mortar;
 pub mod pair;
 pub mod projection;
+pub mod rigid;
 pub mod search;
 pub mod surface;

@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::force::{ContactState, Increment, Presume, respond};
+use super::force::{ContactState, Increment, Meeting, Presume, closes, open, press, respond};
+use super::mortar::Mortar;
 use super::search::Index;
-use super::surface::{Master, SlavePoint};
+use super::surface::{Master, MasterPoint, SlavePoint};
 use crate::configuration::Configuration;
 use crate::friction::{FrictionLaw, FrictionState, LawFailure};
 use crate::system::Contribution;
@@ -20,6 +21,8 @@ pub struct ContactPair {
     pub points: Vec<SlavePoint>,
     /// The master
     pub master: Master,
+    /// The slave's edges if contact is averaged over them; else it is evaluated point by point
+    pub mortar: Option<Mortar>,
     /// α_n: normal penalty stiffness [F/L³]
     pub alpha_n: f64,
     /// The friction law
@@ -33,37 +36,63 @@ impl ContactPair {
     /// States at the start of a run: each point projected in the configuration `x`, friction at rest.
     pub fn initial_states(&self, x: &Configuration) -> Vec<ContactState> {
         let index = Index::new(&self.master, x);
-        let at_rest = |slave| {
-            let projection = index.project(slave, None, x);
-            ContactState {
-                friction: self.law.initial_state(),
-                foot: projection.map(|p| p.foot),
-                gap: projection.map_or(0.0, |p| p.gap),
+        let met: Vec<Option<(f64, MasterPoint)>> = match (&self.mortar, &self.master) {
+            (Some(mortar), Master::Mesh(surface)) => {
+                let overlaps = mortar.overlaps(surface, &index, x);
+                let meet = |k| mortar.kinematics(k, surface, &overlaps, None, x);
+                (0..self.points.len()).map(|k| meet(k).map(|met| (met.gap, met.foot))).collect()
             }
+            _ => self.points.iter().map(|slave| index.project(slave, None, x).map(|p| (p.gap, p.foot))).collect(),
         };
-        self.points.iter().map(at_rest).collect()
+        let at_rest = |met: Option<(f64, MasterPoint)>| {
+            let (gap, foot) = met.unzip();
+            ContactState { friction: self.law.initial_state(), foot, gap: gap.unwrap_or(0.0) }
+        };
+        met.into_iter().map(at_rest).collect()
     }
 
     /// Every point's trial state and contribution in the configuration `x`, each with its own presumption and, if it is
-    /// held on one, its segment; pure, and the same for any number of threads.
+    /// held on one, its segment; `before` is the committed configuration. Pure, and the same for any number of threads.
     ///
     /// # Errors
     /// The number of the first point whose friction law fails, and why.
     pub fn respond(
         &self,
         old: &[ContactState],
+        before: &Configuration,
         dt: f64,
         presumed: impl Fn(usize) -> (Presume, Option<usize>) + Sync,
         x: &Configuration,
     ) -> Result<PairResponse, (usize, LawFailure)> {
         let index = Index::new(&self.master, x);
-        let one = |(k, (slave, old)): (usize, (&SlavePoint, &ContactState))| {
-            let (presume, held) = presumed(k);
-            respond(self, slave, index.project(slave, held, x), old, Increment { dt, presume }, x)
-                .map_err(|failure| (k, failure))
-        };
         // The first failure by number, whatever thread met it.
-        let all: Vec<_> = self.points.par_iter().zip(old).enumerate().map(one).collect();
+        let all: Vec<_> = match (&self.mortar, &self.master) {
+            (Some(mortar), Master::Mesh(surface)) => {
+                let was = mortar.overlaps(surface, &Index::new(&self.master, before), before);
+                let is = mortar.overlaps(surface, &index, x);
+                let one = |(k, (slave, old)): (usize, (&SlavePoint, &ContactState))| {
+                    let increment = Increment { dt, presume: presumed(k).0 };
+                    let weights = mortar.weights(k, surface, &was, before);
+                    let answer = match mortar.kinematics(k, surface, &is, weights.as_ref(), x) {
+                        None => open(self, None, old, increment),
+                        Some(Meeting { gap, foot, .. }) if !closes(slave, gap, old, increment, x) => {
+                            open(self, Some((gap, foot)), old, increment)
+                        }
+                        Some(meeting) => press(self, meeting, old, increment),
+                    };
+                    answer.map_err(|failure| (k, failure))
+                };
+                self.points.par_iter().zip(old).enumerate().map(one).collect()
+            }
+            _ => {
+                let one = |(k, (slave, old)): (usize, (&SlavePoint, &ContactState))| {
+                    let (presume, held) = presumed(k);
+                    respond(self, slave, index.project(slave, held, x), old, Increment { dt, presume }, x)
+                        .map_err(|failure| (k, failure))
+                };
+                self.points.par_iter().zip(old).enumerate().map(one).collect()
+            }
+        };
         all.into_iter().collect()
     }
 }
