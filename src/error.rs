@@ -51,6 +51,12 @@ pub enum StepFailure {
     /// The state at the start of a dynamic step cannot be evaluated.
     #[error(transparent)]
     Start(TrialFailure),
+    /// The augmented Lagrangian did not bring the surfaces together.
+    #[error("the penetration is still too large after {passes} passes of the augmented Lagrangian: raise alpha_n")]
+    Penetration {
+        /// solutions with better and better multipliers
+        passes: usize,
+    },
     /// A body is held by nothing.
     #[error("{0}; give it a support, a spring, or contact that is closed at the start")]
     Floating(String),
@@ -62,7 +68,7 @@ pub enum StepFailure {
 impl StepFailure {
     /// Whether a smaller increment has a chance.
     pub fn is_retryable(&self) -> bool {
-        matches!(self, Self::Newton(_) | Self::ContactLost(_))
+        matches!(self, Self::Newton(_) | Self::Penetration { .. } | Self::ContactLost(_))
     }
 }
 

@@ -107,22 +107,71 @@ pub fn advance(
     // The last increment of a step ends on its end, not within round-off of it.
     let time = if old.time + dt > step.span.end - 1e-9 * dt { step.span.end } else { old.time + dt };
     let trial = Trial { old, step, time, dt: time - old.time };
+    let (mut iterations, mut result) = solve(model, trial, start_value(old, trial.dt), true, work);
+    let mut passes = 1;
+    while let Ok(u) = &result
+        && let Some(multiplied) = augmented(model, old, work)
+    {
+        if passes == MOST_PASSES {
+            result = Err(StepFailure::Penetration { passes });
+            break;
+        }
+        let (more, again) = solve(model, Trial { old: &multiplied, ..trial }, u.clone(), false, work);
+        iterations.extend(more);
+        result = again;
+        passes += 1;
+    }
+    (iterations, result.map(|u| accept(model, trial, u, work)))
+}
+
+/// Solutions with better and better multipliers before an increment of the augmented Lagrangian is given up.
+const MOST_PASSES: usize = 100;
+
+/// The committed state with the pressures just found as multipliers, if some pair asks for it.
+fn augmented(model: &Model, old: &State, work: &Workspace) -> Option<State> {
+    let trial = &work.assembler.evaluation.contacts;
+    let pairs = model.contacts.iter().zip(&old.contacts).zip(trial);
+    let multiplied: Vec<_> = pairs.map(|((pair, old), trial)| pair.augmented(old, trial)).collect();
+    if multiplied.iter().all(Option::is_none) {
+        return None;
+    }
+    // A pair that is content keeps the multipliers of this pass.
+    let kept = |old: &[ContactState], trial: &[ContactState]| {
+        let keep = |(old, new): (&ContactState, &ContactState)| ContactState { multiplier: new.multiplier, ..*old };
+        old.iter().zip(trial).map(keep).collect()
+    };
+    let pairs = multiplied.into_iter().zip(old.contacts.iter().zip(trial));
+    let contacts = pairs.map(|(multiplied, (old, trial))| multiplied.unwrap_or_else(|| kept(old, trial))).collect();
+    Some(State { contacts, ..old.clone() })
+}
+
+/// Solve the equations of an increment from a start value; `begins` with the first solution of the increment.
+fn solve(
+    model: &Model,
+    trial: Trial,
+    start: Vec<f64>,
+    begins: bool,
+    work: &mut Workspace,
+) -> (Vec<IterationRecord>, Result<Vec<f64>, StepFailure>) {
+    let old = trial.old;
     let Workspace { assembler, solver, system, linear_seconds } = work;
-    assembler.start_increment();
-    let mut first_iterate = true;
+    if begins {
+        assembler.start_increment();
+    }
+    let mut tangents = 0;
     let mut counts = Vec::new();
     let mut floating = None;
     let spent = assembler.seconds.assembly + assembler.seconds.contact;
     let clock = std::time::Instant::now();
     let (iterations, result) =
-        newton::solve(start_value(old, trial.dt), model.newton, &mut **solver, system, |u, request, system| {
+        newton::solve(start, model.newton, &mut **solver, system, |u, request, system| {
             assembler.evaluate(trial, u, request, system)?;
             if request == Request::Tangent {
-                if first_iterate && old.last_increment.is_none() {
+                if begins && tangents == 0 && old.last_increment.is_none() {
                     floating = null_motion(model, u, &system.tangent);
                 }
-                first_iterate = false;
-            } else if !first_iterate {
+                tangents += 1;
+            } else if tangents > 0 {
                 counts.push(ContactCounts::of(&assembler.evaluation.contacts));
             }
             Ok(())
@@ -139,7 +188,7 @@ pub fn advance(
             let loose = null_motion(model, &old.displacement, &system.tangent);
             (iterations, Err(loose.map_or(failure.into(), StepFailure::ContactLost)))
         }
-        (None, Ok(u)) => (iterations, Ok(accept(model, trial, u, work))),
+        (None, Ok(u)) => (iterations, Ok(u)),
     }
 }
 
@@ -199,8 +248,8 @@ fn kinetic_energy(step: &Step, state: &State, work: &mut Workspace) -> f64 {
 fn contact_energy(model: &Model, contacts: &[Vec<ContactState>], x: &Configuration) -> f64 {
     let mut energy = 0.0;
     for (pair, states) in model.contacts.iter().zip(contacts) {
-        for (point, ContactState { friction, .. }) in pair.points.iter().zip(states) {
-            let normal = 0.5 * friction.pressure.powi(2) / pair.alpha_n;
+        for (point, ContactState { friction, gap, .. }) in pair.points.iter().zip(states) {
+            let normal = if friction.pressure > 0.0 { 0.5 * pair.alpha_n * gap.powi(2) } else { 0.0 };
             let stiffness = pair.law.stiffness();
             let tangential = if stiffness > 0.0 { 0.5 * friction.traction.powi(2) / stiffness } else { 0.0 };
             energy += point.current_length(x) * (normal + tangential);

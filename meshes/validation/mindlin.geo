@@ -1,7 +1,7 @@
 // Cattaneo-Mindlin: a cylinder of radius 50, cut to 40 x 20, on a block 40 x 20 of the same material.
 // Elements are uniform over the contact, |x| < 0.8 (its half-width is 0.743), and grow from there.
 //   gmsh -2 -format msh41 mindlin.geo
-DefineConstant[ fine = 0.03 ];
+DefineConstant[ fine = 0.012 ];
 R = 50; half = 20; near = 0.9; depth = 20;
 
 Point(1) = {-half, -depth, 0}; Point(2) = {half, -depth, 0}; Point(3) = {half, 0, 0}; Point(4) = {-half, 0, 0};

@@ -200,13 +200,17 @@ fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPa
         let message = format!("is {alpha_n}: must be positive (leave it out for 10 (λ + 2G)/h)");
         return Err(Complaint::new(format!("{place}.normal.alpha_n"), message));
     }
+    if let Some(penetration) = input.normal.penetration.filter(|p| !(*p > 0.0 && p.is_finite())) {
+        let message = format!("is {penetration}: must be positive (leave it out for the plain penalty)");
+        return Err(Complaint::new(format!("{place}.normal.penetration"), message));
+    }
     let law =
         input.friction.build(0.5 * alpha_n).map_err(|error| Complaint::new(format!("{place}.friction"), error))?;
     check_stiffness(&format!("{place}.normal"), "alpha_n", alpha_n)?;
     if law.stiffness() > 0.0 {
         check_stiffness(&format!("{place}.friction"), "alpha_t", law.stiffness())?;
     }
-    Ok(ContactPair { name: name.into(), points, master, mortar, alpha_n, law })
+    Ok(ContactPair { name: name.into(), points, master, mortar, alpha_n, penetration: input.normal.penetration, law })
 }
 
 /// A rigid master, with its geometry checked.

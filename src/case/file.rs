@@ -187,6 +187,9 @@ pub enum Method {
 pub struct NormalInput {
     /// α_n: pressure per penetration [F/L³]; 10 (λ + 2G)/h of the elements behind the slave unless given
     pub alpha_n: Option<f64>,
+    /// Largest penetration left [L]: the pressure is raised until no closed gap is larger (augmented Lagrangian by Uzawa's
+    /// method), so that the answer does not depend on alpha_n; penalty alone unless given
+    pub penetration: Option<f64>,
 }
 
 /// A step.

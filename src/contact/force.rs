@@ -1,7 +1,7 @@
 //! Traction at one contact point, the forces it puts on the nodes, and their tangent.
 //!
 //! ```text
-//! p = −α_n g (g < 0),   q from the friction law,   t = p n − q s
+//! p = ⟨p̄ − α_n g⟩,   q from the friction law,   t = p n − q s            p̄: multiplier, 0 for the plain penalty
 //! f_a = −w_a t ℓ                                      ℓ: current length, x_s − x_foot = Σ w_a x_a
 //! δt = (δp − q δθ) n − (δq + p δθ) s,   δp = −α_n δg,   δq = ∂q/∂Δu_t δΔu_t + ∂q/∂p δp
 //! ```
@@ -27,6 +27,8 @@ pub struct ContactState {
     pub foot: Option<MasterPoint>,
     /// g at the foot [L]
     pub gap: f64,
+    /// p̄: pressure at zero gap, raised until the penetration is small enough; 0 for the plain penalty [F/L²]
+    pub multiplier: f64,
 }
 
 /// Whether a point is open, sticks or slips.
@@ -103,17 +105,28 @@ pub fn respond(
 ) -> Result<(ContactState, Option<Contribution>), LawFailure> {
     let Some(projection) = projection else { return open(pair, None, old, increment) };
     let (gap, foot) = (projection.gap, projection.foot);
-    if !closes(slave, gap, old, increment, x) {
+    if !closes(pair, slave, gap, old, increment, x) {
         return open(pair, Some((gap, foot)), old, increment);
     }
     press(pair, Meeting { kinematics: kinematics(slave, &pair.master, &projection, old.foot, x), gap, foot }, old, increment)
 }
 
 /// Whether a point with this gap carries pressure, or is presumed to.
-pub fn closes(slave: &SlavePoint, gap: f64, old: &ContactState, increment: Increment, x: &Configuration) -> bool {
+pub fn closes(
+    pair: &ContactPair,
+    slave: &SlavePoint,
+    gap: f64,
+    old: &ContactState,
+    increment: Increment,
+    x: &Configuration,
+) -> bool {
     let zero = TOUCH * slave.current_length(x);
     let touches = increment.presume == Presume::Touch && old.foot.is_some() && old.gap.abs() <= zero && gap <= zero;
-    gap < 0.0 || touches
+    pressure(pair, gap, old) > 0.0 || touches
+}
+
+fn pressure(pair: &ContactPair, gap: f64, old: &ContactState) -> f64 {
+    (old.multiplier - pair.alpha_n * gap).max(0.0)
 }
 
 /// The state of a point without pressure.
@@ -126,7 +139,7 @@ pub fn open(
     let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.dt };
     let friction = pair.law.respond(&old.friction, sliding)?.state;
     let (gap, foot) = met.unzip();
-    Ok((ContactState { friction, foot, gap: gap.unwrap_or(0.0) }, None))
+    Ok((ContactState { friction, foot, gap: gap.unwrap_or(0.0), multiplier: 0.0 }, None))
 }
 
 /// The state of a closed point and what it adds to the equations.
@@ -137,8 +150,10 @@ pub fn press(
     increment: Increment,
 ) -> Result<(ContactState, Option<Contribution>), LawFailure> {
     let Meeting { mut kinematics, gap, foot } = meeting;
-    count_slip_after_touch(&mut kinematics, old.gap, gap);
-    let pressure = (-pair.alpha_n * gap).max(0.0);
+    if old.friction.pressure == 0.0 && old.gap > 0.0 {
+        count_slip_after_touch(&mut kinematics, old.gap, gap.min(0.0));
+    }
+    let pressure = pressure(pair, gap, old);
     let sliding = Sliding { slip: kinematics.slip, pressure, dt: increment.dt };
     let mut response = pair.law.respond(&old.friction, sliding)?;
     let stiffness = pair.law.stiffness();
@@ -149,18 +164,16 @@ pub fn press(
     if increment.presume == Presume::Stick || pressure == 0.0 {
         response.dtraction_dslip = stiffness;
     }
-    let state = ContactState { friction: response.state, foot: Some(foot), gap };
+    let state = ContactState { friction: response.state, foot: Some(foot), gap, multiplier: old.multiplier };
     Ok((state, Some(contribution(&kinematics, &response, pair.alpha_n))))
 }
 
 fn count_slip_after_touch(kinematics: &mut Kinematics, old_gap: f64, gap: f64) {
-    if old_gap > 0.0 && gap < 0.0 {
-        let share = gap / (gap - old_gap);
-        let dshare = -old_gap / (gap - old_gap).powi(2);
-        kinematics.dslip *= share;
-        kinematics.dslip += &kinematics.dgap * (dshare * kinematics.slip);
-        kinematics.slip *= share;
-    }
+    let share = gap / (gap - old_gap);
+    let dshare = -old_gap / (gap - old_gap).powi(2);
+    kinematics.dslip *= share;
+    kinematics.dslip += &kinematics.dgap * (dshare * kinematics.slip);
+    kinematics.slip *= share;
 }
 
 /// Nodal forces of the traction and their exact derivative.

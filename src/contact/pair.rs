@@ -25,6 +25,8 @@ pub struct ContactPair {
     pub mortar: Option<Mortar>,
     /// α_n: normal penalty stiffness [F/L³]
     pub alpha_n: f64,
+    /// Largest penetration left by the augmented Lagrangian; plain penalty if not given [L]
+    pub penetration: Option<f64>,
     /// The friction law
     pub law: Box<dyn FrictionLaw>,
 }
@@ -46,7 +48,7 @@ impl ContactPair {
         };
         let at_rest = |met: Option<(f64, MasterPoint)>| {
             let (gap, foot) = met.unzip();
-            ContactState { friction: self.law.initial_state(), foot, gap: gap.unwrap_or(0.0) }
+            ContactState { friction: self.law.initial_state(), foot, gap: gap.unwrap_or(0.0), multiplier: 0.0 }
         };
         met.into_iter().map(at_rest).collect()
     }
@@ -75,7 +77,7 @@ impl ContactPair {
                     let weights = mortar.weights(k, surface, &was, before);
                     let answer = match mortar.kinematics(k, surface, &is, weights.as_ref(), x) {
                         None => open(self, None, old, increment),
-                        Some(Meeting { gap, foot, .. }) if !closes(slave, gap, old, increment, x) => {
+                        Some(Meeting { gap, foot, .. }) if !closes(self, slave, gap, old, increment, x) => {
                             open(self, Some((gap, foot)), old, increment)
                         }
                         Some(meeting) => press(self, meeting, old, increment),
@@ -98,6 +100,18 @@ impl ContactPair {
 }
 
 impl ContactPair {
+    /// Take the pressures over as multipliers, p̄ ← p, if the gap of some point under pressure is too large (Uzawa's
+    /// method); otherwise `None`.
+    pub fn augmented(&self, old: &[ContactState], trial: &[ContactState]) -> Option<Vec<ContactState>> {
+        let tolerance = self.penetration?;
+        let too_far = |state: &ContactState| state.friction.pressure > 0.0 && state.gap.abs() > tolerance;
+        // A multiplier that no pressure answers to any more must go as well.
+        let stale = |(old, new): (&ContactState, &ContactState)| old.multiplier > 0.0 && new.friction.pressure == 0.0;
+        let multiplied = |(old, new): (&ContactState, &ContactState)| ContactState { multiplier: new.friction.pressure, ..*old };
+        (trial.iter().any(too_far) || old.iter().zip(trial).any(stale))
+            .then(|| old.iter().zip(trial).map(multiplied).collect())
+    }
+
     /// Elastic part of the slip, q/α_t; 0 for a frictionless contact [L].
     pub fn elastic_slip(&self, friction: &FrictionState) -> f64 {
         let stiffness = self.law.stiffness();
