@@ -99,6 +99,14 @@ pub enum Error {
         /// why
         cause: StepFailure,
     },
+    /// A friction law driven alone could not answer.
+    #[error("the law stopped after time {time}: {cause}")]
+    Law {
+        /// time reached
+        time: f64,
+        /// what the law said
+        cause: LawFailure,
+    },
     /// A result file could not be written.
     #[error("{path}: {cause}")]
     Output {

@@ -34,7 +34,16 @@ fn wavy() -> (Vec<Vec<usize>>, Positions) {
 fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
     let law =
         serde_json::from_str::<FrictionParameters>(law).expect("a law").build(700.0).expect("parameters in range");
-    ContactPair { name: "test".into(), points, master, mortar: None, alpha_n: 1000.0, law }
+    ContactPair {
+        name: "test".into(),
+        points,
+        master,
+        mortar: None,
+        alpha_n: 1000.0,
+        penetration: None,
+        law,
+        initial: None,
+    }
 }
 
 fn evaluate(pair: &ContactPair, k: usize, old: &ContactState, x: &Positions) -> (ContactState, Option<Contribution>) {
@@ -84,7 +93,7 @@ fn pulled(pair: &ContactPair, k: usize, x: &Positions, back: f64, friction: Fric
         Master::Mesh(_) => MasterPoint { segment: at.floor() as usize, xi: at - at.floor() },
         Master::Rigid(_) => MasterPoint { segment: 0, xi: foot.xi - back },
     };
-    ContactState { friction, foot: Some(foot), gap }
+    ContactState { friction, foot: Some(foot), gap, multiplier: 0.0 }
 }
 
 #[test]
@@ -150,7 +159,7 @@ fn feet_on_a_rigid_circle() {
     for (hole, side) in [(false, 1.0), (true, -1.0)] {
         let body = Rigid::Circle(Circle { centre: Vector2::new(1.0, 1.0), radius: 2.0, hole });
         let at = |angle: f64| Vector2::new(1.0, 1.0) + Vector2::new(angle.cos(), angle.sin()) * 2.1;
-        let [from, to] = [3.1, -3.1].map(|angle| body.project(at(angle), outward).expect("a foot"));
+        let [from, to] = [3.1, -3.1].map(|angle| body.project(at(angle), Some(outward)).expect("a foot"));
         assert!((from.gap - 0.1 * side).abs() < 1e-14);
         // From 3.1 to 2π − 3.1 counter-clockwise, which is against s on a disk.
         let way = body.way(from.foot, to.foot);
@@ -247,13 +256,13 @@ fn check_mortar_tangent(
     let was = mortar.overlaps(surface, &Index::new(&pair.master, &before), &before);
     let weights = mortar.weights(k, surface, &was, &before);
     let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.law.initial_state() };
-    let old = ContactState { friction: pressed, foot: Some(MasterPoint { segment: 0, xi: 0.0 }), gap };
+    let old = ContactState { friction: pressed, foot: Some(MasterPoint { segment: 0, xi: 0.0 }), gap, multiplier: 0.0 };
     let increment = Increment { dt: 0.3, presume: Presume::Nothing };
     let evaluate = |x: &Positions| {
         let x = Configuration::undeformed(x);
         let is = mortar.overlaps(surface, &Index::new(&pair.master, &x), &x);
         let meeting = mortar.kinematics(k, surface, &is, weights.as_ref(), &x).expect("the master faces the point");
-        closes(&pair.points[k], meeting.gap, &old, increment, &x)
+        closes(pair, &pair.points[k], meeting.gap, &old, increment, &x)
             .then(|| press(pair, meeting, &old, increment).expect("a finite increment").1.expect("a closed point"))
     };
     let Some(contribution) = evaluate(x) else { return false };
@@ -288,7 +297,7 @@ fn tangent_equals_differences_at_a_concave_corner() {
     let foot = Index::new(&pair.master, at).project(&pair.points[1], None, at).expect("a foot");
     assert!(foot.gap < 0.0 && foot.bound == Bound::Node(1));
     let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.law.initial_state() };
-    let old = ContactState { friction: pressed, foot: Some(MasterPoint { segment: 0, xi: 0.9 }), gap: -0.05 };
+    let old = ContactState { friction: pressed, foot: Some(MasterPoint { segment: 0, xi: 0.9 }), gap: -0.05, multiplier: 0.0 };
     check_tangent(&pair, 1, &old, &x, "concave corner");
 }
 

@@ -286,6 +286,23 @@ fn contacts_are_checked() {
 }
 
 #[test]
+fn rigid_masters_and_formulations_that_make_no_sense_are_refused() {
+    let at = "contacts.base.master";
+    for (master, place, message) in [
+        (json!({"circle": {"centre": [0, 0], "radius": 0}}), format!("{at}.circle.radius: "), "must be positive"),
+        (json!({"polyline": {"points": [[0, 0]]}}), format!("{at}.polyline.points: "), "two or more"),
+        (json!({"polyline": {"points": [[0, 0], [0, 0]]}}), format!("{at}.polyline.points: "), "the same"),
+        (json!({"circle": {"center": [0, 0], "radius": 1}}), format!("{at}.circle.center"), "`centre`"),
+    ] {
+        refused_edits(&[("/contacts/base/master", master)], &[&place, message]);
+    }
+    let plane = json!({"plane": {"point": [0, 0], "normal": [0, 1]}});
+    let mortar = [("/contacts/base/master", plane), ("/contacts/base/method", json!("mortar"))];
+    refused_edits(&mortar, &["contacts.base.method: ", "gauss_to_segment"]);
+    refused_edits(&[("/contacts/base/normal", json!({"penetration": 0}))], &["contacts.base.normal.penetration: ", "positive"]);
+}
+
+#[test]
 fn steps_are_checked() {
     for (pointer, value, fragments) in [
         ("/steps", json!([]), ["steps: ", "at least one step"]),
@@ -384,7 +401,7 @@ fn loads_are_checked() {
     for (load, fragments) in [
         (json!({"on": "block", "pressure": 1}), ["steps[0].loads[0].on: ", "of solid elements, not of edges"]),
         (json!({"on": "block", "gravity": {"y": -9.81}}), ["loads[0].on: ", "give bodies.block.material.density"]),
-        (json!({"on": "block_top", "gravity": {"y": 1}}), ["loads[0].on: ", "there is no body `block_top`"]),
+        (json!({"on": "block_top", "gravity": {"y": 1}}), ["loads[0].on: ", "no body or point mass `block_top`"]),
         (json!({"on": "block_top", "pressure": 1, "force": {"x": 1}}), ["loads[0]: ", "exactly one of pressure"]),
         (json!({"on": "block_top"}), ["loads[0]: ", "exactly one of pressure"]),
         (json!({"on": {"node": 3}, "pressure": 1}), ["loads[0].on: ", "node 3 cannot carry this load"]),
@@ -434,7 +451,7 @@ fn paths_and_arguments_are_checked() {
     let folder = TempDir::new().unwrap();
     write(folder.path(), "good.json", good().to_string());
     write(folder.path(), "file", "");
-    refused(folder.path(), &["run", "nowhere.json"], &["nowhere.json: ", "there is no such case file"]);
+    refused(folder.path(), &["run", "nowhere.json"], &["nowhere.json: ", "there is no such file"]);
     refused(folder.path(), &["run", "."], &["error: .: ", "is a folder"]);
     refused(folder.path(), &["run", "good.json", "--out", "file/results"], &["file/results: --out: results cannot"]);
     refused(folder.path(), &["run", "good.json", "--out", "file"], &["file: --out: results cannot be written here"]);

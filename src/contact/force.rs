@@ -1,7 +1,8 @@
 //! Traction at one contact point, the forces it puts on the nodes, and their tangent.
 //!
 //! ```text
-//! p = ⟨p̄ − α_n g⟩,   q from the friction law,   t = p n − q s            p̄: multiplier, 0 for the plain penalty
+//! p = ⟨p̄ − α_n g⟩,   q from the friction law,   t = p n − q s            p̄: multiplier, 0 for the plain penalty;
+//!                                                                        g: gap of the surfaces − gap at touch
 //! f_a = −w_a t ℓ                                      ℓ: current length, x_s − x_foot = Σ w_a x_a
 //! δt = (δp − q δθ) n − (δq + p δθ) s,   δp = −α_n δg,   δq = ∂q/∂Δu_t δΔu_t + ∂q/∂p δp
 //! ```
@@ -25,7 +26,7 @@ pub struct ContactState {
     pub friction: FrictionState,
     /// Foot on the master, open or closed; `None` where no part of the master faces the point
     pub foot: Option<MasterPoint>,
-    /// g at the foot [L]
+    /// g at the foot; a contact that starts closed counts it from where its points touch [L]
     pub gap: f64,
     /// p̄: pressure at zero gap, raised until the penetration is small enough; 0 for the plain penalty [F/L²]
     pub multiplier: f64,
@@ -83,6 +84,9 @@ pub enum Presume {
 /// Contact closes at a zero gap when it is below this share of the length the point stands for.
 const TOUCH: f64 = 1e-9;
 
+/// Trial state of one point and, if closed, what it adds to the equations.
+pub type PointResponse = Result<(ContactState, Option<Contribution>), LawFailure>;
+
 /// Where a slave point meets the master: its kinematics, its gap and its foot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Meeting {
@@ -102,9 +106,9 @@ pub fn respond(
     old: &ContactState,
     increment: Increment,
     x: &Configuration,
-) -> Result<(ContactState, Option<Contribution>), LawFailure> {
+) -> PointResponse {
     let Some(projection) = projection else { return open(pair, None, old, increment) };
-    let (gap, foot) = (projection.gap, projection.foot);
+    let (gap, foot) = (projection.gap - slave.touch, projection.foot);
     if !closes(pair, slave, gap, old, increment, x) {
         return open(pair, Some((gap, foot)), old, increment);
     }
@@ -135,7 +139,7 @@ pub fn open(
     met: Option<(f64, MasterPoint)>,
     old: &ContactState,
     increment: Increment,
-) -> Result<(ContactState, Option<Contribution>), LawFailure> {
+) -> PointResponse {
     let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.dt };
     let friction = pair.law.respond(&old.friction, sliding)?.state;
     let (gap, foot) = met.unzip();
@@ -148,7 +152,7 @@ pub fn press(
     meeting: Meeting,
     old: &ContactState,
     increment: Increment,
-) -> Result<(ContactState, Option<Contribution>), LawFailure> {
+) -> PointResponse {
     let Meeting { mut kinematics, gap, foot } = meeting;
     if old.friction.pressure == 0.0 && old.gap > 0.0 {
         count_slip_after_touch(&mut kinematics, old.gap, gap.min(0.0));

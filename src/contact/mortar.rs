@@ -22,7 +22,7 @@ use super::force::Meeting;
 use super::kinematics::Kinematics;
 use super::projection::normal_of;
 use super::search::{FACING, Index};
-use super::surface::{LengthShare, MasterPoint, Segment, SlavePoint, Surface, Weights};
+use super::surface::{LengthShare, MasterPoint, Segment, SlavePoint, Surface, Weights, lone_point};
 use crate::configuration::Configuration;
 use crate::shape;
 
@@ -60,7 +60,7 @@ pub fn mortar_points(edges: &[Vec<usize>], positions: &[Vector2<f64>]) -> (Vec<S
     }
     let shares = |of: &Vec<(usize, usize)>| of.iter().flat_map(|&(e, a)| share(&edges[e], a)).collect();
     let points =
-        nodes.iter().zip(&at).map(|(&node, at)| SlavePoint { position: vec![(node, 1.0)], length: shares(at) });
+        nodes.iter().zip(&at).map(|(&node, at)| SlavePoint { length: shares(at), ..lone_point(node, 0.0) });
     (points.collect(), Mortar { edges: edges.to_vec(), at })
 }
 
@@ -89,8 +89,9 @@ struct Cut {
 /// The cuts of all slave edges in one configuration.
 pub struct Overlaps(Vec<Vec<Overlap>>);
 
-/// Master segments farther from a slave edge than this many of its lengths are not looked at.
-const REACH: f64 = 2.0;
+/// Master segments farther from a slave edge than this many of its lengths are not looked at: far enough for the deep
+/// penetrations of first iterates, which must not pass for contact lost.
+const REACH: f64 = 10.0;
 
 impl Mortar {
     /// Cut all slave edges.

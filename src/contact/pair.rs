@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::force::{ContactState, Increment, Meeting, Presume, closes, open, press, respond};
+use super::force::{ContactState, Increment, PointResponse, Presume, closes, open, press, respond};
 use super::mortar::Mortar;
 use super::search::Index;
 use super::surface::{Master, MasterPoint, SlavePoint};
@@ -29,28 +29,68 @@ pub struct ContactPair {
     pub penetration: Option<f64>,
     /// The friction law
     pub law: Box<dyn FrictionLaw>,
+    /// Tractions at the start of a contact that starts closed
+    pub initial: Option<InitialTraction>,
 }
+
+/// Tractions that act at every point of a contact when the run starts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InitialTraction {
+    /// p [F/L²]
+    pub pressure: f64,
+    /// q [F/L²]
+    pub traction: f64,
+}
+
+/// Fewer points than this are not worth waking other threads for.
+const FEW: usize = 64;
 
 /// Trial states and contributions of all points of a pair, in their order.
 pub type PairResponse = Vec<(ContactState, Option<Contribution>)>;
 
 impl ContactPair {
-    /// States at the start of a run: each point projected in the configuration `x`, friction at rest.
+    /// Start closed: from now on every point's gap is counted so that the given pressure acts in the configuration `x`.
+    ///
+    /// ```text
+    /// p = p_init + α_n (g_x − g)        g_x: gap between the surfaces in the configuration x
+    /// ```
+    ///
+    /// # Errors
+    /// The number of the first point that no part of the master faces.
+    pub fn start_closed(&mut self, initial: InitialTraction, x: &Configuration) -> Result<(), usize> {
+        let met = self.meetings(x);
+        for (k, (slave, met)) in self.points.iter_mut().zip(met).enumerate() {
+            slave.touch = met.ok_or(k)?.0 + initial.pressure / self.alpha_n;
+        }
+        self.initial = Some(initial);
+        Ok(())
+    }
+
+    /// States at the start of a run: each point projected in the configuration `x`, friction at rest or, in a contact
+    /// that starts closed, under its initial tractions.
     pub fn initial_states(&self, x: &Configuration) -> Vec<ContactState> {
+        let mut friction = self.law.initial_state();
+        if let Some(InitialTraction { pressure, traction }) = self.initial {
+            friction = FrictionState { pressure, traction, ..friction };
+        }
+        let state = |(slave, met): (&SlavePoint, Option<(f64, MasterPoint)>)| {
+            let (gap, foot) = met.unzip();
+            ContactState { friction, foot, gap: gap.map_or(0.0, |gap| gap - slave.touch), multiplier: 0.0 }
+        };
+        self.points.iter().zip(self.meetings(x)).map(state).collect()
+    }
+
+    /// Gap of the surfaces and foot of every point, where the master faces it.
+    fn meetings(&self, x: &Configuration) -> Vec<Option<(f64, MasterPoint)>> {
         let index = Index::new(&self.master, x);
-        let met: Vec<Option<(f64, MasterPoint)>> = match (&self.mortar, &self.master) {
+        match (&self.mortar, &self.master) {
             (Some(mortar), Master::Mesh(surface)) => {
                 let overlaps = mortar.overlaps(surface, &index, x);
                 let meet = |k| mortar.kinematics(k, surface, &overlaps, None, x);
                 (0..self.points.len()).map(|k| meet(k).map(|met| (met.gap, met.foot))).collect()
             }
             _ => self.points.iter().map(|slave| index.project(slave, None, x).map(|p| (p.gap, p.foot))).collect(),
-        };
-        let at_rest = |met: Option<(f64, MasterPoint)>| {
-            let (gap, foot) = met.unzip();
-            ContactState { friction: self.law.initial_state(), foot, gap: gap.unwrap_or(0.0), multiplier: 0.0 }
-        };
-        met.into_iter().map(at_rest).collect()
+        }
     }
 
     /// Every point's trial state and contribution in the configuration `x`, each with its own presumption and, if it is
@@ -67,49 +107,59 @@ impl ContactPair {
         x: &Configuration,
     ) -> Result<PairResponse, (usize, LawFailure)> {
         let index = Index::new(&self.master, x);
-        // The first failure by number, whatever thread met it.
-        let all: Vec<_> = match (&self.mortar, &self.master) {
-            (Some(mortar), Master::Mesh(surface)) => {
-                let was = mortar.overlaps(surface, &Index::new(&self.master, before), before);
-                let is = mortar.overlaps(surface, &index, x);
-                let one = |(k, (slave, old)): (usize, (&SlavePoint, &ContactState))| {
-                    let increment = Increment { dt, presume: presumed(k).0 };
-                    let weights = mortar.weights(k, surface, &was, before);
-                    let answer = match mortar.kinematics(k, surface, &is, weights.as_ref(), x) {
-                        None => open(self, None, old, increment),
-                        Some(Meeting { gap, foot, .. }) if !closes(self, slave, gap, old, increment, x) => {
-                            open(self, Some((gap, foot)), old, increment)
-                        }
-                        Some(meeting) => press(self, meeting, old, increment),
-                    };
-                    answer.map_err(|failure| (k, failure))
+        if let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) {
+            let was = mortar.overlaps(surface, &Index::new(&self.master, before), before);
+            let is = mortar.overlaps(surface, &index, x);
+            return self.each(old, |k, slave, old| {
+                let increment = Increment { dt, presume: presumed(k).0 };
+                let weights = mortar.weights(k, surface, &was, before);
+                let Some(mut meeting) = mortar.kinematics(k, surface, &is, weights.as_ref(), x) else {
+                    return open(self, None, old, increment);
                 };
-                self.points.par_iter().zip(old).enumerate().map(one).collect()
-            }
-            _ => {
-                let one = |(k, (slave, old)): (usize, (&SlavePoint, &ContactState))| {
-                    let (presume, held) = presumed(k);
-                    respond(self, slave, index.project(slave, held, x), old, Increment { dt, presume }, x)
-                        .map_err(|failure| (k, failure))
-                };
-                self.points.par_iter().zip(old).enumerate().map(one).collect()
-            }
+                meeting.gap -= slave.touch;
+                match closes(self, slave, meeting.gap, old, increment, x) {
+                    true => press(self, meeting, old, increment),
+                    false => open(self, Some((meeting.gap, meeting.foot)), old, increment),
+                }
+            });
+        }
+        self.each(old, |k, slave, old| {
+            let (presume, held) = presumed(k);
+            respond(self, slave, index.project(slave, held, x), old, Increment { dt, presume }, x)
+        })
+    }
+
+    /// One answer a point; the first failure by number, whatever thread met it.
+    fn each(
+        &self,
+        old: &[ContactState],
+        answer: impl Fn(usize, &SlavePoint, &ContactState) -> PointResponse + Sync,
+    ) -> Result<PairResponse, (usize, LawFailure)> {
+        let one = |(k, (slave, old)): (usize, (&SlavePoint, &ContactState))| {
+            answer(k, slave, old).map_err(|failure| (k, failure))
         };
+        if self.points.len() < FEW {
+            return self.points.iter().zip(old).enumerate().map(one).collect();
+        }
+        let all: Vec<_> = self.points.par_iter().zip(old).enumerate().map(one).collect();
         all.into_iter().collect()
     }
 }
 
 impl ContactPair {
-    /// Take the pressures over as multipliers, p̄ ← p, if the gap of some point under pressure is too large (Uzawa's
-    /// method); otherwise `None`.
-    pub fn augmented(&self, old: &[ContactState], trial: &[ContactState]) -> Option<Vec<ContactState>> {
-        let tolerance = self.penetration?;
-        let too_far = |state: &ContactState| state.friction.pressure > 0.0 && state.gap.abs() > tolerance;
+    /// Whether the multipliers of a pass leave no more penetration than allowed; always for the plain penalty.
+    pub fn is_content(&self, old: &[ContactState], trial: &[ContactState]) -> bool {
+        let Some(tolerance) = self.penetration else { return true };
+        let near = |new: &ContactState| new.friction.pressure == 0.0 || new.gap.abs() <= tolerance;
         // A multiplier that no pressure answers to any more must go as well.
         let stale = |(old, new): (&ContactState, &ContactState)| old.multiplier > 0.0 && new.friction.pressure == 0.0;
-        let multiplied = |(old, new): (&ContactState, &ContactState)| ContactState { multiplier: new.friction.pressure, ..*old };
-        (trial.iter().any(too_far) || old.iter().zip(trial).any(stale))
-            .then(|| old.iter().zip(trial).map(multiplied).collect())
+        trial.iter().all(near) && !old.iter().zip(trial).any(stale)
+    }
+
+    /// The committed states with the pressures of a pass as multipliers, p̄ ← p (Uzawa's method).
+    pub fn multiplied(&self, old: &[ContactState], trial: &[ContactState]) -> Vec<ContactState> {
+        let multiplier = |new: &ContactState| if self.penetration.is_some() { new.friction.pressure } else { 0.0 };
+        old.iter().zip(trial).map(|(old, new)| ContactState { multiplier: multiplier(new), ..*old }).collect()
     }
 
     /// Elastic part of the slip, q/α_t; 0 for a frictionless contact [L].

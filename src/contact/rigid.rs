@@ -3,6 +3,7 @@
 use nalgebra::Vector2;
 
 use super::projection::{Bound, Projection, normal_of, tangent_of};
+use super::search::FACING;
 use super::surface::MasterPoint;
 
 /// A rigid body.
@@ -45,8 +46,8 @@ pub struct Polyline {
 }
 
 impl Rigid {
-    /// The foot of `point`, a point of a surface that faces `outward`; `None` past the end of a polyline.
-    pub fn project(&self, point: Vector2<f64>, outward: Vector2<f64>) -> Option<Projection> {
+    /// The foot of `point`, a point of a surface with the normal `outward`, if of any; `None` past the end of a polyline.
+    pub fn project(&self, point: Vector2<f64>, outward: Option<Vector2<f64>>) -> Option<Projection> {
         match self {
             Self::Plane(plane) => Some(plane.project(point)),
             Self::Circle(circle) => circle.project(point),
@@ -108,11 +109,11 @@ impl Polyline {
     }
 
     /// The nearest line that faces the point. Between two lines the foot is their corner; past the ends there is none.
-    fn project(&self, point: Vector2<f64>, outward: Vector2<f64>) -> Option<Projection> {
+    fn project(&self, point: Vector2<f64>, outward: Option<Vector2<f64>>) -> Option<Projection> {
         let closed = self.corners.first() == self.corners.last();
         let last = self.corners.len() - 2;
         let direction = |k: usize| (self.corners[k + 1] - self.corners[k]).normalize();
-        let faces = |k: usize| normal_of(direction(k)).dot(&outward) < super::search::FACING * outward.norm();
+        let faces = |k: usize| outward.is_none_or(|outward| normal_of(direction(k)).dot(&outward) < FACING);
         let nearest = (0..=last).filter(|&k| faces(k)).map(|k| {
             let (s, offset) = (direction(k), point - self.corners[k]);
             let along = offset.dot(&s).clamp(0.0, self.arcs[k + 1] - self.arcs[k]);

@@ -10,7 +10,7 @@ use super::surface::{Master, SlavePoint, Surface};
 use crate::configuration::Configuration;
 
 /// A slave and a segment face each other when the cosine between their outward normals is below this: the sides of a
-/// body do not touch what its bottom rests on.
+/// body do not touch what its bottom rests on. A slave point of no edge faces every segment.
 pub const FACING: f64 = -0.1;
 
 /// Segments looked at before a point is called free. Nearest come first, so more than a few mean that nothing faces it.
@@ -52,10 +52,10 @@ impl<'a> Index<'a> {
                 if let Some(held) = held.and_then(|segment| on_held_segment(slave, surface, segment, x)) {
                     return Some(held);
                 }
-                let outward = slave.outward(x).normalize();
+                let outward = slave.outward(x);
                 let facing = |segment: usize| {
                     let [a, b] = surface.segments[segment].ends;
-                    normal_of(x.between(a, b).normalize()).dot(&outward) < FACING
+                    outward.is_none_or(|outward| normal_of(x.between(a, b).normalize()).dot(&outward) < FACING)
                 };
                 let nearest = tree.nearest_neighbor_iter([point.x, point.y]).take(CANDIDATES).map(|line| line.data);
                 let mut facing = nearest.filter(|&segment| facing(segment)).enumerate();

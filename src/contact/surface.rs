@@ -26,8 +26,13 @@ pub struct LengthShare {
 pub struct SlavePoint {
     /// Shape functions of the point
     pub position: Weights,
-    /// Its current length is the sum of these shares (thickness 1) [L]
+    /// Its current length is the sum of these shares (thickness 1) and `area` [L]
     pub length: Vec<LengthShare>,
+    /// Area of a point that belongs to no edge, as a point mass has it; it does not change (thickness 1) [L]
+    pub area: f64,
+    /// Gap between the surfaces at which the point touches: 0, but for a contact that starts closed under a given
+    /// pressure [L]
+    pub touch: f64,
 }
 
 impl SlavePoint {
@@ -43,19 +48,20 @@ impl SlavePoint {
 
     /// Current length that the point stands for [L].
     pub fn current_length(&self, x: &Configuration) -> f64 {
-        self.length.iter().map(|share| share.factor * x.combine(&share.tangent).norm()).sum()
+        self.area + self.length.iter().map(|share| share.factor * x.combine(&share.tangent).norm()).sum::<f64>()
     }
 
-    /// Current length of the longest edge the point belongs to [L].
-    pub fn edge_length(&self, x: &Configuration) -> f64 {
+    /// Current length of the longest edge the point belongs to, if it belongs to any [L].
+    pub fn edge_length(&self, x: &Configuration) -> Option<f64> {
         // dx/dξ on an edge from −1 to 1 is half its length.
-        2.0 * self.length.iter().map(|share| x.combine(&share.tangent).norm()).fold(0.0, f64::max)
+        self.length.iter().map(|share| 2.0 * x.combine(&share.tangent).norm()).max_by(f64::total_cmp)
     }
 
-    /// Direction out of the slave body (not normalized): the edge direction, body on its left, turned by −90°.
-    pub fn outward(&self, x: &Configuration) -> Vector2<f64> {
+    /// Unit normal out of the slave body: the edge direction, body on its left, turned by −90°. A point of no edge has
+    /// none.
+    pub fn outward(&self, x: &Configuration) -> Option<Vector2<f64>> {
         let along: Vector2<f64> = self.length.iter().map(|share| x.combine(&share.tangent) * share.factor).sum();
-        Vector2::new(along.y, -along.x)
+        (!self.length.is_empty()).then(|| Vector2::new(along.y, -along.x).normalize())
     }
 }
 
@@ -80,11 +86,16 @@ pub fn nodal_points(edges: &[Vec<usize>]) -> Vec<SlavePoint> {
             let share = edge_point(edge, xi, weight).length;
             match points.iter_mut().rev().find(|(other, _)| *other == node) {
                 Some((_, point)) => point.length.extend(share),
-                None => points.push((node, SlavePoint { position: vec![(node, 1.0)], length: share })),
+                None => points.push((node, SlavePoint { length: share, ..lone_point(node, 0.0) })),
             }
         }
     }
     points.into_iter().map(|(_, point)| point).collect()
+}
+
+/// A node that belongs to no edge, with an area of its own [L].
+pub fn lone_point(node: usize, area: f64) -> SlavePoint {
+    SlavePoint { position: vec![(node, 1.0)], length: Vec::new(), area, touch: 0.0 }
 }
 
 fn edge_point(edge: &[usize], xi: f64, weight: f64) -> SlavePoint {
@@ -92,6 +103,8 @@ fn edge_point(edge: &[usize], xi: f64, weight: f64) -> SlavePoint {
     SlavePoint {
         position: with(shape::edge_values(edge.len(), xi)),
         length: vec![LengthShare { factor: weight, tangent: with(shape::edge_derivatives(edge.len(), xi)) }],
+        area: 0.0,
+        touch: 0.0,
     }
 }
 

@@ -61,7 +61,7 @@ impl FrictionLaw for Coulomb {
             let sign = trial.signum();
             (old.slid(trial, sign * mu * pressure, pressure, mu, alpha_t), 0.0, sign * mu)
         };
-        FrictionResponse { state, dtraction_dslip, dtraction_dpressure }.checked()
+        FrictionResponse { state, dtraction_dslip, dtraction_dpressure, evaluations: 0 }.checked()
     }
 
     fn stiffness(&self) -> f64 {

@@ -119,6 +119,8 @@ pub struct FrictionResponse {
     pub dtraction_dslip: f64,
     /// ∂q/∂p [-]
     pub dtraction_dpressure: f64,
+    /// Evaluations of the scalar equation of plastic slip that this answer took; 0 where it has a closed form
+    pub evaluations: usize,
 }
 
 impl FrictionResponse {

@@ -155,7 +155,8 @@ impl SuperSubloading {
     fn slide(&self, old: &FrictionState, trial: f64, start_y: f64, sliding: Sliding) -> FrictionResponse {
         let Sliding { pressure, dt, .. } = sliding;
         let (path, start) = Path::from(self, start_y);
-        let increment = Increment { law: self, path, trial: trial.abs(), pressure, old_mu: old.mu, dt };
+        let mut increment =
+            Increment { law: self, path, trial: trial.abs(), pressure, old_mu: old.mu, dt, evaluations: 0 };
         let Point { reach, peak, slope, .. } = increment.solve(start);
         let strength = reach.ratio * peak.mu;
         let traction = trial.signum() * strength * pressure;
@@ -164,6 +165,7 @@ impl SuperSubloading {
             state: old.slid(trial, traction, pressure, peak.mu, self.alpha_t),
             dtraction_dslip: self.alpha_t * (1.0 - softness),
             dtraction_dpressure: trial.signum() * strength * softness,
+            evaluations: increment.evaluations,
         }
     }
 }
@@ -179,7 +181,8 @@ impl FrictionLaw for SuperSubloading {
         let mu = self.evolution.after(old.mu, 0.0, dt).mu;
         if pressure <= 0.0 {
             let state = old.parted(mu, self.alpha_t);
-            return FrictionResponse { state, dtraction_dslip: 0.0, dtraction_dpressure: 0.0 }.checked();
+            return FrictionResponse { state, dtraction_dslip: 0.0, dtraction_dpressure: 0.0, evaluations: 0 }
+                .checked();
         }
         let trial = old.traction + self.alpha_t * slip;
         let reversed = trial * old.traction.signum() < 0.0;
@@ -188,7 +191,8 @@ impl FrictionLaw for SuperSubloading {
         let start_ratio = self.elastic_core + (1.0 - self.elastic_core) * start_y;
         if trial.abs() <= start_ratio * mu * pressure * (1.0 + ROUND_OFF) {
             let state = old.stuck(trial, pressure, mu);
-            return FrictionResponse { state, dtraction_dslip: self.alpha_t, dtraction_dpressure: 0.0 }.checked();
+            return FrictionResponse { state, dtraction_dslip: self.alpha_t, dtraction_dpressure: 0.0, evaluations: 0 }
+                .checked();
         }
         self.slide(&old, trial, start_y, sliding).checked()
     }
@@ -268,6 +272,8 @@ struct Increment<'a> {
     pressure: f64,
     old_mu: f64,
     dt: f64,
+    /// How often (4) was evaluated
+    evaluations: usize,
 }
 
 /// Equation (4) at one point of the path.
@@ -284,24 +290,26 @@ struct Point {
 
 impl Increment<'_> {
     /// The smallest root of (4), on the path from `start`.
-    fn solve(&self, start: Reach) -> Point {
+    fn solve(&mut self, start: Reach) -> Point {
         let start = self.point(start);
         let unique = self.pressure * start.peak.steepest() < self.law.alpha_t;
         let end = self.path.beyond(self.law, self.trial / self.law.alpha_t);
         let bracket = if unique { (start.reach.coordinate, end) } else { self.first_root_bracket(start, end) };
         let mut point = start;
-        bracketed_newton(bracket, self.guess(&start), TOLERANCE * self.trial, |coordinate| {
+        let (guess, tolerance) = (self.guess(&start), TOLERANCE * self.trial);
+        bracketed_newton(bracket, guess, tolerance, |coordinate| {
             point = self.at(coordinate);
             (point.residual, -point.slope * point.reach.stretch)
         });
         point
     }
 
-    fn at(&self, coordinate: f64) -> Point {
+    fn at(&mut self, coordinate: f64) -> Point {
         self.point(self.path.at(self.law, coordinate))
     }
 
-    fn point(&self, reach: Reach) -> Point {
+    fn point(&mut self, reach: Reach) -> Point {
+        self.evaluations += 1;
         let Reach { slip, ratio, rate, .. } = reach;
         let peak = self.law.evolution.after(self.old_mu, slip, self.dt);
         let alpha_t = self.law.alpha_t;
@@ -333,7 +341,7 @@ impl Increment<'_> {
     /// Pieces of the bracket are examined from the left with bounds D₋ ≤ D ≤ D₊ of the slope on each: it holds one
     /// root or none if D₋ > 0, none if G stays positive between the lines of slope −D₊ from its left end and −D₋ from
     /// its right, and is halved otherwise.
-    fn first_root_bracket(&self, start: Point, end: f64) -> (f64, f64) {
+    fn first_root_bracket(&mut self, start: Point, end: f64) -> (f64, f64) {
         let mut left = start;
         let mut right = self.at(end);
         for _ in 0..MAX_PIECES {

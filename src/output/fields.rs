@@ -166,12 +166,13 @@ fn contact_frame(model: &Model, state: &State) -> UnstructuredGridPiece {
     let current: Vec<Vector2<f64>> = model.contacts.iter().flat_map(|pair| points_of(pair, &x)).collect();
     let displacement: Vec<f64> = reference.iter().zip(&current).flat_map(|(a, b)| [b.x - a.x, b.y - a.y]).collect();
 
-    let mut lines = Vec::new();
+    let mut lines: Vec<(CellType, Vec<usize>)> = Vec::new();
     let mut contact_id: Vec<i32> = Vec::new();
     let mut first = 0;
     for (number, pair) in model.contacts.iter().enumerate() {
         for line in pair.lines() {
-            lines.push((CellType::PolyLine, line.map(|k| first + k).collect::<Vec<_>>()));
+            let kind = if line.len() == 1 { CellType::Vertex } else { CellType::PolyLine };
+            lines.push((kind, line.map(|k| first + k).collect()));
             contact_id.push(number as i32);
         }
         first += pair.points.len();

@@ -1,4 +1,5 @@
-//! Things a user should know about a result: deep penetration, and pressure past the law's uniqueness bound.
+//! Things a user should know about a result: deep penetration, pressure past the law's uniqueness bound, and errors in
+//! time larger than allowed.
 
 use std::collections::BTreeSet;
 
@@ -13,12 +14,14 @@ use crate::model::Model;
 /// Penetration, as a share of the slave's edge, that is worth a warning.
 const DEEP: f64 = 0.01;
 
-/// Collects warnings; each kind once a contact, where it is met first.
+/// Collects warnings; each kind once a contact or step, where it is met first.
 #[derive(Clone, Debug, Default)]
 pub struct Warnings {
     /// the warnings so far
     pub list: Vec<String>,
     given: BTreeSet<(usize, Kind)>,
+    /// Names of the steps whose error in time has been warned about
+    inexact: BTreeSet<String>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -30,6 +33,7 @@ enum Kind {
 impl Observer for Warnings {
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
+        self.error_in_time(attempt);
         let x = model.configuration(&state.displacement);
         for (number, (pair, states)) in model.contacts.iter().zip(&state.contacts).enumerate() {
             for (point, contact) in pair.points.iter().zip(states).filter(|(_, c)| c.friction.pressure > 0.0) {
@@ -47,6 +51,19 @@ impl Observer for Warnings {
     }
 }
 
+impl Warnings {
+    /// The shortest increment is accepted whatever its error.
+    fn error_in_time(&mut self, attempt: &Attempt) {
+        let Attempt { step, dt, old, .. } = attempt;
+        let Some((error, allowed)) = attempt.local_error.zip(step.increments.error) else { return };
+        if error > allowed && self.inexact.insert(step.name.clone()) {
+            let start =
+                format!("step `{}`, t = {}: the increment {dt:.3e} is the shortest allowed", step.name, old.time);
+            self.list.push(format!("{start}, and its error {error:.3e} exceeds {allowed:.3e}; lower dt.min"));
+        }
+    }
+}
+
 /// What is worth a warning at one closed point.
 fn concerns(
     pair: &ContactPair,
@@ -55,8 +72,8 @@ fn concerns(
     x: &Configuration,
 ) -> impl Iterator<Item = (Kind, String)> {
     let (gap, pressure) = (contact.gap, contact.friction.pressure);
-    let share = -gap / point.edge_length(x);
-    let deep = (share > DEEP).then(|| {
+    let share = point.edge_length(x).map(|edge| -gap / edge);
+    let deep = share.filter(|share| *share > DEEP).map(|share| {
         let percent = 100.0 * share;
         format!("the penetration {:.3e} is {percent:.1} % of the slave's edge; raise alpha_n", -gap)
     });
