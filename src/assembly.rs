@@ -176,9 +176,23 @@ pub struct Assembler<'m> {
     iterates: Vec<Vec<Iterate>>,
     /// What was found at the last evaluated displacement
     pub evaluation: Evaluation,
+    buffers: Buffers,
+    /// Segments that the pattern has room for ahead of each foot, when it is set next
+    ahead: usize,
     /// Time spent
     pub seconds: Seconds,
 }
+
+/// What a batch of elements adds, one after another.
+#[derive(Clone, Debug, Default)]
+struct Buffers {
+    forces: Vec<f64>,
+    tangents: Vec<f64>,
+    energies: Vec<Result<f64, InvertedElement>>,
+}
+
+/// Most segments ahead of a foot that the pattern gets room for.
+const FARTHEST: usize = 8;
 
 /// Elements whose forces and tangents are held at once before they are added.
 const BATCH: usize = 4096;
@@ -205,6 +219,8 @@ impl<'m> Assembler<'m> {
             magnitudes: vec![0.0; model.dofs()],
             iterates: Vec::new(),
             evaluation: Evaluation::default(),
+            buffers: Buffers::default(),
+            ahead: 1,
             seconds: Seconds::default(),
         };
         assembler.set_pattern(&[]);
@@ -327,8 +343,9 @@ impl<'m> Assembler<'m> {
             .collect()
     }
 
-    /// Make sure the pattern has room for all contact points. If it has not, it gets room for one segment more on
-    /// either side of each foot, so that it seldom changes as points slide.
+    /// Make sure the pattern has room for all contact points. If it has not, it gets room for one segment more behind
+    /// each foot and a few ahead, where the point slides to. Every time the room turns out too small there will be twice
+    /// as much, so that the pattern seldom changes as points slide.
     fn cover(&mut self, responses: &[PairResponse], old: &State) {
         let coupled = |contribution: &Contribution| {
             let nodes = &contribution.nodes;
@@ -344,14 +361,20 @@ impl<'m> Assembler<'m> {
                 let mut nodes: Vec<usize> = slave.position.iter().map(|&(node, _)| node).collect();
                 nodes.extend(contribution.iter().flat_map(|contribution| &contribution.nodes));
                 if let Master::Mesh(surface) = &pair.master {
-                    let around = [Some(foot.segment), surface.previous(foot.segment), surface.next(foot.segment)];
-                    nodes.extend(around.into_iter().flatten().flat_map(|segment| surface.segments[segment].nodes()));
+                    let way = old.foot.and_then(|from| surface.path(from, foot)).unwrap_or_default();
+                    let slip: f64 = way.iter().map(|(_, from, to)| to - from).sum();
+                    let [behind, ahead] = if slip < 0.0 { [self.ahead, 1] } else { [1, self.ahead] };
+                    let back = std::iter::successors(Some(foot.segment), |&segment| surface.previous(segment));
+                    let forth = std::iter::successors(Some(foot.segment), |&segment| surface.next(segment));
+                    let around = back.take(1 + behind).chain(forth.take(1 + ahead));
+                    nodes.extend(around.flat_map(|segment| surface.segments[segment].nodes()));
                 }
                 nodes.sort_unstable();
                 nodes.dedup();
                 groups.push(nodes);
             }
         }
+        self.ahead = FARTHEST.min(2 * self.ahead);
         self.set_pattern(&groups);
     }
 
@@ -363,16 +386,17 @@ impl<'m> Assembler<'m> {
         mut tangent: Option<&mut SparseMatrix>,
     ) -> Result<f64, TrialFailure> {
         let model = self.model;
+        let wants_tangent = tangent.is_some();
         let widest = model.mesh.elements.iter().map(|element| element.nodes.len()).max().unwrap_or(0);
-        let dofs = 2 * widest;
+        let (dofs, stride) = (2 * widest, if wants_tangent { 4 * widest * widest } else { 1 });
         let batch = BATCH.min(model.mesh.elements.len());
-        let mut forces = vec![0.0; batch * dofs];
-        let mut tangents = vec![0.0; if tangent.is_some() { batch * dofs * dofs } else { batch }];
-        let stride = tangents.len() / batch.max(1);
+        let Buffers { mut forces, mut tangents, mut energies } = std::mem::take(&mut self.buffers);
+        forces.resize(batch * dofs, 0.0);
+        tangents.resize(tangents.len().max(batch * stride), 0.0);
+        energies.clear();
         let mut energy = 0.0;
         for first in (0..model.mesh.elements.len()).step_by(BATCH) {
             let elements = first..(first + BATCH).min(model.mesh.elements.len());
-            let wants_tangent = tangent.is_some();
             let one = |(e, (force, tangent)): (usize, (&mut [f64], &mut [f64]))| {
                 let nodes = &model.mesh.elements[e].nodes;
                 let mut local = [Vector2::zeros(); 9];
@@ -387,14 +411,14 @@ impl<'m> Assembler<'m> {
                     solid.force(material, &local[..nodes.len()], &mut force[..n])
                 }
             };
-            let energies: Vec<Result<f64, InvertedElement>> = if elements.len() < FEW {
+            if elements.len() < FEW {
                 let arrays = forces.chunks_mut(dofs).zip(tangents.chunks_mut(stride));
-                elements.clone().zip(arrays).map(one).collect()
+                energies.extend(elements.clone().zip(arrays).map(one));
             } else {
                 let arrays = forces.par_chunks_mut(dofs).zip(tangents.par_chunks_mut(stride));
-                elements.clone().into_par_iter().zip(arrays).with_min_len(FEW).map(one).collect()
-            };
-            for (k, (e, stored)) in elements.zip(energies).enumerate() {
+                elements.clone().into_par_iter().zip(arrays).with_min_len(FEW).map(one).collect_into_vec(&mut energies);
+            }
+            for (k, (e, stored)) in elements.zip(energies.drain(..)).enumerate() {
                 energy += stored.map_err(|inverted| self.inverted(e, inverted))?;
                 let nodes = &model.mesh.elements[e].nodes;
                 let local = &forces[k * dofs..];
@@ -411,6 +435,7 @@ impl<'m> Assembler<'m> {
                 }
             }
         }
+        self.buffers = Buffers { forces, tangents, energies };
         Ok(energy)
     }
 
@@ -653,11 +678,12 @@ fn velocity(model: &Model, trial: Trial, u: &[f64], dof: usize) -> (f64, f64) {
 
 /// Add a dense tangent of `n` nodes (column-major, two dofs a node) at the given blocks (column by column).
 fn add_blocks(matrix: &mut SparseMatrix, blocks: &[BlockPosition], local: &[f64], n: usize) {
-    for (k, block) in blocks.iter().enumerate() {
-        let (row, column) = (k % n, k / n);
-        for j in 0..2 {
-            for i in 0..2 {
-                matrix.values[block.value(i, j)] += local[(2 * column + j) * 2 * n + 2 * row + i];
+    for (columns, blocks) in local.chunks_exact(4 * n).zip(blocks.chunks_exact(n)) {
+        for (j, column) in columns.chunks_exact(2 * n).enumerate() {
+            for (pair, block) in column.chunks_exact(2).zip(blocks) {
+                let target = &mut matrix.values[block.value(0, j)..][..2];
+                target[0] += pair[0];
+                target[1] += pair[1];
             }
         }
     }

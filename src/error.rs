@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use crate::friction::LawFailure;
-use crate::linear::SingularMatrix;
+use crate::linear::LinearFailure;
 use crate::newton::NewtonFailure;
 
 /// Why the equations could not be evaluated at a trial state.
@@ -47,7 +47,7 @@ pub enum StepFailure {
     Newton(#[from] NewtonFailure<TrialFailure>),
     /// The mass matrix of the initial acceleration is singular.
     #[error("initial acceleration: {0} (does every body have a density?)")]
-    Mass(SingularMatrix),
+    Mass(LinearFailure),
     /// The state at the start of a dynamic step cannot be evaluated.
     #[error(transparent)]
     Start(TrialFailure),
@@ -68,7 +68,10 @@ pub enum StepFailure {
 impl StepFailure {
     /// Whether a smaller increment has a chance.
     pub fn is_retryable(&self) -> bool {
-        matches!(self, Self::Newton(_) | Self::Penetration { .. } | Self::ContactLost(_))
+        match self {
+            Self::Newton(NewtonFailure::Linear(LinearFailure::TooLarge { .. })) => false,
+            _ => matches!(self, Self::Newton(_) | Self::Penetration { .. } | Self::ContactLost(_)),
+        }
     }
 }
 

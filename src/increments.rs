@@ -8,9 +8,10 @@
 //!   next attempt takes Δt (ε/e)^⅓, with a margin. Accepted increments keep their length where the gain is small.
 //! - An increment in which a contact as a whole begins to slip, stops or turns round is repeated with half its length
 //!   until no point that takes part slips by more than 10 ε in it: the event is then known to 10 ε of displacement.
-//!   The direction of a contact is that of the slip of more than half its closed length, else 0. What a point slips is
-//!   its plastic slip in the increment or, where it stops, what it would have slipped at its last rate. So a contact
-//!   that swings to and fro in stick has no events.
+//!   A point's direction is that of its plastic slip if its slip rate at the end of the increment still goes that way,
+//!   else 0; a contact's is the one of more than half its closed length. What a point slips is its plastic slip in the
+//!   increment and, if it comes from slip, what it would have slipped at its last rate. So a contact that swings to and
+//!   fro in stick has no events.
 //! - An increment after a repeated one does not grow. Halves that are accepted thus walk up to the event and never jump
 //!   over it, and every attempt either moves on or halves the increment.
 //! - The shortest increment is accepted whatever its error, which is told as a warning if it exceeds ε.
@@ -20,9 +21,7 @@
 //! slip, an arrest or an impact changes the displacement by all it moves. Only what comes and goes within one increment,
 //! such as a short pulse of a load, needs a `max` that meets it.
 
-use crate::configuration::Configuration;
 use crate::contact::force::{ContactState, Status};
-use crate::contact::pair::ContactPair;
 use crate::model::{Model, Step};
 use crate::state::State;
 
@@ -94,38 +93,56 @@ fn local_error(step: &Step, old: &State, new: &State) -> f64 {
 
 /// Largest slip, in the increment, of a point that takes part in an event of its contact; 0 if there is none [L].
 fn slip_at_events(model: &Model, old: &State, new: &State) -> f64 {
-    let [x0, x1] = [old, new].map(|state| model.configuration(&state.displacement));
-    let pairs = model.contacts.iter().zip(old.contacts.iter().zip(&new.contacts));
+    let mut largest = 0.0f64;
     // Slip without friction has no onset.
-    let rough = pairs.filter(|(pair, _)| pair.law.stiffness() > 0.0);
-    let events = rough.filter(|(pair, (old, new))| direction(pair, old, &x0) != direction(pair, new, &x1));
-    let points = events.flat_map(|(_, (old, new))| old.iter().zip(new));
-    let involved = points.filter(|(old, new)| point_direction(old) != point_direction(new));
-    let slip = |state: &ContactState, share: f64| match state.status() {
-        Status::Slip => state.friction.plastic_increment.abs() * share,
-        _ => 0.0,
-    };
-    involved.fold(0.0, |largest, (before, after)| largest.max(slip(after, 1.0)).max(slip(before, new.dt / old.dt)))
-}
-
-/// Sign of the slip of more than half the closed length of a contact, else 0.
-fn direction(pair: &ContactPair, states: &[ContactState], x: &Configuration) -> f64 {
-    let (mut closed, mut slipping, mut slip) = (0.0, 0.0, 0.0);
-    for (point, state) in pair.points.iter().zip(states).filter(|(_, state)| state.status() != Status::Open) {
-        let length = point.current_length(x);
-        closed += length;
-        if state.status() == Status::Slip {
-            slipping += length;
-            slip += length * state.friction.plastic_increment;
+    for k in (0..model.contacts.len()).filter(|&k| model.contacts[k].law.stiffness() > 0.0) {
+        let [before, after] = [old, new].map(|state| Directions::of(model, k, state));
+        if before.contact == after.contact {
+            continue;
+        }
+        let lost = new.dt / old.dt;
+        for (k, (old, new)) in old.contacts[k].iter().zip(&new.contacts[k]).enumerate() {
+            if before.points[k] != after.points[k] {
+                largest = largest.max(slip(new).abs());
+            }
+            if before.points[k] != 0.0 && before.points[k] != after.points[k] {
+                largest = largest.max(slip(old).abs() * lost);
+            }
         }
     }
-    if slipping > 0.5 * closed { sign(slip) } else { 0.0 }
+    largest
 }
 
-fn point_direction(state: &ContactState) -> f64 {
-    if state.status() == Status::Slip { sign(state.friction.plastic_increment) } else { 0.0 }
+/// Plastic slip of the last increment where a point slips, else 0 [L].
+fn slip(state: &ContactState) -> f64 {
+    if state.status() == Status::Slip { state.friction.plastic_increment } else { 0.0 }
 }
 
-fn sign(value: f64) -> f64 {
-    if value == 0.0 { 0.0 } else { value.signum() }
+/// Which way a contact slips at the end of an increment: ±1 along ±s, 0 if it does not, or has just come to rest.
+struct Directions {
+    points: Vec<f64>,
+    contact: f64,
+}
+
+impl Directions {
+    fn of(model: &Model, contact: usize, state: &State) -> Self {
+        let (pair, states) = (&model.contacts[contact], &state.contacts[contact]);
+        let none = Self { points: vec![0.0; states.len()], contact: 0.0 };
+        if states.iter().all(|state| slip(state) == 0.0) {
+            return none;
+        }
+        let x = model.configuration(&state.displacement);
+        let rates = pair.slip_rates(states, &x, &state.velocity);
+        let going = |(state, rate): (&ContactState, &f64)| match slip(state) * rate > 0.0 {
+            true => rate.signum(),
+            false => 0.0,
+        };
+        let points: Vec<f64> = states.iter().zip(&rates).map(going).collect();
+        let lengths: Vec<f64> = pair.points.iter().map(|point| point.current_length(&x)).collect();
+        let total =
+            |of: &dyn Fn(usize) -> bool| -> f64 { (0..states.len()).filter(|&k| of(k)).map(|k| lengths[k]).sum() };
+        let closed = total(&|k| states[k].status() != Status::Open);
+        let ahead = [1.0, -1.0].into_iter().find(|way| total(&|k| points[k] == *way) > 0.5 * closed);
+        Self { points, contact: ahead.unwrap_or(0.0) }
+    }
 }

@@ -30,6 +30,11 @@ pub fn run(model: &Model, observers: &mut [&mut dyn Observer]) -> (RunReport, Re
             break;
         }
     }
+    let waiting = Instant::now();
+    for observer in observers.iter_mut() {
+        result = result.and(observer.finish());
+    }
+    report.wall_s.output += waiting.elapsed().as_secs_f64();
     report.wall_s.assembly = work.assembler.seconds.assembly;
     report.wall_s.contact = work.assembler.seconds.contact;
     report.wall_s.linear = work.linear_seconds;
@@ -54,7 +59,7 @@ fn run_step(
         dt = bounded(step, state.time, dt);
         let (iterations, outcome) = advance(model, step, state, dt, work);
         report.newton_iterations += iterations.len();
-        report.factorizations += iterations.len();
+        report.factorizations += iterations.iter().filter(|iteration| iteration.newton.factorized).count();
         let solved = outcome.map(|new| {
             let judgement = judge(model, step, [state, &new], iterations.len(), attempt > 1);
             (new, judgement)

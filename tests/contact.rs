@@ -1,14 +1,13 @@
 //! Contact: exact tangents, feet at corners and past ends.
 
 use fecontact::configuration::Configuration;
-use fecontact::contact::force::{ContactState, Increment, Presume, Status, respond};
-use fecontact::contact::pair::ContactPair;
+use fecontact::contact::force::{ContactState, Increment, Presume, Status, closes, press, respond};
+use fecontact::contact::pair::{ContactPair, InitialTraction};
 use fecontact::contact::projection::Bound;
 use fecontact::contact::search::Index;
-use fecontact::contact::force::{closes, press};
 use fecontact::contact::mortar::{Mortar, mortar_points};
 use fecontact::contact::rigid::{Circle, Plane, Polyline, Rigid};
-use fecontact::contact::surface::{Master, MasterPoint, SlavePoint, Surface, gauss_points, nodal_points};
+use fecontact::contact::surface::{Master, MasterPoint, SlavePoint, Surface, gauss_points, lone_point, nodal_points};
 use fecontact::friction::{FrictionParameters, FrictionState};
 use fecontact::system::Contribution;
 use nalgebra::Vector2;
@@ -209,6 +208,39 @@ fn tangent_equals_differences_on_quadratic_edges() {
                 }
             }
             assert!(closed > 4, "{closed} points were tested");
+        }
+    }
+}
+
+/// A contact that starts closed across a gap, its slave edges or points of no edge: the traction is that of the pressure
+/// it starts with, and its tangent turns about a foot that lies apart.
+#[test]
+fn tangent_equals_differences_where_contact_starts_closed_across_a_gap() {
+    let (edges, mut x) = wavy();
+    x[6..].iter_mut().for_each(|slave| slave.y += 0.2);
+    let lone = [6, 7, 8].map(|node| lone_point(node, 0.7)).to_vec();
+    let plane = Plane { point: Vector2::new(0.0, -0.5), normal: Vector2::new(-0.2, 1.0).normalize() };
+    for points in [lone, gauss_points(&[vec![6, 7], vec![7, 8]], 2)] {
+        for master in [Master::Mesh(Surface::new(&edges)), Master::Rigid(Rigid::Plane(plane))] {
+            let mut pair = pair(points.clone(), master, SUPER);
+            let at = Configuration::undeformed(&x);
+            pair.start_closed(InitialTraction { pressure: 20.0, traction: 2.0 }, &at).expect("a foot for each");
+            for k in 0..pair.points.len() {
+                let (state, contribution) = evaluate(&pair, k, &pair.initial_states(&at)[k], &x);
+                let FrictionState { pressure, traction, .. } = state.friction;
+                assert!((pressure - 20.0).abs() < 1e-12 && (traction - 2.0).abs() < 1e-12, "{state:?}");
+                assert!((state.gap + 0.02).abs() < 1e-15, "{state:?}");
+                let force = contribution.expect("a closed point").force;
+                let size = pair.points[k].current_length(&at) * 20.0f64.hypot(2.0);
+                let slave = pair.points[k].position.len();
+                let total =
+                    force.as_slice()[..2 * slave].chunks(2).map(|f| Vector2::new(f[0], f[1])).sum::<Vector2<f64>>();
+                assert!((total.norm() - size).abs() < 1e-12 * size, "{total}");
+                for (back, what) in [(1e-4, "stick"), (0.3, "full slip"), (-1.4, "backward slip over two segments")] {
+                    let old = pulled(&pair, k, &x, back, state.friction, state.gap);
+                    check_tangent(&pair, k, &old, &x, &format!("closed across a gap, {what}"));
+                }
+            }
         }
     }
 }

@@ -4,11 +4,16 @@
 mod common;
 
 use std::f64::consts::PI;
+use std::path::Path;
 
 use common::{Blocks, Finished, close, distance, finish, model, turned};
+use fecontact::error::Error;
+use fecontact::friction::{FrictionParameters, FrictionState, Sliding};
+use fecontact::model::Model;
 use fecontact::output::fields::Fields;
 use fecontact::output::history::History;
 use fecontact::output::warnings::Warnings;
+use fecontact::output::{Attempt, Observer};
 use fecontact::run::run;
 use fecontact::state::State;
 use nalgebra::{Matrix2, Vector2};
@@ -142,6 +147,26 @@ fn a_damped_oscillator_follows_its_closed_form_and_keeps_account_of_its_energy()
     let ratios = [errors[0] / errors[1], errors[1] / errors[2]];
     println!("errors {errors:?}, ratios {ratios:?}");
     assert!(ratios.iter().all(|ratio| (3.7..4.3).contains(ratio)), "second order: {ratios:?}");
+}
+
+/// Every scheme sees the dashpot where it sees the spring: second order against the closed form.
+#[test]
+fn every_scheme_is_of_second_order_with_a_dashpot() {
+    let (v, decay) = (0.7, C / (2.0 * M));
+    let omega = (K / M - decay * decay).sqrt();
+    let exact = v / omega * (-decay * 5.0).exp() * (omega * 5.0).sin();
+    for scheme in
+        [json!({"hht": {"alpha": -0.3}}), json!({"generalized_alpha": {"rho_infinity": 0.3}}), json!({"wilson": {}})]
+    {
+        let errors = [0.05, 0.025, 0.0125].map(|dt| {
+            let run = lone_mass([v, 0.0], scheme.clone(), [dt, 5.0], spring_and_dashpot());
+            assert!(run.report.newton_iterations <= run.states.len(), "the tangent of a linear problem is exact");
+            (run.last().displacement[0] - exact).abs()
+        });
+        let ratios = [errors[0] / errors[1], errors[1] / errors[2]];
+        println!("{scheme}: errors {errors:?}, ratios {ratios:?}");
+        assert!(ratios.iter().all(|ratio| (3.6..4.4).contains(ratio)), "{scheme}: {ratios:?}");
+    }
 }
 
 /// HHT weighs the dashpot like the spring (Hilber, Hughes & Taylor 1977), here solved for a₁ by hand:
@@ -328,6 +353,7 @@ fn a_stick_slip_run_turns_with_its_plane() {
     let level = pulled(0.0);
     let slipped = level.last().unwrap().1.plastic_slip;
     assert!(slipped > 0.05, "it slips: {slipped}");
+    close("held at first, while the driver moves by 0.1", level[49].0[0], 0.0, 0.01);
     for angle in [0.3, -1.0, 2.0] {
         for ((u, one), (v, other)) in level.iter().zip(pulled(angle)) {
             close("displacement", distance(u, &v), 0.0, 1e-10);
@@ -562,4 +588,86 @@ fn points_are_written_and_warned_of() {
     assert_eq!(warnings.list.len(), 1, "{:?}", warnings.list);
     let warning = &warnings.list[0];
     assert!(warning.contains("`base` at (0.3") && warning.contains("passes 1.000000e2"), "{warning}");
+}
+
+/// Time, traction, pressure, displacement along x and the force that holds it there but for inertia, of one point over a
+/// run.
+#[derive(Default)]
+struct Trace(Vec<[f64; 5]>);
+
+impl Observer for Trace {
+    fn record(&mut self, _: &Model, attempt: &Attempt) -> Result<(), Error> {
+        let trace = attempt.accepted.map(|state| {
+            let friction = &state.contacts[0][0].friction;
+            let held = state.reaction[0] - M * state.acceleration[0];
+            [state.time, friction.traction, friction.pressure, state.displacement[0], held]
+        });
+        self.0.extend(trace);
+        Ok(())
+    }
+}
+
+/// A case of `cases/paper` run for a while with increments of one length.
+fn paper(name: &str, [dt, duration]: [f64; 2]) -> Vec<[f64; 5]> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/paper/{name}.json"));
+    let mut case: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+    case["steps"][0]["dt"] = json!({"initial": dt});
+    case["steps"][0]["duration"] = json!(duration);
+    let mut trace = Trace::default();
+    run(&model(&case), &mut [&mut trace]).1.unwrap();
+    trace.0
+}
+
+/// Without weakening friction rises to μ_s p = 39.24 and stays there.
+#[test]
+fn the_first_spring_mass_case_slides_at_the_static_strength() {
+    let trace = paper("spring_mass_1", [0.1, 4600.0]);
+    let [time, traction, _, u, _] = trace[trace.len() - 1];
+    close("q", traction, 39.24, 1e-3);
+    close("spring", 10.0 * (0.001 * time - u), 39.24, 0.1);
+    assert!(trace.iter().all(|[_, traction, ..]| *traction < 39.24 + 1e-6));
+}
+
+/// With weakening the peak is where s(R) = −li(R)/r and μ = μ_k + (μ_s − μ_k) exp(−κ s/μ_k) give the largest R μ p,
+/// 25.0175 at u = 0.040384, which the driver reaches at (q/K + u)/v = 2542.1. Then friction falls to μ_k p = 19.62.
+#[test]
+fn the_second_spring_mass_case_peaks_at_the_attained_strength_and_slips_once() {
+    let trace = paper("spring_mass_2", [0.05, 3600.0]);
+    let peak = trace.iter().max_by(|a, b| a[1].total_cmp(&b[1])).unwrap();
+    println!("peak {peak:?}");
+    close("peak", peak[1], 25.0175, 0.005);
+    close("time of the peak", peak[0], 2542.1, 1.0);
+    close("q at the end", trace[trace.len() - 1][1], 19.62, 1e-3);
+}
+
+/// The block stops for the first time after v₀/(g (μ_k cos θ − sin θ)) = 20.6155, v₀²/(2 g (…)) = 103.0772 down the slope.
+#[test]
+fn the_block_on_the_slope_stops_in_time() {
+    let trace = paper("slope", [0.005, 21.0]);
+    let velocity = |k: usize| (trace[k + 1][3] - trace[k][3]) / (trace[k + 1][0] - trace[k][0]);
+    let back = (0..trace.len() - 1).find(|&k| velocity(k) < 0.0).expect("it swings back on the contact spring");
+    let share = velocity(back - 1) / (velocity(back - 1) - velocity(back));
+    let middle = |k: usize| 0.5 * (trace[k][0] + trace[k + 1][0]);
+    close("first stop", middle(back - 1) + share * (middle(back) - middle(back - 1)), 20.6155, 0.002);
+    close("way", trace[back][3] * 1.0225f64.sqrt(), 103.0772, 1e-3);
+}
+
+/// With its motion prescribed, the point answers with what its law alone gives along the same path.
+#[test]
+fn the_forced_oscillation_is_the_law_along_a_path() {
+    let trace = paper("forced_oscillation", [0.01, 7.0]);
+    let law: FrictionParameters = serde_json::from_value(super_subloading()).unwrap();
+    let law = law.build(0.0).unwrap();
+    let mut friction = FrictionState { traction: 19.62, pressure: 98.1, mu: 0.2, ..law.initial_state() };
+    let (mut time, mut way) = (0.0, 0.0);
+    for &[t, traction, pressure, u, held] in &trace {
+        close("u", u, t.sin(), 1e-12);
+        close("p", pressure, 98.1, 1e-9);
+        friction = law.respond(&friction, Sliding { slip: u - way, pressure: 98.1, dt: t - time }).unwrap().state;
+        close("q", traction, friction.traction, 1e-8);
+        close("what drives it", held, friction.traction, 1e-8);
+        (time, way) = (t, u);
+    }
+    let least = trace.iter().fold(0.0f64, |least, row| least.min(row[1]));
+    close("backward friction", least, -19.62, 0.1);
 }

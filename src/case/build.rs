@@ -636,10 +636,9 @@ impl StepBuilder<'_> {
                 let bodies = model.bodies.iter().map(|body| body.name.as_str());
                 let known: Vec<&str> =
                     bodies.chain(model.point_masses.iter().map(|point| point.name.as_str())).collect();
-                let message = format!(
-                    "there is no body or point mass `{name}`, on which gravity acts; there are {}",
-                    known.join(", ")
-                );
+                let known = if known.is_empty() { "none at all".into() } else { known.join(", ") };
+                let message =
+                    format!("there is no body or point mass `{name}`, on which gravity acts; there are {known}");
                 return Err(Complaint::new(place, message));
             }
             _ => {}

@@ -61,18 +61,19 @@ fn check_mass(k: usize, step: &Step, model: &Model) -> Result<(), Complaint> {
     let points = model.point_masses.iter().flat_map(|point| &point.nodes);
     dense.chain(points).for_each(|&node| carried[node] = true);
     let prescribed = |dof: usize| step.supports.binary_search_by_key(&dof, |support| support.dof).is_ok();
-    let massless = |node: &usize| !carried[*node] && !(prescribed(2 * node) && prescribed(2 * node + 1));
-    let Some(node) = (0..model.mesh.nodes.len()).find(massless) else { return Ok(()) };
+    let held = |node: usize| prescribed(2 * node) && prescribed(2 * node + 1);
+    let massless = |node: &usize| !(carried[*node] || held(*node));
     let why = format!("the dynamic step `{}` (steps[{k}]) needs a mass", step.name);
-    match model.bodies.iter().find(|body| body.nodes.binary_search(&node).is_ok()) {
-        Some(body) => Err(Complaint::new(
-            format!("bodies.{}.material.density", body.name),
-            format!("is 0, but {why}: give a density"),
-        )),
-        None => Err(Complaint::new(
+    if let Some(body) = model.bodies.iter().find(|body| body.nodes.iter().any(massless)) {
+        let message = format!("is 0, but {why}: give a density");
+        return Err(Complaint::new(format!("bodies.{}.material.density", body.name), message));
+    }
+    match (0..model.mesh.nodes.len()).find(massless) {
+        Some(node) => Err(Complaint::new(
             "point_masses",
             format!("node {} belongs to no element, and {why}: give one to its group", model.mesh.node_tags[node]),
         )),
+        None => Ok(()),
     }
 }
 

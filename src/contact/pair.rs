@@ -5,6 +5,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::force::{ContactState, Increment, PointResponse, Presume, closes, open, press, respond};
+use super::kinematics::{Kinematics, kinematics};
 use super::mortar::Mortar;
 use super::search::Index;
 use super::surface::{Master, MasterPoint, SlavePoint};
@@ -160,6 +161,27 @@ impl ContactPair {
     pub fn multiplied(&self, old: &[ContactState], trial: &[ContactState]) -> Vec<ContactState> {
         let multiplier = |new: &ContactState| if self.penetration.is_some() { new.friction.pressure } else { 0.0 };
         old.iter().zip(trial).map(|(old, new)| ContactState { multiplier: multiplier(new), ..*old }).collect()
+    }
+
+    /// Rate at which each point slips along +s under nodal velocities, the variation of Δu_t; 0 where nothing faces it
+    /// [L/T].
+    pub fn slip_rates(&self, states: &[ContactState], x: &Configuration, velocity: &[f64]) -> Vec<f64> {
+        let index = Index::new(&self.master, x);
+        let rate = |k: Kinematics| {
+            let dofs = k.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
+            dofs.zip(&k.dslip).map(|(dof, dslip)| velocity[dof] * dslip).sum()
+        };
+        if let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) {
+            let overlaps = mortar.overlaps(surface, &index, x);
+            let met = |k| mortar.kinematics(k, surface, &overlaps, mortar.weights(k, surface, &overlaps, x).as_ref(), x);
+            return (0..self.points.len()).map(|k| met(k).map_or(0.0, |met| rate(met.kinematics))).collect();
+        }
+        let slips = |(slave, state): (&SlavePoint, &ContactState)| {
+            let segment = state.foot.map(|foot| foot.segment);
+            let projection = index.project(slave, segment, x);
+            projection.map_or(0.0, |projection| rate(kinematics(slave, &self.master, &projection, state.foot, x)))
+        };
+        self.points.iter().zip(states).map(slips).collect()
     }
 
     /// Elastic part of the slip, q/α_t; 0 for a frictionless contact [L].

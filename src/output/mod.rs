@@ -41,4 +41,12 @@ pub trait Observer {
     /// # Errors
     /// [`Error::Output`] when a file cannot be written; it ends the run.
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error>;
+
+    /// Called once after the last attempt: what is still under way comes to its end.
+    ///
+    /// # Errors
+    /// As [`record`](Self::record).
+    fn finish(&mut self) -> Result<(), Error> {
+        Ok(())
+    }
 }

@@ -22,6 +22,8 @@ pub struct Warnings {
     given: BTreeSet<(usize, Kind)>,
     /// Names of the steps whose error in time has been warned about
     inexact: BTreeSet<String>,
+    /// Steps whose linear systems have been warned about
+    perturbed: BTreeSet<String>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -34,6 +36,7 @@ impl Observer for Warnings {
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
         self.error_in_time(attempt);
+        self.lost_pivots(attempt);
         let x = model.configuration(&state.displacement);
         for (number, (pair, states)) in model.contacts.iter().zip(&state.contacts).enumerate() {
             for (point, contact) in pair.points.iter().zip(states).filter(|(_, c)| c.friction.pressure > 0.0) {
@@ -52,6 +55,22 @@ impl Observer for Warnings {
 }
 
 impl Warnings {
+    /// A matrix that is singular or nearly so may still have given an answer.
+    fn lost_pivots(&mut self, attempt: &Attempt) {
+        let solves = || attempt.iterations.iter().map(|iteration| iteration.newton);
+        let pivots = solves().map(|solve| solve.perturbed_pivots).max().unwrap_or(0);
+        let fallback = solves().any(|solve| solve.fallback);
+        if (pivots > 0 || fallback) && self.perturbed.insert(attempt.step.name.clone()) {
+            let start = format!("step `{}`, t = {}", attempt.step.name, attempt.old.time + attempt.dt);
+            let found = match (pivots, fallback) {
+                (0, _) => "the fronts of the tangent were not exact enough, and a slower solver took over".into(),
+                (pivots, false) => format!("{pivots} pivots of the tangent vanished and were replaced"),
+                (pivots, true) => format!("{pivots} pivots of the tangent vanished, and a slower solver took over"),
+            };
+            self.list.push(format!("{start}: {found}; the equations are solved, but something may be barely held"));
+        }
+    }
+
     /// The shortest increment is accepted whatever its error.
     fn error_in_time(&mut self, attempt: &Attempt) {
         let Attempt { step, dt, old, .. } = attempt;

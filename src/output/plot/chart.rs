@@ -41,7 +41,8 @@ pub struct Curve {
     pub look: Look,
 }
 
-/// How a curve is drawn; the number tells it apart from the others of its panel by colour, dashes and marks.
+/// How a curve is drawn; the number tells it apart from the others of its panel by colour, dashes and marks (left out
+/// where it is alone).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Look {
     /// a line with a few marks
@@ -157,21 +158,25 @@ impl Panel {
     fn draw(&self, drawing: &mut Drawing, [left, top]: [f64; 2], width: f64, legend: f64, most: usize) {
         let values =
             |k: usize| self.curves.iter().flat_map(move |curve| curve.points.iter().map(move |point| point[k]));
-        let is_time = self.curves.iter().all(|curve| curve.points.windows(2).all(|pair| pair[0][0] <= pair[1][0]));
+        let forward = |curve: &Curve| curve.points.windows(2).all(|pair| pair[0][0] <= pair[1][0]);
+        let is_time = self.curves.iter().all(|curve| !matches!(curve.look, Look::Points(_)) && forward(curve));
         let frame = Frame {
             x: Range::of(&self.x, values(0), if is_time { 0.0 } else { MARGIN }),
             y: Range::of(&self.y, values(1), MARGIN),
             corner: [left + LEFT, top + HEAD + legend],
             width: width - LEFT - RIGHT,
         };
+        // A line alone needs no marks.
+        let marked = self.curves.iter().filter(|curve| curve.look.shape().is_some()).count() > 1;
         drawing.text([left + LEFT, top + HEAD - 9.0], label(&self.title, SMALL, Anchor::Start, true));
         for (row, names) in self.legend(width).iter().enumerate() {
             let y = top + HEAD + LEGEND_ROW * row as f64 + 2.0;
-            names.iter().for_each(|(x, curve)| curve.draw_sample(drawing, [left + LEFT + x, y]));
+            names.iter().for_each(|(x, curve)| curve.draw_sample(drawing, [left + LEFT + x, y], marked));
         }
         self.draw_axes(drawing, &frame);
+        let marks = if marked { MARKS } else { 0 };
         for (k, curve) in self.curves.iter().enumerate() {
-            curve.draw(drawing, &frame, most, (k as f64 + 0.5) / self.curves.len() as f64);
+            curve.draw(drawing, &frame, most, marks, (k as f64 + 0.5) / self.curves.len() as f64);
         }
         drawing.frame(frame.corner, [frame.width, FRAME_HEIGHT], BORDER);
     }
@@ -219,23 +224,23 @@ impl Panel {
 }
 
 impl Curve {
-    /// Draw the curve, its marks shifted by a share of their distance.
-    fn draw(&self, drawing: &mut Drawing, frame: &Frame, most: usize, shift: f64) {
+    /// Draw the curve with no more than `most` points, its marks shifted by a share of their distance.
+    fn draw(&self, drawing: &mut Drawing, frame: &Frame, most: usize, marks: usize, shift: f64) {
         let pieces = thin(self.points.iter().map(|point| frame.at(*point)), most);
         drawing.path(&pieces, self.look.stroke());
         let Some(shape) = self.look.shape() else { return };
         let places = match self.look {
             Look::Points(_) => pieces.concat(),
-            _ => spread(&pieces.concat(), shift),
+            _ => spread(&pieces.concat(), marks, shift),
         };
         places.into_iter().for_each(|place| drawing.mark(place, shape, self.look.stroke().colour));
     }
 
     /// Draw the line of the legend, with the name beside it.
-    fn draw_sample(&self, drawing: &mut Drawing, [x, y]: [f64; 2]) {
+    fn draw_sample(&self, drawing: &mut Drawing, [x, y]: [f64; 2], marked: bool) {
         let stroke = self.look.stroke();
         drawing.line([x, y], [x + SAMPLE, y], stroke);
-        if let Some(shape) = self.look.shape() {
+        if let Some(shape) = self.look.shape().filter(|_| marked) {
             drawing.mark([x + 0.5 * SAMPLE, y], shape, stroke.colour);
         }
         drawing.text([x + SAMPLE + 6.0, y + 4.0], label(&self.name, SMALL, Anchor::Start, false));
@@ -243,18 +248,18 @@ impl Curve {
 }
 
 /// Places for marks: evenly along x for a function of x, along the way for any other curve.
-fn spread(points: &[[f64; 2]], shift: f64) -> Vec<[f64; 2]> {
+fn spread(points: &[[f64; 2]], marks: usize, shift: f64) -> Vec<[f64; 2]> {
     let is_function = points.windows(2).all(|pair| pair[0][0] <= pair[1][0]);
     let step = |a: &[f64; 2], b: &[f64; 2]| if is_function { b[0] - a[0] } else { (b[0] - a[0]).hypot(b[1] - a[1]) };
     let total: f64 = points.windows(2).map(|pair| step(&pair[0], &pair[1])).sum();
     let mut places = Vec::new();
-    let (mut way, mut next) = (0.0, shift * total / MARKS as f64);
+    let (mut way, mut next) = (0.0, shift * total / marks as f64);
     for pair in points.windows(2) {
         let length = step(&pair[0], &pair[1]);
-        while length > 0.0 && way + length > next && places.len() < MARKS {
+        while length > 0.0 && way + length > next && places.len() < marks {
             let share = (next - way) / length;
             places.push([0, 1].map(|i| pair[0][i] + share * (pair[1][i] - pair[0][i])));
-            next += total / MARKS as f64;
+            next += total / marks as f64;
         }
         way += length;
     }

@@ -33,7 +33,7 @@ pub fn figures(sources: &[Source]) -> Result<Vec<(&'static str, Figure)>, PlotEr
     let mut panels = vec![
         panel("Traction over slip", slip(), stress("traction q"), of("slip", &[("traction", "q")])?),
         panel("Slip over time", time(), slip(), of("time", &[("slip", "total"), ("plastic_slip", "plastic")])?),
-        panel("Friction coefficient over time", time(), Axis::new("q/p, ±μ", ""), coefficients(&tests)?),
+        panel("Friction coefficient over time", time(), Axis::new("coefficient", ""), coefficients(&tests)?),
         panel(
             "State over time",
             time(),
