@@ -124,9 +124,13 @@ pub fn closes(
     increment: Increment,
     x: &Configuration,
 ) -> bool {
-    let zero = TOUCH * slave.current_length(x);
-    let touches = increment.presume == Presume::Touch && old.foot.is_some() && old.gap.abs() <= zero && gap <= zero;
-    pressure(pair, gap, old) > 0.0 || touches
+    pressure(pair, gap, old) > 0.0 || touches(gap, slave.current_length(x), old, increment)
+}
+
+/// Whether a zero gap is presumed to be closed, and to stick.
+fn touches(gap: f64, length: f64, old: &ContactState, increment: Increment) -> bool {
+    let zero = TOUCH * length;
+    increment.presume == Presume::Touch && old.foot.is_some() && old.gap.abs() <= zero && gap.abs() <= zero
 }
 
 fn pressure(pair: &ContactPair, gap: f64, old: &ContactState) -> f64 {
@@ -165,7 +169,8 @@ pub fn press(
         response.state.traction = old.friction.traction + stiffness * sliding.slip;
         response.dtraction_dpressure = 0.0;
     }
-    if increment.presume == Presume::Stick || pressure == 0.0 {
+    // At p = 0 the law has no answer to give, and near it round-off decides which.
+    if increment.presume == Presume::Stick || pressure == 0.0 || touches(gap, kinematics.length, old, increment) {
         response.dtraction_dslip = stiffness;
     }
     let state = ContactState { friction: response.state, foot: Some(foot), gap, multiplier: old.multiplier };
