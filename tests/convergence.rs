@@ -100,7 +100,8 @@ fn block_on_ground_slips_from_the_edge_and_converges_quadratically() {
     assert!(last > mu_k && last < 1.15 * mu_k, "end {last}");
 
     let mut increments: BTreeMap<String, Vec<BTreeMap<String, String>>> = BTreeMap::new();
-    for row in table(&out.join("newton.csv")) {
+    // A correction with the tangent of the iterate before is not Newton's, and converges at another rate.
+    for row in table(&out.join("newton.csv")).into_iter().filter(|row| row["factorized"] == "1") {
         increments.entry(row["increment"].clone()).or_default().push(row);
     }
     let mut checked = 0;
