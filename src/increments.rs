@@ -8,18 +8,18 @@
 //!   next attempt takes Δt (ε/e)^⅓, with a margin. Accepted increments keep their length where the gain is small.
 //! - An increment in which a contact as a whole begins to slip, stops or turns round is repeated with half its length
 //!   until no point that takes part slips by more than 10 ε in it: the event is then known to 10 ε of displacement.
-//!   A point's direction is that of its plastic slip if its slip rate at the end of the increment still goes that way,
-//!   else 0; a contact's is the one of more than half its closed length. What a point slips is its plastic slip in the
-//!   increment and, if it comes from slip, what it would have slipped at its last rate. So a contact that swings to and
-//!   fro in stick has no events.
+//!   A point's direction is ±1, that of its plastic slip, if its slip rate at the end of the increment still goes that
+//!   way, else 0; a contact has that of its points if the mean over the closed length exceeds ½ in size. What a point
+//!   slips is its plastic slip in the increment and, if it comes from slip, what it would have slipped at its last rate.
+//!   So a contact that swings to and fro in stick has no events.
 //! - An increment after a repeated one does not grow. Halves that are accepted thus walk up to the event and never jump
 //!   over it, and every attempt either moves on or halves the increment.
 //! - The shortest increment is accepted whatever its error, which is told as a warning if it exceeds ε.
 //!
-//! Nothing much larger than ε can be stepped over unseen: e is a fixed share, at least a twelfth, of what the new
-//! displacement differs from the one extrapolated with the old velocity and acceleration ((6) of [`crate::time`]), and a
-//! slip, an arrest or an impact changes the displacement by all it moves. Only what comes and goes within one increment,
-//! such as a short pulse of a load, needs a `max` that meets it.
+//! Nothing much larger than ε can be stepped over unseen: e is a fixed share, a quarter or more unless β is near 1/6, of
+//! what the new displacement differs from the one extrapolated with the old velocity and acceleration ((6) of
+//! [`crate::time`]), and a slip, an arrest or an impact changes the displacement by all it moves. Only what comes and
+//! goes within one increment, such as a short pulse of a load, needs a `max` that meets it.
 
 use crate::contact::force::{ContactState, Status};
 use crate::model::{Model, Step};
@@ -58,7 +58,8 @@ pub fn bounded(step: &Step, time: f64, dt: f64) -> f64 {
     let remaining = step.span.end - time;
     let dt = dt.min(step.increments.max);
     let left = (remaining / dt - ROUND_OFF).ceil().max(1.0);
-    if step.increments.error.is_some() && left <= 2.0 { remaining / left } else { dt.min(remaining) }
+    let shared = if step.increments.error.is_some() { 2.0 } else { 1.0 };
+    if left <= shared { remaining / left } else { dt }
 }
 
 /// Judge a solved increment from `old` to `new`; `repeated` says that an attempt at it was given up before.
@@ -127,22 +128,20 @@ struct Directions {
 impl Directions {
     fn of(model: &Model, contact: usize, state: &State) -> Self {
         let (pair, states) = (&model.contacts[contact], &state.contacts[contact]);
-        let none = Self { points: vec![0.0; states.len()], contact: 0.0 };
         if states.iter().all(|state| slip(state) == 0.0) {
-            return none;
+            return Self { points: vec![0.0; states.len()], contact: 0.0 };
         }
         let x = model.configuration(&state.displacement);
         let rates = pair.slip_rates(states, &x, &state.velocity);
-        let going = |(state, rate): (&ContactState, &f64)| match slip(state) * rate > 0.0 {
-            true => rate.signum(),
-            false => 0.0,
-        };
+        let going = |(state, rate): (&ContactState, &f64)| if slip(state) * rate > 0.0 { rate.signum() } else { 0.0 };
         let points: Vec<f64> = states.iter().zip(&rates).map(going).collect();
-        let lengths: Vec<f64> = pair.points.iter().map(|point| point.current_length(&x)).collect();
-        let total =
-            |of: &dyn Fn(usize) -> bool| -> f64 { (0..states.len()).filter(|&k| of(k)).map(|k| lengths[k]).sum() };
-        let closed = total(&|k| states[k].status() != Status::Open);
-        let ahead = [1.0, -1.0].into_iter().find(|way| total(&|k| points[k] == *way) > 0.5 * closed);
-        Self { points, contact: ahead.unwrap_or(0.0) }
+        let (mut closed, mut forward) = (0.0, 0.0);
+        for k in (0..states.len()).filter(|&k| states[k].status() != Status::Open) {
+            let length = pair.points[k].current_length(&x);
+            closed += length;
+            forward += length * points[k];
+        }
+        let contact = if f64::abs(forward) > 0.5 * closed { forward.signum() } else { 0.0 };
+        Self { points, contact }
     }
 }

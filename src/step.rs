@@ -189,19 +189,18 @@ fn solve(
     let spent = assembler.seconds.assembly + assembler.seconds.contact;
     let clock = std::time::Instant::now();
     let start = start.unwrap_or_else(|| start_value(trial));
-    let (iterations, result) =
-        newton::solve(start, model.newton, &mut **solver, system, |u, request, system| {
-            assembler.evaluate(trial, u, request, system)?;
-            if request == Request::Tangent {
-                if begins && tangents == 0 && old.last_increment.is_none() {
-                    floating = null_motion(model, u, &system.tangent);
-                }
-                tangents += 1;
-            } else if tangents > 0 {
-                counts.push(ContactCounts::of(&assembler.evaluation.contacts));
+    let (iterations, result) = newton::solve(start, model.newton, &mut **solver, system, |u, request, system| {
+        assembler.evaluate(trial, u, request, system)?;
+        if request == Request::Tangent {
+            if begins && tangents == 0 && old.last_increment.is_none() {
+                floating = null_motion(model, u, &system.tangent);
             }
-            Ok(())
-        });
+            tangents += 1;
+        } else if tangents > 0 {
+            counts.push(ContactCounts::of(&assembler.evaluation.contacts));
+        }
+        Ok(())
+    });
     let assembled = assembler.seconds.assembly + assembler.seconds.contact - spent;
     *linear_seconds += clock.elapsed().as_secs_f64() - assembled;
     counts.resize(iterations.len(), ContactCounts::default());

@@ -2,11 +2,11 @@
 
 use fecontact::configuration::Configuration;
 use fecontact::contact::force::{ContactState, Increment, Presume, Status, closes, press, respond};
+use fecontact::contact::mortar::{Mortar, mortar_points};
 use fecontact::contact::pair::{ContactPair, InitialTraction};
 use fecontact::contact::projection::Bound;
-use fecontact::contact::search::Index;
-use fecontact::contact::mortar::{Mortar, mortar_points};
 use fecontact::contact::rigid::{Circle, Plane, Polyline, Rigid};
+use fecontact::contact::search::Index;
 use fecontact::contact::surface::{Master, MasterPoint, SlavePoint, Surface, gauss_points, lone_point, nodal_points};
 use fecontact::friction::{FrictionParameters, FrictionState};
 use fecontact::system::Contribution;
@@ -173,7 +173,13 @@ fn feet_on_a_quadratic_edge_lie_on_the_parabola() {
     let normal = Vector2::new(-0.25, 1.0).normalize();
     for (h, tolerance) in [(0.1, 1e-14), (-0.1, 1e-14), (0.0, 1e-14)] {
         let point = Vector2::new(0.5, 0.0625) + normal * h;
-        let x = vec![Vector2::new(-1.0, 0.25), Vector2::new(1.0, 0.25), Vector2::new(0.0, 0.0), point, point + Vector2::x()];
+        let x = vec![
+            Vector2::new(-1.0, 0.25),
+            Vector2::new(1.0, 0.25),
+            Vector2::new(0.0, 0.0),
+            point,
+            point + Vector2::x(),
+        ];
         let master = Master::Mesh(Surface::new(&[vec![1, 0, 2]]));
         let pair = pair(nodal_points(&[vec![3, 4]]), master, COULOMB);
         let at = Configuration::undeformed(&x);
@@ -199,7 +205,8 @@ fn tangent_equals_differences_on_quadratic_edges() {
             let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.law.initial_state() };
             let mut closed = 0;
             for k in 0..pair.points.len() {
-                let open = evaluate(&pair, k, &pulled(&pair, k, &x, 0.0, pressed, -0.02), &x).0.status() == Status::Open;
+                let open =
+                    evaluate(&pair, k, &pulled(&pair, k, &x, 0.0, pressed, -0.02), &x).0.status() == Status::Open;
                 for back in [1e-4, 0.01, 0.2, -0.3] {
                     if !open {
                         check_tangent(&pair, k, &pulled(&pair, k, &x, back, pressed, -0.02), &x, law);
@@ -329,7 +336,12 @@ fn tangent_equals_differences_at_a_concave_corner() {
     let foot = Index::new(&pair.master, at).project(&pair.points[1], None, at).expect("a foot");
     assert!(foot.gap < 0.0 && foot.bound == Bound::Node(1));
     let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.law.initial_state() };
-    let old = ContactState { friction: pressed, foot: Some(MasterPoint { segment: 0, xi: 0.9 }), gap: -0.05, multiplier: 0.0 };
+    let old = ContactState {
+        friction: pressed,
+        foot: Some(MasterPoint { segment: 0, xi: 0.9 }),
+        gap: -0.05,
+        multiplier: 0.0,
+    };
     check_tangent(&pair, 1, &old, &x, "concave corner");
 }
 

@@ -302,7 +302,10 @@ fn rigid_masters_and_formulations_that_make_no_sense_are_refused() {
     let plane = json!({"plane": {"point": [0, 0], "normal": [0, 1]}});
     let mortar = [("/contacts/base/master", plane), ("/contacts/base/method", json!("mortar"))];
     refused_edits(&mortar, &["contacts.base.method: ", "gauss_to_segment"]);
-    refused_edits(&[("/contacts/base/normal", json!({"penetration": 0}))], &["contacts.base.normal.penetration: ", "positive"]);
+    refused_edits(
+        &[("/contacts/base/normal", json!({"penetration": 0}))],
+        &["contacts.base.normal.penetration: ", "positive"],
+    );
 }
 
 #[test]

@@ -56,7 +56,11 @@ impl Solved {
         for (k, Row { quantity, reference, ours, .. }) in self.rows.iter().enumerate() {
             let difference = 100.0 * (ours / reference - 1.0);
             let (name, cost) = if k == 0 { (self.name, cost.as_str()) } else { ("", "| | ") };
-            println!("| {name} | {quantity} | {} | {} | {difference:+.2} % | {cost} |", rounded(*reference), rounded(*ours));
+            println!(
+                "| {name} | {quantity} | {} | {} | {difference:+.2} % | {cost} |",
+                rounded(*reference),
+                rounded(*ours)
+            );
         }
     }
 }
@@ -180,7 +184,8 @@ fn mindlin() -> Solved {
     // The stick zone ends half an element beyond the last node that sticks.
     let c_found = 0.5 * (stuck[stuck.len() - 1] - stuck[0] + element);
     println!("P = {p_total}, Q = {q_total}, element {element}: p off by {p_error:.4} p₀, q by {q_error:.4} μ p₀");
-    let at_centre = found.iter().min_by(|s, t| (s[0] - centre).abs().total_cmp(&(t[0] - centre).abs())).expect("a point");
+    let at_centre =
+        found.iter().min_by(|s, t| (s[0] - centre).abs().total_cmp(&(t[0] - centre).abs())).expect("a point");
     let rows = vec![
         row("p(0) [MPa]", p0, at_centre[1], 0.02 * p0),
         row("1 + largest error of p/p₀", 1.0, 1.0 + p_error, 0.02),
@@ -214,15 +219,8 @@ fn wedge() -> Solved {
     Solved { name: "Sliding wedge, μ = 0.3", rows: vec![row("F/G", expected, found, 0.002 * expected)], run, seconds }
 }
 
-const ALL: [fn() -> Solved; 7] = [
-    hertz_linear_elements,
-    hertz_quadratic_elements,
-    hertz_with_friction,
-    hertz_small_strain,
-    mindlin,
-    greco,
-    wedge,
-];
+const ALL: [fn() -> Solved; 7] =
+    [hertz_linear_elements, hertz_quadratic_elements, hertz_with_friction, hertz_small_strain, mindlin, greco, wedge];
 
 #[test]
 fn cylinder_on_block() {
@@ -264,7 +262,10 @@ fn cylinder_on_block_by_other_methods() {
     for (k, change) in changes.into_iter().enumerate() {
         let (run, _) = solve("hertz_q8", change);
         let found = displacement(&run, "block", [0.0, 0.0])[1];
-        println!("change {k}: u_y {found:.5}, {} iterations, {} cut-backs", run.report.newton_iterations, run.report.cutbacks);
+        println!(
+            "change {k}: u_y {found:.5}, {} iterations, {} cut-backs",
+            run.report.newton_iterations, run.report.cutbacks
+        );
         let penetration = largest_pressure(&run) / run.model.contacts[0].alpha_n;
         assert!((found + 1.30802).abs() < 0.005 * 1.308 + penetration, "change {k}: u_y = {found}");
     }
@@ -278,11 +279,20 @@ fn cylinder_on_block_by_other_methods() {
 fn ironing() {
     let forces = |mesh: &str| {
         let (run, _) = solve("ironing_q4", |case| case["mesh"] = json!(format!("../../meshes/validation/{mesh}.msh")));
-        println!("{mesh}: {} increments, {} cut-backs, {} iterations, at most {:?}", run.report.increments,
-            run.report.cutbacks, run.report.newton_iterations, run.iterations.iter().max());
+        println!(
+            "{mesh}: {} increments, {} cut-backs, {} iterations, at most {:?}",
+            run.report.increments,
+            run.report.cutbacks,
+            run.report.newton_iterations,
+            run.iterations.iter().max()
+        );
         assert!((run.last().time - 11.0).abs() < 1e-9);
-        let middle: Vec<[f64; 2]> = run.states.iter().filter(|state| (5.0..7.0).contains(&state.time))
-            .map(|state| run.reaction("die_top", state)).collect();
+        let middle: Vec<[f64; 2]> = run
+            .states
+            .iter()
+            .filter(|state| (5.0..7.0).contains(&state.time))
+            .map(|state| run.reaction("die_top", state))
+            .collect();
         let mean = [0, 1].map(|i| middle.iter().map(|force| force[i]).sum::<f64>() / middle.len() as f64);
         println!("{mesh}: mean force {mean:?}");
         for force in &middle {
@@ -298,7 +308,9 @@ fn ironing() {
 #[test]
 #[ignore = "prints the README's table"]
 fn table() {
-    println!("| problem | quantity | reference | ours | difference | Newton iterations (most) | cut-backs | processor s |");
+    println!(
+        "| problem | quantity | reference | ours | difference | Newton iterations (most) | cut-backs | processor s |"
+    );
     println!("|---|---|---|---|---|---|---|---|");
     for problem in ALL {
         problem().print();

@@ -8,8 +8,8 @@ use nalgebra::Vector2;
 use super::error::{CaseError, Complaint};
 use super::file::{
     Case, CircleInput, Components, ContactInput, DashpotInput, DriveInput, Formulation, IncrementsInput, LoadInput,
-    MasterInput, MeshSource, Method, NodeInput, Place, PlaneInput, PointMassInput, PolylineInput, RigidInput, SpringInput,
-    StepInput, TimeInput,
+    MasterInput, MeshSource, Method, NodeInput, Place, PlaneInput, PointMassInput, PolylineInput, RigidInput,
+    SpringInput, StepInput, TimeInput,
 };
 use super::{initial, names, supported};
 use crate::boundary::{

@@ -162,7 +162,8 @@ pub enum MasterInput {
 
 impl<'de> Deserialize<'de> for MasterInput {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let expecting = "the name of an edge group, or a rigid body such as {\"plane\": {\"point\": [x, y], \"normal\": [x, y]}}";
+        let expecting =
+            "the name of an edge group, or a rigid body such as {\"plane\": {\"point\": [x, y], \"normal\": [x, y]}}";
         Choice { expecting, number: None, text: Self::Group, object: Self::Rigid }.read(deserializer)
     }
 }

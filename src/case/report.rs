@@ -8,7 +8,8 @@ use serde_json::Value;
 
 use super::file::{
     BodyInput, Case, CircleInput, Components, ContactInput, DashpotInput, DriveInput, Formulation, InitialInput,
-    LoadInput, MasterInput, MeshSource, Method, PlaneInput, PolylineInput, RigidInput, SpringInput, StepInput, TimeInput,
+    LoadInput, MasterInput, MeshSource, Method, PlaneInput, PolylineInput, RigidInput, SpringInput, StepInput,
+    TimeInput,
 };
 use super::initial::lost_velocity;
 use crate::configuration::Configuration;

@@ -112,7 +112,12 @@ pub fn respond(
     if !closes(pair, slave, gap, old, increment, x) {
         return open(pair, Some((gap, foot)), old, increment);
     }
-    press(pair, Meeting { kinematics: kinematics(slave, &pair.master, &projection, old.foot, x), gap, foot }, old, increment)
+    press(
+        pair,
+        Meeting { kinematics: kinematics(slave, &pair.master, &projection, old.foot, x), gap, foot },
+        old,
+        increment,
+    )
 }
 
 /// Whether a point with this gap carries pressure, or is presumed to.
@@ -151,12 +156,7 @@ pub fn open(
 }
 
 /// The state of a closed point and what it adds to the equations.
-pub fn press(
-    pair: &ContactPair,
-    meeting: Meeting,
-    old: &ContactState,
-    increment: Increment,
-) -> PointResponse {
+pub fn press(pair: &ContactPair, meeting: Meeting, old: &ContactState, increment: Increment) -> PointResponse {
     let Meeting { mut kinematics, gap, foot } = meeting;
     if old.friction.pressure == 0.0 && old.gap > TOUCH * kinematics.length {
         count_slip_after_touch(&mut kinematics, old.gap, gap.min(0.0));

@@ -59,8 +59,7 @@ pub fn mortar_points(edges: &[Vec<usize>], positions: &[Vector2<f64>]) -> (Vec<S
         }
     }
     let shares = |of: &Vec<(usize, usize)>| of.iter().flat_map(|&(e, a)| share(&edges[e], a)).collect();
-    let points =
-        nodes.iter().zip(&at).map(|(&node, at)| SlavePoint { length: shares(at), ..lone_point(node, 0.0) });
+    let points = nodes.iter().zip(&at).map(|(&node, at)| SlavePoint { length: shares(at), ..lone_point(node, 0.0) });
     (points.collect(), Mortar { edges: edges.to_vec(), at })
 }
 
@@ -68,7 +67,10 @@ pub fn mortar_points(edges: &[Vec<usize>], positions: &[Vector2<f64>]) -> (Vec<S
 fn share(edge: &[usize], a: usize) -> Vec<LengthShare> {
     let slope = |xi: f64| edge.iter().copied().zip(shape::edge_derivatives(edge.len(), xi)).collect();
     let weight = |xi: f64, weight: f64| weight * shape::edge_values(edge.len(), xi)[a];
-    shape::gauss(edge.len()).into_iter().map(|(xi, w)| LengthShare { factor: weight(xi, w), tangent: slope(xi) }).collect()
+    shape::gauss(edge.len())
+        .into_iter()
+        .map(|(xi, w)| LengthShare { factor: weight(xi, w), tangent: slope(xi) })
+        .collect()
 }
 
 /// A part of a slave edge that one master segment faces.
@@ -132,7 +134,11 @@ impl Mortar {
             slip = s.dot(&moved.minus(&mean));
         }
         let vector = |d: &Dual| {
-            if d.gradient.is_empty() { DVector::zeros(2 * frame.nodes.len()) } else { DVector::from_vec(d.gradient.clone()) }
+            if d.gradient.is_empty() {
+                DVector::zeros(2 * frame.nodes.len())
+            } else {
+                DVector::from_vec(d.gradient.clone())
+            }
         };
         let (normal, tangent) = (Vector2::new(n.x.value, n.y.value), Vector2::new(s.x.value, s.y.value));
         let kinematics = Kinematics {
@@ -283,11 +289,7 @@ impl Line<'_> {
         };
         let scaled = |values: Vec<f64>, factor: f64| values.into_iter().map(|v| factor * v).collect::<Vec<_>>();
         let bend = if count == 2 { vec![0.0; 2] } else { vec![1.0, 1.0, -2.0] };
-        [
-            shape::edge_values(count, at),
-            scaled(shape::edge_derivatives(count, at), rate),
-            scaled(bend, rate * rate),
-        ]
+        [shape::edge_values(count, at), scaled(shape::edge_derivatives(count, at), rate), scaled(bend, rate * rate)]
     }
 
     fn values(&self, xi: &Dual) -> Vec<Dual> {
@@ -404,7 +406,10 @@ fn cut(edge: &[usize], surface: &Surface, index: &Index, x: &Configuration) -> V
     let distance = |overlap: &Overlap, xi: f64| {
         let values = shape::edge_values(edge.len(), xi);
         let [a, b] = surface.segments[overlap.segment].ends;
-        edge.iter().zip(values).map(|(&node, w)| w * x.between(a, node)).sum::<Vector2<f64>>()
+        edge.iter()
+            .zip(values)
+            .map(|(&node, w)| w * x.between(a, node))
+            .sum::<Vector2<f64>>()
             .dot(&normal_of(x.between(a, b).normalize()))
             .abs()
     };

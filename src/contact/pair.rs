@@ -173,7 +173,8 @@ impl ContactPair {
         };
         if let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) {
             let overlaps = mortar.overlaps(surface, &index, x);
-            let met = |k| mortar.kinematics(k, surface, &overlaps, mortar.weights(k, surface, &overlaps, x).as_ref(), x);
+            let met =
+                |k| mortar.kinematics(k, surface, &overlaps, mortar.weights(k, surface, &overlaps, x).as_ref(), x);
             return (0..self.points.len()).map(|k| met(k).map_or(0.0, |met| rate(met.kinematics))).collect();
         }
         let slips = |(slave, state): (&SlavePoint, &ContactState)| {

@@ -47,10 +47,7 @@ impl<'a, P: Send> Job<'a, P> {
     /// Children before parents.
     pub fn upwards(self, light: &(impl Fn(&Forest, P) + Sync), heavy: &(impl Fn(u32, P) + Sync)) {
         let Self { below, forests, chain } = self;
-        rayon::join(
-            || below.into_par_iter().with_max_len(1).for_each(|job| job.upwards(light, heavy)),
-            || forests.into_par_iter().with_max_len(1).for_each(|(forest, part)| light(forest, part)),
-        );
+        Self::at_once(below, forests, &|job| job.upwards(light, heavy), light);
         chain.into_iter().for_each(|(front, part)| heavy(front, part));
     }
 
@@ -58,8 +55,22 @@ impl<'a, P: Send> Job<'a, P> {
     pub fn downwards(self, light: &(impl Fn(&Forest, P) + Sync), heavy: &(impl Fn(u32, P) + Sync)) {
         let Self { below, forests, chain } = self;
         chain.into_iter().rev().for_each(|(front, part)| heavy(front, part));
+        Self::at_once(below, forests, &|job| job.downwards(light, heavy), light);
+    }
+
+    /// All that does not depend on each other. What is alone is done without the wait for another thread to wake up.
+    fn at_once(
+        below: Vec<Self>,
+        forests: Vec<(&'a Forest, P)>,
+        go: &(impl Fn(Self) + Sync),
+        light: &(impl Fn(&Forest, P) + Sync),
+    ) {
+        if below.len() + forests.len() <= 1 {
+            below.into_iter().for_each(go);
+            return forests.into_iter().for_each(|(forest, part)| light(forest, part));
+        }
         rayon::join(
-            || below.into_par_iter().with_max_len(1).for_each(|job| job.downwards(light, heavy)),
+            || below.into_par_iter().with_max_len(1).for_each(go),
             || forests.into_par_iter().with_max_len(1).for_each(|(forest, part)| light(forest, part)),
         );
     }
