@@ -484,11 +484,7 @@ fn points_are_checked() {
         ("/contacts/base/normal", json!({}), ["contacts.base.normal.alpha_n: ", "no elements behind the points"]),
         ("/contacts/base/friction/alpha_t", json!(null), ["contacts.base.friction.alpha_t: ", "is missing"]),
         ("/contacts/base/initial/pressure", json!(-1), ["contacts.base.initial.pressure: ", "is -1: must be zero or"]),
-        (
-            "/contacts/base/initial/traction",
-            json!(-30),
-            ["contacts.base.initial.traction: ", "mu p = 29.43"],
-        ),
+        ("/contacts/base/initial/traction", json!(-30), ["contacts.base.initial.traction: ", "mu p = 29.43"]),
         ("/contacts/base/initial/traction", json!(29.44), ["initial.traction: ", "the initial strength is exceeded"]),
         (
             "/contacts/base/initial/structure",

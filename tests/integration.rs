@@ -90,7 +90,8 @@ fn ageing_is_exact_in_any_number_of_increments() {
 fn forced_oscillation_is_right_on_its_polyline_at_any_increment() {
     let law = law(json!({"kappa": 10, "xi": 0.002}));
     for dt in [1e-2, 0.1, 0.3] {
-        let corners: Vec<_> = (0..=(10.0 / dt) as usize).map(|k| k as f64 * dt).map(|t| [t, t.sin(), PRESSURE]).collect();
+        let corners: Vec<_> =
+            (0..=(10.0 / dt) as usize).map(|k| k as f64 * dt).map(|t| [t, t.sin(), PRESSURE]).collect();
         let start = pressed(MU_K, MU_K * PRESSURE);
         let coarse = follow(&*law, start, &corners, 1);
         let fine = follow(&*law, start, &corners, (dt / 1e-5).round() as usize);
@@ -121,7 +122,13 @@ fn backward_euler_needs_few_evaluations() {
 
 /// q, μ and ∫ |q| dλ by Runge–Kutta of fourth order on the rate form: λ = ⟨α_t s v − ξ R (1 − μ/μ_s)^n p − R μ ṗ⟩/den,
 /// s = sgn q, den = α_t + p (r (−ln R) μ − κ R (μ/μ_k − 1)^m).
-fn rate_form([kappa, xi, m, n]: [f64; 4], start: FrictionState, from: [f64; 3], to: [f64; 3], steps: usize) -> [f64; 3] {
+fn rate_form(
+    [kappa, xi, m, n]: [f64; 4],
+    start: FrictionState,
+    from: [f64; 3],
+    to: [f64; 3],
+    steps: usize,
+) -> [f64; 3] {
     let time = to[0] - from[0];
     let (v, dp) = ((to[1] - from[1]) / time, (to[2] - from[2]) / time);
     let rate = |t: f64, [q, mu, _]: [f64; 3]| {
@@ -189,11 +196,16 @@ fn tangents_belong_to_the_answers() {
             let at = |slip: f64, pressure: f64| law.respond(&start, Sliding { slip, pressure, dt }).unwrap();
             let answer = at(slip, pressure);
             let (du, dp) = (1e-7 * slip.abs(), 1e-6 * pressure);
-            let by_slip = (at(slip + du, pressure).state.traction - at(slip - du, pressure).state.traction) / (2.0 * du);
+            let by_slip =
+                (at(slip + du, pressure).state.traction - at(slip - du, pressure).state.traction) / (2.0 * du);
             let by_pressure =
                 (at(slip, pressure + dp).state.traction - at(slip, pressure - dp).state.traction) / (2.0 * dp);
             let what = format!("{integration} from {} over {slip}", start.traction);
-            assert!((answer.dtraction_dslip - by_slip).abs() < 1e-4 * ALPHA_T, "{what}: {} {by_slip}", answer.dtraction_dslip);
+            assert!(
+                (answer.dtraction_dslip - by_slip).abs() < 1e-4 * ALPHA_T,
+                "{what}: {} {by_slip}",
+                answer.dtraction_dslip
+            );
             assert!(
                 (answer.dtraction_dpressure - by_pressure).abs() < 1e-4,
                 "{what}: {} {by_pressure}",

@@ -574,6 +574,7 @@ fn points_are_written_and_warned_of() {
     let mut fields = Fields::create(folder.path(), &model, &model.initial_state(), 1).unwrap();
     let mut warnings = Warnings::default();
     run(&model, &mut [&mut history, &mut fields, &mut warnings]).1.unwrap();
+    drop((history, fields));
 
     let text = std::fs::read_to_string(folder.path().join("history.csv")).unwrap();
     let rows: Vec<Vec<&str>> = text.lines().map(|row| row.split(',').collect()).collect();
