@@ -70,6 +70,10 @@ impl Observer for History {
         table.end_row()?;
         table.share()
     }
+
+    fn finish(&mut self) -> Result<(), Error> {
+        self.0.flush()
+    }
 }
 
 fn energy_row(energy: &Energy) -> [f64; ENERGIES.len()] {

@@ -52,4 +52,8 @@ impl Observer for NewtonLog {
         }
         table.share()
     }
+
+    fn finish(&mut self) -> Result<(), Error> {
+        self.0.flush()
+    }
 }
