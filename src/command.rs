@@ -155,7 +155,7 @@ pub fn law(path: &Path, out: Option<PathBuf>) -> Result<(), Failure> {
     };
     let summary = LawSummary { ending: Ending::new(result.as_ref().err()), about, report };
     summary::write(&summary, &folder)?;
-    plot::draw(&[folder.clone()], &folder)?;
+    plot::draw(std::slice::from_ref(&folder), &folder)?;
     conclude_law(&summary.report, &folder);
     result?;
     Ok(())

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fecontact::friction::{
     Approach, Coulomb, CoulombParameters, FrictionLaw, FrictionParameters, FrictionResponse, FrictionState,
-    Frictionless, LawFailure, Sliding, SuperSubloading, SuperSubloadingParameters,
+    Frictionless, Integration, LawFailure, Sliding, SuperSubloading, SuperSubloadingParameters,
 };
 use rayon::prelude::*;
 
@@ -25,6 +25,8 @@ const PAPER: SuperSubloadingParameters = SuperSubloadingParameters {
     structure: Some(2.0),
     approach: Approach::Logarithmic,
     elastic_core: 0.0,
+    integration: Integration::Controlled,
+    tolerance: None,
 };
 
 /// Constant coefficient 0.2: only R evolves.
@@ -499,6 +501,8 @@ fn random_parameters(random: &mut Random) -> SuperSubloadingParameters {
         structure: None,
         approach: if random.chance(0.7) { Approach::Logarithmic } else { Approach::Cotangent },
         elastic_core: if random.chance(0.7) { 0.0 } else { random.between(0.0, 0.95) },
+        integration: Integration::Controlled,
+        tolerance: None,
     }
 }
 

@@ -177,11 +177,11 @@ fn vanished_pivots_are_counted_and_mended() {
 }
 
 /// The star again, with one spoke whose diagonal is small, or next to nothing: eliminated first, it drowns what it is
-/// coupled with. Refinement mends the mild cases, a replaced pivot the severe ones, and the other solver those between.
+/// coupled with. Refinement mends that, and what a replaced pivot does.
 #[test]
-fn small_pivots_are_mended_one_way_or_another() {
+fn small_pivots_are_mended() {
     let spokes: Vec<[usize; 2]> = (1..40).map(|k| [0, k]).collect();
-    let mut ways = [false; 3];
+    let mut replaced = 0;
     for exponent in 6..20 {
         let mut matrix = SparseMatrix::zero(Arc::new(Pattern::new(40, spokes.iter().map(|s| &s[..]))));
         for &[hub, end] in &spokes {
@@ -195,10 +195,31 @@ fn small_pivots_are_mended_one_way_or_another() {
         let solution = solved(&matrix, &matrix.multiply(&x));
         let error = distance(&solution.x, &x);
         assert!(solution.backward_error < 1e-12 && error < 1e-11, "1e-{exponent}: {error}");
-        let way = if solution.fallback { 1 } else { 2 * usize::from(solution.perturbed_pivots > 0) };
-        ways[way] = true;
+        replaced += usize::from(solution.perturbed_pivots > 0);
     }
-    assert_eq!(ways, [true; 3], "refined, by the other solver, with replaced pivots");
+    assert!((1..14).contains(&replaced), "{replaced} of 14 cases lose a pivot");
+}
+
+/// A solver whose answers are all zero, so that refinement gets nowhere.
+struct Useless;
+
+impl LinearSolver for Useless {
+    fn factorize(&mut self, _: &SparseMatrix) -> Result<(), LinearFailure> {
+        Ok(())
+    }
+
+    fn solve(&mut self, b: &mut [f64]) {
+        b.fill(0.0);
+    }
+}
+
+#[test]
+fn another_solver_takes_over_when_refinement_stalls() {
+    let matrix = Grids::new(14, 9, 1e3).matrix(1.0);
+    let x = noise(matrix.size());
+    let solution = solve(&mut Useless, &matrix, &matrix.multiply(&x)).expect("the matrix is regular");
+    assert!(solution.fallback && solution.backward_error < 1e-12 && distance(&solution.x, &x) < 1e-9);
+    assert!(!solved(&matrix, &matrix.multiply(&x)).fallback);
 }
 
 /// Nothing on the diagonal: pivots are found among the couplings, inside the fronts.

@@ -122,6 +122,9 @@ fn law(parameters: &FrictionParameters) -> Checked<Box<dyn FrictionLaw>> {
 }
 
 fn start(input: &LawTestInput, law: &dyn FrictionLaw, pressure: f64) -> Checked<FrictionState> {
+    if let Some(negative) = input.initial.pressure.filter(|pressure| *pressure < 0.0) {
+        return Err(Complaint::new("initial.pressure", format!("is {negative}: must be zero or positive")));
+    }
     let at_rest = law.initial_state();
     let traction = input.initial.traction;
     let pressure = pressure.max(0.0);

@@ -16,11 +16,13 @@ pub(super) const EULER: f64 = 0.577_215_664_901_532_9;
 /// with relative errors of 7e-18 and 4e-16.
 ///
 /// Source: Abramowitz & Stegun, section 5.1.
+#[inline(always)]
 pub(super) fn e1(w: f64, ln_w: f64, exp_of_minus_w: f64) -> f64 {
     if w <= SPLIT { w * rational(w, &ENTIRE) - ln_w - EULER } else { exp_of_minus_w / w * rational(1.0 / w, &TAIL) }
 }
 
 /// Σ aᵢ xⁱ / Σ bᵢ xⁱ; even and odd powers apart, which halves the chain of dependent operations.
+#[inline(always)]
 fn rational(x: f64, coefficients: &[(f64, f64)]) -> f64 {
     let square = x * x;
     let (mut even, mut odd) = ((0.0, 0.0), (0.0, 0.0));

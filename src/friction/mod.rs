@@ -12,8 +12,10 @@ mod coulomb;
 mod exponential_integral;
 mod frictionless;
 mod parameters;
+mod path;
 mod peak;
 mod root;
+mod slip_equation;
 mod super_subloading;
 
 use std::fmt::Debug;
@@ -25,6 +27,7 @@ pub use approach::Approach;
 pub use coulomb::{Coulomb, CoulombParameters};
 pub use frictionless::Frictionless;
 pub use parameters::FrictionParameters;
+pub use peak::Integration;
 pub use super_subloading::{SuperSubloading, SuperSubloadingParameters};
 
 /// What friction remembers at one contact point between increments.
@@ -124,12 +127,16 @@ pub struct FrictionResponse {
 }
 
 impl FrictionResponse {
+    /// The answer that `state` follows without plastic slip, where q has the tangent `stiffness` by slip.
+    fn elastic(state: FrictionState, stiffness: f64) -> Self {
+        Self { state, dtraction_dslip: stiffness, dtraction_dpressure: 0.0, evaluations: 0 }
+    }
+
     /// Refuses numbers that have overflowed, and those of a committed state that was not finite.
     fn checked(self) -> Result<Self, LawFailure> {
         let FrictionState { traction, pressure, mu, plastic_slip, plastic_increment, dissipation } = self.state;
-        let state = [traction, pressure, mu, plastic_slip, plastic_increment, dissipation];
-        let tangent = [self.dtraction_dslip, self.dtraction_dpressure];
-        if state.iter().chain(&tangent).all(|number| number.is_finite()) {
+        let state = traction + pressure + mu + plastic_slip + plastic_increment + dissipation;
+        if (state + self.dtraction_dslip + self.dtraction_dpressure).is_finite() {
             Ok(self)
         } else {
             Err(LawFailure::Overflow { traction })

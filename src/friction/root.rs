@@ -1,35 +1,41 @@
-//! Newton's method that cannot leave its bracket.
+//! A root finder that cannot leave its bracket.
 
 /// Bisection alone resolves any bracket of doubles in fewer evaluations than this.
 const MAX_EVALUATIONS: usize = 200;
 
-/// Finds a root of f in [low, high], where f(low) > 0 ≥ f(high); f returns its value and its derivative.
+/// What f says about a trial argument of [`bracketed_root`].
+pub(super) struct Trial {
+    /// f at the argument
+    pub value: f64,
+    /// Change of the argument that Newton's method, or a better one, proposes
+    pub step: f64,
+    /// Whether the argument will do.
+    pub done: bool,
+}
+
+/// Finds a root of f in [low, high], where f(low) > 0 ≥ f(high).
 ///
-/// A Newton step is taken when it stays inside the bracket and at least halves the step before it, otherwise the
-/// bracket is halved. The search ends where |f| ≤ `tolerance` or the argument is resolved. The last call of f is
-/// always at the answer, so a caller may keep what f computed there.
-pub(super) fn bracketed_newton(
-    (mut low, mut high): (f64, f64),
-    guess: f64,
-    tolerance: f64,
-    mut f: impl FnMut(f64) -> (f64, f64),
-) {
+/// A proposed step is taken when it stays inside the bracket and at least halves the step before it, otherwise the
+/// bracket is halved. The search ends where f says so or the argument is resolved. The last call of f is always at the
+/// answer, so a caller may keep what f computed there.
+#[inline]
+pub(super) fn bracketed_root((mut low, mut high): (f64, f64), guess: f64, mut f: impl FnMut(f64) -> Trial) {
     let resolution = 8.0 * f64::EPSILON * low.abs().max(high.abs());
     let mut step = high - low;
     let mut x = if low < guess && guess < high { guess } else { low + 0.5 * step };
     for _ in 0..MAX_EVALUATIONS {
-        let (value, slope) = f(x);
-        if value.abs() <= tolerance {
+        let trial = f(x);
+        if trial.done {
             return;
         }
-        if value > 0.0 {
+        if trial.value > 0.0 {
             low = x;
         } else {
             high = x;
         }
-        let newton = x - value / slope;
-        let safe = low < newton && newton < high && (newton - x).abs() <= 0.5 * step.abs();
-        let next = if safe { newton } else { low + 0.5 * (high - low) };
+        let proposed = x + trial.step;
+        let safe = low < proposed && proposed < high && trial.step.abs() <= 0.5 * step.abs();
+        let next = if safe { proposed } else { low + 0.5 * (high - low) };
         step = next - x;
         if step.abs() <= resolution {
             return;

@@ -11,6 +11,8 @@ pub struct Axis {
     pub scale: Scale,
     /// values to be on it whatever the data
     pub include: Vec<f64>,
+    /// whether it counts: no ticks between whole numbers
+    pub whole: bool,
 }
 
 /// How values are spaced.
@@ -25,12 +27,17 @@ pub enum Scale {
 impl Axis {
     /// A linear axis.
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
-        Self { name: name.into(), unit: unit.into(), scale: Scale::Linear, include: Vec::new() }
+        Self { name: name.into(), unit: unit.into(), scale: Scale::Linear, include: Vec::new(), whole: false }
     }
 
     /// The same with a logarithmic scale.
     pub fn logarithmic(self) -> Self {
         Self { scale: Scale::Logarithmic, ..self }
+    }
+
+    /// The same for whole numbers.
+    pub fn whole(self) -> Self {
+        Self { whole: true, ..self }
     }
 
     /// The same with a value on it.
@@ -56,9 +63,6 @@ pub struct Tick {
     /// its number
     pub label: String,
 }
-
-/// Ticks of an axis aimed at.
-const TICKS: f64 = 5.0;
 
 /// Spread of data, relative to their size, that is round-off.
 const NOISE: f64 = 1e-9;
@@ -92,16 +96,16 @@ impl Range {
         (self.scale.place(value) - self.low) / (self.high - self.low)
     }
 
-    /// The ticks, and the axis' name with its unit and the power of ten that the numbers leave out.
-    pub fn ticks(&self, axis: &Axis) -> (Vec<Tick>, String) {
+    /// About as many ticks as wanted, and the axis' name with its unit and the power of ten that the numbers leave out.
+    pub fn ticks(&self, axis: &Axis, wanted: f64) -> (Vec<Tick>, String) {
         match self.scale {
-            Scale::Linear => self.linear_ticks(axis),
-            Scale::Logarithmic => (self.decades(), named(axis, 0)),
+            Scale::Linear => self.linear_ticks(axis, wanted),
+            Scale::Logarithmic => (self.decades(wanted), named(axis, 0)),
         }
     }
 
-    fn linear_ticks(&self, axis: &Axis) -> (Vec<Tick>, String) {
-        let step = round_step((self.high - self.low) / TICKS);
+    fn linear_ticks(&self, axis: &Axis, wanted: f64) -> (Vec<Tick>, String) {
+        let step = round_step((self.high - self.low) / wanted).max(if axis.whole { 1.0 } else { 0.0 });
         let size = self.low.abs().max(self.high.abs());
         let order = size.log10().floor() as i32;
         let power = if PLAIN.contains(&order) { 0 } else { 3 * order.div_euclid(3) };
@@ -115,12 +119,12 @@ impl Range {
         (ticks, named(axis, power))
     }
 
-    fn decades(&self) -> Vec<Tick> {
+    fn decades(&self, wanted: f64) -> Vec<Tick> {
         let (first, last) = (self.low.ceil() as i32, self.high.floor() as i32);
         if last <= first {
             return self.within_a_decade();
         }
-        let every = 1 + (last - first) / (2 * TICKS as i32);
+        let every = 1 + (last - first) / (2 * wanted as i32);
         let powers = (first..=last).filter(|power| power % every == 0);
         powers.map(|power| Tick { share: self.share(10f64.powi(power)), label: power_of_ten(power) }).collect()
     }
@@ -169,4 +173,45 @@ fn power_of_ten(power: i32) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let raised = |c: char| c.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize]);
     format!("10{}", power.to_string().chars().map(raised).collect::<String>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Axis, Range};
+
+    fn labels(axis: &Axis, values: &[f64]) -> (Vec<String>, String) {
+        let (ticks, name) = Range::of(axis, values.iter().copied(), 0.0).ticks(axis, 5.0);
+        (ticks.into_iter().map(|tick| tick.label).collect(), name)
+    }
+
+    #[test]
+    fn numbers_are_round_and_short() {
+        let slip = Axis::new("slip", "mm");
+        for (values, expected, name) in [
+            ([0.0, 1.0], &["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"][..], "slip [mm]"),
+            ([0.0, 12_000.0], &["0", "5000", "10000"], "slip [mm]"),
+            ([-0.3, 0.1 + 0.2], &["−0.2", "0.0", "0.2"], "slip [mm]"),
+            ([0.0, 3.1e-5], &["0", "10", "20", "30"], "slip [10⁻⁶ mm]"),
+            ([0.0, 2e6], &["0.0", "0.5", "1.0", "1.5", "2.0"], "slip [10⁶ mm]"),
+            ([98.1, 98.1], &["90", "95", "100", "105"], "slip [mm]"),
+            ([0.0, 0.0], &["−1.0", "−0.5", "0.0", "0.5", "1.0"], "slip [mm]"),
+        ] {
+            assert_eq!(
+                labels(&slip, &values),
+                (expected.iter().map(|s| (*s).into()).collect(), name.into()),
+                "{values:?}"
+            );
+        }
+        assert_eq!(labels(&Axis::new("R", ""), &[0.0, 1e-3]).1, "R [10⁻³]");
+        assert_eq!(labels(&Axis::new("count", "").whole(), &[1.0, 2.0]).0, ["1", "2"]);
+    }
+
+    #[test]
+    fn powers_of_ten_are_labelled_as_such() {
+        let axis = Axis::new("residual", "").logarithmic();
+        assert_eq!(labels(&axis, &[0.0, 1e-2, 1.0, f64::NAN]).0, ["10⁻²", "10⁻¹", "10⁰"]);
+        assert_eq!(labels(&axis, &[1e-16, 1.0]).0.len(), 9);
+        assert_eq!(labels(&axis, &[0.15, 0.6]).0, ["0.2", "0.5"]);
+        assert_eq!(labels(&axis, &[20.0, 300.0]).0, ["20", "50", "100", "200"]);
+    }
 }

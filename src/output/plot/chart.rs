@@ -80,6 +80,9 @@ const LARGE: f64 = 15.0;
 /// Width of the sample of a line in a legend [px].
 const SAMPLE: f64 = 30.0;
 
+/// Distances of ticks aimed at, along x and y [px].
+const BETWEEN_TICKS: [f64; 2] = [75.0, 42.0];
+
 /// Marks on a line.
 const MARKS: usize = 7;
 
@@ -184,14 +187,14 @@ impl Panel {
     fn draw_axes(&self, drawing: &mut Drawing, frame: &Frame) {
         let [left, top] = frame.corner;
         let (right, bottom) = (left + frame.width, top + FRAME_HEIGHT);
-        let (ticks, name) = frame.x.ticks(&self.x);
+        let (ticks, name) = frame.x.ticks(&self.x, frame.width / BETWEEN_TICKS[0]);
         for tick in ticks {
             let x = left + frame.width * tick.share;
             drawing.line([x, top], [x, bottom], GRID);
             drawing.text([x, bottom + 15.0], label(&tick.label, SMALL, Anchor::Middle, false));
         }
         drawing.text([0.5 * (left + right), bottom + 32.0], label(&name, SMALL, Anchor::Middle, false));
-        let (ticks, name) = frame.y.ticks(&self.y);
+        let (ticks, name) = frame.y.ticks(&self.y, FRAME_HEIGHT / BETWEEN_TICKS[1]);
         for tick in ticks {
             let y = bottom - FRAME_HEIGHT * tick.share;
             drawing.line([left, y], [right, y], GRID);

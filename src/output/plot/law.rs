@@ -18,8 +18,8 @@ struct Test<'a> {
     holds: Vec<Hold>,
 }
 
-/// `law.svg`.
-pub fn figures(sources: &[Source]) -> Result<Vec<(&'static str, Figure)>, PlotError> {
+/// The figure of `law.svg`.
+pub fn figure(sources: &[Source]) -> Result<Figure, PlotError> {
     let tests = sources.iter().map(Test::read).collect::<Result<Vec<_>, _>>()?;
     let units = Units::of(sources);
     let [time, slip] = ["time", "length"].map(|of| units.get(of));
@@ -52,12 +52,12 @@ pub fn figures(sources: &[Source]) -> Result<Vec<(&'static str, Figure)>, PlotEr
         panels.push(panel("Peak after a hold over its length", hold, Axis::new("peak |q|/p", ""), ageing(&tests)));
     }
     let title = "A friction law along a path of slip and pressure".into();
-    Ok(vec![("law.svg", Figure { title, subtitle: subtitle(sources), columns: 2, panels })])
+    Ok(Figure { title, subtitle: subtitle(sources), columns: 2, panels })
 }
 
 impl<'a> Test<'a> {
     fn read(source: &'a Source) -> Result<Self, PlotError> {
-        let columns = Columns::read(&source.folder.join("law.csv"), |name| WANTED.contains(&name))?;
+        let columns = Columns::read(&source.folder.join("law.csv"), |name| WANTED.contains(&name))?.with_rows()?;
         let mut peaks = Peaks::default();
         let numbers = ["time", "slip", "pressure", "traction", "mu"].map(|name| columns.get(name));
         let [time, slip, pressure, traction, mu] = numbers;

@@ -63,18 +63,20 @@ pub fn draw(folders: &[PathBuf], out: &Path) -> Result<Vec<PathBuf>, PlotError> 
         return Err(unreadable(folder, "has neither history.csv nor law.csv: it is no folder of results"));
     }
     let sources = sources(folders)?;
-    let figures = match folders.iter().filter(|folder| is_law(folder)).count() {
-        0 => run::figures(&sources)?,
-        laws if laws == folders.len() => law::figures(&sources)?,
-        _ => return Err(unreadable(&folders[0], "runs and laws driven alone cannot be drawn over each other")),
+    let mut written = Vec::new();
+    let mut write = |name: &str, figure: Figure| {
+        std::fs::create_dir_all(out).map_err(|cause| failed(out, &cause))?;
+        let path = out.join(name);
+        std::fs::write(&path, figure.svg()).map_err(|cause| failed(&path, &cause))?;
+        written.push(path);
+        Ok(())
     };
-    std::fs::create_dir_all(out).map_err(|cause| failed(out, &cause))?;
-    figures.into_iter().map(|(name, figure)| write(&out.join(name), &figure)).collect()
-}
-
-fn write(path: &Path, figure: &Figure) -> Result<PathBuf, PlotError> {
-    std::fs::write(path, figure.svg()).map_err(|cause| failed(path, &cause))?;
-    Ok(path.to_owned())
+    match folders.iter().filter(|folder| is_law(folder)).count() {
+        0 => run::figures(&sources, write)?,
+        laws if laws == folders.len() => write("law.svg", law::figure(&sources)?)?,
+        _ => return Err(unreadable(&folders[0], "runs and laws driven alone cannot be drawn over each other")),
+    }
+    Ok(written)
 }
 
 /// A result folder.
@@ -152,15 +154,20 @@ impl Units {
     }
 
     fn energy(&self) -> String {
-        self.derived("energy", ["force", "length"], " _")
+        self.derived("energy", ["force", "length"], "·_")
     }
 }
 
-/// Of what a figure is: the title of the case, or the names of the folders that are overlaid.
+/// Of what a figure is: the title of the case, and the names of folders that are overlaid.
 fn subtitle(sources: &[Source]) -> String {
-    match sources {
-        [source] if !source.about.title.is_empty() => source.about.title.clone(),
-        [source] => source.name.clone(),
-        several => several.iter().map(|source| source.name.as_str()).collect::<Vec<_>>().join(" · "),
+    let title = &sources[0].about.title;
+    let names: Vec<&str> = sources.iter().map(|source| source.name.as_str()).collect();
+    match (title.as_str(), sources.len()) {
+        ("", _) => names.join(" · "),
+        (title, 1) => title.into(),
+        (title, _) if sources.iter().all(|source| source.about.title == title) => {
+            format!("{title}: {}", names.join(" · "))
+        }
+        _ => names.join(" · "),
     }
 }

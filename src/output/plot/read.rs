@@ -51,10 +51,23 @@ impl Columns {
         }
         let values: BTreeMap<_, _> =
             names.iter().cloned().zip(values).filter_map(|(name, values)| Some((name, values?))).collect();
-        match number {
-            1 => Err(unreadable("has no rows yet".into())),
-            _ => Ok(Self { path: path.to_owned(), names, values }),
+        Ok(Self { path: path.to_owned(), names, values })
+    }
+
+    /// The same, if there are rows.
+    ///
+    /// # Errors
+    /// [`PlotError::Unreadable`] when there are none.
+    pub fn with_rows(self) -> Result<Self, PlotError> {
+        match self.is_empty() {
+            true => Err(PlotError::Unreadable { path: self.path, cause: "has no rows yet".into() }),
+            false => Ok(self),
         }
+    }
+
+    /// Whether there is no row.
+    pub fn is_empty(&self) -> bool {
+        self.values.values().all(Vec::is_empty)
     }
 
     /// A column.

@@ -27,6 +27,9 @@ const NEWTON: [&str; 4] = ["increment", "iteration", "time", "residual"];
 /// Motion in one direction this much smaller than in the other is round-off.
 const NOISE: f64 = 1e-9;
 
+/// Part of its size that a force must reach backwards for its lower bound to be drawn.
+const BACKWARDS: f64 = 0.25;
+
 /// Increments whose residuals are drawn, those with the most linear solves.
 const HARDEST: usize = 100;
 
@@ -34,7 +37,7 @@ const HARDEST: usize = 100;
 struct Run<'a> {
     source: &'a Source,
     history: Columns,
-    /// only if there is a `newton.csv`
+    /// only if there is a `newton.csv` with rows
     newton: Option<Columns>,
 }
 
@@ -47,9 +50,10 @@ impl<'a> Run<'a> {
                 || of.is_some_and(|column| CONTACT.contains(&column) || WATCHED.contains(&column))
         };
         let history = Columns::read(&source.folder.join("history.csv"), wanted)?;
+        history.get("time")?;
         let newton = source.folder.join("newton.csv");
-        let newton = newton.is_file().then(|| Columns::read(&newton, |name| NEWTON.contains(&name)));
-        Ok(Self { source, history, newton: newton.transpose()? })
+        let newton = newton.is_file().then(|| Columns::read(&newton, |name| NEWTON.contains(&name))).transpose()?;
+        Ok(Self { source, history: history.with_rows()?, newton: newton.filter(|newton| !newton.is_empty()) })
     }
 }
 
@@ -59,30 +63,38 @@ struct Runs<'a> {
     units: Units,
 }
 
-/// All figures for which there are data, with their file names.
-pub fn figures(sources: &[Source]) -> Result<Vec<(&'static str, Figure)>, PlotError> {
+/// A figure: its file, its title, and what makes its panels.
+type Recipe<'a> = (&'static str, &'static str, fn(&Runs<'a>) -> Result<Vec<Panel>, PlotError>);
+
+/// Hand on every figure for which there are data, one after the other: the curves of all of them together would fill the
+/// memory.
+pub fn figures(
+    sources: &[Source],
+    mut write: impl FnMut(&str, Figure) -> Result<(), PlotError>,
+) -> Result<(), PlotError> {
     let list = sources.iter().map(Run::read).collect::<Result<Vec<_>, _>>()?;
     let runs = Runs { list, units: Units::of(sources) };
-    let figures = [
-        ("displacement.svg", "Displacement of watched sets", runs.displacements()?),
-        ("friction.svg", "Friction over time", runs.frictions()?),
-        ("friction_path.svg", "Friction over normal force", runs.friction_paths()?),
-        ("slip.svg", "Plastic and elastic slip", runs.slips()?),
-        ("slip_fraction.svg", "Share of the contact that slips", runs.slip_fractions()?),
-        ("energy.svg", "Energies", runs.energies()?),
-        ("newton.svg", "Convergence of Newton's method", runs.convergence()?),
+    let recipes: [Recipe; 7] = [
+        ("displacement.svg", "Displacement of watched sets", Runs::displacements),
+        ("friction.svg", "Friction over time", Runs::frictions),
+        ("friction_path.svg", "Friction over normal force", Runs::friction_paths),
+        ("slip.svg", "Plastic and elastic slip", Runs::slips),
+        ("slip_fraction.svg", "Share of the contact that slips", Runs::slip_fractions),
+        ("energy.svg", "Energies", Runs::energies),
+        ("newton.svg", "Convergence of Newton's method", Runs::convergence),
     ];
-    let drawn = figures.into_iter().filter(|(_, _, panels)| !panels.is_empty());
-    Ok(drawn
-        .map(|(file, title, panels)| {
-            (file, Figure { title: title.into(), subtitle: subtitle(sources), columns: 1, panels })
-        })
-        .collect())
+    for (file, title, panels) in recipes {
+        let panels = panels(&runs)?;
+        if !panels.is_empty() {
+            write(file, Figure { title: title.into(), subtitle: subtitle(sources), columns: 1, panels })?;
+        }
+    }
+    Ok(())
 }
 
 impl Runs<'_> {
     fn time(&self) -> Axis {
-        Axis::new("time", self.units.get("time"))
+        Axis::new("time", self.units.get("time")).including(0.0)
     }
 
     fn length(&self, name: &str) -> Axis {
@@ -104,12 +116,13 @@ impl Runs<'_> {
         owners
     }
 
-    /// A curve of each run that has the column.
-    fn curves(&self, x: &str, y: &str) -> Result<Vec<Curve>, PlotError> {
+    /// A curve of each run that has the column, under the name of the run, or of the quantity if there is one run only.
+    fn curves(&self, x: &str, y: &str, quantity: &str) -> Result<Vec<Curve>, PlotError> {
         let mut curves = Vec::new();
         for (k, run) in self.list.iter().enumerate().filter(|(_, run)| run.history.has(y)) {
             let points = run.history.points(x, y)?;
-            curves.push(Curve { name: run.source.name.clone(), points, look: Look::Line(k) });
+            let name = if self.list.len() == 1 { quantity } else { &run.source.name };
+            curves.push(Curve { name: name.into(), points, look: Look::Line(k) });
         }
         Ok(curves)
     }
@@ -117,8 +130,7 @@ impl Runs<'_> {
     fn displacements(&self) -> Result<Vec<Panel>, PlotError> {
         let mut panels = Vec::new();
         for set in self.owners("ux") {
-            let both = WATCHED.map(|u| self.curves("time", &format!("{set}.{u}")));
-            let [ux, uy] = both;
+            let [ux, uy] = WATCHED.map(|u| self.curves("time", &format!("{set}.{u}"), u));
             let both = [("ux", ux?), ("uy", uy?)];
             let largest = both.iter().map(|(_, curves)| size(curves)).fold(0.0, f64::max);
             for (u, curves) in both {
@@ -133,12 +145,13 @@ impl Runs<'_> {
     fn frictions(&self) -> Result<Vec<Panel>, PlotError> {
         let mut panels = Vec::new();
         for contact in self.owners("tangential_force") {
-            let mut curves = self.curves("time", &format!("{contact}.tangential_force"))?;
+            let mut curves = self.curves("time", &format!("{contact}.tangential_force"), "friction")?;
             let backwards = acts_backwards(&curves);
-            let normal = self.curves("time", &format!("{contact}.normal_force"))?;
+            let normal = self.curves("time", &format!("{contact}.normal_force"), "")?;
             // Runs that are compared have the same law and nearly the same normal force: the bounds of one will do.
+            let normal = normal.first().map_or(&[][..], |curve| &curve.points);
             for (k, (name, mu)) in self.coefficients(&contact).into_iter().enumerate() {
-                let bound = |sign: f64| normal[0].points.iter().map(|[t, n]| [*t, sign * mu * n]).collect();
+                let bound = |sign: f64| normal.iter().map(|[t, n]| [*t, sign * mu * n]).collect();
                 curves.extend(bounds(&format!("{name} × normal force"), backwards, bound, k));
             }
             panels.push(Panel { title: contact, x: self.time(), y: self.force("tangential force"), curves });
@@ -150,7 +163,7 @@ impl Runs<'_> {
         let mut panels = Vec::new();
         for contact in self.owners("tangential_force") {
             let (normal, tangential) = (format!("{contact}.normal_force"), format!("{contact}.tangential_force"));
-            let mut curves = self.curves(&normal, &tangential)?;
+            let mut curves = self.curves(&normal, &tangential, "friction")?;
             let most = curves.iter().flat_map(|curve| &curve.points).fold(0.0, |most, [n, _]| n.max(most));
             let backwards = acts_backwards(&curves);
             for (k, (name, mu)) in self.coefficients(&contact).into_iter().enumerate() {
@@ -176,7 +189,7 @@ impl Runs<'_> {
         let mut panels = Vec::new();
         for contact in self.owners("mean_slip") {
             for (column, name) in [("mean_slip", "plastic slip"), ("mean_elastic_slip", "elastic slip")] {
-                let curves = self.curves("time", &format!("{contact}.{column}"))?;
+                let curves = self.curves("time", &format!("{contact}.{column}"), name)?;
                 let title = format!("{contact}: mean {name}");
                 panels.push(Panel { title, x: self.time(), y: self.length(name), curves });
             }
@@ -187,7 +200,7 @@ impl Runs<'_> {
     fn slip_fractions(&self) -> Result<Vec<Panel>, PlotError> {
         let mut panels = Vec::new();
         for contact in self.owners("slip_fraction") {
-            let curves = self.curves("time", &format!("{contact}.slip_fraction"))?;
+            let curves = self.curves("time", &format!("{contact}.slip_fraction"), "")?;
             let y = Axis::new("slipping/closed length", "").including(0.0).including(1.0);
             panels.push(Panel { title: contact, x: self.time(), y, curves });
         }
@@ -198,7 +211,7 @@ impl Runs<'_> {
     fn energies(&self) -> Result<Vec<Panel>, PlotError> {
         let mut drawn = Vec::new();
         for (column, name) in ENERGIES {
-            let curves = self.curves("time", column)?;
+            let curves = self.curves("time", column, name)?;
             if size(&curves) > 0.0 {
                 drawn.push((name, curves));
             }
@@ -213,13 +226,13 @@ impl Runs<'_> {
             return Ok(drawn.into_iter().map(|(name, curves)| panel(name, curves)).collect());
         }
         let (error, mut all): (Vec<_>, Vec<_>) = drawn.into_iter().partition(|(name, _)| *name == "error");
-        for (k, (name, curves)) in all.iter_mut().enumerate() {
+        for (k, (_, curves)) in all.iter_mut().enumerate() {
             for curve in curves {
-                (curve.name, curve.look) = ((*name).into(), Look::Line(k));
+                curve.look = Look::Line(k);
             }
         }
         let all: Vec<Curve> = all.into_iter().flat_map(|(_, curves)| curves).collect();
-        let together = (!all.is_empty()).then(|| panel("all", all));
+        let together = (!all.is_empty()).then(|| panel("external work, and where it goes", all));
         Ok(together.into_iter().chain(error.into_iter().map(|(name, curves)| panel(name, curves))).collect())
     }
 
@@ -237,7 +250,7 @@ impl Runs<'_> {
             };
             panels.push(Panel {
                 title: title(what),
-                x: Axis::new("iteration", ""),
+                x: Axis::new("iteration", "").whole(),
                 y: Axis::new("‖r‖/‖forces at work‖", "").logarithmic(),
                 curves: curve(residuals(newton, &increments)?, Look::Pale(k)),
             });
@@ -246,7 +259,7 @@ impl Runs<'_> {
             panels.push(Panel {
                 title: title("linear solves of every increment, failed attempts included".into()),
                 x: self.time(),
-                y: Axis::new("linear solves", "").including(0.0),
+                y: Axis::new("linear solves", "").whole().including(0.0),
                 curves: curve(solves, Look::Pale(k)),
             });
         }
@@ -285,10 +298,10 @@ fn size(curves: &[Curve]) -> f64 {
     curves.iter().flat_map(|curve| &curve.points).fold(0.0, |size, [_, y]| y.abs().max(size))
 }
 
-/// Whether a force acts backwards by more than a small part of its size.
+/// Whether a force acts backwards by more than a small part of its size, so that its lower bound is worth its room.
 fn acts_backwards(curves: &[Curve]) -> bool {
     let lowest = curves.iter().flat_map(|curve| &curve.points).fold(0.0, |lowest, [_, y]| y.min(lowest));
-    -lowest > 0.05 * size(curves)
+    -lowest > BACKWARDS * size(curves)
 }
 
 /// A bound and, if force acts backwards, its mirror image.

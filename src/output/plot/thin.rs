@@ -93,7 +93,7 @@ mod tests {
         let thinned = thin(points(), 4000).concat();
         assert!(thinned.len() <= 4000, "{} points", thinned.len());
         assert!(thinned.contains(&[654_321.0 * 7e-4, 100.0]));
-        assert_eq!((thinned.first(), thinned.last()), (points().next().as_ref(), points().last().as_ref()));
+        assert_eq!((thinned.first(), thinned.last()), (points().next().as_ref(), points().next_back().as_ref()));
     }
 
     #[test]

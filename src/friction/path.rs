@@ -1,0 +1,243 @@
+//! One increment along linear paths of slip, pressure and time, in sub-steps where the tolerance asks for them.
+
+use super::peak::{Evolution, Peak};
+use super::slip_equation::{Point, ROUND_OFF, Reach, SlidingCurve, SlipEquation};
+
+/// Least D/α_t: where two roots of the slip equation merge D is 0, and known only to the square root of the round-off.
+pub(super) const LEAST_SLOPE: f64 = 1e-8;
+
+/// Sub-steps are halved at most so often.
+const MAX_HALVINGS: u32 = 16;
+
+/// Sub-steps that could not be halved enough, after which all are taken as they are: beyond the limit of uniqueness the
+/// traction may jump any number of times.
+const MAX_JUMPS: usize = 100000;
+
+/// Evaluations of the slip equation after which sub-steps are taken as they are.
+const MAX_EVALUATIONS: usize = 20_000;
+
+/// Errors below this, relative to the tractions they come from, are round-off.
+const NOISE: f64 = 2e-13;
+
+/// What an answer depends on: [by Δu, by the pressure p at the end]
+type Derivative = [f64; 2];
+
+/// The part of an increment in which slip may be plastic, mirrored so that the traction does not become negative.
+///
+/// Along it slip, pressure and time are linear in x, 0 ≤ x ≤ 1.
+pub(super) struct LoadPath<'a> {
+    pub curve: &'a SlidingCurve,
+    pub evolution: &'a Evolution,
+    /// α_t [F/L³]
+    pub alpha_t: f64,
+    /// Greatest error of the traction, relative to the static strength μ_s p [-]
+    pub tolerance: f64,
+    /// Slip from x = 0 to 1 [L]; its derivative by Δu is 1.
+    pub slip: f64,
+    /// Pressures at x = 0 and 1 [F/L²]
+    pub pressures: [f64; 2],
+    /// Derivatives of the pressure at x = 0
+    pub dstart_pressure: Derivative,
+    /// Time from x = 0 to 1 [T]
+    pub time: f64,
+    /// Derivatives of the time
+    pub dtime: Derivative,
+    /// Evaluations of the slip equation so far
+    pub evaluations: usize,
+    /// Sub-steps that could not be halved enough
+    pub jumps: usize,
+}
+
+/// A point of the path.
+#[derive(Clone, Copy)]
+pub(super) struct Station {
+    pub x: f64,
+    /// q ≥ 0 [F/L²]
+    pub traction: f64,
+    /// Derivatives of q
+    pub dtraction: Derivative,
+    /// μ [-]
+    pub mu: f64,
+    /// Derivatives of μ
+    pub dmu: Derivative,
+    /// R and where it is on its curve
+    reach: Reach,
+    /// Plastic slip since the start of the path [L]
+    pub plastic_slip: f64,
+    /// Work dissipated since the start of the path [F/L]
+    pub work: f64,
+    /// Bound of the traction lost by plastic slip that an elastic sub-step has overlooked [F/L²]
+    overlooked: f64,
+}
+
+impl LoadPath<'_> {
+    /// The beginning of the path.
+    pub(super) fn start(&self, traction: f64, ratio: f64, mu: f64, dmu: Derivative) -> Station {
+        let reach = self.curve.start(ratio);
+        let (plastic_slip, work, overlooked) = (0.0, 0.0, 0.0);
+        Station { x: 0.0, traction, dtraction: [0.0; 2], mu, dmu, reach, plastic_slip, work, overlooked }
+    }
+
+    /// The end of the path.
+    pub(super) fn end(&mut self, start: &Station) -> Station {
+        let end = self.advance(start, 1.0);
+        self.refine(start, end, MAX_HALVINGS)
+    }
+
+    /// The same station as `coarse`, which one sub-step from `from` has reached, to within the tolerance: two halves
+    /// of the sub-step are compared with the whole, and each is refined in its turn where they differ.
+    fn refine(&mut self, from: &Station, coarse: Station, halvings: u32) -> Station {
+        let middle = self.advance(from, 0.5 * (from.x + coarse.x));
+        let fine = self.advance(&middle, coarse.x);
+        let agree = self.agree(from, &coarse, &middle, &fine);
+        self.jumps += usize::from(!agree && halvings == 0);
+        if agree || halvings == 0 || self.jumps > MAX_JUMPS || self.evaluations > MAX_EVALUATIONS {
+            let work = fine.work + (self.energy(&fine) - self.energy(&coarse)) / 3.0;
+            return Station { work: work.max(from.work), ..fine };
+        }
+        let middle = self.refine(from, middle, halvings - 1);
+        let coarse = self.advance(&middle, coarse.x);
+        self.refine(&middle, coarse, halvings - 1)
+    }
+
+    /// Whether a sub-step and its halves agree to its share of the tolerance, in q, in μ p and in the mean of q.
+    fn agree(&self, from: &Station, coarse: &Station, middle: &Station, fine: &Station) -> bool {
+        let share = fine.x - from.x;
+        let pressure = self.pressure(fine.x);
+        let noise = NOISE * (fine.traction + from.traction + self.alpha_t * self.slip.abs() * share);
+        let tolerance = self.tolerance * self.evolution.mu_s;
+        let allowed = tolerance * (share * share.sqrt()).sqrt() * pressure + noise;
+        let allowed_mean = tolerance * pressure.max(self.pressure(from.x)) + noise;
+        let slip = self.slip.abs() * share + (fine.plastic_slip - from.plastic_slip);
+        let overlooked = coarse.overlooked.max(middle.overlooked).max(fine.overlooked);
+        (fine.traction - coarse.traction).abs() <= allowed
+            && (fine.mu - coarse.mu).abs() * pressure <= allowed
+            && self.extrapolates(from, coarse, middle, fine, allowed_mean * slip)
+            && overlooked <= allowed
+    }
+
+    /// Whether the extrapolated work is right to `allowed`.
+    ///
+    /// Where μ p changes by δ in a sub-step, the trapezoidal rule errs by δ ε, and its extrapolation by less than δ ε².
+    fn extrapolates(&self, from: &Station, coarse: &Station, middle: &Station, fine: &Station, allowed: f64) -> bool {
+        let difference = (self.energy(fine) - self.energy(coarse)).abs() - NOISE * self.energy(fine);
+        let [a, b, c] = [from, middle, fine].map(|station| station.mu * self.pressure(station.x));
+        let change = ((b - a).abs() + (c - b).abs()) * (fine.plastic_slip - from.plastic_slip);
+        difference <= allowed || difference * difference <= allowed * change
+    }
+
+    /// Work done by the traction: dissipated, and stored in the contact spring.
+    fn energy(&self, station: &Station) -> f64 {
+        station.work + 0.5 * station.traction * station.traction / self.alpha_t
+    }
+
+    /// One sub-step.
+    #[inline]
+    fn advance(&mut self, from: &Station, x: f64) -> Station {
+        let share = x - from.x;
+        let equation = SlipEquation {
+            curve: self.curve,
+            evolution: self.evolution,
+            alpha_t: self.alpha_t,
+            start: from.reach,
+            trial: from.traction + self.alpha_t * self.slip * share,
+            pressure: self.pressure(x),
+            old_mu: from.mu,
+            dt: self.time * share,
+        };
+        let (sticks, start) = equation.start();
+        if sticks {
+            return self.stick(from, x, equation.trial, &start.peak);
+        }
+        let (end, evaluations) = equation.solve(start);
+        self.evaluations += evaluations;
+        self.slide(from, x, &end)
+    }
+
+    /// A sub-step without plastic slip.
+    #[inline]
+    fn stick(&self, from: &Station, x: f64, trial: f64, peak: &Peak) -> Station {
+        let share = x - from.x;
+        let pressure = self.pressure(x);
+        let traction = trial.max(0.0);
+        let reach = self.curve.start(traction / (peak.mu * pressure));
+        let rate = self.rate(traction, peak.mu, pressure, &reach);
+        Station {
+            x,
+            traction,
+            dtraction: [from.dtraction[0] + self.alpha_t * share, from.dtraction[1]],
+            mu: peak.mu,
+            dmu: [0, 1].map(|i| peak.by_old * from.dmu[i] + peak.by_time * share * self.dtime[i]),
+            reach,
+            overlooked: self.alpha_t * rate * share,
+            ..*from
+        }
+    }
+
+    /// A sub-step with plastic slip.
+    #[inline]
+    fn slide(&self, from: &Station, x: f64, point: &Point) -> Station {
+        let share = x - from.x;
+        let (start_pressure, pressure) = (self.pressure(from.x), self.pressure(x));
+        let (reach, peak, slip) = (point.reach, point.peak, point.slip);
+        let traction = reach.ratio * peak.mu * pressure;
+        let per_slope = 1.0 / point.slope.max(LEAST_SLOPE * self.alpha_t);
+
+        // dR = U dλ + U/U₀ dR₀ along the curve of R
+        let begins = from.x == 0.0 || self.curve.begins_at(&from.reach) || from.reach.rate == 0.0;
+        let inherited = if begins { 0.0 } else { reach.rate / from.reach.rate / (from.mu * start_pressure) };
+        let derivatives = |i: usize| {
+            let dstart_pressure = self.dpressure(from.x)[i];
+            let dratio = from.dtraction[i]
+                - from.reach.ratio * (start_pressure * from.dmu[i] + from.mu * dstart_pressure);
+            let dtrial = from.dtraction[i] + if i == 0 { self.alpha_t * share } else { 0.0 };
+            let dmu = peak.by_old * from.dmu[i] + peak.by_time * share * self.dtime[i];
+            let dstrength = pressure * (peak.mu * inherited * dratio + reach.ratio * dmu)
+                + reach.ratio * peak.mu * self.dpressure(x)[i];
+            let dslip = (dtrial - dstrength) * per_slope;
+            let limit = if i == 0 { self.alpha_t / LEAST_SLOPE } else { 1.0 / LEAST_SLOPE };
+            let dtraction = (dtrial - self.alpha_t * dslip).clamp(-limit, limit);
+            (dtraction, (dmu + peak.slope * dslip).clamp(-limit / pressure, limit / pressure))
+        };
+        let (dq_dslip, dmu_dslip) = derivatives(0);
+        let (dq_dpressure, dmu_dpressure) = derivatives(1);
+
+        // ∫ q dλ, μ p taken as linear in ∫ R dλ
+        let mean_strength = 0.5 * (from.mu * start_pressure + peak.mu * pressure);
+        let work = self.curve.mean_ratio(&from.reach, &reach) * mean_strength * slip;
+        Station {
+            x,
+            traction,
+            dtraction: [dq_dslip, dq_dpressure],
+            mu: peak.mu,
+            dmu: [dmu_dslip, dmu_dpressure],
+            reach,
+            plastic_slip: from.plastic_slip + slip,
+            work: from.work + work,
+            overlooked: 0.0,
+        }
+    }
+
+    /// dλ/dx of the rate equations, 0 where R falls by itself or the answer is not unique.
+    #[inline]
+    fn rate(&self, traction: f64, mu: f64, pressure: f64, reach: &Reach) -> f64 {
+        if traction < reach.ratio * mu * pressure * (1.0 - ROUND_OFF) {
+            return 0.0; // inside the elastic core
+        }
+        let (weakening, recovery) = (self.evolution.weakening(mu), self.evolution.recovery(mu));
+        let drive = self.alpha_t * self.slip
+            - reach.ratio * (recovery * self.time * pressure + mu * (self.pressures[1] - self.pressures[0]));
+        let stiffness = self.alpha_t + pressure * (reach.rate * mu - reach.ratio * weakening);
+        if drive > 0.0 && stiffness > 0.0 { drive / stiffness } else { 0.0 }
+    }
+
+    /// p [F/L²]
+    pub(super) fn pressure(&self, x: f64) -> f64 {
+        (1.0 - x) * self.pressures[0] + x * self.pressures[1]
+    }
+
+    /// Derivatives of p
+    fn dpressure(&self, x: f64) -> Derivative {
+        [(1.0 - x) * self.dstart_pressure[0], (1.0 - x) * self.dstart_pressure[1] + x]
+    }
+}
