@@ -325,6 +325,7 @@ impl<'m> Assembler<'m> {
 
     /// Trial states of all pairs; a tangent is taken with the presumptions, a residual that may be accepted without.
     fn contacts(&self, trial: Trial, presuming: bool, x: &Configuration) -> Result<Vec<PairResponse>, TrialFailure> {
+        let before = self.model.configuration(&trial.old.displacement);
         let pairs = self.model.contacts.iter().zip(&trial.old.contacts).enumerate();
         pairs
             .map(|(number, (pair, old))| {
@@ -333,7 +334,7 @@ impl<'m> Assembler<'m> {
                     let Iterate { presumed, held, .. } = iterate(k);
                     (if presuming { presumed } else { Presume::Nothing }, held)
                 };
-                pair.respond(old, trial.dt, presumed, x).map_err(|(point, cause)| TrialFailure::Friction {
+                pair.respond(old, &before, trial.dt, presumed, x).map_err(|(point, cause)| TrialFailure::Friction {
                     contact: pair.name.clone(),
                     point,
                     cause,
@@ -361,12 +362,12 @@ impl<'m> Assembler<'m> {
                 nodes.extend(contribution.iter().flat_map(|contribution| &contribution.nodes));
                 if let Master::Mesh(surface) = &pair.master {
                     let way = old.foot.and_then(|from| surface.path(from, foot)).unwrap_or_default();
-                    let slip: f64 = way.iter().map(|(_, share)| share).sum();
+                    let slip: f64 = way.iter().map(|(_, from, to)| to - from).sum();
                     let [behind, ahead] = if slip < 0.0 { [self.ahead, 1] } else { [1, self.ahead] };
                     let back = std::iter::successors(Some(foot.segment), |&segment| surface.previous(segment));
                     let forth = std::iter::successors(Some(foot.segment), |&segment| surface.next(segment));
                     let around = back.take(1 + behind).chain(forth.take(1 + ahead));
-                    nodes.extend(around.flat_map(|segment| surface.segments[segment]));
+                    nodes.extend(around.flat_map(|segment| surface.segments[segment].nodes()));
                 }
                 nodes.sort_unstable();
                 nodes.dedup();

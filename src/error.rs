@@ -51,6 +51,12 @@ pub enum StepFailure {
     /// The state at the start of a dynamic step cannot be evaluated.
     #[error(transparent)]
     Start(TrialFailure),
+    /// The augmented Lagrangian did not bring the surfaces together.
+    #[error("the penetration is still too large after {passes} passes of the augmented Lagrangian: raise alpha_n")]
+    Penetration {
+        /// solutions with better and better multipliers
+        passes: usize,
+    },
     /// A body is held by nothing.
     #[error("{0}; give it a support, a spring, or contact that is closed at the start")]
     Floating(String),
@@ -64,7 +70,7 @@ impl StepFailure {
     pub fn is_retryable(&self) -> bool {
         match self {
             Self::Newton(NewtonFailure::Linear(LinearFailure::TooLarge { .. })) => false,
-            _ => matches!(self, Self::Newton(_) | Self::ContactLost(_)),
+            _ => matches!(self, Self::Newton(_) | Self::Penetration { .. } | Self::ContactLost(_)),
         }
     }
 }

@@ -130,34 +130,77 @@ pub fn advance(
     // The last increment of a step ends on its end, not within round-off of it.
     let time = if old.time + dt > step.span.end - 1e-9 * dt { step.span.end } else { old.time + dt };
     let increment = Trial { old, step, time, dt: time - old.time };
-    let (iterations, equilibrium) = solve(model, increment.ahead(), work);
+    let (iterations, equilibrium) = augment(model, increment.ahead(), work);
     let new = equilibrium.and_then(|u| reach_end(model, increment, u, work)).map(|u| accept(model, increment, u, work));
     (iterations, new)
 }
 
-/// Equilibrium at the time of a trial, wherever the scheme asks for it.
-fn solve(model: &Model, trial: Trial, work: &mut Workspace) -> (Vec<IterationRecord>, Result<Vec<f64>, StepFailure>) {
+/// Solutions with better and better multipliers before an increment of the augmented Lagrangian is given up.
+const MOST_PASSES: usize = 100;
+
+/// Equilibrium at the time of a trial; where a contact asks for the augmented Lagrangian, with multipliers that leave no
+/// more penetration than allowed (Uzawa's method).
+fn augment(model: &Model, trial: Trial, work: &mut Workspace) -> (Vec<IterationRecord>, Result<Vec<f64>, StepFailure>) {
+    let (mut iterations, mut result) = solve(model, trial, None, work);
+    let mut committed = None;
+    for pass in 1.. {
+        let old = committed.as_ref().unwrap_or(trial.old);
+        let Ok(u) = &result else { break };
+        let Some(multiplied) = multiplied(model, old, work) else { break };
+        if pass == MOST_PASSES {
+            result = Err(StepFailure::Penetration { passes: pass });
+            break;
+        }
+        let (more, again) = solve(model, Trial { old: &multiplied, ..trial }, Some(u.clone()), work);
+        iterations.extend(more);
+        result = again;
+        committed = Some(multiplied);
+    }
+    (iterations, result)
+}
+
+/// The committed state with the pressures just found as multipliers, if some pair is not content yet.
+fn multiplied(model: &Model, old: &State, work: &Workspace) -> Option<State> {
+    let pairs = || model.contacts.iter().zip(old.contacts.iter().zip(&work.assembler.evaluation.contacts));
+    if pairs().all(|(pair, (old, trial))| pair.is_content(old, trial)) {
+        return None;
+    }
+    let contacts = pairs().map(|(pair, (old, trial))| pair.multiplied(old, trial)).collect();
+    Some(State { contacts, ..old.clone() })
+}
+
+/// Equilibrium at the time of a trial, wherever the scheme asks for it; from the start value of a new increment unless
+/// another is given.
+fn solve(
+    model: &Model,
+    trial: Trial,
+    start: Option<Vec<f64>>,
+    work: &mut Workspace,
+) -> (Vec<IterationRecord>, Result<Vec<f64>, StepFailure>) {
     let old = trial.old;
     let Workspace { assembler, solver, system, linear_seconds } = work;
-    assembler.start_increment();
-    let mut first_iterate = true;
+    let begins = start.is_none();
+    if begins {
+        assembler.start_increment();
+    }
+    let mut tangents = 0;
     let mut counts = Vec::new();
     let mut floating = None;
     let spent = assembler.seconds.assembly + assembler.seconds.contact;
     let clock = std::time::Instant::now();
-    let (iterations, result) =
-        newton::solve(start_value(trial), model.newton, &mut **solver, system, |u, request, system| {
-            assembler.evaluate(trial, u, request, system)?;
-            if request == Request::Tangent {
-                if first_iterate && old.last_increment.is_none() {
-                    floating = null_motion(model, u, &system.tangent);
-                }
-                first_iterate = false;
-            } else if !first_iterate {
-                counts.push(ContactCounts::of(&assembler.evaluation.contacts));
+    let start = start.unwrap_or_else(|| start_value(trial));
+    let (iterations, result) = newton::solve(start, model.newton, &mut **solver, system, |u, request, system| {
+        assembler.evaluate(trial, u, request, system)?;
+        if request == Request::Tangent {
+            if begins && tangents == 0 && old.last_increment.is_none() {
+                floating = null_motion(model, u, &system.tangent);
             }
-            Ok(())
-        });
+            tangents += 1;
+        } else if tangents > 0 {
+            counts.push(ContactCounts::of(&assembler.evaluation.contacts));
+        }
+        Ok(())
+    });
     let assembled = assembler.seconds.assembly + assembler.seconds.contact - spent;
     *linear_seconds += clock.elapsed().as_secs_f64() - assembled;
     counts.resize(iterations.len(), ContactCounts::default());
@@ -279,8 +322,8 @@ fn kinetic_energy(step: &Step, state: &State, work: &mut Workspace) -> f64 {
 fn contact_energy(model: &Model, contacts: &[Vec<ContactState>], x: &Configuration) -> f64 {
     let mut energy = 0.0;
     for (pair, states) in model.contacts.iter().zip(contacts) {
-        for (point, ContactState { friction, .. }) in pair.points.iter().zip(states) {
-            let normal = 0.5 * friction.pressure.powi(2) / pair.alpha_n;
+        for (point, ContactState { friction, gap, .. }) in pair.points.iter().zip(states) {
+            let normal = if friction.pressure > 0.0 { 0.5 * pair.alpha_n * gap.powi(2) } else { 0.0 };
             let stiffness = pair.law.stiffness();
             let tangential = if stiffness > 0.0 { 0.5 * friction.traction.powi(2) / stiffness } else { 0.0 };
             energy += point.current_length(x) * (normal + tangential);

@@ -289,6 +289,26 @@ fn contacts_are_checked() {
 }
 
 #[test]
+fn rigid_masters_and_formulations_that_make_no_sense_are_refused() {
+    let at = "contacts.base.master";
+    for (master, place, message) in [
+        (json!({"circle": {"centre": [0, 0], "radius": 0}}), format!("{at}.circle.radius: "), "must be positive"),
+        (json!({"polyline": {"points": [[0, 0]]}}), format!("{at}.polyline.points: "), "two or more"),
+        (json!({"polyline": {"points": [[0, 0], [0, 0]]}}), format!("{at}.polyline.points: "), "the same"),
+        (json!({"circle": {"center": [0, 0], "radius": 1}}), format!("{at}.circle.center"), "`centre`"),
+    ] {
+        refused_edits(&[("/contacts/base/master", master)], &[&place, message]);
+    }
+    let plane = json!({"plane": {"point": [0, 0], "normal": [0, 1]}});
+    let mortar = [("/contacts/base/master", plane), ("/contacts/base/method", json!("mortar"))];
+    refused_edits(&mortar, &["contacts.base.method: ", "gauss_to_segment"]);
+    refused_edits(
+        &[("/contacts/base/normal", json!({"penetration": 0}))],
+        &["contacts.base.normal.penetration: ", "positive"],
+    );
+}
+
+#[test]
 fn steps_are_checked() {
     for (pointer, value, fragments) in [
         ("/steps", json!([]), ["steps: ", "at least one step"]),

@@ -7,15 +7,18 @@ use nalgebra::Vector2;
 
 use super::error::{CaseError, Complaint};
 use super::file::{
-    Case, Components, ContactInput, DashpotInput, DriveInput, Formulation, IncrementsInput, LoadInput, MasterInput,
-    MeshSource, Method, NodeInput, Place, PointMassInput, RigidInput, SpringInput, StepInput, TimeInput,
+    Case, CircleInput, Components, ContactInput, DashpotInput, DriveInput, Formulation, IncrementsInput, LoadInput,
+    MasterInput, MeshSource, Method, NodeInput, Place, PlaneInput, PointMassInput, PolylineInput, RigidInput,
+    SpringInput, StepInput, TimeInput,
 };
 use super::{initial, names, supported};
 use crate::boundary::{
     Amplitude, Dashpot, DeadLoad, Drive, Expression, FollowerPressure, Loads, Motion, Prescribed, Span, Spring,
 };
+use crate::contact::mortar::{Mortar, mortar_points};
 use crate::contact::pair::ContactPair;
-use crate::contact::surface::{Master, Plane, SlavePoint, Surface, gauss_points, in_order, lone_point, nodal_points};
+use crate::contact::rigid::{Circle, Plane, Polyline, Rigid};
+use crate::contact::surface::{Master, SlavePoint, Surface, gauss_points, in_order, lone_point, nodal_points};
 use crate::element::{SolidElement, consistent_mass};
 use crate::mesh::{Edge, Group, Mesh, gmsh};
 use crate::model::{Body, Increments, Model, PointMass, Step, WatchedSet};
@@ -184,8 +187,12 @@ fn contacts(case: &Case, model: &Model) -> Checked<Vec<ContactPair>> {
 
 fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPair> {
     let place = format!("contacts.{name}");
-    let points = slave_points(&place, input, &model.mesh)?;
+    let (points, mortar) = slave_points(&place, input, &model.mesh)?;
     let master = master(&place, input, &points, &model.mesh)?;
+    if mortar.is_some() && matches!(master, Master::Rigid(_)) {
+        let message = "is mortar, which needs an edge group as master: use gauss_to_segment on a rigid body";
+        return Err(Complaint::new(format!("{place}.method"), message));
+    }
     let alpha_n = match input.normal.alpha_n {
         Some(alpha_n) => alpha_n,
         None => default_stiffness(&place, input, model)?,
@@ -193,6 +200,10 @@ fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPa
     if alpha_n <= 0.0 {
         let message = format!("is {alpha_n}: must be positive (leave it out for 10 (λ + 2G)/h)");
         return Err(Complaint::new(format!("{place}.normal.alpha_n"), message));
+    }
+    if let Some(penetration) = input.normal.penetration.filter(|p| !(*p > 0.0 && p.is_finite())) {
+        let message = format!("is {penetration}: must be positive (leave it out for the plain penalty)");
+        return Err(Complaint::new(format!("{place}.normal.penetration"), message));
     }
     let friction = format!("{place}.friction");
     if input.area.is_some() && input.gives_alpha_t() == Some(false) {
@@ -208,15 +219,24 @@ fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPa
         let started = initial::with_structure(&input.friction, structure, &start)?;
         law = started.build(0.5 * alpha_n).map_err(|error| Complaint::new(&start, error))?;
     }
-    let mut pair = ContactPair { name: name.into(), points, master, alpha_n, law, initial: None };
+    let mut pair = ContactPair {
+        name: name.into(),
+        points,
+        master,
+        mortar,
+        alpha_n,
+        penetration: input.normal.penetration,
+        law,
+        initial: None,
+    };
     if let Some(initial) = &input.initial {
         initial::close(&mut pair, initial, model, &start)?;
     }
     Ok(pair)
 }
 
-/// Points of the edges, or the points themselves, each with the given area.
-fn slave_points(place: &str, input: &ContactInput, mesh: &Mesh) -> Checked<Vec<SlavePoint>> {
+/// Points of the edges, or the points themselves, each with the given area; and the edges if contact is averaged over them.
+fn slave_points(place: &str, input: &ContactInput, mesh: &Mesh) -> Checked<(Vec<SlavePoint>, Option<Mortar>)> {
     let name = &input.slave;
     let slave = format!("{place}.slave");
     let area = format!("{place}.area");
@@ -229,7 +249,7 @@ fn slave_points(place: &str, input: &ContactInput, mesh: &Mesh) -> Checked<Vec<S
             return Err(Complaint::new(area, format!("is {size}: must be positive")));
         }
         check_stiffness(place, "area", size)?;
-        return Ok(nodes.iter().map(|&node| lone_point(node, size)).collect());
+        return Ok((nodes.iter().map(|&node| lone_point(node, size)).collect(), None));
     }
     let edges = in_order(&node_lists(edges(mesh, name, &slave)?));
     if input.area.is_some() {
@@ -240,8 +260,12 @@ fn slave_points(place: &str, input: &ContactInput, mesh: &Mesh) -> Checked<Vec<S
         return Err(Complaint::new(format!("{place}.points"), format!("is {}: must be 2, 3 or 4", input.points)));
     }
     Ok(match input.method {
-        Method::NodeToSegment => nodal_points(&edges),
-        Method::GaussToSegment => gauss_points(&edges, input.points),
+        Method::NodeToSegment => (nodal_points(&edges), None),
+        Method::GaussToSegment => (gauss_points(&edges, input.points), None),
+        Method::Mortar => {
+            let (points, mortar) = mortar_points(&edges, &mesh.nodes);
+            (points, Some(mortar))
+        }
     })
 }
 
@@ -252,13 +276,37 @@ fn master(place: &str, input: &ContactInput, points: &[SlavePoint], mesh: &Mesh)
             check_disjoint(place, &input.slave, points, group, master, mesh)?;
             Ok(Master::Mesh(Surface::new(&node_lists(master))))
         }
-        MasterInput::Rigid(RigidInput { plane }) => {
-            let given = Vector2::from(plane.normal);
+        MasterInput::Rigid(body) => rigid(body, &format!("{place}.master")).map(Master::Rigid),
+    }
+}
+
+/// A rigid master, with its geometry checked.
+fn rigid(input: &RigidInput, place: &str) -> Checked<Rigid> {
+    match input {
+        RigidInput::Plane(PlaneInput { point, normal }) => {
+            let given = Vector2::from(*normal);
             let Some(normal) = given.try_normalize(0.0).filter(|normal| normal.norm() > 0.5) else {
                 let message = format!("is [{}, {}]: must have a direction, such as [0, 1]", given.x, given.y);
-                return Err(Complaint::new(format!("{place}.master.plane.normal"), message));
+                return Err(Complaint::new(format!("{place}.plane.normal"), message));
             };
-            Ok(Master::Plane(Plane { point: Vector2::from(plane.point), normal }))
+            Ok(Rigid::Plane(Plane { point: Vector2::from(*point), normal }))
+        }
+        RigidInput::Circle(CircleInput { centre, radius, hole }) => {
+            if !(*radius > 0.0 && radius.is_finite()) {
+                return Err(Complaint::new(format!("{place}.circle.radius"), format!("is {radius}: must be positive")));
+            }
+            Ok(Rigid::Circle(Circle { centre: Vector2::from(*centre), radius: *radius, hole: *hole }))
+        }
+        RigidInput::Polyline(PolylineInput { points }) => {
+            let place = format!("{place}.polyline.points");
+            if points.len() < 2 {
+                return Err(Complaint::new(place, format!("has {} points: must have two or more", points.len())));
+            }
+            if let Some(k) = points.windows(2).position(|pair| pair[0] == pair[1]) {
+                let message = format!("points {} and {} are the same: leave one out", k, k + 1);
+                return Err(Complaint::new(place, message));
+            }
+            Ok(Rigid::Polyline(Polyline::new(points.iter().map(|&point| Vector2::from(point)).collect())))
         }
     }
 }

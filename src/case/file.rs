@@ -107,7 +107,7 @@ pub struct ContactInput {
     /// Area that each point of a slave group of points stands for; it does not change. Edges have lengths of their own
     /// [L, the thickness being 1]
     pub area: Option<f64>,
-    /// Edge group, or a rigid plane
+    /// Edge group, or a rigid body
     pub master: MasterInput,
     /// Where contact is evaluated
     #[serde(default)]
@@ -162,17 +162,22 @@ pub enum MasterInput {
 
 impl<'de> Deserialize<'de> for MasterInput {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let expecting = "the name of an edge group, or {\"plane\": {\"point\": [x, y], \"normal\": [x, y]}}";
+        let expecting =
+            "the name of an edge group, or a rigid body such as {\"plane\": {\"point\": [x, y], \"normal\": [x, y]}}";
         Choice { expecting, number: None, text: Self::Group, object: Self::Rigid }.read(deserializer)
     }
 }
 
-/// A rigid body given by a formula.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RigidInput {
+/// A rigid body at rest, given by a formula.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RigidInput {
     /// A half-space
-    pub plane: PlaneInput,
+    Plane(PlaneInput),
+    /// A disk, or the rim of a hole
+    Circle(CircleInput),
+    /// A body bounded by straight lines
+    Polyline(PolylineInput),
 }
 
 /// A rigid half-space.
@@ -185,6 +190,27 @@ pub struct PlaneInput {
     pub normal: [f64; 2],
 }
 
+/// A rigid circle.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CircleInput {
+    /// Centre [L]
+    pub centre: [f64; 2],
+    /// Radius [L]
+    pub radius: f64,
+    /// Whether the solid is outside the circle
+    #[serde(default)]
+    pub hole: bool,
+}
+
+/// A rigid polyline.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PolylineInput {
+    /// Its corners, the solid on the right of the way; the first again at the end closes it [L]
+    pub points: Vec<[f64; 2]>,
+}
+
 /// Where contact is evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -194,6 +220,8 @@ pub enum Method {
     /// At Gauss points of the slave's edges
     #[default]
     GaussToSegment,
+    /// Averaged around the slave's nodes, integrated exactly over non-matching meshes; the master is an edge group
+    Mortar,
 }
 
 /// Normal contact.
@@ -203,6 +231,9 @@ pub struct NormalInput {
     /// α_n: pressure per penetration [F/L³]; 10 (λ + 2G)/h of the elements behind the slave unless given. A slave group of
     /// points has none behind it and needs a number
     pub alpha_n: Option<f64>,
+    /// Largest penetration left [L]: the pressure is raised until no closed gap is larger (augmented Lagrangian by Uzawa's
+    /// method), so that the answer does not depend on alpha_n; penalty alone unless given
+    pub penetration: Option<f64>,
 }
 
 /// A step.

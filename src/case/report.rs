@@ -7,8 +7,9 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::file::{
-    BodyInput, Case, Components, ContactInput, DashpotInput, DriveInput, Formulation, InitialInput, LoadInput,
-    MasterInput, MeshSource, Method, SpringInput, StepInput, TimeInput,
+    BodyInput, Case, CircleInput, Components, ContactInput, DashpotInput, DriveInput, Formulation, InitialInput,
+    LoadInput, MasterInput, MeshSource, Method, PlaneInput, PolylineInput, RigidInput, SpringInput, StepInput,
+    TimeInput,
 };
 use super::initial::lost_velocity;
 use crate::configuration::Configuration;
@@ -169,8 +170,19 @@ fn contact(case: &Case, pair: &ContactPair) -> Vec<String> {
     let master = match &input.master {
         MasterInput::Group(group) => group.clone(),
         MasterInput::Rigid(rigid) => {
-            let [point, normal] = [rigid.plane.point, rigid.plane.normal].map(|v| v.map(number).join(", "));
-            format!("the rigid plane through ({point}) with the normal ({normal})")
+            let pair = |v: [f64; 2]| v.map(number).join(", ");
+            match rigid {
+                RigidInput::Plane(PlaneInput { point, normal }) => {
+                    format!("the rigid plane through ({}) with the normal ({})", pair(*point), pair(*normal))
+                }
+                RigidInput::Circle(CircleInput { centre, radius, hole }) => {
+                    let kind = if *hole { "hole" } else { "disk" };
+                    format!("the rigid {kind} of radius {} about ({})", number(*radius), pair(*centre))
+                }
+                RigidInput::Polyline(PolylineInput { points }) => {
+                    format!("the rigid polyline through {}", count(points.len(), "point"))
+                }
+            }
         }
     };
     let where_evaluated = match input {
@@ -179,6 +191,7 @@ fn contact(case: &Case, pair: &ContactPair) -> Vec<String> {
             format!("gauss_to_segment, {points} points an edge")
         }
         ContactInput { method: Method::NodeToSegment, .. } => "node_to_segment, a point at each node".into(),
+        ContactInput { method: Method::Mortar, .. } => "mortar, averaged around each node".into(),
     };
     let alpha_n =
         if input.normal.alpha_n.is_some() { "given" } else { "10 (λ + 2G)/h of the elements behind the slave" };

@@ -99,19 +99,19 @@ fn check_floating(case: &Case, model: &Model) -> Result<(), Complaint> {
     Ok(())
 }
 
-/// Groups of bodies joined by contacts; those that touch a rigid plane are left out.
+/// Groups of bodies joined by contacts; those that touch a rigid body are left out.
 fn joined_bodies(model: &Model) -> Vec<Vec<usize>> {
     let body_at = |node: usize| model.bodies.iter().position(|body| body.nodes.binary_search(&node).is_ok());
     let bodies_of = |nodes: &mut dyn Iterator<Item = usize>| nodes.filter_map(body_at).collect::<BTreeSet<_>>();
     let mut group: Vec<usize> = (0..model.bodies.len()).collect();
-    let mut on_plane = vec![false; model.bodies.len()];
+    let mut on_rigid = vec![false; model.bodies.len()];
     for pair in &model.contacts {
         let slaves = bodies_of(&mut pair.points.iter().flat_map(|point| point.position.iter().map(|&(node, _)| node)));
         match &pair.master {
-            Master::Plane(_) => slaves.iter().for_each(|&slave| on_plane[slave] = true),
+            Master::Rigid(_) => slaves.iter().for_each(|&slave| on_rigid[slave] = true),
             Master::Mesh(Surface { segments, .. }) => {
                 // A group of edges may run along several bodies.
-                let masters = bodies_of(&mut segments.iter().map(|ends| ends[0]));
+                let masters = bodies_of(&mut segments.iter().map(|segment| segment.ends[0]));
                 let joined: Vec<usize> = slaves.iter().chain(&masters).map(|&body| group[body]).collect();
                 group.iter_mut().filter(|g| joined.contains(g)).for_each(|g| *g = joined[0]);
             }
@@ -119,7 +119,7 @@ fn joined_bodies(model: &Model) -> Vec<Vec<usize>> {
     }
     let members = |g: usize| (0..group.len()).filter(|&body| group[body] == g).collect::<Vec<_>>();
     let groups = (0..group.len()).map(members).filter(|bodies| !bodies.is_empty());
-    groups.filter(|bodies| !bodies.iter().any(|&body| on_plane[body])).collect()
+    groups.filter(|bodies| !bodies.iter().any(|&body| on_rigid[body])).collect()
 }
 
 /// A rigid motion of the bodies that no prescribed dof, spring or dashpot resists.

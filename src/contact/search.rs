@@ -5,13 +5,14 @@ use std::collections::BinaryHeap;
 
 use nalgebra::Vector2;
 
-use super::projection::{Bound, Projection, normal_of, on_held_segment, on_plane, on_segment};
-use super::surface::{Master, Plane, SlavePoint, Surface};
+use super::projection::{Bound, Projection, normal_of, on_held_segment, on_segment};
+use super::rigid::Rigid;
+use super::surface::{Master, Segment, SlavePoint, Surface};
 use crate::configuration::Configuration;
 
 /// A slave and a segment face each other when the cosine between their outward normals is below this: the sides of a
 /// body do not touch what its bottom rests on. A slave point of no edge faces every segment.
-const FACING: f64 = -0.1;
+pub const FACING: f64 = -0.1;
 
 /// Segments looked at before a point is called free. Nearest come first, so more than a few mean that nothing faces it.
 const CANDIDATES: usize = 8;
@@ -20,15 +21,15 @@ const CANDIDATES: usize = 8;
 pub enum Index<'a> {
     /// Segments of a mesh surface in a tree of boxes
     Mesh(&'a Surface, Boxes),
-    /// A plane needs none
-    Plane(&'a Plane),
+    /// A rigid body needs none
+    Rigid(&'a Rigid),
 }
 
 impl<'a> Index<'a> {
     /// Index the master in the configuration `x`, O(N).
     pub fn new(master: &'a Master, x: &Configuration) -> Self {
         match master {
-            Master::Plane(plane) => Self::Plane(plane),
+            Master::Rigid(body) => Self::Rigid(body),
             Master::Mesh(surface) => Self::Mesh(surface, Boxes::new(surface, x)),
         }
     }
@@ -38,14 +39,14 @@ impl<'a> Index<'a> {
     pub fn project(&self, slave: &SlavePoint, held: Option<usize>, x: &Configuration) -> Option<Projection> {
         let point = slave.at(x);
         match self {
-            Self::Plane(plane) => Some(on_plane(point, plane)),
+            Self::Rigid(body) => body.project(point, slave.outward(x)),
             Self::Mesh(surface, boxes) => {
                 if let Some(held) = held.and_then(|segment| on_held_segment(slave, surface, segment, x)) {
                     return Some(held);
                 }
                 let outward = slave.outward(x);
                 let facing = |segment: usize| {
-                    let [a, b] = surface.segments[segment];
+                    let [a, b] = surface.segments[segment].ends;
                     outward.is_none_or(|outward| normal_of(x.between(a, b).normalize()).dot(&outward) < FACING)
                 };
                 let nearest = boxes.nearest(point, surface, x).take(CANDIDATES);
@@ -58,6 +59,14 @@ impl<'a> Index<'a> {
                 })
             }
         }
+    }
+
+    /// Segments of a mesh surface within a distance of some points' bounding box, in order along it.
+    pub fn around(&self, points: impl Iterator<Item = Vector2<f64>>, reach: f64) -> Vec<usize> {
+        let Self::Mesh(_, boxes) = self else { return Vec::new() };
+        let reach = Vector2::new(reach, reach);
+        let each = points.map(|point| Box2 { low: point - reach, high: point + reach });
+        each.reduce(|sum, one| sum.around(&one)).map_or_else(Vec::new, |all| boxes.meeting(&all))
     }
 }
 
@@ -81,6 +90,10 @@ impl Box2 {
         Self { low: self.low.inf(&other.low), high: self.high.sup(&other.high) }
     }
 
+    fn meets(&self, other: &Self) -> bool {
+        (0..2).all(|i| self.low[i] <= other.high[i] && other.low[i] <= self.high[i])
+    }
+
     /// Squared distance of a point from the box.
     fn distance(&self, point: Vector2<f64>) -> f64 {
         (self.low - point).sup(&(point - self.high)).sup(&Vector2::zeros()).norm_squared()
@@ -89,10 +102,8 @@ impl Box2 {
 
 impl Boxes {
     fn new(surface: &Surface, x: &Configuration) -> Self {
-        let of = |&[a, b]: &[usize; 2]| {
-            let (a, b) = (x.at(a), x.at(b));
-            Box2 { low: a.inf(&b), high: a.sup(&b) }
-        };
+        let point = |node: usize| Box2 { low: x.at(node), high: x.at(node) };
+        let of = |segment: &Segment| segment.nodes().fold(point(segment.ends[0]), |sum, node| sum.around(&point(node)));
         let mut levels: Vec<Vec<Box2>> = vec![surface.segments.iter().map(of).collect()];
         while let Some(last) = levels.last().filter(|last| last.len() > 1) {
             let halved = last.chunks(2).map(|pair| pair.iter().skip(1).fold(pair[0], |sum, one| sum.around(one)));
@@ -100,6 +111,24 @@ impl Boxes {
             levels.push(halved);
         }
         Self { segments: surface.segments.len(), levels }
+    }
+
+    /// The segments whose boxes meet another, in order along the surface.
+    fn meeting(&self, other: &Box2) -> Vec<usize> {
+        let mut found = Vec::new();
+        let mut open = Vec::from_iter((self.segments > 0).then(|| (self.levels.len() - 1, 0)));
+        while let Some((level, number)) = open.pop() {
+            match self.levels[level][number].meets(other) {
+                true if level == 0 => found.push(number),
+                true => {
+                    let below = self.levels[level - 1].len();
+                    let halves = [2 * number + 1, 2 * number].into_iter().filter(|&number| number < below);
+                    open.extend(halves.map(|number| (level - 1, number)));
+                }
+                false => {}
+            }
+        }
+        found
     }
 
     /// The segments by their distance from a point, the nearest first; of equally near ones the first along the surface.
@@ -114,7 +143,7 @@ impl Boxes {
                     return Some(number);
                 }
                 if level == 0 {
-                    let distance = distance_from_segment(point, surface.segments[number], x);
+                    let distance = distance_from_segment(point, &surface.segments[number], x);
                     open.push(Candidate { distance, level, number, exact: true });
                     continue;
                 }
@@ -129,11 +158,15 @@ impl Boxes {
     }
 }
 
-/// Squared distance of a point from a segment.
-fn distance_from_segment(point: Vector2<f64>, [a, b]: [usize; 2], x: &Configuration) -> f64 {
-    let (along, offset) = (x.between(a, b), point - x.at(a));
-    let xi = (offset.dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
-    (offset - along * xi).norm_squared()
+/// Squared distance of a point from a segment; of a parabola from the two chords on either side of its middle.
+fn distance_from_segment(point: Vector2<f64>, segment: &Segment, x: &Configuration) -> f64 {
+    let from_chord = |[a, b]: [usize; 2]| {
+        let (along, offset) = (x.between(a, b), point - x.at(a));
+        let xi = (offset.dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+        (offset - along * xi).norm_squared()
+    };
+    let [a, b] = segment.ends;
+    segment.middle.map_or_else(|| from_chord([a, b]), |m| from_chord([a, m]).min(from_chord([m, b])))
 }
 
 /// A box or segment that may be the nearest; the heap has the nearest on top.
