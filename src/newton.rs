@@ -84,7 +84,7 @@ pub type Outcome<E> = (Vec<Iteration>, Result<Vec<f64>, NewtonFailure<E>>);
 /// Growth of the residual over its largest start value that counts as divergence.
 const DIVERGENCE: f64 = 1e4;
 
-/// How much less an old tangent may gain than the iteration before did.
+/// How much less an old tangent may gain than the iteration before did, and how much it must gain to be used again.
 const OLD_TANGENT: f64 = 10.0;
 
 /// Solve r(u) = 0 from the start value `u`. `evaluate` fills the system at a displacement.
@@ -99,6 +99,8 @@ pub fn solve<E>(
     let result = (|| {
         evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
         let (mut largest_start, mut before) = (0.0f64, f64::INFINITY);
+        // Near a kink of the equations it promises more than it keeps, every time.
+        let mut old_tangent_serves = true;
         loop {
             let size = norm(&system.residual);
             let residual = size / system.forces.max(f64::MIN_POSITIVE);
@@ -108,6 +110,8 @@ pub fn solve<E>(
             }
             if let Some(last) = iterations.last_mut() {
                 last.residual = residual;
+                let kept_promise = last.factorized || size <= before / OLD_TANGENT;
+                old_tangent_serves &= kept_promise && !last.fallback;
             }
             let solved = done > 0 && size <= settings.tolerance * system.forces;
             if solved || size <= system.round_off {
@@ -122,7 +126,8 @@ pub fn solve<E>(
             if done == settings.max_iterations {
                 return Err(NewtonFailure::TooManyIterations { residual, iterations: done });
             }
-            let factorized = done == 0 || OLD_TANGENT * size * (size / before) > settings.tolerance * system.forces;
+            let promised = OLD_TANGENT * size * (size / before) <= settings.tolerance * system.forces;
+            let factorized = done == 0 || !(old_tangent_serves && promised);
             let solution = if factorized {
                 evaluate(&u, Request::Tangent, system).map_err(NewtonFailure::Evaluation)?;
                 let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();

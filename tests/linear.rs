@@ -5,7 +5,7 @@ mod grids;
 use std::sync::Arc;
 
 use fecontact::linear::{
-    LinearSolver, Multifrontal, Pattern, Solution, SparseLu, SparseMatrix, norm, solve, solve_again,
+    LinearFailure, LinearSolver, Multifrontal, Pattern, Solution, SparseLu, SparseMatrix, norm, solve, solve_again,
 };
 use grids::{Grids, add, noise};
 use proptest::prelude::*;

@@ -217,7 +217,7 @@ fn block_on_ground(angle: f64, law: &Value, steps: Value) -> Finished {
             "block": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
         },
         "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "friction": law}},
-        "newton": {"tolerance": 1e-11},
+        "newton": {"tolerance": 1e-12},
         "steps": steps,
     }))
 }

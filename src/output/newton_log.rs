@@ -12,7 +12,7 @@ use crate::step::IterationRecord;
 #[derive(Debug)]
 pub struct NewtonLog(Table);
 
-const COLUMNS: [&str; 11] = [
+const COLUMNS: [&str; 12] = [
     "step",
     "increment",
     "attempt",
@@ -24,6 +24,7 @@ const COLUMNS: [&str; 11] = [
     "stick",
     "slip",
     "linear_residual",
+    "factorized",
 ];
 
 impl NewtonLog {
@@ -46,6 +47,7 @@ impl Observer for NewtonLog {
             [time, newton.residual, newton.correction].into_iter().for_each(|number| table.number(number));
             [contacts.open, contacts.stick, contacts.slip].into_iter().for_each(|count| table.count(count));
             table.number(newton.linear_residual);
+            table.count(usize::from(newton.factorized));
             table.end_row()?;
         }
         table.share()
