@@ -92,9 +92,13 @@ fn local_error(step: &Step, old: &State, new: &State) -> f64 {
     constant * new.dt.powi(2) * change
 }
 
-/// Largest slip, in the increment, of a point that takes part in an event of its contact; 0 if there is none [L].
+/// Largest slip, in the increment, of a point that takes part in an event of its contact; 0 if there is none, and in the
+/// first increment of a run, which may start sliding [L].
 fn slip_at_events(model: &Model, old: &State, new: &State) -> f64 {
     let mut largest = 0.0f64;
+    if old.dt == 0.0 {
+        return largest;
+    }
     // Slip without friction has no onset.
     for k in (0..model.contacts.len()).filter(|&k| model.contacts[k].law.stiffness() > 0.0) {
         let [before, after] = [old, new].map(|state| Directions::of(model, k, state));
