@@ -12,6 +12,7 @@ use std::env;
 use std::error::Error;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
+use std::path::Path;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = env::args().skip(1).collect();
@@ -20,6 +21,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     if n < 1 || b < 2 || b % 2 == 1 {
         return Err("N must be at least 1, B even and at least 2".into());
     }
+    println!("{path}: {} degrees of freedom", write(n, b, Path::new(path))?);
+    Ok(())
+}
+
+/// Write the mesh; returns the number of degrees of freedom.
+pub fn write(n: i64, b: i64, path: &Path) -> io::Result<i64> {
     let ground = Grid { name: "ground", columns: 4 * n, rows: n, corner: [-4 * n, -2 * n], per_unit: n, first_node: 1 };
     let first_node = 1 + ground.nodes();
     let block = Grid { name: "block", columns: b, rows: b / 2, corner: [-b, 0], per_unit: b, first_node };
@@ -31,8 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     write_nodes(&mut out, &bodies)?;
     write_elements(&mut out, &bodies)?;
     out.flush()?;
-    println!("{path}: {} degrees of freedom", 2 * bodies.iter().map(Grid::nodes).sum::<i64>());
-    Ok(())
+    Ok(2 * bodies.iter().map(Grid::nodes).sum::<i64>())
 }
 
 /// A rectangle of square elements.

@@ -14,6 +14,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, Vector2};
 use rayon::prelude::*;
 
+use crate::boundary::Prescribed;
 use crate::configuration::Configuration;
 use crate::contact::force::{ContactState, Presume, Status};
 use crate::contact::pair::PairResponse;
@@ -26,7 +27,7 @@ use crate::model::{Model, Step};
 use crate::newton::Request;
 use crate::state::State;
 use crate::system::{Contribution, System};
-use crate::time::Coefficients;
+use crate::time::{Coefficients, supported_rates};
 
 /// One increment to be solved: from where, to when, under which step.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +42,33 @@ pub struct Trial<'a> {
     pub dt: f64,
 }
 
+impl<'a> Trial<'a> {
+    /// The increment to the time t + θ Δt at which the scheme asks for equilibrium.
+    pub fn ahead(self) -> Trial<'a> {
+        let theta = self.step.scheme.theta();
+        if theta == 1.0 { self } else { Self { time: self.old.time + theta * self.dt, dt: theta * self.dt, ..self } }
+    }
+
+    /// ū of a support at the end of the increment; not finite where its expression has no value [L].
+    pub fn prescribed(&self, support: &Prescribed, model: &Model) -> f64 {
+        let (position, start) = self.place(support, model);
+        support.value(position, self.time, self.step.span, start)
+    }
+
+    /// ū of a support at the start, thirds and end of the increment [L].
+    pub fn thirds(&self, support: &Prescribed, model: &Model) -> [f64; 4] {
+        let (position, start) = self.place(support, model);
+        support.thirds(position, [self.time - self.dt, self.time], self.step.span, start)
+    }
+
+    /// Reference position of a support, and its displacement at the start of the step.
+    fn place(&self, support: &Prescribed, model: &Model) -> (Vector2<f64>, Vector2<f64>) {
+        let node = support.dof / 2;
+        let start = &self.old.step_start.displacement[2 * node..][..2];
+        (model.mesh.nodes[node], Vector2::new(start[0], start[1]))
+    }
+}
+
 /// What was found at the last evaluated displacement, for the accepted state.
 #[derive(Clone, Debug, Default)]
 pub struct Evaluation {
@@ -48,6 +76,8 @@ pub struct Evaluation {
     pub force: Vec<f64>,
     /// loads [F]
     pub loads: Vec<f64>,
+    /// forces of dashpots on the nodes [F]
+    pub damping: Vec<f64>,
     /// F + M a, at a prescribed dof the reaction [F]
     pub balance: Vec<f64>,
     /// v [L/T]
@@ -146,12 +176,29 @@ pub struct Assembler<'m> {
     iterates: Vec<Vec<Iterate>>,
     /// What was found at the last evaluated displacement
     pub evaluation: Evaluation,
+    buffers: Buffers,
+    /// Segments that the pattern has room for ahead of each foot, when it is set next
+    ahead: usize,
     /// Time spent
     pub seconds: Seconds,
 }
 
+/// What a batch of elements adds, one after another.
+#[derive(Clone, Debug, Default)]
+struct Buffers {
+    forces: Vec<f64>,
+    tangents: Vec<f64>,
+    energies: Vec<Result<f64, InvertedElement>>,
+}
+
+/// Most segments ahead of a foot that the pattern gets room for.
+const FARTHEST: usize = 8;
+
 /// Elements whose forces and tangents are held at once before they are added.
 const BATCH: usize = 4096;
+
+/// Elements that are done sooner than another thread wakes up.
+const FEW: usize = 64;
 
 impl<'m> Assembler<'m> {
     /// An assembler of a model.
@@ -162,18 +209,18 @@ impl<'m> Assembler<'m> {
                 Some(*sum)
             }))
             .collect();
-        let stiffness = model.bodies.iter().map(|body| body.material.stiffness());
-        let springs = model.steps.iter().flat_map(|step| step.loads.springs.iter().map(|spring| spring.stiffness));
         let mut assembler = Self {
             model,
             pattern: Arc::new(Pattern::new(model.mesh.nodes.len(), std::iter::empty())),
             blocks: Vec::new(),
             block_starts,
             mass: None,
-            weight: stiffness.chain(springs).fold(f64::MIN_POSITIVE, f64::max),
+            weight: weight(model),
             magnitudes: vec![0.0; model.dofs()],
             iterates: Vec::new(),
             evaluation: Evaluation::default(),
+            buffers: Buffers::default(),
+            ahead: 1,
             seconds: Seconds::default(),
         };
         assembler.set_pattern(&[]);
@@ -246,6 +293,7 @@ impl<'m> Assembler<'m> {
             }
         }
         let loads = self.add_loads(trial, u, &x, &mut force, values.as_deref_mut())?;
+        self.add_dashpots(trial, u, &mut force, values.as_deref_mut())?;
         self.evaluation.contacts =
             responses.into_iter().map(|pair| pair.into_iter().map(|(state, _)| state).collect()).collect();
         self.evaluation.strain_energy = strain_energy;
@@ -277,6 +325,7 @@ impl<'m> Assembler<'m> {
 
     /// Trial states of all pairs; a tangent is taken with the presumptions, a residual that may be accepted without.
     fn contacts(&self, trial: Trial, presuming: bool, x: &Configuration) -> Result<Vec<PairResponse>, TrialFailure> {
+        let before = self.model.configuration(&trial.old.displacement);
         let pairs = self.model.contacts.iter().zip(&trial.old.contacts).enumerate();
         pairs
             .map(|(number, (pair, old))| {
@@ -285,7 +334,7 @@ impl<'m> Assembler<'m> {
                     let Iterate { presumed, held, .. } = iterate(k);
                     (if presuming { presumed } else { Presume::Nothing }, held)
                 };
-                pair.respond(old, trial.dt, presumed, x).map_err(|(point, cause)| TrialFailure::Friction {
+                pair.respond(old, &before, trial.dt, presumed, x).map_err(|(point, cause)| TrialFailure::Friction {
                     contact: pair.name.clone(),
                     point,
                     cause,
@@ -294,8 +343,9 @@ impl<'m> Assembler<'m> {
             .collect()
     }
 
-    /// Make sure the pattern has room for all contact points. If it has not, it gets room for one segment more on
-    /// either side of each foot, so that it seldom changes as points slide.
+    /// Make sure the pattern has room for all contact points. If it has not, it gets room for one segment more behind
+    /// each foot and a few ahead, where the point slides to. Every time the room turns out too small there will be twice
+    /// as much, so that the pattern seldom changes as points slide.
     fn cover(&mut self, responses: &[PairResponse], old: &State) {
         let coupled = |contribution: &Contribution| {
             let nodes = &contribution.nodes;
@@ -311,14 +361,20 @@ impl<'m> Assembler<'m> {
                 let mut nodes: Vec<usize> = slave.position.iter().map(|&(node, _)| node).collect();
                 nodes.extend(contribution.iter().flat_map(|contribution| &contribution.nodes));
                 if let Master::Mesh(surface) = &pair.master {
-                    let around = [Some(foot.segment), surface.previous(foot.segment), surface.next(foot.segment)];
-                    nodes.extend(around.into_iter().flatten().flat_map(|segment| surface.segments[segment]));
+                    let way = old.foot.and_then(|from| surface.path(from, foot)).unwrap_or_default();
+                    let slip: f64 = way.iter().map(|(_, from, to)| to - from).sum();
+                    let [behind, ahead] = if slip < 0.0 { [self.ahead, 1] } else { [1, self.ahead] };
+                    let back = std::iter::successors(Some(foot.segment), |&segment| surface.previous(segment));
+                    let forth = std::iter::successors(Some(foot.segment), |&segment| surface.next(segment));
+                    let around = back.take(1 + behind).chain(forth.take(1 + ahead));
+                    nodes.extend(around.flat_map(|segment| surface.segments[segment].nodes()));
                 }
                 nodes.sort_unstable();
                 nodes.dedup();
                 groups.push(nodes);
             }
         }
+        self.ahead = FARTHEST.min(2 * self.ahead);
         self.set_pattern(&groups);
     }
 
@@ -330,37 +386,39 @@ impl<'m> Assembler<'m> {
         mut tangent: Option<&mut SparseMatrix>,
     ) -> Result<f64, TrialFailure> {
         let model = self.model;
+        let wants_tangent = tangent.is_some();
         let widest = model.mesh.elements.iter().map(|element| element.nodes.len()).max().unwrap_or(0);
-        let dofs = 2 * widest;
+        let (dofs, stride) = (2 * widest, if wants_tangent { 4 * widest * widest } else { 1 });
         let batch = BATCH.min(model.mesh.elements.len());
-        let mut forces = vec![0.0; batch * dofs];
-        let mut tangents = vec![0.0; if tangent.is_some() { batch * dofs * dofs } else { batch }];
-        let stride = tangents.len() / batch.max(1);
+        let Buffers { mut forces, mut tangents, mut energies } = std::mem::take(&mut self.buffers);
+        forces.resize(batch * dofs, 0.0);
+        tangents.resize(tangents.len().max(batch * stride), 0.0);
+        energies.clear();
         let mut energy = 0.0;
         for first in (0..model.mesh.elements.len()).step_by(BATCH) {
             let elements = first..(first + BATCH).min(model.mesh.elements.len());
-            let wants_tangent = tangent.is_some();
-            let energies: Vec<Result<f64, InvertedElement>> = elements
-                .clone()
-                .into_par_iter()
-                .zip(forces.par_chunks_mut(dofs).zip(tangents.par_chunks_mut(stride)))
-                .with_min_len(64)
-                .map(|(e, (force, tangent))| {
-                    let nodes = &model.mesh.elements[e].nodes;
-                    let mut local = [Vector2::zeros(); 9];
-                    for (local, &node) in local.iter_mut().zip(nodes) {
-                        *local = Vector2::new(u[2 * node], u[2 * node + 1]);
-                    }
-                    let n = 2 * nodes.len();
-                    let (solid, material) = (&model.solids[e], &*model.bodies[model.body_of_element[e]].material);
-                    if wants_tangent {
-                        solid.force_and_tangent(material, &local[..nodes.len()], &mut force[..n], &mut tangent[..n * n])
-                    } else {
-                        solid.force(material, &local[..nodes.len()], &mut force[..n])
-                    }
-                })
-                .collect();
-            for (k, (e, stored)) in elements.zip(energies).enumerate() {
+            let one = |(e, (force, tangent)): (usize, (&mut [f64], &mut [f64]))| {
+                let nodes = &model.mesh.elements[e].nodes;
+                let mut local = [Vector2::zeros(); 9];
+                for (local, &node) in local.iter_mut().zip(nodes) {
+                    *local = Vector2::new(u[2 * node], u[2 * node + 1]);
+                }
+                let n = 2 * nodes.len();
+                let (solid, material) = (&model.solids[e], &*model.bodies[model.body_of_element[e]].material);
+                if wants_tangent {
+                    solid.force_and_tangent(material, &local[..nodes.len()], &mut force[..n], &mut tangent[..n * n])
+                } else {
+                    solid.force(material, &local[..nodes.len()], &mut force[..n])
+                }
+            };
+            if elements.len() < FEW {
+                let arrays = forces.chunks_mut(dofs).zip(tangents.chunks_mut(stride));
+                energies.extend(elements.clone().zip(arrays).map(one));
+            } else {
+                let arrays = forces.par_chunks_mut(dofs).zip(tangents.par_chunks_mut(stride));
+                elements.clone().into_par_iter().zip(arrays).with_min_len(FEW).map(one).collect_into_vec(&mut energies);
+            }
+            for (k, (e, stored)) in elements.zip(energies.drain(..)).enumerate() {
                 energy += stored.map_err(|inverted| self.inverted(e, inverted))?;
                 let nodes = &model.mesh.elements[e].nodes;
                 let local = &forces[k * dofs..];
@@ -377,6 +435,7 @@ impl<'m> Assembler<'m> {
                 }
             }
         }
+        self.buffers = Buffers { forces, tangents, energies };
         Ok(energy)
     }
 
@@ -450,6 +509,34 @@ impl<'m> Assembler<'m> {
         Ok(loads)
     }
 
+    /// Subtract the forces of the dashpots.
+    fn add_dashpots(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        force: &mut [f64],
+        mut tangent: Option<&mut SparseMatrix>,
+    ) -> Result<(), TrialFailure> {
+        let mut damping = vec![0.0; u.len()];
+        for dashpot in &trial.step.loads.dashpots {
+            let dof = dashpot.dof;
+            let driver = dashpot.driver_velocity(self.model.mesh.nodes[dof / 2], trial.time);
+            let (velocity, dvelocity) = velocity(self.model, trial, u, dof);
+            let pull = dashpot.coefficient * (driver - velocity);
+            if !pull.is_finite() {
+                return Err(TrialFailure::Undefined { node: self.model.mesh.node_tags[dof / 2], time: trial.time });
+            }
+            force[dof] -= pull;
+            damping[dof] += pull;
+            self.magnitudes[dof] += pull.abs();
+            if let Some(tangent) = tangent.as_deref_mut() {
+                tangent.add_diagonal(dof, dashpot.coefficient * dvelocity);
+            }
+        }
+        self.evaluation.damping = damping;
+        Ok(())
+    }
+
     /// Velocities, accelerations, and the out-of-balance force of every dof as if none were prescribed.
     fn balance(&mut self, trial: Trial, u: &[f64], tangent: Option<&mut SparseMatrix>, residual: &mut Vec<f64>) {
         let Trial { old, step, dt, .. } = trial;
@@ -462,19 +549,21 @@ impl<'m> Assembler<'m> {
         };
         let (velocity, acceleration) = self.rates(trial, u, scheme);
         let blend = |old: f64, new: f64, weight: f64| weight * old + (1.0 - weight) * new;
-        let weighted: Vec<f64> =
+        let mut weighted: Vec<f64> =
             old.acceleration.iter().zip(&acceleration).map(|(&a0, &a1)| blend(a0, a1, scheme.alpha_m)).collect();
-        let prescribed = prescribed_dofs(step, u.len());
+        for Prescribed { dof, .. } in &step.supports {
+            weighted[*dof] = blend(old.acceleration[*dof], acceleration[*dof], scheme.alpha_f);
+        }
         let mass = self.mass();
         let (inertia, weighted_inertia) = (mass.multiply(&acceleration), mass.multiply(&weighted));
         if let Some(tangent) = tangent {
             let c = (1.0 - scheme.alpha_m) * scheme.dacceleration(dt);
-            // A prescribed dof's acceleration is a backward difference of its motion (see `rates`).
-            let held = (1.0 - scheme.alpha_m) / (dt * dt);
             for value in &mut tangent.values {
                 *value *= 1.0 - scheme.alpha_f;
             }
-            let factors: Vec<f64> = prescribed.iter().map(|prescribed| if *prescribed { held } else { c }).collect();
+            // A prescribed dof's acceleration is its support's.
+            let mut factors = vec![c; u.len()];
+            step.supports.iter().for_each(|support| factors[support.dof] = 0.0);
             tangent.add_columns(mass, &factors);
         }
         let force = &self.evaluation.force;
@@ -488,34 +577,27 @@ impl<'m> Assembler<'m> {
         self.evaluation.acceleration = acceleration;
     }
 
-    /// Velocity and acceleration at `u`. A prescribed dof follows its support: v and a are backward differences, so a
-    /// support that starts with a jerk does not ring.
+    /// Velocity and acceleration at `u`; prescribed dofs have those of their supports.
     fn rates(&self, trial: Trial, u: &[f64], scheme: Coefficients) -> (Vec<f64>, Vec<f64>) {
         let Trial { old, step, dt, .. } = trial;
-        let prescribed = prescribed_dofs(step, u.len());
-        (0..u.len())
-            .map(|dof| {
-                let increment = u[dof] - old.displacement[dof];
-                let (v, a) = (old.velocity[dof], old.acceleration[dof]);
-                if prescribed[dof] {
-                    (increment / dt, (increment / dt - v) / dt)
-                } else {
-                    scheme.rates(increment, (v, a), dt)
-                }
-            })
-            .unzip()
+        let free =
+            |dof: usize| scheme.rates(u[dof] - old.displacement[dof], (old.velocity[dof], old.acceleration[dof]), dt);
+        let (mut velocity, mut acceleration): (Vec<f64>, Vec<f64>) = (0..u.len()).map(free).unzip();
+        for support in &step.supports {
+            let dof = support.dof;
+            let places = trial.thirds(support, self.model);
+            (velocity[dof], acceleration[dof]) = supported_rates(places, old.velocity[dof], dt);
+        }
+        (velocity, acceleration)
     }
 
     /// Replace the equations of prescribed dofs by w (u − ū) = 0.
     fn prescribe(&self, trial: Trial, u: &[f64], tangent: bool, system: &mut System) -> Result<(), TrialFailure> {
         for support in &trial.step.supports {
             let dof = support.dof;
-            let node = dof / 2;
-            let start = &trial.old.step_start.displacement[2 * node..][..2];
-            let start = Vector2::new(start[0], start[1]);
-            let target = support.value(self.model.mesh.nodes[node], trial.time, trial.step.span, start);
+            let target = trial.prescribed(support, self.model);
             if !target.is_finite() {
-                return Err(TrialFailure::Undefined { node: self.model.mesh.node_tags[node], time: trial.time });
+                return Err(TrialFailure::Undefined { node: self.model.mesh.node_tags[dof / 2], time: trial.time });
             }
             system.residual[dof] = self.weight * (u[dof] - target);
             if tangent {
@@ -538,15 +620,19 @@ impl<'m> Assembler<'m> {
         let points = self.model.contacts.iter().flat_map(|pair| pair.points.iter().map(move |point| (pair, point)));
         let contacts: f64 = points.map(|(pair, point)| (pair.alpha_n * point.current_length(x)).powi(2)).sum();
         system.round_off = f64::EPSILON * extent * (solids + contacts).sqrt();
-        if let Some(scheme) = step.scheme.coefficients() {
-            let way: Vec<f64> =
-                old.displacement.iter().zip(&old.velocity).map(|(u, v)| u.abs() + (dt * v).abs()).collect();
+        let way: Vec<f64> = old.displacement.iter().zip(&old.velocity).map(|(u, v)| u.abs() + (dt * v).abs()).collect();
+        let scheme = step.scheme.coefficients();
+        if let Some(scheme) = scheme {
             let inertia = crate::linear::norm(&self.mass().multiply(&way)) * scheme.dacceleration(dt);
             system.round_off += f64::EPSILON * inertia;
         }
+        let dvelocity = scheme.map_or(1.0 / dt, |scheme| scheme.dvelocity(dt));
+        for dashpot in &step.loads.dashpots {
+            system.round_off += f64::EPSILON * dashpot.coefficient * dvelocity * way[dashpot.dof];
+        }
     }
 
-    /// The consistent mass matrix on the current pattern.
+    /// The mass matrix on the current pattern: consistent in the elements, and the point masses on the diagonal.
     pub fn mass(&mut self) -> &SparseMatrix {
         let model = self.model;
         let (blocks, starts, pattern) = (&self.blocks, &self.block_starts, &self.pattern);
@@ -557,27 +643,47 @@ impl<'m> Assembler<'m> {
                 let both = model.element_mass(e).kronecker(&DMatrix::identity(2, 2));
                 add_blocks(&mut mass, &blocks[starts[e]..starts[e + 1]], both.as_slice(), n);
             }
+            for point in &model.point_masses {
+                let dofs = point.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
+                dofs.for_each(|dof| mass.add_diagonal(dof, point.mass));
+            }
             mass
         })
     }
 }
 
-/// Which dofs a step prescribes.
-pub fn prescribed_dofs(step: &Step, dofs: usize) -> Vec<bool> {
-    let mut prescribed = vec![false; dofs];
-    for support in &step.supports {
-        prescribed[support.dof] = true;
+/// w: the largest stiffness of the materials and springs; a model of points alone has that of its contacts.
+fn weight(model: &Model) -> f64 {
+    let materials = model.bodies.iter().map(|body| body.material.stiffness());
+    let springs = model.steps.iter().flat_map(|step| step.loads.springs.iter().map(|spring| spring.stiffness));
+    let contacts = model.contacts.iter().flat_map(|pair| pair.points.iter().map(|point| pair.alpha_n * point.area));
+    let largest = |stiffness: &mut dyn Iterator<Item = f64>| stiffness.reduce(f64::max).filter(|w| *w > 0.0);
+    largest(&mut materials.chain(springs)).or_else(|| largest(&mut { contacts })).unwrap_or(1.0)
+}
+
+/// v of one dof at the end of the increment, and ∂v/∂u: what the scheme or the support says (see [`Assembler::rates`])
+/// or, in statics, the mean of the increment. An increment of no length leaves v as it is.
+fn velocity(model: &Model, trial: Trial, u: &[f64], dof: usize) -> (f64, f64) {
+    let Trial { old, step, dt, .. } = trial;
+    let (increment, before) = (u[dof] - old.displacement[dof], old.velocity[dof]);
+    if dt == 0.0 {
+        return (before, 0.0);
     }
-    prescribed
+    let Some(scheme) = step.scheme.coefficients() else { return (increment / dt, 1.0 / dt) };
+    match step.supports.binary_search_by_key(&dof, |support| support.dof) {
+        Ok(support) => (supported_rates(trial.thirds(&step.supports[support], model), before, dt).0, 0.0),
+        Err(_) => (scheme.rates(increment, (before, old.acceleration[dof]), dt).0, scheme.dvelocity(dt)),
+    }
 }
 
 /// Add a dense tangent of `n` nodes (column-major, two dofs a node) at the given blocks (column by column).
 fn add_blocks(matrix: &mut SparseMatrix, blocks: &[BlockPosition], local: &[f64], n: usize) {
-    for (k, block) in blocks.iter().enumerate() {
-        let (row, column) = (k % n, k / n);
-        for j in 0..2 {
-            for i in 0..2 {
-                matrix.values[block.value(i, j)] += local[(2 * column + j) * 2 * n + 2 * row + i];
+    for (columns, blocks) in local.chunks_exact(4 * n).zip(blocks.chunks_exact(n)) {
+        for (j, column) in columns.chunks_exact(2 * n).enumerate() {
+            for (pair, block) in column.chunks_exact(2).zip(blocks) {
+                let target = &mut matrix.values[block.value(0, j)..][..2];
+                target[0] += pair[0];
+                target[1] += pair[1];
             }
         }
     }

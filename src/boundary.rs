@@ -33,6 +33,11 @@ impl Expression {
         }
     }
 
+    /// Whether x or y stands in it.
+    pub fn depends_on_position(&self) -> bool {
+        self.0.var_names().iter().any(|name| name != "t")
+    }
+
     /// Value at a reference position and time; NaN where the expression is not defined.
     fn value(&self, position: Vector2<f64>, time: f64) -> f64 {
         let of = |name: &String| match name.as_str() {
@@ -146,6 +151,18 @@ impl Prescribed {
             }
         }
     }
+
+    /// ū at the start, thirds and end of an increment. What is linear in time is taken straight from end to end: the kinks
+    /// of a table are jumps of the velocity and no accelerations [L].
+    pub fn thirds(&self, position: Vector2<f64>, [t0, t1]: [f64; 2], step: Span, start: Vector2<f64>) -> [f64; 4] {
+        let at = |time: f64| self.value(position, time, step, start);
+        let [first, last] = [t0, t1].map(at);
+        let within = |share: f64| match &self.motion {
+            Motion::Displacement(Drive::Expression(_), _) | Motion::Rotation { .. } => at(t0 + share * (t1 - t0)),
+            Motion::Displacement(..) => first + share * (last - first),
+        };
+        [first, within(1.0 / 3.0), within(2.0 / 3.0), last]
+    }
 }
 
 /// A load that does not depend on the deformation: traction, gravity or nodal force.
@@ -179,6 +196,24 @@ pub struct Spring {
     pub driver: Option<Amplitude>,
 }
 
+/// A dashpot from a node to the ground or to a moving driver: force c (v_driver − v).
+#[derive(Clone, Debug)]
+pub struct Dashpot {
+    /// dof it acts on
+    pub dof: usize,
+    /// c [F T/L]
+    pub coefficient: f64,
+    /// velocity of the far end; `None` is the ground [L/T]
+    pub driver: Option<Amplitude>,
+}
+
+impl Dashpot {
+    /// v_driver, for the node's reference position [L/T].
+    pub fn driver_velocity(&self, position: Vector2<f64>, time: f64) -> f64 {
+        self.driver.as_ref().map_or(0.0, |driver| driver.value(position, time))
+    }
+}
+
 /// Everything that acts on the model in one step.
 #[derive(Clone, Debug, Default)]
 pub struct Loads {
@@ -188,4 +223,6 @@ pub struct Loads {
     pub pressures: Vec<FollowerPressure>,
     /// springs
     pub springs: Vec<Spring>,
+    /// dashpots
+    pub dashpots: Vec<Dashpot>,
 }

@@ -3,23 +3,27 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use crate::case::{self, CaseError};
+use clap::ValueEnum;
+
+use crate::case::{self, CaseError, law_test};
 use crate::error::Error;
 use crate::model::Model;
 use crate::output::Observer;
 use crate::output::fields::Fields;
 use crate::output::history::History;
+use crate::output::law::{Hold, LawReport, LawTable, Moment};
 use crate::output::newton_log::NewtonLog;
+use crate::output::plot::{self, PlotError};
 use crate::output::progress::Progress;
-use crate::output::summary::Summary;
+use crate::output::summary::{self, About, Ending, LawSummary, Summary};
 use crate::output::warnings::Warnings;
 use crate::run;
 
 /// More threads than this are a slip of the keyboard.
 const MOST_THREADS: usize = 1024;
 
-/// What a run writes beside its frames; an earlier run's must not be taken for this one's.
-const RESULTS: [&str; 5] = ["summary.json", "history.csv", "newton.csv", "solid.pvd", "contact.pvd"];
+/// What runs and tests write beside frames and figures; an earlier run's must not be taken for this one's.
+const RESULTS: [&str; 6] = ["summary.json", "history.csv", "newton.csv", "solid.pvd", "contact.pvd", "law.csv"];
 
 /// Why a command did not end well.
 #[derive(Debug)]
@@ -36,6 +40,24 @@ impl From<CaseError> for Failure {
     }
 }
 
+impl From<PlotError> for Failure {
+    fn from(error: PlotError) -> Self {
+        match error {
+            PlotError::Output(error) => error.into(),
+            PlotError::Unreadable { .. } => Self::BadInput(error.to_string()),
+        }
+    }
+}
+
+/// What a schema describes.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum Input {
+    /// the case file of `fecontact run`
+    Case,
+    /// the test of `fecontact law`
+    Law,
+}
+
 impl From<Error> for Failure {
     fn from(error: Error) -> Self {
         Self::Stopped(error.to_string())
@@ -50,12 +72,13 @@ pub fn run(path: &Path, out: Option<PathBuf>, threads: Option<usize>, quiet: boo
     use_threads(threads)?;
     let case = case::read(path)?;
     let model = case::build(&case, path)?;
-    let folder = out.unwrap_or_else(|| Path::new("out").join(path.file_stem().unwrap_or("case".as_ref())));
+    let folder = out.unwrap_or_else(|| default_folder(path));
     prepare(&folder)?;
 
     let mut history = History::create(&folder, &model)?;
     let mut newton_log = NewtonLog::create(&folder)?;
     let mut warnings = Warnings::default();
+    warnings.list.extend(case::lost_velocity(&model));
     let mut fields = match case.output.fields {
         true => Some(Fields::create(&folder, &model, &model.initial_state(), case.output.every)?),
         false => None,
@@ -67,9 +90,14 @@ pub fn run(path: &Path, out: Option<PathBuf>, threads: Option<usize>, quiet: boo
 
     let (report, result) = run::run(&model, &mut observers);
     drop(progress);
-    let name = path.display().to_string();
-    let summary = Summary::new(&name, &model, report, result.as_ref().err(), warnings.list);
-    summary.write(&folder)?;
+    let about = About {
+        case: path.display().to_string(),
+        title: case.title.clone(),
+        units: case.units.clone(),
+        friction: case.contacts.iter().map(|(name, contact)| (name.clone(), contact.friction)).collect(),
+    };
+    let summary = Summary::new(about, &model, report, result.as_ref().err(), warnings.list);
+    summary::write(&summary, &folder)?;
     if !quiet {
         conclude(&summary, &model, &folder);
     }
@@ -84,9 +112,10 @@ fn conclude(summary: &Summary, model: &Model, folder: &Path) {
     }
     let report = &summary.report;
     eprintln!(
-        "{} increments, {} cut-backs, {} linear solves of {} dofs in {:.2} s; results in {}",
+        "{} increments, {} cut-backs, {} rejected, {} linear solves of {} dofs in {:.2} s; results in {}",
         report.increments,
         report.cutbacks,
+        report.rejected,
         report.newton_iterations,
         model.dofs(),
         report.wall_s.total,
@@ -105,16 +134,82 @@ pub fn check(path: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
+/// `fecontact law`.
+///
+/// # Errors
+/// [`Failure`].
+pub fn law(path: &Path, out: Option<PathBuf>) -> Result<(), Failure> {
+    let input = law_test::read(path)?;
+    let test = law_test::build(&input, path)?;
+    let folder = out.unwrap_or_else(|| default_folder(path));
+    prepare(&folder)?;
+
+    let mut table = LawTable::create(&folder)?;
+    let (report, result) = test.run(|row| table.write(row));
+    table.finish()?;
+    let about = About {
+        case: path.display().to_string(),
+        title: input.title,
+        units: input.units,
+        friction: [("law".into(), input.friction)].into(),
+    };
+    let summary = LawSummary { ending: Ending::new(result.as_ref().err()), about, report };
+    summary::write(&summary, &folder)?;
+    plot::draw(std::slice::from_ref(&folder), &folder)?;
+    conclude_law(&summary.report, &folder);
+    result?;
+    Ok(())
+}
+
+/// The last lines of a test on stderr.
+fn conclude_law(report: &LawReport, folder: &Path) {
+    let LawReport { steps, most_evaluations, peaks, dissipation, warnings } = report;
+    eprintln!("{steps} steps, at most {most_evaluations} evaluations of the law's equation in one");
+    if let Some(Moment { time, slip, coefficient, mu }) = peaks.peak {
+        eprintln!("peak |q|/p = {coefficient:.6} at t = {time:.6}, slip = {slip:.6}, where mu was {mu:.6}");
+    }
+    for Hold { duration, peak } in &peaks.holds {
+        eprintln!("after a hold of {duration:.6}: peak |q|/p = {:.6} at t = {:.6}", peak.coefficient, peak.time);
+    }
+    eprintln!("dissipation {dissipation:.6}");
+    for warning in warnings {
+        eprintln!("warning: {warning}");
+    }
+    eprintln!("results in {}", folder.display());
+}
+
+/// `fecontact plot`.
+///
+/// # Errors
+/// [`Failure`].
+pub fn plot(folders: &[PathBuf], out: Option<PathBuf>) -> Result<(), Failure> {
+    let folder = out.unwrap_or_else(|| match folders {
+        [folder] => folder.clone(),
+        _ => Path::new("out").join("overlay"),
+    });
+    let figures = plot::draw(folders, &folder)?;
+    figures.iter().for_each(|figure| print(&format!("{}\n", figure.display())));
+    Ok(())
+}
+
 /// `fecontact schema`.
 ///
 /// # Errors
 /// None: the schema is always there.
-pub fn schema() -> Result<(), Failure> {
-    print(&format!("{:#}\n", case::schema()));
+pub fn schema(of: Input) -> Result<(), Failure> {
+    let schema = match of {
+        Input::Case => case::schema(),
+        Input::Law => law_test::schema(),
+    };
+    print(&format!("{schema:#}\n"));
     Ok(())
 }
 
-/// Print to stdout; a reader that has gone away (`| head`) is no error.
+/// `out/<name of the file>` in the current folder.
+fn default_folder(path: &Path) -> PathBuf {
+    Path::new("out").join(path.file_stem().unwrap_or("case".as_ref()))
+}
+
 fn print(text: &str) {
     let _ = std::io::stdout().write_all(text.as_bytes());
 }
@@ -136,7 +231,8 @@ fn prepare(folder: &Path) -> Result<(), Failure> {
         Failure::BadInput(message)
     };
     std::fs::create_dir_all(folder).map_err(|cause| bad(folder, cause))?;
-    let mut old: Vec<PathBuf> = RESULTS.iter().map(|name| folder.join(name)).filter(|path| path.exists()).collect();
+    let mut old: Vec<PathBuf> =
+        RESULTS.iter().chain(&plot::FIGURES).map(|name| folder.join(name)).filter(|path| path.exists()).collect();
     for frames in ["solid", "contact"] {
         let Ok(entries) = std::fs::read_dir(folder.join(frames)) else { continue };
         let paths = entries.flatten().map(|entry| entry.path());

@@ -42,6 +42,6 @@ impl<'a> Configuration<'a> {
 
     /// Largest distance of a node from the origin [L].
     pub fn extent(&self) -> f64 {
-        (0..self.reference.len()).fold(0.0, |extent, node| self.at(node).norm().max(extent))
+        (0..self.reference.len()).fold(0.0, |extent, node| self.at(node).norm_squared().max(extent)).sqrt()
     }
 }

@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use crate::friction::LawFailure;
-use crate::linear::SingularMatrix;
+use crate::linear::LinearFailure;
 use crate::newton::NewtonFailure;
 
 /// Why the equations could not be evaluated at a trial state.
@@ -47,10 +47,16 @@ pub enum StepFailure {
     Newton(#[from] NewtonFailure<TrialFailure>),
     /// The mass matrix of the initial acceleration is singular.
     #[error("initial acceleration: {0} (does every body have a density?)")]
-    Mass(SingularMatrix),
+    Mass(LinearFailure),
     /// The state at the start of a dynamic step cannot be evaluated.
     #[error(transparent)]
     Start(TrialFailure),
+    /// The augmented Lagrangian did not bring the surfaces together.
+    #[error("the penetration is still too large after {passes} passes of the augmented Lagrangian: raise alpha_n")]
+    Penetration {
+        /// solutions with better and better multipliers
+        passes: usize,
+    },
     /// A body is held by nothing.
     #[error("{0}; give it a support, a spring, or contact that is closed at the start")]
     Floating(String),
@@ -62,7 +68,10 @@ pub enum StepFailure {
 impl StepFailure {
     /// Whether a smaller increment has a chance.
     pub fn is_retryable(&self) -> bool {
-        matches!(self, Self::Newton(_) | Self::ContactLost(_))
+        match self {
+            Self::Newton(NewtonFailure::Linear(LinearFailure::TooLarge { .. })) => false,
+            _ => matches!(self, Self::Newton(_) | Self::Penetration { .. } | Self::ContactLost(_)),
+        }
     }
 }
 
@@ -92,6 +101,14 @@ pub enum Error {
         time: f64,
         /// why
         cause: StepFailure,
+    },
+    /// A friction law driven alone could not answer.
+    #[error("the law stopped after time {time}: {cause}")]
+    Law {
+        /// time reached
+        time: f64,
+        /// what the law said
+        cause: LawFailure,
     },
     /// A result file could not be written.
     #[error("{path}: {cause}")]

@@ -1,9 +1,10 @@
 //! Bodies that nothing holds: motions without resistance, named.
 //!
 //! The rigid motions Φ of all bodies (x, y, rotation) are tried on the tangent: A = Φᵀ K Φ, scaled by ΦᵀD Φ with D the
-//! diagonal of |K|. A vanishing singular value of A is a motion that meets no force.
+//! diagonal of |K|. A vanishing singular value of A is a motion that meets no force. A node outside all bodies has its
+//! own two motions, which are tried on its block of K.
 
-use nalgebra::{DMatrix, DVector, Vector2};
+use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
 use crate::configuration::Configuration;
 use crate::linear::SparseMatrix;
@@ -16,6 +17,10 @@ const MOTIONS: [&str; 3] = ["along x", "along y", "in rotation"];
 
 /// The first motion that the tangent at `u` does not resist, in words.
 pub fn null_motion(model: &Model, u: &[f64], tangent: &SparseMatrix) -> Option<String> {
+    null_motion_of_bodies(model, u, tangent).or_else(|| null_motion_of_a_node(model, tangent))
+}
+
+fn null_motion_of_bodies(model: &Model, u: &[f64], tangent: &SparseMatrix) -> Option<String> {
     let x = model.configuration(u);
     let modes: Vec<Vec<f64>> = model.bodies.iter().flat_map(|body| rigid_motions(&body.nodes, &x, u.len())).collect();
     let diagonal = tangent.diagonal();
@@ -32,6 +37,34 @@ pub fn null_motion(model: &Model, u: &[f64], tangent: &SparseMatrix) -> Option<S
     let (smallest, value) = decomposed.singular_values.argmin();
     let motion = decomposed.v_t?.row(smallest).transpose();
     (value < FREE).then(|| describe(model, &motion))
+}
+
+fn null_motion_of_a_node(model: &Model, tangent: &SparseMatrix) -> Option<String> {
+    let mut lone = vec![true; model.mesh.nodes.len()];
+    model.bodies.iter().flat_map(|body| &body.nodes).for_each(|&node| lone[node] = false);
+    (0..lone.len()).filter(|&node| lone[node]).find_map(|node| {
+        let block = tangent.pattern.block(node, node)?;
+        let stiffness = Matrix2::from_fn(|i, j| tangent.values[block.value(i, j)]);
+        let along = free_direction(&stiffness)?;
+        let tag = model.mesh.node_tags[node];
+        let motion = if along[0].abs() > along[1].abs() { MOTIONS[0] } else { MOTIONS[1] };
+        Some(format!("nothing resists the motion of node {tag} {motion}"))
+    })
+}
+
+/// A direction without stiffness: an axis, or the null vector of the block scaled to a unit diagonal.
+fn free_direction(stiffness: &Matrix2<f64>) -> Option<Vector2<f64>> {
+    let scale = stiffness.diagonal().map(|k| k.abs().sqrt());
+    if let Some(axis) = (0..2).find(|&axis| scale[axis] == 0.0) {
+        return Some(Vector2::ith(axis, 1.0));
+    }
+    if !scale.iter().all(|scale| scale.is_finite()) {
+        return None;
+    }
+    let decomposed = stiffness.component_div(&(scale * scale.transpose())).svd(false, true);
+    let (smallest, value) = decomposed.singular_values.argmin();
+    let direction = decomposed.v_t?.row(smallest).transpose().component_div(&scale);
+    (value < FREE).then_some(direction)
 }
 
 /// Unit motions of a set of nodes along x, along y, and about their centre.

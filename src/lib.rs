@@ -3,8 +3,10 @@
 //! # The way through the house
 //!
 //! Reading order: `main` → [`command`] → [`case`] (JSON → checks → model) → [`model`] → [`run`] (steps, increments,
-//! cut-back) → [`step`] (one increment: old state → new state) → [`newton`] → [`assembly`] → {[`element`] →
-//! [`material`]} and {[`contact`] → [`friction`]}; then up again: accepted [`state`] → [`output`].
+//! cut-back; [`increments`] says how long) → [`step`] (one increment: old state → new state) → [`newton`] → [`assembly`]
+//! → {[`element`] → [`material`]} and {[`contact`] → [`friction`]}; then up again: accepted [`state`] → [`output`].
+//!
+//! A law alone: [`command`] → [`case`] → [`law_driver`] along a [`law_path`] → [`friction`] → [`output`].
 //!
 //! # Signs
 //!
@@ -38,6 +40,9 @@ pub mod element;
 pub mod error;
 pub mod floating;
 pub mod friction;
+pub mod increments;
+pub mod law_driver;
+pub mod law_path;
 pub mod linear;
 pub mod material;
 pub mod mesh;

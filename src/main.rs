@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use fecontact::command::{self, Failure};
+use fecontact::command::{self, Failure, Input};
 
 /// 2D finite-element contact with the time-dependent super/subloading-surface friction law.
 #[derive(Parser)]
@@ -35,15 +35,38 @@ enum Command {
         /// The case file (JSON)
         case: PathBuf,
     },
-    /// Print the JSON Schema of the case file
-    Schema,
+    /// Drive a friction law alone along a path of slip, pressure and time
+    Law {
+        /// The test (JSON)
+        test: PathBuf,
+        /// Folder of the results [default: out/<test name>]
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
+    /// Draw figures (SVG) of a result folder; several folders are overlaid
+    Plot {
+        /// Folders of results, finished or still growing
+        #[arg(required = true)]
+        folders: Vec<PathBuf>,
+        /// Folder of the figures [default: the folder of the results, out/overlay for several]
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
+    /// Print the JSON Schema of the case file, or of the test of a law
+    Schema {
+        /// Of which file
+        #[arg(value_enum, default_value_t = Input::Case)]
+        of: Input,
+    },
 }
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
         Command::Run { case, out, threads, quiet } => command::run(&case, out, threads, quiet),
         Command::Check { case } => command::check(&case),
-        Command::Schema => command::schema(),
+        Command::Law { test, out } => command::law(&test, out),
+        Command::Plot { folders, out } => command::plot(&folders, out),
+        Command::Schema { of } => command::schema(of),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

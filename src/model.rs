@@ -1,5 +1,7 @@
 //! The problem to solve: mesh, bodies, contact pairs, and the steps with their supports, loads and schemes.
 
+use std::sync::Arc;
+
 use nalgebra::{DMatrix, Vector2};
 
 use crate::boundary::{Loads, Prescribed, Span};
@@ -25,6 +27,17 @@ pub struct Body {
     pub nodes: Vec<usize>,
 }
 
+/// A mass at every node of a group.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PointMass {
+    /// name of the group
+    pub name: String,
+    /// m of each node, the same in both directions [M]
+    pub mass: f64,
+    /// its nodes, ascending
+    pub nodes: Vec<usize>,
+}
+
 /// How increments are chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Increments {
@@ -34,6 +47,8 @@ pub struct Increments {
     pub min: f64,
     /// never above this [T]
     pub max: f64,
+    /// local error of a displacement that an increment of a dynamic step may make; `None` lets the iterations decide [L]
+    pub error: Option<f64>,
 }
 
 /// A step: a time span with its supports, loads, scheme and increments.
@@ -51,7 +66,7 @@ pub struct Step {
     pub supports: Vec<Prescribed>,
     /// dofs that were prescribed in the step before and are free now; their reaction is ramped off
     pub released: Vec<usize>,
-    /// loads and springs
+    /// loads, springs and dashpots
     pub loads: Loads,
 }
 
@@ -73,6 +88,8 @@ pub struct Model {
     pub mesh: Mesh,
     /// bodies
     pub bodies: Vec<Body>,
+    /// point masses
+    pub point_masses: Vec<PointMass>,
     /// body of each element
     pub body_of_element: Vec<usize>,
     /// integration geometry of each element
@@ -120,6 +137,7 @@ impl Model {
             acceleration: zero.clone(),
             force: zero.clone(),
             external: zero.clone(),
+            damping: zero.clone(),
             reaction: zero.clone(),
             contacts: self
                 .contacts
@@ -127,7 +145,7 @@ impl Model {
                 .map(|pair| pair.initial_states(&Configuration::undeformed(&self.mesh.nodes)))
                 .collect(),
             last_increment: None,
-            step_start: StepStart { displacement: zero.clone(), reaction: zero },
+            step_start: Arc::new(StepStart { displacement: zero.clone(), reaction: zero }),
             energy: Energy::default(),
         }
     }

@@ -5,11 +5,12 @@
 //! ```
 //!
 //! The tangent is consistent, so the residual falls quadratically near the solution. A residual that has reached
-//! round-off also ends the iteration: nothing is gained by fighting it.
+//! round-off also ends the iteration: nothing is gained by fighting it. Only that spares the first linear solve: what a
+//! start value within the tolerance still lacks would add up from increment to increment.
 
 use thiserror::Error;
 
-use crate::linear::{self, LinearSolver, SingularMatrix, norm};
+use crate::linear::{self, LinearFailure, LinearSolver, norm};
 use crate::system::System;
 
 /// When to stop.
@@ -30,6 +31,12 @@ pub struct Iteration {
     pub correction: f64,
     /// ‖K Δu + r‖/‖r‖ of the linear solve [-]
     pub linear_residual: f64,
+    /// Whether K is new; if not, it is that of the iterate before
+    pub factorized: bool,
+    /// Pivots of K that vanished and were replaced
+    pub perturbed_pivots: usize,
+    /// Whether the fronts of K were not exact enough, and another solver took over
+    pub fallback: bool,
 }
 
 /// Why no solution was found; `E` is why the equations could not be evaluated.
@@ -38,9 +45,9 @@ pub enum NewtonFailure<E> {
     /// The equations could not be evaluated at a trial state.
     #[error("{0}")]
     Evaluation(E),
-    /// The linear system is singular.
+    /// The linear system has no solution.
     #[error("{0}")]
-    Singular(#[from] SingularMatrix),
+    Linear(#[from] LinearFailure),
     /// Numbers beyond double precision, against which any residual would look small.
     #[error("the forces are too large for double precision; check the stiffnesses, loads and units")]
     Overflow,
@@ -77,6 +84,9 @@ pub type Outcome<E> = (Vec<Iteration>, Result<Vec<f64>, NewtonFailure<E>>);
 /// Growth of the residual over its largest start value that counts as divergence.
 const DIVERGENCE: f64 = 1e4;
 
+/// How much less an old tangent may gain than the iteration before did, and how much it must gain to be used again.
+const OLD_TANGENT: f64 = 10.0;
+
 /// Solve r(u) = 0 from the start value `u`. `evaluate` fills the system at a displacement.
 pub fn solve<E>(
     mut u: Vec<f64>,
@@ -88,7 +98,9 @@ pub fn solve<E>(
     let mut iterations: Vec<Iteration> = Vec::new();
     let result = (|| {
         evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
-        let mut largest_start = 0.0f64;
+        let (mut largest_start, mut before) = (0.0f64, f64::INFINITY);
+        // Near a kink of the equations it promises more than it keeps, every time.
+        let mut old_tangent_serves = true;
         loop {
             let size = norm(&system.residual);
             let residual = size / system.forces.max(f64::MIN_POSITIVE);
@@ -98,8 +110,11 @@ pub fn solve<E>(
             }
             if let Some(last) = iterations.last_mut() {
                 last.residual = residual;
+                let kept_promise = last.factorized || size <= before / OLD_TANGENT;
+                old_tangent_serves &= kept_promise && !last.fallback;
             }
-            if size <= settings.tolerance * system.forces || size <= system.round_off {
+            let solved = done > 0 && size <= settings.tolerance * system.forces;
+            if solved || size <= system.round_off {
                 return Ok(());
             }
             if done <= 2 {
@@ -111,15 +126,29 @@ pub fn solve<E>(
             if done == settings.max_iterations {
                 return Err(NewtonFailure::TooManyIterations { residual, iterations: done });
             }
-            evaluate(&u, Request::Tangent, system).map_err(NewtonFailure::Evaluation)?;
-            let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();
-            let solution = linear::solve(solver, &system.tangent, &right)?;
-            let correction = solution.x.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+            let promised = OLD_TANGENT * size * (size / before) <= settings.tolerance * system.forces;
+            let factorized = done == 0 || !(old_tangent_serves && promised);
+            let solution = if factorized {
+                evaluate(&u, Request::Tangent, system).map_err(NewtonFailure::Evaluation)?;
+                let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();
+                linear::solve(solver, &system.tangent, &right)?
+            } else {
+                let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();
+                linear::solve_again(solver, &system.tangent, &right)
+            };
             for (u, x) in u.iter_mut().zip(&solution.x) {
                 *u += x;
             }
-            iterations.push(Iteration { residual: f64::NAN, correction, linear_residual: solution.residual });
+            iterations.push(Iteration {
+                residual: f64::NAN,
+                correction: solution.x.iter().fold(0.0f64, |m, x| m.max(x.abs())),
+                linear_residual: solution.residual,
+                factorized,
+                perturbed_pivots: solution.perturbed_pivots,
+                fallback: solution.fallback,
+            });
             evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
+            before = size;
         }
     })();
     (iterations, result.map(|()| u))

@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use crate::error::Error;
+use crate::increments::{Judgement, bounded, judge};
 use crate::linear::Multifrontal;
 use crate::model::{Model, Step};
 use crate::output::summary::RunReport;
@@ -10,11 +11,7 @@ use crate::output::{Attempt, Observer};
 use crate::state::State;
 use crate::step::{Workspace, advance, begin};
 
-/// An increment solved in this many iterations or fewer was easy: the next one may be longer.
-const EASY: usize = 4;
-/// Growth of the increment after an easy one.
-const GROWTH: f64 = 1.5;
-/// Cut of the increment after a failed one.
+/// Cut of the increment after one that could not be solved.
 const CUT: f64 = 0.5;
 
 /// Run all steps of a model. The report comes back from a stopped run as well.
@@ -33,6 +30,11 @@ pub fn run(model: &Model, observers: &mut [&mut dyn Observer]) -> (RunReport, Re
             break;
         }
     }
+    let waiting = Instant::now();
+    for observer in observers.iter_mut() {
+        result = result.and(observer.finish());
+    }
+    report.wall_s.output += waiting.elapsed().as_secs_f64();
     report.wall_s.assembly = work.assembler.seconds.assembly;
     report.wall_s.contact = work.assembler.seconds.contact;
     report.wall_s.linear = work.linear_seconds;
@@ -54,23 +56,40 @@ fn run_step(
     let mut dt = step.increments.initial;
     let mut attempt = 1;
     while state.time < step.span.end {
-        dt = dt.min(step.increments.max).min(step.span.end - state.time);
+        dt = bounded(step, state.time, dt);
         let (iterations, outcome) = advance(model, step, state, dt, work);
         report.newton_iterations += iterations.len();
-        report.factorizations += iterations.len();
-        let told =
-            Attempt { step, number: attempt, old: state, dt, iterations: &iterations, accepted: outcome.as_ref().ok() };
+        report.factorizations += iterations.iter().filter(|iteration| iteration.newton.factorized).count();
+        let solved = outcome.map(|new| {
+            let judgement = judge(model, step, [state, &new], iterations.len(), attempt > 1);
+            (new, judgement)
+        });
+        let accepted = solved.as_ref().ok().filter(|(_, judgement)| judgement.accepted);
+        let told = Attempt {
+            step,
+            number: attempt,
+            old: state,
+            dt,
+            iterations: &iterations,
+            accepted: accepted.map(|(new, _)| new),
+            local_error: solved.as_ref().ok().and_then(|(_, judgement)| judgement.error),
+        };
         let clock = Instant::now();
         for observer in observers.iter_mut() {
             observer.record(model, &told)?;
         }
         report.wall_s.output += clock.elapsed().as_secs_f64();
-        match outcome {
-            Ok(accepted) => {
-                *state = accepted;
+        match solved {
+            Ok((new, Judgement { accepted: true, next, .. })) => {
+                *state = new;
                 report.increments += 1;
                 attempt = 1;
-                dt = if iterations.len() <= EASY { dt * GROWTH } else { dt };
+                dt = next;
+            }
+            Ok((_, Judgement { next, .. })) => {
+                report.rejected += 1;
+                attempt += 1;
+                dt = next;
             }
             Err(cause) if !cause.is_retryable() => {
                 return Err(Error::Unsolvable { step: name(), time: state.time, cause });

@@ -1,6 +1,8 @@
 //! Everything increment n + 1 needs from increment n. A new state replaces the old one when it is accepted; dropping it
 //! is the whole of a roll-back.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use crate::contact::force::ContactState;
@@ -24,14 +26,16 @@ pub struct State {
     pub force: Vec<f64>,
     /// Forces put on the nodes from outside: loads, and reactions at prescribed dofs [F]
     pub external: Vec<f64>,
+    /// Forces that dashpots put on the nodes [F]
+    pub damping: Vec<f64>,
     /// Reactions: what the supports put on the nodes [F]
     pub reaction: Vec<f64>,
     /// One list a contact pair, one entry a slave point
     pub contacts: Vec<Vec<ContactState>>,
     /// Displacement increment of the last increment of this step; `None` at its start
     pub last_increment: Option<LastIncrement>,
-    /// Values at the start of the current step
-    pub step_start: StepStart,
+    /// Values at the start of the current step, the same for all its states
+    pub step_start: Arc<StepStart>,
     /// Energies
     pub energy: Energy,
 }
@@ -65,9 +69,9 @@ pub struct Energy {
     pub contact_elastic: f64,
     /// ∫ q v^p ds dt
     pub friction_dissipation: f64,
-    /// work of dampers
+    /// ∫ c (v_driver − v)² dt of the dashpots
     pub damping_dissipation: f64,
-    /// work of loads, springs and supports on the model
+    /// work of loads, springs, supports and drivers of dashpots on the model
     pub external_work: f64,
     /// kinetic + strain + contact energy at the start of the run
     pub initial: f64,

@@ -1,15 +1,18 @@
 //! One increment: old state → new state.
 
-use crate::assembly::{Assembler, ContactCounts, Trial, prescribed_dofs};
+use std::sync::Arc;
+
+use crate::assembly::{Assembler, ContactCounts, Trial};
 use crate::configuration::Configuration;
 use crate::contact::force::ContactState;
 use crate::error::StepFailure;
 use crate::floating::null_motion;
 use crate::linear::{self, LinearSolver};
 use crate::model::{Model, Step};
-use crate::newton::{self, Iteration, Request};
+use crate::newton::{self, Iteration, NewtonFailure, Request};
 use crate::state::{LastIncrement, State, StepStart};
 use crate::system::System;
+use crate::time::start_acceleration;
 
 /// What is kept from one increment to the next to save work; it does not change any answer.
 pub struct Workspace<'m> {
@@ -40,19 +43,23 @@ pub struct IterationRecord {
     pub contacts: ContactCounts,
 }
 
-/// Begin a step: remember displacements and reactions, and find the accelerations if dynamics starts here.
+/// Begin a step: remember displacements and reactions, and find the forces and accelerations that the run or dynamics
+/// starts with.
 ///
 /// # Errors
 /// [`StepFailure`] when the initial state cannot be evaluated or a body has no mass.
 pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> Result<State, StepFailure> {
     let mut state = old.clone();
-    state.step_start = StepStart { displacement: old.displacement.clone(), reaction: old.reaction.clone() };
+    state.step_start = Arc::new(StepStart { displacement: old.displacement.clone(), reaction: old.reaction.clone() });
     state.last_increment = None;
     let resting = old.acceleration.iter().all(|a| *a == 0.0);
     match step.scheme.coefficients() {
-        Some(_) if resting => start_dynamics(step, &mut state, work)?,
+        Some(_) if resting => start_dynamics(model, step, &mut state, work)?,
         // The reaction of a freed support has become a load.
         Some(_) => step.released.iter().for_each(|&dof| state.force[dof] -= old.reaction[dof]),
+        None if old.increment == 0 && model.contacts.iter().any(|pair| pair.initial.is_some()) => {
+            start_loaded(step, &mut state, work)?;
+        }
         None => {}
     }
     if state.increment == 0 {
@@ -67,36 +74,52 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
 /// Accelerations, and the forces that go with them, at a moment when dynamics begins: loads may set in with a jump.
 ///
 /// ```text
-/// a₀ = −M⁻¹ F₀ at the free dofs, 0 at the prescribed ones, whose reaction is F₀ + M a₀
+/// M a₀ = −F₀ at the free dofs; a₀ of the supports at the prescribed ones, whose reaction is F₀ + M a₀
 /// ```
-fn start_dynamics(step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), StepFailure> {
+fn start_dynamics(model: &Model, step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), StepFailure> {
+    evaluate_forces(step, state, work)?;
+    let force = &state.force;
+    let mut right: Vec<f64> = force.iter().map(|f| -f).collect();
+    let mut mass = work.assembler.mass().clone();
+    let scale = mass.diagonal().into_iter().fold(0.0, f64::max);
+    let dt = step.increments.initial;
+    let first = Trial { old: state, step, time: state.time + dt, dt };
+    for support in &step.supports {
+        mass.replace_row(support.dof, scale);
+        right[support.dof] = scale * start_acceleration(first.thirds(support, model), dt);
+    }
+    state.acceleration = linear::solve(&mut *work.solver, &mass, &right).map_err(StepFailure::Mass)?.x;
+    let inertia = work.assembler.mass().multiply(&state.acceleration);
+    for support in &step.supports {
+        state.external[support.dof] += force[support.dof] + inertia[support.dof];
+    }
+    Ok(())
+}
+
+/// The forces at the start of a static run whose contacts are closed already: loads and reactions balance them.
+fn start_loaded(step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), StepFailure> {
+    evaluate_forces(step, state, work)?;
+    step.supports.iter().for_each(|support| state.external[support.dof] += state.force[support.dof]);
+    Ok(())
+}
+
+/// Forces of the state as it is, under the loads that the step puts on it at this time.
+fn evaluate_forces(step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), StepFailure> {
     let quasi_static = Step { scheme: crate::time::Scheme::Static, ..step.clone() };
     let trial = Trial { old: state, step: &quasi_static, time: state.time, dt: 0.0 };
     work.assembler
         .evaluate(trial, &state.displacement, Request::Residual, &mut work.system)
         .map_err(StepFailure::Start)?;
-    let force = work.assembler.evaluation.force.clone();
-    state.external.clone_from(&work.assembler.evaluation.loads);
-    let prescribed = prescribed_dofs(step, force.len());
-    let mut right: Vec<f64> = force.iter().map(|f| -f).collect();
-    let mut mass = work.assembler.mass().clone();
-    let scale = mass.diagonal().into_iter().fold(0.0, f64::max);
-    for (dof, _) in prescribed.iter().enumerate().filter(|(_, held)| **held) {
-        mass.replace_row(dof, scale);
-        right[dof] = 0.0;
-    }
-    state.acceleration = linear::solve(&mut *work.solver, &mass, &right).map_err(StepFailure::Mass)?.x;
-    let inertia = work.assembler.mass().multiply(&state.acceleration);
-    for (dof, _) in prescribed.iter().enumerate().filter(|(_, held)| **held) {
-        state.external[dof] += force[dof] + inertia[dof];
-    }
-    state.force = force;
+    let evaluation = &work.assembler.evaluation;
+    state.force.clone_from(&evaluation.force);
+    state.external.clone_from(&evaluation.loads);
+    state.damping.clone_from(&evaluation.damping);
     Ok(())
 }
 
 /// Solve one increment of length `dt` from the state `old`; pure but for the workspace's buffers.
 ///
-/// The start value is the last increment extrapolated. The record of the iterations comes back from a failed attempt as well.
+/// The record of the iterations comes back from a failed attempt as well.
 pub fn advance(
     model: &Model,
     step: &Step,
@@ -106,48 +129,127 @@ pub fn advance(
 ) -> (Vec<IterationRecord>, Result<State, StepFailure>) {
     // The last increment of a step ends on its end, not within round-off of it.
     let time = if old.time + dt > step.span.end - 1e-9 * dt { step.span.end } else { old.time + dt };
-    let trial = Trial { old, step, time, dt: time - old.time };
+    let increment = Trial { old, step, time, dt: time - old.time };
+    let (iterations, equilibrium) = augment(model, increment.ahead(), work);
+    let new = equilibrium.and_then(|u| reach_end(model, increment, u, work)).map(|u| accept(model, increment, u, work));
+    (iterations, new)
+}
+
+/// Solutions with better and better multipliers before an increment of the augmented Lagrangian is given up.
+const MOST_PASSES: usize = 100;
+
+/// Equilibrium at the time of a trial; where a contact asks for the augmented Lagrangian, with multipliers that leave no
+/// more penetration than allowed (Uzawa's method).
+fn augment(model: &Model, trial: Trial, work: &mut Workspace) -> (Vec<IterationRecord>, Result<Vec<f64>, StepFailure>) {
+    let (mut iterations, mut result) = solve(model, trial, None, work);
+    let mut committed = None;
+    for pass in 1.. {
+        let old = committed.as_ref().unwrap_or(trial.old);
+        let Ok(u) = &result else { break };
+        let Some(multiplied) = multiplied(model, old, work) else { break };
+        if pass == MOST_PASSES {
+            result = Err(StepFailure::Penetration { passes: pass });
+            break;
+        }
+        let (more, again) = solve(model, Trial { old: &multiplied, ..trial }, Some(u.clone()), work);
+        iterations.extend(more);
+        result = again;
+        committed = Some(multiplied);
+    }
+    (iterations, result)
+}
+
+/// The committed state with the pressures just found as multipliers, if some pair is not content yet.
+fn multiplied(model: &Model, old: &State, work: &Workspace) -> Option<State> {
+    let pairs = || model.contacts.iter().zip(old.contacts.iter().zip(&work.assembler.evaluation.contacts));
+    if pairs().all(|(pair, (old, trial))| pair.is_content(old, trial)) {
+        return None;
+    }
+    let contacts = pairs().map(|(pair, (old, trial))| pair.multiplied(old, trial)).collect();
+    Some(State { contacts, ..old.clone() })
+}
+
+/// Equilibrium at the time of a trial, wherever the scheme asks for it; from the start value of a new increment unless
+/// another is given.
+fn solve(
+    model: &Model,
+    trial: Trial,
+    start: Option<Vec<f64>>,
+    work: &mut Workspace,
+) -> (Vec<IterationRecord>, Result<Vec<f64>, StepFailure>) {
+    let old = trial.old;
     let Workspace { assembler, solver, system, linear_seconds } = work;
-    assembler.start_increment();
-    let mut first_iterate = true;
+    let begins = start.is_none();
+    if begins {
+        assembler.start_increment();
+    }
+    let mut tangents = 0;
     let mut counts = Vec::new();
     let mut floating = None;
     let spent = assembler.seconds.assembly + assembler.seconds.contact;
     let clock = std::time::Instant::now();
-    let (iterations, result) =
-        newton::solve(start_value(old, trial.dt), model.newton, &mut **solver, system, |u, request, system| {
-            assembler.evaluate(trial, u, request, system)?;
-            if request == Request::Tangent {
-                if first_iterate && old.last_increment.is_none() {
-                    floating = null_motion(model, u, &system.tangent);
-                }
-                first_iterate = false;
-            } else if !first_iterate {
-                counts.push(ContactCounts::of(&assembler.evaluation.contacts));
+    let start = start.unwrap_or_else(|| start_value(trial));
+    let (iterations, result) = newton::solve(start, model.newton, &mut **solver, system, |u, request, system| {
+        assembler.evaluate(trial, u, request, system)?;
+        if request == Request::Tangent {
+            if begins && tangents == 0 && old.last_increment.is_none() {
+                floating = null_motion(model, u, &system.tangent);
             }
-            Ok(())
-        });
+            tangents += 1;
+        } else if tangents > 0 {
+            counts.push(ContactCounts::of(&assembler.evaluation.contacts));
+        }
+        Ok(())
+    });
     let assembled = assembler.seconds.assembly + assembler.seconds.contact - spent;
     *linear_seconds += clock.elapsed().as_secs_f64() - assembled;
     counts.resize(iterations.len(), ContactCounts::default());
     let iterations =
         iterations.into_iter().zip(counts).map(|(newton, contacts)| IterationRecord { newton, contacts }).collect();
-    match (floating, result) {
-        (Some(floating), _) => (iterations, Err(StepFailure::Floating(floating))),
+    let result = match (floating, result) {
+        (Some(floating), _) => Err(StepFailure::Floating(floating)),
         // A trial state may have lost the contact that held a body: worth saying, and worth a smaller increment.
         (None, Err(failure)) => {
             let loose = null_motion(model, &old.displacement, &system.tangent);
-            (iterations, Err(loose.map_or(failure.into(), StepFailure::ContactLost)))
+            Err(loose.map_or(failure.into(), StepFailure::ContactLost))
         }
-        (None, Ok(u)) => (iterations, Ok(accept(model, trial, u, work))),
-    }
+        (None, Ok(u)) => Ok(u),
+    };
+    (iterations, result)
 }
 
-/// u_n + Δu_last Δt/Δt_last within a step, u_n at its start.
-fn start_value(old: &State, dt: f64) -> Vec<f64> {
-    let Some(last) = &old.last_increment else { return old.displacement.clone() };
+/// Where Newton's method starts: the last increment of the step goes on at its pace. Under error control it is
+/// u₀ + Δt v₀ + ½ Δt² a₀, which no accepted increment leaves by much more than the allowed error; where increments do not
+/// resolve the motion it would be far off.
+fn start_value(Trial { old, step, dt, .. }: Trial) -> Vec<f64> {
+    let State { displacement, velocity, acceleration, .. } = old;
+    if step.increments.error.is_some() {
+        let rates = velocity.iter().zip(acceleration);
+        return displacement.iter().zip(rates).map(|(u, (v, a))| u + dt * (v + 0.5 * dt * a)).collect();
+    }
+    let Some(last) = &old.last_increment else { return displacement.clone() };
     let share = dt / last.dt;
-    old.displacement.iter().zip(&last.displacement).map(|(u, du)| u + share * du).collect()
+    displacement.iter().zip(&last.displacement).map(|(u, du)| u + share * du).collect()
+}
+
+/// Displacement at the end of an increment from the equilibrium `u` that was just found ahead of it, and everything
+/// else evaluated there; `u` itself unless the scheme looks beyond the end.
+fn reach_end(model: &Model, end: Trial, u: Vec<f64>, work: &mut Workspace) -> Result<Vec<f64>, StepFailure> {
+    let Trial { old, step, dt, .. } = end;
+    let theta = step.scheme.theta();
+    let Some(scheme) = step.scheme.coefficients().filter(|_| theta > 1.0) else { return Ok(u) };
+    let ahead = &work.assembler.evaluation.acceleration;
+    let reach = |dof: usize| {
+        let (v, a) = (old.velocity[dof], old.acceleration[dof]);
+        old.displacement[dof] + scheme.increment((v, a), a + (ahead[dof] - a) / theta, dt)
+    };
+    let mut u: Vec<f64> = (0..u.len()).map(reach).collect();
+    for support in &step.supports {
+        u[support.dof] = end.prescribed(support, model);
+    }
+    let evaluated = work.assembler.evaluate(end, &u, Request::Residual, &mut work.system);
+    evaluated.map_err(|failure| StepFailure::Newton(NewtonFailure::Evaluation(failure)))?;
+    Ok(u)
 }
 
 /// The new state at the converged displacement `u`.
@@ -160,7 +262,12 @@ fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> Sta
     }
     let external: Vec<f64> = evaluation.loads.iter().zip(&reaction).map(|(load, reaction)| load + reaction).collect();
     let increment: Vec<f64> = u.iter().zip(&old.displacement).map(|(new, old)| new - old).collect();
-    let work_done: f64 = (0..u.len()).map(|dof| 0.5 * (old.external[dof] + external[dof]) * increment[dof]).sum();
+    let mean_work = |old: &[f64], new: &[f64]| -> f64 {
+        (0..u.len()).map(|dof| 0.5 * (old[dof] + new[dof]) * increment[dof]).sum()
+    };
+    let work_done = mean_work(&old.external, &external);
+    let damped = mean_work(&old.damping, &evaluation.damping);
+    let driven = work_of_drivers(model, trial, &increment);
     let x = model.configuration(&u);
     let contact_elastic = contact_energy(model, &evaluation.contacts, &x);
     let dissipated = friction_dissipation(model, old, &evaluation.contacts, &x);
@@ -173,18 +280,34 @@ fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> Sta
         acceleration: evaluation.acceleration,
         force: evaluation.force,
         external,
+        damping: evaluation.damping,
         reaction,
         contacts: evaluation.contacts,
         last_increment: Some(LastIncrement { dt, displacement: increment }),
         step_start: old.step_start.clone(),
         energy: old.energy,
     };
-    state.energy.external_work += work_done;
+    state.energy.external_work += work_done + driven;
+    state.energy.damping_dissipation += driven - damped;
     state.energy.strain = evaluation.strain_energy;
     state.energy.contact_elastic = contact_elastic;
     state.energy.friction_dissipation += dissipated;
     state.energy.kinetic = kinetic_energy(step, &state, work);
     state
+}
+
+/// What the drivers of dashpots put in over an increment: mean force × way of the driver.
+fn work_of_drivers(model: &Model, trial: Trial, increment: &[f64]) -> f64 {
+    let Trial { old, step, time, dt } = trial;
+    let driven = step.loads.dashpots.iter().filter(|dashpot| dashpot.driver.is_some());
+    driven
+        .map(|dashpot| {
+            let position = model.mesh.nodes[dashpot.dof / 2];
+            let [v0, v1] = [old.time, time].map(|time| dashpot.driver_velocity(position, time));
+            let velocity = 0.5 * (v0 + v1);
+            dashpot.coefficient * (velocity * dt - increment[dashpot.dof]) * velocity
+        })
+        .sum()
 }
 
 fn kinetic_energy(step: &Step, state: &State, work: &mut Workspace) -> f64 {
@@ -199,8 +322,8 @@ fn kinetic_energy(step: &Step, state: &State, work: &mut Workspace) -> f64 {
 fn contact_energy(model: &Model, contacts: &[Vec<ContactState>], x: &Configuration) -> f64 {
     let mut energy = 0.0;
     for (pair, states) in model.contacts.iter().zip(contacts) {
-        for (point, ContactState { friction, .. }) in pair.points.iter().zip(states) {
-            let normal = 0.5 * friction.pressure.powi(2) / pair.alpha_n;
+        for (point, ContactState { friction, gap, .. }) in pair.points.iter().zip(states) {
+            let normal = if friction.pressure > 0.0 { 0.5 * pair.alpha_n * gap.powi(2) } else { 0.0 };
             let stiffness = pair.law.stiffness();
             let tangential = if stiffness > 0.0 { 0.5 * friction.traction.powi(2) / stiffness } else { 0.0 };
             energy += point.current_length(x) * (normal + tangential);

@@ -1,11 +1,13 @@
 //! Contact: exact tangents, feet at corners and past ends.
 
 use fecontact::configuration::Configuration;
-use fecontact::contact::force::{ContactState, Increment, Presume, Status, respond};
-use fecontact::contact::pair::ContactPair;
+use fecontact::contact::force::{ContactState, Increment, Presume, Status, closes, press, respond};
+use fecontact::contact::mortar::{Mortar, mortar_points};
+use fecontact::contact::pair::{ContactPair, InitialTraction};
 use fecontact::contact::projection::Bound;
+use fecontact::contact::rigid::{Circle, Plane, Polyline, Rigid};
 use fecontact::contact::search::Index;
-use fecontact::contact::surface::{Master, MasterPoint, Plane, SlavePoint, Surface, gauss_points, nodal_points};
+use fecontact::contact::surface::{Master, MasterPoint, SlavePoint, Surface, gauss_points, lone_point, nodal_points};
 use fecontact::friction::{FrictionParameters, FrictionState};
 use fecontact::system::Contribution;
 use nalgebra::Vector2;
@@ -31,7 +33,16 @@ fn wavy() -> (Vec<Vec<usize>>, Positions) {
 fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
     let law =
         serde_json::from_str::<FrictionParameters>(law).expect("a law").build(700.0).expect("parameters in range");
-    ContactPair { name: "test".into(), points, master, alpha_n: 1000.0, law }
+    ContactPair {
+        name: "test".into(),
+        points,
+        master,
+        mortar: None,
+        alpha_n: 1000.0,
+        penetration: None,
+        law,
+        initial: None,
+    }
 }
 
 fn evaluate(pair: &ContactPair, k: usize, old: &ContactState, x: &Positions) -> (ContactState, Option<Contribution>) {
@@ -79,9 +90,9 @@ fn pulled(pair: &ContactPair, k: usize, x: &Positions, back: f64, friction: Fric
     let at = foot.segment as f64 + foot.xi - back;
     let foot = match &pair.master {
         Master::Mesh(_) => MasterPoint { segment: at.floor() as usize, xi: at - at.floor() },
-        Master::Plane(_) => MasterPoint { segment: 0, xi: foot.xi - back },
+        Master::Rigid(_) => MasterPoint { segment: 0, xi: foot.xi - back },
     };
-    ContactState { friction, foot: Some(foot), gap }
+    ContactState { friction, foot: Some(foot), gap, multiplier: 0.0 }
 }
 
 #[test]
@@ -118,17 +129,201 @@ fn tangent_equals_differences_in_stick_partial_and_full_slip_and_after_touch() {
     }
 }
 
+/// Plane, disk, hole, and a polyline with a ridge that the first point has gone through and a line for the second.
 #[test]
-fn tangent_equals_differences_on_a_plane() {
+fn tangent_equals_differences_on_rigid_bodies() {
     let x: Positions = vec![Vector2::new(0.2, -0.01), Vector2::new(0.9, -0.03)];
-    let plane = Plane { point: Vector2::new(0.0, 0.0), normal: Vector2::new(-0.06, 1.0).normalize() };
-    let pair = pair(gauss_points(&[vec![0, 1]], 2), Master::Plane(plane), SUPER);
-    let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.law.initial_state() };
-    for k in 0..2 {
-        for back in [1e-4, 0.01, -0.2] {
-            check_tangent(&pair, k, &pulled(&pair, k, &x, back, pressed, -0.02), &x, "plane");
+    let at = |points: &[(f64, f64)]| points.iter().map(|&(x, y)| Vector2::new(x, y)).collect::<Vec<_>>();
+    for body in [
+        Rigid::Plane(Plane { point: Vector2::new(0.0, 0.0), normal: Vector2::new(-0.06, 1.0).normalize() }),
+        Rigid::Circle(Circle { centre: Vector2::new(0.5, -3.0), radius: 3.0, hole: false }),
+        Rigid::Circle(Circle { centre: Vector2::new(0.5, 2.0), radius: 1.9, hole: true }),
+        Rigid::Polyline(Polyline::new(at(&[(-1.0, 0.5), (0.35, 0.01), (2.0, 0.6)]))),
+        Rigid::Polyline(Polyline::new(at(&[(-1.0, 0.0), (2.0, 0.03)]))),
+    ] {
+        let pair = pair(gauss_points(&[vec![0, 1]], 2), Master::Rigid(body), SUPER);
+        let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.law.initial_state() };
+        for k in 0..2 {
+            for back in [1e-4, 0.01, -0.2] {
+                check_tangent(&pair, k, &pulled(&pair, k, &x, back, pressed, -0.02), &x, &format!("{:?}", pair.master));
+            }
         }
     }
+}
+
+/// Feet on a disk and in a hole of radius 2, and the way round through ±π, by polar coordinates.
+#[test]
+fn feet_on_a_rigid_circle() {
+    let outward = Vector2::new(0.0, -1.0);
+    for (hole, side) in [(false, 1.0), (true, -1.0)] {
+        let body = Rigid::Circle(Circle { centre: Vector2::new(1.0, 1.0), radius: 2.0, hole });
+        let at = |angle: f64| Vector2::new(1.0, 1.0) + Vector2::new(angle.cos(), angle.sin()) * 2.1;
+        let [from, to] = [3.1, -3.1].map(|angle| body.project(at(angle), Some(outward)).expect("a foot"));
+        assert!((from.gap - 0.1 * side).abs() < 1e-14);
+        // From 3.1 to 2π − 3.1 counter-clockwise, which is against s on a disk.
+        let way = body.way(from.foot, to.foot);
+        assert!((way + side * 2.0 * (2.0 * std::f64::consts::PI - 6.2)).abs() < 1e-14, "{way}");
+    }
+}
+
+/// Feet on a parabola y = x²/4 over [−1, 1]: a point h off along the normal at x = ½ has its foot there, and the way from
+/// the vertex is the arc length ∫ √(1 + x²/4) dx = [x √(4 + x²)/4 + asinh(x/2)].
+#[test]
+fn feet_on_a_quadratic_edge_lie_on_the_parabola() {
+    let normal = Vector2::new(-0.25, 1.0).normalize();
+    for (h, tolerance) in [(0.1, 1e-14), (-0.1, 1e-14), (0.0, 1e-14)] {
+        let point = Vector2::new(0.5, 0.0625) + normal * h;
+        let x = vec![
+            Vector2::new(-1.0, 0.25),
+            Vector2::new(1.0, 0.25),
+            Vector2::new(0.0, 0.0),
+            point,
+            point + Vector2::x(),
+        ];
+        let master = Master::Mesh(Surface::new(&[vec![1, 0, 2]]));
+        let pair = pair(nodal_points(&[vec![3, 4]]), master, COULOMB);
+        let at = Configuration::undeformed(&x);
+        let found = Index::new(&pair.master, &at).project(&pair.points[0], None, &at).expect("a foot");
+        assert!((found.gap - h).abs() < tolerance && (found.foot.xi - 0.75).abs() < tolerance, "{found:?}");
+        let from = Some(MasterPoint { segment: 0, xi: 0.5 });
+        let slip = fecontact::contact::kinematics::kinematics(&pair.points[0], &pair.master, &found, from, &at).slip;
+        let arc = 0.5 * (4.0f64 + 0.25).sqrt() / 4.0 + 0.25f64.asinh();
+        assert!((slip - arc).abs() < 1e-9, "{slip}, exactly {arc}");
+    }
+}
+
+#[test]
+fn tangent_equals_differences_on_quadratic_edges() {
+    let (_, mut x) = wavy();
+    // Two parabolas: nodes 0, 1, 2 and 2, 3, 5, whose middle is not in the middle.
+    x.remove(4);
+    let edges = [vec![2, 0, 1], vec![4, 2, 3]];
+    let slave = [vec![5, 7, 6]];
+    for points in [gauss_points(&slave, 4), nodal_points(&slave)] {
+        for law in [SUPER, COULOMB] {
+            let pair = pair(points.clone(), Master::Mesh(Surface::new(&edges)), law);
+            let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.law.initial_state() };
+            let mut closed = 0;
+            for k in 0..pair.points.len() {
+                let open =
+                    evaluate(&pair, k, &pulled(&pair, k, &x, 0.0, pressed, -0.02), &x).0.status() == Status::Open;
+                for back in [1e-4, 0.01, 0.2, -0.3] {
+                    if !open {
+                        check_tangent(&pair, k, &pulled(&pair, k, &x, back, pressed, -0.02), &x, law);
+                        closed += 1;
+                    }
+                }
+            }
+            assert!(closed > 4, "{closed} points were tested");
+        }
+    }
+}
+
+/// A contact that starts closed across a gap, its slave edges or points of no edge: the traction is that of the pressure
+/// it starts with, and its tangent turns about a foot that lies apart.
+#[test]
+fn tangent_equals_differences_where_contact_starts_closed_across_a_gap() {
+    let (edges, mut x) = wavy();
+    x[6..].iter_mut().for_each(|slave| slave.y += 0.2);
+    let lone = [6, 7, 8].map(|node| lone_point(node, 0.7)).to_vec();
+    let plane = Plane { point: Vector2::new(0.0, -0.5), normal: Vector2::new(-0.2, 1.0).normalize() };
+    for points in [lone, gauss_points(&[vec![6, 7], vec![7, 8]], 2)] {
+        for master in [Master::Mesh(Surface::new(&edges)), Master::Rigid(Rigid::Plane(plane))] {
+            let mut pair = pair(points.clone(), master, SUPER);
+            let at = Configuration::undeformed(&x);
+            pair.start_closed(InitialTraction { pressure: 20.0, traction: 2.0 }, &at).expect("a foot for each");
+            for k in 0..pair.points.len() {
+                let (state, contribution) = evaluate(&pair, k, &pair.initial_states(&at)[k], &x);
+                let FrictionState { pressure, traction, .. } = state.friction;
+                assert!((pressure - 20.0).abs() < 1e-12 && (traction - 2.0).abs() < 1e-12, "{state:?}");
+                assert!((state.gap + 0.02).abs() < 1e-15, "{state:?}");
+                let force = contribution.expect("a closed point").force;
+                let size = pair.points[k].current_length(&at) * 20.0f64.hypot(2.0);
+                let slave = pair.points[k].position.len();
+                let total =
+                    force.as_slice()[..2 * slave].chunks(2).map(|f| Vector2::new(f[0], f[1])).sum::<Vector2<f64>>();
+                assert!((total.norm() - size).abs() < 1e-12 * size, "{total}");
+                for (back, what) in [(1e-4, "stick"), (0.3, "full slip"), (-1.4, "backward slip over two segments")] {
+                    let old = pulled(&pair, k, &x, back, state.friction, state.gap);
+                    check_tangent(&pair, k, &old, &x, &format!("closed across a gap, {what}"));
+                }
+            }
+        }
+    }
+}
+
+/// Mortar: the tangent of every closed point on straight and curved, smooth and cornered edges, sticking and slipping, from
+/// a committed configuration in which the slave lay elsewhere.
+#[test]
+fn mortar_tangent_equals_differences() {
+    let (straight, x) = wavy();
+    let quadratic = [vec![2, 0, 1], vec![5, 2, 3]];
+    for (master, slave) in [
+        (&straight[..], vec![vec![6, 7], vec![7, 8]]),
+        (&straight[..], vec![vec![6, 8, 7]]),
+        (&quadratic[..], vec![vec![6, 7], vec![7, 8]]),
+        (&quadratic[..], vec![vec![6, 8, 7]]),
+    ] {
+        let surface = Surface::new(master);
+        let (points, mortar) = mortar_points(&slave, &x);
+        for law in [SUPER, COULOMB] {
+            let pair = pair(points.clone(), Master::Mesh(surface.clone()), law);
+            let mut closed = 0;
+            for (way, gap) in [(1e-5, -0.02), (0.02, -0.02), (-0.3, -0.02), (0.02, 0.03)] {
+                let mut before = x.clone();
+                before[6..].iter_mut().for_each(|x| x.x -= way);
+                for k in 0..points.len() {
+                    closed += usize::from(check_mortar_tangent(&pair, &mortar, &surface, k, &before, gap, &x));
+                }
+            }
+            assert!(closed >= 8, "{closed} points were tested");
+        }
+    }
+}
+
+/// Compare the tangent of one mortar point with central differences; whether it was closed.
+fn check_mortar_tangent(
+    pair: &ContactPair,
+    mortar: &Mortar,
+    surface: &Surface,
+    k: usize,
+    before: &Positions,
+    gap: f64,
+    x: &Positions,
+) -> bool {
+    let before = Configuration::undeformed(before);
+    let was = mortar.overlaps(surface, &Index::new(&pair.master, &before), &before);
+    let weights = mortar.weights(k, surface, &was, &before);
+    let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.law.initial_state() };
+    let old = ContactState { friction: pressed, foot: Some(MasterPoint { segment: 0, xi: 0.0 }), gap, multiplier: 0.0 };
+    let increment = Increment { dt: 0.3, presume: Presume::Nothing };
+    let evaluate = |x: &Positions| {
+        let x = Configuration::undeformed(x);
+        let is = mortar.overlaps(surface, &Index::new(&pair.master, &x), &x);
+        let meeting = mortar.kinematics(k, surface, &is, weights.as_ref(), &x).expect("the master faces the point");
+        closes(pair, &pair.points[k], meeting.gap, &old, increment, &x)
+            .then(|| press(pair, meeting, &old, increment).expect("a finite increment").1.expect("a closed point"))
+    };
+    let Some(contribution) = evaluate(x) else { return false };
+    let (scale, h) = (contribution.tangent.amax(), 1e-6);
+    for column in 0..2 * contribution.nodes.len() {
+        let moved = |step: f64| {
+            let mut x = x.clone();
+            x[contribution.nodes[column / 2]][column % 2] += step;
+            let moved = evaluate(&x).expect("a tiny motion does not open the point");
+            assert_eq!(moved.nodes, contribution.nodes);
+            moved.force
+        };
+        let differences = (moved(h) - moved(-h)) / (2.0 * h);
+        for (row, difference) in differences.iter().enumerate() {
+            let tangent = contribution.tangent[(row, column)];
+            assert!(
+                (difference - tangent).abs() < 1e-6 * scale,
+                "point {k}, ({row}, {column}): {tangent}, by differences {difference} (scale {scale})"
+            );
+        }
+    }
+    true
 }
 
 /// A valley: a point has gone through its bottom, and the closest point is the node there.
@@ -141,7 +336,12 @@ fn tangent_equals_differences_at_a_concave_corner() {
     let foot = Index::new(&pair.master, at).project(&pair.points[1], None, at).expect("a foot");
     assert!(foot.gap < 0.0 && foot.bound == Bound::Node(1));
     let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.law.initial_state() };
-    let old = ContactState { friction: pressed, foot: Some(MasterPoint { segment: 0, xi: 0.9 }), gap: -0.05 };
+    let old = ContactState {
+        friction: pressed,
+        foot: Some(MasterPoint { segment: 0, xi: 0.9 }),
+        gap: -0.05,
+        multiplier: 0.0,
+    };
     check_tangent(&pair, 1, &old, &x, "concave corner");
 }
 

@@ -108,7 +108,9 @@ fn block_on_ground_slips_from_the_edge_and_converges_quadratically() {
         let [.., before, last] = &solves[..] else { continue };
         let same = ["open", "stick", "slip"].iter().all(|state| before[*state] == last[*state]);
         let residual = number(last, "residual");
-        if solves.len() >= 3 && same && residual > 1e-12 {
+        // A correction with the tangent of the iterate before is not Newton's, and converges at another rate.
+        let newton = last["factorized"] == "1";
+        if newton && solves.len() >= 3 && same && residual > 1e-12 {
             let rate = residual.ln() / number(before, "residual").ln();
             println!("increment {increment}: rate {rate:.2}");
             assert!(rate >= 1.7, "increment {increment}: rate {rate}");

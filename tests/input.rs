@@ -47,7 +47,10 @@ fn good() -> Value {
 
 /// The good case with the values at these JSON pointers set.
 fn with(edits: &[(&str, Value)]) -> Value {
-    let mut case = good();
+    edited(good(), edits)
+}
+
+fn edited(mut case: Value, edits: &[(&str, Value)]) -> Value {
     for (pointer, value) in edits {
         let (parent, key) = pointer.rsplit_once('/').expect("a pointer begins with a slash");
         match case.pointer_mut(parent) {
@@ -286,6 +289,26 @@ fn contacts_are_checked() {
 }
 
 #[test]
+fn rigid_masters_and_formulations_that_make_no_sense_are_refused() {
+    let at = "contacts.base.master";
+    for (master, place, message) in [
+        (json!({"circle": {"centre": [0, 0], "radius": 0}}), format!("{at}.circle.radius: "), "must be positive"),
+        (json!({"polyline": {"points": [[0, 0]]}}), format!("{at}.polyline.points: "), "two or more"),
+        (json!({"polyline": {"points": [[0, 0], [0, 0]]}}), format!("{at}.polyline.points: "), "the same"),
+        (json!({"circle": {"center": [0, 0], "radius": 1}}), format!("{at}.circle.center"), "`centre`"),
+    ] {
+        refused_edits(&[("/contacts/base/master", master)], &[&place, message]);
+    }
+    let plane = json!({"plane": {"point": [0, 0], "normal": [0, 1]}});
+    let mortar = [("/contacts/base/master", plane), ("/contacts/base/method", json!("mortar"))];
+    refused_edits(&mortar, &["contacts.base.method: ", "gauss_to_segment"]);
+    refused_edits(
+        &[("/contacts/base/normal", json!({"penetration": 0}))],
+        &["contacts.base.normal.penetration: ", "positive"],
+    );
+}
+
+#[test]
 fn steps_are_checked() {
     for (pointer, value, fragments) in [
         ("/steps", json!([]), ["steps: ", "at least one step"]),
@@ -307,6 +330,21 @@ fn steps_are_checked() {
             json!({"newmark": {"gamma": 0.1}}),
             ["steps[0].scheme: ", "\"gamma\" is 0.1, but it must be at least"],
         ),
+        (
+            "/steps/0/scheme",
+            json!({"generalized_alpha": {"rho_infinity": 1.5}}),
+            ["steps[0].scheme: ", "\"rho_infinity\" is 1.5, but it must be between 0 (most damping) and 1"],
+        ),
+        (
+            "/steps/0/scheme",
+            json!({"wilson": {"theta": 1.3}}),
+            ["steps[0].scheme: ", "\"theta\" is 1.3, but it must be between 1.37, below which long increments blow up"],
+        ),
+        ("/steps/0/scheme", json!({"wilson": {"tetha": 1.4}}), ["steps[0].scheme", "did you mean `theta`?"]),
+        ("/steps/0/dt/error", json!(0), ["steps[0].dt.error: ", "is 0: must be positive"]),
+        ("/steps/0/dt/error", json!(-1e-3), ["steps[0].dt.error: ", "is -0.001: must be positive"]),
+        ("/steps/0/dt/error", json!(1e-3), ["steps[0].dt.error: ", "a static step has no error in time"]),
+        ("/steps/0/dt/eror", json!(1e-3), ["steps[0].dt.eror: ", "did you mean `error`?"]),
         ("/steps/0/scheme", json!({"hht": {}}), ["steps[0].scheme.hht", "the key `alpha` is missing"]),
         ("/steps/0/scheme", json!({"hht": {"alpha": -0.1}}), ["bodies.block.material.density: ", "needs a mass"]),
         ("/steps/0/name", json!(""), ["steps[0].name: ", "is empty"]),
@@ -320,6 +358,13 @@ fn steps_are_checked() {
         ("/initial_velocity", json!({"brick": [0, 1]}), ["initial_velocity.brick: ", "the bodies are block, ground"]),
     ] {
         refused_edits(&[(pointer, value)], &fragments);
+    }
+    for (scheme, fragment) in [
+        (json!({"wilson": {}}), "wilson has no estimate of its error: take newmark, hht or generalized_alpha"),
+        (json!({"newmark": {"beta": 0.166}}), "newmark with beta near 1/6 has no estimate"),
+    ] {
+        let edits = [("/steps/0/scheme", scheme), ("/steps/0/dt/error", json!(1e-3))];
+        refused_edits(&edits, &["steps[0].dt.error: ", fragment]);
     }
     let contact = good()["contacts"]["base"].clone();
     refused_edits(&[("/contacts", json!({"a,b": contact}))], &["contacts: ", "\"a,b\"", "','"]);
@@ -384,7 +429,10 @@ fn loads_are_checked() {
     for (load, fragments) in [
         (json!({"on": "block", "pressure": 1}), ["steps[0].loads[0].on: ", "of solid elements, not of edges"]),
         (json!({"on": "block", "gravity": {"y": -9.81}}), ["loads[0].on: ", "give bodies.block.material.density"]),
-        (json!({"on": "block_top", "gravity": {"y": 1}}), ["loads[0].on: ", "there is no body `block_top`"]),
+        (
+            json!({"on": "block_top", "gravity": {"y": 1}}),
+            ["loads[0].on: ", "no body or point mass `block_top`, on which gravity acts; there are block, ground"],
+        ),
         (json!({"on": "block_top", "pressure": 1, "force": {"x": 1}}), ["loads[0]: ", "exactly one of pressure"]),
         (json!({"on": "block_top"}), ["loads[0]: ", "exactly one of pressure"]),
         (json!({"on": {"node": 3}, "pressure": 1}), ["loads[0].on: ", "node 3 cannot carry this load"]),
@@ -394,6 +442,169 @@ fn loads_are_checked() {
     ] {
         refused_edits(&[("/steps/0/loads", json!([load]))], &fragments);
     }
+}
+
+/// A point mass on a plane, in contact from the start.
+fn point() -> Value {
+    json!({
+        "mesh": {"nodes": [[0, 0], [1, 0], [2, 0]], "points": {"block": [0], "pin": [1, 2]}},
+        "point_masses": {"block": {"mass": 10, "velocity": [1, 0]}},
+        "contacts": {"base": {
+            "slave": "block", "area": 1, "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+            "normal": {"alpha_n": 1000},
+            "friction": {"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "alpha_t": 1000, "r": 100, "kappa": 10},
+            "initial": {"pressure": 98.1, "traction": 20, "structure": 1.5}
+        }},
+        "steps": [{
+            "name": "slide", "duration": 0.1, "scheme": {"newmark": {}}, "dt": {"initial": 0.01},
+            "supports": [{"on": "pin", "ux": 0, "uy": 0}],
+            "loads": [{"on": "block", "gravity": {"y": "-9.81"}},
+                      {"on": "block", "spring": {"kx": 10, "driver": {"x": {"rate": 0.1}}}},
+                      {"on": "block", "dashpot": {"cx": 2, "driver": {"x": "0.1"}}}]
+        }]
+    })
+}
+
+fn refused_point(edits: &[(&str, Value)], fragments: &[&str]) {
+    refused_case(edited(point(), edits).to_string(), fragments);
+}
+
+#[test]
+fn points_are_checked() {
+    for (pointer, value, fragments) in [
+        ("/point_masses/block/mass", json!(0), ["point_masses.block.mass: ", "is 0: must be positive"]),
+        ("/point_masses/block/mass", json!(-1), ["point_masses.block.mass: ", "is -1: must be positive"]),
+        ("/point_masses/block/mass", json!(1e300), ["point_masses.block: ", "choose other units"]),
+        ("/point_masses/block/weight", json!(1), ["point_masses.block.weight: ", "is not known here"]),
+        ("/point_masses/block/velocity", json!([1]), ["point_masses.block.velocity", "2 numbers"]),
+        ("/point_masses", json!({"blok": {"mass": 1}}), ["point_masses.blok: ", "did you mean `block`?"]),
+        ("/contacts/base/area", json!(null), ["contacts.base.area: ", "is missing: `block` is a group of points"]),
+        ("/contacts/base/area", json!(0), ["contacts.base.area: ", "is 0: must be positive"]),
+        ("/contacts/base/area", json!(1e300), ["contacts.base: ", "area is 1.000000e300"]),
+        ("/contacts/base/normal", json!({}), ["contacts.base.normal.alpha_n: ", "no elements behind the points"]),
+        ("/contacts/base/friction/alpha_t", json!(null), ["contacts.base.friction.alpha_t: ", "is missing"]),
+        ("/contacts/base/initial/pressure", json!(-1), ["contacts.base.initial.pressure: ", "is -1: must be zero or"]),
+        (
+            "/contacts/base/initial/traction",
+            json!(-30),
+            ["contacts.base.initial.traction: ", "mu p = 29.43 with mu = 0"],
+        ),
+        ("/contacts/base/initial/traction", json!(29.44), ["initial.traction: ", "the initial strength is exceeded"]),
+        (
+            "/contacts/base/initial/structure",
+            json!(2.5),
+            ["contacts.base.initial: ", "\"structure\" is 2.5, but it must"],
+        ),
+        ("/contacts/base/initial/structure", json!(0.9), ["contacts.base.initial: ", "between 1 and mu_s/mu_k = 2"]),
+        ("/contacts/base/initial", json!({"traction": 1}), ["contacts.base.initial: ", "`pressure` is missing"]),
+        ("/steps/0/loads/0/on", json!("pin"), ["loads[0].on: ", "no body or point mass `pin`, on which gravity acts"]),
+        ("/steps/0/loads/2/dashpot/cx", json!(-2), ["loads[2].dashpot.cx: ", "is -2: must be zero or positive"]),
+        ("/steps/0/loads/2/dashpot/c", json!(2), ["loads[2].dashpot.c: ", "did you mean `cx`?"]),
+        ("/steps/0/loads/2/on", json!("blocks"), ["loads[2].on: ", "did you mean `block`?"]),
+        ("/steps/0/loads/2/dashpot", json!(null), ["loads[2]: ", "null ends what an earlier step gave"]),
+        (
+            "/steps/0/loads/2/spring",
+            json!({}),
+            ["loads[2]: ", "exactly one of pressure, traction, gravity, force, spring"],
+        ),
+    ] {
+        refused_point(&[(pointer, value)], &fragments);
+    }
+    refused_point(
+        &[("/point_masses", json!({})), ("/steps/0/loads", json!([]))],
+        &["point_masses: ", "node 0 belongs to no element, and the dynamic step `slide` (steps[0]) needs a mass"],
+    );
+    let two = [("/mesh/points/both", json!([0, 1])), ("/point_masses/both", json!({"mass": 1, "velocity": [0, 1]}))];
+    refused_point(&two, &["point_masses.both.velocity: ", "node 0 starts with the velocity [1, 0] already"]);
+    let initial = |structure: Value| json!({"pressure": 98.1, "structure": structure});
+    let coulomb = json!({"law": "coulomb", "mu": 0.3, "alpha_t": 1000});
+    refused_point(
+        &[("/contacts/base/friction", coulomb), ("/contacts/base/initial", initial(json!(1)))],
+        &["contacts.base.initial.structure: ", "has no structure"],
+    );
+    refused_point(
+        &[("/contacts/base/friction", json!({"law": "frictionless"}))],
+        &["contacts.base.initial.structure: ", "has no structure"],
+    );
+    let pushed = json!({"pressure": 98.1, "traction": 1});
+    refused_point(
+        &[("/contacts/base/friction", json!({"law": "frictionless"})), ("/contacts/base/initial", pushed)],
+        &["contacts.base.initial.traction: ", "is exceeded already, which is mu p = 0"],
+    );
+    refused_point(
+        &[("/steps/0/scheme", json!("static")), ("/contacts", json!({})), ("/steps/0/loads", json!([]))],
+        &["steps[0].supports: ", "node 0 belongs to no element and is free along x", "a spring or contact"],
+    );
+    // On elements: edges bring their own lengths, a slave point must not lie on the master, and a point beside the
+    // master cannot start closed.
+    refused_edits(&[("/contacts/base/area", json!(1))], &["contacts.base.area: ", "lengths of their own"]);
+    let lone = |node: usize, initial: Value| {
+        let mut contact = point()["contacts"]["base"].clone();
+        contact["master"] = json!("ground_top");
+        contact["initial"] = initial;
+        let mut nodes = good()["mesh"]["nodes"].clone();
+        nodes.as_array_mut().expect("a list").push(json!([9, 0]));
+        let points = json!({"block": [node], "pin": [0, 1], "lone": [14]});
+        with(&[("/mesh/nodes", nodes), ("/mesh/points", points), ("/contacts/base", contact)])
+    };
+    let contacts = |case: Value| {
+        let mut case = case;
+        case["contacts"]["base"]["slave"] = json!("tip");
+        let node = case["mesh"]["points"]["block"].take();
+        case["mesh"]["points"] = json!({"tip": node, "lone": [14]});
+        case.to_string()
+    };
+    refused_case(contacts(lone(4, Value::Null)), &["contacts.base: ", "node 4 is both slave (`tip`) and master"]);
+    refused_case(
+        contacts(lone(14, json!({"pressure": 1}))),
+        &["contacts.base.initial: ", "the slave point at (9, 0) faces no part of the master"],
+    );
+}
+
+#[test]
+fn check_tells_of_points_and_of_velocities_that_are_lost() {
+    let folder = TempDir::new().unwrap();
+    let check = |case: Value| {
+        write(folder.path(), "point.json", case.to_string());
+        let output = fecontact(folder.path(), &["check", "point.json"]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let text = check(point());
+    for part in [
+        "3 nodes, 0 elements, 6 dofs",
+        "block  mass 10 at 1 node, starts with the velocity (1, 0)",
+        "each point stands for the area 1: 1 contact point",
+        "starts closed with the pressure 98.1 and the traction 20; mu 0.3, structure 1.5",
+        "loaded block: dashpot cx 2, cy 0, its far end moving with (\"0.1\", 0)",
+        "loaded block: spring kx 10, ky 0, its far end moved by (at the rate 0.1, 0)",
+        "warnings  none",
+    ] {
+        assert!(text.contains(part), "`{part}` is not in:\n{text}");
+    }
+    let lost = "the initial velocities are lost: the first step, `slide`, is static";
+    let text = check(edited(point(), &[("/steps/0/scheme", json!("static"))]));
+    assert!(text.contains(lost), "{text}");
+    let output = fecontact(folder.path(), &["run", "point.json"]);
+    assert!(output.status.code() == Some(0) && stderr(&output).contains(lost), "{}", stderr(&output));
+    let summary = fs::read_to_string(folder.path().join("out/point/summary.json")).unwrap();
+    assert!(summary.contains(lost) && summary.contains("\"point_masses\": 1"), "{summary}");
+}
+
+/// A mass that nothing holds along a smooth plane is named while solving, not taken for an answer.
+#[test]
+fn a_point_that_floats_while_solving_is_named() {
+    let smooth = edited(
+        point(),
+        &[
+            ("/contacts/base/friction", json!({"law": "frictionless"})),
+            ("/contacts/base/initial", Value::Null),
+            ("/steps/0/scheme", json!("static")),
+            ("/steps/0/loads", json!([{"on": "block", "force": {"x": 1, "y": -1}}])),
+        ],
+    );
+    let rows = stopped(&smooth, &["step `slide` stopped at time 0", "nothing resists the motion of node 0 along x"]);
+    assert_eq!(rows, 0);
 }
 
 #[test]
@@ -434,7 +645,7 @@ fn paths_and_arguments_are_checked() {
     let folder = TempDir::new().unwrap();
     write(folder.path(), "good.json", good().to_string());
     write(folder.path(), "file", "");
-    refused(folder.path(), &["run", "nowhere.json"], &["nowhere.json: ", "there is no such case file"]);
+    refused(folder.path(), &["run", "nowhere.json"], &["nowhere.json: ", "there is no such file"]);
     refused(folder.path(), &["run", "."], &["error: .: ", "is a folder"]);
     refused(folder.path(), &["run", "good.json", "--out", "file/results"], &["file/results: --out: results cannot"]);
     refused(folder.path(), &["run", "good.json", "--out", "file"], &["file: --out: results cannot be written here"]);
@@ -585,6 +796,23 @@ fn check_tells_what_was_understood() {
         assert!(text.contains(part), "`{part}` is not in:\n{text}");
     }
     assert!(!folder.path().join("out").exists());
+
+    let mut dynamic = case.clone();
+    for body in ["block", "ground"] {
+        dynamic["bodies"][body]["material"]["density"] = json!(1e-3);
+    }
+    dynamic["steps"][0]["scheme"] = json!({"generalized_alpha": {}});
+    dynamic["steps"][0]["dt"] = json!({"initial": 0.01, "error": 1e-6});
+    write(folder.path(), "dynamic.json", dynamic.to_string());
+    let output = fecontact(folder.path(), &["check", "dynamic.json"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    for part in [
+        "generalized_alpha {\"rho_infinity\":0.8}",
+        "increments start at 0.01, at least 1e-8, at most 0.1",
+        "each in error by at most 1e-6 in a displacement, events of contact located to 1e-5",
+    ] {
+        assert!(text.contains(part), "`{part}` is not in:\n{text}");
+    }
 }
 
 proptest::proptest! {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Module → layer. A new module must be listed.
-const LAYERS: [(&str, u32); 24] = [
+const LAYERS: [(&str, u32); 27] = [
     ("parameter", 0),
     ("configuration", 1),
     ("shape", 1),
@@ -20,12 +20,15 @@ const LAYERS: [(&str, u32); 24] = [
     ("error", 3),
     ("mesh", 4),
     ("state", 4),
+    ("law_path", 4),
     ("model", 5),
     ("assembly", 6),
     ("floating", 6),
     ("step", 7),
+    ("increments", 8),
     ("output", 8),
     ("run", 9),
+    ("law_driver", 9),
     ("case", 10),
     ("command", 10),
     ("main", 11),

@@ -4,7 +4,9 @@ mod grids;
 
 use std::sync::Arc;
 
-use fecontact::linear::{LinearSolver, Multifrontal, Pattern, Solution, SparseLu, SparseMatrix, norm, solve};
+use fecontact::linear::{
+    LinearFailure, LinearSolver, Multifrontal, Pattern, Solution, SparseLu, SparseMatrix, norm, solve, solve_again,
+};
 use grids::{Grids, add, noise};
 use proptest::prelude::*;
 
@@ -174,6 +176,80 @@ fn vanished_pivots_are_counted_and_mended() {
     assert!(distance(&solution.x, &x) < 1e-12, "{}", distance(&solution.x, &x));
 }
 
+/// The star again, with one spoke whose diagonal is small, or next to nothing: eliminated first, it drowns what it is
+/// coupled with. Refinement mends that, and what a replaced pivot does.
+#[test]
+fn small_pivots_are_mended() {
+    let spokes: Vec<[usize; 2]> = (1..40).map(|k| [0, k]).collect();
+    let mut replaced = 0;
+    for exponent in 6..20 {
+        let mut matrix = SparseMatrix::zero(Arc::new(Pattern::new(40, spokes.iter().map(|s| &s[..]))));
+        for &[hub, end] in &spokes {
+            add(&mut matrix, hub, end, [[1.0, 0.5], [0.0, 2.0]]);
+            add(&mut matrix, end, hub, [[3.0, 1.0], [0.0, 1.0]]);
+        }
+        for dof in 0..matrix.size() {
+            matrix.add_diagonal(dof, if dof / 2 == 20 { 10f64.powi(-exponent) } else { 9.0 });
+        }
+        let x = noise(matrix.size());
+        let solution = solved(&matrix, &matrix.multiply(&x));
+        let error = distance(&solution.x, &x);
+        assert!(solution.backward_error < 1e-12 && error < 1e-11, "1e-{exponent}: {error}");
+        replaced += usize::from(solution.perturbed_pivots > 0);
+    }
+    assert!((1..14).contains(&replaced), "{replaced} of 14 cases lose a pivot");
+}
+
+/// A solver whose answers are all zero, so that refinement gets nowhere.
+struct Useless;
+
+impl LinearSolver for Useless {
+    fn factorize(&mut self, _: &SparseMatrix) -> Result<(), LinearFailure> {
+        Ok(())
+    }
+
+    fn solve(&mut self, b: &mut [f64]) {
+        b.fill(0.0);
+    }
+}
+
+#[test]
+fn another_solver_takes_over_when_refinement_stalls() {
+    let matrix = Grids::new(14, 9, 1e3).matrix(1.0);
+    let x = noise(matrix.size());
+    let solution = solve(&mut Useless, &matrix, &matrix.multiply(&x)).expect("the matrix is regular");
+    assert!(solution.fallback && solution.backward_error < 1e-12 && distance(&solution.x, &x) < 1e-9);
+    assert!(!solved(&matrix, &matrix.multiply(&x)).fallback);
+}
+
+/// Nothing on the diagonal: pivots are found among the couplings, inside the fronts.
+#[test]
+fn no_diagonal() {
+    let grids = Grids::new(30, 20, 1e3);
+    let mut matrix = SparseMatrix::zero(grids.matrix(1.0).pattern);
+    matrix.values = noise(matrix.values.len());
+    for dof in 0..matrix.size() {
+        let diagonal = matrix.diagonal()[dof];
+        matrix.add_diagonal(dof, -diagonal);
+    }
+    agree(&matrix, 1e-8);
+}
+
+/// Factors of an earlier matrix on the same pattern give an answer to what they were made of, and say how good it is.
+#[test]
+fn old_factors_are_used_again() {
+    let mut solver = Multifrontal::default();
+    let matrix = Grids::new(14, 9, 1e3).matrix(1.0);
+    let b = noise(matrix.size());
+    solve(&mut solver, &matrix, &b).expect("the matrix is regular");
+    let again = solve_again(&mut solver, &matrix, &b);
+    assert!(again.residual < 1e-9 && again.backward_error < 1e-9, "{} {}", again.residual, again.backward_error);
+    let mut changed = matrix.clone();
+    changed.values.iter_mut().for_each(|value| *value *= 2.0);
+    let wrong = solve_again(&mut solver, &changed, &b);
+    assert!((wrong.residual - 1.0).abs() < 1e-6, "A x = 2 b: {}", wrong.residual);
+}
+
 #[test]
 fn values_change_on_the_same_pattern() {
     let mut solver = Multifrontal::default();
@@ -240,6 +316,25 @@ fn any_graph() -> impl Strategy<Value = (usize, Vec<Vec<usize>>, u64)> {
 }
 
 proptest! {
+    /// The two solvers agree on any values whatever, if their answers mean anything.
+    #[test]
+    fn solvers_agree_on_any_pattern(graph in any_graph()) {
+        let (nodes, mut groups, seed) = graph;
+        groups.iter_mut().for_each(|group| { group.sort_unstable(); group.dedup() });
+        let mut matrix = SparseMatrix::zero(Arc::new(Pattern::new(nodes, groups.iter().map(|group| &group[..]))));
+        let shift = (seed % 1000) as usize;
+        matrix.values = noise(matrix.values.len() + shift).split_off(shift);
+        let x = noise(matrix.size());
+        let b = matrix.multiply(&x);
+        let (one, other) = (solve(&mut Multifrontal::default(), &matrix, &b), solve(&mut SparseLu::default(), &matrix, &b));
+        if let (Ok(one), Ok(other)) = (one, other) {
+            prop_assert!(one.backward_error <= 1e-12, "backward error {}", one.backward_error);
+            // Both are as far from the known solution as the condition of the matrix makes them.
+            let (error, reference) = (distance(&one.x, &x), distance(&other.x, &x));
+            prop_assert!(error < 1e-10 || error < 1e4 * reference, "error {error}, reference {reference}");
+        }
+    }
+
     /// Unsymmetric values of any sign on any symmetric pattern, the diagonal strong enough for a tame solution.
     #[test]
     fn any_pattern(graph in any_graph()) {

@@ -1,4 +1,4 @@
-//! The schema that `fecontact schema` prints: it accepts the cases of this repository, refuses bad ones, and explains
+//! The schemas that `fecontact schema` prints: they accept the cases of this repository, refuse bad ones, and explain
 //! every key.
 
 use std::fs;
@@ -8,7 +8,11 @@ use std::process::Command;
 use serde_json::{Value, json};
 
 fn schema() -> Value {
-    let output = Command::new(env!("CARGO_BIN_EXE_fecontact")).arg("schema").output().unwrap();
+    printed(&["schema"])
+}
+
+fn printed(arguments: &[&str]) -> Value {
+    let output = Command::new(env!("CARGO_BIN_EXE_fecontact")).args(arguments).output().unwrap();
     assert!(output.status.success());
     serde_json::from_slice(&output.stdout).unwrap()
 }
@@ -22,11 +26,19 @@ fn cases(folder: &Path) -> Vec<PathBuf> {
 
 #[test]
 fn every_case_is_valid() {
-    let validator = jsonschema::validator_for(&schema()).unwrap();
-    let cases = cases(&Path::new(env!("CARGO_MANIFEST_DIR")).join("cases"));
-    assert!(!cases.is_empty());
-    for path in cases {
-        let case: Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
+    let (tests, cases): (Vec<_>, Vec<_>) =
+        cases(&folder).into_iter().partition(|path| path.starts_with(folder.join("law")));
+    every_file_is_valid(&tests, &printed(&["schema", "law"]));
+    every_file_is_valid(&cases, &schema());
+    assert_eq!(printed(&["schema", "case"]), schema());
+}
+
+fn every_file_is_valid(files: &[PathBuf], schema: &Value) {
+    let validator = jsonschema::validator_for(schema).unwrap();
+    assert!(!files.is_empty());
+    for path in files {
+        let case: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
         let errors: Vec<String> =
             validator.iter_errors(&case).map(|error| format!("{}: {error}", error.instance_path())).collect();
         assert!(errors.is_empty(), "{}: {errors:?}", path.display());
@@ -67,9 +79,33 @@ fn bad_cases_are_not() {
 }
 
 #[test]
+fn bad_tests_of_a_law_are_not() {
+    let validator = jsonschema::validator_for(&printed(&["schema", "law"])).unwrap();
+    let good = json!({
+        "friction": {"law": "coulomb", "mu": 0.3, "alpha_t": 1000}, "initial": {"pressure": 1},
+        "path": [{"duration": 1, "slip": "sin(t)", "pressure": {"table": [[0, 1], [1, 2]]}}]
+    });
+    assert!(validator.is_valid(&good));
+    for (pointer, key, value) in [
+        ("", "mesh", json!("a.msh")),
+        ("", "path", json!([[0, 0, 1]])),
+        ("", "table", json!([[0, 0]])),
+        ("/friction", "law", json!("rubber")),
+        ("/initial", "presure", json!(1)),
+        ("/path/0", "durations", json!(1)),
+        ("/path/0", "slip", json!([1])),
+    ] {
+        let mut bad = good.clone();
+        bad.pointer_mut(pointer).unwrap()[key] = value.clone();
+        assert!(!validator.is_valid(&bad), "{pointer}/{key}: {value} is accepted");
+    }
+}
+
+#[test]
 fn every_key_is_explained() {
     let mut silent = Vec::new();
     find_silent(&schema(), "", &mut silent);
+    find_silent(&printed(&["schema", "law"]), "law", &mut silent);
     assert!(silent.is_empty(), "no description at {silent:#?}");
 }
 

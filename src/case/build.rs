@@ -7,20 +7,24 @@ use nalgebra::Vector2;
 
 use super::error::{CaseError, Complaint};
 use super::file::{
-    Case, Components, ContactInput, DriveInput, Formulation, IncrementsInput, LoadInput, MasterInput, MeshSource,
-    Method, NodeInput, Place, RigidInput, SpringInput, StepInput, TimeInput,
+    Case, CircleInput, Components, ContactInput, DashpotInput, DriveInput, Formulation, IncrementsInput, LoadInput,
+    MasterInput, MeshSource, Method, NodeInput, Place, PlaneInput, PointMassInput, PolylineInput, RigidInput,
+    SpringInput, StepInput, TimeInput,
 };
-use super::{names, supported};
+use super::{initial, names, supported};
 use crate::boundary::{
-    Amplitude, DeadLoad, Drive, Expression, FollowerPressure, Loads, Motion, Prescribed, Span, Spring,
+    Amplitude, Dashpot, DeadLoad, Drive, Expression, FollowerPressure, Loads, Motion, Prescribed, Span, Spring,
 };
+use crate::contact::mortar::{Mortar, mortar_points};
 use crate::contact::pair::ContactPair;
-use crate::contact::surface::{Master, Plane, Surface, gauss_points, in_order, nodal_points};
+use crate::contact::rigid::{Circle, Plane, Polyline, Rigid};
+use crate::contact::surface::{Master, SlavePoint, Surface, gauss_points, in_order, lone_point, nodal_points};
 use crate::element::{SolidElement, consistent_mass};
 use crate::mesh::{Edge, Group, Mesh, gmsh};
-use crate::model::{Body, Increments, Model, Step, WatchedSet};
+use crate::model::{Body, Increments, Model, PointMass, Step, WatchedSet};
 use crate::newton;
 use crate::shape;
+use crate::time::Scheme;
 
 /// Largest number of Newton iterations that makes sense to allow.
 const MOST_ITERATIONS: usize = 1000;
@@ -64,6 +68,7 @@ fn build_on(case: &Case, mesh: Mesh) -> Checked<Model> {
         initial_velocity: vec![0.0; 2 * mesh.nodes.len()],
         mesh,
         bodies,
+        point_masses: Vec::new(),
         body_of_element,
         solids,
         contacts: Vec::new(),
@@ -71,9 +76,10 @@ fn build_on(case: &Case, mesh: Mesh) -> Checked<Model> {
         watch: Vec::new(),
         newton: newton_settings(case)?,
     };
+    model.point_masses = point_masses(case, &model.mesh)?;
     model.contacts = contacts(case, &model)?;
     model.steps = steps(case, &model)?;
-    model.initial_velocity = initial_velocity(case, &model)?;
+    model.initial_velocity = initial::velocities(case, &model)?;
     model.watch =
         case.watch.iter().enumerate().map(|(k, name)| watched(&model.mesh, k, name)).collect::<Checked<_>>()?;
     if case.output.every == 0 {
@@ -128,6 +134,20 @@ fn bodies(case: &Case, mesh: &Mesh) -> Checked<(Vec<Body>, Vec<usize>)> {
     }
 }
 
+fn point_masses(case: &Case, mesh: &Mesh) -> Checked<Vec<PointMass>> {
+    let point_mass = |(name, input): (&String, &PointMassInput)| {
+        let place = format!("point_masses.{name}");
+        let group = mesh.group(name).map_err(|error| Complaint::new(&place, error))?;
+        if input.mass <= 0.0 {
+            let message = format!("is {}: must be positive (leave the group out for none)", input.mass);
+            return Err(Complaint::new(format!("{place}.mass"), message));
+        }
+        check_stiffness(&place, "mass", input.mass)?;
+        Ok(PointMass { name: name.clone(), mass: input.mass, nodes: mesh.nodes_of(group) })
+    };
+    case.point_masses.iter().map(point_mass).collect()
+}
+
 fn solids(case: &Case, mesh: &Mesh, bodies: &[Body], body_of_element: &[usize]) -> Checked<Vec<SolidElement>> {
     let mut solids = Vec::with_capacity(mesh.elements.len());
     for (element, &body) in mesh.elements.iter().zip(body_of_element) {
@@ -167,43 +187,128 @@ fn contacts(case: &Case, model: &Model) -> Checked<Vec<ContactPair>> {
 
 fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPair> {
     let place = format!("contacts.{name}");
-    let mesh = &model.mesh;
-    let slave = edges(mesh, &input.slave, &format!("{place}.slave"))?;
-    let master = match &input.master {
-        MasterInput::Group(group) => {
-            let master = edges(mesh, group, &format!("{place}.master"))?;
-            check_disjoint(&place, &input.slave, slave, group, master, mesh)?;
-            Master::Mesh(Surface::new(&node_lists(master)))
-        }
-        MasterInput::Rigid(RigidInput { plane }) => {
-            let given = Vector2::from(plane.normal);
-            let Some(normal) = given.try_normalize(0.0).filter(|normal| normal.norm() > 0.5) else {
-                let message = format!("is [{}, {}]: must have a direction, such as [0, 1]", given.x, given.y);
-                return Err(Complaint::new(format!("{place}.master.plane.normal"), message));
-            };
-            Master::Plane(Plane { point: Vector2::from(plane.point), normal })
-        }
-    };
-    let slave_edges = in_order(&node_lists(slave));
-    if !(2..=4).contains(&input.points) {
-        return Err(Complaint::new(format!("{place}.points"), format!("is {}: must be 2, 3 or 4", input.points)));
+    let (points, mortar) = slave_points(&place, input, &model.mesh)?;
+    let master = master(&place, input, &points, &model.mesh)?;
+    if mortar.is_some() && matches!(master, Master::Rigid(_)) {
+        let message = "is mortar, which needs an edge group as master: use gauss_to_segment on a rigid body";
+        return Err(Complaint::new(format!("{place}.method"), message));
     }
-    let points = match input.method {
-        Method::NodeToSegment => nodal_points(&slave_edges),
-        Method::GaussToSegment => gauss_points(&slave_edges, input.points),
+    let alpha_n = match input.normal.alpha_n {
+        Some(alpha_n) => alpha_n,
+        None => default_stiffness(&place, input, model)?,
     };
-    let alpha_n = input.normal.alpha_n.unwrap_or_else(|| default_stiffness(model, slave));
     if alpha_n <= 0.0 {
         let message = format!("is {alpha_n}: must be positive (leave it out for 10 (λ + 2G)/h)");
         return Err(Complaint::new(format!("{place}.normal.alpha_n"), message));
     }
-    let law =
-        input.friction.build(0.5 * alpha_n).map_err(|error| Complaint::new(format!("{place}.friction"), error))?;
+    if let Some(penetration) = input.normal.penetration.filter(|p| !(*p > 0.0 && p.is_finite())) {
+        let message = format!("is {penetration}: must be positive (leave it out for the plain penalty)");
+        return Err(Complaint::new(format!("{place}.normal.penetration"), message));
+    }
+    let friction = format!("{place}.friction");
+    if input.area.is_some() && input.gives_alpha_t() == Some(false) {
+        return Err(Complaint::new(friction + ".alpha_t", "is missing: a slave group of points has no default for it"));
+    }
+    let mut law = input.friction.build(0.5 * alpha_n).map_err(|error| Complaint::new(&friction, error))?;
     check_stiffness(&format!("{place}.normal"), "alpha_n", alpha_n)?;
     if law.stiffness() > 0.0 {
-        check_stiffness(&format!("{place}.friction"), "alpha_t", law.stiffness())?;
+        check_stiffness(&friction, "alpha_t", law.stiffness())?;
     }
-    Ok(ContactPair { name: name.into(), points, master, alpha_n, law })
+    let start = format!("{place}.initial");
+    if let Some(structure) = input.initial.and_then(|initial| initial.structure) {
+        let started = initial::with_structure(&input.friction, structure, &start)?;
+        law = started.build(0.5 * alpha_n).map_err(|error| Complaint::new(&start, error))?;
+    }
+    let mut pair = ContactPair {
+        name: name.into(),
+        points,
+        master,
+        mortar,
+        alpha_n,
+        penetration: input.normal.penetration,
+        law,
+        initial: None,
+    };
+    if let Some(initial) = &input.initial {
+        initial::close(&mut pair, initial, model, &start)?;
+    }
+    Ok(pair)
+}
+
+/// Points of the edges, or the points themselves, each with the given area; and the edges if contact is averaged over them.
+fn slave_points(place: &str, input: &ContactInput, mesh: &Mesh) -> Checked<(Vec<SlavePoint>, Option<Mortar>)> {
+    let name = &input.slave;
+    let slave = format!("{place}.slave");
+    let area = format!("{place}.area");
+    if let Group::Nodes(nodes) = mesh.group(name).map_err(|error| Complaint::new(&slave, error))? {
+        let Some(size) = input.area else {
+            let message = format!("is missing: `{name}` is a group of points, and each needs the area it stands for");
+            return Err(Complaint::new(area, message));
+        };
+        if size <= 0.0 {
+            return Err(Complaint::new(area, format!("is {size}: must be positive")));
+        }
+        check_stiffness(place, "area", size)?;
+        return Ok((nodes.iter().map(|&node| lone_point(node, size)).collect(), None));
+    }
+    let edges = in_order(&node_lists(edges(mesh, name, &slave)?));
+    if input.area.is_some() {
+        let message = format!("`{name}` is a group of edges, which have lengths of their own: leave the area out");
+        return Err(Complaint::new(area, message));
+    }
+    if !(2..=4).contains(&input.points) {
+        return Err(Complaint::new(format!("{place}.points"), format!("is {}: must be 2, 3 or 4", input.points)));
+    }
+    Ok(match input.method {
+        Method::NodeToSegment => (nodal_points(&edges), None),
+        Method::GaussToSegment => (gauss_points(&edges, input.points), None),
+        Method::Mortar => {
+            let (points, mortar) = mortar_points(&edges, &mesh.nodes);
+            (points, Some(mortar))
+        }
+    })
+}
+
+fn master(place: &str, input: &ContactInput, points: &[SlavePoint], mesh: &Mesh) -> Checked<Master> {
+    match &input.master {
+        MasterInput::Group(group) => {
+            let master = edges(mesh, group, &format!("{place}.master"))?;
+            check_disjoint(place, &input.slave, points, group, master, mesh)?;
+            Ok(Master::Mesh(Surface::new(&node_lists(master))))
+        }
+        MasterInput::Rigid(body) => rigid(body, &format!("{place}.master")).map(Master::Rigid),
+    }
+}
+
+/// A rigid master, with its geometry checked.
+fn rigid(input: &RigidInput, place: &str) -> Checked<Rigid> {
+    match input {
+        RigidInput::Plane(PlaneInput { point, normal }) => {
+            let given = Vector2::from(*normal);
+            let Some(normal) = given.try_normalize(0.0).filter(|normal| normal.norm() > 0.5) else {
+                let message = format!("is [{}, {}]: must have a direction, such as [0, 1]", given.x, given.y);
+                return Err(Complaint::new(format!("{place}.plane.normal"), message));
+            };
+            Ok(Rigid::Plane(Plane { point: Vector2::from(*point), normal }))
+        }
+        RigidInput::Circle(CircleInput { centre, radius, hole }) => {
+            if !(*radius > 0.0 && radius.is_finite()) {
+                return Err(Complaint::new(format!("{place}.circle.radius"), format!("is {radius}: must be positive")));
+            }
+            Ok(Rigid::Circle(Circle { centre: Vector2::from(*centre), radius: *radius, hole: *hole }))
+        }
+        RigidInput::Polyline(PolylineInput { points }) => {
+            let place = format!("{place}.polyline.points");
+            if points.len() < 2 {
+                return Err(Complaint::new(place, format!("has {} points: must have two or more", points.len())));
+            }
+            if let Some(k) = points.windows(2).position(|pair| pair[0] == pair[1]) {
+                let message = format!("points {} and {} are the same: leave one out", k, k + 1);
+                return Err(Complaint::new(place, message));
+            }
+            Ok(Rigid::Polyline(Polyline::new(points.iter().map(|&point| Vector2::from(point)).collect())))
+        }
+    }
 }
 
 fn check_stiffness(place: &str, name: &str, value: f64) -> Checked<()> {
@@ -216,48 +321,47 @@ fn check_stiffness(place: &str, name: &str, value: f64) -> Checked<()> {
 }
 
 /// α_n = 10 (λ + 2G)/h, the mean over the elements behind the slave; h is the depth of an element behind its edge.
-fn default_stiffness(model: &Model, slave: &[Edge]) -> f64 {
+fn default_stiffness(place: &str, input: &ContactInput, model: &Model) -> Checked<f64> {
+    let name = &input.slave;
+    if input.area.is_some() {
+        let message = format!("is missing: there are no elements behind the points of `{name}` to choose it by");
+        return Err(Complaint::new(format!("{place}.normal.alpha_n"), message));
+    }
+    let slave = edges(&model.mesh, name, &format!("{place}.slave"))?;
     let behind = |edge: &Edge| {
         let [a, b] = [0, 1].map(|end| model.mesh.nodes[edge.nodes[end]]);
         let depth = model.solids[edge.element].volume() / (b - a).norm();
         10.0 * model.bodies[model.body_of_element[edge.element]].material.stiffness() / depth
     };
-    slave.iter().map(behind).sum::<f64>() / slave.len() as f64
+    Ok(slave.iter().map(behind).sum::<f64>() / slave.len() as f64)
 }
 
-/// Slave and master must be different edges: a surface does not touch itself here.
-fn check_disjoint(place: &str, slave: &str, own: &[Edge], master: &str, other: &[Edge], mesh: &Mesh) -> Checked<()> {
-    let nodes: BTreeSet<usize> = own.iter().flat_map(|edge| edge.nodes.iter().copied()).collect();
-    match other.iter().find(|edge| edge.nodes[..2].iter().all(|node| nodes.contains(node))) {
-        Some(edge) => {
-            let tags: Vec<u64> = edge.nodes[..2].iter().map(|&node| mesh.node_tags[node]).collect();
-            let message = format!(
-                "the edge between nodes {} and {} is both slave (`{slave}`) and master (`{master}`): \
-                 the two sides of a contact need edges and nodes of their own",
-                tags[0], tags[1]
-            );
-            Err(Complaint::new(place, message))
-        }
-        None => Ok(()),
-    }
-}
-
-fn initial_velocity(case: &Case, model: &Model) -> Checked<Vec<f64>> {
-    let mut velocity = vec![0.0; model.dofs()];
-    for (name, value) in &case.initial_velocity {
-        let place = format!("initial_velocity.{name}");
-        let Some(body) = model.bodies.iter().find(|body| body.name == *name) else {
-            let known: Vec<&str> = model.bodies.iter().map(|body| body.name.as_str()).collect();
-            return Err(Complaint::new(
-                place,
-                format!("there is no body `{name}`; the bodies are {}", known.join(", ")),
-            ));
-        };
-        for &node in &body.nodes {
-            velocity[2 * node..2 * node + 2].copy_from_slice(value);
-        }
-    }
-    Ok(velocity)
+/// Slave and master must be different edges, and a slave point of no edge must not be on the master: a surface does not
+/// touch itself here.
+fn check_disjoint(
+    place: &str,
+    slave: &str,
+    points: &[SlavePoint],
+    master: &str,
+    other: &[Edge],
+    mesh: &Mesh,
+) -> Checked<()> {
+    let nodes: BTreeSet<usize> = points.iter().flat_map(|point| point.position.iter().map(|&(node, _)| node)).collect();
+    let own = |node: &usize| nodes.contains(node);
+    let lone = points.iter().all(|point| point.length.is_empty());
+    let shared = match lone {
+        true => other.iter().flat_map(|edge| &edge.nodes).find(|node| own(node)).map(|node| vec![*node]),
+        false => other.iter().map(|edge| &edge.nodes[..2]).find(|ends| ends.iter().all(own)).map(<[usize]>::to_vec),
+    };
+    let Some(shared) = shared else { return Ok(()) };
+    let tags: Vec<String> = shared.iter().map(|&node| mesh.node_tags[node].to_string()).collect();
+    let what = if lone { "node" } else { "the edge between nodes" };
+    let message = format!(
+        "{what} {} is both slave (`{slave}`) and master (`{master}`): the two sides of a contact need edges and nodes of \
+         their own",
+        tags.join(" and ")
+    );
+    Err(Complaint::new(place, message))
 }
 
 fn watched(mesh: &Mesh, k: usize, name: &str) -> Checked<WatchedSet> {
@@ -290,6 +394,7 @@ enum LoadKind {
     Gravity,
     Force,
     Spring,
+    Dashpot,
 }
 
 /// A load with the amplitudes that the next step takes over from.
@@ -298,6 +403,7 @@ struct LoadInForce {
     dead: Vec<DeadLoad>,
     pressures: Vec<FollowerPressure>,
     springs: Vec<Spring>,
+    dashpots: Vec<Dashpot>,
 }
 
 impl StepBuilder<'_> {
@@ -310,7 +416,7 @@ impl StepBuilder<'_> {
         let span = Span { start: self.start, end: self.start + input.duration };
         self.start = span.end;
         self.increments = input.dt.or(self.increments);
-        let increments = increments(&format!("{place}.dt"), self.increments, input.duration, span.end)?;
+        let increments = increments(&format!("{place}.dt"), self.increments, span, input.scheme)?;
         let released = self.supports(place, input, span)?;
         for (k, load) in input.loads.iter().enumerate() {
             self.load(&format!("{place}.loads[{k}]"), load, span)?;
@@ -320,6 +426,7 @@ impl StepBuilder<'_> {
             loads.dead.extend(load.dead.iter().cloned());
             loads.pressures.extend(load.pressures.iter().cloned());
             loads.springs.extend(load.springs.iter().cloned());
+            loads.dashpots.extend(load.dashpots.iter().cloned());
         }
         let supports = self.supports.values().cloned().collect();
         Ok(Step { name: input.name.clone(), span, scheme: input.scheme, increments, supports, released, loads })
@@ -397,10 +504,11 @@ impl StepBuilder<'_> {
             (LoadKind::Gravity, input.gravity.as_ref().map(Option::is_none)),
             (LoadKind::Force, input.force.as_ref().map(Option::is_none)),
             (LoadKind::Spring, input.spring.as_ref().map(Option::is_none)),
+            (LoadKind::Dashpot, input.dashpot.as_ref().map(Option::is_none)),
         ];
         let mut given = ends.into_iter().filter_map(|(kind, ends)| Some((kind, ends?)));
         let (Some((kind, ends)), None) = (given.next(), given.next()) else {
-            let message = "must give exactly one of pressure, traction, gravity, force, spring";
+            let message = "must give exactly one of pressure, traction, gravity, force, spring, dashpot";
             return Err(Complaint::new(place, message));
         };
         if ends && !self.loads.contains_key(&(input.on.to_string(), kind)) {
@@ -423,7 +531,7 @@ impl StepBuilder<'_> {
             )?;
         }
         if let Some(gravity) = &input.gravity {
-            let shares = self.body_shares(&group_at(input, place)?, &format!("{place}.on"))?;
+            let shares = self.mass_shares(&group_at(input, place)?, &format!("{place}.on"))?;
             self.dead(place, input, (LoadKind::Gravity, "gravity"), gravity.as_ref(), shares, span)?;
         }
         if let Some(force) = &input.force {
@@ -434,6 +542,9 @@ impl StepBuilder<'_> {
         }
         if let Some(spring) = &input.spring {
             self.spring(place, input, spring.as_ref(), span)?;
+        }
+        if let Some(dashpot) = &input.dashpot {
+            self.dashpot(place, input, dashpot.as_ref(), span)?;
         }
         Ok(())
     }
@@ -462,7 +573,7 @@ impl StepBuilder<'_> {
         let before = self.loads.remove(&entry).unwrap_or_default();
         let mut load = LoadInForce::default();
         for (component, name) in ["x", "y"].into_iter().enumerate() {
-            let given = given.and_then(|given| if component == 0 { given.x.as_ref() } else { given.y.as_ref() });
+            let given = along(given, component);
             let before = before.dead.iter().find(|load| load.component == component).map(|load| load.amplitude.clone());
             let amplitude = amplitude(given, before, &format!("{place}.{key}.{name}"), span)?;
             load.dead.extend(amplitude.map(|amplitude| DeadLoad { component, amplitude, shares: shares.clone() }));
@@ -478,16 +589,12 @@ impl StepBuilder<'_> {
         let Some(given) = given else { return Ok(()) };
         let mut load = LoadInForce::default();
         for (component, (name, stiffness)) in [("kx", given.kx), ("ky", given.ky)].into_iter().enumerate() {
-            if !(stiffness >= 0.0 && stiffness.is_finite()) {
-                let message = format!("is {stiffness}: must be zero or positive");
-                return Err(Complaint::new(format!("{place}.spring.{name}"), message));
-            }
-            if stiffness == 0.0 {
+            if !not_zero(&format!("{place}.spring.{name}"), stiffness)? {
                 continue;
             }
-            let driver = given.driver.as_ref().and_then(|d| if component == 0 { d.x.as_ref() } else { d.y.as_ref() });
             let old = before.springs.iter().find(|spring| spring.dof % 2 == component).and_then(|s| s.driver.clone());
-            let driver = amplitude(driver, old, &format!("{place}.spring.driver"), span)?;
+            let driver =
+                amplitude(along(given.driver.as_ref(), component), old, &format!("{place}.spring.driver"), span)?;
             let at = |&node: &usize| Spring { dof: 2 * node + component, stiffness, driver: driver.clone() };
             load.springs.extend(nodes.iter().map(at));
         }
@@ -495,30 +602,71 @@ impl StepBuilder<'_> {
         Ok(())
     }
 
-    /// Consistent nodal shares of a force per mass on a body: ∫ ρ N_a dV at the quadrature points.
-    fn body_shares(&self, name: &str, place: &str) -> Checked<Vec<(usize, f64, Vector2<f64>)>> {
-        let Some(body) = self.model.bodies.iter().find(|body| body.name == name) else {
-            let known: Vec<&str> = self.model.bodies.iter().map(|body| body.name.as_str()).collect();
-            return Err(Complaint::new(
-                place,
-                format!("there is no body `{name}`; the bodies are {}", known.join(", ")),
-            ));
-        };
-        if body.material.density() == 0.0 {
-            let message = format!("gravity needs a mass: give bodies.{name}.material.density");
-            return Err(Complaint::new(place, message));
-        }
-        let mesh = &self.model.mesh;
-        let mut shares = Vec::new();
-        for &e in &body.elements {
-            let masses = self.model.element_mass(e);
-            for (a, &node) in mesh.elements[e].nodes.iter().enumerate() {
-                // Row sum: ∫ ρ N_a dV.
-                shares.push((node, masses.row(a).sum(), mesh.nodes[node]));
+    fn dashpot(&mut self, place: &str, input: &LoadInput, given: Option<&DashpotInput>, span: Span) -> Checked<()> {
+        let nodes = nodes_at(&self.model.mesh, &input.on, &format!("{place}.on"))?;
+        let key = (input.on.to_string(), LoadKind::Dashpot);
+        let before = self.loads.remove(&key).unwrap_or_default();
+        let Some(given) = given else { return Ok(()) };
+        let mut load = LoadInForce::default();
+        for (component, (name, coefficient)) in [("cx", given.cx), ("cy", given.cy)].into_iter().enumerate() {
+            if !not_zero(&format!("{place}.dashpot.{name}"), coefficient)? {
+                continue;
             }
+            let old = before.dashpots.iter().find(|old| old.dof % 2 == component).and_then(|d| d.driver.clone());
+            let driver =
+                amplitude(along(given.driver.as_ref(), component), old, &format!("{place}.dashpot.driver"), span)?;
+            let at = |&node: &usize| Dashpot { dof: 2 * node + component, coefficient, driver: driver.clone() };
+            load.dashpots.extend(nodes.iter().map(at));
+        }
+        self.loads.insert(key, load);
+        Ok(())
+    }
+
+    /// Nodal shares of a force per mass on a body, ∫ ρ N_a dV, and on point masses.
+    fn mass_shares(&self, name: &str, place: &str) -> Checked<Vec<(usize, f64, Vector2<f64>)>> {
+        let model = self.model;
+        let body = model.bodies.iter().find(|body| body.name == name);
+        let points = model.point_masses.iter().find(|point| point.name == name);
+        match (body, points) {
+            (Some(body), None) if body.material.density() == 0.0 => {
+                let message = format!("gravity needs a mass: give bodies.{name}.material.density");
+                return Err(Complaint::new(place, message));
+            }
+            (None, None) => {
+                let bodies = model.bodies.iter().map(|body| body.name.as_str());
+                let known: Vec<&str> =
+                    bodies.chain(model.point_masses.iter().map(|point| point.name.as_str())).collect();
+                let known = if known.is_empty() { "none at all".into() } else { known.join(", ") };
+                let message =
+                    format!("there is no body or point mass `{name}`, on which gravity acts; there are {known}");
+                return Err(Complaint::new(place, message));
+            }
+            _ => {}
+        }
+        let mut shares = Vec::new();
+        for &e in body.iter().flat_map(|body| &body.elements) {
+            let masses = model.element_mass(e);
+            // Row sum: ∫ ρ N_a dV.
+            let share = |(a, &node): (usize, &usize)| (node, masses.row(a).sum(), model.mesh.nodes[node]);
+            shares.extend(model.mesh.elements[e].nodes.iter().enumerate().map(share));
+        }
+        if let Some(point) = points {
+            shares.extend(point.nodes.iter().map(|&node| (node, point.mass, model.mesh.nodes[node])));
         }
         Ok(shares)
     }
+}
+
+/// Whether a coefficient of a spring or dashpot is above zero; below it must not be.
+fn not_zero(place: &str, value: f64) -> Checked<bool> {
+    match value {
+        value if value < 0.0 => Err(Complaint::new(place, format!("is {value}: must be zero or positive"))),
+        value => Ok(value > 0.0),
+    }
+}
+
+fn along(of: Option<&Components>, component: usize) -> Option<&DriveInput> {
+    of.and_then(|of| if component == 0 { of.x.as_ref() } else { of.y.as_ref() })
 }
 
 fn frees_nothing(place: &str, on: &Place) -> Complaint {
@@ -577,7 +725,7 @@ fn amplitude(
     Ok(Some(Amplitude { drive, span, before: before.map(Box::new) }))
 }
 
-fn drive(input: &DriveInput, place: &str) -> Checked<Drive> {
+pub(super) fn drive(input: &DriveInput, place: &str) -> Checked<Drive> {
     Ok(match input {
         DriveInput::Constant(value) => Drive::Constant(*value),
         DriveInput::InTime(TimeInput::Rate(rate)) => Drive::Rate(*rate),
@@ -602,11 +750,17 @@ fn drive(input: &DriveInput, place: &str) -> Checked<Drive> {
     })
 }
 
-fn increments(place: &str, input: Option<IncrementsInput>, duration: f64, end: f64) -> Checked<Increments> {
-    let input = input.unwrap_or(IncrementsInput { initial: 0.1 * duration, min: None, max: None });
-    let min = input.min.unwrap_or(1e-3 * input.initial);
-    let max = input.max.unwrap_or(input.initial);
-    for (name, value) in [("initial", input.initial), ("min", min), ("max", max)] {
+fn increments(place: &str, input: Option<IncrementsInput>, span: Span, scheme: Scheme) -> Checked<Increments> {
+    let duration = span.end - span.start;
+    let input = input.unwrap_or(IncrementsInput { initial: 0.1 * duration, min: None, max: None, error: None });
+    let least = SHORTEST_INCREMENT * span.end;
+    let (default_min, default_max) = match input.error {
+        None => (1e-3 * input.initial, input.initial),
+        Some(_) => ((1e-6 * input.initial).max(least), input.initial.max(0.1 * duration)),
+    };
+    let (min, max) = (input.min.unwrap_or(default_min), input.max.unwrap_or(default_max));
+    let positive = [("initial", Some(input.initial)), ("min", Some(min)), ("max", Some(max)), ("error", input.error)];
+    for (name, value) in positive.into_iter().filter_map(|(name, value)| Some((name, value?))) {
         if !(value > 0.0 && value.is_finite()) {
             return Err(Complaint::new(format!("{place}.{name}"), format!("is {value}: must be positive")));
         }
@@ -619,10 +773,20 @@ fn increments(place: &str, input: Option<IncrementsInput>, duration: f64, end: f
         let message = format!("initial = {} must lie between min = {min} and max = {max}", input.initial);
         return Err(Complaint::new(place, message));
     }
-    let least = SHORTEST_INCREMENT * end;
     if min < least {
+        let end = span.end;
         let message = format!("is {min:e}: at the time {end:e} increments below {least:.1e} are lost in round-off");
         return Err(Complaint::new(format!("{place}.min"), message));
     }
-    Ok(Increments { initial: input.initial, min, max })
+    if input.error.is_some() && scheme.error_constant().is_none() {
+        let message = match scheme {
+            Scheme::Static => {
+                "needs a dynamic scheme: a static step has no error in time; give it a \"dt\" without error"
+            }
+            Scheme::Wilson { .. } => "wilson has no estimate of its error: take newmark, hht or generalized_alpha",
+            _ => "newmark with beta near 1/6 has no estimate of its error: take another beta",
+        };
+        return Err(Complaint::new(format!("{place}.error"), message));
+    }
+    Ok(Increments { initial: input.initial, min, max, error: input.error })
 }

@@ -24,7 +24,11 @@ pub struct Case {
     /// Path of a gmsh MSH 4.1 file relative to the case file, or a small mesh given in place
     pub mesh: MeshSource,
     /// Bodies by the name of their mesh group
+    #[serde(default)]
     pub bodies: BTreeMap<String, BodyInput>,
+    /// Point masses by the name of a mesh group: a mass at each of its nodes
+    #[serde(default)]
+    pub point_masses: BTreeMap<String, PointMassInput>,
     /// Contacts by a name of your choice
     #[serde(default)]
     pub contacts: BTreeMap<String, ContactInput>,
@@ -83,13 +87,27 @@ pub enum Formulation {
     FBar,
 }
 
+/// A mass at every node of a group.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointMassInput {
+    /// Mass of each node, added to what a body has there [M]
+    pub mass: f64,
+    /// Initial velocity [x, y] of the nodes [L/T]
+    pub velocity: Option<[f64; 2]>,
+}
+
 /// A contact pair.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactInput {
-    /// Edge group whose points are kept out of the master; the finer or softer side
+    /// Edge group whose points are kept out of the master, the finer or softer side; or a group of points, each with the
+    /// `area`
     pub slave: String,
-    /// Edge group, or a rigid plane
+    /// Area that each point of a slave group of points stands for; it does not change. Edges have lengths of their own
+    /// [L, the thickness being 1]
+    pub area: Option<f64>,
+    /// Edge group, or a rigid body
     pub master: MasterInput,
     /// Where contact is evaluated
     #[serde(default)]
@@ -102,6 +120,30 @@ pub struct ContactInput {
     pub normal: NormalInput,
     /// Friction law
     pub friction: FrictionParameters,
+    /// Tractions and structure at the start of a contact that starts closed. The gap of every slave point is then counted
+    /// from where the pressure acts at its initial position, all through the run
+    pub initial: Option<InitialInput>,
+}
+
+impl ContactInput {
+    /// Whether the case gives `alpha_t`; `None` for a law that has none.
+    pub fn gives_alpha_t(&self) -> Option<bool> {
+        let law = serde_json::to_value(self.friction).ok()?;
+        law.get("alpha_t").map(|given| !given.is_null())
+    }
+}
+
+/// The state of a contact that starts closed, the same at all its points.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InitialInput {
+    /// p: contact pressure, zero or positive [F/L²]
+    pub pressure: f64,
+    /// q: traction that resists the slip of the slave along +s, the master's normal turned by −90° [F/L²]
+    #[serde(default)]
+    pub traction: f64,
+    /// 1/R*: structure of the super/subloading law, from 1 to μ_s/μ_k; that of the law unless given [-]
+    pub structure: Option<f64>,
 }
 
 fn two() -> usize {
@@ -120,17 +162,22 @@ pub enum MasterInput {
 
 impl<'de> Deserialize<'de> for MasterInput {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let expecting = "the name of an edge group, or {\"plane\": {\"point\": [x, y], \"normal\": [x, y]}}";
+        let expecting =
+            "the name of an edge group, or a rigid body such as {\"plane\": {\"point\": [x, y], \"normal\": [x, y]}}";
         Choice { expecting, number: None, text: Self::Group, object: Self::Rigid }.read(deserializer)
     }
 }
 
-/// A rigid body given by a formula.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RigidInput {
+/// A rigid body at rest, given by a formula.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RigidInput {
     /// A half-space
-    pub plane: PlaneInput,
+    Plane(PlaneInput),
+    /// A disk, or the rim of a hole
+    Circle(CircleInput),
+    /// A body bounded by straight lines
+    Polyline(PolylineInput),
 }
 
 /// A rigid half-space.
@@ -143,6 +190,27 @@ pub struct PlaneInput {
     pub normal: [f64; 2],
 }
 
+/// A rigid circle.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CircleInput {
+    /// Centre [L]
+    pub centre: [f64; 2],
+    /// Radius [L]
+    pub radius: f64,
+    /// Whether the solid is outside the circle
+    #[serde(default)]
+    pub hole: bool,
+}
+
+/// A rigid polyline.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PolylineInput {
+    /// Its corners, the solid on the right of the way; the first again at the end closes it [L]
+    pub points: Vec<[f64; 2]>,
+}
+
 /// Where contact is evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -152,14 +220,20 @@ pub enum Method {
     /// At Gauss points of the slave's edges
     #[default]
     GaussToSegment,
+    /// Averaged around the slave's nodes, integrated exactly over non-matching meshes; the master is an edge group
+    Mortar,
 }
 
 /// Normal contact.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NormalInput {
-    /// α_n: pressure per penetration [F/L³]; 10 (λ + 2G)/h of the elements behind the slave unless given
+    /// α_n: pressure per penetration [F/L³]; 10 (λ + 2G)/h of the elements behind the slave unless given. A slave group of
+    /// points has none behind it and needs a number
     pub alpha_n: Option<f64>,
+    /// Largest penetration left [L]: the pressure is raised until no closed gap is larger (augmented Lagrangian by Uzawa's
+    /// method), so that the answer does not depend on alpha_n; penalty alone unless given
+    pub penetration: Option<f64>,
 }
 
 /// A step.
@@ -189,10 +263,13 @@ pub struct StepInput {
 pub struct IncrementsInput {
     /// First increment [T]
     pub initial: f64,
-    /// A failed increment is not cut below this [T]; initial/1000 unless given
+    /// Increments are not cut below this [T]; initial/1000 unless given, with `error` initial/10⁶
     pub min: Option<f64>,
-    /// Increments do not grow beyond this [T]; initial unless given
+    /// Increments do not grow beyond this [T]; initial unless given, with `error` a tenth of the step
     pub max: Option<f64>,
+    /// Dynamic steps only: increments are as long as the estimated error that each makes in a displacement stays below
+    /// this [L], and events of contact (slip sets in, stops or turns round) are located to ten times this
+    pub error: Option<f64>,
 }
 
 /// A support on a group or a node.
@@ -299,15 +376,19 @@ pub struct LoadInput {
     /// Traction on reference edges that keeps its direction [F/L²]
     #[serde(default, deserialize_with = "present")]
     pub traction: Option<Option<Components>>,
-    /// Acceleration of gravity on a body [L/T²]
+    /// Acceleration of gravity on a body or on point masses [L/T²]
     #[serde(default, deserialize_with = "present")]
     pub gravity: Option<Option<Components>>,
     /// Force on every node of the group [F]
     #[serde(default, deserialize_with = "present")]
     pub force: Option<Option<Components>>,
-    /// Spring at every node of the group, to the ground or to a moving driver
+    /// Spring at every node of the group, to the ground or to a moving driver; what it does to the node counts as work
+    /// from outside
     #[serde(default, deserialize_with = "present")]
     pub spring: Option<Option<SpringInput>>,
+    /// Dashpot at every node of the group, to the ground or to a moving driver
+    #[serde(default, deserialize_with = "present")]
+    pub dashpot: Option<Option<DashpotInput>>,
 }
 
 /// Components of a vector; zero unless given.
@@ -331,6 +412,20 @@ pub struct SpringInput {
     #[serde(default)]
     pub ky: f64,
     /// Displacement of the far end; the ground unless given [L]
+    pub driver: Option<Components>,
+}
+
+/// A dashpot: force c (v_driver − v). In statics v is the mean velocity of the increment.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DashpotInput {
+    /// Coefficient in x [F T/L]
+    #[serde(default)]
+    pub cx: f64,
+    /// Coefficient in y [F T/L]
+    #[serde(default)]
+    pub cy: f64,
+    /// Velocity of the far end; the ground unless given [L/T]
     pub driver: Option<Components>,
 }
 

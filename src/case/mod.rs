@@ -5,6 +5,8 @@ mod choice;
 mod error;
 mod explain;
 pub mod file;
+mod initial;
+pub mod law_test;
 mod names;
 mod read;
 mod report;
@@ -12,16 +14,31 @@ mod supported;
 
 pub use build::build;
 pub use error::CaseError;
-pub use read::read;
+pub use initial::lost_velocity;
 pub use report::report;
 
+use std::path::Path;
+
+use schemars::JsonSchema;
 use serde_json::Value;
 
 use file::Case;
 
+/// Read a case file.
+///
+/// # Errors
+/// [`CaseError`] when the file cannot be read or is not a case.
+pub fn read(path: &Path) -> Result<Case, CaseError> {
+    read::read(path)
+}
+
 /// The JSON Schema of a case file.
-pub fn schema() -> serde_json::Value {
-    let mut schema = schemars::schema_for!(Case).to_value();
+pub fn schema() -> Value {
+    schema_of::<Case>()
+}
+
+fn schema_of<T: JsonSchema>() -> Value {
+    let mut schema = schemars::schema_for!(T).to_value();
     describe_choices(&mut schema);
     schema
 }

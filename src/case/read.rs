@@ -1,20 +1,19 @@
-//! From the text of a case file to its types.
+//! From the text of a case file, or a test of a law, to its types.
 //!
-//! The text becomes a JSON document first, in which no key may stand twice; the document becomes a [`Case`], and what
-//! does not fit is named by its place.
+//! The text becomes a JSON document first, in which no key may stand twice; the document becomes a `Case` or a
+//! `LawTestInput`, and what does not fit is named by its place.
 
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde::de::{Deserialize, DeserializeOwned, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::error::Category;
 use serde_json::{Map, Value};
 use serde_path_to_error::{Path as KeyPath, Segment};
 
 use super::error::{CaseError, Complaint};
 use super::explain::{clipped, explain};
-use super::file::Case;
 
 /// No case is larger: large meshes have files of their own [MiB].
 const LARGEST: u64 = 16;
@@ -22,23 +21,23 @@ const LARGEST: u64 = 16;
 /// Keys that choose a law; without one nothing else in its object makes sense.
 const TAGS: [&str; 2] = ["model", "law"];
 
-/// Read a case file; unknown keys, wrong types and impossible numbers are named with their place.
+/// Read a file; unknown keys, wrong types and impossible numbers are named with their place.
 ///
 /// # Errors
-/// [`CaseError`] when the file cannot be read or is not a case.
-pub fn read(path: &Path) -> Result<Case, CaseError> {
-    let case = text(path).and_then(|text| document(&text)).and_then(|document| case(&document));
-    case.map_err(|complaint| complaint.in_file(path))
+/// [`CaseError`] when the file cannot be read or is not what it should be.
+pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, CaseError> {
+    let input = text(path).and_then(|text| document(&text)).and_then(|document| input(&document));
+    input.map_err(|complaint| complaint.in_file(path))
 }
 
 fn text(path: &Path) -> Result<String, Complaint> {
     let complain = |message: &str| Complaint::new("", message);
     let unreadable = |cause: std::io::Error| match cause.kind() {
-        ErrorKind::NotFound => complain("there is no such case file; check the path"),
+        ErrorKind::NotFound => complain("there is no such file; check the path"),
         _ => complain(&format!("cannot be read: {cause}")),
     };
     if path.is_dir() {
-        return Err(complain("is a folder; give the path of a case file (JSON)"));
+        return Err(complain("is a folder; give the path of a case or test (JSON)"));
     }
     let mut bytes = Vec::new();
     let limit = LARGEST << 20;
@@ -47,7 +46,7 @@ fn text(path: &Path) -> Result<String, Complaint> {
         let message = format!("is larger than {LARGEST} MiB, so it is no case; a large mesh belongs in a .msh file");
         return Err(complain(&message));
     }
-    let text = String::from_utf8(bytes).map_err(|_| complain("is not a text file; a case is JSON"))?;
+    let text = String::from_utf8(bytes).map_err(|_| complain("is not a text file; cases are JSON"))?;
     let text = text.trim_start_matches('\u{feff}');
     match text.trim().is_empty() {
         true => Err(complain("is empty; a case is a JSON object, as `fecontact schema` describes")),
@@ -59,7 +58,7 @@ fn document(text: &str) -> Result<Value, Complaint> {
     let mut json = serde_json::Deserializer::from_str(text);
     let Document(document) = serde_path_to_error::deserialize(&mut json)
         .map_err(|error| Complaint::new(place(error.path(), None), not_json(error.inner())))?;
-    json.end().map_err(|error| Complaint::new("", format!("goes on after the end of the case: {error}")))?;
+    json.end().map_err(|error| Complaint::new("", format!("goes on after the end of its JSON object: {error}")))?;
     Ok(document)
 }
 
@@ -146,14 +145,14 @@ impl<'de> Visitor<'de> for DocumentVisitor {
     }
 }
 
-fn case(document: &Value) -> Result<Case, Complaint> {
+fn input<T: DeserializeOwned>(document: &Value) -> Result<T, Complaint> {
     // A list would be taken for the keys of the object in their order.
     if document.is_array() {
         return Err(Complaint::new("", "is a list […], but must be an object {…}"));
     }
     serde_path_to_error::deserialize(document).map_err(|error| {
         let message = error.inner().to_string();
-        let key = blamed_key(document, error.path(), &message);
+        let key = blamed_key::<T>(document, error.path(), &message);
         Complaint::new(place(error.path(), key.as_deref()), explain(&message))
     })
 }
@@ -171,7 +170,7 @@ fn place(path: &KeyPath, key: Option<&str>) -> String {
 
 /// The key to blame inside an object whose law is chosen by a tag, where serde loses the way: the one without which the
 /// complaint changes.
-fn blamed_key(document: &Value, path: &KeyPath, message: &str) -> Option<String> {
+fn blamed_key<T: DeserializeOwned>(document: &Value, path: &KeyPath, message: &str) -> Option<String> {
     if message.starts_with("missing field") {
         return None;
     }
@@ -180,7 +179,7 @@ fn blamed_key(document: &Value, path: &KeyPath, message: &str) -> Option<String>
     others.into_iter().chain(tags).find(|key| {
         let mut without = document.clone();
         object_at(&mut without, path).map(|object| object.remove(key));
-        Case::deserialize(&without).map_or_else(|error| error.to_string() != message, |_| true)
+        T::deserialize(&without).map_or_else(|error| error.to_string() != message, |_| true)
     })
 }
 

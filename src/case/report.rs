@@ -7,18 +7,21 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::file::{
-    BodyInput, Case, Components, DriveInput, Formulation, LoadInput, MasterInput, MeshSource, Method, SpringInput,
-    StepInput, TimeInput,
+    BodyInput, Case, CircleInput, Components, ContactInput, DashpotInput, DriveInput, Formulation, InitialInput,
+    LoadInput, MasterInput, MeshSource, Method, PlaneInput, PolylineInput, RigidInput, SpringInput, StepInput,
+    TimeInput,
 };
+use super::initial::lost_velocity;
 use crate::configuration::Configuration;
 use crate::contact::pair::ContactPair;
+use crate::increments::EVENT_LOCATION;
 use crate::mesh::Group;
-use crate::model::{Model, Step};
+use crate::model::{Model, PointMass, Step};
 use crate::shape::ElementKind;
 
 /// A readable account of a checked case.
 pub fn report(case: &Case, model: &Model) -> String {
-    let mut warnings = Vec::new();
+    let mut warnings: Vec<String> = lost_velocity(model).into_iter().collect();
     let mut text = String::new();
     if !model.title.is_empty() {
         text += &format!("{}\n\n", model.title);
@@ -27,6 +30,7 @@ pub fn report(case: &Case, model: &Model) -> String {
     section(&mut text, "mesh", mesh(case, model));
     section(&mut text, "groups", groups(model));
     section(&mut text, "bodies", bodies(case));
+    section(&mut text, "points", point_masses(case, model));
     section(&mut text, "contacts", contacts(case, model, &mut warnings));
     section(&mut text, "steps", steps(case, model));
     section(&mut text, "newton", vec![newton(case)]);
@@ -82,10 +86,10 @@ fn mesh(case: &Case, model: &Model) -> Vec<String> {
     vec![
         source.into(),
         format!(
-            "{}, {} ({}), {}",
+            "{}, {}{}, {}",
             count(model.mesh.nodes.len(), "node"),
             count(model.mesh.elements.len(), "element"),
-            kinds.join(", "),
+            if kinds.is_empty() { String::new() } else { format!(" ({})", kinds.join(", ")) },
             count(model.dofs(), "dof")
         ),
         format!("x from {x0} to {x1}, y from {y0} to {y1}"),
@@ -113,6 +117,16 @@ fn bodies(case: &Case) -> Vec<String> {
     lines
 }
 
+fn point_masses(case: &Case, model: &Model) -> Vec<String> {
+    let row = |point: &PointMass| {
+        let velocity = case.point_masses[&point.name].velocity;
+        let start = velocity.map(|[vx, vy]| format!(", starts with the velocity ({}, {})", number(vx), number(vy)));
+        let mass = format!("mass {} at {}", number(point.mass), count(point.nodes.len(), "node"));
+        [point.name.clone(), mass + &start.unwrap_or_default()]
+    };
+    aligned(&model.point_masses.iter().map(row).collect::<Vec<_>>())
+}
+
 /// The law named by `tag`, and its parameters but those in `skip`.
 fn parameters(law: &impl Serialize, tag: &str, skip: &[&str]) -> String {
     let Ok(Value::Object(fields)) = serde_json::to_value(law) else { return String::new() };
@@ -134,9 +148,21 @@ fn contacts(case: &Case, model: &Model, warnings: &mut Vec<String>) -> Vec<Strin
     for pair in &model.contacts {
         lines.push(pair.name.clone());
         lines.extend(contact(case, pair).into_iter().map(|line| format!("  {line}")));
-        lines.push(format!("  {}", initial_gaps(model, pair, warnings)));
+        let start = match &case.contacts[&pair.name].initial {
+            Some(initial) => initial_tractions(initial, pair),
+            None => initial_gaps(model, pair, warnings),
+        };
+        lines.push(format!("  {start}"));
     }
     lines
+}
+
+fn initial_tractions(initial: &InitialInput, pair: &ContactPair) -> String {
+    let InitialInput { pressure, traction, .. } = *initial;
+    let mu = pair.law.initial_state().mu;
+    let structure = number(pair.law.structure(mu));
+    let [p, q, mu] = [pressure, traction, mu].map(number);
+    format!("starts closed with the pressure {p} and the traction {q}; mu {mu}, structure {structure}")
 }
 
 fn contact(case: &Case, pair: &ContactPair) -> Vec<String> {
@@ -144,13 +170,28 @@ fn contact(case: &Case, pair: &ContactPair) -> Vec<String> {
     let master = match &input.master {
         MasterInput::Group(group) => group.clone(),
         MasterInput::Rigid(rigid) => {
-            let [point, normal] = [rigid.plane.point, rigid.plane.normal].map(|v| v.map(number).join(", "));
-            format!("the rigid plane through ({point}) with the normal ({normal})")
+            let pair = |v: [f64; 2]| v.map(number).join(", ");
+            match rigid {
+                RigidInput::Plane(PlaneInput { point, normal }) => {
+                    format!("the rigid plane through ({}) with the normal ({})", pair(*point), pair(*normal))
+                }
+                RigidInput::Circle(CircleInput { centre, radius, hole }) => {
+                    let kind = if *hole { "hole" } else { "disk" };
+                    format!("the rigid {kind} of radius {} about ({})", number(*radius), pair(*centre))
+                }
+                RigidInput::Polyline(PolylineInput { points }) => {
+                    format!("the rigid polyline through {}", count(points.len(), "point"))
+                }
+            }
         }
     };
-    let where_evaluated = match input.method {
-        Method::GaussToSegment => format!("gauss_to_segment, {} points an edge", input.points),
-        Method::NodeToSegment => "node_to_segment, a point at each node".into(),
+    let where_evaluated = match input {
+        ContactInput { area: Some(area), .. } => format!("each point stands for the area {}", number(*area)),
+        ContactInput { method: Method::GaussToSegment, points, .. } => {
+            format!("gauss_to_segment, {points} points an edge")
+        }
+        ContactInput { method: Method::NodeToSegment, .. } => "node_to_segment, a point at each node".into(),
+        ContactInput { method: Method::Mortar, .. } => "mortar, averaged around each node".into(),
     };
     let alpha_n =
         if input.normal.alpha_n.is_some() { "given" } else { "10 (λ + 2G)/h of the elements behind the slave" };
@@ -159,9 +200,8 @@ fn contact(case: &Case, pair: &ContactPair) -> Vec<String> {
         format!("{where_evaluated}: {}", count(pair.points.len(), "contact point")),
         format!("alpha_n {} ({alpha_n})", number(pair.alpha_n)),
     ];
-    let given = serde_json::to_value(input.friction).ok().and_then(|law| law.get("alpha_t").cloned());
-    if let Some(given) = given {
-        let chosen = if given.is_null() { "alpha_n/2" } else { "given" };
+    if let Some(given) = input.gives_alpha_t() {
+        let chosen = if given { "given" } else { "alpha_n/2" };
         lines.push(format!("alpha_t {} ({chosen})", number(pair.law.stiffness())));
     }
     lines.push(format!("friction {}", parameters(&input.friction, "law", &["alpha_t"])));
@@ -202,7 +242,7 @@ fn steps(case: &Case, model: &Model) -> Vec<String> {
     let (mut supports, mut loads) = (InForce::new(), InForce::new());
     for (step, input) in model.steps.iter().zip(&case.steps) {
         lines.push(step.name.clone());
-        lines.extend(step_lines(step).map(|line| format!("  {line}")));
+        lines.extend(step_lines(step).into_iter().map(|line| format!("  {line}")));
         supports.step(written_supports(input));
         loads.step(input.loads.iter().map(written_load));
         lines.extend(supports.lines("held").into_iter().chain(loads.lines("loaded")).map(|line| format!("  {line}")));
@@ -211,17 +251,22 @@ fn steps(case: &Case, model: &Model) -> Vec<String> {
     lines
 }
 
-fn step_lines(step: &Step) -> [String; 2] {
+fn step_lines(step: &Step) -> Vec<String> {
     let increments = &step.increments;
     let scheme = match serde_json::to_value(step.scheme) {
         Ok(Value::Object(scheme)) => scheme.iter().map(|(name, numbers)| format!("{name} {numbers}")).collect(),
         scheme => scheme.map(|name| plain(&name)).unwrap_or_default(),
     };
     let [initial, min, max] = [increments.initial, increments.min, increments.max].map(number);
-    [
+    let mut lines = vec![
         format!("time {} to {}, {scheme}", number(step.span.start), number(step.span.end)),
         format!("increments start at {initial}, at least {min}, at most {max}"),
-    ]
+    ];
+    lines.extend(increments.error.map(|error| {
+        let located = number(EVENT_LOCATION * error);
+        format!("each in error by at most {} in a displacement, events of contact located to {located}", number(error))
+    }));
+    lines
 }
 
 /// What is in force in a step, by place and kind, as it was last written; `null` ends it.
@@ -277,12 +322,19 @@ fn written_supports(step: &StepInput) -> Vec<Entry> {
 }
 
 fn written_load(load: &LoadInput) -> Entry {
-    let LoadInput { on, pressure, traction, gravity, force, spring } = load;
+    let LoadInput { on, pressure, traction, gravity, force, spring, dashpot } = load;
     let (kind, text) = if let Some(pressure) = pressure {
         ("pressure", pressure.as_ref().map(drive))
     } else if let Some(spring) = spring {
-        let stiffness = |spring: &SpringInput| format!("kx {}, ky {}", number(spring.kx), number(spring.ky));
+        let stiffness = |SpringInput { kx, ky, driver }: &SpringInput| {
+            format!("kx {}, ky {}{}", number(*kx), number(*ky), driven("moved by", driver))
+        };
         ("spring", spring.as_ref().map(stiffness))
+    } else if let Some(dashpot) = dashpot {
+        let coefficients = |DashpotInput { cx, cy, driver }: &DashpotInput| {
+            format!("cx {}, cy {}{}", number(*cx), number(*cy), driven("moving with", driver))
+        };
+        ("dashpot", dashpot.as_ref().map(coefficients))
     } else if let Some(traction) = traction {
         ("traction", traction.as_ref().map(components))
     } else if let Some(gravity) = gravity {
@@ -291,6 +343,10 @@ fn written_load(load: &LoadInput) -> Entry {
         ("force", force.as_ref().and_then(Option::as_ref).map(components))
     };
     (on.to_string(), kind, text)
+}
+
+fn driven(how: &str, driver: &Option<Components>) -> String {
+    driver.as_ref().map_or(String::new(), |driver| format!(", its far end {how} {}", components(driver)))
 }
 
 fn components(of: &Components) -> String {

@@ -1,5 +1,5 @@
-//! What nothing holds or carries, found before anything is solved: bodies that float in a static step, bodies without
-//! mass in a dynamic one, and nodes outside all bodies.
+//! What nothing holds or carries, found before anything is solved: bodies that float in a static step, bodies and nodes
+//! without mass in a dynamic one, and nodes outside all bodies that nothing holds.
 
 use std::collections::BTreeSet;
 
@@ -16,26 +16,29 @@ const FREE: f64 = 1e-10;
 /// Every motion must meet stiffness or, in a dynamic step, mass.
 pub fn check(case: &Case, model: &Model) -> Result<(), Complaint> {
     for (k, step) in model.steps.iter().enumerate() {
-        check_lone_nodes(k, step, model)?;
         if step.scheme.coefficients().is_some() {
             check_mass(k, step, model)?;
+        } else {
+            check_lone_nodes(k, step, model)?;
         }
     }
     check_floating(case, model)
 }
 
-/// A node of no body meets nothing but its supports and springs.
+/// A node of no body meets nothing but its supports, springs, dashpots and contact.
 fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Result<(), Complaint> {
     let mut held = vec![false; model.dofs()];
     let nodes = model.bodies.iter().flat_map(|body| &body.nodes);
     nodes.for_each(|&node| held[2 * node..2 * node + 2].fill(true));
-    step.supports.iter().for_each(|support| held[support.dof] = true);
-    step.loads.springs.iter().for_each(|spring| held[spring.dof] = true);
+    // Whether contact holds a node that may part is left to the solver.
+    let points = model.contacts.iter().flat_map(|pair| pair.points.iter().flat_map(|point| &point.position));
+    points.for_each(|&(node, _)| held[2 * node..2 * node + 2].fill(true));
+    holding_dofs(step).for_each(|dof| held[dof] = true);
     match held.iter().position(|held| !held) {
         Some(dof) => Err(Complaint::new(
             format!("steps[{k}].supports"),
             format!(
-                "node {} belongs to no element and is free along {}: hold it by a support or a spring",
+                "node {} belongs to no element and is free along {}: hold it by a support, a spring or contact",
                 model.mesh.node_tags[dof / 2],
                 ["x", "y"][dof % 2]
             ),
@@ -44,24 +47,38 @@ fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Result<(), Complain
     }
 }
 
-/// Accelerations follow from masses, so a body that may move needs one.
+/// Dofs that supports, springs and dashpots hold.
+fn holding_dofs(step: &Step) -> impl Iterator<Item = usize> {
+    let supports = step.supports.iter().map(|support| support.dof);
+    let springs = step.loads.springs.iter().map(|spring| spring.dof);
+    supports.chain(springs).chain(step.loads.dashpots.iter().map(|dashpot| dashpot.dof))
+}
+
+/// Accelerations follow from masses, so a node that may move needs one.
 fn check_mass(k: usize, step: &Step, model: &Model) -> Result<(), Complaint> {
-    let prescribed = |dof: usize| step.supports.iter().any(|support| support.dof == dof);
-    let massless = model.bodies.iter().find(|body| {
-        body.material.density() == 0.0
-            && body.nodes.iter().any(|node| !prescribed(2 * node) || !prescribed(2 * node + 1))
-    });
-    match massless {
-        Some(body) => Err(Complaint::new(
-            format!("bodies.{}.material.density", body.name),
-            format!("is 0, but the dynamic step `{}` (steps[{k}]) needs a mass: give a density", step.name),
+    let mut carried = vec![false; model.mesh.nodes.len()];
+    let dense = model.bodies.iter().filter(|body| body.material.density() > 0.0).flat_map(|body| &body.nodes);
+    let points = model.point_masses.iter().flat_map(|point| &point.nodes);
+    dense.chain(points).for_each(|&node| carried[node] = true);
+    let prescribed = |dof: usize| step.supports.binary_search_by_key(&dof, |support| support.dof).is_ok();
+    let held = |node: usize| prescribed(2 * node) && prescribed(2 * node + 1);
+    let massless = |node: &usize| !(carried[*node] || held(*node));
+    let why = format!("the dynamic step `{}` (steps[{k}]) needs a mass", step.name);
+    if let Some(body) = model.bodies.iter().find(|body| body.nodes.iter().any(massless)) {
+        let message = format!("is 0, but {why}: give a density");
+        return Err(Complaint::new(format!("bodies.{}.material.density", body.name), message));
+    }
+    match (0..model.mesh.nodes.len()).find(massless) {
+        Some(node) => Err(Complaint::new(
+            "point_masses",
+            format!("node {} belongs to no element, and {why}: give one to its group", model.mesh.node_tags[node]),
         )),
         None => Ok(()),
     }
 }
 
-/// Every group of bodies joined by contact must be held against x, y and rotation by supports or springs in every
-/// static step. A group that touches a rigid plane is left to the solver.
+/// Every group of bodies joined by contact must be held against x, y and rotation by supports, springs or dashpots
+/// in every static step. A group that touches a rigid plane is left to the solver.
 fn check_floating(case: &Case, model: &Model) -> Result<(), Complaint> {
     for (k, step) in model.steps.iter().enumerate().filter(|(_, step)| step.scheme.coefficients().is_none()) {
         for group in joined_bodies(model) {
@@ -82,19 +99,19 @@ fn check_floating(case: &Case, model: &Model) -> Result<(), Complaint> {
     Ok(())
 }
 
-/// Groups of bodies joined by contacts; those that touch a rigid plane are left out.
+/// Groups of bodies joined by contacts; those that touch a rigid body are left out.
 fn joined_bodies(model: &Model) -> Vec<Vec<usize>> {
     let body_at = |node: usize| model.bodies.iter().position(|body| body.nodes.binary_search(&node).is_ok());
     let bodies_of = |nodes: &mut dyn Iterator<Item = usize>| nodes.filter_map(body_at).collect::<BTreeSet<_>>();
     let mut group: Vec<usize> = (0..model.bodies.len()).collect();
-    let mut on_plane = vec![false; model.bodies.len()];
+    let mut on_rigid = vec![false; model.bodies.len()];
     for pair in &model.contacts {
         let slaves = bodies_of(&mut pair.points.iter().flat_map(|point| point.position.iter().map(|&(node, _)| node)));
         match &pair.master {
-            Master::Plane(_) => slaves.iter().for_each(|&slave| on_plane[slave] = true),
+            Master::Rigid(_) => slaves.iter().for_each(|&slave| on_rigid[slave] = true),
             Master::Mesh(Surface { segments, .. }) => {
                 // A group of edges may run along several bodies.
-                let masters = bodies_of(&mut segments.iter().map(|ends| ends[0]));
+                let masters = bodies_of(&mut segments.iter().map(|segment| segment.ends[0]));
                 let joined: Vec<usize> = slaves.iter().chain(&masters).map(|&body| group[body]).collect();
                 group.iter_mut().filter(|g| joined.contains(g)).for_each(|g| *g = joined[0]);
             }
@@ -102,18 +119,16 @@ fn joined_bodies(model: &Model) -> Vec<Vec<usize>> {
     }
     let members = |g: usize| (0..group.len()).filter(|&body| group[body] == g).collect::<Vec<_>>();
     let groups = (0..group.len()).map(members).filter(|bodies| !bodies.is_empty());
-    groups.filter(|bodies| !bodies.iter().any(|&body| on_plane[body])).collect()
+    groups.filter(|bodies| !bodies.iter().any(|&body| on_rigid[body])).collect()
 }
 
-/// A rigid motion of the bodies that no prescribed dof and no spring resists.
+/// A rigid motion of the bodies that no prescribed dof, spring or dashpot resists.
 fn free_motion(model: &Model, step: &Step, bodies: &[usize]) -> Option<String> {
     let nodes: Vec<usize> = bodies.iter().flat_map(|&body| model.bodies[body].nodes.iter().copied()).collect();
     let centre = nodes.iter().map(|&n| model.mesh.nodes[n]).sum::<Vector2<f64>>() / nodes.len() as f64;
     let radius = nodes.iter().fold(f64::MIN_POSITIVE, |r, &n| r.max((model.mesh.nodes[n] - centre).norm()));
-    let held =
-        step.supports.iter().map(|support| support.dof).chain(step.loads.springs.iter().map(|spring| spring.dof));
     let mut resistance = Matrix3::zeros();
-    for dof in held {
+    for dof in holding_dofs(step) {
         let node = dof / 2;
         if !bodies.iter().any(|&body| model.bodies[body].nodes.binary_search(&node).is_ok()) {
             continue;

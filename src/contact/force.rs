@@ -1,7 +1,8 @@
 //! Traction at one contact point, the forces it puts on the nodes, and their tangent.
 //!
 //! ```text
-//! p = −α_n g (g < 0),   q from the friction law,   t = p n − q s
+//! p = ⟨p̄ − α_n g⟩,   q from the friction law,   t = p n − q s            p̄: multiplier, 0 for the plain penalty;
+//!                                                                        g: gap of the surfaces − gap at touch
 //! f_a = −w_a t ℓ                                      ℓ: current length, x_s − x_foot = Σ w_a x_a
 //! δt = (δp − q δθ) n − (δq + p δθ) s,   δp = −α_n δg,   δq = ∂q/∂Δu_t δΔu_t + ∂q/∂p δp
 //! ```
@@ -25,8 +26,10 @@ pub struct ContactState {
     pub friction: FrictionState,
     /// Foot on the master, open or closed; `None` where no part of the master faces the point
     pub foot: Option<MasterPoint>,
-    /// g at the foot [L]
+    /// g at the foot; a contact that starts closed counts it from where its points touch [L]
     pub gap: f64,
+    /// p̄: pressure at zero gap, raised until the penetration is small enough; 0 for the plain penalty [F/L²]
+    pub multiplier: f64,
 }
 
 /// Whether a point is open, sticks or slips.
@@ -81,6 +84,20 @@ pub enum Presume {
 /// Contact closes at a zero gap when it is below this share of the length the point stands for.
 const TOUCH: f64 = 1e-9;
 
+/// Trial state of one point and, if closed, what it adds to the equations.
+pub type PointResponse = Result<(ContactState, Option<Contribution>), LawFailure>;
+
+/// Where a slave point meets the master: its kinematics, its gap and its foot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Meeting {
+    /// Kinematics, with slip counted from the committed state
+    pub kinematics: Kinematics,
+    /// g [L]
+    pub gap: f64,
+    /// The foot
+    pub foot: MasterPoint,
+}
+
 /// The trial state of one point and, if closed, what it adds to the equations.
 pub fn respond(
     pair: &ContactPair,
@@ -89,17 +106,62 @@ pub fn respond(
     old: &ContactState,
     increment: Increment,
     x: &Configuration,
-) -> Result<(ContactState, Option<Contribution>), LawFailure> {
-    let closed = projection.filter(|p| p.gap < 0.0 || touches(slave, p, old, increment, x));
-    let Some(projection) = closed else {
-        let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.dt };
-        let friction = pair.law.respond(&old.friction, sliding)?.state;
-        let state = ContactState { friction, foot: projection.map(|p| p.foot), gap: projection.map_or(0.0, |p| p.gap) };
-        return Ok((state, None));
-    };
-    let mut kinematics = kinematics(slave, &pair.master, &projection, old.foot, x);
-    count_slip_after_touch(&mut kinematics, old.gap, projection.gap);
-    let pressure = (-pair.alpha_n * projection.gap).max(0.0);
+) -> PointResponse {
+    let Some(projection) = projection else { return open(pair, None, old, increment) };
+    let (gap, foot) = (projection.gap - slave.touch, projection.foot);
+    if !closes(pair, slave, gap, old, increment, x) {
+        return open(pair, Some((gap, foot)), old, increment);
+    }
+    press(
+        pair,
+        Meeting { kinematics: kinematics(slave, &pair.master, &projection, old.foot, x), gap, foot },
+        old,
+        increment,
+    )
+}
+
+/// Whether a point with this gap carries pressure, or is presumed to.
+pub fn closes(
+    pair: &ContactPair,
+    slave: &SlavePoint,
+    gap: f64,
+    old: &ContactState,
+    increment: Increment,
+    x: &Configuration,
+) -> bool {
+    pressure(pair, gap, old) > 0.0 || touches(gap, slave.current_length(x), old, increment)
+}
+
+/// Whether a zero gap is presumed to be closed, and to stick.
+fn touches(gap: f64, length: f64, old: &ContactState, increment: Increment) -> bool {
+    let zero = TOUCH * length;
+    increment.presume == Presume::Touch && old.foot.is_some() && old.gap.abs() <= zero && gap.abs() <= zero
+}
+
+fn pressure(pair: &ContactPair, gap: f64, old: &ContactState) -> f64 {
+    (old.multiplier - pair.alpha_n * gap).max(0.0)
+}
+
+/// The state of a point without pressure.
+pub fn open(
+    pair: &ContactPair,
+    met: Option<(f64, MasterPoint)>,
+    old: &ContactState,
+    increment: Increment,
+) -> PointResponse {
+    let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.dt };
+    let friction = pair.law.respond(&old.friction, sliding)?.state;
+    let (gap, foot) = met.unzip();
+    Ok((ContactState { friction, foot, gap: gap.unwrap_or(0.0), multiplier: 0.0 }, None))
+}
+
+/// The state of a closed point and what it adds to the equations.
+pub fn press(pair: &ContactPair, meeting: Meeting, old: &ContactState, increment: Increment) -> PointResponse {
+    let Meeting { mut kinematics, gap, foot } = meeting;
+    if old.friction.pressure == 0.0 && old.gap > 0.0 {
+        count_slip_after_touch(&mut kinematics, old.gap, gap.min(0.0));
+    }
+    let pressure = pressure(pair, gap, old);
     let sliding = Sliding { slip: kinematics.slip, pressure, dt: increment.dt };
     let mut response = pair.law.respond(&old.friction, sliding)?;
     let stiffness = pair.law.stiffness();
@@ -107,32 +169,20 @@ pub fn respond(
         response.state.traction = old.friction.traction + stiffness * sliding.slip;
         response.dtraction_dpressure = 0.0;
     }
-    if increment.presume == Presume::Stick || pressure == 0.0 {
+    // At p = 0 the law has no answer to give, and near it round-off decides which.
+    if increment.presume == Presume::Stick || pressure == 0.0 || touches(gap, kinematics.length, old, increment) {
         response.dtraction_dslip = stiffness;
     }
-    let state = ContactState { friction: response.state, foot: Some(projection.foot), gap: projection.gap };
+    let state = ContactState { friction: response.state, foot: Some(foot), gap, multiplier: old.multiplier };
     Ok((state, Some(contribution(&kinematics, &response, pair.alpha_n))))
 }
 
-fn touches(
-    slave: &SlavePoint,
-    projection: &Projection,
-    old: &ContactState,
-    increment: Increment,
-    x: &Configuration,
-) -> bool {
-    let zero = TOUCH * slave.current_length(x);
-    increment.presume == Presume::Touch && old.foot.is_some() && old.gap.abs() <= zero && projection.gap <= zero
-}
-
 fn count_slip_after_touch(kinematics: &mut Kinematics, old_gap: f64, gap: f64) {
-    if old_gap > 0.0 && gap < 0.0 {
-        let share = gap / (gap - old_gap);
-        let dshare = -old_gap / (gap - old_gap).powi(2);
-        kinematics.dslip *= share;
-        kinematics.dslip += &kinematics.dgap * (dshare * kinematics.slip);
-        kinematics.slip *= share;
-    }
+    let share = gap / (gap - old_gap);
+    let dshare = -old_gap / (gap - old_gap).powi(2);
+    kinematics.dslip *= share;
+    kinematics.dslip += &kinematics.dgap * (dshare * kinematics.slip);
+    kinematics.slip *= share;
 }
 
 /// Nodal forces of the traction and their exact derivative.
@@ -160,11 +210,9 @@ fn contribution(k: &Kinematics, response: &FrictionResponse, alpha_n: f64) -> Co
             add(&mut result, node, i, row, -w);
         }
     }
-    if let Some((dfoot, [start, end])) = &k.dfoot {
+    for (node, dw) in &k.drelative {
         for i in 0..2 {
-            let force = traction[i] * k.length;
-            add(&mut result, *start, i, dfoot, -force);
-            add(&mut result, *end, i, dfoot, force);
+            add(&mut result, *node, i, dw, -traction[i] * k.length);
         }
     }
     result

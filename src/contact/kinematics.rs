@@ -1,12 +1,12 @@
 //! Gap, slip and rotation of a contact point, and their exact variations.
 //!
-//! With d = x_s − x₁, a segment from x₁ to x₂ of length L along s = (x₂ − x₁)/L, and δm = (1 − ξ) δx₁ + ξ δx₂:
+//! On a segment x(ξ), straight or a parabola, with x′ = dx/dξ = J s, x″ = d²x/dξ², and δm = Σ N_a(ξ) δx_a:
 //!
 //! ```text
-//! g  = d·n                δg = n·(δx_s − δm)
-//! ξ L = d·s               δ(ξL) = s·(δx_s − δx₁) + (g/L) n·(δx₂ − δx₁)
-//! θ: rotation of (s, n)   δθ = n·(δx₂ − δx₁)/L,   δs = n δθ,   δn = −s δθ
-//! Δu_t = Σ c_j L_j        δΔu_t = Σ c_j δL_j + L δξ        c_j: signed share of segment j between old and new foot
+//! g = (x_s − x)·n         δg = n·(δx_s − δm)
+//! (x_s − x)·x′ = 0        δξ (J² − g n·x″) = J s·(δx_s − δm) + g n·δx′
+//! θ: rotation of (s, n)   δθ = n·(δx′ + x″ δξ)/J,   δs = n δθ,   δn = −s δθ
+//! Δu_t = ∫ J dξ           δΔu_t = ∫ s·δx′ dξ + J δξ        along the surface from the old foot to the new one
 //! ```
 //!
 //! A foot bound to a node x_v: g = ±‖x_s − x_v‖, δg = n·(δx_s − δx_v), δθ = −s·(δx_s − δx_v)/g, δξ = 0.
@@ -14,8 +14,10 @@
 use nalgebra::{DVector, Vector2};
 
 use super::projection::{Bound, Projection, tangent_of};
+use super::rigid::Rigid;
 use super::surface::{Master, MasterPoint, SlavePoint, Surface};
 use crate::configuration::Configuration;
+use crate::shape;
 
 /// Kinematics of one contact point and the variations with respect to its nodes' displacements.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,8 +42,8 @@ pub struct Kinematics {
     pub drotation: DVector<f64>,
     /// δ(length) [-]
     pub dlength: DVector<f64>,
-    /// δξ [1/L], and the positions in `nodes` of the segment's start and end whose weights it moves
-    pub dfoot: Option<(DVector<f64>, [usize; 2])>,
+    /// δw_a of the weights that change, with their positions in `nodes` [1/L]
+    pub drelative: Vec<(usize, DVector<f64>)>,
 }
 
 /// Kinematics of `slave` projected on `master`, with the slip counted from the committed foot `from`.
@@ -53,18 +55,26 @@ pub fn kinematics(
     x: &Configuration,
 ) -> Kinematics {
     match master {
-        Master::Plane(_) => on_plane(slave, projection, from, x),
+        Master::Rigid(body) => on_rigid(slave, body, projection, from, x),
         Master::Mesh(surface) => on_surface(slave, surface, projection, from, x),
     }
 }
 
-fn on_plane(slave: &SlavePoint, projection: &Projection, from: Option<MasterPoint>, x: &Configuration) -> Kinematics {
+fn on_rigid(
+    slave: &SlavePoint,
+    body: &Rigid,
+    projection: &Projection,
+    from: Option<MasterPoint>,
+    x: &Configuration,
+) -> Kinematics {
     let mut k = Kinematics::of_slave(slave, projection.normal, &[], x);
     let (n, s) = (k.normal, k.tangent);
+    let Bound::Rigid { advance, turn } = projection.bound else { return k };
     k.vary(&slave.position, n, |k| &mut k.dgap);
+    k.vary(&slave.position, s * turn, |k| &mut k.drotation);
     if let Some(from) = from {
-        k.slip = projection.foot.xi - from.xi;
-        k.vary(&slave.position, s, |k| &mut k.dslip);
+        k.slip = body.way(from, projection.foot);
+        k.vary(&slave.position, s * advance, |k| &mut k.dslip);
     }
     k
 }
@@ -77,14 +87,14 @@ fn on_surface(
     x: &Configuration,
 ) -> Kinematics {
     let MasterPoint { segment, xi } = projection.foot;
+    let curve = &surface.segments[segment];
     let path = from.and_then(|from| surface.path(from, projection.foot)).unwrap_or_default();
-    let [a, b] = surface.segments[segment];
-    let mut masters = vec![a, b];
-    masters.extend(path.iter().flat_map(|&(j, _)| surface.segments[j]));
+    let mut masters: Vec<usize> = curve.nodes().collect();
+    masters.extend(path.iter().flat_map(|&(j, ..)| surface.segments[j].nodes()));
     let mut k = Kinematics::of_slave(slave, projection.normal, &masters, x);
     let (n, s, gap) = (k.normal, k.tangent, projection.gap);
 
-    let foot = [(a, 1.0 - xi), (b, xi)];
+    let foot = curve.position(xi);
     let relative: Vec<(usize, f64)> =
         slave.position.iter().copied().chain(foot.iter().map(|&(node, w)| (node, -w))).collect();
     for &(node, w) in &foot {
@@ -93,34 +103,37 @@ fn on_surface(
     }
     k.vary(&relative, n, |k| &mut k.dgap);
 
-    let along = x.between(a, b);
-    let length = along.norm();
+    let slope = curve.slope(xi);
+    let length = x.combine(&slope).norm();
+    let mut dfoot = DVector::zeros(2 * k.nodes.len());
     match projection.bound {
         Bound::Node(_) if gap != 0.0 => k.vary(&relative, -s / gap, |k| &mut k.drotation),
-        Bound::Node(_) => {}
-        _ => {
-            let segment_vector = [(a, -1.0), (b, 1.0)];
-            k.vary(&segment_vector, n / length, |k| &mut k.drotation);
-            let mut dfoot = DVector::zeros(2 * k.nodes.len());
-            k.vary_into(&mut dfoot, &slave.position, s / length);
-            k.vary_into(&mut dfoot, &[(a, 1.0)], -s / length);
-            k.vary_into(&mut dfoot, &segment_vector, (n * (gap / length) - s * xi) / length);
-            k.dfoot = Some((dfoot, [k.local(a), k.local(b)]));
+        Bound::Node(_) | Bound::Rigid { .. } => {}
+        Bound::Segment => {
+            let bend = x.combine(&curve.bend()).dot(&n);
+            let stiffness = length * length - gap * bend;
+            k.vary_into(&mut dfoot, &relative, s * (length / stiffness));
+            k.vary_into(&mut dfoot, &slope, n * (gap / stiffness));
+            k.vary(&slope, n / length, |k| &mut k.drotation);
+            k.drotation += &dfoot * (bend / length);
+            k.drelative = slope.iter().map(|&(node, rate)| (k.local(node), &dfoot * -rate)).collect();
         }
     }
     if path.is_empty() {
         return k;
     }
-    for (j, share) in path {
-        let [a, b] = surface.segments[j];
-        let along = x.between(a, b);
-        let length = along.norm();
-        k.slip += share * length;
-        k.vary(&[(a, -1.0), (b, 1.0)], along * (share / length), |k| &mut k.dslip);
+    for (j, start, end) in path {
+        let segment = &surface.segments[j];
+        let points = if segment.middle.is_some() { 4 } else { 1 };
+        for (at, weight) in shape::gauss(points) {
+            let slope = segment.slope(start + 0.5 * (1.0 + at) * (end - start));
+            let along = x.combine(&slope);
+            let share = 0.5 * weight * (end - start);
+            k.slip += share * along.norm();
+            k.vary(&slope, along.normalize() * share, |k| &mut k.dslip);
+        }
     }
-    if let Some((dfoot, _)) = &k.dfoot {
-        k.dslip += dfoot * length;
-    }
+    k.dslip += dfoot * length;
     k
 }
 
@@ -146,7 +159,7 @@ impl Kinematics {
             dslip: zero.clone(),
             drotation: zero.clone(),
             dlength: zero,
-            dfoot: None,
+            drelative: Vec::new(),
         };
         for &(node, w) in &slave.position {
             let at = k.local(node);

@@ -4,9 +4,11 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::force::{ContactState, Increment, Presume, respond};
+use super::force::{ContactState, Increment, PointResponse, Presume, closes, open, press, respond};
+use super::kinematics::{Kinematics, kinematics};
+use super::mortar::Mortar;
 use super::search::Index;
-use super::surface::{Master, SlavePoint};
+use super::surface::{Master, MasterPoint, SlavePoint};
 use crate::configuration::Configuration;
 use crate::friction::{FrictionLaw, FrictionState, LawFailure};
 use crate::system::Contribution;
@@ -20,55 +22,169 @@ pub struct ContactPair {
     pub points: Vec<SlavePoint>,
     /// The master
     pub master: Master,
+    /// The slave's edges if contact is averaged over them; else it is evaluated point by point
+    pub mortar: Option<Mortar>,
     /// α_n: normal penalty stiffness [F/L³]
     pub alpha_n: f64,
+    /// Largest penetration left by the augmented Lagrangian; plain penalty if not given [L]
+    pub penetration: Option<f64>,
     /// The friction law
     pub law: Box<dyn FrictionLaw>,
+    /// Tractions at the start of a contact that starts closed
+    pub initial: Option<InitialTraction>,
 }
+
+/// Tractions that act at every point of a contact when the run starts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InitialTraction {
+    /// p [F/L²]
+    pub pressure: f64,
+    /// q [F/L²]
+    pub traction: f64,
+}
+
+/// Fewer points than this are not worth waking other threads for.
+const FEW: usize = 64;
 
 /// Trial states and contributions of all points of a pair, in their order.
 pub type PairResponse = Vec<(ContactState, Option<Contribution>)>;
 
 impl ContactPair {
-    /// States at the start of a run: each point projected in the configuration `x`, friction at rest.
+    /// Start closed: from now on every point's gap is counted so that the given pressure acts in the configuration `x`.
+    ///
+    /// ```text
+    /// p = p_init + α_n (g_x − g)        g_x: gap between the surfaces in the configuration x
+    /// ```
+    ///
+    /// # Errors
+    /// The number of the first point that no part of the master faces.
+    pub fn start_closed(&mut self, initial: InitialTraction, x: &Configuration) -> Result<(), usize> {
+        let met = self.meetings(x);
+        for (k, (slave, met)) in self.points.iter_mut().zip(met).enumerate() {
+            slave.touch = met.ok_or(k)?.0 + initial.pressure / self.alpha_n;
+        }
+        self.initial = Some(initial);
+        Ok(())
+    }
+
+    /// States at the start of a run: each point projected in the configuration `x`, friction at rest or, in a contact
+    /// that starts closed, under its initial tractions.
     pub fn initial_states(&self, x: &Configuration) -> Vec<ContactState> {
-        let index = Index::new(&self.master, x);
-        let at_rest = |slave| {
-            let projection = index.project(slave, None, x);
-            ContactState {
-                friction: self.law.initial_state(),
-                foot: projection.map(|p| p.foot),
-                gap: projection.map_or(0.0, |p| p.gap),
-            }
+        let mut friction = self.law.initial_state();
+        if let Some(InitialTraction { pressure, traction }) = self.initial {
+            friction = FrictionState { pressure, traction, ..friction };
+        }
+        let state = |(slave, met): (&SlavePoint, Option<(f64, MasterPoint)>)| {
+            let (gap, foot) = met.unzip();
+            ContactState { friction, foot, gap: gap.map_or(0.0, |gap| gap - slave.touch), multiplier: 0.0 }
         };
-        self.points.iter().map(at_rest).collect()
+        self.points.iter().zip(self.meetings(x)).map(state).collect()
+    }
+
+    /// Gap of the surfaces and foot of every point, where the master faces it.
+    fn meetings(&self, x: &Configuration) -> Vec<Option<(f64, MasterPoint)>> {
+        let index = Index::new(&self.master, x);
+        match (&self.mortar, &self.master) {
+            (Some(mortar), Master::Mesh(surface)) => {
+                let overlaps = mortar.overlaps(surface, &index, x);
+                let meet = |k| mortar.kinematics(k, surface, &overlaps, None, x);
+                (0..self.points.len()).map(|k| meet(k).map(|met| (met.gap, met.foot))).collect()
+            }
+            _ => self.points.iter().map(|slave| index.project(slave, None, x).map(|p| (p.gap, p.foot))).collect(),
+        }
     }
 
     /// Every point's trial state and contribution in the configuration `x`, each with its own presumption and, if it is
-    /// held on one, its segment; pure, and the same for any number of threads.
+    /// held on one, its segment; `before` is the committed configuration. Pure, and the same for any number of threads.
     ///
     /// # Errors
     /// The number of the first point whose friction law fails, and why.
     pub fn respond(
         &self,
         old: &[ContactState],
+        before: &Configuration,
         dt: f64,
         presumed: impl Fn(usize) -> (Presume, Option<usize>) + Sync,
         x: &Configuration,
     ) -> Result<PairResponse, (usize, LawFailure)> {
         let index = Index::new(&self.master, x);
-        let one = |(k, (slave, old)): (usize, (&SlavePoint, &ContactState))| {
+        if let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) {
+            let was = mortar.overlaps(surface, &Index::new(&self.master, before), before);
+            let is = mortar.overlaps(surface, &index, x);
+            return self.each(old, |k, slave, old| {
+                let increment = Increment { dt, presume: presumed(k).0 };
+                let weights = mortar.weights(k, surface, &was, before);
+                let Some(mut meeting) = mortar.kinematics(k, surface, &is, weights.as_ref(), x) else {
+                    return open(self, None, old, increment);
+                };
+                meeting.gap -= slave.touch;
+                match closes(self, slave, meeting.gap, old, increment, x) {
+                    true => press(self, meeting, old, increment),
+                    false => open(self, Some((meeting.gap, meeting.foot)), old, increment),
+                }
+            });
+        }
+        self.each(old, |k, slave, old| {
             let (presume, held) = presumed(k);
             respond(self, slave, index.project(slave, held, x), old, Increment { dt, presume }, x)
-                .map_err(|failure| (k, failure))
+        })
+    }
+
+    /// One answer a point; the first failure by number, whatever thread met it.
+    fn each(
+        &self,
+        old: &[ContactState],
+        answer: impl Fn(usize, &SlavePoint, &ContactState) -> PointResponse + Sync,
+    ) -> Result<PairResponse, (usize, LawFailure)> {
+        let one = |(k, (slave, old)): (usize, (&SlavePoint, &ContactState))| {
+            answer(k, slave, old).map_err(|failure| (k, failure))
         };
-        // The first failure by number, whatever thread met it.
+        if self.points.len() < FEW {
+            return self.points.iter().zip(old).enumerate().map(one).collect();
+        }
         let all: Vec<_> = self.points.par_iter().zip(old).enumerate().map(one).collect();
         all.into_iter().collect()
     }
 }
 
 impl ContactPair {
+    /// Whether the multipliers of a pass leave no more penetration than allowed; always for the plain penalty.
+    pub fn is_content(&self, old: &[ContactState], trial: &[ContactState]) -> bool {
+        let Some(tolerance) = self.penetration else { return true };
+        let near = |new: &ContactState| new.friction.pressure == 0.0 || new.gap.abs() <= tolerance;
+        // A multiplier that no pressure answers to any more must go as well.
+        let stale = |(old, new): (&ContactState, &ContactState)| old.multiplier > 0.0 && new.friction.pressure == 0.0;
+        trial.iter().all(near) && !old.iter().zip(trial).any(stale)
+    }
+
+    /// The committed states with the pressures of a pass as multipliers, p̄ ← p (Uzawa's method).
+    pub fn multiplied(&self, old: &[ContactState], trial: &[ContactState]) -> Vec<ContactState> {
+        let multiplier = |new: &ContactState| if self.penetration.is_some() { new.friction.pressure } else { 0.0 };
+        old.iter().zip(trial).map(|(old, new)| ContactState { multiplier: multiplier(new), ..*old }).collect()
+    }
+
+    /// Rate at which each point slips along +s under nodal velocities, the variation of Δu_t; 0 where nothing faces it
+    /// [L/T].
+    pub fn slip_rates(&self, states: &[ContactState], x: &Configuration, velocity: &[f64]) -> Vec<f64> {
+        let index = Index::new(&self.master, x);
+        let rate = |k: Kinematics| {
+            let dofs = k.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
+            dofs.zip(&k.dslip).map(|(dof, dslip)| velocity[dof] * dslip).sum()
+        };
+        if let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) {
+            let overlaps = mortar.overlaps(surface, &index, x);
+            let met =
+                |k| mortar.kinematics(k, surface, &overlaps, mortar.weights(k, surface, &overlaps, x).as_ref(), x);
+            return (0..self.points.len()).map(|k| met(k).map_or(0.0, |met| rate(met.kinematics))).collect();
+        }
+        let slips = |(slave, state): (&SlavePoint, &ContactState)| {
+            let segment = state.foot.map(|foot| foot.segment);
+            let projection = index.project(slave, segment, x);
+            projection.map_or(0.0, |projection| rate(kinematics(slave, &self.master, &projection, state.foot, x)))
+        };
+        self.points.iter().zip(states).map(slips).collect()
+    }
+
     /// Elastic part of the slip, q/α_t; 0 for a frictionless contact [L].
     pub fn elastic_slip(&self, friction: &FrictionState) -> f64 {
         let stiffness = self.law.stiffness();

@@ -1,8 +1,8 @@
-//! The foot of a point on one segment or plane: closest point, gap and normal.
+//! The foot of a point on one segment: closest point, gap and normal.
 
 use nalgebra::Vector2;
 
-use super::surface::{MasterPoint, Plane, SlavePoint, Surface};
+use super::surface::{MasterPoint, Segment, SlavePoint, Surface};
 use crate::configuration::Configuration;
 
 /// Where a slave point meets the master.
@@ -19,14 +19,19 @@ pub struct Projection {
 }
 
 /// What a foot moves with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {
-    /// It slides on a straight segment
+    /// It slides on a segment
     Segment,
     /// It stays at a node between two segments
     Node(usize),
-    /// It slides on a rigid plane
-    Plane,
+    /// It follows a motion δx of the point on a rigid body
+    Rigid {
+        /// way of the foot along s: `advance` s·δx [-]
+        advance: f64,
+        /// δθ = `turn` s·δx [1/L]
+        turn: f64,
+    },
 }
 
 /// The first and last segment of a surface reach beyond its end by this share of their length: a slave that ends flush
@@ -45,25 +50,55 @@ pub fn normal_of(tangent: Vector2<f64>) -> Vector2<f64> {
 
 /// Foot of a slave point on one segment in the configuration `x`; `None` past the end of the surface.
 pub fn on_segment(slave: &SlavePoint, surface: &Surface, segment: usize, x: &Configuration) -> Option<Projection> {
-    let [a, b] = surface.segments[segment];
-    let along = x.between(a, b);
-    let xi = slave.offset(a, x).dot(&along) / along.norm_squared();
+    let found = on_curve(slave, surface, segment, x);
+    let xi = found.foot.xi;
     let neighbour = if xi < 0.0 { surface.previous(segment) } else { surface.next(segment) };
     match neighbour {
         Some(neighbour) if !(0.0..=1.0).contains(&xi) => Some(at_node(slave, surface, segment, neighbour, xi, x)),
         _ if !(-OVERHANG..=1.0 + OVERHANG).contains(&xi) => None,
-        _ => Some(on_line(slave, surface, segment, x)),
+        _ => Some(found),
     }
 }
 
-/// Foot of a slave point on the straight line through a segment.
-fn on_line(slave: &SlavePoint, surface: &Surface, segment: usize, x: &Configuration) -> Projection {
-    let [a, b] = surface.segments[segment];
-    let (along, offset) = (x.between(a, b), slave.offset(a, x));
-    let xi = offset.dot(&along) / along.norm_squared();
-    let normal = normal_of(along.normalize());
-    let gap = offset.dot(&normal);
+/// Foot of a slave point on the line or parabola of a segment.
+fn on_curve(slave: &SlavePoint, surface: &Surface, segment: usize, x: &Configuration) -> Projection {
+    let curve = &surface.segments[segment];
+    let xi = nearest(slave, curve, x);
+    let normal = normal_of(x.combine(&curve.slope(xi)).normalize());
+    let gap = offset(slave, curve, xi, x).dot(&normal);
     Projection { foot: MasterPoint { segment, xi }, gap, normal, bound: Bound::Segment }
+}
+
+/// x_s − x(ξ).
+fn offset(slave: &SlavePoint, curve: &Segment, xi: f64, x: &Configuration) -> Vector2<f64> {
+    curve.position(xi).iter().map(|&(node, w)| slave.offset(node, x) * w).sum()
+}
+
+/// Iterations for the foot on a parabola; a few suffice unless the point is near the centre of curvature.
+const MOST_STEPS: usize = 60;
+
+/// ξ of the closest point, (x_s − x(ξ))·x′ = 0: at once on a straight line, by Newton's method on a parabola.
+fn nearest(slave: &SlavePoint, curve: &Segment, x: &Configuration) -> f64 {
+    let [a, b] = curve.ends;
+    let along = x.between(a, b);
+    let mut xi = slave.offset(a, x).dot(&along) / along.norm_squared();
+    let bend = x.combine(&curve.bend());
+    if curve.middle.is_none() {
+        return xi;
+    }
+    // Beyond the ends the parabola is of no interest, and may turn back.
+    xi = xi.clamp(-HELD, 1.0 + HELD);
+    for _ in 0..MOST_STEPS {
+        let (slope, offset) = (x.combine(&curve.slope(xi)), offset(slave, curve, xi, x));
+        // Beyond the centre of curvature the second derivative of the distance would change its sign.
+        let stiffness = (slope.norm_squared() - offset.dot(&bend)).max(0.5 * slope.norm_squared());
+        let step = offset.dot(&slope) / stiffness;
+        xi = (xi + step).clamp(-1.0, 2.0);
+        if step.abs() < f64::EPSILON {
+            break;
+        }
+    }
+    xi
 }
 
 /// A point held on a segment may pass its ends by this share of its length.
@@ -71,7 +106,7 @@ const HELD: f64 = 0.1;
 
 /// Foot of a slave point on a segment it is held on, as long as it stays near.
 pub fn on_held_segment(slave: &SlavePoint, surface: &Surface, segment: usize, x: &Configuration) -> Option<Projection> {
-    let projection = on_line(slave, surface, segment, x);
+    let projection = on_curve(slave, surface, segment, x);
     (-HELD..=1.0 + HELD).contains(&projection.foot.xi).then_some(projection)
 }
 
@@ -84,24 +119,14 @@ fn at_node(
     xi: f64,
     x: &Configuration,
 ) -> Projection {
-    let direction = |segment: usize| {
-        let [a, b] = surface.segments[segment];
-        x.between(a, b).normalize()
-    };
-    let mean = normal_of(direction(segment) + direction(neighbour));
     let (end, xi) = if xi < 0.0 { (0, 0.0) } else { (1, 1.0) };
-    let node = surface.segments[segment][end];
+    let direction = |segment: usize, xi: f64| x.combine(&surface.segments[segment].slope(xi)).normalize();
+    let mean = normal_of(direction(segment, xi) + direction(neighbour, 1.0 - xi));
+    let node = surface.segments[segment].ends[end];
     let offset = slave.offset(node, x);
     let side = if offset.dot(&mean) < 0.0 { -1.0 } else { 1.0 };
     let gap = side * offset.norm();
     // A point exactly on the node has no direction of its own.
     let normal = if gap == 0.0 { mean.normalize() } else { offset / gap };
     Projection { foot: MasterPoint { segment, xi }, gap, normal, bound: Bound::Node(node) }
-}
-
-/// Foot of `point` on a rigid plane.
-pub fn on_plane(point: Vector2<f64>, plane: &Plane) -> Projection {
-    let offset = point - plane.point;
-    let foot = MasterPoint { segment: 0, xi: offset.dot(&tangent_of(plane.normal)) };
-    Projection { foot, gap: offset.dot(&plane.normal), normal: plane.normal, bound: Bound::Plane }
 }

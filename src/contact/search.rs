@@ -1,37 +1,36 @@
 //! Which part of the master a slave point meets: the nearest segment that faces it.
 
-use rstar::RTree;
-use rstar::primitives::{GeomWithData, Line};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
 
-use super::projection::{Bound, Projection, normal_of, on_held_segment, on_plane, on_segment};
-use super::surface::{Master, Plane, SlavePoint, Surface};
+use nalgebra::Vector2;
+
+use super::projection::{Bound, Projection, normal_of, on_held_segment, on_segment};
+use super::rigid::Rigid;
+use super::surface::{Master, Segment, SlavePoint, Surface};
 use crate::configuration::Configuration;
 
 /// A slave and a segment face each other when the cosine between their outward normals is below this: the sides of a
-/// body do not touch what its bottom rests on.
-const FACING: f64 = -0.1;
+/// body do not touch what its bottom rests on. A slave point of no edge faces every segment.
+pub const FACING: f64 = -0.1;
 
 /// Segments looked at before a point is called free. Nearest come first, so more than a few mean that nothing faces it.
 const CANDIDATES: usize = 8;
 
 /// The master in a spatial index at the current positions.
 pub enum Index<'a> {
-    /// Segments of a mesh surface in an R-tree
-    Mesh(&'a Surface, RTree<GeomWithData<Line<[f64; 2]>, usize>>),
-    /// A plane needs none
-    Plane(&'a Plane),
+    /// Segments of a mesh surface in a tree of boxes
+    Mesh(&'a Surface, Boxes),
+    /// A rigid body needs none
+    Rigid(&'a Rigid),
 }
 
 impl<'a> Index<'a> {
-    /// Index the master in the configuration `x`, O(N log N).
+    /// Index the master in the configuration `x`, O(N).
     pub fn new(master: &'a Master, x: &Configuration) -> Self {
         match master {
-            Master::Plane(plane) => Self::Plane(plane),
-            Master::Mesh(surface) => {
-                let line = |[a, b]: [usize; 2]| Line::new(x.at(a).into(), x.at(b).into());
-                let lines = surface.segments.iter().enumerate().map(|(k, &ends)| GeomWithData::new(line(ends), k));
-                Self::Mesh(surface, RTree::bulk_load(lines.collect()))
-            }
+            Master::Rigid(body) => Self::Rigid(body),
+            Master::Mesh(surface) => Self::Mesh(surface, Boxes::new(surface, x)),
         }
     }
 
@@ -40,17 +39,17 @@ impl<'a> Index<'a> {
     pub fn project(&self, slave: &SlavePoint, held: Option<usize>, x: &Configuration) -> Option<Projection> {
         let point = slave.at(x);
         match self {
-            Self::Plane(plane) => Some(on_plane(point, plane)),
-            Self::Mesh(surface, tree) => {
+            Self::Rigid(body) => body.project(point, slave.outward(x)),
+            Self::Mesh(surface, boxes) => {
                 if let Some(held) = held.and_then(|segment| on_held_segment(slave, surface, segment, x)) {
                     return Some(held);
                 }
-                let outward = slave.outward(x).normalize();
+                let outward = slave.outward(x);
                 let facing = |segment: usize| {
-                    let [a, b] = surface.segments[segment];
-                    normal_of(x.between(a, b).normalize()).dot(&outward) < FACING
+                    let [a, b] = surface.segments[segment].ends;
+                    outward.is_none_or(|outward| normal_of(x.between(a, b).normalize()).dot(&outward) < FACING)
                 };
-                let nearest = tree.nearest_neighbor_iter([point.x, point.y]).take(CANDIDATES).map(|line| line.data);
+                let nearest = boxes.nearest(point, surface, x).take(CANDIDATES);
                 let mut facing = nearest.filter(|&segment| facing(segment)).enumerate();
                 // A node is the foot only of a point that nothing nearer faces: past the end of a surface, where the
                 // last segment has no foot, each inner node would be one, far away and deep.
@@ -61,4 +60,142 @@ impl<'a> Index<'a> {
             }
         }
     }
+
+    /// Segments of a mesh surface within a distance of some points' bounding box, in order along it.
+    pub fn around(&self, points: impl Iterator<Item = Vector2<f64>>, reach: f64) -> Vec<usize> {
+        let Self::Mesh(_, boxes) = self else { return Vec::new() };
+        let reach = Vector2::new(reach, reach);
+        let each = points.map(|point| Box2 { low: point - reach, high: point + reach });
+        each.reduce(|sum, one| sum.around(&one)).map_or_else(Vec::new, |all| boxes.meeting(&all))
+    }
 }
+
+/// A binary tree of boxes around the segments of a surface. Segments that follow each other are near each other, so the
+/// tree simply halves their range: it is built without sorting.
+pub struct Boxes {
+    segments: usize,
+    /// Level by level from the leaves, one box a segment, to the root; each level has half the boxes of the one before
+    levels: Vec<Vec<Box2>>,
+}
+
+/// The smallest box that holds something.
+#[derive(Clone, Copy, Debug)]
+struct Box2 {
+    low: Vector2<f64>,
+    high: Vector2<f64>,
+}
+
+impl Box2 {
+    fn around(&self, other: &Self) -> Self {
+        Self { low: self.low.inf(&other.low), high: self.high.sup(&other.high) }
+    }
+
+    fn meets(&self, other: &Self) -> bool {
+        (0..2).all(|i| self.low[i] <= other.high[i] && other.low[i] <= self.high[i])
+    }
+
+    /// Squared distance of a point from the box.
+    fn distance(&self, point: Vector2<f64>) -> f64 {
+        (self.low - point).sup(&(point - self.high)).sup(&Vector2::zeros()).norm_squared()
+    }
+}
+
+impl Boxes {
+    fn new(surface: &Surface, x: &Configuration) -> Self {
+        let point = |node: usize| Box2 { low: x.at(node), high: x.at(node) };
+        let of = |segment: &Segment| segment.nodes().fold(point(segment.ends[0]), |sum, node| sum.around(&point(node)));
+        let mut levels: Vec<Vec<Box2>> = vec![surface.segments.iter().map(of).collect()];
+        while let Some(last) = levels.last().filter(|last| last.len() > 1) {
+            let halved = last.chunks(2).map(|pair| pair.iter().skip(1).fold(pair[0], |sum, one| sum.around(one)));
+            let halved = halved.collect();
+            levels.push(halved);
+        }
+        Self { segments: surface.segments.len(), levels }
+    }
+
+    /// The segments whose boxes meet another, in order along the surface.
+    fn meeting(&self, other: &Box2) -> Vec<usize> {
+        let mut found = Vec::new();
+        let mut open = Vec::from_iter((self.segments > 0).then(|| (self.levels.len() - 1, 0)));
+        while let Some((level, number)) = open.pop() {
+            match self.levels[level][number].meets(other) {
+                true if level == 0 => found.push(number),
+                true => {
+                    let below = self.levels[level - 1].len();
+                    let halves = [2 * number + 1, 2 * number].into_iter().filter(|&number| number < below);
+                    open.extend(halves.map(|number| (level - 1, number)));
+                }
+                false => {}
+            }
+        }
+        found
+    }
+
+    /// The segments by their distance from a point, the nearest first; of equally near ones the first along the surface.
+    fn nearest(&self, point: Vector2<f64>, surface: &Surface, x: &Configuration) -> impl Iterator<Item = usize> {
+        let mut open = BinaryHeap::new();
+        if self.segments > 0 {
+            open.push(Candidate { distance: 0.0, level: self.levels.len() - 1, number: 0, exact: false });
+        }
+        std::iter::from_fn(move || {
+            while let Some(Candidate { level, number, exact, .. }) = open.pop() {
+                if exact {
+                    return Some(number);
+                }
+                if level == 0 {
+                    let distance = distance_from_segment(point, &surface.segments[number], x);
+                    open.push(Candidate { distance, level, number, exact: true });
+                    continue;
+                }
+                let below = &self.levels[level - 1];
+                for number in (2 * number..2 * number + 2).take_while(|&number| number < below.len()) {
+                    let distance = below[number].distance(point);
+                    open.push(Candidate { distance, level: level - 1, number, exact: false });
+                }
+            }
+            None
+        })
+    }
+}
+
+/// Squared distance of a point from a segment; of a parabola from the two chords on either side of its middle.
+fn distance_from_segment(point: Vector2<f64>, segment: &Segment, x: &Configuration) -> f64 {
+    let from_chord = |[a, b]: [usize; 2]| {
+        let (along, offset) = (x.between(a, b), point - x.at(a));
+        let xi = (offset.dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+        (offset - along * xi).norm_squared()
+    };
+    let [a, b] = segment.ends;
+    segment.middle.map_or_else(|| from_chord([a, b]), |m| from_chord([a, m]).min(from_chord([m, b])))
+}
+
+/// A box or segment that may be the nearest; the heap has the nearest on top.
+struct Candidate {
+    /// Squared distance of the box, or, if `exact`, of the segment itself
+    distance: f64,
+    level: usize,
+    number: usize,
+    exact: bool,
+}
+
+impl Ord for Candidate {
+    /// Boxes come before segments at the same distance: one of theirs may be the first along the surface.
+    fn cmp(&self, other: &Self) -> Ordering {
+        let by_distance = other.distance.total_cmp(&self.distance);
+        by_distance.then_with(|| other.exact.cmp(&self.exact)).then_with(|| other.number.cmp(&self.number))
+    }
+}
+
+impl PartialOrd for Candidate {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Candidate {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Candidate {}

@@ -1,10 +1,11 @@
-//! The two sides of a contact: points of the slave surface, and the master as a chain of segments or a rigid plane.
+//! The two sides of a contact: points of the slave surface, and the master as a chain of segments or a rigid body.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
+use super::rigid::Rigid;
 use crate::configuration::Configuration;
 use crate::shape;
 
@@ -25,8 +26,13 @@ pub struct LengthShare {
 pub struct SlavePoint {
     /// Shape functions of the point
     pub position: Weights,
-    /// Its current length is the sum of these shares (thickness 1) [L]
+    /// Its current length is the sum of these shares (thickness 1) and `area` [L]
     pub length: Vec<LengthShare>,
+    /// Area of a point that belongs to no edge, as a point mass has it; it does not change (thickness 1) [L]
+    pub area: f64,
+    /// Gap between the surfaces at which the point touches: 0, but for a contact that starts closed under a given
+    /// pressure [L]
+    pub touch: f64,
 }
 
 impl SlavePoint {
@@ -42,19 +48,20 @@ impl SlavePoint {
 
     /// Current length that the point stands for [L].
     pub fn current_length(&self, x: &Configuration) -> f64 {
-        self.length.iter().map(|share| share.factor * x.combine(&share.tangent).norm()).sum()
+        self.area + self.length.iter().map(|share| share.factor * x.combine(&share.tangent).norm()).sum::<f64>()
     }
 
-    /// Current length of the longest edge the point belongs to [L].
-    pub fn edge_length(&self, x: &Configuration) -> f64 {
+    /// Current length of the longest edge the point belongs to, if it belongs to any [L].
+    pub fn edge_length(&self, x: &Configuration) -> Option<f64> {
         // dx/dξ on an edge from −1 to 1 is half its length.
-        2.0 * self.length.iter().map(|share| x.combine(&share.tangent).norm()).fold(0.0, f64::max)
+        self.length.iter().map(|share| 2.0 * x.combine(&share.tangent).norm()).max_by(f64::total_cmp)
     }
 
-    /// Direction out of the slave body (not normalized): the edge direction, body on its left, turned by −90°.
-    pub fn outward(&self, x: &Configuration) -> Vector2<f64> {
+    /// Unit normal out of the slave body: the edge direction, body on its left, turned by −90°. A point of no edge has
+    /// none.
+    pub fn outward(&self, x: &Configuration) -> Option<Vector2<f64>> {
         let along: Vector2<f64> = self.length.iter().map(|share| x.combine(&share.tangent) * share.factor).sum();
-        Vector2::new(along.y, -along.x)
+        (!self.length.is_empty()).then(|| Vector2::new(along.y, -along.x).normalize())
     }
 }
 
@@ -79,11 +86,16 @@ pub fn nodal_points(edges: &[Vec<usize>]) -> Vec<SlavePoint> {
             let share = edge_point(edge, xi, weight).length;
             match points.iter_mut().rev().find(|(other, _)| *other == node) {
                 Some((_, point)) => point.length.extend(share),
-                None => points.push((node, SlavePoint { position: vec![(node, 1.0)], length: share })),
+                None => points.push((node, SlavePoint { length: share, ..lone_point(node, 0.0) })),
             }
         }
     }
     points.into_iter().map(|(_, point)| point).collect()
+}
+
+/// A node that belongs to no edge, with an area of its own [L].
+pub fn lone_point(node: usize, area: f64) -> SlavePoint {
+    SlavePoint { position: vec![(node, 1.0)], length: Vec::new(), area, touch: 0.0 }
 }
 
 fn edge_point(edge: &[usize], xi: f64, weight: f64) -> SlavePoint {
@@ -91,15 +103,17 @@ fn edge_point(edge: &[usize], xi: f64, weight: f64) -> SlavePoint {
     SlavePoint {
         position: with(shape::edge_values(edge.len(), xi)),
         length: vec![LengthShare { factor: weight, tangent: with(shape::edge_derivatives(edge.len(), xi)) }],
+        area: 0.0,
+        touch: 0.0,
     }
 }
 
 /// A material point of the master: segment and coordinate along it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MasterPoint {
-    /// Segment number (0 for a plane)
+    /// Segment number (0 for a rigid body)
     pub segment: usize,
-    /// 0 … 1 along the segment; on a plane the distance from its given point along s [-] or [L]
+    /// 0 … 1 along the segment; on a rigid body the arc length along s [-] or [L]
     pub xi: f64,
 }
 
@@ -108,24 +122,50 @@ pub struct MasterPoint {
 pub enum Master {
     /// A surface of the mesh
     Mesh(Surface),
-    /// A rigid half-space at rest
-    Plane(Plane),
+    /// A rigid body at rest
+    Rigid(Rigid),
 }
 
-/// A rigid half-space: a point of its surface and its unit normal.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plane {
-    /// A point of the surface [L]
-    pub point: Vector2<f64>,
-    /// Unit normal, out of the solid
-    pub normal: Vector2<f64>,
+/// One edge of a mesh surface, run through along s: straight, or a parabola through its middle node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Segment {
+    /// Start and end node
+    pub ends: [usize; 2],
+    /// Middle node of a quadratic edge
+    pub middle: Option<usize>,
 }
 
-/// Straight segments of a mesh surface, each running along s (the body on its right), chains in order.
+impl Segment {
+    /// The nodes: start, end[, middle].
+    pub fn nodes(&self) -> impl Iterator<Item = usize> {
+        self.ends.into_iter().chain(self.middle)
+    }
+
+    /// Shape functions of x at ξ, 0 … 1.
+    pub fn position(&self, xi: f64) -> Weights {
+        self.with(shape::edge_values(self.nodes().count(), 2.0 * xi - 1.0), 1.0)
+    }
+
+    /// Weights of x′ = dx/dξ at ξ.
+    pub fn slope(&self, xi: f64) -> Weights {
+        self.with(shape::edge_derivatives(self.nodes().count(), 2.0 * xi - 1.0), 2.0)
+    }
+
+    /// Weights of x″ = d²x/dξ², the same all along.
+    pub fn bend(&self) -> Weights {
+        self.middle.map_or_else(Vec::new, |_| self.with(vec![1.0, 1.0, -2.0], 4.0))
+    }
+
+    fn with(&self, values: Vec<f64>, factor: f64) -> Weights {
+        self.nodes().zip(values).map(|(node, value)| (node, factor * value)).collect()
+    }
+}
+
+/// Segments of a mesh surface, each running along s (the body on its right), chains in order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surface {
-    /// Start and end node of each segment
-    pub segments: Vec<[usize; 2]>,
+    /// The segments
+    pub segments: Vec<Segment>,
     /// The chain each segment belongs to
     chain_of: Vec<usize>,
     chains: Vec<Chain>,
@@ -138,25 +178,21 @@ struct Chain {
     closed: bool,
 }
 
-/// The way along a surface from one material point to another: segments with the signed share of each that is covered.
-pub type Path = Vec<(usize, f64)>;
+/// The way along a surface from one material point to another: (segment, from ξ, to ξ).
+pub type Path = Vec<(usize, f64, f64)>;
 
 impl Surface {
-    /// A surface from edges with the body on their left; a quadratic edge becomes two segments.
+    /// A surface from edges (start, end[, middle]) with the body on their left.
     pub fn new(edges: &[Vec<usize>]) -> Self {
-        let mut pending: Vec<[usize; 2]> = Vec::new();
-        for edge in edges {
-            match edge.get(2) {
-                None => pending.push([edge[1], edge[0]]),
-                Some(&middle) => pending.extend([[edge[1], middle], [middle, edge[0]]]),
-            }
-        }
+        let pending: Vec<[usize; 2]> = edges.iter().map(|edge| [edge[1], edge[0]]).collect();
+        let middles: BTreeMap<[usize; 2], Option<usize>> =
+            pending.iter().copied().zip(edges.iter().map(|edge| edge.get(2).copied())).collect();
         let mut surface = Self::default();
         for chain in chains(&pending) {
             let closed = chain.len() > 1 && chain[chain.len() - 1][1] == chain[0][0];
             surface.chain_of.extend(chain.iter().map(|_| surface.chains.len()));
             surface.chains.push(Chain { first: surface.segments.len(), length: chain.len(), closed });
-            surface.segments.extend(chain);
+            surface.segments.extend(chain.into_iter().map(|ends| Segment { ends, middle: middles[&ends] }));
         }
         surface
     }
@@ -182,20 +218,20 @@ impl Surface {
             return None;
         }
         if from.segment == to.segment {
-            return Some(vec![(from.segment, to.xi - from.xi)]);
+            return Some(vec![(from.segment, from.xi, to.xi)]);
         }
         let forward = (to.segment + chain.length - from.segment) % chain.length;
         let ahead = if chain.closed { forward <= chain.length / 2 } else { to.segment > from.segment };
-        let (sign, first, last) = if ahead { (1.0, 1.0 - from.xi, to.xi) } else { (-1.0, from.xi, 1.0 - to.xi) };
-        let mut path = vec![(from.segment, sign * first)];
+        let (start, end) = if ahead { (0.0, 1.0) } else { (1.0, 0.0) };
+        let mut path = vec![(from.segment, from.xi, end)];
         let mut at = from.segment;
         loop {
             at = if ahead { self.next(at)? } else { self.previous(at)? };
             if at == to.segment {
-                path.push((at, sign * last));
+                path.push((at, start, to.xi));
                 return Some(path);
             }
-            path.push((at, sign));
+            path.push((at, start, end));
         }
     }
 }

@@ -1,5 +1,7 @@
 //! A solid element at large displacements: total Lagrangian, fully integrated, with F-bar for Q4.
 
+use std::sync::OnceLock;
+
 use nalgebra::{DMatrix, Matrix2, Matrix4, Vector2};
 
 use super::{ElementError, gradients};
@@ -161,6 +163,23 @@ impl SolidElement {
         material: &dyn Material,
         u: &[Vector2<f64>],
         force: &mut [f64],
+        tangent: Option<&mut [f64]>,
+    ) -> Result<f64, InvertedElement> {
+        match self.kind {
+            ElementKind::T3 => self.evaluate_nodes::<3>(material, u, force, tangent),
+            ElementKind::T6 => self.evaluate_nodes::<6>(material, u, force, tangent),
+            ElementKind::Q4 => self.evaluate_nodes::<4>(material, u, force, tangent),
+            ElementKind::Q8 => self.evaluate_nodes::<8>(material, u, force, tangent),
+            ElementKind::Q9 => self.evaluate_nodes::<9>(material, u, force, tangent),
+        }
+    }
+
+    /// The number of nodes is known when this is compiled, so that the loops over them are unrolled.
+    fn evaluate_nodes<const N: usize>(
+        &self,
+        material: &dyn Material,
+        u: &[Vector2<f64>],
+        force: &mut [f64],
         mut tangent: Option<&mut [f64]>,
     ) -> Result<f64, InvertedElement> {
         force.fill(0.0);
@@ -169,8 +188,15 @@ impl SolidElement {
         }
         let centre = self.centre(u)?;
         let mut energy = 0.0;
-        for (gradients, volume) in self.points() {
+        let mut blocks = [[[[0.0; 2]; 2]; N]; N];
+        for (gradients, &volume) in self.gradients.as_chunks::<N>().0.iter().zip(&self.volumes) {
             let deformation = deformation_gradient(gradients, u);
+            if tangent.is_none() && centre.is_none() {
+                let (stress, stored) = material.stress(&deformation)?;
+                energy += volume * stored;
+                add_force(gradients, &(volume * stress), force);
+                continue;
+            }
             let response = match &centre {
                 Some(centre) => centre.respond(material, &deformation)?,
                 None => material.respond(&deformation)?,
@@ -178,11 +204,14 @@ impl SolidElement {
             energy += volume * response.energy;
             add_force(gradients, &(volume * response.stress), force);
             if let Some(tangent) = &mut tangent {
-                add_tangent(gradients, &(volume * response.tangent), tangent);
+                add_tangent(gradients, &(volume * response.tangent), &mut blocks);
                 if let Some(centre) = &centre {
                     centre.add_tangent(gradients, &deformation, volume, &response, tangent);
                 }
             }
+        }
+        if let Some(tangent) = tangent {
+            add_blocks(&blocks, tangent);
         }
         Ok(energy)
     }
@@ -253,14 +282,37 @@ fn add_force(gradients: &[Vector2<f64>], stress: &Matrix2<f64>, force: &mut [f64
     }
 }
 
-/// K_ai,bk += N_a,J A_iJkL N_b,L: each column (b, k) is the force of the stress A_iJkL N_b,L.
-fn add_tangent(gradients: &[Vector2<f64>], tangent: &Matrix4<f64>, element: &mut [f64]) {
-    let mut columns = element.chunks_exact_mut(2 * gradients.len());
-    for gradient in gradients {
-        for k in 0..2 {
-            let stress = tangent.column(k) * gradient.x + tangent.column(k + 2) * gradient.y;
-            let stress = Matrix2::new(stress[0], stress[2], stress[1], stress[3]);
-            add_force(gradients, &stress, columns.next().expect("two columns for each node"));
+/// K_ai,bk += N_a,J A_iJkL N_b,L in `blocks[b][a][k][i]` for a ≥ b: A comes from an energy, so the rest is the mirror
+/// image.
+fn add_tangent<const N: usize>(
+    gradients: &[Vector2<f64>; N],
+    tangent: &Matrix4<f64>,
+    blocks: &mut [[[[f64; 2]; 2]; N]; N],
+) {
+    for (b, (at_b, columns)) in gradients.iter().zip(blocks).enumerate() {
+        // A_iJkL N_b,L for both k
+        let stress = [0, 1].map(|k| tangent.column(k) * at_b.x + tangent.column(k + 2) * at_b.y);
+        for (at_a, block) in gradients.iter().zip(columns).skip(b) {
+            for (column, stress) in block.iter_mut().zip(&stress) {
+                column[0] += stress[0] * at_a.x + stress[2] * at_a.y;
+                column[1] += stress[1] * at_a.x + stress[3] * at_a.y;
+            }
+        }
+    }
+}
+
+/// Add the blocks and their mirror image to the tangent, column by column.
+fn add_blocks<const N: usize>(blocks: &[[[[f64; 2]; 2]; N]; N], tangent: &mut [f64]) {
+    for (b, columns) in blocks.iter().enumerate() {
+        for (a, block) in columns.iter().enumerate().skip(b) {
+            for (k, column) in block.iter().enumerate() {
+                for (i, value) in column.iter().enumerate() {
+                    tangent[(2 * b + k) * 2 * N + 2 * a + i] += value;
+                    if a > b {
+                        tangent[(2 * a + i) * 2 * N + 2 * b + k] += value;
+                    }
+                }
+            }
         }
     }
 }
@@ -273,10 +325,13 @@ fn contract(tangent: &Matrix4<f64>, f: &Matrix2<f64>) -> Matrix2<f64> {
 }
 
 /// Corner values of the (bi)linear function that fits values at the quadrature points best: corners × points.
-fn corner_fit(kind: ElementKind) -> DMatrix<f64> {
-    let linear = if kind.corners() == 3 { ElementKind::T3 } else { ElementKind::Q4 };
-    let points = kind.quadrature();
-    let values = points.iter().flat_map(|point| linear.values(point.at));
-    let interpolation = DMatrix::from_row_iterator(points.len(), kind.corners(), values);
-    interpolation.pseudo_inverse(1e-9).expect("1e-9 is not negative")
+fn corner_fit(kind: ElementKind) -> &'static DMatrix<f64> {
+    static FITS: [OnceLock<DMatrix<f64>>; 5] = [const { OnceLock::new() }; 5];
+    FITS[kind as usize].get_or_init(|| {
+        let linear = if kind.corners() == 3 { ElementKind::T3 } else { ElementKind::Q4 };
+        let points = kind.quadrature();
+        let values = points.iter().flat_map(|point| linear.values(point.at));
+        let interpolation = DMatrix::from_row_iterator(points.len(), kind.corners(), values);
+        interpolation.pseudo_inverse(1e-9).expect("1e-9 is not negative")
+    })
 }

@@ -244,8 +244,8 @@ impl LoadPath<'_> {
         let inherited = if begins { 0.0 } else { reach.rate / from.reach.rate / (from.mu * start_pressure) };
         let derivatives = |i: usize| {
             let dstart_pressure = self.dpressure(from.x)[i];
-            let dratio = from.dtraction[i]
-                - from.reach.ratio * (start_pressure * from.dmu[i] + from.mu * dstart_pressure);
+            let dratio =
+                from.dtraction[i] - from.reach.ratio * (start_pressure * from.dmu[i] + from.mu * dstart_pressure);
             let dtrial = from.dtraction[i] + if i == 0 { self.alpha_t * share } else { 0.0 };
             let dmu = peak.by_old * from.dmu[i] + peak.by_time * share * self.dtime[i];
             let dstrength = pressure * (peak.mu * inherited * dratio + reach.ratio * dmu)

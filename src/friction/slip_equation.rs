@@ -107,7 +107,8 @@ impl SlidingCurve {
         if from.full || slip <= 0.0 {
             return to.ratio;
         }
-        let area = |reach: &Reach| self.approach.area(reach.coordinate, self.progress(reach.ratio), reach.slip / self.length);
+        let area =
+            |reach: &Reach| self.approach.area(reach.coordinate, self.progress(reach.ratio), reach.slip / self.length);
         let mean = (area(to) - area(from)) * self.length / slip;
         (self.elastic_core + (1.0 - self.elastic_core) * mean).clamp(from.ratio, to.ratio.max(from.ratio))
     }
@@ -204,11 +205,8 @@ impl SlipEquation<'_> {
         let mut evaluations = 1;
         let end = self.curve.beyond(self.trial / self.alpha_t, &self.start);
         let unique = self.pressure * self.evolution.weakening(start.peak.mu) < self.alpha_t;
-        let bracket = if unique {
-            (self.start.coordinate, end)
-        } else {
-            self.first_root_bracket(start, end, &mut evaluations)
-        };
+        let bracket =
+            if unique { (self.start.coordinate, end) } else { self.first_root_bracket(start, end, &mut evaluations) };
         let mut point = start;
         bracketed_root(bracket, self.guess(&start), |coordinate| {
             evaluations += 1;

@@ -8,7 +8,7 @@ use faer::sparse::linalg::lu::{LuRef, LuSymbolicParams, NumericLu, SymbolicLu, f
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Spec};
 
-use super::{LinearSolver, Pattern, SingularMatrix, SparseMatrix};
+use super::{LinearFailure, LinearSolver, Pattern, SparseMatrix};
 
 /// Supernodal LU with partial pivoting for unsymmetric values (faer).
 #[derive(Default)]
@@ -29,7 +29,7 @@ struct Order {
 const SERIAL: Par = Par::Seq;
 
 impl Order {
-    fn new(pattern: Arc<Pattern>) -> Result<Self, SingularMatrix> {
+    fn new(pattern: Arc<Pattern>) -> Result<Self, LinearFailure> {
         let (columns, rows) = pattern.scalar();
         let n = columns.len() - 1;
         let scalar = SymbolicSparseColMatRef::new_checked(n, n, &columns, None, &rows);
@@ -41,12 +41,12 @@ impl Order {
     }
 }
 
-fn failed(cause: impl std::fmt::Debug) -> SingularMatrix {
-    SingularMatrix { detail: format!("{cause:?}") }
+fn failed(cause: impl std::fmt::Debug) -> LinearFailure {
+    LinearFailure::Singular(format!("{cause:?}"))
 }
 
 impl LinearSolver for SparseLu {
-    fn factorize(&mut self, matrix: &SparseMatrix) -> Result<(), SingularMatrix> {
+    fn factorize(&mut self, matrix: &SparseMatrix) -> Result<(), LinearFailure> {
         let order = match self.order.take() {
             Some(order) if Arc::ptr_eq(&order.pattern, &matrix.pattern) => order,
             _ => Order::new(matrix.pattern.clone())?,

@@ -10,12 +10,25 @@ pub use sparse::{BlockPosition, Pattern, SparseMatrix};
 
 use thiserror::Error;
 
-/// The matrix has no inverse, or none that double precision can find.
+/// Why a linear system was not solved.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("the linear system is singular ({detail})")]
-pub struct SingularMatrix {
-    /// What the solver met.
-    pub detail: String,
+pub enum LinearFailure {
+    /// The matrix has no inverse, or none that double precision can find: what the solver met.
+    #[error("the linear system is singular ({0})")]
+    Singular(String),
+    /// The factors do not fit into memory.
+    #[error(
+        "the factors of {size} equations take {needed:.1} GiB, and {available:.1} GiB of memory are free: use a coarser \
+         mesh, or a machine with more memory"
+    )]
+    TooLarge {
+        /// number of equations
+        size: usize,
+        /// what they take [GiB]
+        needed: f64,
+        /// what there is [GiB]
+        available: f64,
+    },
 }
 
 /// A direct solver: factorize once, solve often. The order of elimination is kept while the pattern stands.
@@ -23,8 +36,8 @@ pub trait LinearSolver {
     /// Factorize A = LU.
     ///
     /// # Errors
-    /// [`SingularMatrix`] when no pivot is left.
-    fn factorize(&mut self, matrix: &SparseMatrix) -> Result<(), SingularMatrix>;
+    /// [`LinearFailure`] when no pivot is left.
+    fn factorize(&mut self, matrix: &SparseMatrix) -> Result<(), LinearFailure>;
 
     /// Overwrite b with A⁻¹ b of the last factorized matrix.
     fn solve(&mut self, b: &mut [f64]);
@@ -46,10 +59,15 @@ pub struct Solution {
     pub backward_error: f64,
     /// Pivots that vanished and were replaced
     pub perturbed_pivots: usize,
+    /// Whether [`SparseLu`] took over because refinement stalled
+    pub fallback: bool,
 }
 
 /// Backward error that needs no refinement.
-const EXACT: f64 = 1e-14;
+const EXACT: f64 = 1e-13;
+
+/// Backward error at which refinement counts as stalled, and a solver that exchanges all rows takes over.
+const STALLED: f64 = 1e-12;
 
 /// Most steps of refinement.
 const REFINEMENTS: usize = 3;
@@ -63,15 +81,48 @@ const HOPELESS: f64 = 1e-6;
 /// d = (L U)⁻¹ (b − A x),   x ← x + d
 /// ```
 ///
-/// A system whose matrix lost pivots may still have a solution; see [`Solution::perturbed_pivots`].
+/// A system whose matrix lost pivots may still have a solution; see [`Solution::perturbed_pivots`]. If refinement stalls,
+/// [`SparseLu`], which is slower and exchanges rows without bounds, has its turn.
 ///
 /// # Errors
-/// [`SingularMatrix`] when the factorization fails, the solution is not finite, or pivots vanished and refinement
-/// cannot make up for them.
+/// [`LinearFailure`] when the factors do not fit into memory, the factorization fails, the solution is not finite, or
+/// pivots vanished and nothing can make up for them.
 ///
 /// Source: Arioli, Demmel & Duff (1989), Solving sparse linear systems with sparse backward error, doi:10.1137/0610013.
-pub fn solve(solver: &mut dyn LinearSolver, matrix: &SparseMatrix, b: &[f64]) -> Result<Solution, SingularMatrix> {
+pub fn solve(solver: &mut dyn LinearSolver, matrix: &SparseMatrix, b: &[f64]) -> Result<Solution, LinearFailure> {
     solver.factorize(matrix)?;
+    let mut solution = refined(solver, matrix, b);
+    let stalled = |solution: &Solution| solution.backward_error.is_nan() || solution.backward_error > STALLED;
+    if stalled(&solution) && matrix.values.iter().chain(b).all(|value| value.is_finite()) {
+        let mut other = SparseLu::default();
+        if other.factorize(matrix).is_ok() {
+            let second = refined(&mut other, matrix, b);
+            if second.backward_error < solution.backward_error || solution.backward_error.is_nan() {
+                let perturbed_pivots = solution.perturbed_pivots;
+                solution = Solution { perturbed_pivots, fallback: true, ..second };
+            }
+        }
+    }
+    if !solution.x.iter().all(|v| v.is_finite()) {
+        return Err(LinearFailure::Singular("the solution is not finite: a pivot vanished".into()));
+    }
+    if solution.perturbed_pivots > 0 && solution.residual > HOPELESS {
+        return Err(LinearFailure::Singular(format!("{} pivots vanished", solution.perturbed_pivots)));
+    }
+    Ok(solution)
+}
+
+/// Solve A x = b with the factors of an earlier [`solve`] on the same A, as they are.
+pub fn solve_again(solver: &mut dyn LinearSolver, matrix: &SparseMatrix, b: &[f64]) -> Solution {
+    let mut x = b.to_vec();
+    solver.solve(&mut x);
+    let (residual, backward_error) = backward_error(matrix, &x, b);
+    let perturbed_pivots = solver.perturbed_pivots();
+    Solution { x, residual: relative(&residual, b), backward_error, perturbed_pivots, fallback: false }
+}
+
+/// Solve with the last factors, and refine as long as it helps.
+fn refined(solver: &mut dyn LinearSolver, matrix: &SparseMatrix, b: &[f64]) -> Solution {
     let mut x = b.to_vec();
     solver.solve(&mut x);
     let (mut residual, mut backward_error) = backward_error(matrix, &x, b);
@@ -88,16 +139,14 @@ pub fn solve(solver: &mut dyn LinearSolver, matrix: &SparseMatrix, b: &[f64]) ->
         }
         (x, residual, backward_error) = (refined, new_residual, new_error);
     }
-    if !x.iter().all(|v| v.is_finite()) {
-        return Err(SingularMatrix { detail: "the solution is not finite: a pivot vanished".into() });
-    }
     let perturbed_pivots = solver.perturbed_pivots();
+    Solution { x, residual: relative(&residual, b), backward_error, perturbed_pivots, fallback: false }
+}
+
+/// ‖r‖/‖b‖, 0 for b = 0
+fn relative(residual: &[f64], b: &[f64]) -> f64 {
     let size = norm(b);
-    let residual = if size > 0.0 { norm(&residual) / size } else { 0.0 };
-    if perturbed_pivots > 0 && residual > HOPELESS {
-        return Err(SingularMatrix { detail: format!("{perturbed_pivots} pivots vanished") });
-    }
-    Ok(Solution { x, residual, backward_error, perturbed_pivots })
+    if size > 0.0 { norm(residual) / size } else { 0.0 }
 }
 
 /// b − A x and its largest share of |A| |x| + |b|.

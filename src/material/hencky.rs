@@ -49,10 +49,11 @@ impl Material for Hencky {
         self.lame.constrained_modulus()
     }
 
+    #[inline(always)]
     fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
         let invariants = Invariants::of(deformation)?;
         let Lame { lambda, shear } = self.lame;
-        let (jacobian, ln_j) = (invariants.jacobian, invariants.ln_jacobian);
+        let (jacobian, ln_j) = (invariants.jacobian, invariants.ln_jacobian());
         let areal = lambda + shear;
         let x = 0.25 * invariants.distortion / jacobian;
         let ShearStrain { d, a, l } = ShearStrain::from_sinh_squared(x);

@@ -18,8 +18,6 @@ pub(super) struct Invariants {
     pub jacobian: f64,
     /// J − 1
     pub volume_strain: f64,
-    /// ln J
-    pub ln_jacobian: f64,
     /// m
     pub distortion: f64,
     cofactor: Matrix2<f64>,
@@ -41,11 +39,15 @@ impl Invariants {
         let jacobian = positive_jacobian(deformation)?;
         let displacement_gradient = deformation - Matrix2::identity();
         let volume_strain = displacement_gradient.trace() + displacement_gradient.determinant();
-        let ln_jacobian = if volume_strain.abs() < 0.5 { volume_strain.ln_1p() } else { jacobian.ln() };
         let cofactor = cofactor(deformation);
         let deviation = deformation - cofactor;
         let distortion = 0.5 * deviation.norm_squared();
-        Ok(Self { jacobian, volume_strain, ln_jacobian, distortion, cofactor, deviation })
+        Ok(Self { jacobian, volume_strain, distortion, cofactor, deviation })
+    }
+
+    /// ln J
+    pub(super) fn ln_jacobian(&self) -> f64 {
+        if self.volume_strain.abs() < 0.5 { self.volume_strain.ln_1p() } else { self.jacobian.ln() }
     }
 
     /// Stress and tangent of the law with energy W(m, J), by the chain rule.
@@ -55,6 +57,7 @@ impl Invariants {
     /// A = 2 W_m ∂D/∂F + W_J ∂cof F/∂F                                                    (4)
     ///     + 4 W_mm D ⊗ D + 2 W_mJ (D ⊗ cof F + cof F ⊗ D) + W_JJ cof F ⊗ cof F
     /// ```
+    #[inline(always)]
     pub(super) fn response(&self, energy: &Energy, stress_zz: f64) -> MaterialResponse {
         let Energy { w, w_m, w_j, w_mm, w_mj, w_jj } = *energy;
         let stress = 2.0 * w_m * self.deviation + w_j * self.cofactor;

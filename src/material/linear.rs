@@ -38,6 +38,7 @@ impl Material for Linear {
         self.lame.constrained_modulus()
     }
 
+    #[inline(always)]
     fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
         if !deformation.iter().all(|component| component.is_finite()) {
             return Err(InvertedElement { jacobian: f64::NAN });

@@ -100,6 +100,14 @@ pub trait Material: Debug + Send + Sync {
     /// [`InvertedElement`] when det F is not positive.
     fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement>;
 
+    /// P and W alone. Compiled for each law, so that the tangent that is not asked for costs nothing.
+    ///
+    /// # Errors
+    /// As [`Material::respond`].
+    fn stress(&self, deformation: &Matrix2<f64>) -> Result<(Matrix2<f64>, f64), InvertedElement> {
+        self.respond(deformation).map(|response| (response.stress, response.energy))
+    }
+
     /// σ = P Fᵀ / J
     ///
     /// # Errors

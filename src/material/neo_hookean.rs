@@ -41,10 +41,11 @@ impl Material for NeoHookean {
         self.lame.constrained_modulus()
     }
 
+    #[inline(always)]
     fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
         let invariants = Invariants::of(deformation)?;
         let Lame { lambda, shear } = self.lame;
-        let (jacobian, j, ln_j) = (invariants.jacobian, invariants.volume_strain, invariants.ln_jacobian);
+        let (jacobian, j, ln_j) = (invariants.jacobian, invariants.volume_strain, invariants.ln_jacobian());
         let energy = Energy {
             w: 0.5 * shear * invariants.distortion + shear * (j - ln_j) + 0.5 * lambda * ln_j * ln_j,
             w_m: 0.5 * shear,

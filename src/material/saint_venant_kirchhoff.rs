@@ -41,6 +41,7 @@ impl Material for SaintVenantKirchhoff {
         self.lame.constrained_modulus()
     }
 
+    #[inline(always)]
     fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
         let invariants = Invariants::of(deformation)?;
         let (lambda, shear, constrained) = (self.lame.lambda, self.lame.shear, self.stiffness());

@@ -3,8 +3,11 @@
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread::JoinHandle;
 
 use nalgebra::Vector2;
+use rayon::prelude::*;
 use vtkio::IOBuffer;
 use vtkio::model::{
     Attribute, Attributes, ByteOrder, CellType, Cells, DataArray, DataSet, UnstructuredGridPiece, Version,
@@ -21,13 +24,25 @@ use crate::model::Model;
 use crate::shape::ElementKind;
 use crate::state::State;
 
-/// Writes frames of the solids and of the interfaces.
+/// Writes frames of the solids and of the interfaces, in the background while the run goes on.
 #[derive(Debug)]
 pub struct Fields {
     every: usize,
-    solid: Collection,
-    contact: Option<Collection>,
+    /// `None` when there are no more
+    frames: Option<SyncSender<Frame>>,
+    /// `None` when it has ended
+    writer: Option<JoinHandle<Result<(), Error>>>,
 }
+
+/// One moment, ready to be written.
+struct Frame {
+    time: f64,
+    solid: UnstructuredGridPiece,
+    contact: Option<UnstructuredGridPiece>,
+}
+
+/// Frames that may wait for the writer; a run that is faster waits, so that memory stays bounded.
+const WAITING: usize = 1;
 
 /// A time series of VTU files and the `.pvd` that lists them.
 #[derive(Debug)]
@@ -44,17 +59,30 @@ impl Fields {
     /// # Errors
     /// [`Error::Output`] when a file cannot be written.
     pub fn create(folder: &Path, model: &Model, start: &State, every: usize) -> Result<Self, Error> {
-        let contact = (!model.contacts.is_empty()).then(|| Collection::create(folder, "contact")).transpose()?;
-        let mut fields = Self { every, solid: Collection::create(folder, "solid")?, contact };
+        let mut solid = Collection::create(folder, "solid")?;
+        let mut contact = (!model.contacts.is_empty()).then(|| Collection::create(folder, "contact")).transpose()?;
+        let (frames, arriving): (_, Receiver<Frame>) = sync_channel(WAITING);
+        let writer = std::thread::spawn(move || {
+            for frame in arriving {
+                solid.write(frame.time, frame.solid)?;
+                if let (Some(contact), Some(piece)) = (&mut contact, frame.contact) {
+                    contact.write(frame.time, piece)?;
+                }
+            }
+            Ok(())
+        });
+        let mut fields = Self { every, frames: Some(frames), writer: Some(writer) };
         fields.write(model, start)?;
         Ok(fields)
     }
 
+    /// Hand a frame to the writer. One that has ended has failed, and says why.
     fn write(&mut self, model: &Model, state: &State) -> Result<(), Error> {
-        self.solid.write(state.time, solid_frame(model, state))?;
-        match &mut self.contact {
-            Some(contact) => contact.write(state.time, contact_frame(model, state)),
-            None => Ok(()),
+        let contact = (!model.contacts.is_empty()).then(|| contact_frame(model, state));
+        let frame = Frame { time: state.time, solid: solid_frame(model, state), contact };
+        match self.frames.as_ref().map(|frames| frames.send(frame)) {
+            Some(Ok(())) => Ok(()),
+            _ => self.finish(),
         }
     }
 }
@@ -66,6 +94,15 @@ impl Observer for Fields {
                 self.write(model, state)
             }
             _ => Ok(()),
+        }
+    }
+
+    fn finish(&mut self) -> Result<(), Error> {
+        self.frames = None;
+        match self.writer.take().map(JoinHandle::join) {
+            None => Ok(()),
+            Some(Ok(written)) => written,
+            Some(Err(_)) => Err(failed(Path::new("solid.pvd"), &"the writer of frames broke off")),
         }
     }
 }
@@ -139,15 +176,19 @@ fn solid_frame(model: &Model, state: &State) -> UnstructuredGridPiece {
 /// Cauchy stress (xx, yy, zz, xy) at the nodes, averaged over the elements that meet there. An element that the
 /// material law cannot answer leaves no trace: it never occurs in an accepted state.
 fn nodal_stresses(model: &Model, state: &State) -> Vec<[f64; 4]> {
-    let mut sums = vec![([0.0; 4], 0.0); model.mesh.nodes.len()];
-    for (e, element) in model.mesh.elements.iter().enumerate() {
-        let u: Vec<Vector2<f64>> = element
-            .nodes
-            .iter()
-            .map(|&n| Vector2::new(state.displacement[2 * n], state.displacement[2 * n + 1]))
-            .collect();
+    let elements = &model.mesh.elements;
+    let stresses_of = |e: usize| {
+        let mut u = [Vector2::zeros(); 9];
+        for (u, &node) in u.iter_mut().zip(&elements[e].nodes) {
+            *u = Vector2::new(state.displacement[2 * node], state.displacement[2 * node + 1]);
+        }
         let material = &*model.bodies[model.body_of_element[e]].material;
-        for (stress, &node) in model.solids[e].nodal_stresses(material, &u).iter().flatten().zip(&element.nodes) {
+        model.solids[e].nodal_stresses(material, &u[..elements[e].nodes.len()])
+    };
+    let all: Vec<_> = (0..elements.len()).into_par_iter().with_min_len(64).map(stresses_of).collect();
+    let mut sums = vec![([0.0; 4], 0.0); model.mesh.nodes.len()];
+    for (element, stresses) in elements.iter().zip(all) {
+        for (stress, &node) in stresses.iter().flatten().zip(&element.nodes) {
             let (sum, count) = &mut sums[node];
             for (sum, part) in sum.iter_mut().zip([stress.xx, stress.yy, stress.zz, stress.xy]) {
                 *sum += part;
@@ -166,12 +207,13 @@ fn contact_frame(model: &Model, state: &State) -> UnstructuredGridPiece {
     let current: Vec<Vector2<f64>> = model.contacts.iter().flat_map(|pair| points_of(pair, &x)).collect();
     let displacement: Vec<f64> = reference.iter().zip(&current).flat_map(|(a, b)| [b.x - a.x, b.y - a.y]).collect();
 
-    let mut lines = Vec::new();
+    let mut lines: Vec<(CellType, Vec<usize>)> = Vec::new();
     let mut contact_id: Vec<i32> = Vec::new();
     let mut first = 0;
     for (number, pair) in model.contacts.iter().enumerate() {
         for line in pair.lines() {
-            lines.push((CellType::PolyLine, line.map(|k| first + k).collect::<Vec<_>>()));
+            let kind = if line.len() == 1 { CellType::Vertex } else { CellType::PolyLine };
+            lines.push((kind, line.map(|k| first + k).collect()));
             contact_id.push(number as i32);
         }
         first += pair.points.len();

@@ -9,7 +9,7 @@ use crate::contact::force::{ContactState, Status};
 use crate::contact::pair::ContactPair;
 use crate::error::Error;
 use crate::model::{Model, WatchedSet};
-use crate::state::State;
+use crate::state::{Energy, State};
 
 /// Writes `history.csv`.
 #[derive(Debug)]
@@ -25,7 +25,7 @@ const ENERGIES: [&str; 7] = [
     "external_work",
     "energy_error",
 ];
-const CONTACT: [&str; 7] = [
+const CONTACT: [&str; 8] = [
     "normal_force",
     "tangential_force",
     "contact_length",
@@ -33,6 +33,7 @@ const CONTACT: [&str; 7] = [
     "mean_slip",
     "max_penetration",
     "max_elastic_slip",
+    "mean_elastic_slip",
 ];
 const WATCHED: [&str; 4] = ["ux", "uy", "fx", "fy"];
 
@@ -53,35 +54,40 @@ impl History {
 impl Observer for History {
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
+        let Self(table) = self;
         let x = model.configuration(&state.displacement);
-        let energy = &state.energy;
-        let mut row = vec![format!("{:?}", state.time), format!("{:?}", state.dt), attempt.step.name.clone()];
-        row.push(attempt.iterations.len().to_string());
-        let mut numbers = vec![
-            energy.kinetic,
-            energy.strain,
-            energy.contact_elastic,
-            energy.friction_dissipation,
-            energy.damping_dissipation,
-            energy.external_work,
-            energy.error(),
-        ];
+        table.number(state.time);
+        table.number(state.dt);
+        table.text(&attempt.step.name);
+        table.count(attempt.iterations.len());
+        energy_row(&state.energy).into_iter().for_each(|energy| table.number(energy));
         for (pair, states) in model.contacts.iter().zip(&state.contacts) {
-            numbers.extend(contact_row(pair, states, &x));
+            contact_row(pair, states, &x).into_iter().for_each(|number| table.number(number));
         }
         for set in &model.watch {
-            numbers.extend(watched_row(set, state));
+            watched_row(set, state).into_iter().for_each(|number| table.number(number));
         }
-        row.extend(numbers.iter().map(|number| format!("{number:?}")));
-        self.0.line(&row.join(","))?;
-        self.0.flush()
+        table.end_row()?;
+        table.share()
     }
 }
 
-/// The columns of one contact: forces are ∫ p ds and ∫ q ds, the mean slip is taken over the closed length.
-fn contact_row(pair: &ContactPair, states: &[ContactState], x: &Configuration) -> [f64; 7] {
+fn energy_row(energy: &Energy) -> [f64; ENERGIES.len()] {
+    [
+        energy.kinetic,
+        energy.strain,
+        energy.contact_elastic,
+        energy.friction_dissipation,
+        energy.damping_dissipation,
+        energy.external_work,
+        energy.error(),
+    ]
+}
+
+/// The columns of one contact: forces are ∫ p ds and ∫ q ds, means are taken over the closed length.
+fn contact_row(pair: &ContactPair, states: &[ContactState], x: &Configuration) -> [f64; CONTACT.len()] {
     let (mut normal, mut tangential, mut closed, mut slipping, mut slip) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    let (mut penetration, mut elastic_slip) = (0.0f64, 0.0f64);
+    let (mut penetration, mut largest_elastic, mut elastic) = (0.0f64, 0.0f64, 0.0);
     for (point, state) in pair.points.iter().zip(states) {
         let (friction, length) = (&state.friction, point.current_length(x));
         if state.status() == Status::Open {
@@ -93,14 +99,15 @@ fn contact_row(pair: &ContactPair, states: &[ContactState], x: &Configuration) -
         slipping += if state.status() == Status::Slip { length } else { 0.0 };
         slip += length * friction.plastic_slip;
         penetration = penetration.max(-state.gap);
-        elastic_slip = elastic_slip.max(pair.elastic_slip(friction).abs());
+        largest_elastic = largest_elastic.max(pair.elastic_slip(friction).abs());
+        elastic += length * pair.elastic_slip(friction);
     }
     let share = |part: f64| if closed > 0.0 { part / closed } else { 0.0 };
-    [normal, tangential, closed, share(slipping), share(slip), penetration, elastic_slip]
+    [normal, tangential, closed, share(slipping), share(slip), penetration, largest_elastic, share(elastic)]
 }
 
 /// Mean displacement and total reaction of a watched set.
-fn watched_row(set: &WatchedSet, state: &State) -> [f64; 4] {
+fn watched_row(set: &WatchedSet, state: &State) -> [f64; WATCHED.len()] {
     let total = |values: &[f64], i: usize| set.nodes.iter().map(|&node| values[2 * node + i]).sum::<f64>();
     let mean = |i| total(&state.displacement, i) / set.nodes.len() as f64;
     [mean(0), mean(1), total(&state.reaction, 0), total(&state.reaction, 1)]

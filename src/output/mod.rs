@@ -3,7 +3,9 @@
 mod csv;
 pub mod fields;
 pub mod history;
+pub mod law;
 pub mod newton_log;
+pub mod plot;
 pub mod progress;
 pub mod summary;
 pub mod warnings;
@@ -28,6 +30,8 @@ pub struct Attempt<'a> {
     pub iterations: &'a [IterationRecord],
     /// the new state, if it was accepted
     pub accepted: Option<&'a State>,
+    /// estimated local error of a displacement, in steps under error control [L]
+    pub local_error: Option<f64>,
 }
 
 /// Somebody who watches a run.
@@ -37,4 +41,12 @@ pub trait Observer {
     /// # Errors
     /// [`Error::Output`] when a file cannot be written; it ends the run.
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error>;
+
+    /// Called once after the last attempt: what is still under way comes to its end.
+    ///
+    /// # Errors
+    /// As [`record`](Self::record).
+    fn finish(&mut self) -> Result<(), Error> {
+        Ok(())
+    }
 }

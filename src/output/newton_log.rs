@@ -6,10 +6,26 @@ use super::csv::Table;
 use super::{Attempt, Observer};
 use crate::error::Error;
 use crate::model::Model;
+use crate::step::IterationRecord;
 
 /// Writes `newton.csv`.
 #[derive(Debug)]
 pub struct NewtonLog(Table);
+
+const COLUMNS: [&str; 12] = [
+    "step",
+    "increment",
+    "attempt",
+    "iteration",
+    "time",
+    "residual",
+    "correction",
+    "open",
+    "stick",
+    "slip",
+    "linear_residual",
+    "factorized",
+];
 
 impl NewtonLog {
     /// Create `newton.csv` in `folder`.
@@ -17,30 +33,23 @@ impl NewtonLog {
     /// # Errors
     /// [`Error::Output`] when it cannot be written.
     pub fn create(folder: &Path) -> Result<Self, Error> {
-        let header = "step,increment,attempt,iteration,time,residual,correction,open,stick,slip,linear_residual";
-        Ok(Self(Table::create(&folder.join("newton.csv"), &[header.into()])?))
+        Ok(Self(Table::create(&folder.join("newton.csv"), &COLUMNS)?))
     }
 }
 
 impl Observer for NewtonLog {
     fn record(&mut self, _model: &Model, attempt: &Attempt) -> Result<(), Error> {
+        let Self(table) = self;
         let time = attempt.old.time + attempt.dt;
-        for (k, iteration) in attempt.iterations.iter().enumerate() {
-            let (newton, contacts) = (&iteration.newton, &iteration.contacts);
-            self.0.line(&format!(
-                "{},{},{},{},{time:?},{:?},{:?},{},{},{},{:?}",
-                attempt.step.name,
-                attempt.old.increment + 1,
-                attempt.number,
-                k + 1,
-                newton.residual,
-                newton.correction,
-                contacts.open,
-                contacts.stick,
-                contacts.slip,
-                newton.linear_residual,
-            ))?;
+        for (k, IterationRecord { newton, contacts }) in attempt.iterations.iter().enumerate() {
+            table.text(&attempt.step.name);
+            [attempt.old.increment + 1, attempt.number, k + 1].into_iter().for_each(|count| table.count(count));
+            [time, newton.residual, newton.correction].into_iter().for_each(|number| table.number(number));
+            [contacts.open, contacts.stick, contacts.slip].into_iter().for_each(|count| table.count(count));
+            table.number(newton.linear_residual);
+            table.count(usize::from(newton.factorized));
+            table.end_row()?;
         }
-        self.0.flush()
+        table.share()
     }
 }

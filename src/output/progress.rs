@@ -1,6 +1,7 @@
-//! Progress on stderr: a bar on a terminal, a plain line per increment elsewhere.
+//! Progress on stderr: a bar on a terminal, plain lines elsewhere.
 
 use std::io::IsTerminal;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -11,10 +12,26 @@ use crate::model::Model;
 
 /// Shows progress.
 #[derive(Debug)]
-pub struct Progress(Option<ProgressBar>);
+pub struct Progress {
+    /// `None` where stderr is no terminal
+    bar: Option<ProgressBar>,
+    start: Instant,
+    /// when to speak again, after the start
+    next: Duration,
+    lines: u32,
+}
 
 /// Ticks of a full bar.
 const FULL: u64 = 1000;
+
+/// A bar is drawn no more often than this.
+const FRAME: Duration = Duration::from_millis(100);
+
+/// Every increment has a line up to this many, ...
+const LINES: u32 = 100;
+
+/// ... and later there is one in this time.
+const PAUSE: Duration = Duration::from_millis(500);
 
 impl Progress {
     /// A bar if stderr is a terminal, lines otherwise.
@@ -23,7 +40,15 @@ impl Progress {
             let style = ProgressStyle::with_template("{bar:30} {percent:>3}% {elapsed} {msg}");
             ProgressBar::new(FULL).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
         });
-        Self(bar)
+        Self { bar, start: Instant::now(), next: Duration::ZERO, lines: 0 }
+    }
+
+    fn line(&mut self, message: &str) {
+        eprintln!("{message}");
+        self.lines += 1;
+        if self.lines == LINES {
+            eprintln!("… from here on not every increment has a line");
+        }
     }
 }
 
@@ -35,7 +60,7 @@ impl Default for Progress {
 
 impl Drop for Progress {
     fn drop(&mut self) {
-        if let Some(bar) = &self.0 {
+        if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
     }
@@ -43,27 +68,38 @@ impl Drop for Progress {
 
 impl Observer for Progress {
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
-        let solves = attempt.iterations.len();
-        let (time, dt, step) = (attempt.old.time, attempt.dt, &attempt.step.name);
-        let message = match attempt.accepted {
-            Some(state) => {
-                let counts = ContactCounts::of(&state.contacts);
-                format!(
-                    "{step}  t {:.6}  dt {dt:.3e}  {solves} iterations  open {} stick {} slip {}",
-                    state.time, counts.open, counts.stick, counts.slip
-                )
-            }
-            None => format!("{step}  t {time:.6}  dt {dt:.3e}  failed after {solves} iterations"),
-        };
-        match &self.0 {
+        let now = self.start.elapsed();
+        if now < self.next {
+            return Ok(());
+        }
+        match &self.bar {
             Some(bar) => {
                 let end = model.steps.last().map_or(1.0, |step| step.span.end);
-                let reached = attempt.accepted.map_or(time, |state| state.time);
+                let reached = attempt.accepted.map_or(attempt.old.time, |state| state.time);
                 bar.set_position((FULL as f64 * reached / end) as u64);
-                bar.set_message(message);
+                bar.set_message(message(attempt));
+                self.next = now + FRAME;
             }
-            None => eprintln!("{message}"),
+            None => {
+                self.line(&message(attempt));
+                self.next = if self.lines < LINES { now } else { now + PAUSE };
+            }
         }
         Ok(())
+    }
+}
+
+fn message(attempt: &Attempt) -> String {
+    let solves = attempt.iterations.len();
+    let (time, dt, step) = (attempt.old.time, attempt.dt, &attempt.step.name);
+    match attempt.accepted {
+        Some(state) => {
+            let counts = ContactCounts::of(&state.contacts);
+            format!(
+                "{step}  t {:.6}  dt {dt:.3e}  {solves} iterations  open {} stick {} slip {}",
+                state.time, counts.open, counts.stick, counts.slip
+            )
+        }
+        None => format!("{step}  t {time:.6}  dt {dt:.3e}  repeated after {solves} iterations"),
     }
 }

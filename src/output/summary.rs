@@ -1,11 +1,14 @@
-//! `summary.json`: how a run ended and what it took.
+//! `summary.json`: how a run or test ended, and what it took.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::csv::failed;
+use super::law::LawReport;
 use crate::error::Error;
+use crate::friction::FrictionParameters;
 use crate::model::Model;
 
 /// Counts and times of a run.
@@ -13,8 +16,10 @@ use crate::model::Model;
 pub struct RunReport {
     /// accepted increments
     pub increments: usize,
-    /// failed attempts
+    /// attempts that could not be solved
     pub cutbacks: usize,
+    /// attempts that were solved, and repeated because their error was too large or they met an event of contact
+    pub rejected: usize,
     /// linear solves, those of failed attempts included
     pub newton_iterations: usize,
     /// matrix factorizations
@@ -38,23 +43,73 @@ pub struct WallSeconds {
     pub output: f64,
 }
 
-/// The content of `summary.json`.
+/// Where results come from, and what their readers need to know of it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct About {
+    /// the case file
+    pub case: String,
+    /// what it shows
+    pub title: String,
+    /// labels of the units
+    pub units: BTreeMap<String, String>,
+    /// friction law of each contact
+    pub friction: BTreeMap<String, FrictionParameters>,
+}
+
+/// How it ended: the first lines of every `summary.json`.
 #[derive(Clone, Debug, Serialize)]
-pub struct Summary {
+pub struct Ending {
     /// "completed" or "stopped"
     pub status: &'static str,
     /// why it stopped
     pub reason: Option<String>,
     /// version of the program
     pub version: &'static str,
-    /// the case file
-    pub case: String,
+}
+
+impl Ending {
+    /// Of a run or test that stopped for a reason, or did not.
+    pub fn new(stopped: Option<&Error>) -> Self {
+        Self {
+            status: if stopped.is_none() { "completed" } else { "stopped" },
+            reason: stopped.map(ToString::to_string),
+            version: env!("CARGO_PKG_VERSION"),
+        }
+    }
+}
+
+/// The content of `summary.json` of a law driven alone.
+#[derive(Clone, Debug, Serialize)]
+pub struct LawSummary {
+    /// how it ended
+    #[serde(flatten)]
+    pub ending: Ending,
+    /// the test
+    #[serde(flatten)]
+    pub about: About,
+    /// what it amounts to
+    #[serde(flatten)]
+    pub report: LawReport,
+}
+
+/// The content of `summary.json` of a run.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// how it ended
+    #[serde(flatten)]
+    pub ending: Ending,
+    /// the case
+    #[serde(flatten)]
+    pub about: About,
     /// number of dofs
     pub dofs: usize,
     /// number of nodes
     pub nodes: usize,
     /// number of elements
     pub elements: usize,
+    /// number of point masses
+    pub point_masses: usize,
     /// number of contact points
     pub contact_points: usize,
     /// counts and times
@@ -68,31 +123,30 @@ pub struct Summary {
 
 impl Summary {
     /// Summarize a finished or stopped run.
-    pub fn new(case: &str, model: &Model, report: RunReport, stopped: Option<&Error>, warnings: Vec<String>) -> Self {
+    pub fn new(about: About, model: &Model, report: RunReport, stopped: Option<&Error>, warnings: Vec<String>) -> Self {
         Self {
-            status: if stopped.is_none() { "completed" } else { "stopped" },
-            reason: stopped.map(ToString::to_string),
-            version: env!("CARGO_PKG_VERSION"),
-            case: case.into(),
+            ending: Ending::new(stopped),
+            about,
             dofs: model.dofs(),
             nodes: model.mesh.nodes.len(),
             elements: model.mesh.elements.len(),
+            point_masses: model.point_masses.iter().map(|point| point.nodes.len()).sum(),
             contact_points: model.contacts.iter().map(|pair| pair.points.len()).sum(),
             report,
             peak_memory_mib: peak_memory_mib(),
             warnings,
         }
     }
+}
 
-    /// Write `summary.json` into `folder`.
-    ///
-    /// # Errors
-    /// [`Error::Output`] when it cannot be written.
-    pub fn write(&self, folder: &Path) -> Result<(), Error> {
-        let path = folder.join("summary.json");
-        let text = serde_json::to_string_pretty(self).map_err(|cause| failed(&path, &cause))?;
-        std::fs::write(&path, text + "\n").map_err(|cause| failed(&path, &cause))
-    }
+/// Write a [`Summary`] or [`LawSummary`] as `summary.json` into `folder`.
+///
+/// # Errors
+/// [`Error::Output`] when it cannot be written.
+pub fn write(summary: &impl Serialize, folder: &Path) -> Result<(), Error> {
+    let path = folder.join("summary.json");
+    let text = serde_json::to_string_pretty(summary).map_err(|cause| failed(&path, &cause))?;
+    std::fs::write(&path, text + "\n").map_err(|cause| failed(&path, &cause))
 }
 
 /// Largest resident set so far, from the Linux process status.

@@ -1,4 +1,5 @@
-//! Things a user should know about a result: deep penetration, and pressure past the law's uniqueness bound.
+//! Things a user should know about a result: deep penetration, pressure past the law's uniqueness bound, and errors in
+//! time larger than allowed.
 
 use std::collections::BTreeSet;
 
@@ -13,12 +14,16 @@ use crate::model::Model;
 /// Penetration, as a share of the slave's edge, that is worth a warning.
 const DEEP: f64 = 0.01;
 
-/// Collects warnings; each kind once a contact, where it is met first.
+/// Collects warnings; each kind once a contact or step, where it is met first.
 #[derive(Clone, Debug, Default)]
 pub struct Warnings {
     /// the warnings so far
     pub list: Vec<String>,
     given: BTreeSet<(usize, Kind)>,
+    /// Names of the steps whose error in time has been warned about
+    inexact: BTreeSet<String>,
+    /// Steps whose linear systems have been warned about
+    perturbed: BTreeSet<String>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -30,6 +35,8 @@ enum Kind {
 impl Observer for Warnings {
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
+        self.error_in_time(attempt);
+        self.lost_pivots(attempt);
         let x = model.configuration(&state.displacement);
         for (number, (pair, states)) in model.contacts.iter().zip(&state.contacts).enumerate() {
             for (point, contact) in pair.points.iter().zip(states).filter(|(_, c)| c.friction.pressure > 0.0) {
@@ -47,6 +54,35 @@ impl Observer for Warnings {
     }
 }
 
+impl Warnings {
+    /// A matrix that is singular or nearly so may still have given an answer.
+    fn lost_pivots(&mut self, attempt: &Attempt) {
+        let solves = || attempt.iterations.iter().map(|iteration| iteration.newton);
+        let pivots = solves().map(|solve| solve.perturbed_pivots).max().unwrap_or(0);
+        let fallback = solves().any(|solve| solve.fallback);
+        if (pivots > 0 || fallback) && self.perturbed.insert(attempt.step.name.clone()) {
+            let start = format!("step `{}`, t = {}", attempt.step.name, attempt.old.time + attempt.dt);
+            let found = match (pivots, fallback) {
+                (0, _) => "the fronts of the tangent were not exact enough, and a slower solver took over".into(),
+                (pivots, false) => format!("{pivots} pivots of the tangent vanished and were replaced"),
+                (pivots, true) => format!("{pivots} pivots of the tangent vanished, and a slower solver took over"),
+            };
+            self.list.push(format!("{start}: {found}; the equations are solved, but something may be barely held"));
+        }
+    }
+
+    /// The shortest increment is accepted whatever its error.
+    fn error_in_time(&mut self, attempt: &Attempt) {
+        let Attempt { step, dt, old, .. } = attempt;
+        let Some((error, allowed)) = attempt.local_error.zip(step.increments.error) else { return };
+        if error > allowed && self.inexact.insert(step.name.clone()) {
+            let start =
+                format!("step `{}`, t = {}: the increment {dt:.3e} is the shortest allowed", step.name, old.time);
+            self.list.push(format!("{start}, and its error {error:.3e} exceeds {allowed:.3e}; lower dt.min"));
+        }
+    }
+}
+
 /// What is worth a warning at one closed point.
 fn concerns(
     pair: &ContactPair,
@@ -55,8 +91,8 @@ fn concerns(
     x: &Configuration,
 ) -> impl Iterator<Item = (Kind, String)> {
     let (gap, pressure) = (contact.gap, contact.friction.pressure);
-    let share = -gap / point.edge_length(x);
-    let deep = (share > DEEP).then(|| {
+    let share = point.edge_length(x).map(|edge| -gap / edge);
+    let deep = share.filter(|share| *share > DEEP).map(|share| {
         let percent = 100.0 * share;
         format!("the penetration {:.3e} is {percent:.1} % of the slave's edge; raise alpha_n", -gap)
     });

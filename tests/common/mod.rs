@@ -69,21 +69,31 @@ pub fn turned(v: [f64; 2], angle: f64) -> [f64; 2] {
 
 /// The model of a case.
 pub fn model(case: &Value) -> Model {
-    let parsed = serde_json::from_value(case.clone()).unwrap_or_else(|error| panic!("{error}"));
-    case::build(&parsed, Path::new("test.json")).unwrap_or_else(|error| panic!("{error}"))
+    model_at(case, Path::new("test.json"))
 }
 
-/// Keeps every accepted state; counts the attempts that failed.
+/// The model of a case whose mesh is found from a path.
+pub fn model_at(case: &Value, path: &Path) -> Model {
+    let parsed = serde_json::from_value(case.clone()).unwrap_or_else(|error| panic!("{error}"));
+    case::build(&parsed, path).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Keeps every accepted state; counts the attempts that were not accepted.
 #[derive(Default)]
 pub struct Record {
     pub states: Vec<State>,
+    /// Newton iterations of each
+    pub iterations: Vec<usize>,
     pub failed: usize,
 }
 
 impl Observer for Record {
     fn record(&mut self, _: &Model, attempt: &Attempt) -> Result<(), Error> {
         match attempt.accepted {
-            Some(state) => self.states.push(state.clone()),
+            Some(state) => {
+                self.states.push(state.clone());
+                self.iterations.push(attempt.iterations.len());
+            }
             None => self.failed += 1,
         }
         Ok(())
@@ -94,6 +104,8 @@ impl Observer for Record {
 pub struct Finished {
     pub model: Model,
     pub states: Vec<State>,
+    /// Newton iterations of each increment
+    pub iterations: Vec<usize>,
     pub report: RunReport,
 }
 
@@ -131,12 +143,17 @@ impl Finished {
 
 /// Run a case to its end.
 pub fn finish(case: &Value) -> Finished {
-    let model = model(case);
+    finish_at(case, Path::new("test.json"))
+}
+
+/// Run a case whose mesh is found from a path.
+pub fn finish_at(case: &Value, path: &Path) -> Finished {
+    let model = model_at(case, path);
     let mut record = Record::default();
     let (report, result) = run(&model, &mut [&mut record]);
     result.unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(record.failed, report.cutbacks);
-    Finished { model, states: record.states, report }
+    assert_eq!(record.failed, report.cutbacks + report.rejected);
+    Finished { model, states: record.states, iterations: record.iterations, report }
 }
 
 /// Largest |a − b|.

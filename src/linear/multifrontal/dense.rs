@@ -4,6 +4,7 @@
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
 use faer::{Accum, MatMut, MatRef, Par};
+use pulp::{Arch, NullaryFnOnce};
 
 /// Columns that are eliminated one by one; more are halved, so that most of the work is a matrix product.
 const NARROW: usize = 8;
@@ -17,107 +18,196 @@ const VANISHED: f64 = 64.0 * f64::EPSILON;
 /// What takes the place of a vanished pivot: √ε, so that the error it makes and the growth it causes are alike.
 const REPLACEMENT: f64 = 1.490_116_119_384_765_6e-8;
 
-/// The columns of the pivots in a front, `size` rows each.
+/// The rows and columns of the pivots in a front.
 pub struct Panel<'a> {
-    pub values: &'a mut [f64],
-    pub size: usize,
-    /// Rows that may become pivots; the same as the number of columns
+    /// F₁₁ over F₂₁, by columns
+    pub lower: &'a mut [f64],
+    /// F₁₂ transposed, by columns: one column a pivot, so that all loops are long
+    pub upper: &'a mut [f64],
+    /// Number of pivots, and of rows that may become pivots
     pub pivots: usize,
+    /// Number of rows in `upper`
+    pub below: usize,
     /// Row exchanged with row j when column j was eliminated
     pub exchanges: &'a mut [u32],
 }
 
 impl Panel<'_> {
-    /// F = P L U with row exchanges among the pivots only. Returns the number of pivots that were replaced.
+    fn size(&self) -> usize {
+        self.pivots + self.below
+    }
+
+    /// F₁₁ = P L₁₁ U₁₁, L₂₁ = F₂₁ U₁₁⁻¹, U₁₂ = L₁₁⁻¹ P F₁₂ in place, with row exchanges among the pivots only. Returns
+    /// the number of pivots that were replaced.
     pub fn factorize(&mut self) -> usize {
-        self.factorize_columns(0, self.pivots)
+        let replaced = self.factorize_columns(0, self.pivots);
+        if self.below > 0 {
+            for (j, &other) in self.exchanges.iter().enumerate().filter(|&(j, &other)| other as usize != j) {
+                let (left, right) = self.upper.split_at_mut(other as usize * self.below);
+                left[j * self.below..][..self.below].swap_with_slice(&mut right[..self.below]);
+            }
+            let l = MatRef::from_column_major_slice(&*self.lower, self.size(), self.pivots);
+            solve_upper(l.subrows(0, self.pivots), self.upper, self.below);
+        }
+        replaced
     }
 
     /// Right-looking and recursive: the left half, its effect on the right half, the right half.
     fn factorize_columns(&mut self, start: usize, end: usize) -> usize {
+        let size = self.size();
         if end - start <= NARROW {
-            return (start..end).map(|j| self.eliminate(j, end)).sum();
+            let columns = &mut self.lower[start * size..end * size];
+            let block = Block { columns, size, start, pivots: self.pivots, exchanges: &mut self.exchanges[start..end] };
+            return Arch::new().dispatch(block);
         }
         let middle = start + (end - start) / 2;
         let replaced = self.factorize_columns(start, middle);
-        let (left, right) = self.values[start * self.size..end * self.size].split_at_mut((middle - start) * self.size);
-        let left = MatRef::from_column_major_slice(left, self.size, middle - start);
-        let right = MatMut::from_column_major_slice_mut(right, self.size, end - middle);
+        let (left, right) = self.lower[start * size..end * size].split_at_mut((middle - start) * size);
+        for column in right.chunks_exact_mut(size) {
+            exchange(&mut column[start..], &self.exchanges[start..middle], start);
+        }
+        let l = MatRef::from_column_major_slice(left, size, middle - start);
+        let right = MatMut::from_column_major_slice_mut(right, size, end - middle);
         let (_, right) = right.split_at_row_mut(start);
-        let (mut upper, lower) = right.split_at_row_mut(middle - start);
-        solve_unit_lower(left.subrows(start, middle - start), upper.as_mut());
-        subtract_product(lower, left.subrows(middle, self.size - middle), upper.as_ref());
-        replaced + self.factorize_columns(middle, end)
+        let (mut upper, rest) = right.split_at_row_mut(middle - start);
+        solve_unit_lower(l.subrows(start, middle - start), upper.as_mut());
+        subtract_product(rest, Accum::Add, l.subrows(middle, size - middle), upper.as_ref());
+        let replaced = replaced + self.factorize_columns(middle, end);
+        for column in self.lower[start * size..middle * size].chunks_exact_mut(size) {
+            exchange(&mut column[middle..], &self.exchanges[middle..end], middle);
+        }
+        replaced
     }
 
-    /// Eliminate column j from the columns up to `end`; the others follow in blocks.
-    fn eliminate(&mut self, j: usize, end: usize) -> usize {
-        let Self { size, pivots, .. } = *self;
-        let column = &self.values[j * size..][..pivots];
-        let largest = (j + 1..pivots).fold(j, |best, i| if column[i].abs() > column[best].abs() { i } else { best });
-        self.exchanges[j] = largest as u32;
-        if largest != j {
-            for row in self.values.chunks_exact_mut(size) {
-                row.swap(j, largest);
-            }
-        }
-        let (left, right) = self.values.split_at_mut((j + 1) * size);
-        let column = &mut left[j * size..];
-        let replaced = column[j].abs() <= VANISHED;
-        if replaced {
-            column[j] = REPLACEMENT.copysign(column[j]);
-        }
-        let (pivot, below) = (column[j], &mut column[j + 1..]);
-        below.iter_mut().for_each(|l| *l /= pivot);
-        for target in right[..(end - j - 1) * size].chunks_exact_mut(size) {
-            let u = target[j];
-            for (t, l) in target[j + 1..].iter_mut().zip(&*below) {
-                *t -= l * u;
-            }
-        }
-        usize::from(replaced)
-    }
-
-    /// U₁₂ = L₁₁⁻¹ P F₁₂, in place.
-    pub fn solve_upper(&self, upper: &mut [f64]) {
-        for column in upper.chunks_exact_mut(self.pivots) {
-            exchange(column, self.exchanges);
-        }
-        let columns = upper.len() / self.pivots;
-        let l = MatRef::from_column_major_slice(self.values, self.size, self.pivots).subrows(0, self.pivots);
-        solve_unit_lower(l, MatMut::from_column_major_slice_mut(upper, self.pivots, columns));
-    }
-
-    /// F₂₂ − L₂₁ U₁₂, in place.
-    pub fn subtract_contribution(&self, upper: &[f64], contribution: &mut [f64]) {
-        let below = self.size - self.pivots;
-        let l = MatRef::from_column_major_slice(self.values, self.size, self.pivots).subrows(self.pivots, below);
-        let u = MatRef::from_column_major_slice(upper, self.pivots, below);
-        subtract_product(MatMut::from_column_major_slice_mut(contribution, below, below), l, u);
+    /// −L₂₁ U₁₂, written over `contribution`.
+    pub fn contribution(&self, contribution: &mut [f64]) {
+        let (below, pivots) = (self.below, self.pivots);
+        let l = MatRef::from_column_major_slice(&*self.lower, self.size(), pivots).subrows(pivots, below);
+        let u = MatRef::from_column_major_slice(&*self.upper, below, pivots).transpose();
+        subtract_product(MatMut::from_column_major_slice_mut(contribution, below, below), Accum::Replace, l, u);
     }
 }
 
-/// Apply the row exchanges in the order in which they were made.
-pub fn exchange(column: &mut [f64], exchanges: &[u32]) {
+/// A few columns that are eliminated one by one.
+struct Block<'a> {
+    columns: &'a mut [f64],
+    size: usize,
+    /// Number of the first column
+    start: usize,
+    pivots: usize,
+    exchanges: &'a mut [u32],
+}
+
+impl NullaryFnOnce for Block<'_> {
+    type Output = usize;
+
+    #[inline(always)]
+    fn call(self) -> usize {
+        let Self { columns, size, start, pivots, exchanges } = self;
+        let mut replaced = 0;
+        for (k, exchanged) in exchanges.iter_mut().enumerate() {
+            let j = start + k;
+            let mut largest = j;
+            let candidates = &columns[k * size..][..pivots];
+            let mut best = candidates[j].abs();
+            for (i, value) in candidates.iter().enumerate().skip(j + 1) {
+                if value.abs() > best {
+                    (largest, best) = (i, value.abs());
+                }
+            }
+            *exchanged = largest as u32;
+            if largest != j {
+                for column in columns.chunks_exact_mut(size) {
+                    column.swap(j, largest);
+                }
+            }
+            let (left, right) = columns.split_at_mut((k + 1) * size);
+            let column = &mut left[k * size..];
+            if column[j].abs() <= VANISHED {
+                column[j] = REPLACEMENT.copysign(column[j]);
+                replaced += 1;
+            }
+            let inverse = 1.0 / column[j];
+            let below = &mut column[j + 1..];
+            for l in below.iter_mut() {
+                *l *= inverse;
+            }
+            for target in right.chunks_exact_mut(size) {
+                let u = target[j];
+                subtract(&mut target[j + 1..], below, u);
+            }
+        }
+        replaced
+    }
+}
+
+/// X ← X L⁻ᵀ for the unit lower triangle L.
+fn solve_upper(l: MatRef<'_, f64>, x: &mut [f64], rows: usize) {
+    let n = l.ncols();
+    if n <= NARROW {
+        return Arch::new().dispatch(Substitution { l, x, rows });
+    }
+    let middle = n / 2;
+    let (left, right) = x.split_at_mut(middle * rows);
+    solve_upper(l.submatrix(0, 0, middle, middle), left, rows);
+    let product = MatRef::from_column_major_slice(&*left, rows, middle);
+    let target = MatMut::from_column_major_slice_mut(right, rows, n - middle);
+    subtract_product(target, Accum::Add, product, l.submatrix(middle, 0, n - middle, middle).transpose());
+    solve_upper(l.submatrix(middle, middle, n - middle, n - middle), right, rows);
+}
+
+/// The same for a few columns, one by one.
+struct Substitution<'a> {
+    l: MatRef<'a, f64>,
+    x: &'a mut [f64],
+    rows: usize,
+}
+
+impl NullaryFnOnce for Substitution<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { l, x, rows } = self;
+        for j in 0..l.ncols() {
+            let (done, rest) = x.split_at_mut((j + 1) * rows);
+            let own = &done[j * rows..];
+            for (i, target) in rest.chunks_exact_mut(rows).enumerate() {
+                subtract(target, own, l[(j + 1 + i, j)]);
+            }
+        }
+    }
+}
+
+/// y ← y − c v
+#[inline(always)]
+pub fn subtract(y: &mut [f64], column: &[f64], value: f64) {
+    for (y, c) in y.iter_mut().zip(column) {
+        *y -= c * value;
+    }
+}
+
+/// Apply the row exchanges in the order in which they were made; both count from row `first` of the front.
+pub fn exchange(column: &mut [f64], exchanges: &[u32], first: usize) {
     for (j, &other) in exchanges.iter().enumerate() {
-        column.swap(j, other as usize);
+        column.swap(j, other as usize - first);
     }
 }
 
-/// c ← c − a b
-fn subtract_product(c: MatMut<'_, f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
+/// c ← c − a b, or c ← −a b
+fn subtract_product(c: MatMut<'_, f64>, accum: Accum, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
     let (rows, columns) = (c.nrows(), c.ncols());
     if rows * columns * a.ncols() <= SMALL_PRODUCT {
-        return matmul(c, Accum::Add, a, b, -1.0, Par::Seq);
+        return matmul(c, accum, a, b, -1.0, Par::Seq);
     }
     if rows > columns {
         let (c1, c2) = c.split_at_row_mut(rows / 2);
         let (a1, a2) = a.split_at_row(rows / 2);
-        rayon::join(|| subtract_product(c1, a1, b), || subtract_product(c2, a2, b));
+        rayon::join(|| subtract_product(c1, accum, a1, b), || subtract_product(c2, accum, a2, b));
     } else {
         let (c1, c2) = c.split_at_col_mut(columns / 2);
         let (b1, b2) = b.split_at_col(columns / 2);
-        rayon::join(|| subtract_product(c1, a, b1), || subtract_product(c2, a, b2));
+        rayon::join(|| subtract_product(c1, accum, a, b1), || subtract_product(c2, accum, a, b2));
     }
 }
 

@@ -1,11 +1,11 @@
 //! The numeric phase: assemble a front, eliminate its pivots, pass the rest on.
 
-use std::ops::Range;
-
-use rayon::prelude::*;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::dense::Panel;
-use super::symbolic::{Entry, Front, Symbolic};
+use super::jobs::{Job, Waiting, lock};
+use super::symbolic::{Entry, Forest, Front, Symbolic};
 
 /// L and U of all fronts.
 #[derive(Default)]
@@ -16,31 +16,25 @@ pub struct Factors {
     pub exchanges: Vec<u32>,
     /// Pivots that vanished and were replaced
     pub replaced: usize,
+    /// Room for the contributions inside a forest, used again
+    rooms: Mutex<Vec<Vec<f64>>>,
 }
 
-/// Contributions that wait for the parents of their fronts, the last child on top, and the pivots replaced on the way.
-#[derive(Default)]
-struct Stack {
-    contributions: Vec<Vec<f64>>,
-    replaced: usize,
-}
-
-/// The values of the factors that belong to consecutive fronts.
-struct Storage<'a> {
+/// The part of the factors that belongs to consecutive fronts.
+struct Part<'a> {
     values: &'a mut [f64],
     exchanges: &'a mut [u32],
 }
 
-impl<'a> Storage<'a> {
+impl<'a> Part<'a> {
     /// Cut off the part of the first `fronts`.
-    fn take(&mut self, fronts: &[Front]) -> Storage<'a> {
+    fn take(&mut self, fronts: &[Front]) -> Part<'a> {
         let values = fronts.iter().map(|front| front.values.len()).sum();
         let pivots = fronts.iter().map(|front| front.pivots).sum();
-        let (values, rest) = std::mem::take(&mut self.values).split_at_mut(values);
-        self.values = rest;
-        let (exchanges, rest) = std::mem::take(&mut self.exchanges).split_at_mut(pivots);
-        self.exchanges = rest;
-        Storage { values, exchanges }
+        Part {
+            values: self.values.split_off_mut(..values).unwrap_or_default(),
+            exchanges: self.exchanges.split_off_mut(..pivots).unwrap_or_default(),
+        }
     }
 }
 
@@ -49,107 +43,197 @@ impl Factors {
     pub fn compute(&mut self, symbolic: &Symbolic, a: &[f64]) {
         self.values.resize(symbolic.values(), 0.0);
         self.exchanges.resize(2 * symbolic.nodes.len(), 0);
-        let mut rest = Storage { values: &mut self.values, exchanges: &mut self.exchanges };
-        let (mut light, mut heavy) = (Vec::new(), Vec::new());
-        let mut done = 0;
-        for forest in &symbolic.forests {
-            heavy.push((done..forest.start, rest.take(&symbolic.fronts[done..forest.start])));
-            light.push((forest.clone(), rest.take(&symbolic.fronts[forest.clone()])));
-            done = forest.end;
-        }
-        let run = |(range, storage): (Range<usize>, Storage)| {
-            let mut stack = Stack::default();
-            stack.eliminate(symbolic, a, range, storage);
-            stack
-        };
-        let forests: Vec<Stack> = light.into_par_iter().with_max_len(1).map(run).collect();
-        let mut stack = Stack::default();
-        for ((range, storage), forest) in heavy.into_iter().zip(forests) {
-            stack.eliminate(symbolic, a, range, storage);
-            stack.contributions.extend(forest.contributions);
-            stack.replaced += forest.replaced;
-        }
-        stack.eliminate(symbolic, a, done..symbolic.fronts.len(), rest);
-        self.replaced = stack.replaced;
+        let mut rest = Part { values: &mut self.values, exchanges: &mut self.exchanges };
+        let job = Job::new(symbolic, |fronts| rest.take(fronts));
+        let rooms = std::mem::take(&mut self.rooms);
+        let numeric = Numeric { symbolic, a, waiting: Waiting::default(), replaced: AtomicUsize::new(0), rooms };
+        job.upwards(&|forest, part| numeric.forest(forest, part), &|front, part| numeric.heavy(front, part));
+        self.rooms = numeric.rooms;
+        self.replaced = numeric.replaced.into_inner();
     }
 }
 
-impl Stack {
-    /// Eliminate consecutive fronts, one after another.
-    fn eliminate(&mut self, symbolic: &Symbolic, a: &[f64], range: Range<usize>, mut storage: Storage<'_>) {
-        for front in &symbolic.fronts[range] {
-            let part = storage.take(std::slice::from_ref(front));
-            let (panel, upper) = part.values.split_at_mut(front.size() * front.pivots);
-            let mut sums = Assembly { front, panel, upper, below: vec![0.0; front.below() * front.below()] };
-            sums.clear();
-            sums.add_matrix(&symbolic.entries, a);
-            let own = self.contributions.len() - front.children.len();
-            for (&child, contribution) in front.children.iter().zip(self.contributions.drain(own..)) {
-                sums.add_contribution(&symbolic.fronts[child as usize], &contribution);
-            }
-            let Assembly { panel, upper, mut below, .. } = sums;
-            let (size, pivots) = (front.size(), front.pivots);
-            let mut panel = Panel { values: panel, size, pivots, exchanges: part.exchanges };
-            self.replaced += panel.factorize();
-            if !front.rows.is_empty() {
-                panel.solve_upper(upper);
-                panel.subtract_contribution(upper, &mut below);
-                self.contributions.push(below);
-            }
+/// A factorization at work.
+struct Numeric<'a> {
+    symbolic: &'a Symbolic,
+    a: &'a [f64],
+    /// Contributions by front
+    waiting: Waiting,
+    replaced: AtomicUsize,
+    rooms: Mutex<Vec<Vec<f64>>>,
+}
+
+impl Numeric<'_> {
+    /// Eliminate light fronts one after another.
+    fn forest(&self, forest: &Forest, mut rest: Part) {
+        let fronts = &self.symbolic.fronts;
+        let mut room = lock(&self.rooms).pop().unwrap_or_default();
+        room.resize(room.len().max(forest.room), 0.0);
+        let mut stacks = Stacks { low: 0, high: room.len(), values: room };
+        for front in &fronts[forest.fronts.clone()] {
+            let part = rest.take(std::slice::from_ref(front));
+            let (below, mut passed_on) = stacks.next(front, fronts);
+            let in_order = |k: usize| if front.odd { k } else { front.children.len() - 1 - k };
+            let children: Vec<(&Front, &[f64])> = (0..front.children.len())
+                .map(|k| {
+                    let child = &fronts[front.children[in_order(k)] as usize];
+                    (child, passed_on.split_off(..child.below() * child.below()).unwrap_or_default())
+                })
+                .collect();
+            self.eliminate(front, part, &children, below);
+            stacks.pop(front, fronts);
+        }
+        let (mut low, mut high) = (0, stacks.values.len());
+        for &root in &forest.roots {
+            let front = &fronts[root as usize];
+            let count = front.below() * front.below();
+            let values = if front.odd {
+                high -= count;
+                &stacks.values[high..][..count]
+            } else {
+                low += count;
+                &stacks.values[low - count..low]
+            };
+            self.waiting.put(root, values.to_vec());
+        }
+        lock(&self.rooms).push(stacks.values);
+    }
+
+    /// Eliminate one heavy front.
+    fn heavy(&self, number: u32, part: Part) {
+        let fronts = &self.symbolic.fronts;
+        let front = &fronts[number as usize];
+        let passed_on: Vec<Vec<f64>> = front.children.iter().map(|&child| self.waiting.take(child)).collect();
+        let children: Vec<(&Front, &[f64])> = front
+            .children
+            .iter()
+            .zip(&passed_on)
+            .map(|(&child, values)| (&fronts[child as usize], &values[..]))
+            .collect();
+        let mut below = vec![0.0; front.below() * front.below()];
+        self.eliminate(front, part, &children, &mut below);
+        self.waiting.put(number, below);
+    }
+
+    /// Sum up a front, eliminate its pivots, and write what it passes on over `below`.
+    fn eliminate(&self, front: &Front, part: Part, children: &[(&Front, &[f64])], below: &mut [f64]) {
+        let (lower, upper) = part.values.split_at_mut(front.size() * front.pivots);
+        lower.fill(0.0);
+        upper.fill(0.0);
+        let mut sums = Sums { front, lower, upper };
+        sums.add_matrix(&self.symbolic.entries, self.a);
+        children.iter().for_each(|(child, values)| sums.add_contribution(child, values));
+        let Sums { lower, upper, .. } = sums;
+        let mut panel = Panel { lower, upper, pivots: front.pivots, below: front.below(), exchanges: part.exchanges };
+        let replaced = panel.factorize();
+        if replaced > 0 {
+            self.replaced.fetch_add(replaced, Ordering::Relaxed);
+        }
+        if !below.is_empty() {
+            panel.contribution(below);
+            children.iter().for_each(|(child, values)| add_below(front, below, child, values));
         }
     }
 }
 
-/// A front while it is summed up.
-struct Assembly<'a> {
+/// Contributions that wait for the next fronts of a forest: those of fronts at an even depth grow from the low end,
+/// those at an odd depth from the high end. So a front finds those of its children on top of one stack, and puts its
+/// own on the other.
+struct Stacks {
+    values: Vec<f64>,
+    low: usize,
+    high: usize,
+}
+
+impl Stacks {
+    /// Room for the contribution of a front, and the contributions of its children.
+    fn next(&mut self, front: &Front, fronts: &[Front]) -> (&mut [f64], &[f64]) {
+        let (own, children) = (front.below() * front.below(), children_values(front, fronts));
+        if front.odd {
+            let (low, high) = self.values[..self.high].split_at_mut(self.low);
+            let room = high.len() - own;
+            (&mut high[room..], &low[low.len() - children..])
+        } else {
+            let (low, high) = self.values.split_at_mut(self.high);
+            (&mut low[self.low..][..own], &high[..children])
+        }
+    }
+
+    /// The front is done: drop the contributions of its children and keep its own.
+    fn pop(&mut self, front: &Front, fronts: &[Front]) {
+        let (own, children) = (front.below() * front.below(), children_values(front, fronts));
+        if front.odd {
+            self.high -= own;
+            self.low -= children;
+        } else {
+            self.low += own;
+            self.high += children;
+        }
+    }
+}
+
+/// Number of values that the children of a front pass on.
+fn children_values(front: &Front, fronts: &[Front]) -> usize {
+    front.children.iter().map(|&child| fronts[child as usize].below().pow(2)).sum()
+}
+
+/// The rows and columns of a front's pivots while they are summed up.
+struct Sums<'a> {
     front: &'a Front,
     /// F₁₁ over F₂₁
-    panel: &'a mut [f64],
-    /// F₁₂
+    lower: &'a mut [f64],
+    /// F₁₂ transposed
     upper: &'a mut [f64],
-    /// F₂₂
-    below: Vec<f64>,
 }
 
-impl Assembly<'_> {
-    fn clear(&mut self) {
-        self.panel.fill(0.0);
-        self.upper.fill(0.0);
-    }
-
+impl Sums<'_> {
     fn add_matrix(&mut self, entries: &[Entry], a: &[f64]) {
-        let Self { front, panel, upper, .. } = self;
-        add_blocks(panel, front.size(), &entries[front.lower.clone()], a);
-        add_blocks(upper, front.pivots, &entries[front.upper.clone()], a);
+        let size = self.front.size();
+        for &Entry { block, target } in &entries[self.front.lower.clone()] {
+            for j in 0..2 {
+                let column = &mut self.lower[target as usize + j * size..][..2];
+                let values = &a[block.value(0, j)..][..2];
+                column[0] += values[0];
+                column[1] += values[1];
+            }
+        }
+        let below = self.front.below();
+        for &Entry { block, target } in &entries[self.front.upper.clone()] {
+            for i in 0..2 {
+                let row = &mut self.upper[target as usize + i * below..][..2];
+                row[0] += a[block.value(i, 0)];
+                row[1] += a[block.value(i, 1)];
+            }
+        }
     }
 
-    /// Add what a child passes on (extend-add).
+    /// Add what a child passes on to the pivots (extend-add).
     fn add_contribution(&mut self, child: &Front, contribution: &[f64]) {
         let (size, pivots, below) = (self.front.size(), self.front.pivots, self.front.below());
-        let eliminated = child.to_parent.partition_point(|&place| (place as usize) < pivots);
-        let (above, under) = child.to_parent.split_at(eliminated);
-        let columns = contribution.chunks_exact(child.below().max(1));
-        for (k, column) in columns.enumerate() {
+        let above = &child.to_parent[..child.inner];
+        for (k, column) in contribution.chunks_exact(child.below().max(1)).enumerate() {
             let target = child.to_parent[k / 2] as usize + k % 2;
             if target < pivots {
-                add_rows(&mut self.panel[target * size..][..size], column, &child.to_parent, 0);
+                add_rows(&mut self.lower[target * size..][..size], column, &child.to_parent, 0);
             } else {
-                let (upper, lower) = column.split_at(2 * eliminated);
-                add_rows(&mut self.upper[(target - pivots) * pivots..][..pivots], upper, above, 0);
-                add_rows(&mut self.below[(target - pivots) * below..][..below], lower, under, pivots);
+                let row = target - pivots;
+                for (pair, &place) in column.chunks_exact(2).zip(above) {
+                    self.upper[place as usize * below + row] += pair[0];
+                    self.upper[(place as usize + 1) * below + row] += pair[1];
+                }
             }
         }
     }
 }
 
-fn add_blocks(panel: &mut [f64], rows: usize, entries: &[Entry], a: &[f64]) {
-    for &Entry { block, target } in entries {
-        for j in 0..2 {
-            let column = &mut panel[target as usize + j * rows..][..2];
-            let values = &a[block.value(0, j)..][..2];
-            column[0] += values[0];
-            column[1] += values[1];
-        }
+/// Add what a child passes on past the pivots.
+fn add_below(front: &Front, below: &mut [f64], child: &Front, contribution: &[f64]) {
+    let rows = front.below();
+    let (_, places) = child.to_parent.split_at(child.inner);
+    let columns = contribution.chunks_exact(child.below().max(1)).skip(2 * child.inner);
+    for (k, column) in columns.enumerate() {
+        let target = places[k / 2] as usize + k % 2 - front.pivots;
+        add_rows(&mut below[target * rows..][..rows], &column[2 * child.inner..], places, front.pivots);
     }
 }
 

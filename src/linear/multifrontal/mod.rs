@@ -14,6 +14,7 @@
 
 mod dense;
 mod factor;
+mod jobs;
 mod order;
 mod scale;
 mod solve;
@@ -22,7 +23,7 @@ mod tree;
 
 use std::sync::Arc;
 
-use super::{LinearSolver, Pattern, SingularMatrix, SparseMatrix};
+use super::{LinearFailure, LinearSolver, Pattern, SparseMatrix};
 use factor::Factors;
 use scale::Scaling;
 use symbolic::{Entry, Symbolic};
@@ -35,15 +36,14 @@ pub struct Multifrontal {
     factors: Factors,
     /// Right-hand side in the order of elimination
     ordered: Vec<f64>,
-    work: Vec<f64>,
 }
 
 impl Multifrontal {
     /// Order the unknowns and find the structure of the factors; what is known of this very pattern is kept.
     ///
     /// # Errors
-    /// [`SingularMatrix`] when the pattern is too large for an order of elimination.
-    pub fn analyse(&mut self, pattern: &Arc<Pattern>) -> Result<(), SingularMatrix> {
+    /// [`LinearFailure`] when the pattern is too large for an order of elimination.
+    pub fn analyse(&mut self, pattern: &Arc<Pattern>) -> Result<(), LinearFailure> {
         if self.symbolic.as_ref().is_none_or(|symbolic| !Arc::ptr_eq(&symbolic.pattern, pattern)) {
             self.symbolic = Some(Symbolic::new(pattern.clone())?);
         }
@@ -54,9 +54,25 @@ impl Multifrontal {
     /// scaled matrix. Known once the pattern is analysed, before any of the factors is.
     pub fn memory(&self) -> usize {
         self.symbolic.as_ref().map_or(0, |symbolic| {
-            let values = symbolic.values() + symbolic.contributions + symbolic.pattern.values();
+            let values =
+                symbolic.values() + symbolic.contributions(rayon::current_num_threads()) + symbolic.pattern.values();
             size_of::<f64>() * values + size_of::<Entry>() * symbolic.entries.len()
         })
+    }
+
+    /// Refuse what does not fit, as far as the system tells: it would be killed.
+    fn check_memory(&self, size: usize) -> Result<(), LinearFailure> {
+        const GIB: f64 = (1u64 << 30) as f64;
+        let held = size_of::<f64>() * (self.factors.values.capacity() + self.scaling.values.capacity());
+        let needed = self.memory().saturating_sub(held);
+        match available_memory() {
+            Some(available) if needed > available => Err(LinearFailure::TooLarge {
+                size,
+                needed: self.memory() as f64 / GIB,
+                available: (available + held) as f64 / GIB,
+            }),
+            _ => Ok(()),
+        }
     }
 
     /// Number of values in L and U, the zeros of relaxed fronts included.
@@ -65,9 +81,17 @@ impl Multifrontal {
     }
 }
 
+/// Bytes that programs can still take, from the Linux memory status.
+fn available_memory() -> Option<usize> {
+    let status = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    Some(line.trim().trim_end_matches("kB").trim().parse::<usize>().ok()? * 1024)
+}
+
 impl LinearSolver for Multifrontal {
-    fn factorize(&mut self, matrix: &SparseMatrix) -> Result<(), SingularMatrix> {
+    fn factorize(&mut self, matrix: &SparseMatrix) -> Result<(), LinearFailure> {
         self.analyse(&matrix.pattern)?;
+        self.check_memory(matrix.size())?;
         if let Some(symbolic) = &self.symbolic {
             self.scaling.compute(matrix);
             self.factors.compute(symbolic, &self.scaling.values);
@@ -81,7 +105,7 @@ impl LinearSolver for Multifrontal {
         self.ordered.clear();
         let dofs = || symbolic.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
         self.ordered.extend(dofs().map(|dof| rows[dof] * b[dof]));
-        solve::substitute(symbolic, &self.factors, &mut self.ordered, &mut self.work);
+        solve::substitute(symbolic, &self.factors, &mut self.ordered);
         for (dof, x) in dofs().zip(&self.ordered) {
             b[dof] = columns[dof] * x;
         }

@@ -17,39 +17,40 @@ pub struct Scaling {
 impl Scaling {
     pub fn compute(&mut self, matrix: &SparseMatrix) {
         let n = matrix.size();
-        self.values.clone_from(&matrix.values);
         self.rows.clear();
         self.rows.resize(n, 0.0);
-        for_columns(matrix, &mut self.values, |_, row, values| {
-            self.rows[row] = values[0].abs().max(self.rows[row]);
-            self.rows[row + 1] = values[1].abs().max(self.rows[row + 1]);
-        });
+        for (_, rows, values) in columns(matrix, &matrix.values) {
+            for (&row, pair) in rows.iter().zip(values.chunks_exact(2)) {
+                let sizes = &mut self.rows[2 * row..2 * row + 2];
+                sizes[0] = pair[0].abs().max(sizes[0]);
+                sizes[1] = pair[1].abs().max(sizes[1]);
+            }
+        }
         self.rows.iter_mut().for_each(|size| *size = inverse_power_of_two(*size));
-        self.columns.clear();
         self.columns.resize(n, 0.0);
-        for_columns(matrix, &mut self.values, |column, row, values| {
-            values[0] *= self.rows[row];
-            values[1] *= self.rows[row + 1];
-            self.columns[column] = values[0].abs().max(values[1].abs()).max(self.columns[column]);
-        });
-        self.columns.iter_mut().for_each(|size| *size = inverse_power_of_two(*size));
-        for_columns(matrix, &mut self.values, |column, _, values| {
-            values[0] *= self.columns[column];
-            values[1] *= self.columns[column];
-        });
+        self.values.clear();
+        for (column, rows, values) in columns(matrix, &matrix.values) {
+            let start = self.values.len();
+            let mut largest = 0.0f64;
+            for (&row, pair) in rows.iter().zip(values.chunks_exact(2)) {
+                let scaled = [pair[0] * self.rows[2 * row], pair[1] * self.rows[2 * row + 1]];
+                largest = scaled[0].abs().max(scaled[1].abs()).max(largest);
+                self.values.extend(scaled);
+            }
+            let factor = inverse_power_of_two(largest);
+            self.values[start..].iter_mut().for_each(|value| *value *= factor);
+            self.columns[column] = factor;
+        }
     }
 }
 
-/// Visit each pair of values of a node in a column: column, first row of the pair, the pair.
-fn for_columns(matrix: &SparseMatrix, values: &mut [f64], mut visit: impl FnMut(usize, usize, &mut [f64])) {
-    let mut pairs = values.chunks_exact_mut(2);
-    for node in 0..matrix.pattern.nodes() {
-        for column in 2 * node..2 * node + 2 {
-            for (&row, pair) in matrix.pattern.neighbours(node).iter().zip(&mut pairs) {
-                visit(column, 2 * row, pair);
-            }
-        }
-    }
+/// The columns with the nodes of their rows and their values.
+fn columns<'a>(matrix: &'a SparseMatrix, values: &'a [f64]) -> impl Iterator<Item = (usize, &'a [usize], &'a [f64])> {
+    let mut rest = values;
+    (0..matrix.size()).map(move |column| {
+        let rows = matrix.pattern.neighbours(column / 2);
+        (column, rows, rest.split_off(..2 * rows.len()).unwrap_or_default())
+    })
 }
 
 /// The power of two that brings `size` into [1, 2); 1 for zero and for what is not finite.

@@ -1,58 +1,186 @@
 //! Forward and backward substitution, front by front.
 
-use super::dense::exchange;
+use pulp::{Arch, NullaryFnOnce};
+
+use super::dense::{exchange, subtract};
 use super::factor::Factors;
-use super::symbolic::{Front, Symbolic};
+use super::jobs::{Job, Waiting};
+use super::symbolic::{Forest, Front, Symbolic};
 
-/// x ← (L U)⁻¹ x in the order of elimination. `work` is a scratch of the largest front's size.
-pub fn substitute(symbolic: &Symbolic, factors: &Factors, x: &mut [f64], work: &mut Vec<f64>) {
-    for front in &symbolic.fronts {
-        work.clear();
-        work.resize(front.size(), 0.0);
-        forward(front, factors, x, work);
+/// x ← (L U)⁻¹ x in the order of elimination.
+pub fn substitute(symbolic: &Symbolic, factors: &Factors, x: &mut [f64]) {
+    let run = Substitution { symbolic, factors, waiting: Waiting::default() };
+    parts(symbolic, x).upwards(&|forest, x| run.forest_forward(forest, x), &|front, x| run.heavy_forward(front, x));
+    parts(symbolic, x).downwards(&|forest, x| run.forest_backward(forest, x), &|front, x| run.heavy_backward(front, x));
+}
+
+/// Each front owns the part of x that it eliminates.
+fn parts<'a>(symbolic: &'a Symbolic, x: &'a mut [f64]) -> Job<'a, &'a mut [f64]> {
+    let mut rest = x;
+    Job::new(symbolic, |fronts| {
+        let pivots = fronts.iter().map(|front| front.pivots).sum();
+        rest.split_off_mut(..pivots).unwrap_or_default()
+    })
+}
+
+/// A substitution at work. Fronts pass on what L₂₁ takes from the rows above, and then the values of x there.
+struct Substitution<'a> {
+    symbolic: &'a Symbolic,
+    factors: &'a Factors,
+    waiting: Waiting,
+}
+
+impl Substitution<'_> {
+    fn forest_forward(&self, forest: &Forest, mut rest: &mut [f64]) {
+        let fronts = &self.symbolic.fronts;
+        let (mut stack, mut y) = (Vec::new(), Vec::new());
+        for front in &fronts[forest.fronts.clone()] {
+            let x = rest.split_off_mut(..front.pivots).unwrap_or_default();
+            y.clear();
+            y.extend_from_slice(x);
+            y.resize(front.size(), 0.0);
+            let children = front.children.iter().map(|&child| &fronts[child as usize]);
+            let own = stack.len() - children.clone().map(Front::below).sum::<usize>();
+            let mut passed_on = &stack[own..];
+            for child in children {
+                add(&mut y, passed_on.split_off(..child.below()).unwrap_or_default(), child);
+            }
+            stack.truncate(own);
+            self.forward(front, &mut y);
+            x.copy_from_slice(&y[..front.pivots]);
+            stack.extend_from_slice(&y[front.pivots..]);
+        }
+        let mut passed_on = &stack[..];
+        for &root in &forest.roots {
+            let own = passed_on.split_off(..fronts[root as usize].below()).unwrap_or_default();
+            self.waiting.put(root, own.to_vec());
+        }
     }
-    for front in symbolic.fronts.iter().rev() {
-        work.clear();
-        work.extend(front.rows.iter().flat_map(|&row| [x[2 * row as usize], x[2 * row as usize + 1]]));
-        backward(front, factors, x, work);
+
+    fn heavy_forward(&self, number: u32, x: &mut [f64]) {
+        let fronts = &self.symbolic.fronts;
+        let front = &fronts[number as usize];
+        let mut y = x.to_vec();
+        y.resize(front.size(), 0.0);
+        for &child in &front.children {
+            add(&mut y, &self.waiting.take(child), &fronts[child as usize]);
+        }
+        self.forward(front, &mut y);
+        x.copy_from_slice(&y[..front.pivots]);
+        self.waiting.put(number, y.split_off(front.pivots));
+    }
+
+    fn forest_backward(&self, forest: &Forest, mut rest: &mut [f64]) {
+        let fronts = &self.symbolic.fronts;
+        let mut stack: Vec<f64> = forest.roots.iter().flat_map(|&root| self.waiting.take(root)).collect();
+        let mut y = Vec::new();
+        for front in fronts[forest.fronts.clone()].iter().rev() {
+            let first = rest.len() - front.pivots;
+            let x = rest.split_off_mut(first..).unwrap_or_default();
+            y.clear();
+            y.extend_from_slice(x);
+            y.extend(stack.drain(stack.len() - front.below()..));
+            self.backward(front, &mut y);
+            x.copy_from_slice(&y[..front.pivots]);
+            for &child in &front.children {
+                stack.extend(seen(&y, &fronts[child as usize]));
+            }
+        }
+    }
+
+    fn heavy_backward(&self, number: u32, x: &mut [f64]) {
+        let fronts = &self.symbolic.fronts;
+        let front = &fronts[number as usize];
+        let mut y = x.to_vec();
+        y.append(&mut self.waiting.take(number));
+        self.backward(front, &mut y);
+        x.copy_from_slice(&y[..front.pivots]);
+        for &child in &front.children {
+            self.waiting.put(child, seen(&y, &fronts[child as usize]).collect());
+        }
+    }
+
+    /// y₁ ← L₁₁⁻¹ P y₁, y₂ ← y₂ − L₂₁ y₁
+    fn forward(&self, front: &Front, y: &mut [f64]) {
+        exchange(y, &self.factors.exchanges[front.first..front.first + front.pivots], 0);
+        let lower = &self.factors.values[front.values.clone()][..front.size() * front.pivots];
+        Arch::new().dispatch(Forward { lower, y });
+    }
+
+    /// y₁ ← U₁₁⁻¹ (y₁ − U₁₂ y₂)
+    fn backward(&self, front: &Front, y: &mut [f64]) {
+        let (lower, upper) = self.factors.values[front.values.clone()].split_at(front.size() * front.pivots);
+        let (own, below) = y.split_at_mut(front.pivots);
+        Arch::new().dispatch(Backward { lower, upper, own, below });
     }
 }
 
-/// y = L₁₁⁻¹ P x₁, x₂ ← x₂ − L₂₁ y
-fn forward(front: &Front, factors: &Factors, x: &mut [f64], y: &mut [f64]) {
-    let pivots = front.first..front.first + front.pivots;
-    let own = &mut y[..front.pivots];
-    own.copy_from_slice(&x[pivots.clone()]);
-    exchange(own, &factors.exchanges[pivots.clone()]);
-    let lower = &factors.values[front.values.clone()][..front.size() * front.pivots];
-    for (j, column) in lower.chunks_exact(front.size()).enumerate() {
-        let (done, rest) = y.split_at_mut(j + 1);
-        subtract(rest, &column[j + 1..], done[j]);
-    }
-    x[pivots].copy_from_slice(&y[..front.pivots]);
-    for (pair, &row) in y[front.pivots..].chunks_exact(2).zip(&front.rows) {
-        x[2 * row as usize] += pair[0];
-        x[2 * row as usize + 1] += pair[1];
+/// Add what a child passes on to the rows of its parent.
+fn add(y: &mut [f64], passed_on: &[f64], child: &Front) {
+    for (pair, &place) in passed_on.chunks_exact(2).zip(&child.to_parent) {
+        y[place as usize] += pair[0];
+        y[place as usize + 1] += pair[1];
     }
 }
 
-/// x₁ ← U₁₁⁻¹ (y − U₁₂ x₂)
-fn backward(front: &Front, factors: &Factors, x: &mut [f64], below: &[f64]) {
-    let own = &mut x[front.first..front.first + front.pivots];
-    let (lower, upper) = factors.values[front.values.clone()].split_at(front.size() * front.pivots);
-    for (column, &value) in upper.chunks_exact(front.pivots).zip(below) {
-        subtract(own, column, value);
-    }
-    for (j, column) in lower.chunks_exact(front.size()).enumerate().rev() {
-        own[j] /= column[j];
-        let (rest, done) = own.split_at_mut(j);
-        subtract(rest, &column[..j], done[0]);
+/// The values at the rows below the child's pivots.
+fn seen(y: &[f64], child: &Front) -> impl Iterator<Item = f64> {
+    child.to_parent.iter().flat_map(|&place| [y[place as usize], y[place as usize + 1]])
+}
+
+struct Forward<'a> {
+    lower: &'a [f64],
+    y: &'a mut [f64],
+}
+
+impl NullaryFnOnce for Forward<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        for (j, column) in self.lower.chunks_exact(self.y.len()).enumerate() {
+            let (done, rest) = self.y.split_at_mut(j + 1);
+            subtract(rest, &column[j + 1..], done[j]);
+        }
     }
 }
 
-/// y ← y − c v
-fn subtract(y: &mut [f64], column: &[f64], value: f64) {
-    for (y, c) in y.iter_mut().zip(column) {
-        *y -= c * value;
+struct Backward<'a> {
+    lower: &'a [f64],
+    upper: &'a [f64],
+    own: &'a mut [f64],
+    below: &'a [f64],
+}
+
+impl NullaryFnOnce for Backward<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { lower, upper, own, below } = self;
+        if !below.is_empty() {
+            for (x, row) in own.iter_mut().zip(upper.chunks_exact(below.len())) {
+                *x -= dot(row, below);
+            }
+        }
+        for (j, column) in lower.chunks_exact(own.len() + below.len()).enumerate().rev() {
+            own[j] /= column[j];
+            let (rest, done) = own.split_at_mut(j);
+            subtract(rest, column, done[0]);
+        }
     }
+}
+
+/// a·b in eight sums, so that the processor can work on several at once.
+#[inline(always)]
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 8];
+    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
+    for (a, b) in a.iter().zip(b) {
+        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += a * b;
+        }
+    }
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
+    sums.iter().sum::<f64>() + rest
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::super::{BlockPosition, Pattern, SingularMatrix};
+use super::super::{BlockPosition, LinearFailure, Pattern};
 use super::order::order;
 use super::tree::{Elimination, Supernode, supernodes};
 
@@ -22,9 +22,13 @@ pub struct Front {
     pub rows: Vec<u32>,
     /// Row in the parent's front of the first unknown of each node in `rows`
     pub to_parent: Vec<u32>,
+    /// How many nodes of `rows` are eliminated in the parent
+    pub inner: usize,
     /// The fronts whose contributions are added to this one
     pub children: Vec<u32>,
-    /// Where the factors lie: L (all rows × pivots), then U₁₂ (pivots × below), by columns
+    /// Whether the depth in the tree is odd
+    pub odd: bool,
+    /// Where the factors lie: L₁₁ over L₂₁ (all rows × pivots), then U₁₂ transposed (below × pivots), by columns
     pub values: Range<usize>,
     /// The blocks of A that go to the columns of the pivots
     pub lower: Range<usize>,
@@ -63,26 +67,53 @@ pub struct Symbolic {
     pub nodes: Vec<usize>,
     pub fronts: Vec<Front>,
     pub entries: Vec<Entry>,
-    /// Ranges of fronts that are whole subtrees, light enough to share out among threads. The fronts between are heavy.
-    pub forests: Vec<Range<usize>>,
-    /// The most values that contributions hold at a time
-    pub contributions: usize,
+    /// Whole subtrees, light enough to share out among threads. The fronts between are heavy.
+    pub forests: Vec<Forest>,
+}
+
+/// Neighbouring subtrees.
+pub struct Forest {
+    pub fronts: Range<usize>,
+    /// The roots of the subtrees, ascending
+    pub roots: Vec<u32>,
+    /// The most values that contributions inside hold at a time
+    pub room: usize,
 }
 
 impl Symbolic {
-    pub fn new(pattern: Arc<Pattern>) -> Result<Self, SingularMatrix> {
+    pub fn new(pattern: Arc<Pattern>) -> Result<Self, LinearFailure> {
         let elimination = Elimination::new(&pattern, order(&pattern)?);
         let supernodes = supernodes(&elimination);
         let mut fronts = fronts(&pattern, &elimination, &supernodes);
         let entries = entries(&pattern, &elimination, &mut fronts);
         let forests = forests(&fronts);
-        let contributions = largest_stack(&fronts, &forests);
-        Ok(Self { pattern, nodes: elimination.nodes, fronts, entries, forests, contributions })
+        Ok(Self { pattern, nodes: elimination.nodes, fronts, entries, forests })
     }
 
     /// Number of values in the factors.
     pub fn values(&self) -> usize {
         self.fronts.last().map_or(0, |front| front.values.end)
+    }
+
+    /// The most values that contributions hold at a time on this number of threads: those of all forests while the
+    /// last of them are eliminated, or those of the heavy fronts, two of which may be at work.
+    pub fn contributions(&self, threads: usize) -> usize {
+        let passed_on = |number: usize| self.fronts[number].below().pow(2);
+        let rooms = threads * self.forests.iter().map(|forest| forest.room).max().unwrap_or(0);
+        let mut held: usize =
+            self.forests.iter().flat_map(|forest| &forest.roots).map(|&root| passed_on(root as usize)).sum();
+        let mut peak = held;
+        let mut done = 0;
+        for end in self.forests.iter().map(|forest| forest.fronts.clone()).chain([self.fronts.len()..self.fronts.len()])
+        {
+            for number in done..end.start {
+                held += passed_on(number);
+                peak = peak.max(held);
+                held -= self.fronts[number].children.iter().map(|&child| passed_on(child as usize)).sum::<usize>();
+            }
+            done = end.end;
+        }
+        rooms + peak
     }
 }
 
@@ -112,6 +143,7 @@ fn fronts(pattern: &Pattern, elimination: &Elimination, supernodes: &[Supernode]
         for &child in &children {
             let child = &mut fronts[child as usize];
             child.to_parent = places(&child.rows, first, end, &rows);
+            child.inner = child.rows.partition_point(|&row| (row as usize) < end);
         }
         if let Some(&row) = rows.first() {
             families[owner[row as usize]].push(s as u32);
@@ -125,11 +157,19 @@ fn fronts(pattern: &Pattern, elimination: &Elimination, supernodes: &[Supernode]
             pivots,
             rows,
             to_parent: Vec::new(),
+            inner: 0,
             children,
+            odd: false,
             values,
             lower: 0..0,
             upper: 0..0,
         });
+    }
+    for parent in (0..fronts.len()).rev() {
+        for child in std::mem::take(&mut fronts[parent].children) {
+            fronts[child as usize].odd = !fronts[parent].odd;
+            fronts[parent].children.push(child);
+        }
     }
     fronts
 }
@@ -183,7 +223,7 @@ fn entries(pattern: &Pattern, elimination: &Elimination, fronts: &mut [Front]) -
         for row in first..end {
             for &column in pattern.neighbours(nodes[row]).iter().filter(|&&column| positions[column] >= end) {
                 if let Some(block) = pattern.block(nodes[row], column) {
-                    let target = place[row] + (place[positions[column]] - pivots) * pivots;
+                    let target = place[positions[column]] - pivots + place[row] * (size - pivots);
                     entries.push(Entry { block, target: target as u32 });
                 }
             }
@@ -197,10 +237,10 @@ fn entries(pattern: &Pattern, elimination: &Elimination, fronts: &mut [Front]) -
 const FOREST_SHARE: f64 = 1.0 / 32.0;
 
 /// Whole subtrees, neighbours lumped up to a share of the work, from the first front to the last.
-fn forests(fronts: &[Front]) -> Vec<Range<usize>> {
+fn forests(fronts: &[Front]) -> Vec<Forest> {
     let (first, work) = subtrees(fronts);
     let limit = FOREST_SHARE * fronts.iter().map(Front::work).sum::<f64>();
-    let mut forests: Vec<Range<usize>> = Vec::new();
+    let mut forests: Vec<Forest> = Vec::new();
     let mut lumped = 0.0;
     let mut end = fronts.len();
     while end > 0 {
@@ -210,19 +250,35 @@ fn forests(fronts: &[Front]) -> Vec<Range<usize>> {
             continue;
         }
         match forests.last_mut() {
-            Some(forest) if forest.start == end && lumped + work[root] <= limit => {
-                forest.start = first[root];
+            Some(forest) if forest.fronts.start == end && lumped + work[root] <= limit => {
+                forest.fronts.start = first[root];
+                forest.roots.push(root as u32);
                 lumped += work[root];
             }
             _ => {
-                forests.push(first[root]..end);
+                forests.push(Forest { fronts: first[root]..end, roots: vec![root as u32], room: 0 });
                 lumped = work[root];
             }
         }
         end = first[root];
     }
     forests.reverse();
+    for forest in &mut forests {
+        forest.roots.reverse();
+        forest.room = room(&fronts[forest.fronts.clone()], fronts);
+    }
     forests
+}
+
+/// The most values that the contributions of consecutive fronts hold at a time.
+fn room(forest: &[Front], fronts: &[Front]) -> usize {
+    let (mut held, mut peak) = (0, 0);
+    for front in forest {
+        held += front.below().pow(2);
+        peak = peak.max(held);
+        held -= front.children.iter().map(|&child| fronts[child as usize].below().pow(2)).sum::<usize>();
+    }
+    peak
 }
 
 /// First front of each subtree and the work of it all.
@@ -234,29 +290,4 @@ fn subtrees(fronts: &[Front]) -> (Vec<usize>, Vec<f64>) {
         work.push(front.work() + front.children.iter().map(|&child| work[child as usize]).sum::<f64>());
     }
     (first, work)
-}
-
-/// The most values that contributions hold: first those of all forests, then of the heavy fronts, one after another.
-fn largest_stack(fronts: &[Front], forests: &[Range<usize>]) -> usize {
-    let contribution = |f: usize| fronts[f].below().pow(2);
-    let run = |range: Range<usize>, mut held: usize| {
-        let mut peak = held;
-        for f in range {
-            held += contribution(f);
-            peak = peak.max(held);
-            held -= fronts[f].children.iter().map(|&child| contribution(child as usize)).sum::<usize>();
-        }
-        (peak, held)
-    };
-    let light: Vec<(usize, usize)> = forests.iter().map(|forest| run(forest.clone(), 0)).collect();
-    let mut held: usize = light.iter().map(|&(_, left)| left).sum();
-    let mut peak = held + light.iter().map(|&(peak, left)| peak - left).max().unwrap_or(0);
-    let mut done = 0;
-    for forest in forests.iter().cloned().chain(std::iter::once(fronts.len()..fronts.len())) {
-        let (heavy, left) = run(done..forest.start, held);
-        peak = peak.max(heavy);
-        held = left;
-        done = forest.end;
-    }
-    peak
 }

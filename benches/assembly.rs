@@ -1,0 +1,32 @@
+//! Residual, and residual with tangent, of the 20k drag problem in full sliding.
+
+use std::path::Path;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use fecontact::assembly::{Assembler, Trial};
+use fecontact::case;
+use fecontact::linear::Multifrontal;
+use fecontact::newton::Request;
+use fecontact::step::{Workspace, advance, begin};
+
+fn assembly(criterion: &mut Criterion) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/coulomb_drag_20k.json");
+    let case = case::read(&path).expect("a committed case");
+    let model = case::build(&case, &path).expect("a committed case");
+    let step = &model.steps[0];
+    let mut work = Workspace::new(&model, Box::<Multifrontal>::default());
+    let start = begin(&model, step, &model.initial_state(), &mut work).expect("the step begins");
+    let state = advance(&model, step, &start, 1.0, &mut work).1.expect("the increment converges");
+
+    let trial = Trial { old: &state, step, time: 2.0, dt: 1.0 };
+    let mut assembler = Assembler::new(&model);
+    let mut system = assembler.system();
+    for (name, request) in [("residual", Request::Residual), ("residual and tangent", Request::Tangent)] {
+        criterion.bench_function(&format!("{name}, {} dofs", model.dofs()), |bench| {
+            bench.iter(|| assembler.evaluate(trial, &state.displacement, request, &mut system).is_ok());
+        });
+    }
+}
+
+criterion_group!(benches, assembly);
+criterion_main!(benches);

@@ -1,0 +1,54 @@
+//! One update of a contact: the index of the master, and every slave point with search, law and forces.
+
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use fecontact::configuration::Configuration;
+use fecontact::contact::force::Presume;
+use fecontact::contact::pair::ContactPair;
+use fecontact::contact::search::Index;
+use fecontact::contact::surface::{Master, Surface, gauss_points};
+use fecontact::friction::{Coulomb, CoulombParameters};
+use nalgebra::Vector2;
+
+/// A wavy slave of n/2 edges with two points each, a trifle below a wavy master of n segments.
+fn surfaces(n: usize) -> (Vec<Vector2<f64>>, ContactPair) {
+    let at = |x: f64, below: f64| Vector2::new(x, 0.05 * (20.0 * x).sin() - below);
+    let mut nodes: Vec<_> = (0..=n).map(|k| at(k as f64 / n as f64, 0.0)).collect();
+    nodes.extend((0..=n / 2).map(|k| at(k as f64 / (n / 2) as f64, 1e-3 / n as f64)));
+    // Both have their body on the left: the master's below it, the slave's above.
+    let master: Vec<Vec<usize>> = (0..n).rev().map(|k| vec![k + 1, k]).collect();
+    let slave: Vec<Vec<usize>> = (0..n / 2).map(|k| vec![n + 1 + k, n + 2 + k]).collect();
+    let law = Coulomb::new(&CoulombParameters { mu: 0.3, alpha_t: Some(1e3) }, f64::NAN).expect("valid parameters");
+    let pair = ContactPair {
+        name: "wavy".into(),
+        points: gauss_points(&slave, 2),
+        master: Master::Mesh(Surface::new(&master)),
+        alpha_n: 1e4,
+        law: Box::new(law),
+        initial: None,
+    };
+    (nodes, pair)
+}
+
+fn update(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("contact");
+    group.sample_size(10);
+    for n in [1_000, 30_000, 1_000_000] {
+        let (nodes, pair) = surfaces(n);
+        let x = Configuration::undeformed(&nodes);
+        group.bench_function(BenchmarkId::new("index", n), |bench| {
+            bench.iter(|| matches!(Index::new(&pair.master, &x), Index::Mesh(..)));
+        });
+        let index = Index::new(&pair.master, &x);
+        group.bench_function(BenchmarkId::new("search", n), |bench| {
+            bench.iter(|| pair.points.iter().filter(|slave| index.project(slave, None, &x).is_some()).count());
+        });
+        let old = pair.initial_states(&x);
+        group.bench_function(BenchmarkId::new("update", n), |bench| {
+            bench.iter(|| pair.respond(&old, 1.0, |_| (Presume::Nothing, None), &x).is_ok());
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, update);
+criterion_main!(benches);

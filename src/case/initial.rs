@@ -1,0 +1,91 @@
+//! How a run starts: velocities of bodies and point masses, and contacts that are closed from the beginning.
+
+use super::error::Complaint;
+use super::file::{Case, InitialInput};
+use crate::configuration::Configuration;
+use crate::contact::pair::{ContactPair, InitialTraction};
+use crate::friction::{FrictionParameters, SuperSubloadingParameters};
+use crate::model::Model;
+
+/// An initial traction may pass the strength μ p by this share: numbers are written with a few digits.
+const ROUNDED: f64 = 1e-9;
+
+/// Initial velocity of every dof [L/T].
+pub fn velocities(case: &Case, model: &Model) -> Result<Vec<f64>, Complaint> {
+    let mut velocity: Vec<Option<[f64; 2]>> = vec![None; model.mesh.nodes.len()];
+    let mut give = |place: String, nodes: &[usize], value: [f64; 2]| {
+        for &node in nodes {
+            let earlier = velocity[node].replace(value).filter(|earlier| *earlier != value);
+            if let Some([x, y]) = earlier {
+                let tag = model.mesh.node_tags[node];
+                let message =
+                    format!("node {tag} starts with the velocity [{x}, {y}] already: a node can have one only");
+                return Err(Complaint::new(place, message));
+            }
+        }
+        Ok(())
+    };
+    for (name, value) in &case.initial_velocity {
+        let place = format!("initial_velocity.{name}");
+        let Some(body) = model.bodies.iter().find(|body| body.name == *name) else {
+            let known: Vec<&str> = model.bodies.iter().map(|body| body.name.as_str()).collect();
+            let message = format!("there is no body `{name}`; the bodies are {}", known.join(", "));
+            return Err(Complaint::new(place, message));
+        };
+        give(place, &body.nodes, *value)?;
+    }
+    for point in &model.point_masses {
+        if let Some(value) = case.point_masses[&point.name].velocity {
+            give(format!("point_masses.{}.velocity", point.name), &point.nodes, value)?;
+        }
+    }
+    Ok(velocity.into_iter().flat_map(Option::unwrap_or_default).collect())
+}
+
+/// What is wrong with velocities that a static first step takes no notice of.
+pub fn lost_velocity(model: &Model) -> Option<String> {
+    let first = model.steps.first().filter(|step| step.scheme.coefficients().is_none())?;
+    let moving = model.initial_velocity.iter().any(|v| *v != 0.0);
+    moving.then(|| {
+        format!(
+            "the initial velocities are lost: the first step, `{}`, is static; give it a dynamic scheme",
+            first.name
+        )
+    })
+}
+
+/// The law whose points start with the given structure.
+pub fn with_structure(law: &FrictionParameters, structure: f64, place: &str) -> Result<FrictionParameters, Complaint> {
+    match law {
+        FrictionParameters::SuperSubloading(parameters) => {
+            let structure = Some(structure);
+            Ok(FrictionParameters::SuperSubloading(SuperSubloadingParameters { structure, ..*parameters }))
+        }
+        _ => Err(Complaint::new(format!("{place}.structure"), "this friction law has no structure: leave it out")),
+    }
+}
+
+/// Start a contact closed, if its tractions and its law allow it.
+pub fn close(pair: &mut ContactPair, input: &InitialInput, model: &Model, place: &str) -> Result<(), Complaint> {
+    let InitialInput { pressure, traction, .. } = *input;
+    if pressure < 0.0 {
+        let message = format!("is {pressure}: must be zero or positive, which is compression");
+        return Err(Complaint::new(format!("{place}.pressure"), message));
+    }
+    let mu = pair.law.initial_state().mu;
+    if traction.abs() > mu * pressure * (1.0 + ROUNDED) {
+        let message = format!(
+            "is {traction}: the initial strength is exceeded already, which is mu p = {} with mu = {mu} and p = {pressure}",
+            mu * pressure
+        );
+        return Err(Complaint::new(format!("{place}.traction"), message));
+    }
+    let undeformed = Configuration::undeformed(&model.mesh.nodes);
+    let closed = pair.start_closed(InitialTraction { pressure, traction }, &undeformed);
+    closed.map_err(|point| {
+        let at = pair.points[point].at(&undeformed);
+        let message =
+            format!("the slave point at ({}, {}) faces no part of the master: it cannot be pressed", at.x, at.y);
+        Complaint::new(place, message)
+    })
+}

@@ -1,0 +1,255 @@
+//! The test of a law as it is written, and from there to the test that is run.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+use serde_json::Value;
+
+use super::build::drive;
+use super::error::{CaseError, Complaint};
+use super::file::DriveInput;
+use super::schema_of;
+use crate::boundary::{Drive, Span};
+use crate::friction::{FrictionLaw, FrictionParameters, FrictionState};
+use crate::law_driver::LawTest;
+use crate::law_path::{Course, Phase, Undefined};
+
+/// A test of a friction law alone: the law, and the path of slip and pressure it is driven along.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LawTestInput {
+    /// What the test shows, in a line
+    #[serde(default)]
+    pub title: String,
+    /// Labels of the units used, for the figure: length, force, time, stress; any consistent set will do
+    #[serde(default)]
+    pub units: BTreeMap<String, String>,
+    /// Friction law, with its alpha_t
+    pub friction: FrictionParameters,
+    /// State at the start
+    #[serde(default)]
+    pub initial: InitialInput,
+    /// Longest step [T]; a hundredth of each phase, or the rows of the table, unless given
+    pub dt: Option<f64>,
+    /// Phases, one after the other; either this or a table
+    pub path: Option<Vec<PhaseInput>>,
+    /// Rows [time, slip, pressure], times ascending, straight lines between; either this or a path
+    pub table: Option<Vec<[f64; 3]>>,
+}
+
+/// State at the start; the structure is the law's.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InitialInput {
+    /// q: traction, within ±μ p [F/L²]
+    #[serde(default)]
+    pub traction: f64,
+    /// p: pressure [F/L²]; the path's own at its start unless given
+    pub pressure: Option<f64>,
+}
+
+/// A stretch of the path.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PhaseInput {
+    /// Length of the phase [T]
+    pub duration: f64,
+    /// Total slip [L]: a number (reached at the end), an expression in the time t, {"rate": v} or {"table": [[t, v], …]};
+    /// it rests unless given
+    pub slip: Option<DriveInput>,
+    /// Pressure [F/L²], in the same forms; at or below 0 the surfaces are apart; it stays as it is unless given
+    pub pressure: Option<DriveInput>,
+    /// Longest step in this phase [T]; that of the test unless given
+    pub dt: Option<f64>,
+}
+
+/// Steps of a phase that nobody asked for by a dt.
+const STEPS: f64 = 100.0;
+
+/// A phase of more steps is a slip of the keyboard.
+const MOST_STEPS: f64 = 1e8;
+
+/// Steps as a share of the time at the end of their phase below which round-off would swallow them.
+const SHORTEST_STEP: f64 = 16.0 * f64::EPSILON;
+
+/// Values that differ by less than this, relative, are the same.
+const SAME: f64 = 1e-9;
+
+type Checked<T> = Result<T, Complaint>;
+
+/// The JSON Schema of a test of a law.
+pub fn schema() -> Value {
+    schema_of::<LawTestInput>()
+}
+
+/// Read a test of a law.
+///
+/// # Errors
+/// [`CaseError`] when the file cannot be read or is not a test.
+pub fn read(path: &Path) -> Result<LawTestInput, CaseError> {
+    super::read::read(path)
+}
+
+/// Check a test and make it ready to run. `path` is its file.
+///
+/// # Errors
+/// [`CaseError`] names file, key, value and what to do.
+pub fn build(input: &LawTestInput, path: &Path) -> Result<LawTest, CaseError> {
+    test(input).map_err(|complaint| complaint.in_file(path))
+}
+
+fn test(input: &LawTestInput) -> Checked<LawTest> {
+    let law = law(&input.friction)?;
+    let path = match (&input.path, &input.table) {
+        (Some(phases), None) => phases_of(input, phases)?,
+        (None, Some(table)) => vec![table_of(input, table)?],
+        _ => return Err(Complaint::new("", "must give either \"path\", a list of phases, or \"table\"")),
+    };
+    let start = start(input, law.as_ref(), path[0].pressure(path[0].start()))?;
+    Ok(LawTest { law, start, path })
+}
+
+fn law(parameters: &FrictionParameters) -> Checked<Box<dyn FrictionLaw>> {
+    // There is no mesh from which a stiffness could be chosen: NaN stands for none.
+    parameters.build(f64::NAN).map_err(|error| match error.name {
+        "alpha_t" if error.value.is_nan() => {
+            Complaint::new("friction", "the key `alpha_t` is missing here: a law alone has no mesh to choose it from")
+        }
+        _ => Complaint::new("friction", error),
+    })
+}
+
+fn start(input: &LawTestInput, law: &dyn FrictionLaw, pressure: f64) -> Checked<FrictionState> {
+    if let Some(negative) = input.initial.pressure.filter(|pressure| *pressure < 0.0) {
+        return Err(Complaint::new("initial.pressure", format!("is {negative}: must be zero or positive")));
+    }
+    let at_rest = law.initial_state();
+    let traction = input.initial.traction;
+    let pressure = pressure.max(0.0);
+    let strength = at_rest.mu * pressure;
+    if traction.abs() > strength * (1.0 + SAME) {
+        let message = format!(
+            "is {traction}, beyond the strength mu p = {} · {pressure} = {strength} at the start: lower it, or raise the \
+             pressure or the structure",
+            at_rest.mu
+        );
+        return Err(Complaint::new("initial.traction", message));
+    }
+    Ok(FrictionState { traction, pressure, ..at_rest })
+}
+
+fn phases_of(input: &LawTestInput, phases: &[PhaseInput]) -> Checked<Vec<Phase>> {
+    let mut path: Vec<Phase> = Vec::with_capacity(phases.len());
+    for (k, phase) in phases.iter().enumerate() {
+        path.push(phase_of(input, &format!("path[{k}]"), phase, path.last())?);
+    }
+    match path.is_empty() {
+        true => Err(Complaint::new("path", "is empty: give at least one phase")),
+        false => Ok(path),
+    }
+}
+
+fn phase_of(input: &LawTestInput, place: &str, phase: &PhaseInput, before: Option<&Phase>) -> Checked<Phase> {
+    check_positive(&format!("{place}.duration"), phase.duration)?;
+    let start = before.map_or(0.0, Phase::end);
+    let span = Span { start, end: start + phase.duration };
+    let (dt_place, dt) = match phase.dt {
+        Some(dt) => (format!("{place}.dt"), dt),
+        None => ("dt".into(), input.dt.unwrap_or(phase.duration / STEPS)),
+    };
+    check_dt(&dt_place, dt, span)?;
+
+    let reached = before.map(|before| [before.slip(start), before.pressure(start)]);
+    let (slip_place, pressure_place) = (format!("{place}.slip"), format!("{place}.pressure"));
+    let slip = course(&slip_place, phase.slip.as_ref(), reached.map_or(Some(0.0), |[slip, _]| Some(slip)))?;
+    if let Some([reached, _]) = reached {
+        check_continuous(&slip_place, &slip, reached, span)?;
+    }
+    let reached = reached.map_or(input.initial.pressure, |[_, pressure]| Some(pressure));
+    let pressure = course(&pressure_place, phase.pressure.as_ref(), reached)?;
+    if let Some(reached) = reached {
+        check_continuous(&pressure_place, &pressure, reached, span)?;
+    }
+    Phase::new(span, slip, pressure, dt).map_err(|Undefined { quantity, time }| {
+        let message = format!("is not a finite number at the time {time}: check the expression");
+        Complaint::new(format!("{place}.{quantity}"), message)
+    })
+}
+
+/// How a quantity varies that has `reached` a value, if that is known.
+fn course(place: &str, given: Option<&DriveInput>, reached: Option<f64>) -> Checked<Course> {
+    let complain = |message: &str| Err(Complaint::new(place, message));
+    let Some(given) = given else {
+        return match reached {
+            Some(value) => Ok(Course { drive: Drive::Constant(value), start: value }),
+            None => complain("is missing: give it here, or as initial.pressure"),
+        };
+    };
+    let drive = drive(given, place)?;
+    match (&drive, reached) {
+        (Drive::Expression(expression), _) if expression.depends_on_position() => {
+            complain("x and y have no meaning here: the only variable is the time t")
+        }
+        (Drive::Rate(_), None) => complain("a rate needs a value to start from: give initial.pressure"),
+        // Nothing to start from: it is there from the start.
+        (Drive::Constant(value), None) => Ok(Course { start: *value, drive }),
+        _ => Ok(Course { drive, start: reached.unwrap_or(0.0) }),
+    }
+}
+
+fn check_continuous(place: &str, course: &Course, reached: f64, span: Span) -> Checked<()> {
+    let first = course.value(span.start, span);
+    // What is not finite is complained of later.
+    if (first - reached).abs() > SAME * first.abs().max(reached.abs()).max(f64::MIN_POSITIVE) {
+        let message = format!("jumps from {reached} to {first} at the time {}: begin where it was", span.start);
+        return Err(Complaint::new(place, message));
+    }
+    Ok(())
+}
+
+fn table_of(input: &LawTestInput, table: &[[f64; 3]]) -> Checked<Phase> {
+    let [[start, _, pressure], .., [end, _, _]] = table else {
+        return Err(Complaint::new("table", "must have two rows [time, slip, pressure] or more"));
+    };
+    if let Some(pair) = table.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
+        let message = format!("the times must ascend: {} follows {}", pair[1][0], pair[0][0]);
+        return Err(Complaint::new("table", message));
+    }
+    let span = Span { start: *start, end: *end };
+    if let Some(dt) = input.dt {
+        check_dt("dt", dt, span)?;
+    }
+    let column = |k: usize| Drive::Table(table.iter().map(|row| [row[0], row[k]]).collect());
+    let [slip, pressures] = [1, 2].map(|k| Course { drive: column(k), start: 0.0 });
+    if let Some(given) = input.initial.pressure.filter(|given| given != pressure) {
+        let message = format!("is {given}, but the table starts at {pressure}: leave it out");
+        return Err(Complaint::new("initial.pressure", message));
+    }
+    Phase::new(span, slip, pressures, input.dt.unwrap_or(f64::INFINITY)).map_err(|Undefined { quantity, time }| {
+        Complaint::new("table", format!("the {quantity} is not a finite number at the time {time}"))
+    })
+}
+
+fn check_positive(place: &str, value: f64) -> Checked<()> {
+    if value > 0.0 && value.is_finite() {
+        return Ok(());
+    }
+    Err(Complaint::new(place, format!("is {value}: must be positive")))
+}
+
+fn check_dt(place: &str, dt: f64, span: Span) -> Checked<()> {
+    check_positive(place, dt)?;
+    let steps = (span.end - span.start) / dt;
+    if steps > MOST_STEPS {
+        let message = format!("is {dt:e}: that makes {steps:.1e} steps of a phase, and {MOST_STEPS:e} are the most");
+        return Err(Complaint::new(place, message));
+    }
+    let least = SHORTEST_STEP * span.end.abs().max(span.start.abs());
+    if dt < least {
+        let message = format!("is {dt:e}: at the time {:e} steps below {least:.1e} are lost in round-off", span.end);
+        return Err(Complaint::new(place, message));
+    }
+    Ok(())
+}

@@ -1,0 +1,147 @@
+//! How long an increment is: whether a solved one is accepted, and the length of the next attempt.
+//!
+//! Without error control every solved increment is accepted, and the next one is longer if few iterations did it.
+//!
+//! With error control, ε being the error allowed:
+//!
+//! - The estimated local error e of [`crate::time`] must not exceed ε in any free displacement. As e falls with Δt³, the
+//!   next attempt takes Δt (ε/e)^⅓, with a margin. Accepted increments keep their length where the gain is small.
+//! - An increment in which a contact as a whole begins to slip, stops or turns round is repeated with half its length
+//!   until no point that takes part slips by more than 10 ε in it: the event is then known to 10 ε of displacement.
+//!   A point's direction is ±1, that of its plastic slip, if its slip rate at the end of the increment still goes that
+//!   way, else 0; a contact has that of its points if the mean over the closed length exceeds ½ in size. What a point
+//!   slips is its plastic slip in the increment and, if it comes from slip, what it would have slipped at its last rate.
+//!   So a contact that swings to and fro in stick has no events.
+//! - An increment after a repeated one does not grow. Halves that are accepted thus walk up to the event and never jump
+//!   over it, and every attempt either moves on or halves the increment.
+//! - The shortest increment is accepted whatever its error, which is told as a warning if it exceeds ε.
+//!
+//! Nothing much larger than ε can be stepped over unseen: e is a fixed share, a quarter or more unless β is near 1/6, of
+//! what the new displacement differs from the one extrapolated with the old velocity and acceleration ((6) of
+//! [`crate::time`]), and a slip, an arrest or an impact changes the displacement by all it moves. Only what comes and
+//! goes within one increment, such as a short pulse of a load, needs a `max` that meets it.
+
+use crate::contact::force::{ContactState, Status};
+use crate::model::{Model, Step};
+use crate::state::State;
+
+/// An increment solved in this many iterations or fewer was easy: the next one may be longer.
+const EASY: usize = 4;
+/// Growth of the increment after an easy one.
+const GROWTH: f64 = 1.5;
+/// An event is located to this many times the allowed error.
+pub const EVENT_LOCATION: f64 = 10.0;
+/// Part of the length that the error allows which is taken: the estimate is one of several terms.
+const SAFETY: f64 = 0.8;
+/// Most that one estimate shortens the next attempt: far from the solution the estimate is not of third order.
+const LEAST_SHARE: f64 = 0.1;
+/// A change that is not worth having: increments of one length keep the orders of the scheme.
+const WORTHWHILE: f64 = 1.25;
+
+/// Excess of what is left of a step over an increment that is not worth another one.
+const ROUND_OFF: f64 = 1e-6;
+
+/// What becomes of a solved increment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Judgement {
+    /// Whether it is accepted or repeated
+    pub accepted: bool,
+    /// Δt of the next attempt, before the bounds of the step [T]
+    pub next: f64,
+    /// Estimated local error of a displacement, in steps under error control [L]
+    pub error: Option<f64>,
+}
+
+/// Δt of the next attempt within the bounds of the step. The last increment ends on the end of the step; under error
+/// control the last two share what is left, so that none is much shorter than the one before.
+pub fn bounded(step: &Step, time: f64, dt: f64) -> f64 {
+    let remaining = step.span.end - time;
+    let dt = dt.min(step.increments.max);
+    let left = (remaining / dt - ROUND_OFF).ceil().max(1.0);
+    let shared = if step.increments.error.is_some() { 2.0 } else { 1.0 };
+    if left <= shared { remaining / left } else { dt }
+}
+
+/// Judge a solved increment from `old` to `new`; `repeated` says that an attempt at it was given up before.
+pub fn judge(model: &Model, step: &Step, [old, new]: [&State; 2], iterations: usize, repeated: bool) -> Judgement {
+    let dt = new.dt;
+    let easy = iterations <= EASY;
+    let Some(allowed) = step.increments.error else {
+        return Judgement { accepted: true, next: if easy { dt * GROWTH } else { dt }, error: None };
+    };
+    let error = local_error(step, old, new);
+    let share = (SAFETY * (allowed / error).cbrt()).clamp(LEAST_SHARE, GROWTH);
+    let judged = |accepted: bool, share: f64| Judgement { accepted, next: share * dt, error: Some(error) };
+    let shortest = step.increments.min;
+    if dt > shortest && error > allowed {
+        return Judgement { next: (share * dt).max(shortest), ..judged(false, share) };
+    }
+    if dt > shortest && slip_at_events(model, old, new) > EVENT_LOCATION * allowed {
+        return Judgement { next: (0.5 * dt).max(shortest), ..judged(false, share) };
+    }
+    let grows = easy && !repeated && share > WORTHWHILE;
+    judged(true, if grows { share } else { 1.0 })
+}
+
+/// C Δt² |a₁ − a₀|, the largest of all free dofs [L].
+fn local_error(step: &Step, old: &State, new: &State) -> f64 {
+    let constant = step.scheme.error_constant().unwrap_or(0.0);
+    let rates = new.acceleration.iter().zip(&old.acceleration).enumerate();
+    let free = rates.filter(|(dof, _)| step.supports.binary_search_by_key(dof, |support| support.dof).is_err());
+    let change = free.fold(0.0, |largest: f64, (_, (new, old))| largest.max((new - old).abs()));
+    constant * new.dt.powi(2) * change
+}
+
+/// Largest slip, in the increment, of a point that takes part in an event of its contact; 0 if there is none [L].
+fn slip_at_events(model: &Model, old: &State, new: &State) -> f64 {
+    let mut largest = 0.0f64;
+    // Slip without friction has no onset.
+    for k in (0..model.contacts.len()).filter(|&k| model.contacts[k].law.stiffness() > 0.0) {
+        let [before, after] = [old, new].map(|state| Directions::of(model, k, state));
+        if before.contact == after.contact {
+            continue;
+        }
+        let lost = new.dt / old.dt;
+        for (k, (old, new)) in old.contacts[k].iter().zip(&new.contacts[k]).enumerate() {
+            if before.points[k] != after.points[k] {
+                largest = largest.max(slip(new).abs());
+            }
+            if before.points[k] != 0.0 && before.points[k] != after.points[k] {
+                largest = largest.max(slip(old).abs() * lost);
+            }
+        }
+    }
+    largest
+}
+
+/// Plastic slip of the last increment where a point slips, else 0 [L].
+fn slip(state: &ContactState) -> f64 {
+    if state.status() == Status::Slip { state.friction.plastic_increment } else { 0.0 }
+}
+
+/// Which way a contact slips at the end of an increment: ±1 along ±s, 0 if it does not, or has just come to rest.
+struct Directions {
+    points: Vec<f64>,
+    contact: f64,
+}
+
+impl Directions {
+    fn of(model: &Model, contact: usize, state: &State) -> Self {
+        let (pair, states) = (&model.contacts[contact], &state.contacts[contact]);
+        if states.iter().all(|state| slip(state) == 0.0) {
+            return Self { points: vec![0.0; states.len()], contact: 0.0 };
+        }
+        let x = model.configuration(&state.displacement);
+        let rates = pair.slip_rates(states, &x, &state.velocity);
+        let going = |(state, rate): (&ContactState, &f64)| if slip(state) * rate > 0.0 { rate.signum() } else { 0.0 };
+        let points: Vec<f64> = states.iter().zip(&rates).map(going).collect();
+        let (mut closed, mut forward) = (0.0, 0.0);
+        for k in (0..states.len()).filter(|&k| states[k].status() != Status::Open) {
+            let length = pair.points[k].current_length(&x);
+            closed += length;
+            forward += length * points[k];
+        }
+        let contact = if f64::abs(forward) > 0.5 * closed { forward.signum() } else { 0.0 };
+        Self { points, contact }
+    }
+}

@@ -1,0 +1,99 @@
+//! What a run writes for its reader: the columns of `history.csv`, and lines of progress.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+const ALPHA_T: f64 = 800.0;
+
+/// A mass pressed on a plane and pulled by a spring.
+fn slider(duration: f64, dt: f64) -> Value {
+    json!({
+        "title": "A mass pulled over a plane",
+        "units": {"length": "m", "force": "N", "time": "s"},
+        "mesh": {"nodes": [[0, 0]], "points": {"block": [0]}},
+        "point_masses": {"block": {"mass": 10}},
+        "contacts": {"base": {
+            "slave": "block", "area": 2, "normal": {"alpha_n": 1000}, "initial": {"pressure": 50, "traction": 1},
+            "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+            "friction": {"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "alpha_t": ALPHA_T, "r": 100, "kappa": 10}
+        }},
+        "steps": [{"name": "pull", "duration": duration, "scheme": {"newmark": {}}, "dt": {"initial": dt}, "loads": [
+            {"on": "block", "force": {"y": "-100"}},
+            {"on": "block", "spring": {"kx": 10, "driver": {"x": {"rate": 0.5}}}}
+        ]}],
+        "watch": ["block"],
+        "output": {"fields": false}
+    })
+}
+
+fn run(folder: &Path, case: &Value) -> Output {
+    fs::write(folder.join("case.json"), case.to_string()).unwrap();
+    let output =
+        Command::new(env!("CARGO_BIN_EXE_fecontact")).current_dir(folder).args(["run", "case.json"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    output
+}
+
+/// The columns that other programs rely on, in their order; new ones come last in their group.
+#[test]
+fn history_has_the_promised_columns() {
+    let folder = TempDir::new().unwrap();
+    run(folder.path(), &slider(10.0, 0.02));
+    let text = fs::read_to_string(folder.path().join("out/case/history.csv")).unwrap();
+    let header = "time,dt,step,iterations,kinetic,strain,contact_elastic,friction_dissipation,damping_dissipation,\
+                  external_work,energy_error,base.normal_force,base.tangential_force,base.contact_length,\
+                  base.slip_fraction,base.mean_slip,base.max_penetration,base.max_elastic_slip,base.mean_elastic_slip,\
+                  block.ux,block.uy,block.fx,block.fy";
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), Some(header));
+    let column = |name: &str| header.split(',').position(|column| column == name).unwrap();
+    let mut pulled = false;
+    for line in lines {
+        let cells: Vec<&str> = line.split(',').collect();
+        assert_eq!(cells.len(), 23, "{line}");
+        let number = |name: &str| cells[column(name)].parse::<f64>().unwrap();
+        assert_eq!(cells[2], "pull");
+        // One point of area 2: q = force/2, elastic slip q/α_t, plastic slip the rest of the motion.
+        let elastic = number("base.tangential_force") / 2.0 / ALPHA_T;
+        assert!((number("base.mean_elastic_slip") - elastic).abs() < 1e-15, "{line}");
+        let slip = number("block.ux") - (number("base.mean_slip") + elastic - 1.0 / ALPHA_T);
+        assert!(slip.abs() < 1e-12, "{slip}");
+        assert_eq!(number("base.max_elastic_slip"), number("base.mean_elastic_slip").abs());
+        pulled |= number("base.mean_slip") > 0.01;
+    }
+    assert!(pulled);
+}
+
+/// What the reader of results needs to know of the case stands in the summary.
+#[test]
+fn the_summary_tells_title_units_and_laws() {
+    let folder = TempDir::new().unwrap();
+    let case = slider(0.1, 0.02);
+    run(folder.path(), &case);
+    let summary = fs::read_to_string(folder.path().join("out/case/summary.json")).unwrap();
+    let summary: Value = serde_json::from_str(&summary).unwrap();
+    for key in ["status", "reason", "version", "case", "dofs", "increments", "wall_s", "warnings"] {
+        assert!(summary.get(key).is_some(), "{key} is missing");
+    }
+    assert_eq!(summary["title"], case["title"]);
+    assert_eq!(summary["units"], case["units"]);
+    let law = &summary["friction"]["base"];
+    assert_eq!((&law["law"], law["mu_s"].as_f64()), (&json!("super_subloading"), Some(0.4)));
+}
+
+/// A run of thousands of quick increments does not drown its reader: a hundred lines, then two a second; the history has
+/// them all.
+#[test]
+fn progress_does_not_drown_its_reader() {
+    let folder = TempDir::new().unwrap();
+    let output = run(folder.path(), &slider(60.0, 0.02));
+    let lines = String::from_utf8_lossy(&output.stderr).lines().filter(|line| line.starts_with("pull")).count();
+    assert!((100..1000).contains(&lines), "{lines} lines");
+    assert!(String::from_utf8_lossy(&output.stderr).contains("not every increment has a line"));
+    let rows = fs::read_to_string(folder.path().join("out/case/history.csv")).unwrap().lines().count();
+    assert_eq!(rows, 3000 + 1);
+}
