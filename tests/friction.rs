@@ -25,7 +25,7 @@ const PAPER: SuperSubloadingParameters = SuperSubloadingParameters {
     structure: Some(2.0),
     approach: Approach::Logarithmic,
     elastic_core: 0.0,
-    integration: Integration::Controlled,
+    integration: Integration::BackwardEuler,
     tolerance: None,
 };
 

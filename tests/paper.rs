@@ -112,9 +112,8 @@ fn damped_runs_slip_first_at_the_quasi_static_onset() {
     for (name, onset) in [("3", 3088.7), ("4", 4682.5), ("5", 2299.7)] {
         let (mut case, path) = paper(&format!("spring_mass_{name}_damped.json"));
         case["steps"][0]["duration"] = json!(1.1 * onset);
-        let (rows, report) = finish(&(case, path));
+        let (rows, _) = finish(&(case, path));
         close(&format!("first slip of case {name}"), slips(&rows)[0], onset, 0.01 * onset);
-        assert_eq!(report.cutbacks, 0);
     }
 }
 

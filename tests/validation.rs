@@ -355,7 +355,7 @@ fn softening_follows_its_closed_form() {
         println!("{n} increments: error {:.2e}, peak {:.4}", distance(&found, &expected), p * largest(&found));
         distance(&found, &expected)
     });
-    assert!(errors[2] < 1e-3 && errors.windows(2).all(|pair| (1.8..2.2).contains(&(pair[0] / pair[1]))), "{errors:?}");
+    assert!(errors.iter().all(|error| *error < 1e-9), "{errors:?}");
 }
 
 /// NAFEMS CGS-4: a block of weight G is pushed up a slope tan a = 0.1 by a horizontal force F, both elastic, on non-matching
@@ -406,8 +406,7 @@ fn energy_balance_of_a_drag_closes_as_increments_shrink() {
             (energy.error() / energy.external_work).abs()
         });
         println!("{law}: {errors:?}");
-        assert!(errors.iter().all(|error| *error < 1e-3), "{errors:?}");
-        assert!(errors[2] < 0.5 * errors[1] && errors[3] < 0.5 * errors[2], "{errors:?}");
+        assert!(errors[3] < 1e-3 && errors.windows(2).all(|pair| pair[1] < 0.5 * pair[0]), "{errors:?}");
     }
 }
 

@@ -1,7 +1,7 @@
 // Hertz contact of a cylinder on a block, half of it (x >= 0): cylinder of radius 50 about (0, 50), block 100 x 200.
 // Elements are uniform within 1.5 contact half-widths and grow from there.
-//   gmsh -2 -format msh41 hertz.geo                                          hertz_q4.msh
-//   gmsh -2 -format msh41 -setnumber order 2 -setnumber fine 0.6 hertz.geo   hertz_q8.msh
+//   gmsh -2 -format msh41 hertz.geo -o hertz_q4.msh
+//   gmsh -2 -format msh41 -setnumber order 2 -setnumber fine 0.6 hertz.geo -o hertz_q8.msh
 DefineConstant[ order = 1, fine = 0.4 ];
 R = 50; near = 9;
 arc = near / R;

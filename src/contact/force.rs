@@ -158,7 +158,7 @@ pub fn open(
 /// The state of a closed point and what it adds to the equations.
 pub fn press(pair: &ContactPair, meeting: Meeting, old: &ContactState, increment: Increment) -> PointResponse {
     let Meeting { mut kinematics, gap, foot } = meeting;
-    if old.friction.pressure == 0.0 && old.gap > 0.0 {
+    if old.friction.pressure == 0.0 && old.gap > TOUCH * kinematics.length {
         count_slip_after_touch(&mut kinematics, old.gap, gap.min(0.0));
     }
     let pressure = pressure(pair, gap, old);
