@@ -29,6 +29,10 @@ const PAPER: SuperSubloadingParameters = SuperSubloadingParameters {
     tolerance: None,
 };
 
+/// One backward-Euler step an increment.
+const BACKWARD_EULER: SuperSubloadingParameters =
+    SuperSubloadingParameters { integration: Integration::BackwardEuler, ..PAPER };
+
 /// Constant coefficient 0.2: only R evolves.
 const CONSTANT: SuperSubloadingParameters =
     SuperSubloadingParameters { mu_s: 0.2, kappa: 0.0, xi: 0.0, structure: None, ..PAPER };
@@ -160,7 +164,7 @@ fn both_approaches_integrate_exactly_with_an_elastic_core() {
 
 #[test]
 fn softening_converges_to_an_exponential_of_plastic_slip() {
-    let law = law(&SuperSubloadingParameters { xi: 0.0, ..PAPER });
+    let law = law(&SuperSubloadingParameters { xi: 0.0, ..BACKWARD_EULER });
     let error = |steps| {
         let state = loaded(&law, 0.1, 0.0, steps);
         (state.mu - (0.2 + 0.2 * (-10.0 * state.plastic_slip / 0.2).exp())).abs()
@@ -171,7 +175,7 @@ fn softening_converges_to_an_exponential_of_plastic_slip() {
 
 #[test]
 fn the_attained_peak_converges_to_25_0175() {
-    let law = law(&SuperSubloadingParameters { xi: 0.0, ..PAPER });
+    let law = law(&SuperSubloadingParameters { xi: 0.0, ..BACKWARD_EULER });
     let peak = |steps| {
         let path = drive(&law, law.initial_state(), 0.08, 0.0, steps);
         let (index, state) =
@@ -188,7 +192,7 @@ fn the_attained_peak_converges_to_25_0175() {
 #[test]
 fn ageing_at_rest_converges_to_its_closed_forms() {
     for n in [1.0, 2.0, 0.5] {
-        let law = law(&SuperSubloadingParameters { xi: 0.4, n, structure: Some(1.0), ..PAPER });
+        let law = law(&SuperSubloadingParameters { xi: 0.4, n, structure: Some(1.0), ..BACKWARD_EULER });
         // The deficit d = 1 − μ/μ_s obeys ḋ = −(ξ/μ_s) d^n, here with ξ/μ_s = 1 and d₀ = 1/2.
         let time = 0.8;
         let deficit = if n == 1.0 {
@@ -215,7 +219,7 @@ fn recovery_with_a_small_exponent_ends_at_the_static_coefficient() {
 
 #[test]
 fn the_integration_converges_to_the_rate_equations_at_first_order() {
-    let parameters = SuperSubloadingParameters { xi: 0.05, ..PAPER };
+    let parameters = SuperSubloadingParameters { xi: 0.05, ..BACKWARD_EULER };
     let (amplitude, end) = (0.1, 4.0);
     let pressure = |t: f64| PRESSURE * (1.0 + 0.2 * (3.0 * t).sin());
     let law = law(&parameters);
@@ -301,7 +305,7 @@ fn steady_sliding_balances_loss_and_recovery_with_other_exponents() {
 
 #[test]
 fn a_sharp_law_of_constant_coefficient_is_coulomb_friction() {
-    let sharp = law(&SuperSubloadingParameters { r: 1e9, ..CONSTANT });
+    let sharp = law(&SuperSubloadingParameters { r: 1e9, integration: Integration::BackwardEuler, ..CONSTANT });
     let coulomb = Coulomb::new(&CoulombParameters { mu: 0.2, alpha_t: None }, 1000.0).expect("valid parameters");
     let mut random = Random(1);
     let (mut a, mut b) = (sharp.initial_state(), coulomb.initial_state());
@@ -417,7 +421,7 @@ fn unloading_is_elastic() {
 
 #[test]
 fn work_is_stored_or_dissipated() {
-    let law = law(&PAPER);
+    let law = law(&BACKWARD_EULER);
     let mut random = Random(3);
     let (mut state, mut work) = (law.initial_state(), 0.0);
     for _ in 0..1000 {
@@ -485,7 +489,7 @@ fn tangents_agree_with_differences() {
 
 // Random increments
 
-fn random_parameters(random: &mut Random) -> SuperSubloadingParameters {
+fn random_parameters(random: &mut Random, integration: Integration) -> SuperSubloadingParameters {
     let mu_k = random.magnitude(-2.0, 0.0);
     let exponent = |random: &mut Random| if random.chance(0.7) { 1.0 } else { random.between(0.3, 3.0) };
     let or_zero = |random: &mut Random, low, high| if random.chance(0.2) { 0.0 } else { random.magnitude(low, high) };
@@ -501,8 +505,8 @@ fn random_parameters(random: &mut Random) -> SuperSubloadingParameters {
         structure: None,
         approach: if random.chance(0.7) { Approach::Logarithmic } else { Approach::Cotangent },
         elastic_core: if random.chance(0.7) { 0.0 } else { random.between(0.0, 0.95) },
-        integration: Integration::Controlled,
-        tolerance: None,
+        integration,
+        tolerance: (integration == Integration::Controlled).then_some(1e-3),
     }
 }
 
@@ -594,26 +598,31 @@ impl Derivative {
     }
 }
 
-#[test]
-fn a_million_random_increments_are_answered_with_their_tangent() {
+/// Every `sample`th tangent of a million increments is compared with differences.
+fn answer_a_million_random_increments(integration: Integration, sample: usize) {
     const LAWS: u64 = 18_200;
     const INCREMENTS: usize = 55;
     let compared = AtomicUsize::new(0);
     (0..LAWS).into_par_iter().for_each(|seed| {
         let mut random = Random(seed.wrapping_mul(0x1234_5678_9abc_def1));
-        let parameters = random_parameters(&mut random);
+        let parameters = random_parameters(&mut random, integration);
         let law = law(&parameters);
         let alpha_t = law.stiffness();
-        let mut old = random_state(&mut random, &parameters);
-        for _ in 0..INCREMENTS {
-            if random.chance(0.3) || !(1e-8..1e8).contains(&(old.pressure / alpha_t)) {
-                old = random_state(&mut random, &parameters);
+        let mut state = random_state(&mut random, &parameters);
+        for increment in 0..INCREMENTS {
+            if random.chance(0.3) || !(1e-8..1e8).contains(&(state.pressure / alpha_t)) {
+                state = random_state(&mut random, &parameters);
             }
+            let old = state;
             let at = random_sliding(&mut random, &parameters, &old);
             let Sliding { slip, pressure, dt } = at;
             let answer = respond(&law, &old, slip, pressure, dt);
             check_answer(&parameters, &old, &answer);
 
+            state = answer.state;
+            if (seed as usize * INCREMENTS + increment) % sample != 0 {
+                continue;
+            }
             let (dslip, dpressure) = (answer.dtraction_dslip, answer.dtraction_dpressure);
             let trial = (old.traction + alpha_t * slip).abs();
             let noise =
@@ -644,12 +653,21 @@ fn a_million_random_increments_are_answered_with_their_tangent() {
                     "by slip: {by_slip}, by pressure: {by_pressure}: {parameters:?} {old:?} {at:?} {answer:?}"
                 );
             }
-            old = answer.state;
         }
     });
     let (compared, total) = (compared.into_inner(), LAWS as usize * INCREMENTS);
     println!("{total} increments, tangents of {compared} compared");
-    assert!(compared * 10 >= total * 9, "tangents of only {compared} of {total} increments were compared");
+    assert!(compared * sample * 10 >= total * 9, "tangents of only {compared} of {total} increments were compared");
+}
+
+#[test]
+fn a_million_random_increments_by_backward_euler_are_answered_with_their_tangent() {
+    answer_a_million_random_increments(Integration::BackwardEuler, 1);
+}
+
+#[test]
+fn a_million_random_increments_under_control_are_answered_with_their_tangent() {
+    answer_a_million_random_increments(Integration::Controlled, 50);
 }
 
 #[test]
@@ -699,7 +717,7 @@ fn beyond_the_uniqueness_limit_the_first_root_is_taken() {
             mu_s: random.between(0.3, 1.0),
             structure: None,
             approach: if random.chance(0.5) { Approach::Logarithmic } else { Approach::Cotangent },
-            ..PAPER
+            ..BACKWARD_EULER
         };
         let law = law(&parameters);
         let mu = parameters.mu_s * random.between(0.8, 1.0);
@@ -745,7 +763,7 @@ fn scan(parameters: &SuperSubloadingParameters, old: &FrictionState, slip: f64, 
 #[test]
 fn bad_parameters_are_refused_by_name_and_value() {
     type Change = fn(&mut SuperSubloadingParameters);
-    let table: [(Change, &str); 15] = [
+    let table: [(Change, &str); 17] = [
         (|p| p.mu_k = 0.0, "\"mu_k\" is 0, but it must be positive and finite"),
         (|p| p.mu_k = f64::NAN, "\"mu_k\" is NaN, but it must be positive and finite"),
         (|p| p.mu_s = 0.1, "\"mu_s\" is 0.1, but it must be finite and not less than \"mu_k\", which is 0.2"),
@@ -761,6 +779,8 @@ fn bad_parameters_are_refused_by_name_and_value() {
         (|p| p.structure = Some(2.5), "\"structure\" is 2.5, but it must lie between 1 and mu_s/mu_k = 2"),
         (|p| p.structure = Some(0.5), "\"structure\" is 0.5, but it must lie between 1 and mu_s/mu_k = 2"),
         (|p| p.structure = Some(f64::NAN), "\"structure\" is NaN, but it must lie between 1 and mu_s/mu_k = 2"),
+        (|p| p.tolerance = Some(0.0), "\"tolerance\" is 0, but it must lie between 1e-12 and 0.1"),
+        (|p| p.tolerance = Some(f64::NAN), "\"tolerance\" is NaN, but it must lie between 1e-12 and 0.1"),
     ];
     for (change, message) in table {
         let mut parameters = PAPER;

@@ -1,6 +1,6 @@
 //! One increment along linear paths of slip, pressure and time, in sub-steps where the tolerance asks for them.
 
-use super::peak::{Evolution, Peak};
+use super::peak::Evolution;
 use super::slip_equation::{Point, ROUND_OFF, Reach, SlidingCurve, SlipEquation};
 
 /// Least D/α_t: where two roots of the slip equation merge D is 0, and known only to the square root of the round-off.
@@ -11,13 +11,16 @@ const MAX_HALVINGS: u32 = 16;
 
 /// Sub-steps that could not be halved enough, after which all are taken as they are: beyond the limit of uniqueness the
 /// traction may jump any number of times.
-const MAX_JUMPS: usize = 100000;
+const MAX_JUMPS: usize = 8;
 
 /// Evaluations of the slip equation after which sub-steps are taken as they are.
 const MAX_EVALUATIONS: usize = 20_000;
 
 /// Errors below this, relative to the tractions they come from, are round-off.
 const NOISE: f64 = 2e-13;
+
+/// The difference of two stations over the error of the value extrapolated from them, where it converges slowly.
+const CAUTION: f64 = 4.0;
 
 /// What an answer depends on: [by Δu, by the pressure p at the end]
 type Derivative = [f64; 2];
@@ -70,6 +73,26 @@ pub(super) struct Station {
     overlooked: f64,
 }
 
+/// In q, in μ p and in the work done
+type Differences = [f64; 3];
+
+/// A sub-step, and the same in two halves.
+#[derive(Clone, Copy)]
+struct Halves<'a> {
+    from: &'a Station,
+    coarse: &'a Station,
+    middle: &'a Station,
+    fine: &'a Station,
+}
+
+impl Halves<'_> {
+    /// Whether there is plastic slip in the whole and in both halves.
+    fn slide(&self) -> bool {
+        let slips = |from: &Station, to: &Station| to.plastic_slip > from.plastic_slip;
+        slips(self.from, self.coarse) && slips(self.from, self.middle) && slips(self.middle, self.fine)
+    }
+}
+
 impl LoadPath<'_> {
     /// The beginning of the path.
     pub(super) fn start(&self, traction: f64, ratio: f64, mu: f64, dmu: Derivative) -> Station {
@@ -81,49 +104,79 @@ impl LoadPath<'_> {
     /// The end of the path.
     pub(super) fn end(&mut self, start: &Station) -> Station {
         let end = self.advance(start, 1.0);
-        self.refine(start, end, MAX_HALVINGS)
+        self.refine(start, end, [0.0; 3], MAX_HALVINGS)
     }
 
-    /// The same station as `coarse`, which one sub-step from `from` has reached, to within the tolerance: two halves
-    /// of the sub-step are compared with the whole, and each is refined in its turn where they differ.
-    fn refine(&mut self, from: &Station, coarse: Station, halvings: u32) -> Station {
+    /// The station at the x of `coarse`, which one sub-step from `from` has reached, to within the tolerance.
+    ///
+    /// Two halves of the sub-step are compared with the whole and, where they differ too much, refined in their turn.
+    /// As errors are proportional to the third power of the sub-step, the difference should then be an eighth: what it
+    /// is `expected` to be. What it differs from that is an error that extrapolation cannot remove.
+    fn refine(&mut self, from: &Station, coarse: Station, expected: Differences, halvings: u32) -> Station {
         let middle = self.advance(from, 0.5 * (from.x + coarse.x));
         let fine = self.advance(&middle, coarse.x);
-        let agree = self.agree(from, &coarse, &middle, &fine);
+        let halves = Halves { from, coarse: &coarse, middle: &middle, fine: &fine };
+        let (differences, allowed) = (self.differences(&halves), self.allowed(&halves));
+        let overlooked = coarse.overlooked.max(middle.overlooked).max(fine.overlooked);
+        let agree = overlooked <= allowed[0]
+            && (0..3).all(|i| {
+                let left = differences[i].abs() / CAUTION;
+                let left = if halves.slide() { left.min((differences[i] - expected[i]).abs()) } else { left };
+                left <= allowed[i]
+            });
         self.jumps += usize::from(!agree && halvings == 0);
         if agree || halvings == 0 || self.jumps > MAX_JUMPS || self.evaluations > MAX_EVALUATIONS {
-            let work = fine.work + (self.energy(&fine) - self.energy(&coarse)) / 3.0;
-            return Station { work: work.max(from.work), ..fine };
+            return if halves.slide() { self.extrapolated(&halves) } else { fine };
         }
-        let middle = self.refine(from, middle, halvings - 1);
+        let expected = differences.map(|difference| difference / 8.0);
+        let middle = self.refine(from, middle, expected, halvings - 1);
         let coarse = self.advance(&middle, coarse.x);
-        self.refine(&middle, coarse, halvings - 1)
+        self.refine(&middle, coarse, expected, halvings - 1)
     }
 
-    /// Whether a sub-step and its halves agree to its share of the tolerance, in q, in μ p and in the mean of q.
-    fn agree(&self, from: &Station, coarse: &Station, middle: &Station, fine: &Station) -> bool {
+    /// Differences between a sub-step and its halves.
+    fn differences(&self, halves: &Halves) -> Differences {
+        let Halves { coarse, fine, .. } = *halves;
+        [
+            fine.traction - coarse.traction,
+            (fine.mu - coarse.mu) * self.pressure(fine.x),
+            self.energy(fine) - self.energy(coarse),
+        ]
+    }
+
+    /// Differences that are allowed to a sub-step: more than its share of the tolerance in q and μ p, as R and μ forget
+    /// errors in the course of slip; its share in the work, for the mean of q is to be right to the tolerance.
+    fn allowed(&self, halves: &Halves) -> Differences {
+        let Halves { from, fine, .. } = *halves;
         let share = fine.x - from.x;
-        let pressure = self.pressure(fine.x);
-        let noise = NOISE * (fine.traction + from.traction + self.alpha_t * self.slip.abs() * share);
+        let (start_pressure, pressure) = (self.pressure(from.x), self.pressure(fine.x));
+        let slip = self.slip.abs() * share;
+        let noise = NOISE * (fine.traction + from.traction + self.alpha_t * slip);
         let tolerance = self.tolerance * self.evolution.mu_s;
-        let allowed = tolerance * (share * share.sqrt()).sqrt() * pressure + noise;
-        let allowed_mean = tolerance * pressure.max(self.pressure(from.x)) + noise;
-        let slip = self.slip.abs() * share + (fine.plastic_slip - from.plastic_slip);
-        let overlooked = coarse.overlooked.max(middle.overlooked).max(fine.overlooked);
-        (fine.traction - coarse.traction).abs() <= allowed
-            && (fine.mu - coarse.mu).abs() * pressure <= allowed
-            && self.extrapolates(from, coarse, middle, fine, allowed_mean * slip)
-            && overlooked <= allowed
+        let strength = tolerance * pressure * (share * share.sqrt()).sqrt() + noise;
+        let work = (tolerance * pressure.max(start_pressure) + noise) * (slip + fine.plastic_slip - from.plastic_slip);
+        [strength, strength, work + NOISE * self.energy(fine)]
     }
 
-    /// Whether the extrapolated work is right to `allowed`.
-    ///
-    /// Where μ p changes by δ in a sub-step, the trapezoidal rule errs by δ ε, and its extrapolation by less than δ ε².
-    fn extrapolates(&self, from: &Station, coarse: &Station, middle: &Station, fine: &Station, allowed: f64) -> bool {
-        let difference = (self.energy(fine) - self.energy(coarse)).abs() - NOISE * self.energy(fine);
-        let [a, b, c] = [from, middle, fine].map(|station| station.mu * self.pressure(station.x));
-        let change = ((b - a).abs() + (c - b).abs()) * (fine.plastic_slip - from.plastic_slip);
-        difference <= allowed || difference * difference <= allowed * change
+    /// The finer of two stations after plastic slip, extrapolated to vanishing sub-steps.
+    fn extrapolated(&self, halves: &Halves) -> Station {
+        let Halves { from, coarse, fine, .. } = *halves;
+        let beyond = |fine: f64, coarse: f64| fine + (fine - coarse) / 3.0;
+        let beyond_each = |fine: Derivative, coarse: Derivative| [0, 1].map(|i| beyond(fine[i], coarse[i]));
+        let mu = self.evolution.clamp(beyond(fine.mu, coarse.mu));
+        let traction = beyond(fine.traction, coarse.traction).clamp(0.0, mu * self.pressure(fine.x));
+        let energy = beyond(self.energy(fine), self.energy(coarse));
+        Station {
+            x: fine.x,
+            traction,
+            dtraction: beyond_each(fine.dtraction, coarse.dtraction),
+            mu,
+            dmu: beyond_each(fine.dmu, coarse.dmu),
+            reach: fine.reach.moved((fine.plastic_slip - coarse.plastic_slip) / 3.0),
+            plastic_slip: beyond(fine.plastic_slip, coarse.plastic_slip).max(from.plastic_slip),
+            work: (energy - 0.5 * traction * traction / self.alpha_t).max(from.work),
+            overlooked: 0.0,
+        }
     }
 
     /// Work done by the traction: dissipated, and stored in the contact spring.
@@ -147,7 +200,7 @@ impl LoadPath<'_> {
         };
         let (sticks, start) = equation.start();
         if sticks {
-            return self.stick(from, x, equation.trial, &start.peak);
+            return self.stick(from, x, equation.trial);
         }
         let (end, evaluations) = equation.solve(start);
         self.evaluations += evaluations;
@@ -156,18 +209,21 @@ impl LoadPath<'_> {
 
     /// A sub-step without plastic slip.
     #[inline]
-    fn stick(&self, from: &Station, x: f64, trial: f64, peak: &Peak) -> Station {
+    fn stick(&self, from: &Station, x: f64, trial: f64) -> Station {
         let share = x - from.x;
         let pressure = self.pressure(x);
         let traction = trial.max(0.0);
-        let reach = self.curve.start(traction / (peak.mu * pressure));
-        let rate = self.rate(traction, peak.mu, pressure, &reach);
+        let (mu, by_time) = self.evolution.rested(from.mu, self.time * share);
+        let old_rate = self.evolution.recovery(from.mu);
+        let by_old = if old_rate > 0.0 { by_time / old_rate } else { 1.0 };
+        let reach = self.curve.start(traction / (mu * pressure));
+        let rate = self.rate(traction, mu, pressure, &reach);
         Station {
             x,
             traction,
             dtraction: [from.dtraction[0] + self.alpha_t * share, from.dtraction[1]],
-            mu: peak.mu,
-            dmu: [0, 1].map(|i| peak.by_old * from.dmu[i] + peak.by_time * share * self.dtime[i]),
+            mu,
+            dmu: [0, 1].map(|i| by_old * from.dmu[i] + by_time * share * self.dtime[i]),
             reach,
             overlooked: self.alpha_t * rate * share,
             ..*from

@@ -40,6 +40,20 @@ pub(super) struct Reach {
     full: bool,
 }
 
+impl Reach {
+    /// The point a little plastic slip further, to second order.
+    pub(super) fn moved(mut self, slip: f64) -> Self {
+        let step = slip / self.stretch;
+        let bend = self.bend / self.stretch;
+        self.coordinate += step * (1.0 - 0.5 * step * bend);
+        self.slip += slip;
+        self.ratio = (self.ratio + self.rate * slip * (1.0 - 0.5 * step)).min(1.0);
+        self.rate *= 1.0 - step * (1.0 - 0.5 * step * (1.0 + bend));
+        self.stretch += self.bend * step;
+        self
+    }
+}
+
 /// y below which slip is taken as elastic: small enough to mean R = R_e.
 const LEAST_Y: f64 = 1e-100;
 

@@ -64,16 +64,21 @@ fn one() -> f64 {
 /// ln (R − R_e)/(1 − R_e); [`Approach`] offers a second U. Units: q, p [F/L²], α_t [F/L³], λ and v [L/T],
 /// r and κ [1/L], ξ [1/T], all others [-].
 ///
-/// An increment Δu, p₀ → p, Δt is elastic if the trial traction q_tr = q₀ + α_t Δu stays at or below R_s μ_tr p. Here
-/// R_s = max(R₀, R_e), with 0 for R₀ if q changes sign on the way or nothing was pressed, and μ_tr is μ aged without
-/// slip. Otherwise the plastic slip Δλ is the *smallest* root of one scalar equation,
+/// An increment leads slip, pressure and time along straight lines, Δu, p₀ → p, Δt. While R can only fall it is elastic.
+/// Plastic slip starts from R_s = max(R₀, R_e), or from R_e where the traction passes 0 or nothing was pressed, and Δλ is
+/// the *smallest* root of one scalar equation,
 /// ```text
-/// G(Δλ) = |q_tr| − α_t Δλ − R(Δλ) μ(Δλ) p = 0,   0 < Δλ ≤ |q_tr|/α_t                (4)
+/// G(Δλ) = |q_tr| − α_t Δλ − R(Δλ) μ(Δλ) p = 0,   0 < Δλ ≤ |q_tr|/α_t,   q_tr = q₀ + α_t Δu     (4)
 /// ```
-/// with R from (2) integrated exactly and μ from (3) by backward Euler ([`Approach`] and `peak.rs`). G is positive at
-/// the left end and not at the right, so a bracketed Newton method cannot fail. G falls throughout, and the root is
-/// the only one, while α_t exceeds R p |dμ/dΔλ|; where this cannot be guaranteed ([`FrictionLaw::uniqueness_limit`]),
-/// bounds of the slope of G single out the first root. The tangent is that of (4),
+/// with R from (2) integrated exactly ([`Approach`]). G is positive at the left end and not at the right, so a bracketed
+/// search cannot fail. G falls throughout, and the root is the only one, while α_t exceeds R p |dμ/dΔλ|; where this
+/// cannot be guaranteed ([`FrictionLaw::uniqueness_limit`]), bounds of the slope of G single out the first root.
+///
+/// [`Integration`] says where μ of (4) comes from. *Backward Euler* takes one step of (3) and of (4) an increment. The
+/// *controlled* integration solves (3) for slip and time that pass in step with one another, which leaves no error
+/// where μ only weakens or only recovers (m = n = 1). How much the order of weakening and recovery matters is found by
+/// halving the increment, and halving again, until q, μ p and the mean of q are right to the tolerance (`path.rs`).
+/// The dissipation is then ∫ q dλ. The tangent is that of what was computed; for one step
 /// ```text
 /// D = α_t + p (U μ + R ∂μ/∂Δλ),   ∂q/∂Δu = α_t (1 − α_t/D),   ∂q/∂p = sgn(q_tr) α_t R μ/D.
 /// ```
