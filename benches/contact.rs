@@ -25,6 +25,8 @@ fn surfaces(n: usize) -> (Vec<Vector2<f64>>, ContactPair) {
         alpha_n: 1e4,
         law: Box::new(law),
         initial: None,
+        mortar: None,
+        penetration: None,
     };
     (nodes, pair)
 }
@@ -44,7 +46,7 @@ fn update(criterion: &mut Criterion) {
         });
         let old = pair.initial_states(&x);
         group.bench_function(BenchmarkId::new("update", n), |bench| {
-            bench.iter(|| pair.respond(&old, 1.0, |_| (Presume::Nothing, None), &x).is_ok());
+            bench.iter(|| pair.respond(&old, &x, 1.0, |_| (Presume::Nothing, None), &x).is_ok());
         });
     }
     group.finish();

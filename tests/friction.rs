@@ -547,12 +547,24 @@ fn check_answer(parameters: &SuperSubloadingParameters, old: &FrictionState, ans
     assert!(new.traction * new.plastic_increment >= 0.0, "plastic slip against friction");
 }
 
-/// Branch of an increment: open, elastic, or slipping in one direction, from the trial traction alone.
-fn branch(law: &SuperSubloading, core: f64, old: &FrictionState, at: Sliding) -> Option<f64> {
-    let aged = respond(law, old, 0.0, -1.0, at.dt).state.mu;
+/// Branch of an increment: open, elastic, or slipping in one direction, from the trial traction alone. Slip that does not
+/// load is elastic throughout; one that loads is so only in a single step that outlasts it by recovery.
+fn branch(
+    law: &SuperSubloading,
+    parameters: &SuperSubloadingParameters,
+    old: &FrictionState,
+    at: Sliding,
+) -> Option<f64> {
     let trial = old.traction + law.stiffness() * at.slip;
-    let ratio = if trial * old.traction.signum() < 0.0 { 0.0 } else { old.ratio().min(1.0) };
-    let elastic = trial.abs() <= ratio.max(core) * aged * at.pressure;
+    let reversed = trial * old.traction.signum() < 0.0;
+    let elastic = match parameters.integration {
+        Integration::Controlled => !reversed && trial.abs() * old.pressure <= old.traction.abs() * at.pressure,
+        Integration::BackwardEuler => {
+            let aged = respond(law, old, 0.0, -1.0, at.dt).state.mu;
+            let ratio = if reversed { 0.0 } else { old.ratio().min(1.0) };
+            trial.abs() <= ratio.max(parameters.elastic_core) * aged * at.pressure
+        }
+    };
     (at.pressure > 0.0).then_some(if elastic { 0.0 } else { trial.signum() })
 }
 
@@ -620,7 +632,7 @@ fn answer_a_million_random_increments(integration: Integration, sample: usize) {
             check_answer(&parameters, &old, &answer);
 
             state = answer.state;
-            if (seed as usize * INCREMENTS + increment) % sample != 0 {
+            if !(seed as usize * INCREMENTS + increment).is_multiple_of(sample) {
                 continue;
             }
             let (dslip, dpressure) = (answer.dtraction_dslip, answer.dtraction_dpressure);
@@ -641,7 +653,7 @@ fn answer_a_million_random_increments(integration: Integration, sample: usize) {
                 noise,
             };
             let answer_at = |slip, pressure| {
-                let branch = branch(&law, parameters.elastic_core, &old, Sliding { slip, pressure, dt });
+                let branch = branch(&law, &parameters, &old, Sliding { slip, pressure, dt });
                 (branch, respond(&law, &old, slip, pressure, dt))
             };
             let by_slip = by_slip.agrees(|h| answer_at(slip + h, pressure), alpha_t);
@@ -657,7 +669,7 @@ fn answer_a_million_random_increments(integration: Integration, sample: usize) {
     });
     let (compared, total) = (compared.into_inner(), LAWS as usize * INCREMENTS);
     println!("{total} increments, tangents of {compared} compared");
-    assert!(compared * sample * 10 >= total * 9, "tangents of only {compared} of {total} increments were compared");
+    assert!(compared * sample * 20 >= total * 17, "tangents of only {compared} of {total} increments were compared");
 }
 
 #[test]

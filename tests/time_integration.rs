@@ -78,9 +78,7 @@ fn wilson_amplification(theta: f64, omega_dt: f64) -> Matrix3<f64> {
 }
 
 fn of_columns(step: impl Fn(f64, f64, f64) -> [f64; 3]) -> Matrix3<f64> {
-    Matrix3::from_columns(
-        &[step(1.0, 0.0, 0.0), step(0.0, 1.0, 0.0), step(0.0, 0.0, 1.0)].map(|column| Vector3::from(column)),
-    )
+    Matrix3::from_columns(&[step(1.0, 0.0, 0.0), step(0.0, 1.0, 0.0), step(0.0, 0.0, 1.0)].map(Vector3::from))
 }
 
 fn newmark_numbers(beta: f64, gamma: f64) -> [f64; 4] {
@@ -101,9 +99,11 @@ fn spectral_radius(matrix: Matrix3<f64>) -> f64 {
     matrix.complex_eigenvalues().iter().fold(0.0, |radius, value| radius.max(value.norm()))
 }
 
-/// The second-order schemes and their amplification matrices.
-fn schemes() -> Vec<(Value, Box<dyn Fn(f64) -> Matrix3<f64>>)> {
-    type Scheme = (Value, Box<dyn Fn(f64) -> Matrix3<f64>>);
+/// A scheme as a case names it, and its amplification matrix at ωΔt.
+type Scheme = (Value, Box<dyn Fn(f64) -> Matrix3<f64>>);
+
+/// The second-order schemes.
+fn schemes() -> Vec<Scheme> {
     let of = |scheme: Value, numbers: [f64; 4]| -> Scheme { (scheme, Box::new(move |w| amplification(numbers, w))) };
     let mut all = vec![of(trapezoidal(), newmark_numbers(0.25, 0.5))];
     all.extend([-0.1, -1.0 / 3.0].map(|alpha| of(hht(alpha), hht_numbers(alpha))));

@@ -389,8 +389,8 @@ fn sliding_wedge() {
 }
 
 /// Work of the supports = stored + dissipated, but for what one increment does not resolve. Measured error/work for Coulomb:
-/// −7e-5, 2.2e-4, 9.2e-5, 3.6e-5 with increments of 1/10, 1/20, 1/40, 1/80 (for super/subloading −7.8e-4, 1.7e-4, 6.3e-5,
-/// −6e-6). It levels off at 3e-5: the energy p²/(2 α_n) of the contact is counted on the current length, whose stretch
+/// −7e-5, 2.2e-4, 9.2e-5, 3.6e-5 with increments of 1/10, 1/20, 1/40, 1/80 (for super/subloading 3.6e-3, 8.3e-4, 2.1e-4,
+/// 7.8e-5). It levels off at 3e-5: the energy p²/(2 α_n) of the contact is counted on the current length, whose stretch
 /// does no work on the contact force.
 #[test]
 fn energy_balance_of_a_drag_closes_as_increments_shrink() {
@@ -406,7 +406,8 @@ fn energy_balance_of_a_drag_closes_as_increments_shrink() {
             (energy.error() / energy.external_work).abs()
         });
         println!("{law}: {errors:?}");
-        assert!(errors[3] < 1e-3 && errors[3] < 0.5 * errors[0], "{errors:?}");
+        let largest = errors.into_iter().fold(0.0, f64::max);
+        assert!(errors[3] < 1e-4 && errors[3] < 0.2 * largest, "{law}: {errors:?}");
     }
 }
 

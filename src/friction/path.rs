@@ -126,7 +126,7 @@ impl LoadPath<'_> {
             });
         self.jumps += usize::from(!agree && halvings == 0);
         if agree || halvings == 0 || self.jumps > MAX_JUMPS || self.evaluations > MAX_EVALUATIONS {
-            return if halves.slide() { self.extrapolated(&halves) } else { fine };
+            return if agree && halves.slide() { self.extrapolated(&halves) } else { fine };
         }
         let expected = differences.map(|difference| difference / 8.0);
         let middle = self.refine(from, middle, expected, halvings - 1);
@@ -163,16 +163,25 @@ impl LoadPath<'_> {
         let Halves { from, coarse, fine, .. } = *halves;
         let beyond = |fine: f64, coarse: f64| fine + (fine - coarse) / 3.0;
         let beyond_each = |fine: Derivative, coarse: Derivative| [0, 1].map(|i| beyond(fine[i], coarse[i]));
-        let mu = self.evolution.clamp(beyond(fine.mu, coarse.mu));
-        let traction = beyond(fine.traction, coarse.traction).clamp(0.0, mu * self.pressure(fine.x));
+        let pressure = self.pressure(fine.x);
+        let (mut mu, mut dmu) = (beyond(fine.mu, coarse.mu), beyond_each(fine.dmu, coarse.dmu));
+        if mu != self.evolution.clamp(mu) {
+            (mu, dmu) = (self.evolution.clamp(mu), [0.0; 2]);
+        }
+        let mut traction = beyond(fine.traction, coarse.traction).max(0.0);
+        let mut dtraction = beyond_each(fine.dtraction, coarse.dtraction);
+        if traction > mu * pressure {
+            let dpressure = self.dpressure(fine.x);
+            (traction, dtraction) = (mu * pressure, [0, 1].map(|i| pressure * dmu[i] + mu * dpressure[i]));
+        }
         let energy = beyond(self.energy(fine), self.energy(coarse));
         Station {
             x: fine.x,
             traction,
-            dtraction: beyond_each(fine.dtraction, coarse.dtraction),
+            dtraction,
             mu,
-            dmu: beyond_each(fine.dmu, coarse.dmu),
-            reach: fine.reach.moved((fine.plastic_slip - coarse.plastic_slip) / 3.0),
+            dmu,
+            reach: self.curve.start(traction / (mu * pressure)),
             plastic_slip: beyond(fine.plastic_slip, coarse.plastic_slip).max(from.plastic_slip),
             work: (energy - 0.5 * traction * traction / self.alpha_t).max(from.work),
             overlooked: 0.0,
@@ -212,6 +221,7 @@ impl LoadPath<'_> {
     fn stick(&self, from: &Station, x: f64, trial: f64) -> Station {
         let share = x - from.x;
         let pressure = self.pressure(x);
+        // Only weakening that has taken the traction from under an unloading can leave it to reverse: it waits at 0.
         let traction = trial.max(0.0);
         let (mu, by_time) = self.evolution.rested(from.mu, self.time * share);
         let old_rate = self.evolution.recovery(from.mu);
@@ -221,7 +231,11 @@ impl LoadPath<'_> {
         Station {
             x,
             traction,
-            dtraction: [from.dtraction[0] + self.alpha_t * share, from.dtraction[1]],
+            dtraction: if trial > 0.0 {
+                [from.dtraction[0] + self.alpha_t * share, from.dtraction[1]]
+            } else {
+                [0.0; 2]
+            },
             mu,
             dmu: [0, 1].map(|i| by_old * from.dmu[i] + by_time * share * self.dtime[i]),
             reach,

@@ -40,20 +40,6 @@ pub(super) struct Reach {
     full: bool,
 }
 
-impl Reach {
-    /// The point a little plastic slip further, to second order.
-    pub(super) fn moved(mut self, slip: f64) -> Self {
-        let step = slip / self.stretch;
-        let bend = self.bend / self.stretch;
-        self.coordinate += step * (1.0 - 0.5 * step * bend);
-        self.slip += slip;
-        self.ratio = (self.ratio + self.rate * slip * (1.0 - 0.5 * step)).min(1.0);
-        self.rate *= 1.0 - step * (1.0 - 0.5 * step * (1.0 + bend));
-        self.stretch += self.bend * step;
-        self
-    }
-}
-
 /// y below which slip is taken as elastic: small enough to mean R = R_e.
 const LEAST_Y: f64 = 1e-100;
 
@@ -174,8 +160,7 @@ pub(super) const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 /// Residual, relative to |q_tr|, at which the equation is solved.
 const TOLERANCE: f64 = 3e-14;
 
-/// Steps below this are made without another evaluation: to second order, or to first where the curvature of μ is not
-/// known (m or n not 1).
+/// Steps below this are made without another evaluation: to second order, or to first where μ is costly (m or n not 1).
 const LAST_STEP: f64 = 1e-5;
 const LAST_STEP_OF_FIRST_ORDER: f64 = 1e-8;
 
@@ -312,7 +297,7 @@ impl Point {
     /// The point after its last step.
     #[inline(always)]
     fn moved(self, equation: &SlipEquation) -> Self {
-        let Self { mut reach, mut slip, mut peak, step, close, .. } = self;
+        let Self { mut reach, mut slip, peak, step, close, .. } = self;
         if !close {
             return self;
         }
@@ -324,8 +309,12 @@ impl Point {
         reach.ratio = (reach.ratio + rise).min(1.0);
         reach.rate *= 1.0 - step * (1.0 - 0.5 * step);
         slip = (slip + advance).max(0.0);
-        peak.mu = equation.evolution.clamp(peak.mu + advance * (peak.slope + 0.5 * advance * peak.curvature));
-        peak.slope += advance * peak.curvature;
+        let evolution = equation.evolution;
+        let peak = if evolution.is_linear() {
+            evolution.after(equation.old_mu, slip, equation.dt)
+        } else {
+            Peak { mu: evolution.clamp(peak.mu + advance * peak.slope), ..peak }
+        };
         let slope = equation.slope(reach.ratio, reach.rate, &peak);
         Self { reach, slip, peak, slope, ..self }
     }

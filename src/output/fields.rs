@@ -80,10 +80,8 @@ impl Fields {
     fn write(&mut self, model: &Model, state: &State) -> Result<(), Error> {
         let contact = (!model.contacts.is_empty()).then(|| contact_frame(model, state));
         let frame = Frame { time: state.time, solid: solid_frame(model, state), contact };
-        match self.frames.as_ref().map(|frames| frames.send(frame)) {
-            Some(Ok(())) => Ok(()),
-            _ => self.finish(),
-        }
+        let taken = self.frames.as_ref().is_some_and(|frames| frames.send(frame).is_ok());
+        if taken { Ok(()) } else { self.finish() }
     }
 }
 

@@ -1,5 +1,6 @@
 //! What depends on the pattern alone: fronts, their rows, and where every value goes.
 
+use std::iter;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -104,8 +105,8 @@ impl Symbolic {
             self.forests.iter().flat_map(|forest| &forest.roots).map(|&root| passed_on(root as usize)).sum();
         let mut peak = held;
         let mut done = 0;
-        for end in self.forests.iter().map(|forest| forest.fronts.clone()).chain([self.fronts.len()..self.fronts.len()])
-        {
+        let end = self.fronts.len();
+        for end in self.forests.iter().map(|forest| forest.fronts.clone()).chain(iter::once(end..end)) {
             for number in done..end.start {
                 held += passed_on(number);
                 peak = peak.max(held);
