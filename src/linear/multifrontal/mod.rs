@@ -60,11 +60,15 @@ impl Multifrontal {
         })
     }
 
-    /// Refuse what does not fit, as far as the system tells: it would be killed.
+    /// Refuse what does not fit, as far as the system tells: it would be killed. Of a little memory it is not even asked.
     fn check_memory(&self, size: usize) -> Result<(), LinearFailure> {
+        const LITTLE: usize = 1 << 24;
         const GIB: f64 = (1u64 << 30) as f64;
         let held = size_of::<f64>() * (self.factors.values.capacity() + self.scaling.values.capacity());
         let needed = self.memory().saturating_sub(held);
+        if needed < LITTLE {
+            return Ok(());
+        }
         match available_memory() {
             Some(available) if needed > available => Err(LinearFailure::TooLarge {
                 size,
