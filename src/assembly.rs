@@ -475,6 +475,9 @@ impl<'m> Assembler<'m> {
         let Trial { old, step, time, .. } = trial;
         let internal = force.to_vec();
         let undefined = |dof: usize| TrialFailure::Undefined { node: self.model.mesh.node_tags[dof / 2], time };
+        for (force, prestress) in force.iter_mut().zip(&self.model.prestress) {
+            *force -= prestress;
+        }
         for load in &step.loads.dead {
             for &(node, weight, position) in &load.shares {
                 force[2 * node + load.component] -= weight * load.amplitude.value(position, time);

@@ -33,6 +33,11 @@ impl Expression {
         }
     }
 
+    /// Whether t stands in it.
+    pub fn depends_on_time(&self) -> bool {
+        self.0.var_names().iter().any(|name| name == "t")
+    }
+
     /// Whether x or y stands in it.
     pub fn depends_on_position(&self) -> bool {
         self.0.var_names().iter().any(|name| name != "t")
@@ -47,6 +52,29 @@ impl Expression {
         };
         let variables: Vec<f64> = self.0.var_names().iter().map(of).collect();
         self.0.eval(&variables).unwrap_or(f64::NAN)
+    }
+}
+
+/// How a quantity varies along a surface, by reference position.
+#[derive(Clone, Debug)]
+pub enum Profile {
+    /// The same everywhere
+    Constant(f64),
+    /// An expression in x and y
+    Expression(Expression),
+    /// (coordinate, value) pairs along x (0) or y (1), linear between, constant outside; of two pairs with the same
+    /// coordinate the second holds there and beyond
+    Table(usize, Vec<[f64; 2]>),
+}
+
+impl Profile {
+    /// Value at a reference position; NaN where an expression is not defined.
+    pub fn value(&self, position: Vector2<f64>) -> f64 {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Expression(expression) => expression.value(position, 0.0),
+            Self::Table(component, table) => interpolate(table, position[*component]),
+        }
     }
 }
 
@@ -78,10 +106,11 @@ impl Drive {
     }
 }
 
-fn interpolate(table: &[[f64; 2]], time: f64) -> f64 {
-    let after = table.partition_point(|[t, _]| *t <= time);
+/// Linear between the pairs (argument, value), whose arguments do not descend; constant outside.
+fn interpolate(table: &[[f64; 2]], at: f64) -> f64 {
+    let after = table.partition_point(|[t, _]| *t <= at);
     match (after.checked_sub(1).and_then(|k| table.get(k)), table.get(after)) {
-        (Some([t0, v0]), Some([t1, v1])) => v0 + (v1 - v0) * (time - t0) / (t1 - t0),
+        (Some([t0, v0]), Some([t1, v1])) => v0 + (v1 - v0) * (at - t0) / (t1 - t0),
         (Some([_, v]), None) | (None, Some([_, v])) => *v,
         (None, None) => 0.0,
     }

@@ -102,6 +102,9 @@ pub struct Model {
     pub watch: Vec<WatchedSet>,
     /// initial velocity of every dof [L/T]
     pub initial_velocity: Vec<f64>,
+    /// Forces of an initial stress of the bodies on every dof, which balance the initial tractions of contacts; empty if
+    /// there is none [F]
+    pub prestress: Vec<f64>,
     /// when Newton's method stops
     pub newton: newton::Settings,
 }

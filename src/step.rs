@@ -324,7 +324,7 @@ fn contact_energy(model: &Model, contacts: &[Vec<ContactState>], x: &Configurati
     for (pair, states) in model.contacts.iter().zip(contacts) {
         for (point, ContactState { friction, gap, .. }) in pair.points.iter().zip(states) {
             let normal = if friction.pressure > 0.0 { 0.5 * pair.alpha_n * gap.powi(2) } else { 0.0 };
-            let stiffness = pair.law.stiffness();
+            let stiffness = pair.law(point).stiffness();
             let tangential = if stiffness > 0.0 { 0.5 * friction.traction.powi(2) / stiffness } else { 0.0 };
             energy += point.current_length(x) * (normal + tangential);
         }

@@ -11,7 +11,7 @@ use super::file::{
     MasterInput, MeshSource, Method, NodeInput, Place, PlaneInput, PointMassInput, PolylineInput, RigidInput,
     SpringInput, StepInput, TimeInput,
 };
-use super::{initial, names, supported};
+use super::{along, initial, names, supported};
 use crate::boundary::{
     Amplitude, Dashpot, DeadLoad, Drive, Expression, FollowerPressure, Loads, Motion, Prescribed, Span, Spring,
 };
@@ -75,9 +75,11 @@ fn build_on(case: &Case, mesh: Mesh) -> Checked<Model> {
         steps: Vec::new(),
         watch: Vec::new(),
         newton: newton_settings(case)?,
+        prestress: Vec::new(),
     };
     model.point_masses = point_masses(case, &model.mesh)?;
     model.contacts = contacts(case, &model)?;
+    model.prestress = initial::prestress(case, &model);
     model.steps = steps(case, &model)?;
     model.initial_velocity = initial::velocities(case, &model)?;
     model.watch =
@@ -209,15 +211,11 @@ fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPa
     if input.area.is_some() && input.gives_alpha_t() == Some(false) {
         return Err(Complaint::new(friction + ".alpha_t", "is missing: a slave group of points has no default for it"));
     }
-    let mut law = input.friction.build(0.5 * alpha_n).map_err(|error| Complaint::new(&friction, error))?;
     check_stiffness(&format!("{place}.normal"), "alpha_n", alpha_n)?;
-    if law.stiffness() > 0.0 {
+    let mut points = points;
+    let laws = along::laws(&place, input, &mut points, &model.mesh, 0.5 * alpha_n)?;
+    for law in laws.iter().filter(|law| law.stiffness() > 0.0) {
         check_stiffness(&friction, "alpha_t", law.stiffness())?;
-    }
-    let start = format!("{place}.initial");
-    if let Some(structure) = input.initial.and_then(|initial| initial.structure) {
-        let started = initial::with_structure(&input.friction, structure, &start)?;
-        law = started.build(0.5 * alpha_n).map_err(|error| Complaint::new(&start, error))?;
     }
     let mut pair = ContactPair {
         name: name.into(),
@@ -226,11 +224,11 @@ fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPa
         mortar,
         alpha_n,
         penetration: input.normal.penetration,
-        law,
+        laws,
         initial: None,
     };
     if let Some(initial) = &input.initial {
-        initial::close(&mut pair, initial, model, &start)?;
+        initial::close(&mut pair, initial, model, &format!("{place}.initial"))?;
     }
     Ok(pair)
 }
@@ -729,14 +727,7 @@ pub(super) fn drive(input: &DriveInput, place: &str) -> Checked<Drive> {
     Ok(match input {
         DriveInput::Constant(value) => Drive::Constant(*value),
         DriveInput::InTime(TimeInput::Rate(rate)) => Drive::Rate(*rate),
-        DriveInput::Expression(text) => {
-            if text.len() > LONGEST_EXPRESSION {
-                let message = format!("the expression is longer than {LONGEST_EXPRESSION} characters: use a table");
-                return Err(Complaint::new(place, message));
-            }
-            let complain = |error| Complaint::new(place, format!("\"{text}\" cannot be read: {error}"));
-            Drive::Expression(Expression::parse(text).map_err(complain)?)
-        }
+        DriveInput::Expression(text) => Drive::Expression(expression(text, place)?),
         DriveInput::InTime(TimeInput::Table(table)) => {
             if table.is_empty() {
                 return Err(Complaint::new(place, "the table is empty: give pairs [time, value]"));
@@ -748,6 +739,15 @@ pub(super) fn drive(input: &DriveInput, place: &str) -> Checked<Drive> {
             Drive::Table(table.clone())
         }
     })
+}
+
+pub(super) fn expression(text: &str, place: &str) -> Checked<Expression> {
+    if text.len() > LONGEST_EXPRESSION {
+        let message = format!("the expression is longer than {LONGEST_EXPRESSION} characters: use a table");
+        return Err(Complaint::new(place, message));
+    }
+    let complain = |error| Complaint::new(place, format!("\"{text}\" cannot be read: {error}"));
+    Expression::parse(text).map_err(complain)
 }
 
 fn increments(place: &str, input: Option<IncrementsInput>, span: Span, scheme: Scheme) -> Checked<Increments> {

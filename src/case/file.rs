@@ -120,6 +120,9 @@ pub struct ContactInput {
     pub normal: NormalInput,
     /// Friction law
     pub friction: FrictionParameters,
+    /// Parameters of the friction law that vary along the slave, by name: they replace the numbers given in `friction`
+    #[serde(default)]
+    pub along: BTreeMap<String, ProfileInput>,
     /// Tractions and structure at the start of a contact that starts closed. The gap of every slave point is then counted
     /// from where the pressure acts at its initial position, all through the run
     pub initial: Option<InitialInput>,
@@ -133,17 +136,58 @@ impl ContactInput {
     }
 }
 
-/// The state of a contact that starts closed, the same at all its points.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+/// The state of a contact that starts closed.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InitialInput {
     /// p: contact pressure, zero or positive [F/L²]
-    pub pressure: f64,
+    pub pressure: ProfileInput,
     /// q: traction that resists the slip of the slave along +s, the master's normal turned by −90° [F/L²]
     #[serde(default)]
-    pub traction: f64,
+    pub traction: ProfileInput,
     /// 1/R*: structure of the super/subloading law, from 1 to μ_s/μ_k; that of the law unless given [-]
-    pub structure: Option<f64>,
+    pub structure: Option<ProfileInput>,
+    /// Whether an initial stress of the bodies is in equilibrium with these tractions. Displacements and stresses of the
+    /// run are then those that come on top of the initial stress
+    #[serde(default)]
+    pub balanced: bool,
+}
+
+/// How a quantity varies along a surface.
+#[derive(Clone, Debug, JsonSchema)]
+#[schemars(untagged)]
+pub enum ProfileInput {
+    /// The same everywhere
+    Constant(f64),
+    /// Expression in the reference position x, y
+    Expression(String),
+    /// Table by a coordinate
+    Table(ProfileTable),
+}
+
+impl Default for ProfileInput {
+    fn default() -> Self {
+        Self::Constant(0.0)
+    }
+}
+
+impl<'de> Deserialize<'de> for ProfileInput {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let expecting = "a number, an expression in x, y such as \"1 + 0.1*x\", or {\"x\": [[x, v], …]}";
+        Choice { expecting, number: Some(Self::Constant), text: Self::Expression, object: Self::Table }
+            .read(deserializer)
+    }
+}
+
+/// Values by a coordinate of the reference position: linear between, constant outside. The same coordinate twice is a
+/// jump.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ProfileTable {
+    /// Pairs of x and value, x ascending
+    X(Vec<[f64; 2]>),
+    /// Pairs of y and value, y ascending
+    Y(Vec<[f64; 2]>),
 }
 
 fn two() -> usize {

@@ -6,6 +6,7 @@ mod error;
 mod explain;
 pub mod file;
 mod initial;
+mod along;
 pub mod law_test;
 mod names;
 mod read;

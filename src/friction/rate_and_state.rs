@@ -111,6 +111,9 @@ const PRECISION: f64 = 1e-14;
 /// Most evaluations that lead up to the first root. The way is only long where two roots are about to merge.
 const MOST_EVALUATIONS: usize = 500;
 
+/// Exponents above it would overflow.
+const MOST_EXPONENT: f64 = 700.0;
+
 /// One increment with a traction to relax: G over Δλ.
 struct Relaxation<'a> {
     law: &'a RateAndState,
@@ -154,7 +157,7 @@ impl Relaxation<'_> {
             }
             StateEvolution::Slip if slip == 0.0 => (self.log_state, 0.0),
             StateEvolution::Slip => {
-                let steady = (reference_rate * self.dt / slip).ln();
+                let steady = (reference_rate * self.dt).ln() - slip.ln();
                 let log = self.log_state * decay + steady * x * share;
                 (log, decay * (steady - self.log_state) - share)
             }
@@ -167,7 +170,7 @@ impl Relaxation<'_> {
         let (psi, dpsi) = self.psi(slip);
         let fastness = 0.5 / (reference_rate * self.dt);
         // arsinh(eʷ) and its derivative by w, without eʷ where it would overflow
-        let w = (slip * fastness).ln() + psi / a;
+        let w = slip.ln() + fastness.ln() + psi / a;
         let (arsinh, rate) = if w > 20.0 {
             (w + std::f64::consts::LN_2, 1.0)
         } else {
@@ -180,15 +183,16 @@ impl Relaxation<'_> {
         Outcome { excess: self.trial - alpha_t * slip - traction, slope, psi, traction }
     }
 
-    /// Δt/(e θ₀): what a maximum of the slip law's healing within the increment is bounded by.
-    fn healing(&self) -> f64 {
-        let RateAndState { reference_rate, critical_slip, evolution, .. } = *self.law;
-        match evolution {
-            StateEvolution::Ageing => 0.0,
-            StateEvolution::Slip => {
-                self.dt * reference_rate / critical_slip * (-self.log_state - 1.0).min(700.0).exp()
-            }
+    /// Bound of Δλ ∂ψ/∂Δλ for all slips up to this one: healing within the increment, of which the slip law knows some.
+    /// With y = V θ₀/D_c it is x ln(1/y), which rises up to y = 1/e.
+    fn healing(&self, slip: f64) -> f64 {
+        let RateAndState { b, reference_rate, critical_slip, evolution, .. } = *self.law;
+        if evolution == StateEvolution::Ageing {
+            return 0.0;
         }
+        let log_y = slip.ln() - (reference_rate * self.dt).ln() + self.log_state;
+        let at = log_y.min(-1.0);
+        b * self.dt * reference_rate / critical_slip * -at * (at - self.log_state).min(MOST_EXPONENT).exp()
     }
 
     /// Whether G falls throughout.
@@ -205,13 +209,16 @@ impl Relaxation<'_> {
 
     /// A slip that is surely not beyond the first root: neither the contact nor (2) takes more than half of |q_tr|.
     fn least(&self) -> f64 {
-        let RateAndState { a, b, reference_rate, alpha_t, .. } = *self.law;
+        let RateAndState { a, reference_rate, alpha_t, .. } = *self.law;
         let half = 0.5 * self.trial;
-        let psi = self.psi(0.0).0 + b * self.healing();
         let level = half / (a * self.pressure);
         let log_sinh = if level > 20.0 { level - std::f64::consts::LN_2 } else { level.sinh().ln() };
-        let log = (2.0 * reference_rate * self.dt).ln() - psi / a + log_sinh;
-        log.min((half / alpha_t).ln()).exp()
+        let reached = |psi: f64| {
+            let log = (2.0 * reference_rate * self.dt).ln() - psi / a + log_sinh;
+            log.min((half / alpha_t).ln()).exp()
+        };
+        let psi = self.psi(0.0).0;
+        reached(psi + self.healing(reached(psi)))
     }
 
     /// The smallest root, and the evaluations it took.
@@ -234,14 +241,16 @@ impl Relaxation<'_> {
             });
             return (found, evaluations);
         }
-        let rise = self.pressure * (self.law.a + self.law.b * self.healing());
+        let RateAndState { a, alpha_t, .. } = *self.law;
+        let rise = |most: f64| self.pressure * (a + self.healing(most));
         while found.excess > enough && evaluations < MOST_EVALUATIONS {
-            // From Δλ to Δλ eᵟ, G loses at most α_t Δλ (eᵟ − 1) + rise δ. Two δ for which that is no more than G, the
-            // first for δ ≤ 1:
-            let loss = alpha_t * slip * std::f64::consts::E + rise;
-            let near = (found.excess / loss).min(1.0);
-            let far = (0.5 * found.excess / rise).min((0.5 * found.excess / (alpha_t * slip)).ln_1p());
-            slip = (slip * near.max(far).exp()).min(most);
+            // From Δλ to Δλ eᵟ, α_t Δλ grows by the factor eᵟ, and |q| at most by rise δ and by a factor kᵟ, since
+            // arsinh is concave. So three δ after which G is not negative, the first two for δ ≤ 1:
+            let next = slip * std::f64::consts::E;
+            let near = (found.excess / (alpha_t * next + rise(next))).min(1.0);
+            let early = (self.trial / (self.trial - found.excess)).ln() / (1.0 + self.healing(next) / a);
+            let far = (0.5 * found.excess / rise(most)).min((0.5 * found.excess / (alpha_t * slip)).ln_1p());
+            slip = (slip * near.max(early.min(1.0)).max(far).exp()).min(most);
             found = self.outcome(slip);
             evaluations += 1;
         }
