@@ -13,9 +13,12 @@ const SMALL: f64 = 1e-6;
 /// initial traction is balanced by an initial stress; what is missing to τ₀ is a load on both sides of the interface.
 fn columns(friction: Value, traction: f64, scheme: Value, dt: f64, duration: f64) -> Value {
     let (h, n) = (0.005, 50);
-    let blocks = Blocks::default()
-        .rectangle("lower", [1, n], [0.0, -0.25], [h, 0.0])
-        .rectangle("upper", [1, n], [0.0, 0.0], [h, 0.25]);
+    let blocks = Blocks::default().rectangle("lower", [1, n], [0.0, -0.25], [h, 0.0]).rectangle(
+        "upper",
+        [1, n],
+        [0.0, 0.0],
+        [h, 0.25],
+    );
     let material = json!({"material": {"model": "linear", "E": 2.5, "nu": 0.25, "density": 1.0}});
     let missing = |sign: f64| json!({"traction": {"x": format!("{}", sign * (6.1 - traction) * SMALL)}});
     let load = |on: &str, mut load: Value| {

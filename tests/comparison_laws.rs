@@ -197,7 +197,11 @@ fn steady_sliding_has_the_coefficient_of_its_rate() {
 #[test]
 fn a_jump_of_the_rate_acts_directly_and_then_by_the_state() {
     // A stiff contact, so that the plastic slip follows the total: the jump is a ln 10, then −b ln 10 decays over D_c.
-    let law = rate_and_state(RateAndStateParameters { alpha_t: Some(1e6), evolution: StateEvolution::Slip, ..RATE_AND_STATE });
+    let law = rate_and_state(RateAndStateParameters {
+        alpha_t: Some(1e6),
+        evolution: StateEvolution::Slip,
+        ..RATE_AND_STATE
+    });
     let mut state = law.initial_state();
     for _ in 0..10 {
         state = respond(&law, &state, 1.0, 100.0, 1.0).state;
@@ -217,7 +221,9 @@ fn a_jump_of_the_rate_acts_directly_and_then_by_the_state() {
 
 #[test]
 fn rest_heals_with_the_logarithm_of_time_in_the_ageing_law_only() {
-    for (evolution, healed) in [(StateEvolution::Ageing, 0.015 * (1e4 / 10.0 + 1.0f64).ln()), (StateEvolution::Slip, 0.0)] {
+    for (evolution, healed) in
+        [(StateEvolution::Ageing, 0.015 * (1e4 / 10.0 + 1.0f64).ln()), (StateEvolution::Slip, 0.0)]
+    {
         let law = rate_and_state(RateAndStateParameters { evolution, ..RATE_AND_STATE });
         let at_rest = respond(&law, &law.initial_state(), 0.0, 100.0, 1e4).state;
         assert_close(at_rest.mu, 0.6 + healed, 1e-12, "pressed");
@@ -246,7 +252,15 @@ fn increments_converge_to_the_differential_equations() {
         let p = RateAndStateParameters { evolution, ..RATE_AND_STATE };
         let law = rate_and_state(p);
         // Slip at V₀, then ten times as fast, then back at a third: 60 s by the method of Runge and Kutta.
-        let rate = |t: f64| if t < 20.0 { 1.0 } else if t < 30.0 { 10.0 } else { -3.0 };
+        let rate = |t: f64| {
+            if t < 20.0 {
+                1.0
+            } else if t < 30.0 {
+                10.0
+            } else {
+                -3.0
+            }
+        };
         let mut y = [59.0, 10.0];
         let h = 1e-4;
         for k in 0..600_000u32 {
@@ -328,7 +342,12 @@ fn answers_meet_their_equations_and_are_the_first_root() {
         };
         if plastic_slip > 1e-9 * trial / alpha_t && plastic_slip > 1e-6 {
             let (rest, psi) = excess(plastic_slip);
-            assert_close(rest, 0.0, 1e-6 * trial, &format!("{evolution:?}, {trial}, {alpha_t}, {dt}, {psi0}: residual"));
+            assert_close(
+                rest,
+                0.0,
+                1e-6 * trial,
+                &format!("{evolution:?}, {trial}, {alpha_t}, {dt}, {psi0}: residual"),
+            );
             assert_close(mu, psi, 1e-7, "state");
             for part in 1..60 {
                 let earlier = plastic_slip * (1.0 - f64::from(part) / 60.0);

@@ -231,7 +231,8 @@ fn tangent_equals_differences_where_contact_starts_closed_across_a_gap() {
         for master in [Master::Mesh(Surface::new(&edges)), Master::Rigid(Rigid::Plane(plane))] {
             let mut pair = pair(points.clone(), master, SUPER);
             let at = Configuration::undeformed(&x);
-            pair.start_closed(vec![InitialTraction { pressure: 20.0, traction: 2.0 }; pair.points.len()], &at).expect("a foot for each");
+            pair.start_closed(vec![InitialTraction { pressure: 20.0, traction: 2.0 }; pair.points.len()], &at)
+                .expect("a foot for each");
             for k in 0..pair.points.len() {
                 let (state, contribution) = evaluate(&pair, k, &pair.initial_states(&at)[k], &x);
                 let FrictionState { pressure, traction, .. } = state.friction;
@@ -301,8 +302,12 @@ fn check_mortar_tangent(
         let x = Configuration::undeformed(x);
         let is = mortar.overlaps(surface, &Index::new(&pair.master, &x), &x);
         let meeting = mortar.kinematics(k, surface, &is, weights.as_ref(), &x).expect("the master faces the point");
-        closes(pair, &pair.points[k], meeting.gap, &old, increment, &x)
-            .then(|| press(pair, &pair.points[k], meeting, &old, increment).expect("a finite increment").1.expect("a closed point"))
+        closes(pair, &pair.points[k], meeting.gap, &old, increment, &x).then(|| {
+            press(pair, &pair.points[k], meeting, &old, increment)
+                .expect("a finite increment")
+                .1
+                .expect("a closed point")
+        })
     };
     let Some(contribution) = evaluate(x) else { return false };
     let (scale, h) = (contribution.tangent.amax(), 1e-6);

@@ -51,7 +51,8 @@ pub fn laws(
     let mut numbers: BTreeMap<Vec<u64>, usize> = BTreeMap::new();
     for point in points {
         let at = position(point, mesh);
-        let values = varying.iter().map(|(_, profile, place)| defined(profile, at, place)).collect::<Checked<Vec<_>>>()?;
+        let values =
+            varying.iter().map(|(_, profile, place)| defined(profile, at, place)).collect::<Checked<Vec<_>>>()?;
         let key: Vec<u64> = values.iter().map(|value| value.to_bits()).collect();
         if let Some(&law) = numbers.get(&key) {
             point.law = law;
@@ -106,7 +107,10 @@ pub fn profile(input: &ProfileInput, place: &str) -> Checked<Profile> {
         ProfileInput::Table(ProfileTable::Y(table)) => (1, "y", table),
     };
     if table.is_empty() {
-        return Err(Complaint::new(format!("{place}.{name}"), format!("the table is empty: give pairs [{name}, value]")));
+        return Err(Complaint::new(
+            format!("{place}.{name}"),
+            format!("the table is empty: give pairs [{name}, value]"),
+        ));
     }
     if let Some(pair) = table.windows(2).find(|pair| pair[1][0] < pair[0][0]) {
         let message = format!("the coordinates of the table must ascend: {} follows {}", pair[1][0], pair[0][0]);

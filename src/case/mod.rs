@@ -1,12 +1,12 @@
 //! The case: JSON as written → checks → model.
 
+mod along;
 mod build;
 mod choice;
 mod error;
 mod explain;
 pub mod file;
 mod initial;
-mod along;
 pub mod law_test;
 mod names;
 mod read;

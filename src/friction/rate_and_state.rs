@@ -195,14 +195,25 @@ impl Relaxation<'_> {
         b * self.dt * reference_rate / critical_slip * -at * (at - self.log_state).min(MOST_EXPONENT).exp()
     }
 
+    /// The same from a slip to e times as much.
+    fn healing_from(&self, slip: f64) -> f64 {
+        let RateAndState { b, reference_rate, critical_slip, evolution, .. } = *self.law;
+        if evolution == StateEvolution::Ageing {
+            return 0.0;
+        }
+        let x = slip / critical_slip;
+        let slower = ((reference_rate * self.dt).ln() - slip.ln() - self.log_state).max(0.0);
+        // x e⁻ˣ has its maximum at 1.
+        let share = if x >= 1.0 { x * (-x).exp() } else { (x * std::f64::consts::E).min((-1.0f64).exp()) };
+        b * share * slower
+    }
+
     /// Whether G falls throughout.
     fn is_monotone(&self) -> bool {
         let RateAndState { b, reference_rate, critical_slip, alpha_t, evolution, .. } = *self.law;
         let fastest = match evolution {
             StateEvolution::Ageing => 0.0,
-            StateEvolution::Slip => {
-                (self.trial / (alpha_t * reference_rate * self.dt)).ln() + self.log_state
-            }
+            StateEvolution::Slip => (self.trial / (alpha_t * reference_rate * self.dt)).ln() + self.log_state,
         };
         alpha_t > self.pressure * b / critical_slip * (1.0 + fastest.max(0.0))
     }
@@ -213,12 +224,19 @@ impl Relaxation<'_> {
         let half = 0.5 * self.trial;
         let level = half / (a * self.pressure);
         let log_sinh = if level > 20.0 { level - std::f64::consts::LN_2 } else { level.sinh().ln() };
-        let reached = |psi: f64| {
-            let log = (2.0 * reference_rate * self.dt).ln() - psi / a + log_sinh;
-            log.min((half / alpha_t).ln()).exp()
-        };
         let psi = self.psi(0.0).0;
-        reached(psi + self.healing(reached(psi)))
+        let reached = |healing: f64| {
+            let log = (2.0 * reference_rate * self.dt).ln() - (psi + healing) / a + log_sinh;
+            log.min((half / alpha_t).ln())
+        };
+        // Healing up to a slip rises with the slip: halve towards the largest that still holds.
+        let (mut low, mut high) = (f64::MIN_POSITIVE.ln(), reached(0.0));
+        while high - low > 1.0 {
+            let middle = 0.5 * (low + high);
+            let holds = reached(self.healing(middle.exp())) >= middle;
+            if holds { low = middle } else { high = middle }
+        }
+        low.exp()
     }
 
     /// The smallest root, and the evaluations it took.
@@ -242,14 +260,15 @@ impl Relaxation<'_> {
             return (found, evaluations);
         }
         let RateAndState { a, alpha_t, .. } = *self.law;
-        let rise = |most: f64| self.pressure * (a + self.healing(most));
+        let rise = self.pressure * (a + self.healing(most));
         while found.excess > enough && evaluations < MOST_EVALUATIONS {
             // From Δλ to Δλ eᵟ, α_t Δλ grows by the factor eᵟ, and |q| at most by rise δ and by a factor kᵟ, since
             // arsinh is concave. So three δ after which G is not negative, the first two for δ ≤ 1:
-            let next = slip * std::f64::consts::E;
-            let near = (found.excess / (alpha_t * next + rise(next))).min(1.0);
-            let early = (self.trial / (self.trial - found.excess)).ln() / (1.0 + self.healing(next) / a);
-            let far = (0.5 * found.excess / rise(most)).min((0.5 * found.excess / (alpha_t * slip)).ln_1p());
+            let healing = self.healing_from(slip);
+            let loss = alpha_t * slip * std::f64::consts::E + self.pressure * (a + healing);
+            let near = (found.excess / loss).min(1.0);
+            let early = (self.trial / (self.trial - found.excess)).ln() / (1.0 + healing / a);
+            let far = (0.5 * found.excess / rise).min((0.5 * found.excess / (alpha_t * slip)).ln_1p());
             slip = (slip * near.max(early.min(1.0)).max(far).exp()).min(most);
             found = self.outcome(slip);
             evaluations += 1;
@@ -267,8 +286,7 @@ impl FrictionLaw for RateAndState {
         let alpha_t = self.alpha_t;
         let Sliding { slip, pressure, dt } = sliding.checked()?;
         let trial = old.traction + alpha_t * slip;
-        let relaxation =
-            Relaxation { law: self, trial: trial.abs(), pressure, dt, log_state: self.log_state(old.mu) };
+        let relaxation = Relaxation { law: self, trial: trial.abs(), pressure, dt, log_state: self.log_state(old.mu) };
         if dt == 0.0 || pressure <= 0.0 || trial == 0.0 {
             // No time to slip in, or nothing to slip for.
             let mu = if dt == 0.0 { old.mu } else { relaxation.psi(0.0).0 };
