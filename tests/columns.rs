@@ -42,7 +42,12 @@ fn columns(friction: Value, traction: f64, scheme: Value, dt: f64, duration: f64
                 load("upper_bottom", missing(1.0)), load("lower_top", missing(-1.0)),
             ],
         }],
+        "output": {"interval": 0.01},
     })
+}
+
+fn explicit() -> Value {
+    json!({"explicit": {}})
 }
 
 fn newmark() -> Value {
@@ -136,4 +141,10 @@ fn check_super_subloading(run: &Finished) {
 #[test]
 fn a_super_subloading_interface_slips_as_its_rate_equations_say() {
     check_super_subloading(&finish(&columns(super_subloading(), 5.5, newmark(), 0.002, 1.4)));
+}
+
+#[test]
+fn explicit_increments_say_the_same_of_both_laws() {
+    check_weakening(&finish(&columns(slip_weakening(), 6.1, explicit(), 0.002, 1.4)));
+    check_super_subloading(&finish(&columns(super_subloading(), 5.5, explicit(), 0.002, 1.4)));
 }

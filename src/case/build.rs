@@ -76,6 +76,7 @@ fn build_on(case: &Case, mesh: Mesh) -> Checked<Model> {
         watch: Vec::new(),
         newton: newton_settings(case)?,
         prestress: Vec::new(),
+        interval: case.output.interval,
     };
     model.point_masses = point_masses(case, &model.mesh)?;
     model.contacts = contacts(case, &model)?;
@@ -88,8 +89,27 @@ fn build_on(case: &Case, mesh: Mesh) -> Checked<Model> {
         let message = "is 0: must be at least 1 (to write no fields, give \"fields\": false)";
         return Err(Complaint::new("output.every", message));
     }
+    if let Some(interval) = case.output.interval.filter(|interval| !(*interval > 0.0 && interval.is_finite())) {
+        let message = format!("is {interval}: must be positive (leave it out for a hundredth of each explicit step)");
+        return Err(Complaint::new("output.interval", message));
+    }
+    check_explicit(&model)?;
     supported::check(case, &model)?;
     Ok(model)
+}
+
+/// Explicit steps solve no equations, and so cannot raise pressures until penetrations are small.
+fn check_explicit(model: &Model) -> Checked<()> {
+    let Some(k) = model.steps.iter().position(|step| matches!(step.scheme, Scheme::Explicit { .. })) else {
+        return Ok(());
+    };
+    match model.contacts.iter().find(|pair| pair.penetration.is_some()) {
+        Some(pair) => Err(Complaint::new(
+            format!("contacts.{}.normal.penetration", pair.name),
+            format!("the explicit step `{}` takes the plain penalty: leave it out, and raise alpha_n", model.steps[k].name),
+        )),
+        None => Ok(()),
+    }
 }
 
 fn newton_settings(case: &Case) -> Checked<newton::Settings> {
@@ -783,6 +803,7 @@ fn increments(place: &str, input: Option<IncrementsInput>, span: Span, scheme: S
             Scheme::Static => {
                 "needs a dynamic scheme: a static step has no error in time; give it a \"dt\" without error"
             }
+            Scheme::Explicit { .. } => "explicit takes increments as long as they are stable: leave error out",
             Scheme::Wilson { .. } => "wilson has no estimate of its error: take newmark, hht or generalized_alpha",
             _ => "newmark with beta near 1/6 has no estimate of its error: take another beta",
         };

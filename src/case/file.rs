@@ -497,11 +497,14 @@ pub struct OutputInput {
     pub every: usize,
     /// Whether fields are written at all
     pub fields: bool,
+    /// Explicit steps write a row of the history (and fields, every n-th time) at multiples of this since the start of the
+    /// step [T]; a hundredth of the step unless given. Implicit steps do so at every increment
+    pub interval: Option<f64>,
 }
 
 impl Default for OutputInput {
     fn default() -> Self {
-        Self { every: 1, fields: true }
+        Self { every: 1, fields: true, interval: None }
     }
 }
 

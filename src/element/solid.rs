@@ -96,6 +96,22 @@ impl SolidElement {
         self.evaluate(material, u, force, None)
     }
 
+    /// Writes the internal force (2) on each node over `forces`; returns the stored energy.
+    ///
+    /// # Errors
+    /// [`InvertedElement`] when the material is turned inside out at a quadrature point.
+    pub fn nodal_forces(
+        &self,
+        material: &dyn Material,
+        u: &[Vector2<f64>],
+        forces: &mut [Vector2<f64>],
+    ) -> Result<f64, InvertedElement> {
+        let mut flat = [0.0; 18];
+        let energy = self.force(material, u, &mut flat[..2 * u.len()])?;
+        forces.iter_mut().zip(flat.chunks_exact(2)).for_each(|(force, f)| *force = Vector2::new(f[0], f[1]));
+        Ok(energy)
+    }
+
     /// As [`SolidElement::force`], and writes the tangent (3) over `tangent`, column by column.
     ///
     /// # Errors

@@ -9,6 +9,8 @@
 //! Elements and contact points are evaluated in parallel and added in a fixed order: the same bits on any number of
 //! threads.
 
+mod forces;
+
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, Vector2};
@@ -177,6 +179,8 @@ pub struct Assembler<'m> {
     /// What was found at the last evaluated displacement
     pub evaluation: Evaluation,
     buffers: Buffers,
+    /// For explicit increments, once they begin
+    gather: Option<forces::Gather>,
     /// Segments that the pattern has room for ahead of each foot, when it is set next
     ahead: usize,
     /// Time spent
@@ -220,6 +224,7 @@ impl<'m> Assembler<'m> {
             iterates: Vec::new(),
             evaluation: Evaluation::default(),
             buffers: Buffers::default(),
+            gather: None,
             ahead: 1,
             seconds: Seconds::default(),
         };
