@@ -1,5 +1,5 @@
-//! Explicit increments of a block of fully integrated neo-Hookean Q4 elements: element updates a second, whole increments
-//! counted (forces, sums, time integration), on one thread and on all. What a fused multiply-add loop can do on this
+//! Explicit increments of a block of fully integrated neo-Hookean Q4 elements: element updates a second of processor time,
+//! whole increments counted (forces, sums, time integration), on one thread and on all. What a fused multiply-add loop can do on this
 //! machine stands beside it, for the share of its arithmetic that an update takes.
 
 use std::time::Instant;
@@ -15,6 +15,34 @@ const SIDE: usize = 300;
 /// Floating-point operations of one update, counted in the source: at each of 4 points F (32), invariants and stress with
 /// one logarithm (60), nodal forces (32); sums at the nodes (8).
 const OPERATIONS: f64 = 4.0 * (32.0 + 60.0 + 32.0) + 8.0;
+
+/// Processor time of this process where the system tells (other programs take their share of the wall clock), else wall
+/// time.
+struct Clock {
+    wall: Instant,
+    processor: Option<f64>,
+}
+
+impl Clock {
+    fn start() -> Self {
+        Self { wall: Instant::now(), processor: processor_seconds() }
+    }
+
+    fn seconds(&self) -> f64 {
+        let processor = processor_seconds().zip(self.processor).map(|(now, then)| now - then);
+        processor.unwrap_or_else(|| self.wall.elapsed().as_secs_f64())
+    }
+}
+
+/// Seconds that all threads of this process have run, from the Linux scheduler.
+fn processor_seconds() -> Option<f64> {
+    let threads = std::fs::read_dir("/proc/self/task").ok()?;
+    let of = |thread: std::fs::DirEntry| {
+        let text = std::fs::read_to_string(thread.path().join("schedstat")).ok()?;
+        text.split_whitespace().next()?.parse::<f64>().ok()
+    };
+    Some(1e-9 * threads.flatten().filter_map(of).sum::<f64>())
+}
 
 fn block() -> Value {
     let node = |i: usize, j: usize| j * (SIDE + 1) + i;
@@ -47,9 +75,9 @@ fn updates(threads: usize) -> f64 {
         let mut explicit =
             Explicit::begin(&model, &model.steps[0], &mut state, &mut assembler).expect("the step begins");
         let stretch = |k: i32| {
-            let clock = Instant::now();
+            let clock = Clock::start();
             let count = explicit.go_to(2e-3 * f64::from(k), &mut state, &mut assembler).expect("a finite motion");
-            (count * SIDE * SIDE) as f64 / clock.elapsed().as_secs_f64()
+            (count * SIDE * SIDE) as f64 / clock.seconds()
         };
         (1..=8).map(stretch).fold(0.0, f64::max)
     })
@@ -57,16 +85,17 @@ fn updates(threads: usize) -> f64 {
 
 /// Multiply-adds a second of one thread, counted as two operations each, in eight independent chains of four.
 fn arithmetic() -> f64 {
-    let mut sums = [[1.0f64; 4]; 8];
-    let clock = Instant::now();
-    let rounds = 40_000_000;
+    let mut sums = std::hint::black_box([[1.0f64; 4]; 8]);
+    let [factor, term] = std::hint::black_box([0.999_999, 1e-6]);
+    let clock = Clock::start();
+    let rounds = 4_000_000;
     for _ in 0..rounds {
         for sum in &mut sums {
-            sum.iter_mut().for_each(|x| *x = *x * 0.999_999 + 1e-6);
+            sum.iter_mut().for_each(|x| *x = *x * factor + term);
         }
     }
     assert!(std::hint::black_box(sums).iter().flatten().all(|x| x.is_finite()));
-    f64::from(rounds) * 64.0 / clock.elapsed().as_secs_f64()
+    f64::from(rounds) * 64.0 / clock.seconds()
 }
 
 fn main() {
@@ -75,10 +104,9 @@ fn main() {
     for threads in [1, std::thread::available_parallelism().map_or(1, usize::from)] {
         let rate = updates(threads);
         println!(
-            "{threads} thread(s): {:.2} million element updates/s, {:.2} a thread, {:.0} % of the multiply-adds",
+            "{threads} thread(s): {:.2} million element updates in a second of processor time, {:.0} % of the multiply-adds",
             1e-6 * rate,
-            1e-6 * rate / threads as f64,
-            100.0 * rate * OPERATIONS / (limit * threads as f64)
+            100.0 * rate * OPERATIONS / limit
         );
     }
 }

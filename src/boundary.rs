@@ -1,7 +1,7 @@
 //! Supports and loads: what is prescribed or applied at a node, and how it varies in time and space.
 
 use exmex::{Express, FlatEx};
-use nalgebra::{Rotation2, Vector2};
+use nalgebra::{Matrix2, Rotation2, Vector2};
 
 /// How a prescribed quantity varies, as given in the case.
 #[derive(Clone, Debug)]
@@ -243,6 +243,18 @@ impl Dashpot {
     }
 }
 
+/// A node's share of an absorbing side: force −C v, C = ∫ N_a ρ (c_p n⊗n + c_s s⊗s) dS with the side's reference normal
+/// n and tangent s. Plane waves that meet the side at a right angle leave as if the body went on.
+///
+/// Source: Lysmer & Kuhlemeyer (1969), J. Eng. Mech. Div. ASCE 95, 859.
+#[derive(Clone, Debug)]
+pub struct Absorber {
+    /// the node
+    pub node: usize,
+    /// C [F T/L]
+    pub coefficients: Matrix2<f64>,
+}
+
 /// Everything that acts on the model in one step.
 #[derive(Clone, Debug, Default)]
 pub struct Loads {
@@ -254,4 +266,6 @@ pub struct Loads {
     pub springs: Vec<Spring>,
     /// dashpots
     pub dashpots: Vec<Dashpot>,
+    /// absorbing sides
+    pub absorbers: Vec<Absorber>,
 }

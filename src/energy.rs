@@ -5,14 +5,15 @@ use crate::contact::force::ContactState;
 use crate::model::{Model, Step};
 
 /// What the drivers of dashpots put in over an increment: mean force × way of the driver [F·L].
-pub fn work_of_drivers(model: &Model, step: &Step, [t0, t1]: [f64; 2], increment: &[f64]) -> f64 {
+/// `way` is that of the node's dof.
+pub fn work_of_drivers(model: &Model, step: &Step, [t0, t1]: [f64; 2], way: impl Fn(usize) -> f64) -> f64 {
     let driven = step.loads.dashpots.iter().filter(|dashpot| dashpot.driver.is_some());
     driven
         .map(|dashpot| {
             let position = model.mesh.nodes[dashpot.dof / 2];
             let [v0, v1] = [t0, t1].map(|time| dashpot.driver_velocity(position, time));
             let velocity = 0.5 * (v0 + v1);
-            dashpot.coefficient * (velocity * (t1 - t0) - increment[dashpot.dof]) * velocity
+            dashpot.coefficient * (velocity * (t1 - t0) - way(dashpot.dof)) * velocity
         })
         .sum()
 }

@@ -18,9 +18,10 @@
 //! Source: Irons & Treharne (1971), Proc. 3rd Conf. Matrix Methods in Struct. Mech., WPAFB; Belytschko, Liu, Moran &
 //! Elkhodary (2014), Nonlinear Finite Elements for Continua and Structures, §6.2.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use nalgebra::{DMatrix, Vector2};
+use nalgebra::{DMatrix, Matrix2, Vector2};
 use rayon::prelude::*;
 
 use crate::assembly::{Assembler, Trial};
@@ -43,14 +44,24 @@ pub struct Explicit<'m> {
     step: &'m Step,
     /// Mass of every node [M]
     mass: Vec<f64>,
-    /// Coefficient of the dashpots at every dof [F T/L]
-    damping: Vec<f64>,
+    /// Dashpots and absorbing sides, one entry a node
+    dampers: Vec<Damper>,
     /// Longest stable increment when last looked at [T]
     stable: f64,
     /// Increments since then
     since: usize,
     displacement: Vec<f64>,
 }
+
+/// C of the force −C v on one node [F T/L].
+#[derive(Clone, Copy)]
+struct Damper {
+    node: usize,
+    coefficients: Matrix2<f64>,
+}
+
+/// Degrees of freedom that one thread moves at a time.
+const CHUNK: usize = 8192;
 
 impl<'m> Explicit<'m> {
     /// Begin a step: lump the masses, and find the accelerations that its loads begin with.
@@ -66,13 +77,11 @@ impl<'m> Explicit<'m> {
         state.step_start =
             Arc::new(StepStart { displacement: state.displacement.clone(), reaction: state.reaction.clone() });
         state.last_increment = None;
-        let mut damping = vec![0.0; model.dofs()];
-        step.loads.dashpots.iter().for_each(|dashpot| damping[dashpot.dof] += dashpot.coefficient);
         let mut explicit = Self {
             model,
             step,
             mass: masses(model),
-            damping,
+            dampers: dampers(step),
             stable: 0.0,
             since: LOOK_AGAIN,
             displacement: state.displacement.clone(),
@@ -89,7 +98,8 @@ impl<'m> Explicit<'m> {
         let still = Trial { old: state, step, time: state.time, dt: 0.0 };
         assembler.forces(still, &state.displacement).map_err(StepFailure::Start)?;
         let evaluation = &assembler.evaluation;
-        let damping = self.dashpot_pull(state.time, &state.velocity);
+        let mut damping = vec![0.0; model.dofs()];
+        self.pull(state.time, &state.velocity, &mut damping);
         let mut acceleration: Vec<f64> =
             evaluation.force.iter().zip(&damping).enumerate().map(|(dof, (f, d))| (d - f) / self.mass[dof / 2]).collect();
         let first = Trial { old: state, step, time: state.time + self.stable, dt: self.stable };
@@ -145,8 +155,13 @@ impl<'m> Explicit<'m> {
         let (model, step) = (self.model, self.step);
         let dt = time - state.time;
         let mut u = std::mem::take(&mut self.displacement);
-        let moved = |dof: usize| state.displacement[dof] + dt * (state.velocity[dof] + 0.5 * dt * state.acceleration[dof]);
-        u.iter_mut().enumerate().for_each(|(dof, u)| *u = moved(dof));
+        let old = (&state.displacement, &state.velocity, &state.acceleration);
+        u.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, u)| {
+            let (u0, v, a) = (&old.0[CHUNK * chunk..], &old.1[CHUNK * chunk..], &old.2[CHUNK * chunk..]);
+            for (((u, u0), v), a) in u.iter_mut().zip(u0).zip(v).zip(a) {
+                *u = u0 + dt * (v + 0.5 * dt * a);
+            }
+        });
         let trial = Trial { old: state, step, time, dt };
         let places: Vec<[f64; 4]> = step.supports.iter().map(|support| trial.thirds(support, model)).collect();
         for (support, places) in step.supports.iter().zip(&places) {
@@ -158,39 +173,42 @@ impl<'m> Explicit<'m> {
         assembler.forces(trial, &u)?;
         let evaluation = &mut assembler.evaluation;
 
-        let x = model.configuration(&u);
-        state.energy.friction_dissipation += friction_dissipation(model, &state.contacts, &evaluation.contacts, &x);
-        let increment: Vec<f64> = u.iter().zip(&state.displacement).map(|(new, old)| new - old).collect();
-        state.energy.external_work += half_work(&state.external, &increment);
-        state.energy.damping_dissipation -= half_work(&state.damping, &increment);
+        if !model.contacts.is_empty() {
+            let x = model.configuration(&u);
+            state.energy.friction_dissipation += friction_dissipation(model, &state.contacts, &evaluation.contacts, &x);
+        }
+        let way = |dof: usize, old: &[f64]| u[dof] - old[dof];
+        let supported = step.supports.iter().map(|support| support.dof);
+        let damped = self.dampers.iter().flat_map(|damper| [2 * damper.node, 2 * damper.node + 1]);
+        let special: Vec<(usize, f64)> = supported.chain(damped).map(|dof| (dof, way(dof, &state.displacement))).collect();
+        let damped = &special[step.supports.len()..];
+        let mut dissipated = work_on(&state.damping, damped);
+        let mut work = work_of_drivers(model, step, [state.time, time], |dof| way(dof, &state.displacement));
+        dissipated -= work;
 
-        let half: Vec<f64> =
-            state.velocity.iter().zip(&state.acceleration).map(|(v, a)| v + 0.5 * dt * a).collect();
         let before: Vec<f64> = step.supports.iter().map(|support| state.velocity[support.dof]).collect();
-        let pull = self.dashpot_pull(time, &half);
-        for dof in 0..u.len() {
-            let inertia = self.mass[dof / 2] + 0.5 * dt * self.damping[dof];
-            state.acceleration[dof] = (pull[dof] - evaluation.force[dof]) / inertia;
-            state.velocity[dof] = half[dof] + 0.5 * dt * state.acceleration[dof];
-        }
+        work += self.accelerate(dt, state, &evaluation.force, &evaluation.loads, &u);
+        std::mem::swap(&mut state.force, &mut evaluation.force);
+        std::mem::swap(&mut state.external, &mut evaluation.loads);
+        self.damp(time, dt, state);
         for ((support, places), before) in step.supports.iter().zip(places).zip(before) {
-            (state.velocity[support.dof], state.acceleration[support.dof]) = supported_rates(places, before, dt);
-        }
-        state.damping = self.dashpot_pull(time, &state.velocity);
-        state.force.clone_from(&evaluation.force);
-        state.external.clone_from(&evaluation.loads);
-        state.force.iter_mut().zip(&state.damping).for_each(|(force, pull)| *force -= pull);
-        state.reaction.fill(0.0);
-        for support in &step.supports {
             let dof = support.dof;
-            let reaction = state.force[dof] + self.mass[dof / 2] * state.acceleration[dof];
-            state.reaction[dof] = reaction;
-            state.external[dof] += reaction;
+            (state.velocity[dof], state.acceleration[dof]) = supported_rates(places, before, dt);
         }
+        if !self.dampers.is_empty() {
+            self.pull(time, &state.velocity, &mut state.damping);
+            damped.iter().for_each(|&(dof, _)| state.force[dof] -= state.damping[dof]);
+        }
+        for (support, (dof, way)) in step.supports.iter().zip(&special) {
+            let reaction = state.force[*dof] + self.mass[dof / 2] * state.acceleration[*dof];
+            state.reaction[support.dof] = reaction;
+            state.external[*dof] += reaction;
+            work += 0.5 * reaction * way;
+        }
+        dissipated += work_on(&state.damping, damped);
 
-        let driven = work_of_drivers(model, step, [state.time, time], &increment);
-        state.energy.external_work += half_work(&state.external, &increment) + driven;
-        state.energy.damping_dissipation += driven - half_work(&state.damping, &increment);
+        state.energy.external_work += work;
+        state.energy.damping_dissipation -= dissipated;
         state.energy.strain = evaluation.strain_energy;
         state.contacts = std::mem::take(&mut evaluation.contacts);
         self.displacement = std::mem::replace(&mut state.displacement, u);
@@ -200,14 +218,55 @@ impl<'m> Explicit<'m> {
         Ok(())
     }
 
-    /// c (v_driver − v) of every dof.
-    fn dashpot_pull(&self, time: f64, velocity: &[f64]) -> Vec<f64> {
-        let mut pull = vec![0.0; velocity.len()];
-        for dashpot in &self.step.loads.dashpots {
-            let driver = dashpot.driver_velocity(self.model.mesh.nodes[dashpot.dof / 2], time);
-            pull[dashpot.dof] += dashpot.coefficient * (driver - velocity[dashpot.dof]);
+    /// (8) for dofs without dashpots; returns the mean work of the external forces but the new reactions.
+    fn accelerate(&self, dt: f64, state: &mut State, force: &[f64], loads: &[f64], u: &[f64]) -> f64 {
+        let State { displacement, velocity, acceleration, external, .. } = state;
+        let chunks = velocity.par_chunks_mut(CHUNK).zip(acceleration.par_chunks_mut(CHUNK)).enumerate();
+        let sums = chunks.map(|(chunk, (velocity, acceleration))| {
+            let first = CHUNK * chunk;
+            let mut work = 0.0;
+            for (k, (v, a)) in velocity.iter_mut().zip(acceleration).enumerate() {
+                let dof = first + k;
+                let new = -force[dof] / self.mass[dof / 2];
+                *v += 0.5 * dt * (*a + new);
+                *a = new;
+                work += 0.5 * (external[dof] + loads[dof]) * (u[dof] - displacement[dof]);
+            }
+            work
+        });
+        let sums: Vec<f64> = sums.collect();
+        sums.iter().sum()
+    }
+
+    /// (8) for dofs with dashpots, of which [`Explicit::accelerate`] knows nothing: (M + ½ Δt C) (a − a_free) = C (v_driver
+    /// − v_free) with what it found.
+    fn damp(&self, time: f64, dt: f64, state: &mut State) {
+        if self.dampers.is_empty() {
+            return;
         }
-        pull
+        let mut pull = std::mem::take(&mut state.damping);
+        self.pull(time, &state.velocity, &mut pull);
+        for Damper { node, coefficients } in &self.dampers {
+            let inertia = Matrix2::identity() * self.mass[*node] + coefficients * (0.5 * dt);
+            let Some(inverse) = inertia.try_inverse() else { continue };
+            let change = inverse * Vector2::new(pull[2 * node], pull[2 * node + 1]);
+            for i in 0..2 {
+                state.acceleration[2 * node + i] += change[i];
+                state.velocity[2 * node + i] += 0.5 * dt * change[i];
+            }
+        }
+        state.damping = pull;
+    }
+
+    /// Write the forces of dashpots and absorbing sides over `pull`, which is zero elsewhere.
+    fn pull(&self, time: f64, velocity: &[f64], pull: &mut [f64]) {
+        for Damper { node, coefficients } in &self.dampers {
+            let force = -coefficients * Vector2::new(velocity[2 * node], velocity[2 * node + 1]);
+            (pull[2 * node], pull[2 * node + 1]) = (force.x, force.y);
+        }
+        for dashpot in &self.step.loads.dashpots {
+            pull[dashpot.dof] += dashpot.coefficient * dashpot.driver_velocity(self.model.mesh.nodes[dashpot.dof / 2], time);
+        }
     }
 
     fn kinetic_energy(&self, velocity: &[f64]) -> f64 {
@@ -257,9 +316,21 @@ impl<'m> Explicit<'m> {
     }
 }
 
-/// ½ Σ f Δu.
-fn half_work(force: &[f64], increment: &[f64]) -> f64 {
-    force.iter().zip(increment).map(|(f, du)| 0.5 * f * du).sum()
+/// ½ Σ f Δu over some dofs and their ways.
+fn work_on(force: &[f64], ways: &[(usize, f64)]) -> f64 {
+    ways.iter().map(|&(dof, way)| 0.5 * force[dof] * way).sum()
+}
+
+/// Dashpots and absorbing sides of each node.
+fn dampers(step: &Step) -> Vec<Damper> {
+    let mut total: BTreeMap<usize, Matrix2<f64>> = BTreeMap::new();
+    for dashpot in &step.loads.dashpots {
+        total.entry(dashpot.dof / 2).or_default()[(dashpot.dof % 2, dashpot.dof % 2)] += dashpot.coefficient;
+    }
+    for absorber in &step.loads.absorbers {
+        *total.entry(absorber.node).or_default() += absorber.coefficients;
+    }
+    total.into_iter().map(|(node, coefficients)| Damper { node, coefficients }).collect()
 }
 
 /// Mass of every node [M].

@@ -266,7 +266,7 @@ fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> Sta
     };
     let work_done = mean_work(&old.external, &external);
     let damped = mean_work(&old.damping, &evaluation.damping);
-    let driven = work_of_drivers(model, step, [old.time, time], &increment);
+    let driven = work_of_drivers(model, step, [old.time, time], |dof| increment[dof]);
     let x = model.configuration(&u);
     let contact_elastic = contact_energy(model, &evaluation.contacts, &x);
     let dissipated = friction_dissipation(model, &old.contacts, &evaluation.contacts, &x);

@@ -25,8 +25,7 @@ fn columns(friction: Value, traction: f64, scheme: Value, dt: f64, duration: f64
         load["on"] = json!(on);
         load
     };
-    // ρ c_s V on the length h/2 of each of the two end nodes.
-    let absorbing = |on: &str| load(on, json!({"dashpot": {"cx": 0.5 * h}}));
+    let absorbing = |on: &str| load(on, json!({"absorbing": true}));
     json!({
         "mesh": blocks.json(),
         "bodies": {"lower": material, "upper": material},

@@ -67,7 +67,18 @@ impl Assembler<'_> {
                 force[2 * node + 1] += contribution.force[2 * a + 1];
             }
         }
-        self.evaluation.loads = self.add_loads(trial, u, &x, &mut force, None)?;
+        let mut loads = std::mem::take(&mut self.evaluation.loads);
+        loads.clear();
+        loads.resize(u.len(), 0.0);
+        self.subtract_loads(trial, u, &x, &mut loads, None);
+        for (dof, (load, force)) in loads.iter_mut().zip(&mut force).enumerate() {
+            *force += *load;
+            *load = -*load;
+            if !load.is_finite() {
+                return Err(self.undefined(dof, trial.time));
+            }
+        }
+        self.evaluation.loads = loads;
         self.evaluation.contacts =
             responses.into_iter().map(|pair| pair.into_iter().map(|(state, _)| state).collect()).collect();
         self.evaluation.strain_energy = strain_energy;

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use nalgebra::Vector2;
+use nalgebra::{Matrix2, Vector2};
 
 use super::error::{CaseError, Complaint};
 use super::file::{
@@ -13,7 +13,7 @@ use super::file::{
 };
 use super::{along, initial, names, supported};
 use crate::boundary::{
-    Amplitude, Dashpot, DeadLoad, Drive, Expression, FollowerPressure, Loads, Motion, Prescribed, Span, Spring,
+    Absorber, Amplitude, Dashpot, DeadLoad, Drive, Expression, FollowerPressure, Loads, Motion, Prescribed, Span, Spring,
 };
 use crate::contact::mortar::{Mortar, mortar_points};
 use crate::contact::pair::ContactPair;
@@ -413,6 +413,7 @@ enum LoadKind {
     Force,
     Spring,
     Dashpot,
+    Absorbing,
 }
 
 /// A load with the amplitudes that the next step takes over from.
@@ -422,6 +423,7 @@ struct LoadInForce {
     pressures: Vec<FollowerPressure>,
     springs: Vec<Spring>,
     dashpots: Vec<Dashpot>,
+    absorbers: Vec<Absorber>,
 }
 
 impl StepBuilder<'_> {
@@ -445,6 +447,7 @@ impl StepBuilder<'_> {
             loads.pressures.extend(load.pressures.iter().cloned());
             loads.springs.extend(load.springs.iter().cloned());
             loads.dashpots.extend(load.dashpots.iter().cloned());
+            loads.absorbers.extend(load.absorbers.iter().cloned());
         }
         let supports = self.supports.values().cloned().collect();
         Ok(Step { name: input.name.clone(), span, scheme: input.scheme, increments, supports, released, loads })
@@ -523,10 +526,11 @@ impl StepBuilder<'_> {
             (LoadKind::Force, input.force.as_ref().map(Option::is_none)),
             (LoadKind::Spring, input.spring.as_ref().map(Option::is_none)),
             (LoadKind::Dashpot, input.dashpot.as_ref().map(Option::is_none)),
+            (LoadKind::Absorbing, input.absorbing.map(|absorbs| !absorbs)),
         ];
         let mut given = ends.into_iter().filter_map(|(kind, ends)| Some((kind, ends?)));
         let (Some((kind, ends)), None) = (given.next(), given.next()) else {
-            let message = "must give exactly one of pressure, traction, gravity, force, spring, dashpot";
+            let message = "must give exactly one of pressure, traction, gravity, force, spring, dashpot, absorbing";
             return Err(Complaint::new(place, message));
         };
         if ends && !self.loads.contains_key(&(input.on.to_string(), kind)) {
@@ -563,6 +567,12 @@ impl StepBuilder<'_> {
         }
         if let Some(dashpot) = &input.dashpot {
             self.dashpot(place, input, dashpot.as_ref(), span)?;
+        }
+        if let Some(absorbs) = input.absorbing {
+            let name = group_at(input, place)?;
+            let edges = edges(&self.model.mesh, &name, &format!("{place}.on"))?;
+            let absorbers = if absorbs { absorbers(self.model, edges) } else { Vec::new() };
+            self.loads.insert((name, LoadKind::Absorbing), LoadInForce { absorbers, ..Default::default() });
         }
         Ok(())
     }
@@ -725,6 +735,29 @@ fn edge_shares(mesh: &Mesh, edges: &[Edge]) -> Vec<(usize, f64, Vector2<f64>)> {
         }
     }
     shares
+}
+
+/// What the nodes of an absorbing side have of it.
+fn absorbers(model: &Model, edges: &[Edge]) -> Vec<Absorber> {
+    let mut total: BTreeMap<usize, Matrix2<f64>> = BTreeMap::new();
+    for Edge { nodes, element } in edges {
+        let material = &*model.bodies[model.body_of_element[*element]].material;
+        let density = material.density();
+        let impedance = |modulus: f64| (modulus * density).sqrt();
+        for (xi, weight) in shape::gauss(nodes.len()) {
+            let values = shape::edge_values(nodes.len(), xi);
+            let slopes = shape::edge_derivatives(nodes.len(), xi);
+            let along: Vector2<f64> = nodes.iter().zip(&slopes).map(|(&node, w)| model.mesh.nodes[node] * *w).sum();
+            let s = along.normalize();
+            let n = Vector2::new(s.y, -s.x);
+            let resistance = n * n.transpose() * impedance(material.stiffness())
+                + s * s.transpose() * impedance(material.shear_modulus());
+            for (&node, value) in nodes.iter().zip(values) {
+                *total.entry(node).or_default() += resistance * (weight * value * along.norm());
+            }
+        }
+    }
+    total.into_iter().map(|(node, coefficients)| Absorber { node, coefficients }).collect()
 }
 
 /// The drive of this step on top of what was in force before; nothing if there is neither.

@@ -433,6 +433,9 @@ pub struct LoadInput {
     /// Dashpot at every node of the group, to the ground or to a moving driver
     #[serde(default, deserialize_with = "present")]
     pub dashpot: Option<Option<DashpotInput>>,
+    /// true: a side of a body absorbs waves, as if the body went on (Lysmer-Kuhlemeyer: dashpots rho c_p along the normal
+    /// and rho c_s along the side, of the undeformed body); false ends it
+    pub absorbing: Option<bool>,
 }
 
 /// Components of a vector; zero unless given.

@@ -339,9 +339,11 @@ fn written_supports(step: &StepInput) -> Vec<Entry> {
 }
 
 fn written_load(load: &LoadInput) -> Entry {
-    let LoadInput { on, pressure, traction, gravity, force, spring, dashpot } = load;
+    let LoadInput { on, pressure, traction, gravity, force, spring, dashpot, absorbing } = load;
     let (kind, text) = if let Some(pressure) = pressure {
         ("pressure", pressure.as_ref().map(drive))
+    } else if let Some(absorbing) = absorbing {
+        ("absorbing side", absorbing.then(|| "rho c_p and rho c_s of its body".into()))
     } else if let Some(spring) = spring {
         let stiffness = |SpringInput { kx, ky, driver }: &SpringInput| {
             format!("kx {}, ky {}{}", number(*kx), number(*ky), driven("moved by", driver))

@@ -51,7 +51,8 @@ fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Result<(), Complain
 fn holding_dofs(step: &Step) -> impl Iterator<Item = usize> {
     let supports = step.supports.iter().map(|support| support.dof);
     let springs = step.loads.springs.iter().map(|spring| spring.dof);
-    supports.chain(springs).chain(step.loads.dashpots.iter().map(|dashpot| dashpot.dof))
+    let absorbers = step.loads.absorbers.iter().flat_map(|absorber| [2 * absorber.node, 2 * absorber.node + 1]);
+    supports.chain(springs).chain(step.loads.dashpots.iter().map(|dashpot| dashpot.dof)).chain(absorbers)
 }
 
 /// Accelerations follow from masses, so a node that may move needs one.
