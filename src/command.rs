@@ -10,6 +10,7 @@ use crate::error::Error;
 use crate::model::Model;
 use crate::output::Observer;
 use crate::output::fields::Fields;
+use crate::output::fronts::Fronts;
 use crate::output::history::History;
 use crate::output::law::{Hold, LawReport, LawTable, Moment};
 use crate::output::newton_log::NewtonLog;
@@ -23,7 +24,8 @@ use crate::run;
 const MOST_THREADS: usize = 1024;
 
 /// What runs and tests write beside frames and figures; an earlier run's must not be taken for this one's.
-const RESULTS: [&str; 6] = ["summary.json", "history.csv", "newton.csv", "solid.pvd", "contact.pvd", "law.csv"];
+const RESULTS: [&str; 8] =
+    ["summary.json", "history.csv", "newton.csv", "slip_map.csv", "fronts.csv", "solid.pvd", "contact.pvd", "law.csv"];
 
 /// Why a command did not end well.
 #[derive(Debug)]
@@ -83,9 +85,14 @@ pub fn run(path: &Path, out: Option<PathBuf>, threads: Option<usize>, quiet: boo
         true => Some(Fields::create(&folder, &model, &model.initial_state(), case.output.every)?),
         false => None,
     };
+    let mut fronts = match case.output.fronts {
+        Some(fronts) => Some(Fronts::create(&folder, &model, &model.initial_state(), fronts.slip_rate)?),
+        None => None,
+    };
     let mut progress = (!quiet).then(Progress::new);
     let mut observers: Vec<&mut dyn Observer> = vec![&mut history, &mut newton_log, &mut warnings];
     observers.extend(fields.as_mut().map(|fields| fields as &mut dyn Observer));
+    observers.extend(fronts.as_mut().map(|fronts| fronts as &mut dyn Observer));
     observers.extend(progress.as_mut().map(|progress| progress as &mut dyn Observer));
 
     let (report, result) = run::run(&model, &mut observers);

@@ -58,7 +58,9 @@ pub enum StepFailure {
         passes: usize,
     },
     /// The velocities of an explicit run are not finite any more.
-    #[error("the motion grows beyond all bounds: lower the safety of the explicit scheme, or look at loads and supports")]
+    #[error(
+        "the motion grows beyond all bounds: lower the safety of the explicit scheme, or look at loads and supports"
+    )]
     Unbounded,
     /// A body is held by nothing.
     #[error("{0}; give it a support, a spring, or contact that is closed at the start")]

@@ -11,9 +11,12 @@ use serde_json::{Value, json};
 /// Two bars of length 1 with ρ = 1 and c = 1, in uniaxial strain along x; the left one flies at the right with v = 1e-3.
 fn bars(scheme: Value, n: usize) -> Value {
     let h = 1.0 / n as f64;
-    let blocks = Blocks::default()
-        .rectangle("left", [n, 1], [-1.0, 0.0], [0.0, h])
-        .rectangle("right", [n, 1], [0.0, 0.0], [1.0, h]);
+    let blocks = Blocks::default().rectangle("left", [n, 1], [-1.0, 0.0], [0.0, h]).rectangle(
+        "right",
+        [n, 1],
+        [0.0, 0.0],
+        [1.0, h],
+    );
     // λ + 2G = 1 with ν = 0.3
     let modulus = 1.3 * 0.4 / 0.7;
     let material = json!({"material": {"model": "linear", "E": modulus, "nu": 0.3, "density": 1.0}});
@@ -21,7 +24,7 @@ fn bars(scheme: Value, n: usize) -> Value {
         "mesh": blocks.json(),
         "bodies": {"left": material, "right": material},
         "contacts": {"ends": {
-            "slave": "left_right", "master": "right_left", "normal": {"alpha_n": 10.0 / h},
+            "slave": "left_right", "master": "right_left", "normal": {"alpha_n": 2.0 / h},
             "friction": {"law": "frictionless"},
         }},
         "initial_velocity": {"left": [1e-3, 0.0]},
@@ -81,8 +84,7 @@ fn square(kind: &str, safety: f64, duration: f64) -> Value {
         "steps": [{
             "name": "swing", "duration": duration, "scheme": {"explicit": {"safety": safety}},
             "dt": {"initial": 1.0},
-            "supports": [{"on": "block_bottom", "ux": 0, "uy": 0}],
-            "loads": [{"on": "block_top", "spring": {"kx": 7.0, "ky": 11.0}}],
+            "loads": [{"on": "block_bottom", "spring": {"kx": 300.0, "ky": 500.0}}, {"on": "block_top", "spring": {"kx": 7.0, "ky": 11.0}}],
         }],
         "output": {"interval": 0.5},
     })
@@ -93,13 +95,11 @@ fn a_thousand_periods_at_the_limit_of_stability_keep_the_energy() {
     for kind in ["linear", "neo_hookean"] {
         let run = finish(&square(kind, 1.0, 20.0));
         assert!(run.report.increments > 1000, "{}", run.report.increments);
-        // The error of a vibration is (ω Δt/2)² of its kinetic energy, to and fro; it does not grow.
+        // Where nothing but springs and linear elements act, the audit closes to round-off.
         let initial = run.last().energy.initial;
-        let worst = |states: &[fecontact::state::State]| {
-            states.iter().fold(0.0f64, |worst, state| worst.max(state.energy.error().abs()))
-        };
-        let (first, second) = run.states.split_at(run.states.len() / 2);
-        assert!(worst(first) < 0.2 * initial && worst(second) < 1.2 * worst(first), "{kind}: {} {}", worst(first), worst(second));
+        let worst = run.states.iter().fold(0.0f64, |worst, state| worst.max(state.energy.error().abs()));
+        let allowed = if kind == "linear" { 1e-9 } else { 0.01 };
+        assert!(worst < allowed * initial, "{kind}: {worst} of {initial}");
     }
 }
 
@@ -197,7 +197,8 @@ fn any_number_of_threads_gives_the_same_bits() {
 fn what_explicit_steps_cannot_do_is_refused() {
     let refused = |case: &Value, words: &str| {
         let parsed = serde_json::from_value(case.clone()).expect("well formed");
-        let error = fecontact::case::build(&parsed, std::path::Path::new("test.json")).expect_err("refused").to_string();
+        let error =
+            fecontact::case::build(&parsed, std::path::Path::new("test.json")).expect_err("refused").to_string();
         assert!(error.contains(words), "{error}");
     };
     let good = bars(json!({"explicit": {}}), 2);

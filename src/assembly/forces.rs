@@ -90,8 +90,7 @@ impl Assembler<'_> {
     /// Write the internal forces of the solids over `force`; returns the stored energy.
     pub fn gather_solids(&mut self, u: &[f64], force: &mut [f64]) -> Result<f64, TrialFailure> {
         let model = self.model;
-        let Gather { stride, starts, places, forces, energies } =
-            self.gather.get_or_insert_with(|| Gather::new(model));
+        let Gather { stride, starts, places, forces, energies } = self.gather.get_or_insert_with(|| Gather::new(model));
         let one = |(e, force): (usize, &mut [Vector2<f64>])| {
             let nodes = &model.mesh.elements[e].nodes;
             let mut local = [Vector2::zeros(); 9];

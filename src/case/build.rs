@@ -13,7 +13,8 @@ use super::file::{
 };
 use super::{along, initial, names, supported};
 use crate::boundary::{
-    Absorber, Amplitude, Dashpot, DeadLoad, Drive, Expression, FollowerPressure, Loads, Motion, Prescribed, Span, Spring,
+    Absorber, Amplitude, Dashpot, DeadLoad, Drive, Expression, FollowerPressure, Loads, Motion, Prescribed, Span,
+    Spring,
 };
 use crate::contact::mortar::{Mortar, mortar_points};
 use crate::contact::pair::ContactPair;
@@ -93,6 +94,10 @@ fn build_on(case: &Case, mesh: Mesh) -> Checked<Model> {
         let message = format!("is {interval}: must be positive (leave it out for a hundredth of each explicit step)");
         return Err(Complaint::new("output.interval", message));
     }
+    if let Some(fronts) = case.output.fronts.filter(|fronts| !(fronts.slip_rate > 0.0 && fronts.slip_rate.is_finite()))
+    {
+        return Err(Complaint::new("output.fronts.slip_rate", format!("is {}: must be positive", fronts.slip_rate)));
+    }
     check_explicit(&model)?;
     supported::check(case, &model)?;
     Ok(model)
@@ -106,7 +111,10 @@ fn check_explicit(model: &Model) -> Checked<()> {
     match model.contacts.iter().find(|pair| pair.penetration.is_some()) {
         Some(pair) => Err(Complaint::new(
             format!("contacts.{}.normal.penetration", pair.name),
-            format!("the explicit step `{}` takes the plain penalty: leave it out, and raise alpha_n", model.steps[k].name),
+            format!(
+                "the explicit step `{}` takes the plain penalty: leave it out, and raise alpha_n",
+                model.steps[k].name
+            ),
         )),
         None => Ok(()),
     }

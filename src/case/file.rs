@@ -503,11 +503,21 @@ pub struct OutputInput {
     /// Explicit steps write a row of the history (and fields, every n-th time) at multiples of this since the start of the
     /// step [T]; a hundredth of the step unless given. Implicit steps do so at every increment
     pub interval: Option<f64>,
+    /// Slip over time and place (slip_map.csv), and the fronts that run along the contacts (fronts.csv)
+    pub fronts: Option<FrontsInput>,
+}
+
+/// What counts as a front.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FrontsInput {
+    /// Slip rate whose passage from below is the arrival of a front [L/T]
+    pub slip_rate: f64,
 }
 
 impl Default for OutputInput {
     fn default() -> Self {
-        Self { every: 1, fields: true, interval: None }
+        Self { every: 1, fields: true, interval: None, fronts: None }
     }
 }
 

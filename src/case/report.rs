@@ -394,5 +394,12 @@ fn output(case: &Case) -> Vec<String> {
         (true, every) => format!("fields every {every} increments, and at the end of each step"),
     };
     let watched = if case.watch.is_empty() { "no group".into() } else { case.watch.join(", ") };
-    vec![format!("history watches {watched}"), fields]
+    let mut lines = vec![format!("history watches {watched}"), fields];
+    if let Some(interval) = case.output.interval {
+        lines.push(format!("explicit steps write at multiples of {}", number(interval)));
+    }
+    if let Some(fronts) = case.output.fronts {
+        lines.push(format!("slip map, and fronts at the slip rate {}", number(fronts.slip_rate)));
+    }
+    lines
 }
