@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::model::Model;
 use crate::output::Observer;
 use crate::output::fields::Fields;
-use crate::output::fronts::Fronts;
+use crate::output::fronts::{self, Fronts};
 use crate::output::history::History;
 use crate::output::law::{Hold, LawReport, LawTable, Moment};
 use crate::output::newton_log::NewtonLog;
@@ -102,6 +102,7 @@ pub fn run(path: &Path, out: Option<PathBuf>, threads: Option<usize>, quiet: boo
         title: case.title.clone(),
         units: case.units.clone(),
         friction: case.contacts.iter().map(|(name, contact)| (name.clone(), contact.friction)).collect(),
+        wave_speeds: fronts::wave_speeds(&model),
     };
     let summary = Summary::new(about, &model, report, result.as_ref().err(), warnings.list);
     summary::write(&summary, &folder)?;
@@ -159,6 +160,7 @@ pub fn law(path: &Path, out: Option<PathBuf>) -> Result<(), Failure> {
         title: input.title,
         units: input.units,
         friction: [("law".into(), input.friction)].into(),
+        wave_speeds: [0.0; 3],
     };
     let summary = LawSummary { ending: Ending::new(result.as_ref().err()), about, report };
     summary::write(&summary, &folder)?;

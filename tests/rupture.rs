@@ -17,7 +17,11 @@ use serde_json::{Value, json};
 /// SCEC TPV205-2D (two patches of other stress) or TPV3-2D, in m, s, MPa and kg/1e6: a 30 km fault in 48 × 40 km of rock,
 /// elements of the size `h`.
 fn scec(h: f64, patches: bool, duration: f64, fields: Value) -> Value {
-    let (length, height) = (48e3, 20e3);
+    fault_in([48e3, 20e3], h, patches, duration, fields)
+}
+
+/// The same in rock of a length, and of a height on either side.
+fn fault_in([length, height]: [f64; 2], h: f64, patches: bool, duration: f64, fields: Value) -> Value {
     let divisions = [(length / h) as usize, (height / h) as usize];
     let blocks = Blocks::default()
         .rectangle("lower", divisions, [-0.5 * length, -height], [0.5 * length, 0.0])
@@ -147,11 +151,14 @@ fn quiet() -> Value {
 }
 
 #[test]
+#[ignore = "minutes: 43 000 elements, implicit"]
 fn implicit_and_explicit_increments_agree_on_the_arrival() {
-    let mut case = scec(400.0, true, 1.9, quiet());
+    // Masses are lumped in one and consistent in the other, which tells in a length of the order of an element: at 400 m
+    // the arrivals differ by 8 %, at 125 m by 3 %.
+    let mut case = fault_in([14e3, 6e3], 62.5, true, 1.65, json!({"interval": 0.0125, "fields": false}));
     let explicit = rupture(&case, &[-4500.0, 4500.0]).0;
     case["steps"][0]["scheme"] = json!({"newmark": {}});
-    case["steps"][0]["dt"] = json!({"initial": 0.02});
+    case["steps"][0]["dt"] = json!({"initial": 0.0125});
     let implicit = rupture(&case, &[-4500.0, 4500.0]).0;
     println!("explicit {explicit:?}, implicit {implicit:?}");
     for (s, (arrival, _)) in &explicit {
@@ -244,7 +251,7 @@ fn fronts_tell_when_and_how_fast_a_given_front_ran() {
     let map = rows(&folder.path().join("slip_map.csv"));
     assert_eq!(map.len(), 240 * places.len());
     // Positions run from one end of the slave to the other.
-    let positions: Vec<f64> = map[..places.len()].iter().map(|row| number(row, 2)).collect();
+    let positions: Vec<f64> = map[..places.len()].iter().map(|row| number(row, 3)).collect();
     assert!(positions.windows(2).all(|pair| pair[0] < pair[1]) && positions[0] == 0.0);
 }
 
@@ -254,7 +261,7 @@ fn what_varies_along_a_fault_is_checked() {
         let mut bad = scec(4000.0, true, 1.0, quiet());
         bad.pointer_mut(pointer).expect("an object")[key] = value;
         let parsed = serde_json::from_value(bad).expect("well formed");
-        let error = case::build(&parsed, Path::new("test.json")).expect_err("refused").to_string();
+        let error = case::build(&parsed, Path::new("test.json")).map(drop).expect_err("refused").to_string();
         assert!(error.contains(words), "{error}");
     };
     let fault = "/contacts/fault";
@@ -263,7 +270,7 @@ fn what_varies_along_a_fault_is_checked() {
     refused(&format!("{fault}/along"), "mu_s", table(json!([[1, 0.7], [0, 0.7]])), "must ascend: 0 follows 1");
     refused(&format!("{fault}/along"), "mu_s", json!("0.6 + t"), "the time t has no meaning");
     refused(&format!("{fault}/along"), "mu_s", json!("sqrt(x)"), "is not a finite number at");
-    refused(&format!("{fault}/along"), "mu_s", json!("0.6 + x/1000000"), "not less than \"mu_d\"");
+    refused(&format!("{fault}/along"), "mu_s", json!("0.6 + x/100000"), "not less than \"mu_d\"");
     refused(&format!("{fault}/along"), "mu", json!(0.6), "did you mean `mu_");
     refused(&format!("{fault}/initial"), "pressure", json!("x"), "must be zero or positive");
     refused(&format!("{fault}/initial"), "structure", json!(1.0), "has no structure");

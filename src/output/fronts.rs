@@ -17,8 +17,21 @@ use crate::model::Model;
 use crate::state::State;
 
 /// Columns of `slip_map.csv`.
-const MAP: [&str; 12] =
-    ["time", "contact", "position", "x", "y", "slip", "slip_rate", "R", "mu", "structure", "traction", "pressure"];
+const MAP: [&str; 13] = [
+    "time",
+    "contact",
+    "number",
+    "position",
+    "x",
+    "y",
+    "slip",
+    "slip_rate",
+    "R",
+    "mu",
+    "structure",
+    "traction",
+    "pressure",
+];
 
 /// Columns of `fronts.csv`.
 const FRONTS: [&str; 11] = [
@@ -47,6 +60,13 @@ pub struct WaveSpeeds {
 }
 
 impl WaveSpeeds {
+    /// Of the body behind the slave of a contact, if there is one.
+    fn behind(model: &Model, pair: &ContactPair) -> Option<Self> {
+        let (node, _) = *pair.points.first()?.position.first()?;
+        let body = model.bodies.iter().find(|body| body.nodes.binary_search(&node).is_ok())?;
+        Some(Self::of(&*body.material))
+    }
+
     /// Of a material; infinite without density.
     ///
     /// ```text
@@ -65,6 +85,13 @@ impl WaveSpeeds {
         }
         Self { rayleigh: shear * low.sqrt(), shear, pressure }
     }
+}
+
+/// c_R, c_s and c_p of the body behind the first contact's slave; 0 if there is none, or it has no density [L/T].
+pub fn wave_speeds(model: &Model) -> [f64; 3] {
+    let speeds = model.contacts.first().and_then(|pair| WaveSpeeds::behind(model, pair));
+    let finite = speeds.filter(|speeds| speeds.pressure.is_finite());
+    finite.map_or([0.0; 3], |speeds| [speeds.rayleigh, speeds.shear, speeds.pressure])
 }
 
 /// A point of the slave surface: where it is, and what it did so far.
@@ -118,7 +145,8 @@ impl Fronts {
     fn row(&mut self, model: &Model, state: &State) -> Result<(), Error> {
         let [before, old_dt] = self.last;
         let dt = state.time - before;
-        for ((interface, pair), states) in self.interfaces.iter_mut().zip(&model.contacts).zip(&state.contacts) {
+        let all = self.interfaces.iter_mut().zip(&model.contacts).zip(&state.contacts).enumerate();
+        for (number, ((interface, pair), states)) in all {
             for ((point, slave), contact) in interface.points.iter_mut().zip(&pair.points).zip(states) {
                 let friction = &contact.friction;
                 let rate = (friction.plastic_slip - point.slip) / dt;
@@ -129,6 +157,7 @@ impl Fronts {
                 (point.slip, point.rate) = (friction.plastic_slip, rate);
                 self.map.number(state.time);
                 self.map.text(&interface.name);
+                self.map.count(number);
                 let structure = pair.law(slave).structure(friction.mu);
                 let [x, y] = point.at;
                 for number in [
@@ -189,9 +218,7 @@ impl Interface {
                 points.push(Point { line, position, at: at.into(), slip: 0.0, rate: 0.0, arrivals: Vec::new() });
             }
         }
-        let node = pair.points.first().and_then(|point| point.position.first()).map(|&(node, _)| node);
-        let body = node.and_then(|node| model.bodies.iter().find(|body| body.nodes.binary_search(&node).is_ok()));
-        Self { name: pair.name.clone(), speeds: body.map(|body| WaveSpeeds::of(&*body.material)), points }
+        Self { name: pair.name.clone(), speeds: WaveSpeeds::behind(model, pair), points }
     }
 
     /// Local speed of the front that passes a point for the n-th time [L/T]; NaN if no neighbour was passed as often.
