@@ -46,7 +46,7 @@ fn fault_in([length, height]: [f64; 2], h: f64, patches: bool, duration: f64, fi
         "contacts": {"fault": {
             "slave": "upper_bottom", "master": "lower_top", "normal": {"alpha_n": stiffness},
             "friction": {"law": "slip_weakening", "mu_s": 0.677, "mu_d": 0.525, "D_c": 0.4, "alpha_t": stiffness},
-            "along": {"mu_s": {"x": [[-15e3, 1e4], [-15e3, 0.677], [15e3, 0.677], [15e3, 1e4]]}},
+            "along": {"cohesion": {"x": [[-15e3, 1e4], [-15e3, 0.0], [15e3, 0.0], [15e3, 1e4]]}},
             "initial": {"pressure": 120.0, "traction": {"x": traction}, "balanced": true},
         }},
         "steps": [{"name": "rupture", "duration": duration, "scheme": {"explicit": {}}, "dt": {"initial": 1.0}, "loads": sides}],

@@ -68,13 +68,11 @@ impl Map {
         text(&mut drawing, [x0, 24.0], title, 15.0, Anchor::Start);
         let subtitle = if source.about.title.is_empty() { &source.name } else { &source.about.title };
         text(&mut drawing, [x0, 44.0], subtitle, 11.0, Anchor::Start);
-        for k in 0..=6 {
-            let part = f64::from(k) / 6.0;
-            let (s, t) = (left + part * (right - left), start + part * (end - start));
-            let [x, _] = place(s, start);
-            let [_, y] = place(left, t);
-            text(&mut drawing, [x, y0 + height + 16.0], &number(s), 11.0, Anchor::Middle);
-            text(&mut drawing, [x0 - 6.0, y + 4.0], &number(t), 11.0, Anchor::End);
+        for s in ticks(left, right) {
+            text(&mut drawing, [place(s, start)[0], y0 + height + 16.0], &number(s), 11.0, Anchor::Middle);
+        }
+        for t in ticks(start, end) {
+            text(&mut drawing, [x0 - 6.0, place(left, t)[1] + 4.0], &number(t), 11.0, Anchor::End);
         }
         let with = |what: &str, unit: String| if unit.is_empty() { what.into() } else { format!("{what} [{unit}]") };
         let along = with("position along the slave", units.get("length"));
@@ -155,7 +153,8 @@ impl Map {
             let time = (0.3 * (end - start)).min(0.3 * (right - left) / speed);
             let to = place(origin[0] + speed * time, origin[1] + time);
             drawing.line(place(origin[0], origin[1]), to, Stroke { colour: "#0060a0", width: 1.6, dashes });
-            text(drawing, [to[0] + 3.0, to[1] - 3.0], name, 11.0, Anchor::Start);
+            let (shift, anchor) = if name == "c_R" { (-3.0, Anchor::End) } else { (4.0, Anchor::Start) };
+            text(drawing, [to[0] + shift, to[1] + 4.0], name, 11.0, anchor);
         }
     }
 }
@@ -164,6 +163,19 @@ fn bounds(values: &[f64]) -> (f64, f64) {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     (low, high)
+}
+
+/// Round numbers within a range.
+fn ticks(low: f64, high: f64) -> Vec<f64> {
+    let raw = (high - low) / 6.0;
+    if !(raw > 0.0 && raw.is_finite()) {
+        return vec![low];
+    }
+    let power = 10f64.powf(raw.log10().floor());
+    let step = [1.0, 2.0, 5.0].map(|part| part * power).into_iter().find(|step| *step >= raw).unwrap_or(10.0 * power);
+    let first = (low / step).ceil() as i64;
+    let last = (high / step).floor() as i64;
+    (first..=last).map(|k| k as f64 * step).collect()
 }
 
 fn share(value: f64, low: f64, high: f64) -> f64 {
