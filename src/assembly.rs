@@ -49,6 +49,11 @@ impl<'a> Trial<'a> {
         if theta == 1.0 { self } else { Self { time: self.old.time + theta * self.dt, dt: theta * self.dt, ..self } }
     }
 
+    /// What is left of the dashpots that stabilize at the end of the increment, 1 to 0; exactly 0 at the end of the step.
+    pub fn stabilization_left(&self) -> f64 {
+        1.0 - self.step.span.share(self.time)
+    }
+
     /// ū of a support at the end of the increment; not finite where its expression has no value [L].
     pub fn prescribed(&self, support: &Prescribed, model: &Model) -> f64 {
         let (position, start) = self.place(support, model);
@@ -78,6 +83,8 @@ pub struct Evaluation {
     pub loads: Vec<f64>,
     /// forces of dashpots on the nodes [F]
     pub damping: Vec<f64>,
+    /// norm of the forces of those that stabilize [F]
+    pub stabilization: f64,
     /// F + M a, at a prescribed dof the reaction [F]
     pub balance: Vec<f64>,
     /// v [L/T]
@@ -533,8 +540,38 @@ impl<'m> Assembler<'m> {
                 tangent.add_diagonal(dof, dashpot.coefficient * dvelocity);
             }
         }
+        self.stabilize(trial, u, force, tangent, &mut damping);
         self.evaluation.damping = damping;
         Ok(())
+    }
+
+    /// Subtract the forces of the dashpots that stabilize a static step and fade away in it.
+    fn stabilize(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        force: &mut [f64],
+        mut tangent: Option<&mut SparseMatrix>,
+        damping: &mut [f64],
+    ) {
+        self.evaluation.stabilization = 0.0;
+        let left = trial.stabilization_left();
+        if trial.dt == 0.0 || left == 0.0 {
+            return;
+        }
+        let mut squares = 0.0;
+        for (dof, start) in trial.step.stabilization.iter().enumerate() {
+            let stiffness = left * start / trial.dt;
+            let pull = -stiffness * (u[dof] - trial.old.displacement[dof]);
+            force[dof] -= pull;
+            damping[dof] += pull;
+            self.magnitudes[dof] += pull.abs();
+            squares += pull * pull;
+            if let Some(tangent) = tangent.as_deref_mut() {
+                tangent.add_diagonal(dof, stiffness);
+            }
+        }
+        self.evaluation.stabilization = squares.sqrt();
     }
 
     /// Velocities, accelerations, and the out-of-balance force of every dof as if none were prescribed.

@@ -41,6 +41,8 @@ pub struct IterationRecord {
     pub newton: Iteration,
     /// contact states after the correction
     pub contacts: ContactCounts,
+    /// ‖forces that stabilize‖/‖forces at work‖ after the correction [-]
+    pub stabilization: f64,
 }
 
 /// Begin a step: remember displacements and reactions, and find the forces and accelerations that the run or dynamics
@@ -177,14 +179,14 @@ fn solve(
     start: Option<Vec<f64>>,
     work: &mut Workspace,
 ) -> (Vec<IterationRecord>, Result<Vec<f64>, StepFailure>) {
-    let old = trial.old;
+    let Trial { old, step, .. } = trial;
     let Workspace { assembler, solver, system, linear_seconds } = work;
     let begins = start.is_none();
     if begins {
         assembler.start_increment();
     }
     let mut tangents = 0;
-    let mut counts = Vec::new();
+    let mut seen = Vec::new();
     let mut floating = None;
     let spent = assembler.seconds.assembly + assembler.seconds.contact;
     let clock = std::time::Instant::now();
@@ -192,22 +194,29 @@ fn solve(
     let (iterations, result) = newton::solve(start, model.newton, &mut **solver, system, |u, request, system| {
         assembler.evaluate(trial, u, request, system)?;
         if request == Request::Tangent {
-            if begins && tangents == 0 && old.last_increment.is_none() {
+            // A step begins, or its stabilization has just gone.
+            let unaided =
+                old.last_increment.is_none() || (!step.stabilization.is_empty() && trial.stabilization_left() == 0.0);
+            if begins && tangents == 0 && unaided {
                 floating = null_motion(model, u, &system.tangent);
             }
             tangents += 1;
         } else if tangents > 0 {
-            counts.push(ContactCounts::of(&assembler.evaluation.contacts));
+            let evaluation = &assembler.evaluation;
+            let share = evaluation.stabilization / system.forces.max(f64::MIN_POSITIVE);
+            seen.push((ContactCounts::of(&evaluation.contacts), share));
         }
         Ok(())
     });
     let assembled = assembler.seconds.assembly + assembler.seconds.contact - spent;
     *linear_seconds += clock.elapsed().as_secs_f64() - assembled;
-    counts.resize(iterations.len(), ContactCounts::default());
-    let iterations =
-        iterations.into_iter().zip(counts).map(|(newton, contacts)| IterationRecord { newton, contacts }).collect();
+    // The last state may not have been evaluated.
+    seen.resize(iterations.len(), (ContactCounts::default(), 0.0));
+    let record = |(newton, (contacts, stabilization))| IterationRecord { newton, contacts, stabilization };
+    let iterations = iterations.into_iter().zip(seen).map(record).collect();
     let result = match (floating, result) {
-        (Some(floating), _) => Err(StepFailure::Floating(floating)),
+        (Some(floating), _) if old.last_increment.is_none() => Err(StepFailure::Floating(floating)),
+        (Some(floating), _) => Err(StepFailure::ContactLost(floating)),
         // A trial state may have lost the contact that held a body: worth saying, and worth a smaller increment.
         (None, Err(failure)) => {
             let loose = null_motion(model, &old.displacement, &system.tangent);
@@ -267,6 +276,7 @@ fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> Sta
     };
     let work_done = mean_work(&old.external, &external);
     let damped = mean_work(&old.damping, &evaluation.damping);
+    let stabilized: f64 = step.stabilization.iter().zip(&increment).map(|(c, du)| c * du * du).sum();
     let driven = work_of_drivers(model, trial, &increment);
     let x = model.configuration(&u);
     let contact_elastic = contact_energy(model, &evaluation.contacts, &x);
@@ -289,6 +299,7 @@ fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> Sta
     };
     state.energy.external_work += work_done + driven;
     state.energy.damping_dissipation += driven - damped;
+    state.energy.stabilization += trial.stabilization_left() * stabilized / dt;
     state.energy.strain = evaluation.strain_energy;
     state.energy.contact_elastic = contact_elastic;
     state.energy.friction_dissipation += dissipated;

@@ -429,7 +429,9 @@ impl StepBuilder<'_> {
             loads.dashpots.extend(load.dashpots.iter().cloned());
         }
         let supports = self.supports.values().cloned().collect();
-        Ok(Step { name: input.name.clone(), span, scheme: input.scheme, increments, supports, released, loads })
+        let stabilization = stabilization(&format!("{place}.stabilize"), input, self.model)?;
+        let (name, scheme) = (input.name.clone(), input.scheme);
+        Ok(Step { name, span, scheme, increments, supports, released, loads, stabilization })
     }
 
     /// Take over the supports of the step before, replace those named again, and list the dofs that are freed.
@@ -748,6 +750,26 @@ pub(super) fn drive(input: &DriveInput, place: &str) -> Checked<Drive> {
             Drive::Table(table.clone())
         }
     })
+}
+
+/// c₀ of every dof: the nodes of a body share `stabilize` × (λ + 2G) × duration.
+fn stabilization(place: &str, input: &StepInput, model: &Model) -> Checked<Vec<f64>> {
+    let Some(share) = input.stabilize else { return Ok(Vec::new()) };
+    if !(share > 0.0 && share <= 1.0) {
+        let message =
+            format!("is {share}: must be a share of the stiffness, above 0 and at most 1 (1e-3 is a good start)");
+        return Err(Complaint::new(place, message));
+    }
+    if input.scheme != Scheme::Static {
+        return Err(Complaint::new(place, "is for static steps: in a dynamic one inertia holds the bodies"));
+    }
+    let mut coefficients = vec![0.0; model.dofs()];
+    for body in &model.bodies {
+        let coefficient = share * body.material.stiffness() * input.duration / body.nodes.len() as f64;
+        let dofs = body.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
+        dofs.for_each(|dof| coefficients[dof] = coefficient);
+    }
+    Ok(coefficients)
 }
 
 fn increments(place: &str, input: Option<IncrementsInput>, span: Span, scheme: Scheme) -> Checked<Increments> {

@@ -249,6 +249,10 @@ pub struct StepInput {
     pub scheme: Scheme,
     /// Increments; inherited from the step before unless given
     pub dt: Option<IncrementsInput>,
+    /// Static steps only, where bodies are held by nothing until contact holds them: dashpots at all nodes of every body
+    /// resist motion, at the start of the step as if this share of the body's stiffness lambda + 2G moved it in the
+    /// time of the step; they fade linearly and are gone at its end. 1e-3 is a good start. Not inherited
+    pub stabilize: Option<f64>,
     /// Supports; inherited, and replaced where the same group and direction is named again
     #[serde(default)]
     pub supports: Vec<SupportInput>,
