@@ -87,6 +87,9 @@ const DIVERGENCE: f64 = 1e4;
 /// How much less an old tangent may gain than the iteration before did, and how much it must gain to be used again.
 const OLD_TANGENT: f64 = 10.0;
 
+/// Smallest part of a correction that is tried where the whole of it leads to a state that cannot be evaluated.
+const LEAST_SHARE: f64 = 0.1;
+
 /// Solve r(u) = 0 from the start value `u`. `evaluate` fills the system at a displacement.
 pub fn solve<E>(
     mut u: Vec<f64>,
@@ -147,7 +150,17 @@ pub fn solve<E>(
                 perturbed_pivots: solution.perturbed_pivots,
                 fallback: solution.fallback,
             });
-            evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
+            // A correction that turns an element inside out is far too long; a part of it may lead on.
+            let mut share = 1.0;
+            while let Err(failure) = evaluate(&u, Request::Residual, system) {
+                share *= 0.5;
+                if share < LEAST_SHARE {
+                    return Err(NewtonFailure::Evaluation(failure));
+                }
+                for (u, x) in u.iter_mut().zip(&solution.x) {
+                    *u -= share * x;
+                }
+            }
             before = size;
         }
     })();

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::assembly::{Assembler, ContactCounts, Trial};
 use crate::configuration::Configuration;
-use crate::contact::force::ContactState;
+use crate::contact::force::{ContactState, Status};
 use crate::error::StepFailure;
 use crate::floating::null_motion;
 use crate::linear::{self, LinearSolver};
@@ -41,6 +41,8 @@ pub struct IterationRecord {
     pub newton: Iteration,
     /// contact states after the correction
     pub contacts: ContactCounts,
+    /// points that the correction brought back to the status which the one before it had changed
+    pub flips: usize,
     /// ‖forces that stabilize‖/‖forces at work‖ after the correction [-]
     pub stabilization: f64,
 }
@@ -187,6 +189,7 @@ fn solve(
     }
     let mut tangents = 0;
     let mut seen = Vec::new();
+    let mut flips = Flips::default();
     let mut floating = None;
     let spent = assembler.seconds.assembly + assembler.seconds.contact;
     let clock = std::time::Instant::now();
@@ -204,15 +207,16 @@ fn solve(
         } else if tangents > 0 {
             let evaluation = &assembler.evaluation;
             let share = evaluation.stabilization / system.forces.max(f64::MIN_POSITIVE);
-            seen.push((ContactCounts::of(&evaluation.contacts), share));
+            seen.push((ContactCounts::of(&evaluation.contacts), flips.count(&evaluation.contacts), share));
         }
         Ok(())
     });
     let assembled = assembler.seconds.assembly + assembler.seconds.contact - spent;
     *linear_seconds += clock.elapsed().as_secs_f64() - assembled;
     // The last state may not have been evaluated.
-    seen.resize(iterations.len(), (ContactCounts::default(), 0.0));
-    let record = |(newton, (contacts, stabilization))| IterationRecord { newton, contacts, stabilization };
+    seen.resize(iterations.len(), (ContactCounts::default(), 0, 0.0));
+    let record =
+        |(newton, (contacts, flips, stabilization))| IterationRecord { newton, contacts, flips, stabilization };
     let iterations = iterations.into_iter().zip(seen).map(record).collect();
     let result = match (floating, result) {
         (Some(floating), _) if old.last_increment.is_none() => Err(StepFailure::Floating(floating)),
@@ -225,6 +229,26 @@ fn solve(
         (None, Ok(u)) => Ok(u),
     };
     (iterations, result)
+}
+
+/// Watches the contact states go to and fro between iterations.
+#[derive(Default)]
+struct Flips {
+    /// Status of every point at the last two iterates
+    last: [Vec<Status>; 2],
+}
+
+impl Flips {
+    /// Points that are as they were before the last iterate, and were not in it.
+    fn count(&mut self, contacts: &[Vec<ContactState>]) -> usize {
+        let now: Vec<Status> = contacts.iter().flatten().map(ContactState::status).collect();
+        let [last, before] = &self.last;
+        let flips = now.iter().zip(last).zip(before).filter(|((now, last), before)| now == before && now != last);
+        let flips = flips.count();
+        let [last, _] = std::mem::take(&mut self.last);
+        self.last = [now, last];
+        flips
+    }
 }
 
 /// Where Newton's method starts: the last increment of the step goes on at its pace. Under error control it is

@@ -48,9 +48,10 @@ fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
 fn evaluate(pair: &ContactPair, k: usize, old: &ContactState, x: &Positions) -> (ContactState, Option<Contribution>) {
     let x = &Configuration::undeformed(x);
     let index = Index::new(&pair.master, x);
-    let increment = Increment { dt: 0.3, presume: Presume::Nothing };
-    respond(pair, &pair.points[k], index.project(&pair.points[k], None, x), old, increment, x)
-        .expect("a finite increment")
+    let increment = Increment { dt: 0.3, presume: Presume::Nothing, promised: None };
+    let projection = index.project(&pair.points[k], None, x);
+    let (state, closed) = respond(pair, &pair.points[k], projection, old, increment, x).expect("a finite increment");
+    (state, closed.map(|closed| closed.contribution))
 }
 
 /// Forces of one point on the given nodes.
@@ -296,13 +297,14 @@ fn check_mortar_tangent(
     let weights = mortar.weights(k, surface, &was, &before);
     let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.law.initial_state() };
     let old = ContactState { friction: pressed, foot: Some(MasterPoint { segment: 0, xi: 0.0 }), gap, multiplier: 0.0 };
-    let increment = Increment { dt: 0.3, presume: Presume::Nothing };
+    let increment = Increment { dt: 0.3, presume: Presume::Nothing, promised: None };
     let evaluate = |x: &Positions| {
         let x = Configuration::undeformed(x);
         let is = mortar.overlaps(surface, &Index::new(&pair.master, &x), &x);
         let meeting = mortar.kinematics(k, surface, &is, weights.as_ref(), &x).expect("the master faces the point");
         closes(pair, &pair.points[k], meeting.gap, &old, increment, &x)
             .then(|| press(pair, meeting, &old, increment).expect("a finite increment").1.expect("a closed point"))
+            .map(|closed| closed.contribution)
     };
     let Some(contribution) = evaluate(x) else { return false };
     let (scale, h) = (contribution.tangent.amax(), 1e-6);

@@ -4,14 +4,13 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::force::{ContactState, Increment, PointResponse, Presume, closes, open, press, respond};
+use super::force::{Closed, ContactState, Increment, PointResponse, Presume, Tractions, closes, open, press, respond};
 use super::kinematics::{Kinematics, kinematics};
 use super::mortar::Mortar;
 use super::search::Index;
 use super::surface::{Master, MasterPoint, SlavePoint};
 use crate::configuration::Configuration;
 use crate::friction::{FrictionLaw, FrictionState, LawFailure};
-use crate::system::Contribution;
 
 /// Two surfaces that may touch.
 #[derive(Debug)]
@@ -43,11 +42,22 @@ pub struct InitialTraction {
     pub traction: f64,
 }
 
+/// What one linear solve takes over for a point from those before.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Presumption {
+    /// Presumption about its state
+    pub presume: Presume,
+    /// Tractions promised
+    pub promised: Option<Tractions>,
+    /// Segment it is held on
+    pub held: Option<usize>,
+}
+
 /// Fewer points than this are not worth waking other threads for.
 const FEW: usize = 64;
 
 /// Trial states and contributions of all points of a pair, in their order.
-pub type PairResponse = Vec<(ContactState, Option<Contribution>)>;
+pub type PairResponse = Vec<(ContactState, Option<Closed>)>;
 
 impl ContactPair {
     /// Start closed: from now on every point's gap is counted so that the given pressure acts in the configuration `x`.
@@ -104,7 +114,7 @@ impl ContactPair {
         old: &[ContactState],
         before: &Configuration,
         dt: f64,
-        presumed: impl Fn(usize) -> (Presume, Option<usize>) + Sync,
+        presumed: impl Fn(usize) -> Presumption + Sync,
         x: &Configuration,
     ) -> Result<PairResponse, (usize, LawFailure)> {
         let index = Index::new(&self.master, x);
@@ -112,7 +122,8 @@ impl ContactPair {
             let was = mortar.overlaps(surface, &Index::new(&self.master, before), before);
             let is = mortar.overlaps(surface, &index, x);
             return self.each(old, |k, slave, old| {
-                let increment = Increment { dt, presume: presumed(k).0 };
+                let Presumption { presume, promised, .. } = presumed(k);
+                let increment = Increment { dt, presume, promised };
                 let weights = mortar.weights(k, surface, &was, before);
                 let Some(mut meeting) = mortar.kinematics(k, surface, &is, weights.as_ref(), x) else {
                     return open(self, None, old, increment);
@@ -125,8 +136,8 @@ impl ContactPair {
             });
         }
         self.each(old, |k, slave, old| {
-            let (presume, held) = presumed(k);
-            respond(self, slave, index.project(slave, held, x), old, Increment { dt, presume }, x)
+            let Presumption { presume, promised, held } = presumed(k);
+            respond(self, slave, index.project(slave, held, x), old, Increment { dt, presume, promised }, x)
         })
     }
 
