@@ -207,11 +207,15 @@ struct Buffers {
 /// one: a start value extrapolated past the edge of a contact penetrates far too deep.
 const MOST_GROWTH: f64 = 2.0;
 
-/// What the start of an increment promises: a point that was closed still is.
-fn at_start(state: &ContactState, old: &ContactState) -> Tractions {
+/// A point that was closed and would have to be drawn back by more than this many times its pressure has left.
+const MOST_PULL: f64 = 10.0;
+
+/// What the start of an increment promises: a point that was closed still is, unless it is so far away that it has left.
+fn at_start(alpha_n: f64, state: &ContactState, old: &ContactState) -> Tractions {
     match state.friction.pressure > 0.0 {
         true => Tractions::of(&state.friction).limited(MOST_GROWTH * old.friction.pressure),
-        false => Tractions::of(&old.friction),
+        false if alpha_n * state.gap <= MOST_PULL * old.friction.pressure => Tractions::of(&old.friction),
+        false => Tractions::default(),
     }
 }
 
@@ -344,13 +348,14 @@ impl<'m> Assembler<'m> {
         let first = self.iterates.is_empty();
         self.iterates.resize_with(self.model.contacts.len(), Vec::new);
         let at = &self.linearized_at;
-        for ((iterates, states), old) in self.iterates.iter_mut().zip(&self.evaluation.contacts).zip(&old.contacts) {
+        let pairs = self.model.contacts.iter().zip(&self.evaluation.contacts).zip(&old.contacts);
+        for (iterates, ((pair, states), old)) in self.iterates.iter_mut().zip(pairs) {
             iterates.resize_with(states.len(), Iterate::default);
             for ((iterate, state), old) in iterates.iter_mut().zip(states).zip(old) {
                 iterate.note(state, first);
                 iterate.promised = match &iterate.closed {
                     Some(closed) => closed.promise(|dof| u[dof] - at[dof]),
-                    None if first => at_start(state, old),
+                    None if first => at_start(pair.alpha_n, state, old),
                     None => Tractions::default(),
                 };
             }

@@ -88,19 +88,20 @@ const DIVERGENCE: f64 = 1e4;
 const OLD_TANGENT: f64 = 10.0;
 
 /// Smallest part of a correction that is tried where the whole of it leads to a state that cannot be evaluated.
-const LEAST_SHARE: f64 = 0.1;
+const LEAST_PART: f64 = 0.125;
 
-/// Solve r(u) = 0 from the start value `u`. `evaluate` fills the system at a displacement.
+/// Solve r(u) = 0 from the start value `u`. `evaluate` fills the system at a displacement, and says which share of the
+/// next correction to take: 1, or less where it sees the iterations go to and fro.
 pub fn solve<E>(
     mut u: Vec<f64>,
     settings: Settings,
     solver: &mut dyn LinearSolver,
     system: &mut System,
-    mut evaluate: impl FnMut(&[f64], Request, &mut System) -> Result<(), E>,
+    mut evaluate: impl FnMut(&[f64], Request, &mut System) -> Result<f64, E>,
 ) -> Outcome<E> {
     let mut iterations: Vec<Iteration> = Vec::new();
     let result = (|| {
-        evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
+        let mut share = evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
         let (mut largest_start, mut before) = (0.0f64, f64::INFINITY);
         // Near a kink of the equations it promises more than it keeps, every time.
         let mut old_tangent_serves = true;
@@ -131,7 +132,7 @@ pub fn solve<E>(
             }
             let promised = OLD_TANGENT * size * (size / before) <= settings.tolerance * system.forces;
             let factorized = done == 0 || !(old_tangent_serves && promised);
-            let solution = if factorized {
+            let mut solution = if factorized {
                 evaluate(&u, Request::Tangent, system).map_err(NewtonFailure::Evaluation)?;
                 let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();
                 linear::solve(solver, &system.tangent, &right)?
@@ -139,8 +140,9 @@ pub fn solve<E>(
                 let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();
                 linear::solve_again(solver, &system.tangent, &right)
             };
-            for (u, x) in u.iter_mut().zip(&solution.x) {
-                *u += x;
+            for (u, x) in u.iter_mut().zip(&mut solution.x) {
+                *x *= share;
+                *u += *x;
             }
             iterations.push(Iteration {
                 residual: f64::NAN,
@@ -151,16 +153,17 @@ pub fn solve<E>(
                 fallback: solution.fallback,
             });
             // A correction that turns an element inside out is far too long; a part of it may lead on.
-            let mut share = 1.0;
-            while let Err(failure) = evaluate(&u, Request::Residual, system) {
-                share *= 0.5;
-                if share < LEAST_SHARE {
-                    return Err(NewtonFailure::Evaluation(failure));
+            let mut part = 1.0;
+            share = loop {
+                match evaluate(&u, Request::Residual, system) {
+                    Ok(share) => break share,
+                    Err(failure) if part <= LEAST_PART => return Err(NewtonFailure::Evaluation(failure)),
+                    Err(_) => part *= 0.5,
                 }
                 for (u, x) in u.iter_mut().zip(&solution.x) {
-                    *u -= share * x;
+                    *u -= part * x;
                 }
-            }
+            };
             before = size;
         }
     })();

@@ -209,7 +209,7 @@ fn solve(
             let share = evaluation.stabilization / system.forces.max(f64::MIN_POSITIVE);
             seen.push((ContactCounts::of(&evaluation.contacts), flips.count(&evaluation.contacts), share));
         }
-        Ok(())
+        Ok(flips.share())
     });
     let assembled = assembler.seconds.assembly + assembler.seconds.contact - spent;
     *linear_seconds += clock.elapsed().as_secs_f64() - assembled;
@@ -236,7 +236,12 @@ fn solve(
 struct Flips {
     /// Status of every point at the last two iterates
     last: [Vec<Status>; 2],
+    /// Iterations in a row with flips
+    running: usize,
 }
+
+/// Iterations in a row with flips that are taken for a cycle.
+const CYCLE: usize = 2;
 
 impl Flips {
     /// Points that are as they were before the last iterate, and were not in it.
@@ -247,7 +252,13 @@ impl Flips {
         let flips = flips.count();
         let [last, _] = std::mem::take(&mut self.last);
         self.last = [now, last];
+        self.running = if flips > 0 { self.running + 1 } else { 0 };
         flips
+    }
+
+    /// Share of the next correction to take: half of it breaks a cycle between two states that point at each other.
+    fn share(&self) -> f64 {
+        if self.running >= CYCLE { 0.5 } else { 1.0 }
     }
 }
 
