@@ -236,29 +236,28 @@ fn solve(
 struct Flips {
     /// Status of every point at the last two iterates
     last: [Vec<Status>; 2],
-    /// Iterations in a row with flips
-    running: usize,
+    /// Points that came back at the last iterate
+    flipped: Vec<bool>,
+    /// Whether a point came back twice in a row: two states point at each other
+    cycle: bool,
 }
 
-/// Iterations in a row with flips that are taken for a cycle.
-const CYCLE: usize = 2;
-
 impl Flips {
-    /// Points that are as they were before the last iterate, and were not in it.
+    /// Number of points that are as they were before the last iterate, and were not in it.
     fn count(&mut self, contacts: &[Vec<ContactState>]) -> usize {
         let now: Vec<Status> = contacts.iter().flatten().map(ContactState::status).collect();
-        let [last, before] = &self.last;
-        let flips = now.iter().zip(last).zip(before).filter(|((now, last), before)| now == before && now != last);
-        let flips = flips.count();
-        let [last, _] = std::mem::take(&mut self.last);
+        let [last, before] = std::mem::take(&mut self.last);
+        let came_back = now.iter().zip(&last).zip(&before).map(|((now, last), before)| now == before && now != last);
+        let flipped: Vec<bool> = came_back.collect();
+        self.cycle = flipped.iter().zip(&self.flipped).any(|(now, last)| *now && *last);
         self.last = [now, last];
-        self.running = if flips > 0 { self.running + 1 } else { 0 };
-        flips
+        self.flipped = flipped;
+        self.flipped.iter().filter(|flipped| **flipped).count()
     }
 
-    /// Share of the next correction to take: half of it breaks a cycle between two states that point at each other.
+    /// Share of the next correction to take: half of it ends between the two states of a cycle.
     fn share(&self) -> f64 {
-        if self.running >= CYCLE { 0.5 } else { 1.0 }
+        if self.cycle { 0.5 } else { 1.0 }
     }
 }
 

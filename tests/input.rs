@@ -347,6 +347,7 @@ fn steps_are_checked() {
         ("/steps/0/dt/eror", json!(1e-3), ["steps[0].dt.eror: ", "did you mean `error`?"]),
         ("/steps/0/scheme", json!({"hht": {}}), ["steps[0].scheme.hht", "the key `alpha` is missing"]),
         ("/steps/0/scheme", json!({"hht": {"alpha": -0.1}}), ["bodies.block.material.density: ", "needs a mass"]),
+        ("/contacts/base/smooth", json!(1), ["contacts.base.smooth", "1"]),
         ("/steps/0/stabilize", json!(0), ["steps[0].stabilize: ", "is 0: must be a share of the stiffness"]),
         ("/steps/0/stabilize", json!(2), ["steps[0].stabilize: ", "is 2: must be a share of the stiffness"]),
         ("/steps/0/name", json!(""), ["steps[0].name: ", "is empty"]),

@@ -274,7 +274,22 @@ fn master(place: &str, input: &ContactInput, points: &[SlavePoint], mesh: &Mesh)
         MasterInput::Group(group) => {
             let master = edges(mesh, group, &format!("{place}.master"))?;
             check_disjoint(place, &input.slave, points, group, master, mesh)?;
-            Ok(Master::Mesh(Surface::new(&node_lists(master))))
+            let surface = Surface::new(&node_lists(master));
+            if !input.smooth {
+                return Ok(Master::Mesh(surface));
+            }
+            let refused = |why: &str| Err(Complaint::new(format!("{place}.smooth"), why));
+            if input.method == Method::Mortar {
+                return refused("is not for mortar, which averages the gap: leave it out, or take gauss_to_segment");
+            }
+            if master.iter().any(|edge| edge.nodes.len() > 2) {
+                return refused("is for straight edges, and the master has quadratic ones: leave it out");
+            }
+            Ok(Master::Mesh(surface.smoothed(&mesh.nodes)))
+        }
+        MasterInput::Rigid(_) if input.smooth => {
+            let message = "is for a master of mesh edges, and a rigid body needs none: leave it out";
+            Err(Complaint::new(format!("{place}.smooth"), message))
         }
         MasterInput::Rigid(body) => rigid(body, &format!("{place}.master")).map(Master::Rigid),
     }

@@ -115,6 +115,10 @@ pub struct ContactInput {
     /// Gauss points a slave edge (gauss_to_segment), 2 to 4
     #[serde(default = "two")]
     pub points: usize,
+    /// Whether the master's straight edges are taken for a smooth curve through their nodes (not by mortar), so that nothing
+    /// jumps where a slave slides from one to the next. Corners of more than 45° stay
+    #[serde(default)]
+    pub smooth: bool,
     /// Normal contact
     #[serde(default)]
     pub normal: NormalInput,
