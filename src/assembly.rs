@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use crate::boundary::Prescribed;
 use crate::configuration::Configuration;
 use crate::contact::force::{Closed, ContactState, Presume, Status, Tractions};
-use crate::contact::pair::{PairResponse, Presumption};
+use crate::contact::pair::{Moment, PairResponse, Presumption};
 use crate::contact::surface::Master;
 use crate::element::pressure::follower_pressure;
 use crate::error::TrialFailure;
@@ -376,6 +376,7 @@ impl<'m> Assembler<'m> {
     /// Trial states of all pairs; a tangent is taken with the presumptions, a residual that may be accepted without.
     fn contacts(&self, trial: Trial, presuming: bool, x: &Configuration) -> Result<Vec<PairResponse>, TrialFailure> {
         let before = self.model.configuration(&trial.old.displacement);
+        let moment = Moment { dt: trial.dt, fading: 1.0 - self.model.steps[0].span.share(trial.time) };
         let pairs = self.model.contacts.iter().zip(&trial.old.contacts).enumerate();
         pairs
             .map(|(number, (pair, old))| {
@@ -387,7 +388,7 @@ impl<'m> Assembler<'m> {
                         false => Presumption { held, ..Presumption::default() },
                     }
                 };
-                pair.respond(old, &before, trial.dt, presumed, x).map_err(|(point, cause)| TrialFailure::Friction {
+                pair.respond(old, &before, moment, presumed, x).map_err(|(point, cause)| TrialFailure::Friction {
                     contact: pair.name.clone(),
                     point,
                     cause,

@@ -15,6 +15,7 @@ use super::{initial, names, supported};
 use crate::boundary::{
     Amplitude, Dashpot, DeadLoad, Drive, Expression, FollowerPressure, Loads, Motion, Prescribed, Span, Spring,
 };
+use crate::configuration::Configuration;
 use crate::contact::mortar::{Mortar, mortar_points};
 use crate::contact::pair::ContactPair;
 use crate::contact::rigid::{Circle, Plane, Polyline, Rigid};
@@ -231,6 +232,13 @@ fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPa
     };
     if let Some(initial) = &input.initial {
         initial::close(&mut pair, initial, model, &start)?;
+    }
+    if input.shrink_fit {
+        if input.initial.is_some() {
+            let message = "has no meaning together with `initial`, which closes every gap and overlap: leave one out";
+            return Err(Complaint::new(format!("{place}.shrink_fit"), message));
+        }
+        pair.start_fitting(&Configuration::undeformed(&model.mesh.nodes));
     }
     Ok(pair)
 }

@@ -122,6 +122,9 @@ pub struct ContactInput {
     /// Normal contact
     #[serde(default)]
     pub normal: NormalInput,
+    /// Whether what the surfaces overlap at the start is brought in over the first step (shrink fit) instead of at once
+    #[serde(default)]
+    pub shrink_fit: bool,
     /// Friction law
     pub friction: FrictionParameters,
     /// Tractions and structure at the start of a contact that starts closed. The gap of every slave point is then counted

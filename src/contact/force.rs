@@ -64,6 +64,8 @@ impl ContactState {
 pub struct Increment {
     /// Δt [T]
     pub dt: f64,
+    /// Share of an initial overlap that does not count yet, 1 to 0 over the first step
+    pub fading: f64,
     /// Presumption about the point
     pub presume: Presume,
     /// Tractions that the tangent turns and stretches with the surface; those of the trial state unless given. A point
@@ -163,7 +165,7 @@ pub fn respond(
     x: &Configuration,
 ) -> PointResponse {
     let Some(projection) = projection else { return open(pair, None, old, increment) };
-    let (gap, foot) = (projection.gap - slave.touch, projection.foot);
+    let (gap, foot) = (slave.gap(projection.gap, increment.fading), projection.foot);
     if !closes(pair, slave, gap, old, increment, x) {
         return open(pair, Some((gap, foot)), old, increment);
     }

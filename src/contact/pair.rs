@@ -42,6 +42,15 @@ pub struct InitialTraction {
     pub traction: f64,
 }
 
+/// When a pair is evaluated.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment {
+    /// Δt [T]
+    pub dt: f64,
+    /// Share of an initial overlap that does not count yet
+    pub fading: f64,
+}
+
 /// What one linear solve takes over for a point from those before.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Presumption {
@@ -77,6 +86,18 @@ impl ContactPair {
         Ok(())
     }
 
+    /// Begin a shrink fit: what the surfaces overlap in the configuration `x` counts bit by bit.
+    ///
+    /// ```text
+    /// g(t) = g_surfaces + overlap × (1 − share of the first step that has passed)
+    /// ```
+    pub fn start_fitting(&mut self, x: &Configuration) {
+        let met = self.meetings(x);
+        for (slave, met) in self.points.iter_mut().zip(met) {
+            slave.overlap = met.map_or(0.0, |(gap, _)| (slave.touch - gap).max(0.0));
+        }
+    }
+
     /// States at the start of a run: each point projected in the configuration `x`, friction at rest or, in a contact
     /// that starts closed, under its initial tractions.
     pub fn initial_states(&self, x: &Configuration) -> Vec<ContactState> {
@@ -86,7 +107,7 @@ impl ContactPair {
         }
         let state = |(slave, met): (&SlavePoint, Option<(f64, MasterPoint)>)| {
             let (gap, foot) = met.unzip();
-            ContactState { friction, foot, gap: gap.map_or(0.0, |gap| gap - slave.touch), multiplier: 0.0 }
+            ContactState { friction, foot, gap: gap.map_or(0.0, |gap| slave.gap(gap, 1.0)), multiplier: 0.0 }
         };
         self.points.iter().zip(self.meetings(x)).map(state).collect()
     }
@@ -113,7 +134,7 @@ impl ContactPair {
         &self,
         old: &[ContactState],
         before: &Configuration,
-        dt: f64,
+        Moment { dt, fading }: Moment,
         presumed: impl Fn(usize) -> Presumption + Sync,
         x: &Configuration,
     ) -> Result<PairResponse, (usize, LawFailure)> {
@@ -123,12 +144,12 @@ impl ContactPair {
             let is = mortar.overlaps(surface, &index, x);
             return self.each(old, |k, slave, old| {
                 let Presumption { presume, promised, .. } = presumed(k);
-                let increment = Increment { dt, presume, promised };
+                let increment = Increment { dt, fading, presume, promised };
                 let weights = mortar.weights(k, surface, &was, before);
                 let Some(mut meeting) = mortar.kinematics(k, surface, &is, weights.as_ref(), x) else {
                     return open(self, None, old, increment);
                 };
-                meeting.gap -= slave.touch;
+                meeting.gap = slave.gap(meeting.gap, fading);
                 match closes(self, slave, meeting.gap, old, increment, x) {
                     true => press(self, meeting, old, increment),
                     false => open(self, Some((meeting.gap, meeting.foot)), old, increment),
@@ -137,7 +158,8 @@ impl ContactPair {
         }
         self.each(old, |k, slave, old| {
             let Presumption { presume, promised, held } = presumed(k);
-            respond(self, slave, index.project(slave, held, x), old, Increment { dt, presume, promised }, x)
+            let increment = Increment { dt, fading, presume, promised };
+            respond(self, slave, index.project(slave, held, x), old, increment, x)
         })
     }
 
