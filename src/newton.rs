@@ -87,6 +87,10 @@ const DIVERGENCE: f64 = 1e4;
 /// How much less an old tangent may gain than the iteration before did, and how much it must gain to be used again.
 const OLD_TANGENT: f64 = 10.0;
 
+/// Share of the cost of a new tangent's factors that corrections with an old one may take, the residuals that each needs
+/// not counted.
+const OLD_TANGENT_COST: f64 = 0.35;
+
 /// Smallest part of a correction that is tried where the whole of it leads to a state that cannot be evaluated.
 const LEAST_PART: f64 = 0.125;
 
@@ -130,8 +134,10 @@ pub fn solve<E>(
             if done == settings.max_iterations {
                 return Err(NewtonFailure::TooManyIterations { residual, iterations: done });
             }
-            let promised = OLD_TANGENT * size * (size / before) <= settings.tolerance * system.forces;
-            let factorized = done == 0 || !(old_tangent_serves && promised);
+            let slower = if iterations.last().is_some_and(|last| last.factorized) { OLD_TANGENT } else { 1.0 };
+            let corrections = corrections_left(size, slower * size / before, settings.tolerance * system.forces);
+            let affordable = (OLD_TANGENT_COST * solver.solutions_per_factorization()).max(1.0);
+            let factorized = done == 0 || !(old_tangent_serves && corrections <= affordable);
             let mut solution = if factorized {
                 evaluate(&u, Request::Tangent, system).map_err(NewtonFailure::Evaluation)?;
                 let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();
@@ -168,4 +174,9 @@ pub fn solve<E>(
         }
     })();
     (iterations, result.map(|()| u))
+}
+
+/// How many corrections take a residual from `size` to what is allowed if each leaves the share `left` of it.
+fn corrections_left(size: f64, left: f64, allowed: f64) -> f64 {
+    if left < 1.0 { (allowed / size).ln() / left.ln() } else { f64::INFINITY }
 }

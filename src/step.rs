@@ -236,28 +236,29 @@ fn solve(
 struct Flips {
     /// Status of every point at the last two iterates
     last: [Vec<Status>; 2],
-    /// Points that came back at the last iterate
-    flipped: Vec<bool>,
-    /// Whether a point came back twice in a row: two states point at each other
-    cycle: bool,
+    /// Iterations in a row in which each point came back
+    returns: Vec<usize>,
 }
+
+/// Returns in a row that are taken for a cycle. The edge of a contact that is finding its place comes back once or twice.
+const CYCLE: usize = 3;
 
 impl Flips {
     /// Number of points that are as they were before the last iterate, and were not in it.
     fn count(&mut self, contacts: &[Vec<ContactState>]) -> usize {
         let now: Vec<Status> = contacts.iter().flatten().map(ContactState::status).collect();
         let [last, before] = std::mem::take(&mut self.last);
-        let came_back = now.iter().zip(&last).zip(&before).map(|((now, last), before)| now == before && now != last);
-        let flipped: Vec<bool> = came_back.collect();
-        self.cycle = flipped.iter().zip(&self.flipped).any(|(now, last)| *now && *last);
+        self.returns.resize(now.len(), 0);
+        for (returns, ((now, last), before)) in self.returns.iter_mut().zip(now.iter().zip(&last).zip(&before)) {
+            *returns = if now == before && now != last { *returns + 1 } else { 0 };
+        }
         self.last = [now, last];
-        self.flipped = flipped;
-        self.flipped.iter().filter(|flipped| **flipped).count()
+        self.returns.iter().filter(|returns| **returns > 0).count()
     }
 
     /// Share of the next correction to take: half of it ends between the two states of a cycle.
     fn share(&self) -> f64 {
-        if self.cycle { 0.5 } else { 1.0 }
+        if self.returns.iter().any(|returns| *returns >= CYCLE) { 0.5 } else { 1.0 }
     }
 }
 
