@@ -4,14 +4,13 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::force::{ContactState, Increment, PointResponse, Presume, closes, open, press, respond};
+use super::force::{Closed, ContactState, Increment, PointResponse, Presume, Tractions, closes, open, press, respond};
 use super::kinematics::{Kinematics, kinematics};
 use super::mortar::Mortar;
 use super::search::Index;
 use super::surface::{Master, MasterPoint, SlavePoint};
 use crate::configuration::Configuration;
 use crate::friction::{FrictionLaw, FrictionState, LawFailure};
-use crate::system::Contribution;
 
 /// Two surfaces that may touch.
 #[derive(Debug)]
@@ -43,11 +42,31 @@ pub struct InitialTraction {
     pub traction: f64,
 }
 
+/// When a pair is evaluated.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment {
+    /// Δt [T]
+    pub dt: f64,
+    /// Share of an initial overlap that does not count yet
+    pub fading: f64,
+}
+
+/// What one linear solve takes over for a point from those before.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Presumption {
+    /// Presumption about its state
+    pub presume: Presume,
+    /// Tractions promised
+    pub promised: Option<Tractions>,
+    /// Segment it is held on
+    pub held: Option<usize>,
+}
+
 /// Fewer points than this are not worth waking other threads for.
 const FEW: usize = 64;
 
 /// Trial states and contributions of all points of a pair, in their order.
-pub type PairResponse = Vec<(ContactState, Option<Contribution>)>;
+pub type PairResponse = Vec<(ContactState, Option<Closed>)>;
 
 impl ContactPair {
     /// Start closed: from now on every point's gap is counted so that the given pressure acts in the configuration `x`.
@@ -67,6 +86,18 @@ impl ContactPair {
         Ok(())
     }
 
+    /// Begin a shrink fit: what the surfaces overlap in the configuration `x` counts bit by bit.
+    ///
+    /// ```text
+    /// g(t) = g_surfaces + overlap × (1 − share of the first step that has passed)
+    /// ```
+    pub fn start_fitting(&mut self, x: &Configuration) {
+        let met = self.meetings(x);
+        for (slave, met) in self.points.iter_mut().zip(met) {
+            slave.overlap = met.map_or(0.0, |(gap, _)| (slave.touch - gap).max(0.0));
+        }
+    }
+
     /// States at the start of a run: each point projected in the configuration `x`, friction at rest or, in a contact
     /// that starts closed, under its initial tractions.
     pub fn initial_states(&self, x: &Configuration) -> Vec<ContactState> {
@@ -76,7 +107,7 @@ impl ContactPair {
         }
         let state = |(slave, met): (&SlavePoint, Option<(f64, MasterPoint)>)| {
             let (gap, foot) = met.unzip();
-            ContactState { friction, foot, gap: gap.map_or(0.0, |gap| gap - slave.touch), multiplier: 0.0 }
+            ContactState { friction, foot, gap: gap.map_or(0.0, |gap| slave.gap(gap, 1.0)), multiplier: 0.0 }
         };
         self.points.iter().zip(self.meetings(x)).map(state).collect()
     }
@@ -103,8 +134,8 @@ impl ContactPair {
         &self,
         old: &[ContactState],
         before: &Configuration,
-        dt: f64,
-        presumed: impl Fn(usize) -> (Presume, Option<usize>) + Sync,
+        Moment { dt, fading }: Moment,
+        presumed: impl Fn(usize) -> Presumption + Sync,
         x: &Configuration,
     ) -> Result<PairResponse, (usize, LawFailure)> {
         let index = Index::new(&self.master, x);
@@ -112,12 +143,13 @@ impl ContactPair {
             let was = mortar.overlaps(surface, &Index::new(&self.master, before), before);
             let is = mortar.overlaps(surface, &index, x);
             return self.each(old, |k, slave, old| {
-                let increment = Increment { dt, presume: presumed(k).0 };
+                let Presumption { presume, promised, .. } = presumed(k);
+                let increment = Increment { dt, fading, presume, promised };
                 let weights = mortar.weights(k, surface, &was, before);
                 let Some(mut meeting) = mortar.kinematics(k, surface, &is, weights.as_ref(), x) else {
                     return open(self, None, old, increment);
                 };
-                meeting.gap -= slave.touch;
+                meeting.gap = slave.gap(meeting.gap, fading);
                 match closes(self, slave, meeting.gap, old, increment, x) {
                     true => press(self, meeting, old, increment),
                     false => open(self, Some((meeting.gap, meeting.foot)), old, increment),
@@ -125,8 +157,9 @@ impl ContactPair {
             });
         }
         self.each(old, |k, slave, old| {
-            let (presume, held) = presumed(k);
-            respond(self, slave, index.project(slave, held, x), old, Increment { dt, presume }, x)
+            let Presumption { presume, promised, held } = presumed(k);
+            let increment = Increment { dt, fading, presume, promised };
+            respond(self, slave, index.project(slave, held, x), old, increment, x)
         })
     }
 
