@@ -2,8 +2,7 @@
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use fecontact::configuration::Configuration;
-use fecontact::contact::force::Presume;
-use fecontact::contact::pair::ContactPair;
+use fecontact::contact::pair::{ContactPair, Moment, Presumption};
 use fecontact::contact::search::Index;
 use fecontact::contact::surface::{Master, Surface, gauss_points};
 use fecontact::friction::{Coulomb, CoulombParameters};
@@ -45,8 +44,9 @@ fn update(criterion: &mut Criterion) {
             bench.iter(|| pair.points.iter().filter(|slave| index.project(slave, None, &x).is_some()).count());
         });
         let old = pair.initial_states(&x);
+        let moment = Moment { dt: 1.0, fading: 0.0 };
         group.bench_function(BenchmarkId::new("update", n), |bench| {
-            bench.iter(|| pair.respond(&old, &x, 1.0, |_| (Presume::Nothing, None), &x).is_ok());
+            bench.iter(|| pair.respond(&old, &x, moment, |_| Presumption::default(), &x).is_ok());
         });
     }
     group.finish();

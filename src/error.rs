@@ -63,7 +63,7 @@ pub enum StepFailure {
     )]
     Unbounded,
     /// A body is held by nothing.
-    #[error("{0}; give it a support, a spring, or contact that is closed at the start")]
+    #[error("{0}; give it a support, a spring, or contact that is closed at the start, or `stabilize` the step")]
     Floating(String),
     /// A trial state lost the contact that held a body.
     #[error("the iterations lost contact: {0}")]

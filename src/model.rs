@@ -68,6 +68,9 @@ pub struct Step {
     pub released: Vec<usize>,
     /// loads, springs and dashpots
     pub loads: Loads,
+    /// c₀ of every dof: dashpots c₀ (1 − share of the step that has passed) that keep bodies from floating until contact
+    /// holds them; empty if none are asked for [F T/L]
+    pub stabilization: Vec<f64>,
 }
 
 /// A set of nodes whose mean displacement and reaction the history reports.

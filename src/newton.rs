@@ -87,17 +87,25 @@ const DIVERGENCE: f64 = 1e4;
 /// How much less an old tangent may gain than the iteration before did, and how much it must gain to be used again.
 const OLD_TANGENT: f64 = 10.0;
 
-/// Solve r(u) = 0 from the start value `u`. `evaluate` fills the system at a displacement.
+/// Share of the cost of a new tangent's factors that corrections with an old one may take, the residuals that each needs
+/// not counted.
+const OLD_TANGENT_COST: f64 = 0.35;
+
+/// Smallest part of a correction that is tried where the whole of it leads to a state that cannot be evaluated.
+const LEAST_PART: f64 = 0.125;
+
+/// Solve r(u) = 0 from the start value `u`. `evaluate` fills the system at a displacement, and says which share of the
+/// next correction to take: 1, or less where it sees the iterations go to and fro.
 pub fn solve<E>(
     mut u: Vec<f64>,
     settings: Settings,
     solver: &mut dyn LinearSolver,
     system: &mut System,
-    mut evaluate: impl FnMut(&[f64], Request, &mut System) -> Result<(), E>,
+    mut evaluate: impl FnMut(&[f64], Request, &mut System) -> Result<f64, E>,
 ) -> Outcome<E> {
     let mut iterations: Vec<Iteration> = Vec::new();
     let result = (|| {
-        evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
+        let mut share = evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
         let (mut largest_start, mut before) = (0.0f64, f64::INFINITY);
         // Near a kink of the equations it promises more than it keeps, every time.
         let mut old_tangent_serves = true;
@@ -126,9 +134,11 @@ pub fn solve<E>(
             if done == settings.max_iterations {
                 return Err(NewtonFailure::TooManyIterations { residual, iterations: done });
             }
-            let promised = OLD_TANGENT * size * (size / before) <= settings.tolerance * system.forces;
-            let factorized = done == 0 || !(old_tangent_serves && promised);
-            let solution = if factorized {
+            let slower = if iterations.last().is_some_and(|last| last.factorized) { OLD_TANGENT } else { 1.0 };
+            let corrections = corrections_left(size, slower * size / before, settings.tolerance * system.forces);
+            let affordable = (OLD_TANGENT_COST * solver.solutions_per_factorization()).max(1.0);
+            let factorized = done == 0 || !(old_tangent_serves && corrections <= affordable);
+            let mut solution = if factorized {
                 evaluate(&u, Request::Tangent, system).map_err(NewtonFailure::Evaluation)?;
                 let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();
                 linear::solve(solver, &system.tangent, &right)?
@@ -136,8 +146,9 @@ pub fn solve<E>(
                 let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();
                 linear::solve_again(solver, &system.tangent, &right)
             };
-            for (u, x) in u.iter_mut().zip(&solution.x) {
-                *u += x;
+            for (u, x) in u.iter_mut().zip(&mut solution.x) {
+                *x *= share;
+                *u += *x;
             }
             iterations.push(Iteration {
                 residual: f64::NAN,
@@ -147,9 +158,25 @@ pub fn solve<E>(
                 perturbed_pivots: solution.perturbed_pivots,
                 fallback: solution.fallback,
             });
-            evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
+            // A correction that turns an element inside out is far too long; a part of it may lead on.
+            let mut part = 1.0;
+            share = loop {
+                match evaluate(&u, Request::Residual, system) {
+                    Ok(share) => break share,
+                    Err(failure) if part <= LEAST_PART => return Err(NewtonFailure::Evaluation(failure)),
+                    Err(_) => part *= 0.5,
+                }
+                for (u, x) in u.iter_mut().zip(&solution.x) {
+                    *u -= part * x;
+                }
+            };
             before = size;
         }
     })();
     (iterations, result.map(|()| u))
+}
+
+/// How many corrections take a residual from `size` to what is allowed if each leaves the share `left` of it.
+fn corrections_left(size: f64, left: f64, allowed: f64) -> f64 {
+    if left < 1.0 { (allowed / size).ln() / left.ln() } else { f64::INFINITY }
 }

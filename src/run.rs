@@ -36,6 +36,7 @@ pub fn run(model: &Model, observers: &mut [&mut dyn Observer]) -> (RunReport, Re
             break;
         }
     }
+    report.stabilization_work = state.energy.stabilization;
     let waiting = Instant::now();
     for observer in observers.iter_mut() {
         result = result.and(observer.finish());

@@ -71,6 +71,8 @@ pub struct Energy {
     pub friction_dissipation: f64,
     /// ∫ c (v_driver − v)² dt of the dashpots
     pub damping_dissipation: f64,
+    /// ∫ c v² dt of the dashpots that stabilize floating bodies, a part of the damping dissipation
+    pub stabilization: f64,
     /// work of loads, springs, supports and drivers of dashpots on the model
     pub external_work: f64,
     /// kinetic + strain + contact energy at the start of the run

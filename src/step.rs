@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::assembly::{Assembler, ContactCounts, Trial};
 use crate::energy::{contact_energy, friction_dissipation, work_of_drivers};
+use crate::contact::force::{ContactState, Status};
 use crate::error::StepFailure;
 use crate::floating::null_motion;
 use crate::linear::{self, LinearSolver};
@@ -40,6 +41,10 @@ pub struct IterationRecord {
     pub newton: Iteration,
     /// contact states after the correction
     pub contacts: ContactCounts,
+    /// points that the correction brought back to the status which the one before it had changed
+    pub flips: usize,
+    /// ‖forces that stabilize‖/‖forces at work‖ after the correction [-]
+    pub stabilization: f64,
 }
 
 /// Begin a step: remember displacements and reactions, and find the forces and accelerations that the run or dynamics
@@ -176,14 +181,15 @@ fn solve(
     start: Option<Vec<f64>>,
     work: &mut Workspace,
 ) -> (Vec<IterationRecord>, Result<Vec<f64>, StepFailure>) {
-    let old = trial.old;
+    let Trial { old, step, .. } = trial;
     let Workspace { assembler, solver, system, linear_seconds } = work;
     let begins = start.is_none();
     if begins {
         assembler.start_increment();
     }
     let mut tangents = 0;
-    let mut counts = Vec::new();
+    let mut seen = Vec::new();
+    let mut flips = Flips::default();
     let mut floating = None;
     let spent = assembler.seconds.assembly + assembler.seconds.contact;
     let clock = std::time::Instant::now();
@@ -191,22 +197,30 @@ fn solve(
     let (iterations, result) = newton::solve(start, model.newton, &mut **solver, system, |u, request, system| {
         assembler.evaluate(trial, u, request, system)?;
         if request == Request::Tangent {
-            if begins && tangents == 0 && old.last_increment.is_none() {
+            // A step begins, or its stabilization has just gone.
+            let unaided =
+                old.last_increment.is_none() || (!step.stabilization.is_empty() && trial.stabilization_left() == 0.0);
+            if begins && tangents == 0 && unaided {
                 floating = null_motion(model, u, &system.tangent);
             }
             tangents += 1;
         } else if tangents > 0 {
-            counts.push(ContactCounts::of(&assembler.evaluation.contacts));
+            let evaluation = &assembler.evaluation;
+            let share = evaluation.stabilization / system.forces.max(f64::MIN_POSITIVE);
+            seen.push((ContactCounts::of(&evaluation.contacts), flips.count(&evaluation.contacts), share));
         }
-        Ok(())
+        Ok(flips.share())
     });
     let assembled = assembler.seconds.assembly + assembler.seconds.contact - spent;
     *linear_seconds += clock.elapsed().as_secs_f64() - assembled;
-    counts.resize(iterations.len(), ContactCounts::default());
-    let iterations =
-        iterations.into_iter().zip(counts).map(|(newton, contacts)| IterationRecord { newton, contacts }).collect();
+    // The last state may not have been evaluated.
+    seen.resize(iterations.len(), (ContactCounts::default(), 0, 0.0));
+    let record =
+        |(newton, (contacts, flips, stabilization))| IterationRecord { newton, contacts, flips, stabilization };
+    let iterations = iterations.into_iter().zip(seen).map(record).collect();
     let result = match (floating, result) {
-        (Some(floating), _) => Err(StepFailure::Floating(floating)),
+        (Some(floating), _) if old.last_increment.is_none() => Err(StepFailure::Floating(floating)),
+        (Some(floating), _) => Err(StepFailure::ContactLost(floating)),
         // A trial state may have lost the contact that held a body: worth saying, and worth a smaller increment.
         (None, Err(failure)) => {
             let loose = null_motion(model, &old.displacement, &system.tangent);
@@ -215,6 +229,37 @@ fn solve(
         (None, Ok(u)) => Ok(u),
     };
     (iterations, result)
+}
+
+/// Watches the contact states go to and fro between iterations.
+#[derive(Default)]
+struct Flips {
+    /// Status of every point at the last two iterates
+    last: [Vec<Status>; 2],
+    /// Iterations in a row in which each point came back
+    returns: Vec<usize>,
+}
+
+/// Returns in a row that are taken for a cycle. The edge of a contact that is finding its place comes back once or twice.
+const CYCLE: usize = 3;
+
+impl Flips {
+    /// Number of points that are as they were before the last iterate, and were not in it.
+    fn count(&mut self, contacts: &[Vec<ContactState>]) -> usize {
+        let now: Vec<Status> = contacts.iter().flatten().map(ContactState::status).collect();
+        let [last, before] = std::mem::take(&mut self.last);
+        self.returns.resize(now.len(), 0);
+        for (returns, ((now, last), before)) in self.returns.iter_mut().zip(now.iter().zip(&last).zip(&before)) {
+            *returns = if now == before && now != last { *returns + 1 } else { 0 };
+        }
+        self.last = [now, last];
+        self.returns.iter().filter(|returns| **returns > 0).count()
+    }
+
+    /// Share of the next correction to take: half of it ends between the two states of a cycle.
+    fn share(&self) -> f64 {
+        if self.returns.iter().any(|returns| *returns >= CYCLE) { 0.5 } else { 1.0 }
+    }
 }
 
 /// Where Newton's method starts: the last increment of the step goes on at its pace. Under error control it is
@@ -266,6 +311,7 @@ fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> Sta
     };
     let work_done = mean_work(&old.external, &external);
     let damped = mean_work(&old.damping, &evaluation.damping);
+    let stabilized: f64 = step.stabilization.iter().zip(&increment).map(|(c, du)| c * du * du).sum();
     let driven = work_of_drivers(model, step, [old.time, time], |dof| increment[dof]);
     let x = model.configuration(&u);
     let contact_elastic = contact_energy(model, &evaluation.contacts, &x);
@@ -288,6 +334,7 @@ fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> Sta
     };
     state.energy.external_work += work_done + driven;
     state.energy.damping_dissipation += driven - damped;
+    state.energy.stabilization += trial.stabilization_left() * stabilized / dt;
     state.energy.strain = evaluation.strain_energy;
     state.energy.contact_elastic = contact_elastic;
     state.energy.friction_dissipation += dissipated;

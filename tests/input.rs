@@ -300,8 +300,18 @@ fn rigid_masters_and_formulations_that_make_no_sense_are_refused() {
         refused_edits(&[("/contacts/base/master", master)], &[&place, message]);
     }
     let plane = json!({"plane": {"point": [0, 0], "normal": [0, 1]}});
-    let mortar = [("/contacts/base/master", plane), ("/contacts/base/method", json!("mortar"))];
-    refused_edits(&mortar, &["contacts.base.method: ", "gauss_to_segment"]);
+    let mortar = ("/contacts/base/method", json!("mortar"));
+    let smooth = ("/contacts/base/smooth", json!(true));
+    refused_edits(
+        &[("/contacts/base/master", plane.clone()), mortar.clone()],
+        &["contacts.base.method: ", "gauss_to_segment"],
+    );
+    refused_edits(&[smooth.clone(), mortar], &["contacts.base.smooth: ", "is not for mortar"]);
+    refused_edits(&[smooth, ("/contacts/base/master", plane)], &["contacts.base.smooth: ", "a rigid body needs none"]);
+    refused_edits(
+        &[("/contacts/base/shrink_fit", json!(true)), ("/contacts/base/initial", json!({"pressure": 1}))],
+        &["contacts.base.shrink_fit: ", "leave one out"],
+    );
     refused_edits(
         &[("/contacts/base/normal", json!({"penetration": 0}))],
         &["contacts.base.normal.penetration: ", "positive"],
@@ -347,6 +357,8 @@ fn steps_are_checked() {
         ("/steps/0/dt/eror", json!(1e-3), ["steps[0].dt.eror: ", "did you mean `error`?"]),
         ("/steps/0/scheme", json!({"hht": {}}), ["steps[0].scheme.hht", "the key `alpha` is missing"]),
         ("/steps/0/scheme", json!({"hht": {"alpha": -0.1}}), ["bodies.block.material.density: ", "needs a mass"]),
+        ("/steps/0/stabilize", json!(0), ["steps[0].stabilize: ", "is 0: must be a share of the stiffness"]),
+        ("/steps/0/stabilize", json!(2), ["steps[0].stabilize: ", "is 2: must be a share of the stiffness"]),
         ("/steps/0/name", json!(""), ["steps[0].name: ", "is empty"]),
         ("/steps/0/name", json!("press, drag"), ["steps[0].name: ", "','"]),
         ("/steps/0/name", json!("press\ndrag"), ["steps[0].name: ", "'\\n'"]),

@@ -6,6 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use fecontact::friction::{FrictionParameters, FrictionState, Sliding};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
@@ -272,6 +273,39 @@ fn turning_points_of_expressions_are_stepped_onto() {
         done.row_at(0.3 * f64::from(k));
     }
     assert_eq!(done.column("time").len(), 24 + 2 + 4 + 1, "multiples of dt, turning points and the end");
+}
+
+/// u = sin t through both reversals, as an expression: whatever `dt` is, friction at each row is that of the law led along
+/// the same sine in increments of 1e-5 that meet the turns.
+#[test]
+fn an_oscillation_by_expression_is_right_at_any_increment() {
+    let start = FrictionState { traction: 19.62, pressure: PRESSURE, mu: 0.2, ..FrictionState::default() };
+    let law = serde_json::from_value::<FrictionParameters>(paper()).unwrap().build(f64::NAN).unwrap();
+    let mut fine = vec![(0.0, start)];
+    for turn in [0.5 * PI, 1.5 * PI, 5.0] {
+        let (begin, mut state) = *fine.last().unwrap();
+        let parts = ((turn - begin) / 1e-5).ceil();
+        let at = |k: f64| begin + (turn - begin) * k / parts;
+        for k in 1..=parts as usize {
+            let [t0, t1] = [k - 1, k].map(|k| at(k as f64));
+            let sliding = Sliding { slip: t1.sin() - t0.sin(), pressure: PRESSURE, dt: t1 - t0 };
+            state = law.respond(&state, sliding).unwrap().state;
+            fine.push((t1, state));
+        }
+    }
+    for dt in [1e-3, 1e-2, 0.1, 0.3] {
+        let done = Done::of(&json!({
+            "friction": paper_with(&[("structure", json!(1))]), "dt": dt,
+            "initial": {"traction": 19.62, "pressure": PRESSURE}, "path": [{"duration": 5, "slip": "sin(t)"}]
+        }));
+        for (time, traction) in done.column("time").iter().zip(done.column("traction")).skip(1) {
+            let after = fine.partition_point(|(t, _)| t < time).min(fine.len() - 1);
+            let [(t0, before), (t1, after)] = [fine[after - 1], fine[after]];
+            let share = (time - t0) / (t1 - t0);
+            let expected = before.traction + share * (after.traction - before.traction);
+            close(&format!("Δt = {dt}: friction at {time}"), *traction, expected, 1e-3 * 0.2 * PRESSURE);
+        }
+    }
 }
 
 /// A turn between two samples of the search, exactly in the middle; a plateau; a kink; touch and parting.

@@ -61,7 +61,8 @@ impl Assembler<'_> {
         let mut force = std::mem::take(&mut self.evaluation.force);
         force.resize(u.len(), 0.0);
         let strain_energy = self.gather_solids(u, &mut force)?;
-        for contribution in responses.iter().flatten().filter_map(|(_, contribution)| contribution.as_ref()) {
+        for closed in responses.iter().flatten().filter_map(|(_, closed)| closed.as_ref()) {
+            let contribution = &closed.contribution;
             for (a, &node) in contribution.nodes.iter().enumerate() {
                 force[2 * node] += contribution.force[2 * a];
                 force[2 * node + 1] += contribution.force[2 * a + 1];

@@ -18,8 +18,8 @@ use rayon::prelude::*;
 
 use crate::boundary::{Absorber, Prescribed};
 use crate::configuration::Configuration;
-use crate::contact::force::{ContactState, Presume, Status};
-use crate::contact::pair::PairResponse;
+use crate::contact::force::{Closed, ContactState, Presume, Status, Tractions};
+use crate::contact::pair::{Moment, PairResponse, Presumption};
 use crate::contact::surface::Master;
 use crate::element::pressure::follower_pressure;
 use crate::error::TrialFailure;
@@ -51,6 +51,11 @@ impl<'a> Trial<'a> {
         if theta == 1.0 { self } else { Self { time: self.old.time + theta * self.dt, dt: theta * self.dt, ..self } }
     }
 
+    /// What is left of the dashpots that stabilize at the end of the increment, 1 to 0; exactly 0 at the end of the step.
+    pub fn stabilization_left(&self) -> f64 {
+        1.0 - self.step.span.share(self.time)
+    }
+
     /// ū of a support at the end of the increment; not finite where its expression has no value [L].
     pub fn prescribed(&self, support: &Prescribed, model: &Model) -> f64 {
         let (position, start) = self.place(support, model);
@@ -80,6 +85,8 @@ pub struct Evaluation {
     pub loads: Vec<f64>,
     /// forces of dashpots on the nodes [F]
     pub damping: Vec<f64>,
+    /// norm of the forces of those that stabilize [F]
+    pub stabilization: f64,
     /// F + M a, at a prescribed dof the reaction [F]
     pub balance: Vec<f64>,
     /// v [L/T]
@@ -119,7 +126,7 @@ impl ContactCounts {
 }
 
 /// What the linear solves of an increment started from at one contact point, and what is concluded.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct Iterate {
     /// plastic slip of the increment at the last solve [L]
     slip: f64,
@@ -130,6 +137,9 @@ struct Iterate {
     /// point jumps, and with it the normal: a point near the bisector would go to and fro without end, because the
     /// forces on either side leave a jump in which no equilibrium lies.
     held: Option<usize>,
+    /// The point as the last solve saw it, if it was closed
+    closed: Option<Closed>,
+    promised: Tractions,
 }
 
 impl Iterate {
@@ -176,6 +186,8 @@ pub struct Assembler<'m> {
     magnitudes: Vec<f64>,
     /// One entry a contact point, empty before the first linear solve of an increment
     iterates: Vec<Vec<Iterate>>,
+    /// u of the last linear solve [L]
+    linearized_at: Vec<f64>,
     /// What was found at the last evaluated displacement
     pub evaluation: Evaluation,
     buffers: Buffers,
@@ -193,6 +205,22 @@ struct Buffers {
     forces: Vec<f64>,
     tangents: Vec<f64>,
     energies: Vec<Result<f64, InvertedElement>>,
+}
+
+/// The first linear solve of an increment takes no pressure for promised that is more than this many times the committed
+/// one: a start value extrapolated past the edge of a contact penetrates far too deep.
+const MOST_GROWTH: f64 = 2.0;
+
+/// A point that was closed and would have to be drawn back by more than this many times its pressure has left.
+const MOST_PULL: f64 = 10.0;
+
+/// What the start of an increment promises: a point that was closed still is, unless it is so far away that it has left.
+fn at_start(alpha_n: f64, state: &ContactState, old: &ContactState) -> Tractions {
+    match state.friction.pressure > 0.0 {
+        true => Tractions::of(&state.friction).limited(MOST_GROWTH * old.friction.pressure),
+        false if alpha_n * state.gap <= MOST_PULL * old.friction.pressure => Tractions::of(&old.friction),
+        false => Tractions::default(),
+    }
 }
 
 /// Most segments ahead of a foot that the pattern gets room for.
@@ -222,6 +250,7 @@ impl<'m> Assembler<'m> {
             weight: weight(model),
             magnitudes: vec![0.0; model.dofs()],
             iterates: Vec::new(),
+            linearized_at: Vec::new(),
             evaluation: Evaluation::default(),
             buffers: Buffers::default(),
             gather: None,
@@ -275,7 +304,7 @@ impl<'m> Assembler<'m> {
         let clock = std::time::Instant::now();
         let tangent = request == Request::Tangent;
         if tangent {
-            self.presume();
+            self.presume(trial.old, u);
         }
         let responses = self.contacts(trial, tangent, &x)?;
         self.seconds.contact += clock.elapsed().as_secs_f64();
@@ -292,15 +321,18 @@ impl<'m> Assembler<'m> {
         self.magnitudes.fill(0.0);
         let mut force = vec![0.0; u.len()];
         let strain_energy = self.add_solids(u, &mut force, values.as_deref_mut())?;
-        for (_, contribution) in responses.iter().flatten() {
-            if let Some(contribution) = contribution {
+        for (_, closed) in responses.iter().flatten() {
+            if let Some(Closed { contribution, .. }) = closed {
                 self.add(contribution, &mut force, values.as_deref_mut());
             }
         }
         let loads = self.add_loads(trial, u, &x, &mut force, values.as_deref_mut())?;
         self.add_dashpots(trial, u, &mut force, values.as_deref_mut())?;
         self.evaluation.contacts =
-            responses.into_iter().map(|pair| pair.into_iter().map(|(state, _)| state).collect()).collect();
+            responses.iter().map(|pair| pair.iter().map(|(state, _)| *state).collect()).collect();
+        if tangent {
+            self.linearized(u, responses);
+        }
         self.evaluation.strain_energy = strain_energy;
         self.evaluation.loads = loads;
         self.evaluation.force = force;
@@ -317,13 +349,31 @@ impl<'m> Assembler<'m> {
     }
 
     /// What the next linear solve presumes about each point, from its last two iterates.
-    fn presume(&mut self) {
+    fn presume(&mut self, old: &State, u: &[f64]) {
         let first = self.iterates.is_empty();
         self.iterates.resize_with(self.model.contacts.len(), Vec::new);
-        for (iterates, states) in self.iterates.iter_mut().zip(&self.evaluation.contacts) {
+        let at = &self.linearized_at;
+        let pairs = self.model.contacts.iter().zip(&self.evaluation.contacts).zip(&old.contacts);
+        for (iterates, ((pair, states), old)) in self.iterates.iter_mut().zip(pairs) {
             iterates.resize_with(states.len(), Iterate::default);
-            for (iterate, state) in iterates.iter_mut().zip(states) {
+            for ((iterate, state), old) in iterates.iter_mut().zip(states).zip(old) {
                 iterate.note(state, first);
+                iterate.promised = match &iterate.closed {
+                    Some(closed) => closed.promise(|dof| u[dof] - at[dof]),
+                    None if first => at_start(pair.alpha_n, state, old),
+                    None => Tractions::default(),
+                };
+            }
+        }
+    }
+
+    /// Keep the points as the next linear solve sees them.
+    fn linearized(&mut self, u: &[f64], responses: Vec<PairResponse>) {
+        self.linearized_at.clear();
+        self.linearized_at.extend_from_slice(u);
+        for (iterates, responses) in self.iterates.iter_mut().zip(responses) {
+            for (iterate, (_, closed)) in iterates.iter_mut().zip(responses) {
+                iterate.closed = closed;
             }
         }
     }
@@ -334,15 +384,19 @@ impl<'m> Assembler<'m> {
             return Ok(Vec::new());
         }
         let before = self.model.configuration(&trial.old.displacement);
+        let moment = Moment { dt: trial.dt, fading: 1.0 - self.model.steps[0].span.share(trial.time) };
         let pairs = self.model.contacts.iter().zip(&trial.old.contacts).enumerate();
         pairs
             .map(|(number, (pair, old))| {
-                let iterate = |k: usize| self.iterates.get(number).map_or(Iterate::default(), |pair| pair[k]);
                 let presumed = |k: usize| {
-                    let Iterate { presumed, held, .. } = iterate(k);
-                    (if presuming { presumed } else { Presume::Nothing }, held)
+                    let Some(iterates) = self.iterates.get(number) else { return Presumption::default() };
+                    let &Iterate { presumed, held, promised, .. } = &iterates[k];
+                    match presuming {
+                        true => Presumption { presume: presumed, promised: Some(promised), held },
+                        false => Presumption { held, ..Presumption::default() },
+                    }
                 };
-                pair.respond(old, &before, trial.dt, presumed, x).map_err(|(point, cause)| TrialFailure::Friction {
+                pair.respond(old, &before, moment, presumed, x).map_err(|(point, cause)| TrialFailure::Friction {
                     contact: pair.name.clone(),
                     point,
                     cause,
@@ -355,19 +409,19 @@ impl<'m> Assembler<'m> {
     /// each foot and a few ahead, where the point slides to. Every time the room turns out too small there will be twice
     /// as much, so that the pattern seldom changes as points slide.
     fn cover(&mut self, responses: &[PairResponse], old: &State) {
-        let coupled = |contribution: &Contribution| {
-            let nodes = &contribution.nodes;
+        let coupled = |closed: &Closed| {
+            let nodes = &closed.contribution.nodes;
             nodes.iter().all(|&a| nodes.iter().all(|&b| self.pattern.block(a, b).is_some()))
         };
-        if responses.iter().flatten().filter_map(|(_, contribution)| contribution.as_ref()).all(coupled) {
+        if responses.iter().flatten().filter_map(|(_, closed)| closed.as_ref()).all(coupled) {
             return;
         }
         let mut groups = Vec::new();
         for ((pair, responses), old) in self.model.contacts.iter().zip(responses).zip(&old.contacts) {
-            for ((slave, (state, contribution)), old) in pair.points.iter().zip(responses).zip(old) {
+            for ((slave, (state, closed)), old) in pair.points.iter().zip(responses).zip(old) {
                 let Some(foot) = state.foot.or(old.foot) else { continue };
                 let mut nodes: Vec<usize> = slave.position.iter().map(|&(node, _)| node).collect();
-                nodes.extend(contribution.iter().flat_map(|contribution| &contribution.nodes));
+                nodes.extend(closed.iter().flat_map(|closed| &closed.contribution.nodes));
                 if let Master::Mesh(surface) = &pair.master {
                     let way = old.foot.and_then(|from| surface.path(from, foot)).unwrap_or_default();
                     let slip: f64 = way.iter().map(|(_, from, to)| to - from).sum();
@@ -572,8 +626,38 @@ impl<'m> Assembler<'m> {
                 }
             }
         }
+        self.stabilize(trial, u, force, tangent, &mut damping);
         self.evaluation.damping = damping;
         Ok(())
+    }
+
+    /// Subtract the forces of the dashpots that stabilize a static step and fade away in it.
+    fn stabilize(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        force: &mut [f64],
+        mut tangent: Option<&mut SparseMatrix>,
+        damping: &mut [f64],
+    ) {
+        self.evaluation.stabilization = 0.0;
+        let left = trial.stabilization_left();
+        if trial.dt == 0.0 || left == 0.0 {
+            return;
+        }
+        let mut squares = 0.0;
+        for (dof, start) in trial.step.stabilization.iter().enumerate() {
+            let stiffness = left * start / trial.dt;
+            let pull = -stiffness * (u[dof] - trial.old.displacement[dof]);
+            force[dof] -= pull;
+            damping[dof] += pull;
+            self.magnitudes[dof] += pull.abs();
+            squares += pull * pull;
+            if let Some(tangent) = tangent.as_deref_mut() {
+                tangent.add_diagonal(dof, stiffness);
+            }
+        }
+        self.evaluation.stabilization = squares.sqrt();
     }
 
     /// Velocities, accelerations, and the out-of-balance force of every dof as if none were prescribed.

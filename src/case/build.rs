@@ -16,6 +16,7 @@ use crate::boundary::{
     Absorber, Amplitude, Dashpot, DeadLoad, Drive, Expression, FollowerPressure, Loads, Motion, Prescribed, Span,
     Spring,
 };
+use crate::configuration::Configuration;
 use crate::contact::mortar::{Mortar, mortar_points};
 use crate::contact::pair::ContactPair;
 use crate::contact::rigid::{Circle, Plane, Polyline, Rigid};
@@ -258,6 +259,13 @@ fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPa
     if let Some(initial) = &input.initial {
         initial::close(&mut pair, initial, model, &format!("{place}.initial"))?;
     }
+    if input.shrink_fit {
+        if input.initial.is_some() {
+            let message = "has no meaning together with `initial`, which closes every gap and overlap: leave one out";
+            return Err(Complaint::new(format!("{place}.shrink_fit"), message));
+        }
+        pair.start_fitting(&Configuration::undeformed(&model.mesh.nodes));
+    }
     Ok(pair)
 }
 
@@ -300,7 +308,22 @@ fn master(place: &str, input: &ContactInput, points: &[SlavePoint], mesh: &Mesh)
         MasterInput::Group(group) => {
             let master = edges(mesh, group, &format!("{place}.master"))?;
             check_disjoint(place, &input.slave, points, group, master, mesh)?;
-            Ok(Master::Mesh(Surface::new(&node_lists(master))))
+            let surface = Surface::new(&node_lists(master));
+            if !input.smooth {
+                return Ok(Master::Mesh(surface));
+            }
+            let refused = |why: &str| Err(Complaint::new(format!("{place}.smooth"), why));
+            if input.method == Method::Mortar {
+                return refused("is not for mortar, which averages the gap: leave it out, or take gauss_to_segment");
+            }
+            if master.iter().any(|edge| edge.nodes.len() > 2) {
+                return refused("is for straight edges, and the master has quadratic ones: leave it out");
+            }
+            Ok(Master::Mesh(surface.smoothed(&mesh.nodes)))
+        }
+        MasterInput::Rigid(_) if input.smooth => {
+            let message = "is for a master of mesh edges, and a rigid body needs none: leave it out";
+            Err(Complaint::new(format!("{place}.smooth"), message))
         }
         MasterInput::Rigid(body) => rigid(body, &format!("{place}.master")).map(Master::Rigid),
     }
@@ -458,7 +481,9 @@ impl StepBuilder<'_> {
             loads.absorbers.extend(load.absorbers.iter().cloned());
         }
         let supports = self.supports.values().cloned().collect();
-        Ok(Step { name: input.name.clone(), span, scheme: input.scheme, increments, supports, released, loads })
+        let stabilization = stabilization(&format!("{place}.stabilize"), input, self.model)?;
+        let (name, scheme) = (input.name.clone(), input.scheme);
+        Ok(Step { name, span, scheme, increments, supports, released, loads, stabilization })
     }
 
     /// Take over the supports of the step before, replace those named again, and list the dofs that are freed.
@@ -809,6 +834,26 @@ pub(super) fn expression(text: &str, place: &str) -> Checked<Expression> {
     }
     let complain = |error| Complaint::new(place, format!("\"{text}\" cannot be read: {error}"));
     Expression::parse(text).map_err(complain)
+}
+
+/// c₀ of every dof: the nodes of a body share `stabilize` × (λ + 2G) × duration.
+fn stabilization(place: &str, input: &StepInput, model: &Model) -> Checked<Vec<f64>> {
+    let Some(share) = input.stabilize else { return Ok(Vec::new()) };
+    if !(share > 0.0 && share <= 1.0) {
+        let message =
+            format!("is {share}: must be a share of the stiffness, above 0 and at most 1 (1e-3 is a good start)");
+        return Err(Complaint::new(place, message));
+    }
+    if input.scheme != Scheme::Static {
+        return Err(Complaint::new(place, "is for static steps: in a dynamic one inertia holds the bodies"));
+    }
+    let mut coefficients = vec![0.0; model.dofs()];
+    for body in &model.bodies {
+        let coefficient = share * body.material.stiffness() * input.duration / body.nodes.len() as f64;
+        let dofs = body.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
+        dofs.for_each(|dof| coefficients[dof] = coefficient);
+    }
+    Ok(coefficients)
 }
 
 fn increments(place: &str, input: Option<IncrementsInput>, span: Span, scheme: Scheme) -> Checked<Increments> {

@@ -115,9 +115,16 @@ pub struct ContactInput {
     /// Gauss points a slave edge (gauss_to_segment), 2 to 4
     #[serde(default = "two")]
     pub points: usize,
+    /// Whether the master's straight edges are taken for a smooth curve through their nodes (not by mortar), so that nothing
+    /// jumps where a slave slides from one to the next. Corners of more than 45° stay
+    #[serde(default)]
+    pub smooth: bool,
     /// Normal contact
     #[serde(default)]
     pub normal: NormalInput,
+    /// Whether what the surfaces overlap at the start is brought in over the first step (shrink fit) instead of at once
+    #[serde(default)]
+    pub shrink_fit: bool,
     /// Friction law
     pub friction: FrictionParameters,
     /// Parameters of the friction law that vary along the slave, by name: they replace the numbers given in `friction`
@@ -293,6 +300,10 @@ pub struct StepInput {
     pub scheme: Scheme,
     /// Increments; inherited from the step before unless given
     pub dt: Option<IncrementsInput>,
+    /// Static steps only, where bodies are held by nothing until contact holds them: dashpots at all nodes of every body
+    /// resist motion, at the start of the step as if this share of the body's stiffness lambda + 2G moved it in the
+    /// time of the step; they fade linearly and are gone at its end. 1e-3 is a good start. Not inherited
+    pub stabilize: Option<f64>,
     /// Supports; inherited, and replaced where the same group and direction is named again
     #[serde(default)]
     pub supports: Vec<SupportInput>,

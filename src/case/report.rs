@@ -279,6 +279,9 @@ fn step_lines(step: &Step) -> Vec<String> {
         format!("time {} to {}, {scheme}", number(step.span.start), number(step.span.end)),
         format!("increments start at {initial}, at least {min}, at most {max}"),
     ];
+    if !step.stabilization.is_empty() {
+        lines.push("stabilized: dashpots that fade away hold bodies until contact does".into());
+    }
     lines.extend(increments.error.map(|error| {
         let located = number(EVENT_LOCATION * error);
         format!("each in error by at most {} in a displacement, events of contact located to {located}", number(error))

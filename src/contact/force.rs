@@ -9,7 +9,7 @@
 //!
 //! In an increment that starts open only the slip after touch counts: Δu_t g₁/(g₁ − g₀).
 
-use nalgebra::Vector2;
+use nalgebra::{DVector, Vector2};
 use serde::{Deserialize, Serialize};
 
 use super::kinematics::{Kinematics, kinematics};
@@ -64,8 +64,64 @@ impl ContactState {
 pub struct Increment {
     /// Δt [T]
     pub dt: f64,
+    /// Share of an initial overlap that does not count yet, 1 to 0 over the first step
+    pub fading: f64,
     /// Presumption about the point
     pub presume: Presume,
+    /// Tractions that the tangent turns and stretches with the surface; those of the trial state unless given. A point
+    /// with a promised pressure is closed, whatever its gap
+    pub promised: Option<Tractions>,
+}
+
+/// Pressure and traction of a point, as one linear solve promised them to the next.
+///
+/// A stiff penalty turns every error of a displacement into a pressure far too high, and that into a geometric stiffness
+/// p δn ℓ that leads the next iterate astray, or opens a point that should be closed. The promise p + δp of the linear
+/// solve is off by the square of the correction only: it makes the geometric stiffness, and says which points stay closed.
+/// The residual that a solution must meet knows no promises.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tractions {
+    /// p [F/L²]
+    pub pressure: f64,
+    /// q [F/L²]
+    pub traction: f64,
+}
+
+impl Tractions {
+    /// Those of a state.
+    pub fn of(friction: &FrictionState) -> Self {
+        Self { pressure: friction.pressure, traction: friction.traction }
+    }
+
+    /// Both in proportion, so that the pressure is not above a limit.
+    pub fn limited(self, most: f64) -> Self {
+        let share = if self.pressure > most { most / self.pressure } else { 1.0 };
+        Self { pressure: share * self.pressure, traction: share * self.traction }
+    }
+}
+
+/// A closed point: what it adds to the equations, and how its tractions vary with its nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Closed {
+    /// Forces and tangent
+    pub contribution: Contribution,
+    /// p and q
+    pub tractions: Tractions,
+    /// δp [F/L³]
+    pub dpressure: DVector<f64>,
+    /// δq [F/L³]
+    pub dtraction: DVector<f64>,
+}
+
+impl Closed {
+    /// p + δp and q + δq for a correction of the nodes' displacements; none where the pressure would be negative.
+    pub fn promise(&self, correction: impl Fn(usize) -> f64) -> Tractions {
+        let dofs = || self.contribution.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
+        let along = |rates: &DVector<f64>| dofs().zip(rates).map(|(dof, rate)| rate * correction(dof)).sum::<f64>();
+        let pressure = self.tractions.pressure + along(&self.dpressure);
+        let traction = self.tractions.traction + along(&self.dtraction);
+        if pressure > 0.0 { Tractions { pressure, traction } } else { Tractions::default() }
+    }
 }
 
 /// What the next linear solve presumes about a point, for the sake of convergence; an accepted state presumes nothing.
@@ -86,7 +142,7 @@ pub enum Presume {
 const TOUCH: f64 = 1e-9;
 
 /// Trial state of one point and, if closed, what it adds to the equations.
-pub type PointResponse = Result<(ContactState, Option<Contribution>), LawFailure>;
+pub type PointResponse = Result<(ContactState, Option<Closed>), LawFailure>;
 
 /// Where a slave point meets the master: its kinematics, its gap and its foot.
 #[derive(Clone, Debug, PartialEq)]
@@ -109,7 +165,7 @@ pub fn respond(
     x: &Configuration,
 ) -> PointResponse {
     let Some(projection) = projection else { return open(pair, slave, None, old, increment) };
-    let (gap, foot) = (projection.gap - slave.touch, projection.foot);
+    let (gap, foot) = (slave.gap(projection.gap, increment.fading), projection.foot);
     if !closes(pair, slave, gap, old, increment, x) {
         return open(pair, slave, Some((gap, foot)), old, increment);
     }
@@ -131,7 +187,8 @@ pub fn closes(
     increment: Increment,
     x: &Configuration,
 ) -> bool {
-    pressure(pair, gap, old) > 0.0 || touches(gap, slave.current_length(x), old, increment)
+    let promised = increment.promised.is_some_and(|promised| promised.pressure > 0.0);
+    promised || pressure(pair, gap, old) > 0.0 || touches(gap, slave.current_length(x), old, increment)
 }
 
 /// Whether a zero gap is presumed to be closed, and to stick.
@@ -140,8 +197,9 @@ fn touches(gap: f64, length: f64, old: &ContactState, increment: Increment) -> b
     increment.presume == Presume::Touch && old.foot.is_some() && old.gap.abs() <= zero && gap.abs() <= zero
 }
 
+/// p̄ − α_n g, below zero where the point would have to be held back.
 fn pressure(pair: &ContactPair, gap: f64, old: &ContactState) -> f64 {
-    (old.multiplier - pair.alpha_n * gap).max(0.0)
+    old.multiplier - pair.alpha_n * gap
 }
 
 /// The state of a point without pressure.
@@ -172,19 +230,30 @@ pub fn press(
         count_slip_after_touch(&mut kinematics, old.gap, gap.min(0.0));
     }
     let pressure = pressure(pair, gap, old);
-    let sliding = Sliding { slip: kinematics.slip, pressure, dt: increment.dt };
+    let sliding = Sliding { slip: kinematics.slip, pressure: carried(pressure, increment), dt: increment.dt };
     let mut response = law.respond(&old.friction, sliding)?;
+    if sliding.pressure > 0.0 {
+        response.state.traction += response.dtraction_dpressure * (pressure - sliding.pressure);
+        response.state.pressure = pressure;
+    }
     let stiffness = law.stiffness();
     if increment.presume == Presume::Stick {
         response.state.traction = old.friction.traction + stiffness * sliding.slip;
         response.dtraction_dpressure = 0.0;
     }
     // At p = 0 the law has no answer to give, and near it round-off decides which.
-    if increment.presume == Presume::Stick || pressure == 0.0 || touches(gap, kinematics.length, old, increment) {
+    if increment.presume == Presume::Stick || sliding.pressure == 0.0 || touches(gap, kinematics.length, old, increment)
+    {
         response.dtraction_dslip = stiffness;
     }
     let state = ContactState { friction: response.state, foot: Some(foot), gap, multiplier: old.multiplier };
-    Ok((state, Some(contribution(&kinematics, &response, pair.alpha_n))))
+    Ok((state, Some(closed(&kinematics, &response, pair.alpha_n, increment.promised))))
+}
+
+/// The pressure under which friction answers: that of a point which only a promise keeps closed is the promised one, from
+/// where its answer goes on in a straight line.
+fn carried(pressure: f64, increment: Increment) -> f64 {
+    if pressure > 0.0 { pressure } else { increment.promised.map_or(0.0, |promised| promised.pressure) }
 }
 
 fn count_slip_after_touch(kinematics: &mut Kinematics, old_gap: f64, gap: f64) {
@@ -201,21 +270,24 @@ pub fn nodal_forces(k: &Kinematics, p: f64, q: f64) -> Vec<(usize, Vector2<f64>)
     k.nodes.iter().zip(&k.relative).map(|(&node, &w)| (node, force * w)).collect()
 }
 
-/// Nodal forces of the traction and their exact derivative.
-fn contribution(k: &Kinematics, response: &FrictionResponse, alpha_n: f64) -> Contribution {
-    let FrictionState { traction: q, pressure: p, .. } = response.state;
-    let traction = k.normal * p - k.tangent * q;
+/// Nodal forces of the traction and their derivative: the exact one unless other tractions are promised.
+fn closed(k: &Kinematics, response: &FrictionResponse, alpha_n: f64, promised: Option<Tractions>) -> Closed {
+    let tractions = Tractions::of(&response.state);
+    let turned = |Tractions { pressure: p, traction: q }: Tractions| k.normal * p - k.tangent * q;
+    let traction = turned(tractions);
     let dpressure = &k.dgap * -alpha_n;
-    let dq = &k.dslip * response.dtraction_dslip + &dpressure * response.dtraction_dpressure;
-    let along_normal = &dpressure - &k.drotation * q;
-    let along_tangent = -(dq + &k.drotation * p);
+    let dtraction = &k.dslip * response.dtraction_dslip + &dpressure * response.dtraction_dpressure;
+    let promised = promised.unwrap_or(tractions);
+    let turned = turned(promised);
+    let along_normal = &dpressure - &k.drotation * promised.traction;
+    let along_tangent = -(&dtraction + &k.drotation * promised.pressure);
     // δ(t ℓ), one row a component
     let dforce =
-        |i: usize| (&along_normal * k.normal[i] + &along_tangent * k.tangent[i]) * k.length + &k.dlength * traction[i];
+        |i: usize| (&along_normal * k.normal[i] + &along_tangent * k.tangent[i]) * k.length + &k.dlength * turned[i];
     let rows = [dforce(0), dforce(1)];
 
     let mut result = Contribution::zero(k.nodes.clone());
-    let add = |result: &mut Contribution, node: usize, i: usize, row: &nalgebra::DVector<f64>, factor: f64| {
+    let add = |result: &mut Contribution, node: usize, i: usize, row: &DVector<f64>, factor: f64| {
         for (column, value) in row.iter().enumerate() {
             result.tangent[(2 * node + i, column)] += factor * value;
         }
@@ -228,8 +300,8 @@ fn contribution(k: &Kinematics, response: &FrictionResponse, alpha_n: f64) -> Co
     }
     for (node, dw) in &k.drelative {
         for i in 0..2 {
-            add(&mut result, *node, i, dw, -traction[i] * k.length);
+            add(&mut result, *node, i, dw, -turned[i] * k.length);
         }
     }
-    result
+    Closed { contribution: result, tractions, dpressure, dtraction }
 }

@@ -1,6 +1,6 @@
 //! Gap, slip and rotation of a contact point, and their exact variations.
 //!
-//! On a segment x(ξ), straight or a parabola, with x′ = dx/dξ = J s, x″ = d²x/dξ², and δm = Σ N_a(ξ) δx_a:
+//! On a segment x(ξ), straight or curved, with x′ = dx/dξ = J s, x″ = d²x/dξ², and δm = Σ N_a(ξ) δx_a:
 //!
 //! ```text
 //! g = (x_s − x)·n         δg = n·(δx_s − δm)
@@ -110,7 +110,7 @@ fn on_surface(
         Bound::Node(_) if gap != 0.0 => k.vary(&relative, -s / gap, |k| &mut k.drotation),
         Bound::Node(_) | Bound::Rigid { .. } => {}
         Bound::Segment => {
-            let bend = x.combine(&curve.bend()).dot(&n);
+            let bend = x.combine(&curve.bend(xi)).dot(&n);
             let stiffness = length * length - gap * bend;
             k.vary_into(&mut dfoot, &relative, s * (length / stiffness));
             k.vary_into(&mut dfoot, &slope, n * (gap / stiffness));
@@ -124,7 +124,7 @@ fn on_surface(
     }
     for (j, start, end) in path {
         let segment = &surface.segments[j];
-        let points = if segment.middle.is_some() { 4 } else { 1 };
+        let points = if segment.is_straight() { 1 } else { 4 };
         for (at, weight) in shape::gauss(points) {
             let slope = segment.slope(start + 0.5 * (1.0 + at) * (end - start));
             let along = x.combine(&slope);

@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use super::force::{
-    ContactState, Increment, Meeting, PointResponse, Presume, closes, nodal_forces, open, press, respond,
+    Closed, ContactState, Increment, Meeting, PointResponse, Presume, Tractions, closes, nodal_forces, open, press, respond,
 };
 use super::kinematics::{Kinematics, kinematics};
 use super::mortar::Mortar;
@@ -14,7 +14,6 @@ use super::search::Index;
 use super::surface::{Master, SlavePoint};
 use crate::configuration::Configuration;
 use crate::friction::{FrictionLaw, FrictionState, LawFailure};
-use crate::system::Contribution;
 
 /// Two surfaces that may touch.
 #[derive(Debug)]
@@ -46,11 +45,31 @@ pub struct InitialTraction {
     pub traction: f64,
 }
 
+/// When a pair is evaluated.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment {
+    /// Δt [T]
+    pub dt: f64,
+    /// Share of an initial overlap that does not count yet
+    pub fading: f64,
+}
+
+/// What one linear solve takes over for a point from those before.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Presumption {
+    /// Presumption about its state
+    pub presume: Presume,
+    /// Tractions promised
+    pub promised: Option<Tractions>,
+    /// Segment it is held on
+    pub held: Option<usize>,
+}
+
 /// Fewer points than this are not worth waking other threads for.
 const FEW: usize = 64;
 
 /// Trial states and contributions of all points of a pair, in their order.
-pub type PairResponse = Vec<(ContactState, Option<Contribution>)>;
+pub type PairResponse = Vec<(ContactState, Option<Closed>)>;
 
 impl ContactPair {
     /// The friction law of a slave point.
@@ -75,6 +94,18 @@ impl ContactPair {
         Ok(())
     }
 
+    /// Begin a shrink fit: what the surfaces overlap in the configuration `x` counts bit by bit.
+    ///
+    /// ```text
+    /// g(t) = g_surfaces + overlap × (1 − share of the first step that has passed)
+    /// ```
+    pub fn start_fitting(&mut self, x: &Configuration) {
+        let met = self.meetings(x);
+        for (slave, met) in self.points.iter_mut().zip(met) {
+            slave.overlap = met.map_or(0.0, |met| (slave.touch - met.gap).max(0.0));
+        }
+    }
+
     /// States at the start of a run: each point projected in the configuration `x`, friction at rest or, in a contact
     /// that starts closed, under its initial tractions.
     pub fn initial_states(&self, x: &Configuration) -> Vec<ContactState> {
@@ -83,7 +114,7 @@ impl ContactPair {
             if let Some(InitialTraction { pressure, traction }) = self.initial.as_ref().map(|initial| initial[k]) {
                 friction = FrictionState { pressure, traction, ..friction };
             }
-            let (gap, foot) = met.map(|met| (met.gap - slave.touch, met.foot)).unzip();
+            let (gap, foot) = met.map(|met| (slave.gap(met.gap, 1.0), met.foot)).unzip();
             ContactState { friction, foot, gap: gap.unwrap_or(0.0), multiplier: 0.0 }
         };
         self.points.iter().zip(self.meetings(x)).enumerate().map(state).collect()
@@ -127,8 +158,8 @@ impl ContactPair {
         &self,
         old: &[ContactState],
         before: &Configuration,
-        dt: f64,
-        presumed: impl Fn(usize) -> (Presume, Option<usize>) + Sync,
+        Moment { dt, fading }: Moment,
+        presumed: impl Fn(usize) -> Presumption + Sync,
         x: &Configuration,
     ) -> Result<PairResponse, (usize, LawFailure)> {
         let index = Index::new(&self.master, x);
@@ -136,12 +167,13 @@ impl ContactPair {
             let was = mortar.overlaps(surface, &Index::new(&self.master, before), before);
             let is = mortar.overlaps(surface, &index, x);
             return self.each(old, |k, slave, old| {
-                let increment = Increment { dt, presume: presumed(k).0 };
+                let Presumption { presume, promised, .. } = presumed(k);
+                let increment = Increment { dt, fading, presume, promised };
                 let weights = mortar.weights(k, surface, &was, before);
                 let Some(mut meeting) = mortar.kinematics(k, surface, &is, weights.as_ref(), x) else {
                     return open(self, slave, None, old, increment);
                 };
-                meeting.gap -= slave.touch;
+                meeting.gap = slave.gap(meeting.gap, fading);
                 match closes(self, slave, meeting.gap, old, increment, x) {
                     true => press(self, slave, meeting, old, increment),
                     false => open(self, slave, Some((meeting.gap, meeting.foot)), old, increment),
@@ -149,8 +181,9 @@ impl ContactPair {
             });
         }
         self.each(old, |k, slave, old| {
-            let (presume, held) = presumed(k);
-            respond(self, slave, index.project(slave, held, x), old, Increment { dt, presume }, x)
+            let Presumption { presume, promised, held } = presumed(k);
+            let increment = Increment { dt, fading, presume, promised };
+            respond(self, slave, index.project(slave, held, x), old, increment, x)
         })
     }
 

@@ -53,14 +53,22 @@ pub fn on_segment(slave: &SlavePoint, surface: &Surface, segment: usize, x: &Con
     let found = on_curve(slave, surface, segment, x);
     let xi = found.foot.xi;
     let neighbour = if xi < 0.0 { surface.previous(segment) } else { surface.next(segment) };
+    let side = if xi < 0.0 { 0 } else { 1 };
     match neighbour {
-        Some(neighbour) if !(0.0..=1.0).contains(&xi) => Some(at_node(slave, surface, segment, neighbour, xi, x)),
+        Some(neighbour) if !(0.0..=1.0).contains(&xi) => {
+            // Smooth segments share the normal at their node: the foot goes over from one to the other.
+            let smooth = surface.segments[segment].beyond[side].and_then(|_| {
+                let found = on_curve(slave, surface, neighbour, x);
+                (-HELD..=1.0 + HELD).contains(&found.foot.xi).then_some(found)
+            });
+            smooth.or_else(|| Some(at_node(slave, surface, segment, neighbour, xi, x)))
+        }
         _ if !(-OVERHANG..=1.0 + OVERHANG).contains(&xi) => None,
         _ => Some(found),
     }
 }
 
-/// Foot of a slave point on the line or parabola of a segment.
+/// Foot of a slave point on the line or curve of a segment.
 fn on_curve(slave: &SlavePoint, surface: &Surface, segment: usize, x: &Configuration) -> Projection {
     let curve = &surface.segments[segment];
     let xi = nearest(slave, curve, x);
@@ -74,22 +82,22 @@ fn offset(slave: &SlavePoint, curve: &Segment, xi: f64, x: &Configuration) -> Ve
     curve.position(xi).iter().map(|&(node, w)| slave.offset(node, x) * w).sum()
 }
 
-/// Iterations for the foot on a parabola; a few suffice unless the point is near the centre of curvature.
+/// Iterations for the foot on a curve; a few suffice unless the point is near the centre of curvature.
 const MOST_STEPS: usize = 60;
 
-/// ξ of the closest point, (x_s − x(ξ))·x′ = 0: at once on a straight line, by Newton's method on a parabola.
+/// ξ of the closest point, (x_s − x(ξ))·x′ = 0: at once on a straight line, by Newton's method on a curve.
 fn nearest(slave: &SlavePoint, curve: &Segment, x: &Configuration) -> f64 {
     let [a, b] = curve.ends;
     let along = x.between(a, b);
     let mut xi = slave.offset(a, x).dot(&along) / along.norm_squared();
-    let bend = x.combine(&curve.bend());
-    if curve.middle.is_none() {
+    if curve.is_straight() {
         return xi;
     }
-    // Beyond the ends the parabola is of no interest, and may turn back.
+    // Beyond the ends the curve is of no interest, and may turn back.
     xi = xi.clamp(-HELD, 1.0 + HELD);
     for _ in 0..MOST_STEPS {
-        let (slope, offset) = (x.combine(&curve.slope(xi)), offset(slave, curve, xi, x));
+        let (slope, bend) = (x.combine(&curve.slope(xi)), x.combine(&curve.bend(xi)));
+        let offset = offset(slave, curve, xi, x);
         // Beyond the centre of curvature the second derivative of the distance would change its sign.
         let stiffness = (slope.norm_squared() - offset.dot(&bend)).max(0.5 * slope.norm_squared());
         let step = offset.dot(&slope) / stiffness;

@@ -49,6 +49,10 @@ impl<'a> Index<'a> {
                     let [a, b] = surface.segments[segment].ends;
                     outward.is_none_or(|outward| normal_of(x.between(a, b).normalize()).dot(&outward) < FACING)
                 };
+                let first = boxes.nearest_one(point, surface, x).filter(|&segment| facing(segment));
+                if let Some(found) = first.and_then(|segment| on_segment(slave, surface, segment, x)) {
+                    return Some(found);
+                }
                 let nearest = boxes.nearest(point, surface, x).take(CANDIDATES);
                 let mut facing = nearest.filter(|&segment| facing(segment)).enumerate();
                 // A node is the foot only of a point that nothing nearer faces: past the end of a surface, where the
@@ -129,6 +133,43 @@ impl Boxes {
             }
         }
         found
+    }
+
+    /// The first of the segments by their distance from a point: what most points need, and found without a heap.
+    fn nearest_one(&self, point: Vector2<f64>, surface: &Surface, x: &Configuration) -> Option<usize> {
+        let exact = |number: usize| distance_from_segment(point, &surface.segments[number], x);
+        let mut nearest = None;
+        if self.segments > 0 {
+            self.descend(point, &exact, (self.levels.len() - 1, 0), &mut nearest);
+        }
+        nearest.map(|(_, number)| number)
+    }
+
+    /// Look for a nearer segment in a box, in the nearer half first; `nearest` is the best so far and its distance.
+    fn descend(
+        &self,
+        point: Vector2<f64>,
+        exact: &impl Fn(usize) -> f64,
+        (level, number): (usize, usize),
+        nearest: &mut Option<(f64, usize)>,
+    ) {
+        if level == 0 {
+            let found = (exact(number), number);
+            if nearest.is_none_or(|nearest| found < nearest) {
+                *nearest = Some(found);
+            }
+            return;
+        }
+        let below = &self.levels[level - 1];
+        let first = (below[2 * number].distance(point), 2 * number);
+        let second = below.get(2 * number + 1).map_or(f64::INFINITY, |half| half.distance(point));
+        let second = (second, 2 * number + 1);
+        let halves = if second < first { [second, first] } else { [first, second] };
+        for (distance, half) in halves {
+            if half < below.len() && nearest.is_none_or(|(best, _)| distance <= best) {
+                self.descend(point, exact, (level - 1, half), nearest);
+            }
+        }
     }
 
     /// The segments by their distance from a point, the nearest first; of equally near ones the first along the surface.

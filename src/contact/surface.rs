@@ -35,12 +35,20 @@ pub struct SlavePoint {
     pub touch: f64,
     /// Number of its friction law among those of the pair
     pub law: usize,
+    /// How deep the point lies in the master at the start of a shrink fit, which counts bit by bit as the first step goes on
+    /// [L]
+    pub overlap: f64,
 }
 
 impl SlavePoint {
     /// Current position.
     pub fn at(&self, x: &Configuration) -> Vector2<f64> {
         x.combine(&self.position)
+    }
+
+    /// g: gap of the surfaces − gap at touch, an overlap counted but for the share that fades.
+    pub fn gap(&self, surfaces: f64, fading: f64) -> f64 {
+        surfaces - self.touch + fading * self.overlap
     }
 
     /// x − x_node.
@@ -97,7 +105,7 @@ pub fn nodal_points(edges: &[Vec<usize>]) -> Vec<SlavePoint> {
 
 /// A node that belongs to no edge, with an area of its own [L].
 pub fn lone_point(node: usize, area: f64) -> SlavePoint {
-    SlavePoint { position: vec![(node, 1.0)], length: Vec::new(), area, touch: 0.0, law: 0 }
+    SlavePoint { position: vec![(node, 1.0)], length: Vec::new(), area, touch: 0.0, law: 0, overlap: 0.0 }
 }
 
 fn edge_point(edge: &[usize], xi: f64, weight: f64) -> SlavePoint {
@@ -108,6 +116,7 @@ fn edge_point(edge: &[usize], xi: f64, weight: f64) -> SlavePoint {
         area: 0.0,
         touch: 0.0,
         law: 0,
+        overlap: 0.0,
     }
 }
 
@@ -129,34 +138,79 @@ pub enum Master {
     Rigid(Rigid),
 }
 
-/// One edge of a mesh surface, run through along s: straight, or a parabola through its middle node.
+/// One edge of a mesh surface, run through along s: straight, a parabola through its middle node, or a part of a smooth
+/// curve through the nodes of the surface.
+///
+/// ```text
+/// x(ξ) = h₀₀ x₁ + h₁₀ d₁ + h₀₁ x₂ + h₁₁ d₂        h: Hermite's cubics (Catmull–Rom spline)
+/// d₁ = (x₂ − x₀)/2, d₂ = (x₃ − x₁)/2              x₀, x₃: nodes beyond the ends; without one, d = x₂ − x₁
+/// ```
+///
+/// Two segments share d at their node, and with it the normal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segment {
     /// Start and end node
     pub ends: [usize; 2],
     /// Middle node of a quadratic edge
     pub middle: Option<usize>,
+    /// Nodes beyond start and end, where the surface goes on smoothly
+    pub beyond: [Option<usize>; 2],
 }
 
 impl Segment {
-    /// The nodes: start, end[, middle].
+    /// The nodes: start, end[, middle][, beyond].
     pub fn nodes(&self) -> impl Iterator<Item = usize> {
-        self.ends.into_iter().chain(self.middle)
+        self.ends.into_iter().chain(self.middle).chain(self.beyond.into_iter().flatten())
+    }
+
+    /// Whether it is a straight line.
+    pub fn is_straight(&self) -> bool {
+        self.middle.is_none() && !self.is_smooth()
+    }
+
+    /// Whether it is a part of a smooth curve.
+    fn is_smooth(&self) -> bool {
+        self.beyond.iter().any(Option::is_some)
     }
 
     /// Shape functions of x at ξ, 0 … 1.
     pub fn position(&self, xi: f64) -> Weights {
+        if self.is_smooth() {
+            let (square, cube) = (xi * xi, xi * xi * xi);
+            return self.hermite([3.0 * square - 2.0 * cube, cube - 2.0 * square + xi, cube - square], 1.0);
+        }
         self.with(shape::edge_values(self.nodes().count(), 2.0 * xi - 1.0), 1.0)
     }
 
     /// Weights of x′ = dx/dξ at ξ.
     pub fn slope(&self, xi: f64) -> Weights {
+        if self.is_smooth() {
+            let square = xi * xi;
+            return self.hermite([6.0 * (xi - square), 3.0 * square - 4.0 * xi + 1.0, 3.0 * square - 2.0 * xi], 0.0);
+        }
         self.with(shape::edge_derivatives(self.nodes().count(), 2.0 * xi - 1.0), 2.0)
     }
 
-    /// Weights of x″ = d²x/dξ², the same all along.
-    pub fn bend(&self) -> Weights {
+    /// Weights of x″ = d²x/dξ² at ξ.
+    pub fn bend(&self, xi: f64) -> Weights {
+        if self.is_smooth() {
+            return self.hermite([6.0 - 12.0 * xi, 6.0 * xi - 4.0, 6.0 * xi - 2.0], 0.0);
+        }
         self.middle.map_or_else(Vec::new, |_| self.with(vec![1.0, 1.0, -2.0], 4.0))
+    }
+
+    /// Weights of h₀₀ x₁ + h₁₀ d₁ + h₀₁ x₂ + h₁₁ d₂, where h₀₀ = `sum` − h₀₁.
+    fn hermite(&self, [h01, h10, h11]: [f64; 3], sum: f64) -> Weights {
+        let [start, end] = self.ends;
+        let [before, after] = self.beyond;
+        let mut weights = vec![(start, sum - h01), (end, h01)];
+        let mut add = |h: f64, from: usize, to: usize, half: bool| {
+            let h = if half { 0.5 * h } else { h };
+            weights.extend([(to, h), (from, -h)]);
+        };
+        add(h10, before.unwrap_or(start), end, before.is_some());
+        add(h11, start, after.unwrap_or(end), after.is_some());
+        weights
     }
 
     fn with(&self, values: Vec<f64>, factor: f64) -> Weights {
@@ -195,9 +249,31 @@ impl Surface {
             let closed = chain.len() > 1 && chain[chain.len() - 1][1] == chain[0][0];
             surface.chain_of.extend(chain.iter().map(|_| surface.chains.len()));
             surface.chains.push(Chain { first: surface.segments.len(), length: chain.len(), closed });
-            surface.segments.extend(chain.into_iter().map(|ends| Segment { ends, middle: middles[&ends] }));
+            surface.segments.extend(chain.into_iter().map(|ends| Segment {
+                ends,
+                middle: middles[&ends],
+                beyond: [None; 2],
+            }));
         }
         surface
+    }
+
+    /// The same surface as a smooth curve through its nodes, broken only where two of its edges turn by more than 45° in
+    /// the given positions.
+    pub fn smoothed(mut self, positions: &[Vector2<f64>]) -> Self {
+        let straight = self.segments.clone();
+        let direction = |k: usize| {
+            let [a, b] = straight[k].ends;
+            (positions[b] - positions[a]).normalize()
+        };
+        let joined = |k: usize, other: Option<usize>| {
+            other.filter(|&other| direction(k).dot(&direction(other)) > std::f64::consts::FRAC_1_SQRT_2)
+        };
+        for k in 0..straight.len() {
+            let (before, after) = (joined(k, self.previous(k)), joined(k, self.next(k)));
+            self.segments[k].beyond = [before.map(|k| straight[k].ends[0]), after.map(|k| straight[k].ends[1])];
+        }
+        self
     }
 
     /// The segment after `segment` along s, if there is one.

@@ -12,7 +12,7 @@ use crate::step::IterationRecord;
 #[derive(Debug)]
 pub struct NewtonLog(Table);
 
-const COLUMNS: [&str; 12] = [
+const COLUMNS: [&str; 14] = [
     "step",
     "increment",
     "attempt",
@@ -25,6 +25,8 @@ const COLUMNS: [&str; 12] = [
     "slip",
     "linear_residual",
     "factorized",
+    "stabilization",
+    "flips",
 ];
 
 impl NewtonLog {
@@ -41,13 +43,15 @@ impl Observer for NewtonLog {
     fn record(&mut self, _model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Self(table) = self;
         let time = attempt.old.time + attempt.dt;
-        for (k, IterationRecord { newton, contacts }) in attempt.iterations.iter().enumerate() {
+        for (k, IterationRecord { newton, contacts, flips, stabilization }) in attempt.iterations.iter().enumerate() {
             table.text(&attempt.step.name);
             [attempt.old.increment + 1, attempt.number, k + 1].into_iter().for_each(|count| table.count(count));
             [time, newton.residual, newton.correction].into_iter().for_each(|number| table.number(number));
             [contacts.open, contacts.stick, contacts.slip].into_iter().for_each(|count| table.count(count));
             table.number(newton.linear_residual);
             table.count(usize::from(newton.factorized));
+            table.number(*stabilization);
+            table.count(*flips);
             table.end_row()?;
         }
         table.share()

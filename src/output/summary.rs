@@ -24,6 +24,8 @@ pub struct RunReport {
     pub newton_iterations: usize,
     /// matrix factorizations
     pub factorizations: usize,
+    /// energy that went into the stabilization of floating bodies [F·L]
+    pub stabilization_work: f64,
     /// wall time by phase
     pub wall_s: WallSeconds,
 }

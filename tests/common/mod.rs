@@ -84,6 +84,8 @@ pub struct Record {
     pub states: Vec<State>,
     /// Newton iterations of each
     pub iterations: Vec<usize>,
+    /// Share of the forces that stabilize in each
+    pub stabilization: Vec<f64>,
     pub failed: usize,
 }
 
@@ -93,6 +95,7 @@ impl Observer for Record {
             Some(state) => {
                 self.states.push(state.clone());
                 self.iterations.push(attempt.iterations.len());
+                self.stabilization.push(attempt.iterations.last().map_or(0.0, |last| last.stabilization));
             }
             None => self.failed += 1,
         }
@@ -106,6 +109,8 @@ pub struct Finished {
     pub states: Vec<State>,
     /// Newton iterations of each increment
     pub iterations: Vec<usize>,
+    /// Share of the forces that stabilize in each increment
+    pub stabilization: Vec<f64>,
     pub report: RunReport,
 }
 
@@ -153,7 +158,8 @@ pub fn finish_at(case: &Value, path: &Path) -> Finished {
     let (report, result) = run(&model, &mut [&mut record]);
     result.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(record.failed, report.cutbacks + report.rejected);
-    Finished { model, states: record.states, iterations: record.iterations, report }
+    let Record { states, iterations, stabilization, .. } = record;
+    Finished { model, states, iterations, stabilization, report }
 }
 
 /// Largest |a − b|.

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::dense::Panel;
 use super::jobs::{Job, Waiting, lock};
-use super::symbolic::{Entry, Forest, Front, Symbolic};
+use super::symbolic::{Entry, Forest, Front, Run, Symbolic};
 
 /// L and U of all fronts.
 #[derive(Default)]
@@ -210,16 +210,23 @@ impl Sums<'_> {
     /// Add what a child passes on to the pivots (extend-add).
     fn add_contribution(&mut self, child: &Front, contribution: &[f64]) {
         let (size, pivots, below) = (self.front.size(), self.front.pivots, self.front.below());
-        let above = &child.to_parent[..child.inner];
-        for (k, column) in contribution.chunks_exact(child.below().max(1)).enumerate() {
-            let target = child.to_parent[k / 2] as usize + k % 2;
-            if target < pivots {
-                add_rows(&mut self.lower[target * size..][..size], column, &child.to_parent, 0);
-            } else {
-                let row = target - pivots;
-                for (pair, &place) in column.chunks_exact(2).zip(above) {
-                    self.upper[place as usize * below + row] += pair[0];
-                    self.upper[(place as usize + 1) * below + row] += pair[1];
+        let rows = child.below().max(1);
+        let (inner, outer) = child.runs.split_at(child.inner_runs);
+        let columns =
+            |run: &Run| contribution[run.from as usize * rows..][..run.length as usize * rows].chunks_exact(rows);
+        for run in inner {
+            for (target, column) in self.lower[run.to as usize * size..].chunks_exact_mut(size).zip(columns(run)) {
+                add_rows(target, column, &child.runs, 0);
+            }
+        }
+        for run in outer {
+            for (k, column) in columns(run).enumerate() {
+                let row = run.to as usize - pivots + k;
+                for run in inner {
+                    let places = self.upper[run.to as usize * below..].chunks_exact_mut(below);
+                    for (place, value) in places.zip(&column[run.from as usize..][..run.length as usize]) {
+                        place[row] += value;
+                    }
                 }
             }
         }
@@ -228,20 +235,24 @@ impl Sums<'_> {
 
 /// Add what a child passes on past the pivots.
 fn add_below(front: &Front, below: &mut [f64], child: &Front, contribution: &[f64]) {
-    let rows = front.below();
-    let (_, places) = child.to_parent.split_at(child.inner);
-    let columns = contribution.chunks_exact(child.below().max(1)).skip(2 * child.inner);
-    for (k, column) in columns.enumerate() {
-        let target = places[k / 2] as usize + k % 2 - front.pivots;
-        add_rows(&mut below[target * rows..][..rows], &column[2 * child.inner..], places, front.pivots);
+    let (target_rows, rows) = (front.below(), child.below().max(1));
+    let outer = &child.runs[child.inner_runs..];
+    for run in outer {
+        let columns = contribution[run.from as usize * rows..][..run.length as usize * rows].chunks_exact(rows);
+        let targets = below[(run.to as usize - front.pivots) * target_rows..].chunks_exact_mut(target_rows);
+        for (target, column) in targets.zip(columns) {
+            add_rows(target, column, outer, front.pivots);
+        }
     }
 }
 
-/// Add pairs of values at their places; `offset` is the place of the first target.
-fn add_rows(target: &mut [f64], values: &[f64], places: &[u32], offset: usize) {
-    for (pair, &place) in values.chunks_exact(2).zip(places) {
-        let target = &mut target[place as usize - offset..][..2];
-        target[0] += pair[0];
-        target[1] += pair[1];
+/// Add the runs of a column at their places; `offset` is the place of the first target.
+fn add_rows(target: &mut [f64], column: &[f64], runs: &[Run], offset: usize) {
+    for run in runs {
+        let length = run.length as usize;
+        let target = &mut target[run.to as usize - offset..][..length];
+        for (target, value) in target.iter_mut().zip(&column[run.from as usize..][..length]) {
+            *target += value;
+        }
     }
 }

@@ -25,6 +25,10 @@ pub struct Front {
     pub to_parent: Vec<u32>,
     /// How many nodes of `rows` are eliminated in the parent
     pub inner: usize,
+    /// The rows below that stay together in the parent; the first `inner_runs` of them are eliminated there
+    pub runs: Vec<Run>,
+    /// How many of `runs` are eliminated in the parent
+    pub inner_runs: usize,
     /// The fronts whose contributions are added to this one
     pub children: Vec<u32>,
     /// Whether the depth in the tree is odd
@@ -53,6 +57,16 @@ impl Front {
         let (k, r) = (self.pivots as f64, self.below() as f64);
         2.0 / 3.0 * k * k * k + 2.0 * k * k * r + 2.0 * k * r * r
     }
+}
+
+/// Consecutive rows below the pivots of a front that are consecutive in its parent, too.
+pub struct Run {
+    /// The first of them, counted from the first row below
+    pub from: u32,
+    /// Its row in the parent
+    pub to: u32,
+    /// How many they are
+    pub length: u32,
 }
 
 /// A 2×2 block of A and the place of its first value in the panel it goes to.
@@ -89,6 +103,11 @@ impl Symbolic {
         let entries = entries(&pattern, &elimination, &mut fronts);
         let forests = forests(&fronts);
         Ok(Self { pattern, nodes: elimination.nodes, fronts, entries, forests })
+    }
+
+    /// Floating-point operations of a factorization.
+    pub fn work(&self) -> f64 {
+        self.fronts.iter().map(Front::work).sum()
     }
 
     /// Number of values in the factors.
@@ -145,6 +164,7 @@ fn fronts(pattern: &Pattern, elimination: &Elimination, supernodes: &[Supernode]
             let child = &mut fronts[child as usize];
             child.to_parent = places(&child.rows, first, end, &rows);
             child.inner = child.rows.partition_point(|&row| (row as usize) < end);
+            (child.runs, child.inner_runs) = runs(&child.to_parent, child.inner);
         }
         if let Some(&row) = rows.first() {
             families[owner[row as usize]].push(s as u32);
@@ -159,6 +179,8 @@ fn fronts(pattern: &Pattern, elimination: &Elimination, supernodes: &[Supernode]
             rows,
             to_parent: Vec::new(),
             inner: 0,
+            runs: Vec::new(),
+            inner_runs: 0,
             children,
             odd: false,
             values,
@@ -291,4 +313,20 @@ fn subtrees(fronts: &[Front]) -> (Vec<usize>, Vec<f64>) {
         work.push(front.work() + front.children.iter().map(|&child| work[child as usize]).sum::<f64>());
     }
     (first, work)
+}
+
+/// Join the nodes whose places follow each other, and count the runs of the first `inner` nodes.
+fn runs(places: &[u32], inner: usize) -> (Vec<Run>, usize) {
+    let mut runs: Vec<Run> = Vec::new();
+    let mut inner_runs = 0;
+    for (k, &to) in places.iter().enumerate() {
+        match runs.last_mut() {
+            Some(run) if k != inner && run.to + run.length == to => run.length += 2,
+            _ => runs.push(Run { from: 2 * k as u32, to, length: 2 }),
+        }
+        if k < inner {
+            inner_runs = runs.len();
+        }
+    }
+    (runs, inner_runs)
 }

@@ -164,7 +164,8 @@ impl Runs<'_> {
         for contact in self.owners("tangential_force") {
             let (normal, tangential) = (format!("{contact}.normal_force"), format!("{contact}.tangential_force"));
             let mut curves = self.curves(&normal, &tangential, "friction")?;
-            let most = curves.iter().flat_map(|curve| &curve.points).fold(0.0, |most, [n, _]| n.max(most));
+            // A little beyond the curves, which would be hidden by the frame where the normal force is constant.
+            let most = 1.05 * curves.iter().flat_map(|curve| &curve.points).fold(0.0, |most, [n, _]| n.max(most));
             let backwards = acts_backwards(&curves);
             for (k, (name, mu)) in self.coefficients(&contact).into_iter().enumerate() {
                 let bound = |sign: f64| vec![[0.0, 0.0], [most, sign * mu * most]];

@@ -1,0 +1,98 @@
+//! Bodies that nothing holds until contact does: steered into contact by a stabilization that is gone at the end of the step.
+
+mod common;
+
+use std::path::Path;
+
+use common::{Blocks, Finished, Record, close, finish, model_at};
+use fecontact::run::run;
+use fecontact::state::State;
+use serde_json::{Value, json};
+
+const PRESSURE: f64 = 2.0;
+
+/// A column of blocks 1 × 0.5, E = 1000, ν = 0, with gaps between them, over ground that is held; pressure on the last one
+/// and nothing else. Each block is turned about its lower left corner.
+fn column(blocks: usize, gap: f64, turn: f64, friction: Value) -> Value {
+    let mut mesh = Blocks::default().rectangle("ground", [5, 2], [-0.2, -0.5], [1.2, 0.0]);
+    let material = json!({"material": {"model": "neo_hookean", "E": 1000, "nu": 0}});
+    let (mut bodies, mut contacts) = (json!({"ground": material}), json!({}));
+    let mut below = "ground".to_owned();
+    for k in 0..blocks {
+        let (name, divisions) = (format!("block{k}"), [3 + k, 2]);
+        let bottom = (k + 1) as f64 * gap + k as f64 * 0.5;
+        mesh = mesh.block(&name, divisions, |s, t| {
+            let [x, y] = common::turned([s, 0.5 * t], turn);
+            [x, bottom + y]
+        });
+        bodies[&name] = material.clone();
+        contacts[format!("under{k}")] =
+            json!({"slave": format!("{name}_bottom"), "master": format!("{below}_top"), "friction": friction});
+        below = name;
+    }
+    json!({
+        "mesh": mesh.json(),
+        "bodies": bodies,
+        "contacts": contacts,
+        "steps": [{
+            "name": "fall", "duration": 2, "dt": {"initial": 0.1}, "stabilize": 1e-3,
+            "supports": [{"on": "ground_bottom", "ux": 0, "uy": 0}],
+            "loads": [{"on": format!("{below}_top"), "pressure": PRESSURE}]
+        }]
+    })
+}
+
+fn coulomb() -> Value {
+    json!({"law": "coulomb", "mu": 0.5})
+}
+
+/// Normal force of every contact.
+fn normal_forces(run: &Finished, state: &State) -> Vec<f64> {
+    let x = run.model.configuration(&state.displacement);
+    let mut forces = vec![0.0; run.model.contacts.len()];
+    for ((force, pair), states) in forces.iter_mut().zip(&run.model.contacts).zip(&state.contacts) {
+        for (point, contact) in pair.points.iter().zip(states) {
+            *force += point.current_length(&x) * contact.friction.pressure;
+        }
+    }
+    forces
+}
+
+/// Every contact carries the whole load, to Newton's tolerance and the change of the loaded length; nothing else holds the
+/// blocks. Flat or tilted by a degree, one block or three.
+#[test]
+fn free_blocks_settle_on_each_other() {
+    for (blocks, turn) in [(1, 0.0), (3, 0.0), (1, 0.0175)] {
+        let run = finish(&column(blocks, 0.02, turn, coulomb()));
+        let last = run.last();
+        for force in normal_forces(&run, last) {
+            close(&format!("{blocks} blocks turned by {turn}: force"), force, PRESSURE, 1e-3 * PRESSURE);
+        }
+        let ground = run.reaction("ground_bottom", last);
+        close("reaction", ground[1], PRESSURE, 1e-3 * PRESSURE);
+        assert!(run.report.stabilization_work > 0.0);
+        let shares = &run.stabilization;
+        assert!(shares[0] > 1e-3, "the first increment is not stabilized: {shares:?}");
+        assert_eq!(shares.last(), Some(&0.0), "the last increment is still stabilized");
+    }
+}
+
+/// Without the stabilization the matrix is singular, and the message says what to do. On a smooth rigid plane a stabilized
+/// block is still free along x when the stabilization has gone: that is told, not taken for an answer.
+#[test]
+fn what_contact_does_not_hold_is_named() {
+    let message = |case: &Value| {
+        let model = model_at(case, Path::new("test.json"));
+        let result = run(&model, &mut [&mut Record::default()]).1;
+        result.err().map(|error| error.to_string()).expect("a body floats")
+    };
+    let mut unaided = column(1, 0.02, 0.0, coulomb());
+    unaided["steps"][0]["stabilize"] = Value::Null;
+    let text = message(&unaided);
+    assert!(text.contains("nothing resists the motion of body `block0`") && text.contains("`stabilize`"), "{text}");
+    let mut smooth = column(1, 0.02, 0.0, json!({"law": "frictionless"}));
+    smooth["contacts"]["under0"]["master"] = json!({"plane": {"point": [0, 0], "normal": [0, 1]}});
+    smooth["steps"][0]["loads"] = json!([{"on": "block0_top", "traction": {"y": -PRESSURE}}]);
+    let text = message(&smooth);
+    assert!(text.contains("nothing resists the motion of body `block0` along x"), "{text}");
+}
