@@ -31,7 +31,7 @@ pub struct Iteration {
     pub correction: f64,
     /// ‖K Δu + r‖/‖r‖ of the linear solve [-]
     pub linear_residual: f64,
-    /// Whether K is new; if not, it is that of the iterate before
+    /// Whether K is new; if not, it is that of an earlier iterate
     pub factorized: bool,
     /// Pivots of K that vanished and were replaced
     pub perturbed_pivots: usize,

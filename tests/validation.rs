@@ -165,6 +165,22 @@ fn a_shrink_fit_has_the_pressure_of_lame() {
     }
 }
 
+/// A block of 1 × 0.6 on ground of 4 × 0.8, with nodes that do not match.
+fn small_block() -> Blocks {
+    Blocks::default().rectangle("ground", [8, 3], [-2.0, -0.8], [2.0, 0.0]).rectangle(
+        "block",
+        [5, 3],
+        [-0.5, 0.0],
+        [0.5, 0.6],
+    )
+}
+
+/// Bodies of one neo-Hookean material.
+fn alike(names: &[&str]) -> Value {
+    let body = json!({"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}});
+    names.iter().map(|name| (name.to_string(), body.clone())).collect()
+}
+
 /// Pressed, lifted off by more than the indentation, and pressed again: nothing acts in between, and the second answer is
 /// the first to Newton's tolerance.
 #[test]
@@ -172,13 +188,8 @@ fn surfaces_separate_and_close_again() {
     for method in ["node_to_segment", "gauss_to_segment", "mortar"] {
         let top = |uy: f64| json!([{"on": "block_top", "ux": 0, "uy": uy}]);
         let run = finish(&json!({
-            "mesh": Blocks::default()
-                .rectangle("ground", [8, 3], [-2.0, -0.8], [2.0, 0.0])
-                .rectangle("block", [5, 3], [-0.5, 0.0], [0.5, 0.6]).json(),
-            "bodies": {
-                "ground": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
-                "block": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
-            },
+            "mesh": small_block().json(),
+            "bodies": alike(&["ground", "block"]),
             "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "method": method,
                                   "friction": {"law": "frictionless"}}},
             "newton": {"tolerance": 1e-11},
@@ -269,13 +280,8 @@ fn pressures_of_the_augmented_lagrangian_do_not_depend_on_the_penalty() {
         let mut normal = normal;
         normal["alpha_n"] = json!(alpha_n);
         let run = finish(&json!({
-            "mesh": Blocks::default()
-                .rectangle("ground", [8, 3], [-2.0, -0.8], [2.0, 0.0])
-                .rectangle("block", [5, 3], [-0.5, 0.0], [0.5, 0.6]).json(),
-            "bodies": {
-                "ground": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
-                "block": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
-            },
+            "mesh": small_block().json(),
+            "bodies": alike(&["ground", "block"]),
             "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "method": "mortar", "normal": normal,
                                   "friction": {"law": "coulomb", "mu": 0.3, "alpha_t": 1e5}}},
             "newton": {"tolerance": 1e-10},

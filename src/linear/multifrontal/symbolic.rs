@@ -23,8 +23,6 @@ pub struct Front {
     pub rows: Vec<u32>,
     /// Row in the parent's front of the first unknown of each node in `rows`
     pub to_parent: Vec<u32>,
-    /// How many nodes of `rows` are eliminated in the parent
-    pub inner: usize,
     /// The rows below that stay together in the parent; the first `inner_runs` of them are eliminated there
     pub runs: Vec<Run>,
     /// How many of `runs` are eliminated in the parent
@@ -163,8 +161,8 @@ fn fronts(pattern: &Pattern, elimination: &Elimination, supernodes: &[Supernode]
         for &child in &children {
             let child = &mut fronts[child as usize];
             child.to_parent = places(&child.rows, first, end, &rows);
-            child.inner = child.rows.partition_point(|&row| (row as usize) < end);
-            (child.runs, child.inner_runs) = runs(&child.to_parent, child.inner);
+            let inner = child.rows.partition_point(|&row| (row as usize) < end);
+            (child.runs, child.inner_runs) = runs(&child.to_parent, inner);
         }
         if let Some(&row) = rows.first() {
             families[owner[row as usize]].push(s as u32);
@@ -178,7 +176,6 @@ fn fronts(pattern: &Pattern, elimination: &Elimination, supernodes: &[Supernode]
             pivots,
             rows,
             to_parent: Vec::new(),
-            inner: 0,
             runs: Vec::new(),
             inner_runs: 0,
             children,
