@@ -381,7 +381,12 @@ fn check_mortar_tangent(
         let is = mortar.overlaps(surface, &Index::new(&pair.master, &x), &x);
         let meeting = mortar.kinematics(k, surface, &is, weights.as_ref(), &x).expect("the master faces the point");
         closes(pair, &pair.points[k], meeting.gap, &old, increment, &x)
-            .then(|| press(pair, &pair.points[k], meeting, &old, increment).expect("a finite increment").1.expect("a closed point"))
+            .then(|| {
+                press(pair, &pair.points[k], meeting, &old, increment)
+                    .expect("a finite increment")
+                    .1
+                    .expect("a closed point")
+            })
             .map(|closed| closed.contribution)
     };
     let Some(contribution) = evaluate(x) else { return false };
