@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use crate::assembly::{Assembler, ContactCounts, Trial};
-use crate::energy::{contact_energy, friction_dissipation, work_of_drivers};
 use crate::contact::force::{ContactState, Status};
+use crate::energy::{contact_energy, friction_dissipation, work_of_drivers};
 use crate::error::StepFailure;
 use crate::floating::null_motion;
 use crate::linear::{self, LinearSolver};

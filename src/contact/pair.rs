@@ -6,7 +6,8 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use super::force::{
-    Closed, ContactState, Increment, Meeting, PointResponse, Presume, Tractions, closes, nodal_forces, open, press, respond,
+    Closed, ContactState, Increment, Meeting, PointResponse, Presume, Tractions, closes, nodal_forces, open, press,
+    respond,
 };
 use super::kinematics::{Kinematics, kinematics};
 use super::mortar::Mortar;
