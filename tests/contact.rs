@@ -179,7 +179,7 @@ fn nothing_jumps_on_a_smooth_surface() {
 fn a_promise_is_of_second_order_and_changes_no_force() {
     let (edges, x) = wavy();
     let pair = pair(nodal_points(&[vec![6, 7], vec![7, 8]]), Master::Mesh(Surface::new(&edges)), COULOMB);
-    let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.law.initial_state() };
+    let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.laws[0].initial_state() };
     let old = pulled(&pair, 1, &x, 0.3, pressed, -0.02);
     let (state, closed) = promised(&pair, 1, &old, &x, None);
     let closed = closed.expect("a closed point");
