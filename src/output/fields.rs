@@ -3,11 +3,11 @@
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 
 use nalgebra::Vector2;
-use rayon::prelude::*;
 use vtkio::IOBuffer;
 use vtkio::model::{
     Attribute, Attributes, ByteOrder, CellType, Cells, DataArray, DataSet, UnstructuredGridPiece, Version,
@@ -29,17 +29,10 @@ use crate::state::State;
 #[derive(Debug)]
 pub struct Fields {
     every: usize,
-    /// `None` when there are no more
-    frames: Option<SyncSender<Frame>>,
+    /// States to be written; `None` when there are no more
+    frames: Option<SyncSender<State>>,
     /// `None` when it has ended
     writer: Option<JoinHandle<Result<(), Error>>>,
-}
-
-/// One moment, ready to be written.
-struct Frame {
-    time: f64,
-    solid: UnstructuredGridPiece,
-    contact: Option<UnstructuredGridPiece>,
 }
 
 /// Frames that may wait for the writer; a run that is faster waits, so that memory stays bounded.
@@ -59,38 +52,36 @@ impl Fields {
     ///
     /// # Errors
     /// [`Error::Output`] when a file cannot be written.
-    pub fn create(folder: &Path, model: &Model, start: &State, every: usize) -> Result<Self, Error> {
+    pub fn create(folder: &Path, model: Arc<Model>, start: &State, every: usize) -> Result<Self, Error> {
         let mut solid = Collection::create(folder, "solid")?;
         let mut contact = (!model.contacts.is_empty()).then(|| Collection::create(folder, "contact")).transpose()?;
-        let (frames, arriving): (_, Receiver<Frame>) = sync_channel(WAITING);
+        let (frames, arriving): (_, Receiver<State>) = sync_channel(WAITING);
         let writer = std::thread::spawn(move || {
-            for frame in arriving {
-                solid.write(frame.time, frame.solid)?;
-                if let (Some(contact), Some(piece)) = (&mut contact, frame.contact) {
-                    contact.write(frame.time, piece)?;
+            for state in arriving {
+                solid.write(state.time, solid_frame(&model, &state))?;
+                if let Some(contact) = &mut contact {
+                    contact.write(state.time, contact_frame(&model, &state))?;
                 }
             }
             Ok(())
         });
         let mut fields = Self { every, frames: Some(frames), writer: Some(writer) };
-        fields.write(model, start)?;
+        fields.write(start)?;
         Ok(fields)
     }
 
-    /// Hand a frame to the writer. One that has ended has failed, and says why.
-    fn write(&mut self, model: &Model, state: &State) -> Result<(), Error> {
-        let contact = (!model.contacts.is_empty()).then(|| contact_frame(model, state));
-        let frame = Frame { time: state.time, solid: solid_frame(model, state), contact };
-        let taken = self.frames.as_ref().is_some_and(|frames| frames.send(frame).is_ok());
+    /// Hand a state to the writer. One that has ended has failed, and says why.
+    fn write(&mut self, state: &State) -> Result<(), Error> {
+        let taken = self.frames.as_ref().is_some_and(|frames| frames.send(state.clone()).is_ok());
         if taken { Ok(()) } else { self.finish() }
     }
 }
 
 impl Observer for Fields {
-    fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
+    fn record(&mut self, _: &Model, attempt: &Attempt) -> Result<(), Error> {
         match attempt.accepted {
             Some(state) if state.increment % self.every == 0 || state.time >= attempt.step.span.end => {
-                self.write(model, state)
+                self.write(state)
             }
             _ => Ok(()),
         }
@@ -184,9 +175,8 @@ fn nodal_stresses(model: &Model, state: &State) -> Vec<[f64; 4]> {
         let material = &*model.bodies[model.body_of_element[e]].material;
         model.solids[e].nodal_stresses(material, &u[..elements[e].nodes.len()])
     };
-    let all: Vec<_> = (0..elements.len()).into_par_iter().with_min_len(64).map(stresses_of).collect();
     let mut sums = vec![([0.0; 4], 0.0); model.mesh.nodes.len()];
-    for (element, stresses) in elements.iter().zip(all) {
+    for (element, stresses) in elements.iter().zip((0..elements.len()).map(stresses_of)) {
         for (stress, &node) in stresses.iter().flatten().zip(&element.nodes) {
             let (sum, count) = &mut sums[node];
             for (sum, part) in sum.iter_mut().zip([stress.xx, stress.yy, stress.zz, stress.xy]) {
