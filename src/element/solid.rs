@@ -205,13 +205,17 @@ impl SolidElement {
         u: &[Vector2<f64>],
     ) -> Result<Vec<CauchyStress>, InvertedElement> {
         let stresses = self.stresses(material, u)?;
-        let points = DMatrix::from_fn(stresses.len(), 4, |point, component| {
-            let CauchyStress { xx, yy, zz, xy } = stresses[point];
-            [xx, yy, zz, xy][component]
-        });
-        let corners = corner_fit(self.kind) * points;
+        let fit = corner_fit(self.kind);
+        let mut corners = [[0.0; 4]; 4];
+        for (a, corner) in corners.iter_mut().enumerate().take(fit.nrows()) {
+            for (point, &CauchyStress { xx, yy, zz, xy }) in stresses.iter().enumerate() {
+                let weight = fit[(a, point)];
+                corner.iter_mut().zip([xx, yy, zz, xy]).for_each(|(sum, stress)| *sum += weight * stress);
+            }
+        }
         let at = |values: &[usize]| {
-            let mean = |component| values.iter().map(|&a| corners[(a, component)]).sum::<f64>() / values.len() as f64;
+            let mean =
+                |component: usize| values.iter().map(|&a| corners[a][component]).sum::<f64>() / values.len() as f64;
             CauchyStress { xx: mean(0), yy: mean(1), zz: mean(2), xy: mean(3) }
         };
         let n = self.kind.corners();
