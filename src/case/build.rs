@@ -188,8 +188,11 @@ fn contacts(case: &Case, model: &Model) -> Checked<Vec<ContactPair>> {
 
 fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPair> {
     let place = format!("contacts.{name}");
-    let (points, mortar) = slave_points(&place, input, &model.mesh)?;
-    let master = master(&place, input, &points, &model.mesh)?;
+    let (mut points, mortar) = slave_points(&place, input, &model.mesh)?;
+    let master = master(&place, input, &points, model)?;
+    if let Master::Mesh(surface) = &master {
+        points.iter_mut().flat_map(|point| &mut point.length).for_each(|length| length.factor *= surface.share());
+    }
     if mortar.is_some() && matches!(master, Master::Rigid(_)) {
         let message = "is mortar, which needs an edge group as master: use gauss_to_segment on a rigid body";
         return Err(Complaint::new(format!("{place}.method"), message));
@@ -277,12 +280,18 @@ fn slave_points(place: &str, input: &ContactInput, mesh: &Mesh) -> Checked<(Vec<
     })
 }
 
-fn master(place: &str, input: &ContactInput, points: &[SlavePoint], mesh: &Mesh) -> Checked<Master> {
+fn master(place: &str, input: &ContactInput, points: &[SlavePoint], model: &Model) -> Checked<Master> {
+    let mesh = &model.mesh;
     match &input.master {
         MasterInput::Group(group) => {
             let master = edges(mesh, group, &format!("{place}.master"))?;
-            check_disjoint(place, &input.slave, points, group, master, mesh)?;
-            let surface = Surface::new(&node_lists(master));
+            let mut surface = Surface::new(&node_lists(master));
+            if input.is_own() {
+                let thinnest = master.iter().map(|edge| depth_behind(edge, model)).fold(f64::INFINITY, f64::min);
+                surface = surface.against_itself(0.5 * thinnest);
+            } else {
+                check_disjoint(place, &input.slave, points, group, master, mesh)?;
+            }
             if !input.smooth {
                 return Ok(Master::Mesh(surface));
             }
@@ -352,15 +361,19 @@ fn default_stiffness(place: &str, input: &ContactInput, model: &Model) -> Checke
     }
     let slave = edges(&model.mesh, name, &format!("{place}.slave"))?;
     let behind = |edge: &Edge| {
-        let [a, b] = [0, 1].map(|end| model.mesh.nodes[edge.nodes[end]]);
-        let depth = model.solids[edge.element].volume() / (b - a).norm();
-        10.0 * model.bodies[model.body_of_element[edge.element]].material.stiffness() / depth
+        let material = &model.bodies[model.body_of_element[edge.element]].material;
+        10.0 * material.stiffness() / depth_behind(edge, model)
     };
     Ok(slave.iter().map(behind).sum::<f64>() / slave.len() as f64)
 }
 
-/// Slave and master must be different edges, and a slave point of no edge must not be on the master: a surface does not
-/// touch itself here.
+/// Depth of the element behind an edge [L].
+fn depth_behind(edge: &Edge, model: &Model) -> f64 {
+    let [a, b] = [0, 1].map(|end| model.mesh.nodes[edge.nodes[end]]);
+    model.solids[edge.element].volume() / (b - a).norm()
+}
+
+/// Two groups in contact must be different edges, and a slave point of no edge must not be on the master.
 fn check_disjoint(
     place: &str,
     slave: &str,
@@ -381,7 +394,7 @@ fn check_disjoint(
     let what = if lone { "node" } else { "the edge between nodes" };
     let message = format!(
         "{what} {} is both slave (`{slave}`) and master (`{master}`): the two sides of a contact need edges and nodes of \
-         their own",
+         their own; for contact of a surface with itself name the same group of edges twice",
         tags.join(" and ")
     );
     Err(Complaint::new(place, message))

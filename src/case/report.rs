@@ -168,6 +168,7 @@ fn initial_tractions(initial: &InitialInput, pair: &ContactPair) -> String {
 fn contact(case: &Case, pair: &ContactPair) -> Vec<String> {
     let input = &case.contacts[&pair.name];
     let master = match &input.master {
+        MasterInput::Group(_) if input.is_own() => "itself".into(),
         MasterInput::Group(group) => group.clone(),
         MasterInput::Rigid(rigid) => {
             let pair = |v: [f64; 2]| v.map(number).join(", ");

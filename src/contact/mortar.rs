@@ -146,11 +146,11 @@ impl Mortar {
             normal,
             tangent,
             slip: slip.value,
-            length: length.value,
+            length: surface.share() * length.value,
             dgap: vector(&gap),
             dslip: vector(&slip),
             drotation: vector(&s.x) * normal.x + vector(&s.y) * normal.y,
-            dlength: vector(&length),
+            dlength: vector(&length) * surface.share(),
             drelative: relative.iter().map(vector).enumerate().collect(),
             nodes: frame.nodes,
         };
@@ -384,7 +384,7 @@ fn cut(edge: &[usize], surface: &Surface, index: &Index, x: &Configuration) -> V
         root(|xi| Line::Edge(edge).shapes(xi), &levels, chord)
     };
     let mut candidates = Vec::new();
-    for segment in index.around(edge.iter().map(|&node| x.at(node)), reach) {
+    for segment in index.around(edge, reach, x) {
         let [a, b] = surface.segments[segment].ends;
         if normal_of(x.between(a, b).normalize()).dot(&normal) >= FACING {
             continue;

@@ -138,7 +138,7 @@ impl ContactPair {
         presumed: impl Fn(usize) -> Presumption + Sync,
         x: &Configuration,
     ) -> Result<PairResponse, (usize, LawFailure)> {
-        let index = Index::new(&self.master, x);
+        let index = Index::within(&self.master, before, x);
         if let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) {
             let was = mortar.overlaps(surface, &Index::new(&self.master, before), before);
             let is = mortar.overlaps(surface, &index, x);
