@@ -3,8 +3,9 @@
 mod common;
 
 use std::f64::consts::PI;
+use std::path::Path;
 
-use common::{Blocks, Finished, close, distance, finish};
+use common::{Blocks, Finished, close, distance, finish, finish_at};
 use fecontact::configuration::Configuration;
 use fecontact::contact::force::Status;
 use fecontact::contact::pair::{Moment, Presumption};
@@ -146,6 +147,43 @@ fn tangent_of_self_contact_equals_differences() {
         assert!(closed_points >= 4);
         close("tangent", off, 0.0, 1e-6 * scale);
     }
+}
+
+/// `cases/tube.json`: a tube on a plate, pressed against a bar until its inside touches itself. The plate carries what the
+/// bar presses with; the upper wall is held off the lower one, on both sides of the middle alike; no increment is hard.
+#[test]
+fn a_tube_pressed_flat_touches_itself() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/tube.json");
+    let case = serde_json::from_str(&std::fs::read_to_string(&path).expect("a case")).expect("JSON");
+    let run = finish_at(&case, &path);
+    let x = run.model.configuration(&run.last().displacement);
+    let pair = |name: &str| {
+        let number = run.model.contacts.iter().position(|pair| pair.name == name).expect("a contact of the case");
+        run.model.contacts[number].points.iter().zip(&run.last().contacts[number])
+    };
+    let (mut force, mut moment, mut deepest) = (0.0, 0.0, 0.0f64);
+    for (point, state) in pair("inside").filter(|(_, state)| state.friction.pressure > 0.0) {
+        let share = point.current_length(&x) * state.friction.pressure;
+        force += share;
+        moment += share * point.at(&x).x;
+        deepest = deepest.max(-state.gap / point.edge_length(&x).expect("an edge"));
+    }
+    let [_, plate] = run.reaction("plate_bottom", run.last());
+    println!("plate {plate:.6}, inside {force:.6} at x = {:.1e}, {deepest:.1e} of an edge deep", moment / force);
+    assert!(force > 0.5 * plate && deepest < 0.03);
+    close("symmetry", moment / force, 0.0, 0.02);
+    assert_eq!(run.report.cutbacks, 0);
+    assert!(run.iterations.iter().all(|&n| n <= 12), "{:?}", run.iterations);
+    // Between the bar and the inside, and between the inside and the plate, the walls are cut free: each carries it all.
+    let bar: f64 = pair("bar")
+        .filter(|(_, state)| state.friction.pressure > 0.0)
+        .map(|(point, state)| {
+            let offset = (point.at(&x) - Vector2::new(0.0, 24.0)).normalize();
+            let along = Vector2::new(offset.y, -offset.x);
+            -point.current_length(&x) * (offset * state.friction.pressure - along * state.friction.traction).y
+        })
+        .sum();
+    close("the bar presses", bar, plate, 1e-6 * plate);
 }
 
 /// A strip folded to a spiral of two turns, each point of which lies before the next turn: the foot that the tree finds is the
