@@ -22,7 +22,7 @@ fn surfaces(n: usize) -> (Vec<Vector2<f64>>, ContactPair) {
         points: gauss_points(&slave, 2),
         master: Master::Mesh(Surface::new(&master)),
         alpha_n: 1e4,
-        law: Box::new(law),
+        laws: vec![Box::new(law)],
         initial: None,
         mortar: None,
         penetration: None,

@@ -1,7 +1,7 @@
 //! Supports and loads: what is prescribed or applied at a node, and how it varies in time and space.
 
 use exmex::{Express, FlatEx};
-use nalgebra::{Rotation2, Vector2};
+use nalgebra::{Matrix2, Rotation2, Vector2};
 
 /// How a prescribed quantity varies, as given in the case.
 #[derive(Clone, Debug)]
@@ -33,6 +33,11 @@ impl Expression {
         }
     }
 
+    /// Whether t stands in it.
+    pub fn depends_on_time(&self) -> bool {
+        self.0.var_names().iter().any(|name| name == "t")
+    }
+
     /// Whether x or y stands in it.
     pub fn depends_on_position(&self) -> bool {
         self.0.var_names().iter().any(|name| name != "t")
@@ -47,6 +52,29 @@ impl Expression {
         };
         let variables: Vec<f64> = self.0.var_names().iter().map(of).collect();
         self.0.eval(&variables).unwrap_or(f64::NAN)
+    }
+}
+
+/// How a quantity varies along a surface, by reference position.
+#[derive(Clone, Debug)]
+pub enum Profile {
+    /// The same everywhere
+    Constant(f64),
+    /// An expression in x and y
+    Expression(Expression),
+    /// (coordinate, value) pairs along x (0) or y (1), linear between, constant outside; of two pairs with the same
+    /// coordinate the second holds there and beyond
+    Table(usize, Vec<[f64; 2]>),
+}
+
+impl Profile {
+    /// Value at a reference position; NaN where an expression is not defined.
+    pub fn value(&self, position: Vector2<f64>) -> f64 {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Expression(expression) => expression.value(position, 0.0),
+            Self::Table(component, table) => interpolate(table, position[*component]),
+        }
     }
 }
 
@@ -78,10 +106,11 @@ impl Drive {
     }
 }
 
-fn interpolate(table: &[[f64; 2]], time: f64) -> f64 {
-    let after = table.partition_point(|[t, _]| *t <= time);
+/// Linear between the pairs (argument, value), whose arguments do not descend; constant outside.
+fn interpolate(table: &[[f64; 2]], at: f64) -> f64 {
+    let after = table.partition_point(|[t, _]| *t <= at);
     match (after.checked_sub(1).and_then(|k| table.get(k)), table.get(after)) {
-        (Some([t0, v0]), Some([t1, v1])) => v0 + (v1 - v0) * (time - t0) / (t1 - t0),
+        (Some([t0, v0]), Some([t1, v1])) => v0 + (v1 - v0) * (at - t0) / (t1 - t0),
         (Some([_, v]), None) | (None, Some([_, v])) => *v,
         (None, None) => 0.0,
     }
@@ -214,6 +243,18 @@ impl Dashpot {
     }
 }
 
+/// A node's share of an absorbing side: force −C v, C = ∫ N_a ρ (c_p n⊗n + c_s s⊗s) dS with the side's reference normal
+/// n and tangent s. Plane waves that meet the side at a right angle leave as if the body went on.
+///
+/// Source: Lysmer & Kuhlemeyer (1969), J. Eng. Mech. Div. ASCE 95, 859.
+#[derive(Clone, Debug)]
+pub struct Absorber {
+    /// the node
+    pub node: usize,
+    /// C [F T/L]
+    pub coefficients: Matrix2<f64>,
+}
+
 /// Everything that acts on the model in one step.
 #[derive(Clone, Debug, Default)]
 pub struct Loads {
@@ -225,4 +266,6 @@ pub struct Loads {
     pub springs: Vec<Spring>,
     /// dashpots
     pub dashpots: Vec<Dashpot>,
+    /// absorbing sides
+    pub absorbers: Vec<Absorber>,
 }

@@ -10,6 +10,7 @@ use crate::error::Error;
 use crate::model::Model;
 use crate::output::Observer;
 use crate::output::fields::Fields;
+use crate::output::fronts::{self, Fronts};
 use crate::output::history::History;
 use crate::output::law::{Hold, LawReport, LawTable, Moment};
 use crate::output::newton_log::NewtonLog;
@@ -23,7 +24,8 @@ use crate::run;
 const MOST_THREADS: usize = 1024;
 
 /// What runs and tests write beside frames and figures; an earlier run's must not be taken for this one's.
-const RESULTS: [&str; 6] = ["summary.json", "history.csv", "newton.csv", "solid.pvd", "contact.pvd", "law.csv"];
+const RESULTS: [&str; 8] =
+    ["summary.json", "history.csv", "newton.csv", "slip_map.csv", "fronts.csv", "solid.pvd", "contact.pvd", "law.csv"];
 
 /// Why a command did not end well.
 #[derive(Debug)]
@@ -83,9 +85,14 @@ pub fn run(path: &Path, out: Option<PathBuf>, threads: Option<usize>, quiet: boo
         true => Some(Fields::create(&folder, &model, &model.initial_state(), case.output.every)?),
         false => None,
     };
+    let mut fronts = match case.output.fronts {
+        Some(fronts) => Some(Fronts::create(&folder, &model, &model.initial_state(), fronts.slip_rate)?),
+        None => None,
+    };
     let mut progress = (!quiet).then(Progress::new);
     let mut observers: Vec<&mut dyn Observer> = vec![&mut history, &mut newton_log, &mut warnings];
     observers.extend(fields.as_mut().map(|fields| fields as &mut dyn Observer));
+    observers.extend(fronts.as_mut().map(|fronts| fronts as &mut dyn Observer));
     observers.extend(progress.as_mut().map(|progress| progress as &mut dyn Observer));
 
     let (report, result) = run::run(&model, &mut observers);
@@ -95,6 +102,7 @@ pub fn run(path: &Path, out: Option<PathBuf>, threads: Option<usize>, quiet: boo
         title: case.title.clone(),
         units: case.units.clone(),
         friction: case.contacts.iter().map(|(name, contact)| (name.clone(), contact.friction)).collect(),
+        wave_speeds: fronts::wave_speeds(&model),
     };
     let summary = Summary::new(about, &model, report, result.as_ref().err(), warnings.list);
     summary::write(&summary, &folder)?;
@@ -152,6 +160,7 @@ pub fn law(path: &Path, out: Option<PathBuf>) -> Result<(), Failure> {
         title: input.title,
         units: input.units,
         friction: [("law".into(), input.friction)].into(),
+        wave_speeds: [0.0; 3],
     };
     let summary = LawSummary { ending: Ending::new(result.as_ref().err()), about, report };
     summary::write(&summary, &folder)?;

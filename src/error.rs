@@ -48,7 +48,7 @@ pub enum StepFailure {
     /// The mass matrix of the initial acceleration is singular.
     #[error("initial acceleration: {0} (does every body have a density?)")]
     Mass(LinearFailure),
-    /// The state at the start of a dynamic step cannot be evaluated.
+    /// The state at the start of a dynamic step, or in an explicit increment, cannot be evaluated.
     #[error(transparent)]
     Start(TrialFailure),
     /// The augmented Lagrangian did not bring the surfaces together.
@@ -57,6 +57,11 @@ pub enum StepFailure {
         /// solutions with better and better multipliers
         passes: usize,
     },
+    /// The velocities of an explicit run are not finite any more.
+    #[error(
+        "the motion grows beyond all bounds: lower the safety of the explicit scheme, or look at loads and supports"
+    )]
+    Unbounded,
     /// A body is held by nothing.
     #[error("{0}; give it a support, a spring, or contact that is closed at the start, or `stabilize` the step")]
     Floating(String),

@@ -100,7 +100,7 @@ fn slip_at_events(model: &Model, old: &State, new: &State) -> f64 {
         return largest;
     }
     // Slip without friction has no onset.
-    for k in (0..model.contacts.len()).filter(|&k| model.contacts[k].law.stiffness() > 0.0) {
+    for k in (0..model.contacts.len()).filter(|&k| model.contacts[k].laws.iter().any(|law| law.stiffness() > 0.0)) {
         let [before, after] = [old, new].map(|state| Directions::of(model, k, state));
         if before.contact == after.contact {
             continue;

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use nalgebra::{DMatrix, Vector2};
+use nalgebra::{DMatrix, DVector, Vector2};
 
 use crate::boundary::{Loads, Prescribed, Span};
 use crate::configuration::Configuration;
 use crate::contact::pair::ContactPair;
-use crate::element::{SolidElement, consistent_mass};
+use crate::element::{SolidElement, consistent_mass, lumped_mass};
 use crate::material::Material;
 use crate::mesh::{Element, Mesh};
 use crate::newton;
@@ -105,6 +105,11 @@ pub struct Model {
     pub watch: Vec<WatchedSet>,
     /// initial velocity of every dof [L/T]
     pub initial_velocity: Vec<f64>,
+    /// Forces of an initial stress of the bodies on every dof, which balance the initial tractions of contacts; empty if
+    /// there is none [F]
+    pub prestress: Vec<f64>,
+    /// Time between the results of explicit steps; a hundredth of each step if it is not given [T]
+    pub interval: Option<f64>,
     /// when Newton's method stops
     pub newton: newton::Settings,
 }
@@ -126,6 +131,14 @@ impl Model {
         let positions: Vec<Vector2<f64>> = nodes.iter().map(|&node| self.mesh.nodes[node]).collect();
         let density = self.bodies[self.body_of_element[element]].material.density();
         consistent_mass(*kind, &positions, density).expect("elements are checked when the model is built")
+    }
+
+    /// Lumped mass of each node of an element [M].
+    pub fn element_lumped_mass(&self, element: usize) -> DVector<f64> {
+        let Element { kind, nodes } = &self.mesh.elements[element];
+        let positions: Vec<Vector2<f64>> = nodes.iter().map(|&node| self.mesh.nodes[node]).collect();
+        let density = self.bodies[self.body_of_element[element]].material.density();
+        lumped_mass(*kind, &positions, density).expect("elements are checked when the model is built")
     }
 
     /// The state at rest before the first increment.

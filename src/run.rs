@@ -2,7 +2,9 @@
 
 use std::time::Instant;
 
+use crate::boundary::Span;
 use crate::error::Error;
+use crate::explicit::Explicit;
 use crate::increments::{Judgement, bounded, judge};
 use crate::linear::Multifrontal;
 use crate::model::{Model, Step};
@@ -10,6 +12,7 @@ use crate::output::summary::RunReport;
 use crate::output::{Attempt, Observer};
 use crate::state::State;
 use crate::step::{Workspace, advance, begin};
+use crate::time::Scheme;
 
 /// Cut of the increment after one that could not be solved.
 const CUT: f64 = 0.5;
@@ -25,7 +28,10 @@ pub fn run(model: &Model, observers: &mut [&mut dyn Observer]) -> (RunReport, Re
     let mut state = model.initial_state();
     let mut result = Ok(());
     for step in &model.steps {
-        result = run_step(model, step, &mut state, &mut work, observers, &mut report);
+        result = match step.scheme {
+            Scheme::Explicit { .. } => run_explicit(model, step, &mut state, &mut work, observers, &mut report),
+            _ => run_step(model, step, &mut state, &mut work, observers, &mut report),
+        };
         if result.is_err() {
             break;
         }
@@ -41,6 +47,50 @@ pub fn run(model: &Model, observers: &mut [&mut dyn Observer]) -> (RunReport, Re
     report.wall_s.linear = work.linear_seconds;
     report.wall_s.total = clock.elapsed().as_secs_f64();
     (report, result.map(|()| state))
+}
+
+/// Results of an explicit step if the case does not say how many.
+const RESULTS: f64 = 100.0;
+
+/// A step of explicit increments. Observers see the state at the times of output.
+fn run_explicit(
+    model: &Model,
+    step: &Step,
+    state: &mut State,
+    work: &mut Workspace,
+    observers: &mut [&mut dyn Observer],
+    report: &mut RunReport,
+) -> Result<(), Error> {
+    let Span { start, end } = step.span;
+    let interval = model.interval.unwrap_or((end - start) / RESULTS);
+    let unsolvable = |time: f64, cause| Error::Unsolvable { step: step.name.clone(), time, cause };
+    let begun = Explicit::begin(model, step, state, &mut work.assembler);
+    let mut explicit = begun.map_err(|cause| unsolvable(state.time, cause))?;
+    for k in 1.. {
+        let old = state.clone();
+        let next = start + f64::from(k) * interval;
+        let time = if next > end - 1e-6 * interval { end } else { next };
+        let count = explicit.go_to(time, state, &mut work.assembler);
+        report.increments += count.map_err(|cause| unsolvable(state.time, cause))?;
+        let told = Attempt {
+            step,
+            number: 1,
+            old: &old,
+            dt: time - old.time,
+            iterations: &[],
+            accepted: Some(state),
+            local_error: None,
+        };
+        let clock = Instant::now();
+        for observer in observers.iter_mut() {
+            observer.record(model, &told)?;
+        }
+        report.wall_s.output += clock.elapsed().as_secs_f64();
+        if time == end {
+            break;
+        }
+    }
+    Ok(())
 }
 
 fn run_step(

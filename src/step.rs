@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use crate::assembly::{Assembler, ContactCounts, Trial};
-use crate::configuration::Configuration;
 use crate::contact::force::{ContactState, Status};
+use crate::energy::{contact_energy, friction_dissipation, work_of_drivers};
 use crate::error::StepFailure;
 use crate::floating::null_motion;
 use crate::linear::{self, LinearSolver};
@@ -312,10 +312,10 @@ fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> Sta
     let work_done = mean_work(&old.external, &external);
     let damped = mean_work(&old.damping, &evaluation.damping);
     let stabilized: f64 = step.stabilization.iter().zip(&increment).map(|(c, du)| c * du * du).sum();
-    let driven = work_of_drivers(model, trial, &increment);
+    let driven = work_of_drivers(model, step, [old.time, time], |dof| increment[dof]);
     let x = model.configuration(&u);
     let contact_elastic = contact_energy(model, &evaluation.contacts, &x);
-    let dissipated = friction_dissipation(model, old, &evaluation.contacts, &x);
+    let dissipated = friction_dissipation(model, &old.contacts, &evaluation.contacts, &x);
     let mut state = State {
         time,
         increment: old.increment + 1,
@@ -342,49 +342,10 @@ fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> Sta
     state
 }
 
-/// What the drivers of dashpots put in over an increment: mean force × way of the driver.
-fn work_of_drivers(model: &Model, trial: Trial, increment: &[f64]) -> f64 {
-    let Trial { old, step, time, dt } = trial;
-    let driven = step.loads.dashpots.iter().filter(|dashpot| dashpot.driver.is_some());
-    driven
-        .map(|dashpot| {
-            let position = model.mesh.nodes[dashpot.dof / 2];
-            let [v0, v1] = [old.time, time].map(|time| dashpot.driver_velocity(position, time));
-            let velocity = 0.5 * (v0 + v1);
-            dashpot.coefficient * (velocity * dt - increment[dashpot.dof]) * velocity
-        })
-        .sum()
-}
-
 fn kinetic_energy(step: &Step, state: &State, work: &mut Workspace) -> f64 {
-    if step.scheme.coefficients().is_none() {
+    if !step.scheme.is_dynamic() {
         return 0.0;
     }
     let momentum = work.assembler.mass().multiply(&state.velocity);
     0.5 * momentum.iter().zip(&state.velocity).map(|(p, v)| p * v).sum::<f64>()
-}
-
-/// ∫ (α_n g²/2 + q²/(2 α_t)) ds of the closed points in the configuration `x`.
-fn contact_energy(model: &Model, contacts: &[Vec<ContactState>], x: &Configuration) -> f64 {
-    let mut energy = 0.0;
-    for (pair, states) in model.contacts.iter().zip(contacts) {
-        for (point, ContactState { friction, gap, .. }) in pair.points.iter().zip(states) {
-            let normal = if friction.pressure > 0.0 { 0.5 * pair.alpha_n * gap.powi(2) } else { 0.0 };
-            let stiffness = pair.law.stiffness();
-            let tangential = if stiffness > 0.0 { 0.5 * friction.traction.powi(2) / stiffness } else { 0.0 };
-            energy += point.current_length(x) * (normal + tangential);
-        }
-    }
-    energy
-}
-
-/// What friction dissipated from `old` to `new`.
-fn friction_dissipation(model: &Model, old: &State, new: &[Vec<ContactState>], x: &Configuration) -> f64 {
-    let mut dissipated = 0.0;
-    for ((pair, new), old) in model.contacts.iter().zip(new).zip(&old.contacts) {
-        for ((point, new), old) in pair.points.iter().zip(new).zip(old) {
-            dissipated += point.current_length(x) * (new.friction.dissipation - old.friction.dissipation);
-        }
-    }
-    dissipated
 }

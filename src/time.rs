@@ -12,6 +12,7 @@
 //! | HHT-α | 0 | −α | ½ − α | ¼ (1 − α)² | 2 | (1 + α)/(1 − α) |
 //! | generalized-α | (2ρ − 1)/(ρ + 1) | ρ/(ρ + 1) | ½ − α_m + α_f | ¼ (1 − α_m + α_f)² | 2 | ρ |
 //! | Wilson-θ | 0 | 0 | ½ | 1/6, over θ Δt | 2 | < 1 |
+//! | central differences | 0 | 0 | ½ | 0 | 2 | – |
 //!
 //! ρ(∞) is the share of a motion that the increments do not resolve, ω Δt → ∞, which is left after each of them.
 //!
@@ -23,6 +24,15 @@
 //! ```
 //! and (2), (3) over Δt give u₁ and v₁. At t + Δt equilibrium is met only to the order of the scheme. It is stable for
 //! every Δt from θ = (1 + √3)/2 = 1.366 on.
+//!
+//! # Central differences
+//! In velocity-Verlet form, so that schemes can follow one another at any time; M is lumped, F has no dashpots in it, and
+//! those, with the coefficients c on the diagonal, act at t + Δt:
+//! ```text
+//! v½ = v₀ + ½ Δt a₀,   u₁ = u₀ + Δt v½                                                                       (7)
+//! (M + ½ Δt c) a₁ = −F(u₁) + c (v_driver − v½),   v₁ = v½ + ½ Δt a₁                                          (8)
+//! ```
+//! It is of second order and stable while ω Δt ≤ 2 for every vibration ω; `explicit.rs` has the bound of ω.
 //!
 //! # Supports
 //! A prescribed dof follows its support and not (2), by which a jerk would ring. Its velocity is that of the support, and
@@ -79,6 +89,13 @@ pub enum Scheme {
         #[serde(default = "four_fifths")]
         rho_infinity: f64,
     },
+    /// Central differences: no equations to solve, but increments no longer than the fastest vibration of a single element
+    /// or contact point allows.
+    Explicit {
+        /// 0 < safety ≤ 1: increment as a share of the longest that is stable; 0.9 unless given [-]
+        #[serde(default = "nine_tenths")]
+        safety: f64,
+    },
     /// Wilson-θ: linear acceleration, equilibrium at t + θ Δt.
     Wilson {
         /// 1.37 ≤ θ ≤ 2; 1.4 unless given [-]
@@ -99,6 +116,10 @@ fn four_fifths() -> f64 {
     0.8
 }
 
+fn nine_tenths() -> f64 {
+    0.9
+}
+
 fn seven_fifths() -> f64 {
     1.4
 }
@@ -117,10 +138,15 @@ pub struct Coefficients {
 }
 
 impl Scheme {
-    /// The numbers of the scheme; `None` for statics.
+    /// Whether masses have inertia.
+    pub fn is_dynamic(self) -> bool {
+        self != Self::Static
+    }
+
+    /// The numbers of the scheme; `None` for statics and central differences.
     pub fn coefficients(self) -> Option<Coefficients> {
         match self {
-            Self::Static => None,
+            Self::Static | Self::Explicit { .. } => None,
             Self::Newmark { beta, gamma } => Some(Coefficients { alpha_m: 0.0, alpha_f: 0.0, beta, gamma }),
             Self::Hht { alpha } => Some(Coefficients::of_second_order(0.0, -alpha)),
             Self::GeneralizedAlpha { rho_infinity: rho } => {
@@ -134,6 +160,14 @@ impl Scheme {
     pub fn theta(self) -> f64 {
         match self {
             Self::Wilson { theta } => theta,
+            _ => 1.0,
+        }
+    }
+
+    /// Share of the longest stable increment that central differences take.
+    pub fn safety(self) -> f64 {
+        match self {
+            Self::Explicit { safety } => safety,
             _ => 1.0,
         }
     }
@@ -152,6 +186,10 @@ impl Scheme {
     pub fn check(self) -> Result<(), InvalidParameter> {
         match self {
             Self::Static => Ok(()),
+            Self::Explicit { safety } => {
+                let fits = safety > 0.0 && safety <= 1.0;
+                require("safety", safety, fits, "it must be above 0 and at most 1, the limit of stability")
+            }
             Self::Newmark { beta, gamma } => {
                 require("gamma", gamma, gamma >= 0.5, "it must be at least 0.5: less adds energy")?;
                 require("beta", beta, beta > 0.0, "it must be positive; 0.25 is the trapezoidal rule")

@@ -40,7 +40,7 @@ fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
         mortar: None,
         alpha_n: 1000.0,
         penetration: None,
-        law,
+        laws: vec![law],
         initial: None,
     }
 }
@@ -117,7 +117,7 @@ fn tangent_equals_differences_in_stick_partial_and_full_slip_and_after_touch() {
     for (points, surface) in all {
         for law in [SUPER, COULOMB, FRICTIONLESS] {
             let pair = pair(points.clone(), Master::Mesh(surface.clone()), law);
-            let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.law.initial_state() };
+            let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.laws[0].initial_state() };
             let mut closed = 0;
             for k in 0..pair.points.len() {
                 let (state, _) = evaluate(&pair, k, &pulled(&pair, k, &x, 0.0, pressed, -0.02), &x);
@@ -179,7 +179,7 @@ fn nothing_jumps_on_a_smooth_surface() {
 fn a_promise_is_of_second_order_and_changes_no_force() {
     let (edges, x) = wavy();
     let pair = pair(nodal_points(&[vec![6, 7], vec![7, 8]]), Master::Mesh(Surface::new(&edges)), COULOMB);
-    let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.law.initial_state() };
+    let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.laws[0].initial_state() };
     let old = pulled(&pair, 1, &x, 0.3, pressed, -0.02);
     let (state, closed) = promised(&pair, 1, &old, &x, None);
     let closed = closed.expect("a closed point");
@@ -220,7 +220,7 @@ fn tangent_equals_differences_on_rigid_bodies() {
         Rigid::Polyline(Polyline::new(at(&[(-1.0, 0.0), (2.0, 0.03)]))),
     ] {
         let pair = pair(gauss_points(&[vec![0, 1]], 2), Master::Rigid(body), SUPER);
-        let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.law.initial_state() };
+        let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.laws[0].initial_state() };
         for k in 0..2 {
             for back in [1e-4, 0.01, -0.2] {
                 check_tangent(&pair, k, &pulled(&pair, k, &x, back, pressed, -0.02), &x, &format!("{:?}", pair.master));
@@ -280,7 +280,7 @@ fn tangent_equals_differences_on_quadratic_edges() {
     for points in [gauss_points(&slave, 4), nodal_points(&slave)] {
         for law in [SUPER, COULOMB] {
             let pair = pair(points.clone(), Master::Mesh(Surface::new(&edges)), law);
-            let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.law.initial_state() };
+            let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.laws[0].initial_state() };
             let mut closed = 0;
             for k in 0..pair.points.len() {
                 let open =
@@ -309,7 +309,8 @@ fn tangent_equals_differences_where_contact_starts_closed_across_a_gap() {
         for master in [Master::Mesh(Surface::new(&edges)), Master::Rigid(Rigid::Plane(plane))] {
             let mut pair = pair(points.clone(), master, SUPER);
             let at = Configuration::undeformed(&x);
-            pair.start_closed(InitialTraction { pressure: 20.0, traction: 2.0 }, &at).expect("a foot for each");
+            pair.start_closed(vec![InitialTraction { pressure: 20.0, traction: 2.0 }; pair.points.len()], &at)
+                .expect("a foot for each");
             for k in 0..pair.points.len() {
                 let (state, contribution) = evaluate(&pair, k, &pair.initial_states(&at)[k], &x);
                 let FrictionState { pressure, traction, .. } = state.friction;
@@ -372,7 +373,7 @@ fn check_mortar_tangent(
     let before = Configuration::undeformed(before);
     let was = mortar.overlaps(surface, &Index::new(&pair.master, &before), &before);
     let weights = mortar.weights(k, surface, &was, &before);
-    let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.law.initial_state() };
+    let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.laws[0].initial_state() };
     let old = ContactState { friction: pressed, foot: Some(MasterPoint { segment: 0, xi: 0.0 }), gap, multiplier: 0.0 };
     let increment = Increment { dt: 0.3, fading: 0.0, presume: Presume::Nothing, promised: None };
     let evaluate = |x: &Positions| {
@@ -380,7 +381,12 @@ fn check_mortar_tangent(
         let is = mortar.overlaps(surface, &Index::new(&pair.master, &x), &x);
         let meeting = mortar.kinematics(k, surface, &is, weights.as_ref(), &x).expect("the master faces the point");
         closes(pair, &pair.points[k], meeting.gap, &old, increment, &x)
-            .then(|| press(pair, meeting, &old, increment).expect("a finite increment").1.expect("a closed point"))
+            .then(|| {
+                press(pair, &pair.points[k], meeting, &old, increment)
+                    .expect("a finite increment")
+                    .1
+                    .expect("a closed point")
+            })
             .map(|closed| closed.contribution)
     };
     let Some(contribution) = evaluate(x) else { return false };
@@ -414,7 +420,7 @@ fn tangent_equals_differences_at_a_concave_corner() {
     let at = &Configuration::undeformed(&x);
     let foot = Index::new(&pair.master, at).project(&pair.points[1], None, at).expect("a foot");
     assert!(foot.gap < 0.0 && foot.bound == Bound::Node(1));
-    let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.law.initial_state() };
+    let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.laws[0].initial_state() };
     let old = ContactState {
         friction: pressed,
         foot: Some(MasterPoint { segment: 0, xi: 0.9 }),

@@ -501,9 +501,13 @@ fn points_are_checked() {
         (
             "/contacts/base/initial/structure",
             json!(2.5),
-            ["contacts.base.initial: ", "\"structure\" is 2.5, but it must"],
+            ["contacts.base.initial.structure at ", "\"structure\" is 2.5, but it must"],
         ),
-        ("/contacts/base/initial/structure", json!(0.9), ["contacts.base.initial: ", "between 1 and mu_s/mu_k = 2"]),
+        (
+            "/contacts/base/initial/structure",
+            json!(0.9),
+            ["contacts.base.initial.structure at ", "between 1 and mu_s/mu_k = 2"],
+        ),
         ("/contacts/base/initial", json!({"traction": 1}), ["contacts.base.initial: ", "`pressure` is missing"]),
         ("/steps/0/loads/0/on", json!("pin"), ["loads[0].on: ", "no body or point mass `pin`, on which gravity acts"]),
         ("/steps/0/loads/2/dashpot/cx", json!(-2), ["loads[2].dashpot.cx: ", "is -2: must be zero or positive"]),

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Module → layer. A new module must be listed.
-const LAYERS: [(&str, u32); 27] = [
+const LAYERS: [(&str, u32); 29] = [
     ("parameter", 0),
     ("configuration", 1),
     ("shape", 1),
@@ -24,6 +24,8 @@ const LAYERS: [(&str, u32); 27] = [
     ("model", 5),
     ("assembly", 6),
     ("floating", 6),
+    ("energy", 6),
+    ("explicit", 7),
     ("step", 7),
     ("increments", 8),
     ("output", 8),

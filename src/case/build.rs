@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use nalgebra::Vector2;
+use nalgebra::{Matrix2, Vector2};
 
 use super::error::{CaseError, Complaint};
 use super::file::{
@@ -11,9 +11,10 @@ use super::file::{
     MasterInput, MeshSource, Method, NodeInput, Place, PlaneInput, PointMassInput, PolylineInput, RigidInput,
     SpringInput, StepInput, TimeInput,
 };
-use super::{initial, names, supported};
+use super::{along, initial, names, supported};
 use crate::boundary::{
-    Amplitude, Dashpot, DeadLoad, Drive, Expression, FollowerPressure, Loads, Motion, Prescribed, Span, Spring,
+    Absorber, Amplitude, Dashpot, DeadLoad, Drive, Expression, FollowerPressure, Loads, Motion, Prescribed, Span,
+    Spring,
 };
 use crate::configuration::Configuration;
 use crate::contact::mortar::{Mortar, mortar_points};
@@ -76,9 +77,12 @@ fn build_on(case: &Case, mesh: Mesh) -> Checked<Model> {
         steps: Vec::new(),
         watch: Vec::new(),
         newton: newton_settings(case)?,
+        prestress: Vec::new(),
+        interval: case.output.interval,
     };
     model.point_masses = point_masses(case, &model.mesh)?;
     model.contacts = contacts(case, &model)?;
+    model.prestress = initial::prestress(case, &model);
     model.steps = steps(case, &model)?;
     model.initial_velocity = initial::velocities(case, &model)?;
     model.watch =
@@ -87,8 +91,34 @@ fn build_on(case: &Case, mesh: Mesh) -> Checked<Model> {
         let message = "is 0: must be at least 1 (to write no fields, give \"fields\": false)";
         return Err(Complaint::new("output.every", message));
     }
+    if let Some(interval) = case.output.interval.filter(|interval| !(*interval > 0.0 && interval.is_finite())) {
+        let message = format!("is {interval}: must be positive (leave it out for a hundredth of each explicit step)");
+        return Err(Complaint::new("output.interval", message));
+    }
+    if let Some(fronts) = case.output.fronts.filter(|fronts| !(fronts.slip_rate > 0.0 && fronts.slip_rate.is_finite()))
+    {
+        return Err(Complaint::new("output.fronts.slip_rate", format!("is {}: must be positive", fronts.slip_rate)));
+    }
+    check_explicit(&model)?;
     supported::check(case, &model)?;
     Ok(model)
+}
+
+/// Explicit steps solve no equations, and so cannot raise pressures until penetrations are small.
+fn check_explicit(model: &Model) -> Checked<()> {
+    let Some(k) = model.steps.iter().position(|step| matches!(step.scheme, Scheme::Explicit { .. })) else {
+        return Ok(());
+    };
+    match model.contacts.iter().find(|pair| pair.penetration.is_some()) {
+        Some(pair) => Err(Complaint::new(
+            format!("contacts.{}.normal.penetration", pair.name),
+            format!(
+                "the explicit step `{}` takes the plain penalty: leave it out, and raise alpha_n",
+                model.steps[k].name
+            ),
+        )),
+        None => Ok(()),
+    }
 }
 
 fn newton_settings(case: &Case) -> Checked<newton::Settings> {
@@ -213,15 +243,11 @@ fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPa
     if input.area.is_some() && input.gives_alpha_t() == Some(false) {
         return Err(Complaint::new(friction + ".alpha_t", "is missing: a slave group of points has no default for it"));
     }
-    let mut law = input.friction.build(0.5 * alpha_n).map_err(|error| Complaint::new(&friction, error))?;
     check_stiffness(&format!("{place}.normal"), "alpha_n", alpha_n)?;
-    if law.stiffness() > 0.0 {
+    let mut points = points;
+    let laws = along::laws(&place, input, &mut points, &model.mesh, 0.5 * alpha_n)?;
+    for law in laws.iter().filter(|law| law.stiffness() > 0.0) {
         check_stiffness(&friction, "alpha_t", law.stiffness())?;
-    }
-    let start = format!("{place}.initial");
-    if let Some(structure) = input.initial.and_then(|initial| initial.structure) {
-        let started = initial::with_structure(&input.friction, structure, &start)?;
-        law = started.build(0.5 * alpha_n).map_err(|error| Complaint::new(&start, error))?;
     }
     let mut pair = ContactPair {
         name: name.into(),
@@ -230,11 +256,11 @@ fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPa
         mortar,
         alpha_n,
         penetration: input.normal.penetration,
-        law,
+        laws,
         initial: None,
     };
     if let Some(initial) = &input.initial {
-        initial::close(&mut pair, initial, model, &start)?;
+        initial::close(&mut pair, initial, model, &format!("{place}.initial"))?;
     }
     if input.shrink_fit {
         if input.initial.is_some() {
@@ -431,6 +457,7 @@ enum LoadKind {
     Force,
     Spring,
     Dashpot,
+    Absorbing,
 }
 
 /// A load with the amplitudes that the next step takes over from.
@@ -440,6 +467,7 @@ struct LoadInForce {
     pressures: Vec<FollowerPressure>,
     springs: Vec<Spring>,
     dashpots: Vec<Dashpot>,
+    absorbers: Vec<Absorber>,
 }
 
 impl StepBuilder<'_> {
@@ -463,6 +491,7 @@ impl StepBuilder<'_> {
             loads.pressures.extend(load.pressures.iter().cloned());
             loads.springs.extend(load.springs.iter().cloned());
             loads.dashpots.extend(load.dashpots.iter().cloned());
+            loads.absorbers.extend(load.absorbers.iter().cloned());
         }
         let supports = self.supports.values().cloned().collect();
         let stabilization = stabilization(&format!("{place}.stabilize"), input, self.model)?;
@@ -543,10 +572,11 @@ impl StepBuilder<'_> {
             (LoadKind::Force, input.force.as_ref().map(Option::is_none)),
             (LoadKind::Spring, input.spring.as_ref().map(Option::is_none)),
             (LoadKind::Dashpot, input.dashpot.as_ref().map(Option::is_none)),
+            (LoadKind::Absorbing, input.absorbing.map(|absorbs| !absorbs)),
         ];
         let mut given = ends.into_iter().filter_map(|(kind, ends)| Some((kind, ends?)));
         let (Some((kind, ends)), None) = (given.next(), given.next()) else {
-            let message = "must give exactly one of pressure, traction, gravity, force, spring, dashpot";
+            let message = "must give exactly one of pressure, traction, gravity, force, spring, dashpot, absorbing";
             return Err(Complaint::new(place, message));
         };
         if ends && !self.loads.contains_key(&(input.on.to_string(), kind)) {
@@ -583,6 +613,12 @@ impl StepBuilder<'_> {
         }
         if let Some(dashpot) = &input.dashpot {
             self.dashpot(place, input, dashpot.as_ref(), span)?;
+        }
+        if let Some(absorbs) = input.absorbing {
+            let name = group_at(input, place)?;
+            let edges = edges(&self.model.mesh, &name, &format!("{place}.on"))?;
+            let absorbers = if absorbs { absorbers(self.model, edges) } else { Vec::new() };
+            self.loads.insert((name, LoadKind::Absorbing), LoadInForce { absorbers, ..Default::default() });
         }
         Ok(())
     }
@@ -747,6 +783,29 @@ fn edge_shares(mesh: &Mesh, edges: &[Edge]) -> Vec<(usize, f64, Vector2<f64>)> {
     shares
 }
 
+/// What the nodes of an absorbing side have of it.
+fn absorbers(model: &Model, edges: &[Edge]) -> Vec<Absorber> {
+    let mut total: BTreeMap<usize, Matrix2<f64>> = BTreeMap::new();
+    for Edge { nodes, element } in edges {
+        let material = &*model.bodies[model.body_of_element[*element]].material;
+        let density = material.density();
+        let impedance = |modulus: f64| (modulus * density).sqrt();
+        for (xi, weight) in shape::gauss(nodes.len()) {
+            let values = shape::edge_values(nodes.len(), xi);
+            let slopes = shape::edge_derivatives(nodes.len(), xi);
+            let along: Vector2<f64> = nodes.iter().zip(&slopes).map(|(&node, w)| model.mesh.nodes[node] * *w).sum();
+            let s = along.normalize();
+            let n = Vector2::new(s.y, -s.x);
+            let resistance = n * n.transpose() * impedance(material.stiffness())
+                + s * s.transpose() * impedance(material.shear_modulus());
+            for (&node, value) in nodes.iter().zip(values) {
+                *total.entry(node).or_default() += resistance * (weight * value * along.norm());
+            }
+        }
+    }
+    total.into_iter().map(|(node, coefficients)| Absorber { node, coefficients }).collect()
+}
+
 /// The drive of this step on top of what was in force before; nothing if there is neither.
 fn amplitude(
     given: Option<&DriveInput>,
@@ -767,14 +826,7 @@ pub(super) fn drive(input: &DriveInput, place: &str) -> Checked<Drive> {
     Ok(match input {
         DriveInput::Constant(value) => Drive::Constant(*value),
         DriveInput::InTime(TimeInput::Rate(rate)) => Drive::Rate(*rate),
-        DriveInput::Expression(text) => {
-            if text.len() > LONGEST_EXPRESSION {
-                let message = format!("the expression is longer than {LONGEST_EXPRESSION} characters: use a table");
-                return Err(Complaint::new(place, message));
-            }
-            let complain = |error| Complaint::new(place, format!("\"{text}\" cannot be read: {error}"));
-            Drive::Expression(Expression::parse(text).map_err(complain)?)
-        }
+        DriveInput::Expression(text) => Drive::Expression(expression(text, place)?),
         DriveInput::InTime(TimeInput::Table(table)) => {
             if table.is_empty() {
                 return Err(Complaint::new(place, "the table is empty: give pairs [time, value]"));
@@ -786,6 +838,15 @@ pub(super) fn drive(input: &DriveInput, place: &str) -> Checked<Drive> {
             Drive::Table(table.clone())
         }
     })
+}
+
+pub(super) fn expression(text: &str, place: &str) -> Checked<Expression> {
+    if text.len() > LONGEST_EXPRESSION {
+        let message = format!("the expression is longer than {LONGEST_EXPRESSION} characters: use a table");
+        return Err(Complaint::new(place, message));
+    }
+    let complain = |error| Complaint::new(place, format!("\"{text}\" cannot be read: {error}"));
+    Expression::parse(text).map_err(complain)
 }
 
 /// c₀ of every dof: the nodes of a body share `stabilize` × (λ + 2G) × duration.
@@ -841,6 +902,7 @@ fn increments(place: &str, input: Option<IncrementsInput>, span: Span, scheme: S
             Scheme::Static => {
                 "needs a dynamic scheme: a static step has no error in time; give it a \"dt\" without error"
             }
+            Scheme::Explicit { .. } => "explicit takes increments as long as they are stable: leave error out",
             Scheme::Wilson { .. } => "wilson has no estimate of its error: take newmark, hht or generalized_alpha",
             _ => "newmark with beta near 1/6 has no estimate of its error: take another beta",
         };

@@ -128,6 +128,9 @@ pub struct ContactInput {
     pub shrink_fit: bool,
     /// Friction law
     pub friction: FrictionParameters,
+    /// Parameters of the friction law that vary along the slave, by name: they replace the numbers given in `friction`
+    #[serde(default)]
+    pub along: BTreeMap<String, ProfileInput>,
     /// Tractions and structure at the start of a contact that starts closed. The gap of every slave point is then counted
     /// from where the pressure acts at its initial position, all through the run
     pub initial: Option<InitialInput>,
@@ -146,17 +149,58 @@ impl ContactInput {
     }
 }
 
-/// The state of a contact that starts closed, the same at all its points.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+/// The state of a contact that starts closed.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct InitialInput {
     /// p: contact pressure, zero or positive [F/L²]
-    pub pressure: f64,
+    pub pressure: ProfileInput,
     /// q: traction that resists the slip of the slave along +s, the master's normal turned by −90° [F/L²]
     #[serde(default)]
-    pub traction: f64,
+    pub traction: ProfileInput,
     /// 1/R*: structure of the super/subloading law, from 1 to μ_s/μ_k; that of the law unless given [-]
-    pub structure: Option<f64>,
+    pub structure: Option<ProfileInput>,
+    /// Whether an initial stress of the bodies is in equilibrium with these tractions. Displacements and stresses of the
+    /// run are then those that come on top of the initial stress
+    #[serde(default)]
+    pub balanced: bool,
+}
+
+/// How a quantity varies along a surface.
+#[derive(Clone, Debug, JsonSchema)]
+#[schemars(untagged)]
+pub enum ProfileInput {
+    /// The same everywhere
+    Constant(f64),
+    /// Expression in the reference position x, y
+    Expression(String),
+    /// Table by a coordinate
+    Table(ProfileTable),
+}
+
+impl Default for ProfileInput {
+    fn default() -> Self {
+        Self::Constant(0.0)
+    }
+}
+
+impl<'de> Deserialize<'de> for ProfileInput {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let expecting = "a number, an expression in x, y such as \"1 + 0.1*x\", or {\"x\": [[x, v], …]}";
+        Choice { expecting, number: Some(Self::Constant), text: Self::Expression, object: Self::Table }
+            .read(deserializer)
+    }
+}
+
+/// Values by a coordinate of the reference position: linear between, constant outside. The same coordinate twice is a
+/// jump.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ProfileTable {
+    /// Pairs of x and value, x ascending
+    X(Vec<[f64; 2]>),
+    /// Pairs of y and value, y ascending
+    Y(Vec<[f64; 2]>),
 }
 
 fn two() -> usize {
@@ -406,6 +450,9 @@ pub struct LoadInput {
     /// Dashpot at every node of the group, to the ground or to a moving driver
     #[serde(default, deserialize_with = "present")]
     pub dashpot: Option<Option<DashpotInput>>,
+    /// true: a side of a body absorbs waves, as if the body went on (Lysmer-Kuhlemeyer: dashpots rho c_p along the normal
+    /// and rho c_s along the side, of the undeformed body); false ends it
+    pub absorbing: Option<bool>,
 }
 
 /// Components of a vector; zero unless given.
@@ -470,11 +517,24 @@ pub struct OutputInput {
     pub every: usize,
     /// Whether fields are written at all
     pub fields: bool,
+    /// Explicit steps write a row of the history (and fields, every n-th time) at multiples of this since the start of the
+    /// step [T]; a hundredth of the step unless given. Implicit steps do so at every increment
+    pub interval: Option<f64>,
+    /// Slip over time and place (slip_map.csv), and the fronts that run along the contacts (fronts.csv)
+    pub fronts: Option<FrontsInput>,
+}
+
+/// What counts as a front.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FrontsInput {
+    /// Slip rate whose passage from below is the arrival of a front [L/T]
+    pub slip_rate: f64,
 }
 
 impl Default for OutputInput {
     fn default() -> Self {
-        Self { every: 1, fields: true }
+        Self { every: 1, fields: true, interval: None, fronts: None }
     }
 }
 

@@ -1,10 +1,10 @@
 //! How a run starts: velocities of bodies and point masses, and contacts that are closed from the beginning.
 
+use super::along::{defined, position, profile};
 use super::error::Complaint;
 use super::file::{Case, InitialInput};
 use crate::configuration::Configuration;
 use crate::contact::pair::{ContactPair, InitialTraction};
-use crate::friction::{FrictionParameters, SuperSubloadingParameters};
 use crate::model::Model;
 
 /// An initial traction may pass the strength μ p by this share: numbers are written with a few digits.
@@ -44,7 +44,7 @@ pub fn velocities(case: &Case, model: &Model) -> Result<Vec<f64>, Complaint> {
 
 /// What is wrong with velocities that a static first step takes no notice of.
 pub fn lost_velocity(model: &Model) -> Option<String> {
-    let first = model.steps.first().filter(|step| step.scheme.coefficients().is_none())?;
+    let first = model.steps.first().filter(|step| !step.scheme.is_dynamic())?;
     let moving = model.initial_velocity.iter().any(|v| *v != 0.0);
     moving.then(|| {
         format!(
@@ -54,38 +54,52 @@ pub fn lost_velocity(model: &Model) -> Option<String> {
     })
 }
 
-/// The law whose points start with the given structure.
-pub fn with_structure(law: &FrictionParameters, structure: f64, place: &str) -> Result<FrictionParameters, Complaint> {
-    match law {
-        FrictionParameters::SuperSubloading(parameters) => {
-            let structure = Some(structure);
-            Ok(FrictionParameters::SuperSubloading(SuperSubloadingParameters { structure, ..*parameters }))
-        }
-        _ => Err(Complaint::new(format!("{place}.structure"), "this friction law has no structure: leave it out")),
-    }
-}
-
 /// Start a contact closed, if its tractions and its law allow it.
 pub fn close(pair: &mut ContactPair, input: &InitialInput, model: &Model, place: &str) -> Result<(), Complaint> {
-    let InitialInput { pressure, traction, .. } = *input;
-    if pressure < 0.0 {
-        let message = format!("is {pressure}: must be zero or positive, which is compression");
-        return Err(Complaint::new(format!("{place}.pressure"), message));
-    }
-    let mu = pair.law.initial_state().mu;
-    if traction.abs() > mu * pressure * (1.0 + ROUNDED) {
-        let message = format!(
-            "is {traction}: the initial strength is exceeded already, which is mu p = {} with mu = {mu} and p = {pressure}",
-            mu * pressure
-        );
-        return Err(Complaint::new(format!("{place}.traction"), message));
+    let [at_pressure, at_traction] = ["pressure", "traction"].map(|key| format!("{place}.{key}"));
+    let pressures = profile(&input.pressure, &at_pressure)?;
+    let tractions = profile(&input.traction, &at_traction)?;
+    let mut initial = Vec::with_capacity(pair.points.len());
+    for point in &pair.points {
+        let at = position(point, &model.mesh);
+        let (pressure, traction) = (defined(&pressures, at, &at_pressure)?, defined(&tractions, at, &at_traction)?);
+        if pressure < 0.0 {
+            let message = format!("is {pressure}: must be zero or positive, which is compression");
+            return Err(Complaint::new(at_pressure, message));
+        }
+        let limit = pair.law(point).starting_limit(pressure);
+        if traction.abs() > limit * (1.0 + ROUNDED) {
+            let mu = pair.law(point).initial_state().mu;
+            let message = format!(
+                "is {traction}: the initial strength is exceeded already, which is mu p = {limit} with mu = {mu} and \
+                 p = {pressure}"
+            );
+            return Err(Complaint::new(at_traction, message));
+        }
+        initial.push(InitialTraction { pressure, traction });
     }
     let undeformed = Configuration::undeformed(&model.mesh.nodes);
-    let closed = pair.start_closed(InitialTraction { pressure, traction }, &undeformed);
+    let closed = pair.start_closed(initial, &undeformed);
     closed.map_err(|point| {
         let at = pair.points[point].at(&undeformed);
         let message =
             format!("the slave point at ({}, {}) faces no part of the master: it cannot be pressed", at.x, at.y);
         Complaint::new(place, message)
     })
+}
+
+/// Nodal forces with which the initial stress of the bodies meets the initial tractions of balanced contacts; empty if
+/// there are none [F].
+pub fn prestress(case: &Case, model: &Model) -> Vec<f64> {
+    let balanced = |pair: &&ContactPair| case.contacts[&pair.name].initial.as_ref().is_some_and(|i| i.balanced);
+    let mut forces = Vec::new();
+    let undeformed = Configuration::undeformed(&model.mesh.nodes);
+    for pair in model.contacts.iter().filter(balanced) {
+        forces.resize(model.dofs(), 0.0);
+        for (node, force) in pair.initial_forces(&undeformed) {
+            forces[2 * node] -= force.x;
+            forces[2 * node + 1] -= force.y;
+        }
+    }
+    forces
 }

@@ -128,7 +128,7 @@ fn start(input: &LawTestInput, law: &dyn FrictionLaw, pressure: f64) -> Checked<
     let at_rest = law.initial_state();
     let traction = input.initial.traction;
     let pressure = pressure.max(0.0);
-    let strength = at_rest.mu * pressure;
+    let strength = law.starting_limit(pressure);
     if traction.abs() > strength * (1.0 + SAME) {
         let message = format!(
             "is {traction}, beyond the strength mu p = {} · {pressure} = {strength} at the start: lower it, or raise the \

@@ -1,5 +1,6 @@
 //! The case: JSON as written → checks → model.
 
+mod along;
 mod build;
 mod choice;
 mod error;

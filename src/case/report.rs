@@ -14,6 +14,7 @@ use super::file::{
 use super::initial::lost_velocity;
 use crate::configuration::Configuration;
 use crate::contact::pair::ContactPair;
+use crate::contact::surface::SlavePoint;
 use crate::increments::EVENT_LOCATION;
 use crate::mesh::Group;
 use crate::model::{Model, PointMass, Step};
@@ -158,11 +159,22 @@ fn contacts(case: &Case, model: &Model, warnings: &mut Vec<String>) -> Vec<Strin
 }
 
 fn initial_tractions(initial: &InitialInput, pair: &ContactPair) -> String {
-    let InitialInput { pressure, traction, .. } = *initial;
-    let mu = pair.law.initial_state().mu;
-    let structure = number(pair.law.structure(mu));
-    let [p, q, mu] = [pressure, traction, mu].map(number);
-    format!("starts closed with the pressure {p} and the traction {q}; mu {mu}, structure {structure}")
+    let tractions = pair.initial.iter().flatten();
+    let points = || pair.points.iter();
+    let mu = |point: &SlavePoint| pair.law(point).initial_state().mu;
+    let p = range(tractions.clone().map(|initial| initial.pressure));
+    let q = range(tractions.map(|initial| initial.traction));
+    let structure = range(points().map(|point| pair.law(point).structure(mu(point))));
+    let mu = range(points().map(mu));
+    let balanced = if initial.balanced { ", balanced by an initial stress of the bodies" } else { "" };
+    format!("starts closed with the pressure {p} and the traction {q}{balanced}; mu {mu}, structure {structure}")
+}
+
+/// One number, or the range of several.
+fn range(values: impl Iterator<Item = f64> + Clone) -> String {
+    let low = values.clone().fold(f64::INFINITY, f64::min);
+    let high = values.fold(f64::NEG_INFINITY, f64::max);
+    if number(low) == number(high) { number(low) } else { format!("{} to {}", number(low), number(high)) }
 }
 
 fn contact(case: &Case, pair: &ContactPair) -> Vec<String> {
@@ -203,10 +215,15 @@ fn contact(case: &Case, pair: &ContactPair) -> Vec<String> {
     ];
     if let Some(given) = input.gives_alpha_t() {
         let chosen = if given { "given" } else { "alpha_n/2" };
-        lines.push(format!("alpha_t {} ({chosen})", number(pair.law.stiffness())));
+        let alpha_t = range(pair.laws.iter().map(|law| law.stiffness()));
+        lines.push(format!("alpha_t {alpha_t} ({chosen})"));
     }
     lines.push(format!("friction {}", parameters(&input.friction, "law", &["alpha_t"])));
-    if let Some(limit) = pair.law.uniqueness_limit() {
+    if !input.along.is_empty() {
+        let names: Vec<&str> = input.along.keys().map(String::as_str).collect();
+        lines.push(format!("along it vary {}", names.join(", ")));
+    }
+    if let Some(limit) = pair.laws.iter().filter_map(|law| law.uniqueness_limit()).reduce(f64::min) {
         let limit = number(limit);
         lines.push(format!(
             "one answer while the pressure stays below {limit}; above, slip may weaken faster than alpha_t"
@@ -326,9 +343,11 @@ fn written_supports(step: &StepInput) -> Vec<Entry> {
 }
 
 fn written_load(load: &LoadInput) -> Entry {
-    let LoadInput { on, pressure, traction, gravity, force, spring, dashpot } = load;
+    let LoadInput { on, pressure, traction, gravity, force, spring, dashpot, absorbing } = load;
     let (kind, text) = if let Some(pressure) = pressure {
         ("pressure", pressure.as_ref().map(drive))
+    } else if let Some(absorbing) = absorbing {
+        ("absorbing side", absorbing.then(|| "rho c_p and rho c_s of its body".into()))
     } else if let Some(spring) = spring {
         let stiffness = |SpringInput { kx, ky, driver }: &SpringInput| {
             format!("kx {}, ky {}{}", number(*kx), number(*ky), driven("moved by", driver))
@@ -379,5 +398,12 @@ fn output(case: &Case) -> Vec<String> {
         (true, every) => format!("fields every {every} increments, and at the end of each step"),
     };
     let watched = if case.watch.is_empty() { "no group".into() } else { case.watch.join(", ") };
-    vec![format!("history watches {watched}"), fields]
+    let mut lines = vec![format!("history watches {watched}"), fields];
+    if let Some(interval) = case.output.interval {
+        lines.push(format!("explicit steps write at multiples of {}", number(interval)));
+    }
+    if let Some(fronts) = case.output.fronts {
+        lines.push(format!("slip map, and fronts at the slip rate {}", number(fronts.slip_rate)));
+    }
+    lines
 }

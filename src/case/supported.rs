@@ -16,7 +16,7 @@ const FREE: f64 = 1e-10;
 /// Every motion must meet stiffness or, in a dynamic step, mass.
 pub fn check(case: &Case, model: &Model) -> Result<(), Complaint> {
     for (k, step) in model.steps.iter().enumerate() {
-        if step.scheme.coefficients().is_some() {
+        if step.scheme.is_dynamic() {
             check_mass(k, step, model)?;
         } else {
             check_lone_nodes(k, step, model)?;
@@ -51,7 +51,8 @@ fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Result<(), Complain
 fn holding_dofs(step: &Step) -> impl Iterator<Item = usize> {
     let supports = step.supports.iter().map(|support| support.dof);
     let springs = step.loads.springs.iter().map(|spring| spring.dof);
-    supports.chain(springs).chain(step.loads.dashpots.iter().map(|dashpot| dashpot.dof))
+    let absorbers = step.loads.absorbers.iter().flat_map(|absorber| [2 * absorber.node, 2 * absorber.node + 1]);
+    supports.chain(springs).chain(step.loads.dashpots.iter().map(|dashpot| dashpot.dof)).chain(absorbers)
 }
 
 /// Accelerations follow from masses, so a node that may move needs one.
@@ -80,7 +81,7 @@ fn check_mass(k: usize, step: &Step, model: &Model) -> Result<(), Complaint> {
 /// Every group of bodies joined by contact must be held against x, y and rotation by supports, springs or dashpots
 /// in every static step. A group that touches a rigid plane is left to the solver.
 fn check_floating(case: &Case, model: &Model) -> Result<(), Complaint> {
-    for (k, step) in model.steps.iter().enumerate().filter(|(_, step)| step.scheme.coefficients().is_none()) {
+    for (k, step) in model.steps.iter().enumerate().filter(|(_, step)| !step.scheme.is_dynamic()) {
         for group in joined_bodies(model) {
             let Some(motion) = free_motion(model, step, &group) else { continue };
             let names: Vec<String> = group.iter().map(|&body| format!("`{}`", model.bodies[body].name)).collect();

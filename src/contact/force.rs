@@ -9,7 +9,7 @@
 //!
 //! In an increment that starts open only the slip after touch counts: Δu_t g₁/(g₁ − g₀).
 
-use nalgebra::DVector;
+use nalgebra::{DVector, Vector2};
 use serde::{Deserialize, Serialize};
 
 use super::kinematics::{Kinematics, kinematics};
@@ -164,13 +164,14 @@ pub fn respond(
     increment: Increment,
     x: &Configuration,
 ) -> PointResponse {
-    let Some(projection) = projection else { return open(pair, None, old, increment) };
+    let Some(projection) = projection else { return open(pair, slave, None, old, increment) };
     let (gap, foot) = (slave.gap(projection.gap, increment.fading), projection.foot);
     if !closes(pair, slave, gap, old, increment, x) {
-        return open(pair, Some((gap, foot)), old, increment);
+        return open(pair, slave, Some((gap, foot)), old, increment);
     }
     press(
         pair,
+        slave,
         Meeting { kinematics: kinematics(slave, &pair.master, &projection, old.foot, x), gap, foot },
         old,
         increment,
@@ -204,30 +205,38 @@ fn pressure(pair: &ContactPair, gap: f64, old: &ContactState) -> f64 {
 /// The state of a point without pressure.
 pub fn open(
     pair: &ContactPair,
+    slave: &SlavePoint,
     met: Option<(f64, MasterPoint)>,
     old: &ContactState,
     increment: Increment,
 ) -> PointResponse {
     let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.dt };
-    let friction = pair.law.respond(&old.friction, sliding)?.state;
+    let friction = pair.law(slave).respond(&old.friction, sliding)?.state;
     let (gap, foot) = met.unzip();
     Ok((ContactState { friction, foot, gap: gap.unwrap_or(0.0), multiplier: 0.0 }, None))
 }
 
 /// The state of a closed point and what it adds to the equations.
-pub fn press(pair: &ContactPair, meeting: Meeting, old: &ContactState, increment: Increment) -> PointResponse {
+pub fn press(
+    pair: &ContactPair,
+    slave: &SlavePoint,
+    meeting: Meeting,
+    old: &ContactState,
+    increment: Increment,
+) -> PointResponse {
+    let law = pair.law(slave);
     let Meeting { mut kinematics, gap, foot } = meeting;
     if old.friction.pressure == 0.0 && old.gap > TOUCH * kinematics.length {
         count_slip_after_touch(&mut kinematics, old.gap, gap.min(0.0));
     }
     let pressure = pressure(pair, gap, old);
     let sliding = Sliding { slip: kinematics.slip, pressure: carried(pressure, increment), dt: increment.dt };
-    let mut response = pair.law.respond(&old.friction, sliding)?;
+    let mut response = law.respond(&old.friction, sliding)?;
     if sliding.pressure > 0.0 {
         response.state.traction += response.dtraction_dpressure * (pressure - sliding.pressure);
         response.state.pressure = pressure;
     }
-    let stiffness = pair.law.stiffness();
+    let stiffness = law.stiffness();
     if increment.presume == Presume::Stick {
         response.state.traction = old.friction.traction + stiffness * sliding.slip;
         response.dtraction_dpressure = 0.0;
@@ -253,6 +262,12 @@ fn count_slip_after_touch(kinematics: &mut Kinematics, old_gap: f64, gap: f64) {
     kinematics.dslip *= share;
     kinematics.dslip += &kinematics.dgap * (dshare * kinematics.slip);
     kinematics.slip *= share;
+}
+
+/// What a traction puts on the nodes: w_a (p n − q s) ℓ [F].
+pub fn nodal_forces(k: &Kinematics, p: f64, q: f64) -> Vec<(usize, Vector2<f64>)> {
+    let force = (k.normal * p - k.tangent * q) * k.length;
+    k.nodes.iter().zip(&k.relative).map(|(&node, &w)| (node, force * w)).collect()
 }
 
 /// Nodal forces of the traction and their derivative: the exact one unless other tractions are promised.

@@ -2,13 +2,17 @@
 
 use std::ops::Range;
 
+use nalgebra::Vector2;
 use rayon::prelude::*;
 
-use super::force::{Closed, ContactState, Increment, PointResponse, Presume, Tractions, closes, open, press, respond};
+use super::force::{
+    Closed, ContactState, Increment, Meeting, PointResponse, Presume, Tractions, closes, nodal_forces, open, press,
+    respond,
+};
 use super::kinematics::{Kinematics, kinematics};
 use super::mortar::Mortar;
 use super::search::Index;
-use super::surface::{Master, MasterPoint, SlavePoint};
+use super::surface::{Master, SlavePoint};
 use crate::configuration::Configuration;
 use crate::friction::{FrictionLaw, FrictionState, LawFailure};
 
@@ -27,13 +31,13 @@ pub struct ContactPair {
     pub alpha_n: f64,
     /// Largest penetration left by the augmented Lagrangian; plain penalty if not given [L]
     pub penetration: Option<f64>,
-    /// The friction law
-    pub law: Box<dyn FrictionLaw>,
-    /// Tractions at the start of a contact that starts closed
-    pub initial: Option<InitialTraction>,
+    /// The friction laws, each with the parameters of some of the points
+    pub laws: Vec<Box<dyn FrictionLaw>>,
+    /// Tractions of every point at the start of a contact that starts closed
+    pub initial: Option<Vec<InitialTraction>>,
 }
 
-/// Tractions that act at every point of a contact when the run starts.
+/// Tractions that act at a point of a contact when the run starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InitialTraction {
     /// p [F/L²]
@@ -69,7 +73,12 @@ const FEW: usize = 64;
 pub type PairResponse = Vec<(ContactState, Option<Closed>)>;
 
 impl ContactPair {
-    /// Start closed: from now on every point's gap is counted so that the given pressure acts in the configuration `x`.
+    /// The friction law of a slave point.
+    pub fn law(&self, slave: &SlavePoint) -> &dyn FrictionLaw {
+        &*self.laws[slave.law]
+    }
+
+    /// Start closed: from now on every point's gap is counted so that its given pressure acts in the configuration `x`.
     ///
     /// ```text
     /// p = p_init + α_n (g_x − g)        g_x: gap between the surfaces in the configuration x
@@ -77,10 +86,10 @@ impl ContactPair {
     ///
     /// # Errors
     /// The number of the first point that no part of the master faces.
-    pub fn start_closed(&mut self, initial: InitialTraction, x: &Configuration) -> Result<(), usize> {
+    pub fn start_closed(&mut self, initial: Vec<InitialTraction>, x: &Configuration) -> Result<(), usize> {
         let met = self.meetings(x);
         for (k, (slave, met)) in self.points.iter_mut().zip(met).enumerate() {
-            slave.touch = met.ok_or(k)?.0 + initial.pressure / self.alpha_n;
+            slave.touch = met.ok_or(k)?.gap + initial[k].pressure / self.alpha_n;
         }
         self.initial = Some(initial);
         Ok(())
@@ -94,34 +103,50 @@ impl ContactPair {
     pub fn start_fitting(&mut self, x: &Configuration) {
         let met = self.meetings(x);
         for (slave, met) in self.points.iter_mut().zip(met) {
-            slave.overlap = met.map_or(0.0, |(gap, _)| (slave.touch - gap).max(0.0));
+            slave.overlap = met.map_or(0.0, |met| (slave.touch - met.gap).max(0.0));
         }
     }
 
     /// States at the start of a run: each point projected in the configuration `x`, friction at rest or, in a contact
     /// that starts closed, under its initial tractions.
     pub fn initial_states(&self, x: &Configuration) -> Vec<ContactState> {
-        let mut friction = self.law.initial_state();
-        if let Some(InitialTraction { pressure, traction }) = self.initial {
-            friction = FrictionState { pressure, traction, ..friction };
-        }
-        let state = |(slave, met): (&SlavePoint, Option<(f64, MasterPoint)>)| {
-            let (gap, foot) = met.unzip();
-            ContactState { friction, foot, gap: gap.map_or(0.0, |gap| slave.gap(gap, 1.0)), multiplier: 0.0 }
+        let state = |(k, (slave, met)): (usize, (&SlavePoint, Option<Meeting>))| {
+            let mut friction = self.law(slave).initial_state();
+            if let Some(InitialTraction { pressure, traction }) = self.initial.as_ref().map(|initial| initial[k]) {
+                friction = FrictionState { pressure, traction, ..friction };
+            }
+            let (gap, foot) = met.map(|met| (slave.gap(met.gap, 1.0), met.foot)).unzip();
+            ContactState { friction, foot, gap: gap.unwrap_or(0.0), multiplier: 0.0 }
         };
-        self.points.iter().zip(self.meetings(x)).map(state).collect()
+        self.points.iter().zip(self.meetings(x)).enumerate().map(state).collect()
     }
 
-    /// Gap of the surfaces and foot of every point, where the master faces it.
-    fn meetings(&self, x: &Configuration) -> Vec<Option<(f64, MasterPoint)>> {
+    /// What the initial tractions put on the nodes in the configuration `x` [F].
+    pub fn initial_forces(&self, x: &Configuration) -> Vec<(usize, Vector2<f64>)> {
+        let met = self.meetings(x).into_iter().zip(self.initial.iter().flatten());
+        let forces = |(met, initial): (Option<Meeting>, &InitialTraction)| {
+            let InitialTraction { pressure, traction } = *initial;
+            met.map_or_else(Vec::new, |met| nodal_forces(&met.kinematics, pressure, traction))
+        };
+        met.flat_map(forces).collect()
+    }
+
+    /// Where every point meets the master, if that faces it, the gap being that of the surfaces.
+    fn meetings(&self, x: &Configuration) -> Vec<Option<Meeting>> {
         let index = Index::new(&self.master, x);
         match (&self.mortar, &self.master) {
             (Some(mortar), Master::Mesh(surface)) => {
                 let overlaps = mortar.overlaps(surface, &index, x);
-                let meet = |k| mortar.kinematics(k, surface, &overlaps, None, x);
-                (0..self.points.len()).map(|k| meet(k).map(|met| (met.gap, met.foot))).collect()
+                (0..self.points.len()).map(|k| mortar.kinematics(k, surface, &overlaps, None, x)).collect()
             }
-            _ => self.points.iter().map(|slave| index.project(slave, None, x).map(|p| (p.gap, p.foot))).collect(),
+            _ => {
+                let meet = |slave: &SlavePoint| {
+                    let projection = index.project(slave, None, x)?;
+                    let kinematics = kinematics(slave, &self.master, &projection, None, x);
+                    Some(Meeting { kinematics, gap: projection.gap, foot: projection.foot })
+                };
+                self.points.iter().map(meet).collect()
+            }
         }
     }
 
@@ -147,12 +172,12 @@ impl ContactPair {
                 let increment = Increment { dt, fading, presume, promised };
                 let weights = mortar.weights(k, surface, &was, before);
                 let Some(mut meeting) = mortar.kinematics(k, surface, &is, weights.as_ref(), x) else {
-                    return open(self, None, old, increment);
+                    return open(self, slave, None, old, increment);
                 };
                 meeting.gap = slave.gap(meeting.gap, fading);
                 match closes(self, slave, meeting.gap, old, increment, x) {
-                    true => press(self, meeting, old, increment),
-                    false => open(self, Some((meeting.gap, meeting.foot)), old, increment),
+                    true => press(self, slave, meeting, old, increment),
+                    false => open(self, slave, Some((meeting.gap, meeting.foot)), old, increment),
                 }
             });
         }
@@ -219,8 +244,8 @@ impl ContactPair {
     }
 
     /// Elastic part of the slip, q/α_t; 0 for a frictionless contact [L].
-    pub fn elastic_slip(&self, friction: &FrictionState) -> f64 {
-        let stiffness = self.law.stiffness();
+    pub fn elastic_slip(&self, slave: &SlavePoint, friction: &FrictionState) -> f64 {
+        let stiffness = self.law(slave).stiffness();
         if stiffness > 0.0 { friction.traction / stiffness } else { 0.0 }
     }
 

@@ -33,6 +33,8 @@ pub struct SlavePoint {
     /// Gap between the surfaces at which the point touches: 0, but for a contact that starts closed under a given
     /// pressure [L]
     pub touch: f64,
+    /// Number of its friction law among those of the pair
+    pub law: usize,
     /// How deep the point lies in the master at the start of a shrink fit, which counts bit by bit as the first step goes on
     /// [L]
     pub overlap: f64,
@@ -103,7 +105,7 @@ pub fn nodal_points(edges: &[Vec<usize>]) -> Vec<SlavePoint> {
 
 /// A node that belongs to no edge, with an area of its own [L].
 pub fn lone_point(node: usize, area: f64) -> SlavePoint {
-    SlavePoint { position: vec![(node, 1.0)], length: Vec::new(), area, touch: 0.0, overlap: 0.0 }
+    SlavePoint { position: vec![(node, 1.0)], length: Vec::new(), area, touch: 0.0, law: 0, overlap: 0.0 }
 }
 
 fn edge_point(edge: &[usize], xi: f64, weight: f64) -> SlavePoint {
@@ -113,6 +115,7 @@ fn edge_point(edge: &[usize], xi: f64, weight: f64) -> SlavePoint {
         length: vec![LengthShare { factor: weight, tangent: with(shape::edge_derivatives(edge.len(), xi)) }],
         area: 0.0,
         touch: 0.0,
+        law: 0,
         overlap: 0.0,
     }
 }

@@ -96,6 +96,58 @@ impl SolidElement {
         self.evaluate(material, u, force, None)
     }
 
+    /// Writes the internal force (2) on each node over `forces`; returns the stored energy.
+    ///
+    /// # Errors
+    /// [`InvertedElement`] when the material is turned inside out at a quadrature point.
+    pub fn nodal_forces(
+        &self,
+        material: &dyn Material,
+        u: &[Vector2<f64>],
+        forces: &mut [Vector2<f64>],
+    ) -> Result<f64, InvertedElement> {
+        if self.centre.is_none() {
+            return match self.kind {
+                ElementKind::T3 => self.gathered::<3, 1>(material, u, forces),
+                ElementKind::T6 => self.gathered::<6, 3>(material, u, forces),
+                ElementKind::Q4 => self.gathered::<4, 4>(material, u, forces),
+                ElementKind::Q8 => self.gathered::<8, 9>(material, u, forces),
+                ElementKind::Q9 => self.gathered::<9, 9>(material, u, forces),
+            };
+        }
+        let mut flat = [0.0; 18];
+        let energy = self.force(material, u, &mut flat[..2 * u.len()])?;
+        forces.iter_mut().zip(flat.chunks_exact(2)).for_each(|(force, f)| *force = Vector2::new(f[0], f[1]));
+        Ok(energy)
+    }
+
+    /// Force (2) of an element of N nodes and at most M quadrature points, known when this is compiled.
+    #[inline(always)]
+    fn gathered<const N: usize, const M: usize>(
+        &self,
+        material: &dyn Material,
+        u: &[Vector2<f64>],
+        forces: &mut [Vector2<f64>],
+    ) -> Result<f64, InvertedElement> {
+        let points = self.volumes.len();
+        debug_assert!(points <= M);
+        let mut deformations = [Matrix2::zeros(); M];
+        let gradients = self.gradients.as_chunks::<N>().0;
+        for (deformation, gradients) in deformations.iter_mut().zip(gradients) {
+            *deformation = deformation_gradient(gradients, u);
+        }
+        let mut stresses = [Matrix2::zeros(); M];
+        let energy = material.stresses(&deformations[..points], &self.volumes, &mut stresses[..points])?;
+        let mut sums = [Vector2::zeros(); N];
+        for (stress, gradients) in stresses.iter().zip(gradients) {
+            for (sum, gradient) in sums.iter_mut().zip(gradients) {
+                *sum += stress * gradient;
+            }
+        }
+        forces.copy_from_slice(&sums);
+        Ok(energy)
+    }
+
     /// As [`SolidElement::force`], and writes the tangent (3) over `tangent`, column by column.
     ///
     /// # Errors

@@ -72,6 +72,10 @@ impl FrictionLaw for Coulomb {
         1.0
     }
 
+    fn starting_limit(&self, pressure: f64) -> f64 {
+        self.mu * pressure
+    }
+
     fn uniqueness_limit(&self) -> Option<f64> {
         None
     }

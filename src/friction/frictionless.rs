@@ -30,6 +30,10 @@ impl FrictionLaw for Frictionless {
         1.0
     }
 
+    fn starting_limit(&self, _pressure: f64) -> f64 {
+        0.0
+    }
+
     fn uniqueness_limit(&self) -> Option<f64> {
         None
     }

@@ -5,7 +5,8 @@
 //!
 //! Signs: `q` resists positive slip of the slave along +s; pressure is positive in compression.
 //!
-//! Laws: [`SuperSubloading`], [`Coulomb`], [`Frictionless`]; [`FrictionParameters`] reads any of them from a case.
+//! Laws: [`SuperSubloading`], [`SlipWeakening`], [`RateAndState`], [`Coulomb`], [`Frictionless`]; [`FrictionParameters`]
+//! reads any of them from a case.
 
 mod approach;
 mod coulomb;
@@ -14,8 +15,10 @@ mod frictionless;
 mod parameters;
 mod path;
 mod peak;
+mod rate_and_state;
 mod root;
 mod slip_equation;
+mod slip_weakening;
 mod super_subloading;
 
 use std::fmt::Debug;
@@ -28,6 +31,8 @@ pub use coulomb::{Coulomb, CoulombParameters};
 pub use frictionless::Frictionless;
 pub use parameters::FrictionParameters;
 pub use peak::Integration;
+pub use rate_and_state::{RateAndState, RateAndStateParameters, StateEvolution};
+pub use slip_weakening::{SlipWeakening, SlipWeakeningParameters};
 pub use super_subloading::{SuperSubloading, SuperSubloadingParameters};
 
 /// What friction remembers at one contact point between increments.
@@ -37,7 +42,8 @@ pub struct FrictionState {
     pub traction: f64,
     /// p: contact pressure, positive in compression [F/L²]
     pub pressure: f64,
-    /// μ: peak coefficient available now, μ_k ≤ μ ≤ μ_s for the super/subloading law [-]
+    /// μ: peak coefficient available now, μ_k ≤ μ ≤ μ_s for the super/subloading law; for rate-and-state friction the
+    /// coefficient at the reference slip rate [-]
     pub mu: f64,
     /// Total plastic slip, signed along +s [L]
     pub plastic_slip: f64,
@@ -187,6 +193,10 @@ pub trait FrictionLaw: Debug + Send + Sync {
 
     /// 1/R* = μ/μ_k: degree of structure that belongs to a peak coefficient; 1 for a law without structure [-]
     fn structure(&self, mu: f64) -> f64;
+
+    /// Largest |q| that a point which has not slipped yet may start with under the pressure p; infinite for a law that
+    /// lets an excess slip off [F/L²]
+    fn starting_limit(&self, pressure: f64) -> f64;
 
     /// Pressure from which the rate problem may have several answers, if there is one [F/L²]
     fn uniqueness_limit(&self) -> Option<f64>;

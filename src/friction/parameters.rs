@@ -3,7 +3,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Coulomb, CoulombParameters, FrictionLaw, Frictionless, SuperSubloading, SuperSubloadingParameters};
+use super::{
+    Coulomb, CoulombParameters, FrictionLaw, Frictionless, RateAndState, RateAndStateParameters, SlipWeakening,
+    SlipWeakeningParameters, SuperSubloading, SuperSubloadingParameters,
+};
 use crate::parameter::InvalidParameter;
 
 /// A friction law and its parameters.
@@ -16,6 +19,10 @@ pub enum FrictionParameters {
     Coulomb(CoulombParameters),
     /// Time-dependent super/subloading-surface friction: slip weakens the interface, rest heals it
     SuperSubloading(SuperSubloadingParameters),
+    /// Friction that falls linearly with slip from static to dynamic, and does not heal
+    SlipWeakening(SlipWeakeningParameters),
+    /// Regularized rate-and-state friction: depends on the slip rate and on a state that ages or slips
+    RateAndState(RateAndStateParameters),
 }
 
 impl FrictionParameters {
@@ -28,6 +35,8 @@ impl FrictionParameters {
             Self::Frictionless => Box::new(Frictionless),
             Self::Coulomb(parameters) => Box::new(Coulomb::new(parameters, default_alpha_t)?),
             Self::SuperSubloading(parameters) => Box::new(SuperSubloading::new(parameters, default_alpha_t)?),
+            Self::SlipWeakening(parameters) => Box::new(SlipWeakening::new(parameters, default_alpha_t)?),
+            Self::RateAndState(parameters) => Box::new(RateAndState::new(parameters, default_alpha_t)?),
         })
     }
 }

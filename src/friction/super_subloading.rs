@@ -262,6 +262,10 @@ impl FrictionLaw for SuperSubloading {
         mu / self.evolution.mu_k
     }
 
+    fn starting_limit(&self, pressure: f64) -> f64 {
+        self.initial_mu * pressure
+    }
+
     fn uniqueness_limit(&self) -> Option<f64> {
         let pressure = self.alpha_t / self.evolution.weakening(self.evolution.mu_s);
         pressure.is_finite().then_some(pressure)

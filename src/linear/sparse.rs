@@ -132,8 +132,13 @@ impl SparseMatrix {
     /// Add `value` times the identity to the block of one dof: A_ii += value.
     pub fn add_diagonal(&mut self, dof: usize, value: f64) {
         let (node, d) = (dof / 2, dof % 2);
+        self.add_own(node, (d, d), value);
+    }
+
+    /// Add to an entry (i, j) of a node's own block.
+    pub fn add_own(&mut self, node: usize, (i, j): (usize, usize), value: f64) {
         if let Some(block) = self.pattern.block(node, node) {
-            self.values[block.value(d, d)] += value;
+            self.values[block.value(i, j)] += value;
         }
     }
 

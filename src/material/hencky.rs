@@ -49,6 +49,10 @@ impl Material for Hencky {
         self.lame.constrained_modulus()
     }
 
+    fn shear_modulus(&self) -> f64 {
+        self.lame.shear
+    }
+
     #[inline(always)]
     fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
         let invariants = Invariants::of(deformation)?;

@@ -38,6 +38,10 @@ impl Material for Linear {
         self.lame.constrained_modulus()
     }
 
+    fn shear_modulus(&self) -> f64 {
+        self.lame.shear
+    }
+
     #[inline(always)]
     fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
         if !deformation.iter().all(|component| component.is_finite()) {

@@ -94,6 +94,9 @@ pub trait Material: Debug + Send + Sync {
     /// Constrained modulus λ + 2G of the undeformed material: the stiffness scale [F/L²]
     fn stiffness(&self) -> f64;
 
+    /// G: shear modulus of the undeformed material [F/L²]
+    fn shear_modulus(&self) -> f64;
+
     /// P, ∂P/∂F, W and σ_zz at the in-plane deformation gradient F.
     ///
     /// # Errors
@@ -106,6 +109,26 @@ pub trait Material: Debug + Send + Sync {
     /// As [`Material::respond`].
     fn stress(&self, deformation: &Matrix2<f64>) -> Result<(Matrix2<f64>, f64), InvertedElement> {
         self.respond(deformation).map(|response| (response.stress, response.energy))
+    }
+
+    /// P times the volume at several points, written over `stresses`; returns ∫ W dV. Compiled for each law, so that an
+    /// element calls it once.
+    ///
+    /// # Errors
+    /// As [`Material::respond`].
+    fn stresses(
+        &self,
+        deformations: &[Matrix2<f64>],
+        volumes: &[f64],
+        stresses: &mut [Matrix2<f64>],
+    ) -> Result<f64, InvertedElement> {
+        let mut energy = 0.0;
+        for ((deformation, &volume), stress) in deformations.iter().zip(volumes).zip(stresses) {
+            let (p, stored) = self.stress(deformation)?;
+            *stress = volume * p;
+            energy += volume * stored;
+        }
+        Ok(energy)
     }
 
     /// σ = P Fᵀ / J

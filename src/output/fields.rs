@@ -19,6 +19,7 @@ use super::{Attempt, Observer};
 use crate::configuration::Configuration;
 use crate::contact::force::{ContactState, Status};
 use crate::contact::pair::ContactPair;
+use crate::contact::surface::SlavePoint;
 use crate::error::Error;
 use crate::model::Model;
 use crate::shape::ElementKind;
@@ -197,6 +198,12 @@ fn nodal_stresses(model: &Model, state: &State) -> Vec<[f64; 4]> {
     sums.into_iter().map(|(sum, count)| sum.map(|s| if count > 0.0 { s / count } else { 0.0 })).collect()
 }
 
+/// A contact point.
+struct Place<'a> {
+    pair: &'a ContactPair,
+    slave: &'a SlavePoint,
+}
+
 fn contact_frame(model: &Model, state: &State) -> UnstructuredGridPiece {
     let points_of = |pair: &ContactPair, x: &Configuration| pair.points.iter().map(|p| p.at(x)).collect::<Vec<_>>();
     let undeformed = Configuration::undeformed(&model.mesh.nodes);
@@ -216,14 +223,13 @@ fn contact_frame(model: &Model, state: &State) -> UnstructuredGridPiece {
         }
         first += pair.points.len();
     }
-    let all: Vec<(&ContactPair, &ContactState)> = model
-        .contacts
-        .iter()
-        .zip(&state.contacts)
-        .flat_map(|(pair, states)| states.iter().map(move |s| (pair, s)))
-        .collect();
-    let scalar = |name: &str, value: &dyn Fn(&ContactPair, &ContactState) -> f64| {
-        array(name, 1, all.iter().map(|(pair, state)| value(pair, state)).collect::<Vec<f64>>())
+    let states = model.contacts.iter().zip(&state.contacts).flat_map(|(pair, states)| {
+        let points = pair.points.iter().zip(states);
+        points.map(move |(slave, state)| (Place { pair, slave }, state))
+    });
+    let all: Vec<(Place, &ContactState)> = states.collect();
+    let scalar = |name: &str, value: &dyn Fn(&Place, &ContactState) -> f64| {
+        array(name, 1, all.iter().map(|(place, state)| value(place, state)).collect::<Vec<f64>>())
     };
     let rate = if state.dt > 0.0 { 1.0 / state.dt } else { 0.0 };
     UnstructuredGridPiece {
@@ -236,11 +242,11 @@ fn contact_frame(model: &Model, state: &State) -> UnstructuredGridPiece {
                 scalar("pressure", &|_, s| s.friction.pressure),
                 scalar("traction", &|_, s| s.friction.traction),
                 scalar("slip", &|_, s| s.friction.plastic_slip),
-                scalar("elastic_slip", &|pair, s| pair.elastic_slip(&s.friction)),
+                scalar("elastic_slip", &|at, s| at.pair.elastic_slip(at.slave, &s.friction)),
                 scalar("slip_rate", &|_, s| s.friction.plastic_increment * rate),
                 scalar("R", &|_, s| s.friction.ratio()),
                 scalar("mu", &|_, s| s.friction.mu),
-                scalar("structure", &|pair, s| pair.law.structure(s.friction.mu)),
+                scalar("structure", &|at, s| at.pair.law(at.slave).structure(s.friction.mu)),
                 scalar("state", &|_, s| match s.status() {
                     Status::Open => 0.0,
                     Status::Stick => 1.0,

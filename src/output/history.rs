@@ -103,8 +103,8 @@ fn contact_row(pair: &ContactPair, states: &[ContactState], x: &Configuration) -
         slipping += if state.status() == Status::Slip { length } else { 0.0 };
         slip += length * friction.plastic_slip;
         penetration = penetration.max(-state.gap);
-        largest_elastic = largest_elastic.max(pair.elastic_slip(friction).abs());
-        elastic += length * pair.elastic_slip(friction);
+        largest_elastic = largest_elastic.max(pair.elastic_slip(point, friction).abs());
+        elastic += length * pair.elastic_slip(point, friction);
     }
     let share = |part: f64| if closed > 0.0 { part / closed } else { 0.0 };
     [normal, tangential, closed, share(slipping), share(slip), penetration, largest_elastic, share(elastic)]

@@ -2,6 +2,7 @@
 
 mod csv;
 pub mod fields;
+pub mod fronts;
 pub mod history;
 pub mod law;
 pub mod newton_log;

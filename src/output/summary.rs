@@ -57,6 +57,8 @@ pub struct About {
     pub units: BTreeMap<String, String>,
     /// friction law of each contact
     pub friction: BTreeMap<String, FrictionParameters>,
+    /// Rayleigh, shear and pressure wave speeds of the first contact's slave body [L/T]
+    pub wave_speeds: [f64; 3],
 }
 
 /// How it ended: the first lines of every `summary.json`.

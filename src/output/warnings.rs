@@ -96,7 +96,7 @@ fn concerns(
         let percent = 100.0 * share;
         format!("the penetration {:.3e} is {percent:.1} % of the slave's edge; raise alpha_n", -gap)
     });
-    let several = pair.law.uniqueness_limit().filter(|limit| pressure > *limit).map(|limit| {
+    let several = pair.law(point).uniqueness_limit().filter(|limit| pressure > *limit).map(|limit| {
         format!(
             "the pressure {pressure:.6e} passes {limit:.6e}, above which weakening may outrun the contact stiffness and \
              the answer snaps; raise alpha_t"

@@ -7,6 +7,7 @@ mod chart;
 mod law;
 mod read;
 mod run;
+mod space_time;
 mod svg;
 mod thin;
 
@@ -21,7 +22,7 @@ use super::summary::About;
 use crate::error::Error;
 
 /// Files that [`draw`] may write.
-pub const FIGURES: [&str; 8] = [
+pub const FIGURES: [&str; 9] = [
     "law.svg",
     "displacement.svg",
     "friction.svg",
@@ -30,6 +31,7 @@ pub const FIGURES: [&str; 8] = [
     "slip_fraction.svg",
     "energy.svg",
     "newton.svg",
+    "slip_rate.svg",
 ];
 
 /// Why there are no figures.
@@ -71,10 +73,25 @@ pub fn draw(folders: &[PathBuf], out: &Path) -> Result<Vec<PathBuf>, PlotError> 
         written.push(path);
         Ok(())
     };
+    let mut maps = Vec::new();
+    if let [source] = &sources[..] {
+        for (number, map) in space_time::Map::read(&source.folder)? {
+            let name = source.about.friction.keys().nth(number).map_or("", String::as_str);
+            maps.push((number, map.svg(&format!("Slip rate of {name}"), source)));
+        }
+    }
     match folders.iter().filter(|folder| is_law(folder)).count() {
         0 => run::figures(&sources, write)?,
         laws if laws == folders.len() => write("law.svg", law::figure(&sources)?)?,
         _ => return Err(unreadable(&folders[0], "runs and laws driven alone cannot be drawn over each other")),
+    }
+    for (number, svg) in maps {
+        // The first contact has the plain name; others are told apart by their numbers.
+        let name = if number == 0 { "slip_rate.svg".into() } else { format!("slip_rate_{number}.svg") };
+        std::fs::create_dir_all(out).map_err(|cause| failed(out, &cause))?;
+        let path = out.join(name);
+        std::fs::write(&path, svg).map_err(|cause| failed(&path, &cause))?;
+        written.push(path);
     }
     Ok(written)
 }

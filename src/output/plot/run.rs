@@ -182,7 +182,10 @@ impl Runs<'_> {
         match self.list.iter().find_map(|run| run.source.about.friction.get(contact)) {
             Some(FrictionParameters::SuperSubloading(law)) => vec![("μ_s", law.mu_s), ("μ_k", law.mu_k)],
             Some(FrictionParameters::Coulomb(law)) => vec![("μ", law.mu)],
-            Some(FrictionParameters::Frictionless) | None => Vec::new(),
+            Some(FrictionParameters::SlipWeakening(law)) if law.cohesion == 0.0 => {
+                vec![("μ_s", law.mu_s), ("μ_d", law.mu_d)]
+            }
+            _ => Vec::new(),
         }
     }
 

@@ -100,6 +100,15 @@ impl Drawing {
         );
     }
 
+    /// A filled rectangle.
+    pub fn fill(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2], colour: &str) {
+        let _ = writeln!(
+            self.0,
+            "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill=\"{colour}\" \
+             shape-rendering=\"crispEdges\"/>"
+        );
+    }
+
     /// A mark.
     pub fn mark(&mut self, [x, y]: [f64; 2], shape: Shape, colour: &str) {
         let style = format!("fill=\"white\" stroke=\"{colour}\" stroke-width=\"1.2\"");

@@ -9,12 +9,14 @@
 //! Elements and contact points are evaluated in parallel and added in a fixed order: the same bits on any number of
 //! threads.
 
+mod forces;
+
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, Vector2};
 use rayon::prelude::*;
 
-use crate::boundary::Prescribed;
+use crate::boundary::{Absorber, Prescribed};
 use crate::configuration::Configuration;
 use crate::contact::force::{Closed, ContactState, Presume, Status, Tractions};
 use crate::contact::pair::{Moment, PairResponse, Presumption};
@@ -189,6 +191,8 @@ pub struct Assembler<'m> {
     /// What was found at the last evaluated displacement
     pub evaluation: Evaluation,
     buffers: Buffers,
+    /// For explicit increments, once they begin
+    gather: Option<forces::Gather>,
     /// Segments that the pattern has room for ahead of each foot, when it is set next
     ahead: usize,
     /// Time spent
@@ -249,6 +253,7 @@ impl<'m> Assembler<'m> {
             linearized_at: Vec::new(),
             evaluation: Evaluation::default(),
             buffers: Buffers::default(),
+            gather: None,
             ahead: 1,
             seconds: Seconds::default(),
         };
@@ -375,6 +380,9 @@ impl<'m> Assembler<'m> {
 
     /// Trial states of all pairs; a tangent is taken with the presumptions, a residual that may be accepted without.
     fn contacts(&self, trial: Trial, presuming: bool, x: &Configuration) -> Result<Vec<PairResponse>, TrialFailure> {
+        if self.model.contacts.is_empty() {
+            return Ok(Vec::new());
+        }
         let before = self.model.configuration(&trial.old.displacement);
         let moment = Moment { dt: trial.dt, fading: 1.0 - self.model.steps[0].span.share(trial.time) };
         let pairs = self.model.contacts.iter().zip(&trial.old.contacts).enumerate();
@@ -524,11 +532,37 @@ impl<'m> Assembler<'m> {
         u: &[f64],
         x: &Configuration,
         force: &mut [f64],
-        mut tangent: Option<&mut SparseMatrix>,
+        tangent: Option<&mut SparseMatrix>,
     ) -> Result<Vec<f64>, TrialFailure> {
-        let Trial { old, step, time, .. } = trial;
         let internal = force.to_vec();
-        let undefined = |dof: usize| TrialFailure::Undefined { node: self.model.mesh.node_tags[dof / 2], time };
+        self.subtract_loads(trial, u, x, force, tangent);
+        let loads: Vec<f64> = internal.iter().zip(&*force).map(|(internal, force)| internal - force).collect();
+        for (dof, load) in loads.iter().enumerate() {
+            if !load.is_finite() {
+                return Err(self.undefined(dof, trial.time));
+            }
+            self.magnitudes[dof] += load.abs();
+        }
+        Ok(loads)
+    }
+
+    fn undefined(&self, dof: usize, time: f64) -> TrialFailure {
+        TrialFailure::Undefined { node: self.model.mesh.node_tags[dof / 2], time }
+    }
+
+    /// Subtract the loads from the forces.
+    fn subtract_loads(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        x: &Configuration,
+        force: &mut [f64],
+        mut tangent: Option<&mut SparseMatrix>,
+    ) {
+        let Trial { old, step, time, .. } = trial;
+        for (force, prestress) in force.iter_mut().zip(&self.model.prestress) {
+            *force -= prestress;
+        }
         for load in &step.loads.dead {
             for &(node, weight, position) in &load.shares {
                 force[2 * node + load.component] -= weight * load.amplitude.value(position, time);
@@ -553,14 +587,6 @@ impl<'m> Assembler<'m> {
         for &dof in &step.released {
             force[dof] -= old.step_start.reaction[dof] * (1.0 - step.span.share(time));
         }
-        let loads: Vec<f64> = internal.iter().zip(&*force).map(|(internal, force)| internal - force).collect();
-        for (dof, load) in loads.iter().enumerate() {
-            if !load.is_finite() {
-                return Err(undefined(dof));
-            }
-            self.magnitudes[dof] += load.abs();
-        }
-        Ok(loads)
     }
 
     /// Subtract the forces of the dashpots.
@@ -585,6 +611,19 @@ impl<'m> Assembler<'m> {
             self.magnitudes[dof] += pull.abs();
             if let Some(tangent) = tangent.as_deref_mut() {
                 tangent.add_diagonal(dof, dashpot.coefficient * dvelocity);
+            }
+        }
+        for Absorber { node, coefficients } in &trial.step.loads.absorbers {
+            let rates = [0, 1].map(|i| velocity(self.model, trial, u, 2 * node + i));
+            for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                let (velocity, dvelocity) = rates[j];
+                let pull = -coefficients[(i, j)] * velocity;
+                force[2 * node + i] -= pull;
+                damping[2 * node + i] += pull;
+                self.magnitudes[2 * node + i] += pull.abs();
+                if let Some(tangent) = tangent.as_deref_mut() {
+                    tangent.add_own(*node, (i, j), coefficients[(i, j)] * dvelocity);
+                }
             }
         }
         self.stabilize(trial, u, force, tangent, &mut damping);
@@ -713,6 +752,10 @@ impl<'m> Assembler<'m> {
         let dvelocity = scheme.map_or(1.0 / dt, |scheme| scheme.dvelocity(dt));
         for dashpot in &step.loads.dashpots {
             system.round_off += f64::EPSILON * dashpot.coefficient * dvelocity * way[dashpot.dof];
+        }
+        for Absorber { node, coefficients } in &step.loads.absorbers {
+            let way = way[2 * node] + way[2 * node + 1];
+            system.round_off += f64::EPSILON * coefficients.norm() * dvelocity * way;
         }
     }
 

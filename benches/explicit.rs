@@ -1,0 +1,112 @@
+//! Explicit increments of a block of fully integrated neo-Hookean Q4 elements: element updates a second of processor time,
+//! whole increments counted (forces, sums, time integration), on one thread and on all. What a fused multiply-add loop can do on this
+//! machine stands beside it, for the share of its arithmetic that an update takes.
+
+use std::time::Instant;
+
+use fecontact::assembly::Assembler;
+use fecontact::case;
+use fecontact::explicit::Explicit;
+use serde_json::{Value, json};
+
+/// Elements a side.
+const SIDE: usize = 300;
+
+/// Floating-point operations of one update, counted in the source: at each of 4 points F (32), invariants and stress with
+/// one logarithm (60), nodal forces (32); sums at the nodes (8).
+const OPERATIONS: f64 = 4.0 * (32.0 + 60.0 + 32.0) + 8.0;
+
+/// Processor time of this process where the system tells (other programs take their share of the wall clock), else wall
+/// time.
+struct Clock {
+    wall: Instant,
+    processor: Option<f64>,
+}
+
+impl Clock {
+    fn start() -> Self {
+        Self { wall: Instant::now(), processor: processor_seconds() }
+    }
+
+    fn seconds(&self) -> f64 {
+        let processor = processor_seconds().zip(self.processor).map(|(now, then)| now - then);
+        processor.unwrap_or_else(|| self.wall.elapsed().as_secs_f64())
+    }
+}
+
+/// Seconds that all threads of this process have run, from the Linux scheduler.
+fn processor_seconds() -> Option<f64> {
+    let threads = std::fs::read_dir("/proc/self/task").ok()?;
+    let of = |thread: std::fs::DirEntry| {
+        let text = std::fs::read_to_string(thread.path().join("schedstat")).ok()?;
+        text.split_whitespace().next()?.parse::<f64>().ok()
+    };
+    Some(1e-9 * threads.flatten().filter_map(of).sum::<f64>())
+}
+
+fn block() -> Value {
+    let node = |i: usize, j: usize| j * (SIDE + 1) + i;
+    let cells = || (0..SIDE * SIDE).map(|e| (e % SIDE, e / SIDE));
+    let nodes: Vec<[f64; 2]> = (0..(SIDE + 1) * (SIDE + 1))
+        .map(|k| [(k % (SIDE + 1)) as f64 / SIDE as f64, (k / (SIDE + 1)) as f64 / SIDE as f64])
+        .collect();
+    let elements: Vec<[usize; 4]> =
+        cells().map(|(i, j)| [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)]).collect();
+    let bottom: Vec<[usize; 2]> = (0..SIDE).map(|i| [node(i, 0), node(i + 1, 0)]).collect();
+    json!({
+        "mesh": {"nodes": nodes, "elements": {"block": elements}, "edges": {"bottom": bottom}},
+        "bodies": {"block": {"material": {"model": "neo_hookean", "E": 100.0, "nu": 0.3, "density": 1.0}}},
+        "initial_velocity": {"block": [0.1, 0.2]},
+        "steps": [{
+            "name": "fly", "duration": 1.0, "scheme": {"explicit": {}},
+            "supports": [{"on": "bottom", "uy": "0.2*t"}],
+        }],
+    })
+}
+
+/// Element updates a second, the best of several stretches.
+fn updates(threads: usize) -> f64 {
+    let case = serde_json::from_value(block()).expect("well formed");
+    let model = case::build(&case, std::path::Path::new("bench.json")).expect("a good case");
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+    pool.install(|| {
+        let mut assembler = Assembler::new(&model);
+        let mut state = model.initial_state();
+        let mut explicit =
+            Explicit::begin(&model, &model.steps[0], &mut state, &mut assembler).expect("the step begins");
+        let stretch = |k: i32| {
+            let clock = Clock::start();
+            let count = explicit.go_to(2e-3 * f64::from(k), &mut state, &mut assembler).expect("a finite motion");
+            (count * SIDE * SIDE) as f64 / clock.seconds()
+        };
+        (1..=8).map(stretch).fold(0.0, f64::max)
+    })
+}
+
+/// Multiply-adds a second of one thread, counted as two operations each, in eight independent chains of four.
+fn arithmetic() -> f64 {
+    let mut sums = std::hint::black_box([[1.0f64; 4]; 8]);
+    let [factor, term] = std::hint::black_box([0.999_999, 1e-6]);
+    let clock = Clock::start();
+    let rounds = 4_000_000;
+    for _ in 0..rounds {
+        for sum in &mut sums {
+            sum.iter_mut().for_each(|x| *x = *x * factor + term);
+        }
+    }
+    assert!(std::hint::black_box(sums).iter().flatten().all(|x| x.is_finite()));
+    f64::from(rounds) * 64.0 / clock.seconds()
+}
+
+fn main() {
+    let limit = (0..3).map(|_| arithmetic()).fold(0.0, f64::max);
+    println!("one thread: {:.2} Gflop/s of multiply-adds", 1e-9 * limit);
+    for threads in [1, std::thread::available_parallelism().map_or(1, usize::from)] {
+        let rate = updates(threads);
+        println!(
+            "{threads} thread(s): {:.2} million element updates in a second of processor time, {:.0} % of the multiply-adds",
+            1e-6 * rate,
+            100.0 * rate * OPERATIONS / limit
+        );
+    }
+}

@@ -1,0 +1,49 @@
+//! Energies of contacts, and of what acts on the model over an increment.
+
+use crate::configuration::Configuration;
+use crate::contact::force::ContactState;
+use crate::model::{Model, Step};
+
+/// What the drivers of dashpots put in over an increment: mean force × way of the driver [F·L].
+/// `way` is that of the node's dof.
+pub fn work_of_drivers(model: &Model, step: &Step, [t0, t1]: [f64; 2], way: impl Fn(usize) -> f64) -> f64 {
+    let driven = step.loads.dashpots.iter().filter(|dashpot| dashpot.driver.is_some());
+    driven
+        .map(|dashpot| {
+            let position = model.mesh.nodes[dashpot.dof / 2];
+            let [v0, v1] = [t0, t1].map(|time| dashpot.driver_velocity(position, time));
+            let velocity = 0.5 * (v0 + v1);
+            dashpot.coefficient * (velocity * (t1 - t0) - way(dashpot.dof)) * velocity
+        })
+        .sum()
+}
+
+/// ∫ (α_n g²/2 + q²/(2 α_t)) ds of the closed points in the configuration `x` [F·L].
+pub fn contact_energy(model: &Model, contacts: &[Vec<ContactState>], x: &Configuration) -> f64 {
+    let mut energy = 0.0;
+    for (pair, states) in model.contacts.iter().zip(contacts) {
+        for (point, ContactState { friction, gap, .. }) in pair.points.iter().zip(states) {
+            let normal = if friction.pressure > 0.0 { 0.5 * pair.alpha_n * gap.powi(2) } else { 0.0 };
+            let stiffness = pair.law(point).stiffness();
+            let tangential = if stiffness > 0.0 { 0.5 * friction.traction.powi(2) / stiffness } else { 0.0 };
+            energy += point.current_length(x) * (normal + tangential);
+        }
+    }
+    energy
+}
+
+/// What friction dissipated from `old` to `new` [F·L].
+pub fn friction_dissipation(
+    model: &Model,
+    old: &[Vec<ContactState>],
+    new: &[Vec<ContactState>],
+    x: &Configuration,
+) -> f64 {
+    let mut dissipated = 0.0;
+    for ((pair, new), old) in model.contacts.iter().zip(new).zip(old) {
+        for ((point, new), old) in pair.points.iter().zip(new).zip(old) {
+            dissipated += point.current_length(x) * (new.friction.dissipation - old.friction.dissipation);
+        }
+    }
+    dissipated
+}

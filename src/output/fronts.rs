@@ -1,0 +1,249 @@
+//! `slip_map.csv` and `fronts.csv`: slip over time and place, and the fronts that run along an interface.
+//!
+//! The slip rate is the plastic slip since the row before over the time since. A front arrives where it passes a threshold
+//! from below, in time linear between the middles of the two intervals. Its local speed is the distance of the two
+//! neighbours along the slave over the difference of their arrivals (of one neighbour at an end), if both have been passed
+//! as often.
+
+use std::path::{Path, PathBuf};
+
+use super::csv::Table;
+use super::{Attempt, Observer};
+use crate::configuration::Configuration;
+use crate::contact::pair::ContactPair;
+use crate::error::Error;
+use crate::material::Material;
+use crate::model::Model;
+use crate::state::State;
+
+/// Columns of `slip_map.csv`.
+const MAP: [&str; 13] = [
+    "time",
+    "contact",
+    "number",
+    "position",
+    "x",
+    "y",
+    "slip",
+    "slip_rate",
+    "R",
+    "mu",
+    "structure",
+    "traction",
+    "pressure",
+];
+
+/// Columns of `fronts.csv`.
+const FRONTS: [&str; 11] = [
+    "contact",
+    "point",
+    "position",
+    "x",
+    "y",
+    "passage",
+    "arrival",
+    "speed",
+    "speed_over_c_R",
+    "speed_over_c_s",
+    "speed_over_c_p",
+];
+
+/// c_R, c_s and c_p of an elastic body [L/T].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WaveSpeeds {
+    /// c_R: Rayleigh waves along a free surface
+    pub rayleigh: f64,
+    /// c_s = √(G/ρ): shear waves
+    pub shear: f64,
+    /// c_p = √((λ + 2G)/ρ): pressure waves
+    pub pressure: f64,
+}
+
+impl WaveSpeeds {
+    /// Of the body behind the slave of a contact, if there is one.
+    fn behind(model: &Model, pair: &ContactPair) -> Option<Self> {
+        let (node, _) = *pair.points.first()?.position.first()?;
+        let body = model.bodies.iter().find(|body| body.nodes.binary_search(&node).is_ok())?;
+        Some(Self::of(&*body.material))
+    }
+
+    /// Of a material; infinite without density.
+    ///
+    /// ```text
+    /// (2 − ξ²)² = 4 √(1 − ξ²) √(1 − ξ² c_s²/c_p²),   ξ = c_R/c_s
+    /// ```
+    pub fn of(material: &dyn Material) -> Self {
+        let speed = |modulus: f64| (modulus / material.density()).sqrt();
+        let (shear, pressure) = (speed(material.shear_modulus()), speed(material.stiffness()));
+        let ratio = material.shear_modulus() / material.stiffness();
+        // Negative below the root but for the trivial one at 0, positive above.
+        let excess = |square: f64| (2.0 - square).powi(2) - 4.0 * ((1.0 - square) * (1.0 - square * ratio)).sqrt();
+        let (mut low, mut high) = (0.1, 1.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if excess(middle) < 0.0 { low = middle } else { high = middle }
+        }
+        Self { rayleigh: shear * low.sqrt(), shear, pressure }
+    }
+}
+
+/// c_R, c_s and c_p of the body behind the first contact's slave; 0 if there is none, or it has no density [L/T].
+pub fn wave_speeds(model: &Model) -> [f64; 3] {
+    let speeds = model.contacts.first().and_then(|pair| WaveSpeeds::behind(model, pair));
+    let finite = speeds.filter(|speeds| speeds.pressure.is_finite());
+    finite.map_or([0.0; 3], |speeds| [speeds.rayleigh, speeds.shear, speeds.pressure])
+}
+
+/// A point of the slave surface: where it is, and what it did so far.
+#[derive(Clone, Debug)]
+struct Point {
+    /// Number of its unbroken line
+    line: usize,
+    /// Distance along the line [L]
+    position: f64,
+    at: [f64; 2],
+    slip: f64,
+    rate: f64,
+    arrivals: Vec<f64>,
+}
+
+/// The points of one contact.
+#[derive(Clone, Debug)]
+struct Interface {
+    name: String,
+    speeds: Option<WaveSpeeds>,
+    points: Vec<Point>,
+}
+
+/// Writes `slip_map.csv` at every row, and `fronts.csv` at the end.
+#[derive(Debug)]
+pub struct Fronts {
+    map: Table,
+    path: PathBuf,
+    /// Slip rate of a front [L/T]
+    threshold: f64,
+    interfaces: Vec<Interface>,
+    /// Time of the last row and length of the interval before it [T]
+    last: [f64; 2],
+}
+
+impl Fronts {
+    /// Create `slip_map.csv` in `folder`; `start` is the state before the first increment.
+    ///
+    /// # Errors
+    /// [`Error::Output`] when it cannot be written.
+    pub fn create(folder: &Path, model: &Model, start: &State, threshold: f64) -> Result<Self, Error> {
+        Ok(Self {
+            map: Table::create(&folder.join("slip_map.csv"), &MAP)?,
+            path: folder.join("fronts.csv"),
+            threshold,
+            interfaces: model.contacts.iter().map(|pair| Interface::new(model, pair)).collect(),
+            last: [start.time, 0.0],
+        })
+    }
+
+    fn row(&mut self, model: &Model, state: &State) -> Result<(), Error> {
+        let [before, old_dt] = self.last;
+        let dt = state.time - before;
+        let all = self.interfaces.iter_mut().zip(&model.contacts).zip(&state.contacts).enumerate();
+        for (number, ((interface, pair), states)) in all {
+            for ((point, slave), contact) in interface.points.iter_mut().zip(&pair.points).zip(states) {
+                let friction = &contact.friction;
+                let rate = (friction.plastic_slip - point.slip) / dt;
+                if point.rate.abs() <= self.threshold && rate.abs() > self.threshold {
+                    let share = (self.threshold - point.rate.abs()) / (rate.abs() - point.rate.abs());
+                    point.arrivals.push(before - 0.5 * old_dt + share * 0.5 * (old_dt + dt));
+                }
+                (point.slip, point.rate) = (friction.plastic_slip, rate);
+                self.map.number(state.time);
+                self.map.text(&interface.name);
+                self.map.count(number);
+                let structure = pair.law(slave).structure(friction.mu);
+                let [x, y] = point.at;
+                for number in [
+                    point.position,
+                    x,
+                    y,
+                    point.slip,
+                    rate,
+                    friction.ratio(),
+                    friction.mu,
+                    structure,
+                    friction.traction,
+                    friction.pressure,
+                ] {
+                    self.map.number(number);
+                }
+                self.map.end_row()?;
+            }
+        }
+        self.last = [state.time, dt];
+        self.map.share()
+    }
+
+    fn fronts(&self) -> Result<(), Error> {
+        let mut table = Table::create(&self.path, &FRONTS)?;
+        for interface in &self.interfaces {
+            for (k, point) in interface.points.iter().enumerate() {
+                for (passage, &arrival) in point.arrivals.iter().enumerate() {
+                    let speed = interface.speed(k, passage);
+                    table.text(&interface.name);
+                    table.count(k);
+                    [point.position, point.at[0], point.at[1]].into_iter().for_each(|number| table.number(number));
+                    table.count(passage + 1);
+                    let over =
+                        |of: fn(&WaveSpeeds) -> f64| interface.speeds.as_ref().map_or(f64::NAN, |s| speed / of(s));
+                    for number in [arrival, speed, over(|s| s.rayleigh), over(|s| s.shear), over(|s| s.pressure)] {
+                        table.number(number);
+                    }
+                    table.end_row()?;
+                }
+            }
+        }
+        table.flush()
+    }
+}
+
+impl Interface {
+    fn new(model: &Model, pair: &ContactPair) -> Self {
+        let x = Configuration::undeformed(&model.mesh.nodes);
+        let mut points: Vec<Point> = Vec::with_capacity(pair.points.len());
+        for (line, range) in pair.lines().into_iter().enumerate() {
+            let mut position = 0.0;
+            for k in range.clone() {
+                let at = pair.points[k].at(&x);
+                if k > range.start {
+                    position += (at - pair.points[k - 1].at(&x)).norm();
+                }
+                points.push(Point { line, position, at: at.into(), slip: 0.0, rate: 0.0, arrivals: Vec::new() });
+            }
+        }
+        Self { name: pair.name.clone(), speeds: WaveSpeeds::behind(model, pair), points }
+    }
+
+    /// Local speed of the front that passes a point for the n-th time [L/T]; NaN if no neighbour was passed as often.
+    fn speed(&self, k: usize, passage: usize) -> f64 {
+        let own = &self.points[k];
+        let passed = |k: usize| {
+            let point = self.points.get(k).filter(|point| point.line == own.line)?;
+            Some((point.position, *point.arrivals.get(passage)?))
+        };
+        let here = passed(k);
+        let (before, after) = (k.checked_sub(1).and_then(passed).or(here), passed(k + 1).or(here));
+        match before.zip(after) {
+            Some(((s0, t0), (s1, t1))) if s1 > s0 => (s1 - s0) / (t1 - t0).abs(),
+            _ => f64::NAN,
+        }
+    }
+}
+
+impl Observer for Fronts {
+    fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
+        attempt.accepted.map_or(Ok(()), |state| self.row(model, state))
+    }
+
+    fn finish(&mut self) -> Result<(), Error> {
+        self.map.flush()?;
+        self.fronts()
+    }
+}
