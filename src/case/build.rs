@@ -68,6 +68,7 @@ fn build_on(case: &Case, mesh: Mesh) -> Checked<Model> {
     let mut model = Model {
         title: case.title.clone(),
         initial_velocity: vec![0.0; 2 * mesh.nodes.len()],
+        massless: vec![false; mesh.nodes.len()],
         mesh,
         bodies,
         point_masses: Vec::new(),
@@ -82,6 +83,7 @@ fn build_on(case: &Case, mesh: Mesh) -> Checked<Model> {
     };
     model.point_masses = point_masses(case, &model.mesh)?;
     model.contacts = contacts(case, &model)?;
+    model.massless = massless(case, &model.mesh)?;
     model.prestress = initial::prestress(case, &model);
     model.steps = steps(case, &model)?;
     model.initial_velocity = initial::velocities(case, &model)?;
@@ -99,16 +101,35 @@ fn build_on(case: &Case, mesh: Mesh) -> Checked<Model> {
     {
         return Err(Complaint::new("output.fronts.slip_rate", format!("is {}: must be positive", fronts.slip_rate)));
     }
-    check_explicit(&model)?;
+    check_explicit(case, &model)?;
     supported::check(case, &model)?;
     Ok(model)
 }
 
-/// Explicit steps solve no equations, and so cannot raise pressures until penetrations are small.
-fn check_explicit(model: &Model) -> Checked<()> {
+/// Nodes of the slaves whose mass is to be moved away.
+fn massless(case: &Case, mesh: &Mesh) -> Checked<Vec<bool>> {
+    let mut massless = vec![false; mesh.nodes.len()];
+    for (name, input) in case.contacts.iter().filter(|(_, input)| input.massless) {
+        if input.area.is_some() {
+            let message = "is for a slave group of edges, whose elements have the mass: leave it out";
+            return Err(Complaint::new(format!("contacts.{name}.massless"), message));
+        }
+        let slave = edges(mesh, &input.slave, &format!("contacts.{name}.slave"))?;
+        slave.iter().flat_map(|edge| &edge.nodes).for_each(|&node| massless[node] = true);
+    }
+    Ok(massless)
+}
+
+/// Explicit steps solve no equations, and so cannot raise pressures until penetrations are small, nor find where a node
+/// without mass is.
+fn check_explicit(case: &Case, model: &Model) -> Checked<()> {
     let Some(k) = model.steps.iter().position(|step| matches!(step.scheme, Scheme::Explicit { .. })) else {
         return Ok(());
     };
+    if let Some((name, _)) = case.contacts.iter().find(|(_, input)| input.massless) {
+        let message = format!("the explicit step `{}` needs the mass of every node: leave it out", model.steps[k].name);
+        return Err(Complaint::new(format!("contacts.{name}.massless"), message));
+    }
     match model.contacts.iter().find(|pair| pair.penetration.is_some()) {
         Some(pair) => Err(Complaint::new(
             format!("contacts.{}.normal.penetration", pair.name),

@@ -126,6 +126,10 @@ pub struct ContactInput {
     /// Whether what the surfaces overlap at the start is brought in over the first step (shrink fit) instead of at once
     #[serde(default)]
     pub shrink_fit: bool,
+    /// Implicit dynamics: the mass of the slave's nodes is moved to the other nodes of their elements, so that an impact does
+    /// not set them ringing on the contact's stiffness, and the contact force with them
+    #[serde(default)]
+    pub massless: bool,
     /// Friction law
     pub friction: FrictionParameters,
     /// Parameters of the friction law that vary along the slave, by name: they replace the numbers given in `friction`

@@ -115,8 +115,9 @@ impl ContactPair {
             if let Some(InitialTraction { pressure, traction }) = self.initial.as_ref().map(|initial| initial[k]) {
                 friction = FrictionState { pressure, traction, ..friction };
             }
+            let length = met.as_ref().map_or_else(|| slave.current_length(x), |met| met.kinematics.length);
             let (gap, foot) = met.map(|met| (slave.gap(met.gap, 1.0), met.foot)).unzip();
-            ContactState { friction, foot, gap: gap.unwrap_or(0.0), multiplier: 0.0 }
+            ContactState { friction, foot, length, gap: gap.unwrap_or(0.0), multiplier: 0.0 }
         };
         self.points.iter().zip(self.meetings(x)).enumerate().map(state).collect()
     }
