@@ -120,8 +120,7 @@ impl<'m> Explicit<'m> {
         state.damping = damping;
         if state.increment == 0 {
             state.energy.kinetic = self.kinetic_energy(state, self.stable);
-            let x = model.configuration(&state.displacement);
-            state.energy.contact_elastic = contact_energy(model, &state.contacts, &x);
+            state.energy.contact_elastic = contact_energy(model, &state.contacts);
             state.energy.initial = state.energy.kinetic + state.energy.contact_elastic;
         }
         Ok(())
@@ -147,8 +146,7 @@ impl<'m> Explicit<'m> {
             increments += 1;
         }
         state.energy.kinetic = self.kinetic_energy(state, state.dt);
-        let x = self.model.configuration(&state.displacement);
-        state.energy.contact_elastic = contact_energy(self.model, &state.contacts, &x);
+        state.energy.contact_elastic = contact_energy(self.model, &state.contacts);
         match state.energy.kinetic.is_finite() {
             true => Ok(increments),
             false => Err(StepFailure::Unbounded),
@@ -179,8 +177,7 @@ impl<'m> Explicit<'m> {
         let evaluation = &mut assembler.evaluation;
 
         if !model.contacts.is_empty() {
-            let x = model.configuration(&u);
-            state.energy.friction_dissipation += friction_dissipation(model, &state.contacts, &evaluation.contacts, &x);
+            state.energy.friction_dissipation += friction_dissipation(&state.contacts, &evaluation.contacts);
         }
         let way = |dof: usize, old: &[f64]| u[dof] - old[dof];
         let supported = step.supports.iter().map(|support| support.dof);
