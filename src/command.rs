@@ -105,6 +105,7 @@ pub fn run(path: &Path, out: Option<PathBuf>, threads: Option<usize>, quiet: boo
         units: case.units.clone(),
         friction: case.contacts.iter().map(|(name, contact)| (name.clone(), contact.friction)).collect(),
         wave_speeds: fronts::wave_speeds(&model),
+        front_slip_rate: case.output.fronts.map(|fronts| fronts.slip_rate),
     };
     let summary = Summary::new(about, &model, report, result.as_ref().err(), warnings.list);
     summary::write(&summary, &folder)?;
@@ -182,6 +183,7 @@ pub fn law(path: &Path, out: Option<PathBuf>) -> Result<(), Failure> {
         units: input.units,
         friction: [("law".into(), input.friction)].into(),
         wave_speeds: [0.0; 3],
+        front_slip_rate: None,
     };
     let summary = LawSummary { ending: Ending::new(result.as_ref().err()), about, report };
     summary::write(&summary, &folder)?;

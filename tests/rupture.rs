@@ -301,3 +301,33 @@ fn a_balanced_fault_below_its_strength_stays_at_rest() {
     assert!(fastest < 1e-12, "{fastest}");
     assert!(model.prestress.iter().any(|force| *force != 0.0));
 }
+
+/// From the command line: the files of a case that asks for fronts, and their figures.
+#[test]
+fn a_case_that_asks_for_fronts_has_its_files_and_figures() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let case = scec(2000.0, true, 0.4, json!({"interval": 0.02, "fields": false, "fronts": {"slip_rate": 0.001}}));
+    let (path, out) = (folder.path().join("fault.json"), folder.path().join("out"));
+    std::fs::write(&path, case.to_string()).expect("written");
+    let fecontact = |arguments: &[&str]| {
+        let output =
+            std::process::Command::new(env!("CARGO_BIN_EXE_fecontact")).args(arguments).output().expect("it starts");
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    };
+    let [path, out_name] = [&path, &out].map(|path| path.to_str().expect("unicode"));
+    fecontact(&["run", path, "--out", out_name, "--quiet"]);
+    let [map, fronts, history] = ["slip_map.csv", "fronts.csv", "history.csv"].map(|name| rows(&out.join(name)));
+    // 24 edges of 2 km with two points each, at every row of the history.
+    assert_eq!((history.len(), map.len()), (20, 20 * 48));
+    // The overstressed middle is the first to slip.
+    let first =
+        fronts.iter().min_by(|a, b| a[6].parse::<f64>().unwrap().total_cmp(&b[6].parse().unwrap())).expect("a front");
+    assert!(first[0] == "fault" && first[3].parse::<f64>().unwrap().abs() < 2000.0, "{first:?}");
+    let summary: Value = serde_json::from_str(&std::fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
+    assert_eq!(summary["front_slip_rate"], 0.001);
+    common::close("c_s", summary["wave_speeds"][1].as_f64().unwrap(), 3464.0, 1e-6);
+    fecontact(&["plot", out_name]);
+    for name in ["slip_rate.svg", "traction.svg"] {
+        assert!(out.join(name).exists(), "{name}");
+    }
+}

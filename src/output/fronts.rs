@@ -2,8 +2,7 @@
 //!
 //! The slip rate is the plastic slip since the row before over the time since. A front arrives where it passes a threshold
 //! from below, in time linear between the middles of the two intervals. Its local speed is the distance of the two
-//! neighbours along the slave over the difference of their arrivals (of one neighbour at an end), if both have been passed
-//! as often.
+//! neighbours along the slave over the difference of their arrivals nearest in time (of one, where it passed no other).
 //!
 //! An event of a contact begins when a point of it passes the threshold while no other is above, and ends when none is. Its
 //! rupture length at an arrival is what the points that it has reached by then stand for, its energy released what
@@ -226,7 +225,7 @@ impl Fronts {
             let events = interface.events();
             for (k, point) in interface.points.iter().enumerate() {
                 for (passage, arrival) in point.arrivals.iter().enumerate() {
-                    let speed = interface.speed(k, passage);
+                    let speed = interface.speed(k, arrival.time);
                     table.text(&interface.name);
                     table.count(k);
                     [point.position, point.at[0], point.at[1]].into_iter().for_each(|number| table.number(number));
@@ -312,14 +311,19 @@ impl Interface {
         events
     }
 
-    /// Local speed of the front that passes a point for the n-th time [L/T]; NaN if no neighbour was passed as often.
-    fn speed(&self, k: usize, passage: usize) -> f64 {
+    /// Local speed of the front that passes a point at a time [L/T]; NaN if it passed no neighbour.
+    fn speed(&self, k: usize, arrival: f64) -> f64 {
         let own = &self.points[k];
+        let nearest = |arrivals: &[Arrival], time: f64| {
+            arrivals.iter().map(|a| a.time).min_by(|a, b| (a - time).abs().total_cmp(&(b - time).abs()))
+        };
+        // A neighbour that only another front has passed tells nothing of this one.
         let passed = |k: usize| {
             let point = self.points.get(k).filter(|point| point.line == own.line)?;
-            Some((point.position, point.arrivals.get(passage)?.time))
+            let there = nearest(&point.arrivals, arrival)?;
+            (nearest(&own.arrivals, there) == Some(arrival)).then_some((point.position, there))
         };
-        let here = passed(k);
+        let here = Some((own.position, arrival));
         let (before, after) = (k.checked_sub(1).and_then(passed).or(here), passed(k + 1).or(here));
         match before.zip(after) {
             Some(((s0, t0), (s1, t1))) if s1 > s0 => (s1 - s0) / (t1 - t0).abs(),

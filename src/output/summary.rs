@@ -64,6 +64,8 @@ pub struct About {
     pub friction: BTreeMap<String, FrictionParameters>,
     /// Rayleigh, shear and pressure wave speeds of the first contact's slave body [L/T]
     pub wave_speeds: [f64; 3],
+    /// slip rate that makes a front, if the case asks for fronts [L/T]
+    pub front_slip_rate: Option<f64>,
 }
 
 /// How it ended: the first lines of every `summary.json`.
