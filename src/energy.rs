@@ -1,6 +1,5 @@
 //! Energies of contacts, and of what acts on the model over an increment.
 
-use crate::configuration::Configuration;
 use crate::contact::force::ContactState;
 use crate::model::{Model, Step};
 
@@ -18,32 +17,22 @@ pub fn work_of_drivers(model: &Model, step: &Step, [t0, t1]: [f64; 2], way: impl
         .sum()
 }
 
-/// ∫ (α_n g²/2 + q²/(2 α_t)) ds of the closed points in the configuration `x` [F·L].
-pub fn contact_energy(model: &Model, contacts: &[Vec<ContactState>], x: &Configuration) -> f64 {
+/// ∫ (α_n g²/2 + q²/(2 α_t)) ds of the closed points [F·L].
+pub fn contact_energy(model: &Model, contacts: &[Vec<ContactState>]) -> f64 {
     let mut energy = 0.0;
     for (pair, states) in model.contacts.iter().zip(contacts) {
-        for (point, ContactState { friction, gap, .. }) in pair.points.iter().zip(states) {
+        for (point, ContactState { friction, length, gap, .. }) in pair.points.iter().zip(states) {
             let normal = if friction.pressure > 0.0 { 0.5 * pair.alpha_n * gap.powi(2) } else { 0.0 };
             let stiffness = pair.law(point).stiffness();
             let tangential = if stiffness > 0.0 { 0.5 * friction.traction.powi(2) / stiffness } else { 0.0 };
-            energy += point.current_length(x) * (normal + tangential);
+            energy += length * (normal + tangential);
         }
     }
     energy
 }
 
 /// What friction dissipated from `old` to `new` [F·L].
-pub fn friction_dissipation(
-    model: &Model,
-    old: &[Vec<ContactState>],
-    new: &[Vec<ContactState>],
-    x: &Configuration,
-) -> f64 {
-    let mut dissipated = 0.0;
-    for ((pair, new), old) in model.contacts.iter().zip(new).zip(old) {
-        for ((point, new), old) in pair.points.iter().zip(new).zip(old) {
-            dissipated += point.current_length(x) * (new.friction.dissipation - old.friction.dissipation);
-        }
-    }
-    dissipated
+pub fn friction_dissipation(old: &[Vec<ContactState>], new: &[Vec<ContactState>]) -> f64 {
+    let points = new.iter().flatten().zip(old.iter().flatten());
+    points.map(|(new, old)| new.length * (new.friction.dissipation - old.friction.dissipation)).sum()
 }

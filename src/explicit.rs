@@ -149,8 +149,7 @@ impl<'m> Explicit<'m> {
         state.damping = damping;
         if state.increment == 0 {
             state.energy.kinetic = self.kinetic_energy(state, self.stable);
-            let x = model.configuration(&state.displacement);
-            state.energy.contact_elastic = contact_energy(model, &state.contacts, &x);
+            state.energy.contact_elastic = contact_energy(model, &state.contacts);
             state.energy.initial = state.energy.kinetic + state.energy.contact_elastic;
         }
         Ok(())
@@ -177,8 +176,7 @@ impl<'m> Explicit<'m> {
         }
         state.damping = self.damping();
         state.energy.kinetic = self.kinetic_energy(state, state.dt);
-        let x = self.model.configuration(&state.displacement);
-        state.energy.contact_elastic = contact_energy(self.model, &state.contacts, &x);
+        state.energy.contact_elastic = contact_energy(self.model, &state.contacts);
         match state.energy.kinetic.is_finite() {
             true => Ok(increments),
             false => Err(StepFailure::Unbounded),
@@ -213,8 +211,7 @@ impl<'m> Explicit<'m> {
         model.ties.gather(2, &mut evaluation.loads);
 
         if !model.contacts.is_empty() {
-            let x = model.configuration(&u);
-            state.energy.friction_dissipation += friction_dissipation(model, &state.contacts, &evaluation.contacts, &x);
+            state.energy.friction_dissipation += friction_dissipation(&state.contacts, &evaluation.contacts);
         }
         let way = |dof: usize, old: &[f64]| u[dof] - old[dof];
         let ways: Vec<f64> = step.supports.iter().map(|support| way(support.dof, &state.displacement)).collect();

@@ -69,7 +69,7 @@ pub fn judge(model: &Model, step: &Step, [old, new]: [&State; 2], iterations: us
     let Some(allowed) = step.increments.error else {
         return Judgement { accepted: true, next: if easy { dt * GROWTH } else { dt }, error: None };
     };
-    let error = local_error(step, old, new);
+    let error = local_error(model, step, old, new);
     let share = (SAFETY * (allowed / error).cbrt()).clamp(LEAST_SHARE, GROWTH);
     let judged = |accepted: bool, share: f64| Judgement { accepted, next: share * dt, error: Some(error) };
     let shortest = step.increments.min;
@@ -90,11 +90,12 @@ pub fn fastest_slip(old: &State, new: &State) -> f64 {
     slips.fold(0.0, f64::max) / (new.time - old.time)
 }
 
-/// C Δt² |a₁ − a₀|, the largest of all free dofs [L].
-fn local_error(step: &Step, old: &State, new: &State) -> f64 {
+/// C Δt² |a₁ − a₀|, the largest of all free dofs; those without mass follow without error of their own [L].
+fn local_error(model: &Model, step: &Step, old: &State, new: &State) -> f64 {
     let constant = step.scheme.error_constant().unwrap_or(0.0);
     let rates = new.acceleration.iter().zip(&old.acceleration).enumerate();
-    let free = rates.filter(|(dof, _)| step.supports.binary_search_by_key(dof, |support| support.dof).is_err());
+    let heavy = rates.filter(|(dof, _)| !model.massless[dof / 2]);
+    let free = heavy.filter(|(dof, _)| step.supports.binary_search_by_key(dof, |support| support.dof).is_err());
     let change = free.fold(0.0, |largest: f64, (_, (new, old))| largest.max((new - old).abs()));
     constant * new.dt.powi(2) * change
 }

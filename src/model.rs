@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector, Vector2};
 use crate::boundary::{Loads, Prescribed, Span};
 use crate::configuration::Configuration;
 use crate::contact::pair::ContactPair;
-use crate::element::{SolidElement, consistent_mass, lumped_mass};
+use crate::element::{SolidElement, consistent_mass, lumped_mass, redistributed};
 use crate::material::Material;
 use crate::mesh::{Element, Mesh};
 use crate::newton;
@@ -115,6 +115,8 @@ pub struct Model {
     pub title: String,
     /// mesh
     pub mesh: Mesh,
+    /// whether the elements' mass has been moved away from each node (see [`crate::element::redistributed`])
+    pub massless: Vec<bool>,
     /// bodies
     pub bodies: Vec<Body>,
     /// nodes of periodic sides
@@ -163,7 +165,8 @@ impl Model {
         let Element { kind, nodes } = &self.mesh.elements[element];
         let positions: Vec<Vector2<f64>> = nodes.iter().map(|&node| self.mesh.nodes[node]).collect();
         let density = self.bodies[self.body_of_element[element]].material.density();
-        consistent_mass(*kind, &positions, density).expect("elements are checked when the model is built")
+        let mass = consistent_mass(*kind, &positions, density).expect("elements are checked when the model is built");
+        redistributed(mass, |local| self.massless[nodes[local]])
     }
 
     /// Lumped mass of each node of an element [M].

@@ -70,8 +70,7 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
     }
     if state.increment == 0 {
         state.energy.kinetic = kinetic_energy(step, &state, work);
-        state.energy.contact_elastic =
-            contact_energy(model, &state.contacts, &model.configuration(&state.displacement));
+        state.energy.contact_elastic = contact_energy(model, &state.contacts);
         state.energy.initial = state.energy.kinetic + state.energy.contact_elastic;
     }
     Ok(state)
@@ -104,6 +103,12 @@ fn start_dynamics(model: &Model, step: &Step, state: &mut State, work: &mut Work
     let scale = mass.diagonal().into_iter().fold(0.0, f64::max);
     let dt = step.increments.initial;
     let first = Trial { old: state, step, time: state.time + dt, dt };
+    // Nodes without mass are in equilibrium from the first increment on.
+    let without = |dof: &usize| model.massless[dof / 2] && mass.diagonal()[*dof] == 0.0;
+    for dof in (0..model.dofs()).filter(without).collect::<Vec<_>>() {
+        mass.replace_row(dof, scale);
+        right[dof] = 0.0;
+    }
     for support in &step.supports {
         mass.replace_row(support.dof, scale);
         right[support.dof] = scale * start_acceleration(first.thirds(support, model), dt);
@@ -331,9 +336,8 @@ fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> Sta
     let relaxed = relaxation(step, &old.force, &increment);
     let stabilized: f64 = step.stabilization.iter().zip(&increment).map(|(c, du)| c * du * du).sum();
     let driven = work_of_drivers(model, step, [old.time, time], |dof| increment[dof]);
-    let x = model.configuration(&u);
-    let contact_elastic = contact_energy(model, &evaluation.contacts, &x);
-    let dissipated = friction_dissipation(model, &old.contacts, &evaluation.contacts, &x);
+    let contact_elastic = contact_energy(model, &evaluation.contacts);
+    let dissipated = friction_dissipation(&old.contacts, &evaluation.contacts);
     let mut state = State {
         time,
         increment: old.increment + 1,

@@ -70,6 +70,7 @@ fn build_on(case: &Case, mesh: Mesh) -> Checked<Model> {
     let mut model = Model {
         title: case.title.clone(),
         initial_velocity: vec![0.0; 2 * mesh.nodes.len()],
+        massless: vec![false; mesh.nodes.len()],
         mesh,
         bodies,
         ties: Ties::default(),
@@ -86,6 +87,7 @@ fn build_on(case: &Case, mesh: Mesh) -> Checked<Model> {
     model.point_masses = point_masses(case, &model.mesh)?;
     model.ties = periodic::ties(&case.periodic, &model.mesh)?;
     model.contacts = contacts(case, &model)?;
+    model.massless = massless(case, &model.mesh)?;
     model.prestress = initial::prestress(case, &model);
     model.steps = steps(case, &model)?;
     model.initial_velocity = initial::velocities(case, &model)?;
@@ -102,17 +104,36 @@ fn build_on(case: &Case, mesh: Mesh) -> Checked<Model> {
     {
         return Err(Complaint::new("output.fronts.slip_rate", format!("is {}: must be positive", fronts.slip_rate)));
     }
-    check_explicit(&model)?;
+    check_explicit(case, &model)?;
     supported::check(case, &model)?;
     Ok(model)
 }
 
-/// Explicit steps solve no equations, and so cannot raise pressures until penetrations are small.
-fn check_explicit(model: &Model) -> Checked<()> {
+/// Nodes of the slaves whose mass is to be moved away.
+fn massless(case: &Case, mesh: &Mesh) -> Checked<Vec<bool>> {
+    let mut massless = vec![false; mesh.nodes.len()];
+    for (name, input) in case.contacts.iter().filter(|(_, input)| input.massless) {
+        if input.area.is_some() {
+            let message = "is for a slave group of edges, whose elements have the mass: leave it out";
+            return Err(Complaint::new(format!("contacts.{name}.massless"), message));
+        }
+        let slave = edges(mesh, &input.slave, &format!("contacts.{name}.slave"))?;
+        slave.iter().flat_map(|edge| &edge.nodes).for_each(|&node| massless[node] = true);
+    }
+    Ok(massless)
+}
+
+/// Explicit steps solve no equations, and so cannot raise pressures until penetrations are small, nor find where a node
+/// without mass is.
+fn check_explicit(case: &Case, model: &Model) -> Checked<()> {
     let explicit = |step: &Step| step.rupture.is_some() || matches!(step.scheme, Scheme::Explicit { .. });
     let Some(k) = model.steps.iter().position(explicit) else {
         return Ok(());
     };
+    if let Some((name, _)) = case.contacts.iter().find(|(_, input)| input.massless) {
+        let message = format!("the explicit step `{}` needs the mass of every node: leave it out", model.steps[k].name);
+        return Err(Complaint::new(format!("contacts.{name}.massless"), message));
+    }
     match model.contacts.iter().find(|pair| pair.penetration.is_some()) {
         Some(pair) => Err(Complaint::new(
             format!("contacts.{}.normal.penetration", pair.name),
@@ -238,8 +259,11 @@ fn contacts(case: &Case, model: &Model) -> Checked<Vec<ContactPair>> {
 
 fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPair> {
     let place = format!("contacts.{name}");
-    let (points, mortar) = slave_points(&place, input, &model.mesh)?;
-    let master = master(&place, input, &points, &model.mesh)?;
+    let (mut points, mortar) = slave_points(&place, input, &model.mesh)?;
+    let master = master(&place, input, &points, model)?;
+    if let Master::Mesh(surface) = &master {
+        points.iter_mut().flat_map(|point| &mut point.length).for_each(|length| length.factor *= surface.share());
+    }
     if mortar.is_some() && matches!(master, Master::Rigid(_)) {
         let message = "is mortar, which needs an edge group as master: use gauss_to_segment on a rigid body";
         return Err(Complaint::new(format!("{place}.method"), message));
@@ -323,12 +347,18 @@ fn slave_points(place: &str, input: &ContactInput, mesh: &Mesh) -> Checked<(Vec<
     })
 }
 
-fn master(place: &str, input: &ContactInput, points: &[SlavePoint], mesh: &Mesh) -> Checked<Master> {
+fn master(place: &str, input: &ContactInput, points: &[SlavePoint], model: &Model) -> Checked<Master> {
+    let mesh = &model.mesh;
     match &input.master {
         MasterInput::Group(group) => {
             let master = edges(mesh, group, &format!("{place}.master"))?;
-            check_disjoint(place, &input.slave, points, group, master, mesh)?;
-            let surface = Surface::new(&node_lists(master));
+            let mut surface = Surface::new(&node_lists(master));
+            if input.is_own() {
+                let thinnest = master.iter().map(|edge| depth_behind(edge, model)).fold(f64::INFINITY, f64::min);
+                surface = surface.against_itself(0.5 * thinnest);
+            } else {
+                check_disjoint(place, &input.slave, points, group, master, mesh)?;
+            }
             if !input.smooth {
                 return Ok(Master::Mesh(surface));
             }
@@ -398,15 +428,19 @@ fn default_stiffness(place: &str, input: &ContactInput, model: &Model) -> Checke
     }
     let slave = edges(&model.mesh, name, &format!("{place}.slave"))?;
     let behind = |edge: &Edge| {
-        let [a, b] = [0, 1].map(|end| model.mesh.nodes[edge.nodes[end]]);
-        let depth = model.solids[edge.element].volume() / (b - a).norm();
-        10.0 * model.bodies[model.body_of_element[edge.element]].material.stiffness() / depth
+        let material = &model.bodies[model.body_of_element[edge.element]].material;
+        10.0 * material.stiffness() / depth_behind(edge, model)
     };
     Ok(slave.iter().map(behind).sum::<f64>() / slave.len() as f64)
 }
 
-/// Slave and master must be different edges, and a slave point of no edge must not be on the master: a surface does not
-/// touch itself here.
+/// Depth of the element behind an edge [L].
+fn depth_behind(edge: &Edge, model: &Model) -> f64 {
+    let [a, b] = [0, 1].map(|end| model.mesh.nodes[edge.nodes[end]]);
+    model.solids[edge.element].volume() / (b - a).norm()
+}
+
+/// Two groups in contact must be different edges, and a slave point of no edge must not be on the master.
 fn check_disjoint(
     place: &str,
     slave: &str,
@@ -427,7 +461,7 @@ fn check_disjoint(
     let what = if lone { "node" } else { "the edge between nodes" };
     let message = format!(
         "{what} {} is both slave (`{slave}`) and master (`{master}`): the two sides of a contact need edges and nodes of \
-         their own",
+         their own; for contact of a surface with itself name the same group of edges twice",
         tags.join(" and ")
     );
     Err(Complaint::new(place, message))

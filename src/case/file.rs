@@ -125,7 +125,8 @@ pub struct ContactInput {
     /// Area that each point of a slave group of points stands for; it does not change. Edges have lengths of their own
     /// [L, the thickness being 1]
     pub area: Option<f64>,
-    /// Edge group, or a rigid body
+    /// Edge group, or a rigid body. The slave's group again: contact of the surface with itself, each point of which then
+    /// stands for half its length, because every contact is met from both sides
     pub master: MasterInput,
     /// Where contact is evaluated
     #[serde(default)]
@@ -143,6 +144,10 @@ pub struct ContactInput {
     /// Whether what the surfaces overlap at the start is brought in over the first step (shrink fit) instead of at once
     #[serde(default)]
     pub shrink_fit: bool,
+    /// Implicit dynamics: the mass of the slave's nodes is moved to the other nodes of their elements, so that an impact does
+    /// not set them ringing on the contact's stiffness, and the contact force with them
+    #[serde(default)]
+    pub massless: bool,
     /// Friction law
     pub friction: FrictionParameters,
     /// Parameters of the friction law that vary along the slave, by name: they replace the numbers given in `friction`
@@ -154,6 +159,11 @@ pub struct ContactInput {
 }
 
 impl ContactInput {
+    /// Whether the slave is its own master.
+    pub fn is_own(&self) -> bool {
+        matches!(&self.master, MasterInput::Group(group) if *group == self.slave)
+    }
+
     /// Whether the case gives `alpha_t`; `None` for a law that has none.
     pub fn gives_alpha_t(&self) -> Option<bool> {
         let law = serde_json::to_value(self.friction).ok()?;

@@ -194,6 +194,7 @@ fn range(values: impl Iterator<Item = f64> + Clone) -> String {
 fn contact(case: &Case, pair: &ContactPair) -> Vec<String> {
     let input = &case.contacts[&pair.name];
     let master = match &input.master {
+        MasterInput::Group(_) if input.is_own() => "itself".into(),
         MasterInput::Group(group) => group.clone(),
         MasterInput::Rigid(rigid) => {
             let pair = |v: [f64; 2]| v.map(number).join(", ");
@@ -226,6 +227,9 @@ fn contact(case: &Case, pair: &ContactPair) -> Vec<String> {
         format!("{where_evaluated}: {}", count(pair.points.len(), "contact point")),
         format!("alpha_n {} ({alpha_n})", number(pair.alpha_n)),
     ];
+    if input.massless {
+        lines.push("the slave's nodes carry no mass in dynamic steps".into());
+    }
     if let Some(given) = input.gives_alpha_t() {
         let chosen = if given { "given" } else { "alpha_n/2" };
         let alpha_t = range(pair.laws.iter().map(|law| law.stiffness()));

@@ -27,6 +27,8 @@ pub struct ContactState {
     pub friction: FrictionState,
     /// Foot on the master, open or closed; `None` where no part of the master faces the point
     pub foot: Option<MasterPoint>,
+    /// Length the point stands for: its own or, by mortar, the part of it that the master faces; once open, the last one [L]
+    pub length: f64,
     /// g at the foot; a contact that starts closed counts it from where its points touch [L]
     pub gap: f64,
     /// p̄: pressure at zero gap, raised until the penetration is small enough; 0 for the plain penalty [F/L²]
@@ -213,7 +215,7 @@ pub fn open(
     let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.dt };
     let friction = pair.law(slave).respond(&old.friction, sliding)?.state;
     let (gap, foot) = met.unzip();
-    Ok((ContactState { friction, foot, gap: gap.unwrap_or(0.0), multiplier: 0.0 }, None))
+    Ok((ContactState { friction, foot, length: old.length, gap: gap.unwrap_or(0.0), multiplier: 0.0 }, None))
 }
 
 /// The state of a closed point and what it adds to the equations.
@@ -246,7 +248,13 @@ pub fn press(
     {
         response.dtraction_dslip = stiffness;
     }
-    let state = ContactState { friction: response.state, foot: Some(foot), gap, multiplier: old.multiplier };
+    let state = ContactState {
+        friction: response.state,
+        foot: Some(foot),
+        length: kinematics.length,
+        gap,
+        multiplier: old.multiplier,
+    };
     Ok((state, Some(closed(&kinematics, &response, pair.alpha_n, increment.promised))))
 }
 

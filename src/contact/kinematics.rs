@@ -13,9 +13,10 @@
 
 use nalgebra::{DVector, Vector2};
 
-use super::projection::{Bound, Projection, tangent_of};
+use super::projection::{Bound, Projection, normal_of, tangent_of};
 use super::rigid::Rigid;
-use super::surface::{Master, MasterPoint, SlavePoint, Surface};
+use super::search::FACING;
+use super::surface::{Master, MasterPoint, Path, SlavePoint, Surface};
 use crate::configuration::Configuration;
 use crate::shape;
 
@@ -88,7 +89,9 @@ fn on_surface(
 ) -> Kinematics {
     let MasterPoint { segment, xi } = projection.foot;
     let curve = &surface.segments[segment];
-    let path = from.and_then(|from| surface.path(from, projection.foot)).unwrap_or_default();
+    let path =
+        from.and_then(|from| surface.path(from, projection.foot)).filter(|path| slides(surface, path, projection, x));
+    let path = path.unwrap_or_default();
     let mut masters: Vec<usize> = curve.nodes().collect();
     masters.extend(path.iter().flat_map(|&(j, ..)| surface.segments[j].nodes()));
     let mut k = Kinematics::of_slave(slave, projection.normal, &masters, x);
@@ -135,6 +138,16 @@ fn on_surface(
     }
     k.dslip += dfoot * length;
     k
+}
+
+/// Whether a foot has slid along a path. On a surface that touches itself it may also have jumped from one part of it to
+/// another, over segments that look away.
+fn slides(surface: &Surface, path: &Path, projection: &Projection, x: &Configuration) -> bool {
+    let looks = |segment: usize| {
+        let [a, b] = surface.segments[segment].ends;
+        normal_of(x.between(a, b).normalize()).dot(&projection.normal) > -FACING
+    };
+    surface.own_depth.is_none() || path.iter().all(|&(segment, ..)| looks(segment))
 }
 
 impl Kinematics {

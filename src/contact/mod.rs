@@ -18,4 +18,5 @@ pub mod pair;
 pub mod projection;
 pub mod rigid;
 pub mod search;
+pub mod sight;
 pub mod surface;

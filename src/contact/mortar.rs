@@ -1,16 +1,18 @@
 //! Mortar contact: gap and slip averaged around each slave node, integrated segment by segment.
 //!
-//! The multiplier λ = Σ N_j t_j lives on the slave's shape functions. Each slave edge is cut where master nodes project on
-//! it along its own normal; between two cuts all functions are smooth, and Gauss's rule integrates
+//! The multiplier λ = Σ φ_j t_j is linear from node to node of the slave. (On a quadratic edge the shape functions N_j of the
+//! ends are negative in part: the mean gap under them would not be one, and forces would ripple as nodes go by.) Each slave edge
+//! is cut where master nodes project on it along its own normal, and at its middle node; between two cuts all functions are
+//! smooth, and Gauss's rule integrates
 //!
 //! ```text
-//! A_j = ∫ N_j ds,   W_ja = ∫ N_j N_a ds (slave nodes),   −∫ N_j N_a ds (master nodes)
+//! A_j = ∫ φ_j ds,   W_ja = ∫ φ_j N_a ds (slave nodes),   −∫ φ_j N_a ds (master nodes)
 //! r_j = Σ_a W_ja x_a / A_j            mean of x_slave − x_foot
 //! g_j = n_j·r_j,   Δu_t,j = s_j·(r_j with the old weights − r_j)
 //! f_a = −Σ_j W_ja t_j
 //! ```
 //!
-//! n_j is the mean normal of the edges at the node, turned into the slave. Since Σ_j N_j = 1, a uniform pressure puts on
+//! n_j is the mean normal of the edges at the node, turned into the slave. Since Σ_j φ_j = 1, a uniform pressure puts on
 //! both sides exactly what it should: the patch test is passed. The nodes at a corner of more than 45° count once a side.
 //! All variations come with [`Dual`] numbers.
 
@@ -63,13 +65,27 @@ pub fn mortar_points(edges: &[Vec<usize>], positions: &[Vector2<f64>]) -> (Vec<S
     (points.collect(), Mortar { edges: edges.to_vec(), at })
 }
 
-/// ∫ N_a ds over an edge, by Gauss's rule.
+/// φ_a at ξ on an edge of n nodes, and its derivative: linear from node to node.
+fn hat(n: usize, a: usize, xi: f64) -> (f64, f64) {
+    let (place, width) = ([-1.0, 1.0, 0.0][a], if n == 2 { 2.0 } else { 1.0 });
+    let away: f64 = xi - place;
+    match away.abs() < width {
+        true => (1.0 - away.abs() / width, -away.signum() / width),
+        false => (0.0, 0.0),
+    }
+}
+
+/// ∫ φ_a ds over an edge, by Gauss's rule between its nodes.
 fn share(edge: &[usize], a: usize) -> Vec<LengthShare> {
     let slope = |xi: f64| edge.iter().copied().zip(shape::edge_derivatives(edge.len(), xi)).collect();
-    let weight = |xi: f64, weight: f64| weight * shape::edge_values(edge.len(), xi)[a];
-    shape::gauss(edge.len())
-        .into_iter()
-        .map(|(xi, w)| LengthShare { factor: weight(xi, w), tangent: slope(xi) })
+    let parts: &[[f64; 2]] = if edge.len() == 2 { &[[-1.0, 1.0]] } else { &[[-1.0, 0.0], [0.0, 1.0]] };
+    let points = |&[start, end]: &[f64; 2]| {
+        let half = 0.5 * (end - start);
+        shape::gauss(2).into_iter().map(move |(at, weight)| (start + half * (1.0 + at), half * weight))
+    };
+    let all = parts.iter().flat_map(points);
+    all.map(|(xi, weight)| LengthShare { factor: weight * hat(edge.len(), a, xi).0, tangent: slope(xi) })
+        .filter(|share| share.factor > 0.0)
         .collect()
 }
 
@@ -146,11 +162,11 @@ impl Mortar {
             normal,
             tangent,
             slip: slip.value,
-            length: length.value,
+            length: surface.share() * length.value,
             dgap: vector(&gap),
             dslip: vector(&slip),
             drotation: vector(&s.x) * normal.x + vector(&s.y) * normal.y,
-            dlength: vector(&length),
+            dlength: vector(&length) * surface.share(),
             drelative: relative.iter().map(vector).enumerate().collect(),
             nodes: frame.nodes,
         };
@@ -250,7 +266,8 @@ impl Averages {
             let slave = Line::Edge(edge);
             let values = slave.values(&xi);
             let slope = slave.slope(&xi, frame);
-            let share = &(&slope.dot(&slope).sqrt() * &half.scaled(weight)) * &values[a];
+            let (value, rate) = hat(edge.len(), a, xi.value);
+            let share = &(&slope.dot(&slope).sqrt() * &half.scaled(weight)) * &xi.map(value, rate);
             let position = frame.position(edge.iter().copied(), &values);
             let master = Line::Segment(segment);
             let eta = master.coordinate(&position, along, 0.5, frame);
@@ -384,7 +401,7 @@ fn cut(edge: &[usize], surface: &Surface, index: &Index, x: &Configuration) -> V
         root(|xi| Line::Edge(edge).shapes(xi), &levels, chord)
     };
     let mut candidates = Vec::new();
-    for segment in index.around(edge.iter().map(|&node| x.at(node)), reach) {
+    for segment in index.around(edge, reach, x) {
         let [a, b] = surface.segments[segment].ends;
         if normal_of(x.between(a, b).normalize()).dot(&normal) >= FACING {
             continue;
@@ -402,6 +419,9 @@ fn cut(edge: &[usize], surface: &Surface, index: &Index, x: &Configuration) -> V
         }
     }
     let mut cuts: Vec<Cut> = candidates.iter().flat_map(|overlap| overlap.ends).collect();
+    if edge.len() == 3 {
+        cuts.push(Cut { xi: 0.0, node: None });
+    }
     cuts.sort_by(|a, b| a.xi.total_cmp(&b.xi));
     let distance = |overlap: &Overlap, xi: f64| {
         let values = shape::edge_values(edge.len(), xi);

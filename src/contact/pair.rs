@@ -115,8 +115,9 @@ impl ContactPair {
             if let Some(InitialTraction { pressure, traction }) = self.initial.as_ref().map(|initial| initial[k]) {
                 friction = FrictionState { pressure, traction, ..friction };
             }
+            let length = met.as_ref().map_or_else(|| slave.current_length(x), |met| met.kinematics.length);
             let (gap, foot) = met.map(|met| (slave.gap(met.gap, 1.0), met.foot)).unzip();
-            ContactState { friction, foot, gap: gap.unwrap_or(0.0), multiplier: 0.0 }
+            ContactState { friction, foot, length, gap: gap.unwrap_or(0.0), multiplier: 0.0 }
         };
         self.points.iter().zip(self.meetings(x)).enumerate().map(state).collect()
     }
@@ -163,7 +164,7 @@ impl ContactPair {
         presumed: impl Fn(usize) -> Presumption + Sync,
         x: &Configuration,
     ) -> Result<PairResponse, (usize, LawFailure)> {
-        let index = Index::new(&self.master, x);
+        let index = Index::within(&self.master, before, x);
         if let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) {
             let was = mortar.overlaps(surface, &Index::new(&self.master, before), before);
             let is = mortar.overlaps(surface, &index, x);

@@ -7,6 +7,7 @@ use nalgebra::Vector2;
 
 use super::projection::{Bound, Projection, normal_of, on_held_segment, on_segment};
 use super::rigid::Rigid;
+use super::sight::Sight;
 use super::surface::{Master, Segment, SlavePoint, Surface};
 use crate::configuration::Configuration;
 
@@ -19,18 +20,26 @@ const CANDIDATES: usize = 8;
 
 /// The master in a spatial index at the current positions.
 pub enum Index<'a> {
-    /// Segments of a mesh surface in a tree of boxes
-    Mesh(&'a Surface, Boxes),
+    /// Segments of a mesh surface in a tree of boxes, and what points of a surface that touches itself may meet
+    Mesh(&'a Surface, Boxes, Option<Sight<'a>>),
     /// A rigid body needs none
     Rigid(&'a Rigid),
 }
 
 impl<'a> Index<'a> {
     /// Index the master in the configuration `x`, O(N).
-    pub fn new(master: &'a Master, x: &Configuration) -> Self {
+    pub fn new(master: &'a Master, x: &'a Configuration) -> Self {
+        Self::within(master, x, x)
+    }
+
+    /// Index the master in the configuration `x` of an increment that began in another, O(N).
+    pub fn within(master: &'a Master, before: &'a Configuration, x: &Configuration) -> Self {
         match master {
             Master::Rigid(body) => Self::Rigid(body),
-            Master::Mesh(surface) => Self::Mesh(surface, Boxes::new(surface, x)),
+            Master::Mesh(surface) => {
+                let sight = surface.own_depth.map(|depth| Sight::new(surface, depth, before));
+                Self::Mesh(surface, Boxes::new(surface, x), sight)
+            }
         }
     }
 
@@ -40,16 +49,29 @@ impl<'a> Index<'a> {
         let point = slave.at(x);
         match self {
             Self::Rigid(body) => body.project(point, slave.outward(x)),
-            Self::Mesh(surface, boxes) => {
+            Self::Mesh(surface, boxes, sight) => {
                 if let Some(held) = held.and_then(|segment| on_held_segment(slave, surface, segment, x)) {
                     return Some(held);
+                }
+                if let Some(sight) = sight {
+                    let viewer = sight.point(slave)?;
+                    let may_meet = |level, number| sight.may_meet(&viewer, level, number);
+                    let nearest = boxes.nearest_one(point, surface, x, may_meet)?;
+                    // Only between two segments that it may meet can a point lie behind their node: a segment of the far
+                    // side of a hole is seen past its end, through the body, by points on the other side of the wall.
+                    let beside = |at: &Projection| {
+                        if at.foot.xi > 0.0 { surface.next(at.foot.segment) } else { surface.previous(at.foot.segment) }
+                    };
+                    return on_segment(slave, surface, nearest, x).filter(|at| {
+                        at.gap >= 0.0 || at.bound == Bound::Segment || beside(at).is_some_and(|k| may_meet(0, k))
+                    });
                 }
                 let outward = slave.outward(x);
                 let facing = |segment: usize| {
                     let [a, b] = surface.segments[segment].ends;
                     outward.is_none_or(|outward| normal_of(x.between(a, b).normalize()).dot(&outward) < FACING)
                 };
-                let first = boxes.nearest_one(point, surface, x).filter(|&segment| facing(segment));
+                let first = boxes.nearest_one(point, surface, x, |_, _| true).filter(|&segment| facing(segment));
                 if let Some(found) = first.and_then(|segment| on_segment(slave, surface, segment, x)) {
                     return Some(found);
                 }
@@ -65,12 +87,17 @@ impl<'a> Index<'a> {
         }
     }
 
-    /// Segments of a mesh surface within a distance of some points' bounding box, in order along it.
-    pub fn around(&self, points: impl Iterator<Item = Vector2<f64>>, reach: f64) -> Vec<usize> {
-        let Self::Mesh(_, boxes) = self else { return Vec::new() };
+    /// Segments of a mesh surface within a distance of a slave edge's bounding box, in order along it.
+    pub fn around(&self, edge: &[usize], reach: f64, x: &Configuration) -> Vec<usize> {
+        let Self::Mesh(_, boxes, sight) = self else { return Vec::new() };
         let reach = Vector2::new(reach, reach);
-        let each = points.map(|point| Box2 { low: point - reach, high: point + reach });
-        each.reduce(|sum, one| sum.around(&one)).map_or_else(Vec::new, |all| boxes.meeting(&all))
+        let each = edge.iter().map(|&node| Box2 { low: x.at(node) - reach, high: x.at(node) + reach });
+        let mut found = each.reduce(|sum, one| sum.around(&one)).map_or_else(Vec::new, |all| boxes.meeting(&all));
+        if let Some(sight) = sight {
+            let viewer = sight.edge(edge);
+            found.retain(|&segment| sight.may_meet(&viewer, 0, segment));
+        }
+        found
     }
 }
 
@@ -84,13 +111,30 @@ pub struct Boxes {
 
 /// The smallest box that holds something.
 #[derive(Clone, Copy, Debug)]
-struct Box2 {
+pub struct Box2 {
     low: Vector2<f64>,
     high: Vector2<f64>,
 }
 
 impl Box2 {
-    fn around(&self, other: &Self) -> Self {
+    /// The box of a segment's nodes.
+    pub fn of(segment: &Segment, x: &Configuration) -> Self {
+        let point = |node: usize| Self { low: x.at(node), high: x.at(node) };
+        segment.nodes().fold(point(segment.ends[0]), |sum, node| sum.around(&point(node)))
+    }
+
+    /// Middle of the box.
+    pub fn centre(&self) -> Vector2<f64> {
+        0.5 * (self.low + self.high)
+    }
+
+    /// Half its diagonal.
+    pub fn radius(&self) -> f64 {
+        0.5 * (self.high - self.low).norm()
+    }
+
+    /// The smallest box that holds another as well.
+    pub fn around(&self, other: &Self) -> Self {
         Self { low: self.low.inf(&other.low), high: self.high.sup(&other.high) }
     }
 
@@ -106,9 +150,7 @@ impl Box2 {
 
 impl Boxes {
     fn new(surface: &Surface, x: &Configuration) -> Self {
-        let point = |node: usize| Box2 { low: x.at(node), high: x.at(node) };
-        let of = |segment: &Segment| segment.nodes().fold(point(segment.ends[0]), |sum, node| sum.around(&point(node)));
-        let mut levels: Vec<Vec<Box2>> = vec![surface.segments.iter().map(of).collect()];
+        let mut levels: Vec<Vec<Box2>> = vec![surface.segments.iter().map(|segment| Box2::of(segment, x)).collect()];
         while let Some(last) = levels.last().filter(|last| last.len() > 1) {
             let halved = last.chunks(2).map(|pair| pair.iter().skip(1).fold(pair[0], |sum, one| sum.around(one)));
             let halved = halved.collect();
@@ -135,12 +177,19 @@ impl Boxes {
         found
     }
 
-    /// The first of the segments by their distance from a point: what most points need, and found without a heap.
-    fn nearest_one(&self, point: Vector2<f64>, surface: &Surface, x: &Configuration) -> Option<usize> {
+    /// The first of the segments by their distance from a point: what most points need, and found without a heap. Boxes
+    /// and segments (level 0) that do not count are passed over.
+    fn nearest_one(
+        &self,
+        point: Vector2<f64>,
+        surface: &Surface,
+        x: &Configuration,
+        counts: impl Fn(usize, usize) -> bool,
+    ) -> Option<usize> {
         let exact = |number: usize| distance_from_segment(point, &surface.segments[number], x);
         let mut nearest = None;
         if self.segments > 0 {
-            self.descend(point, &exact, (self.levels.len() - 1, 0), &mut nearest);
+            self.descend(point, &exact, &counts, (self.levels.len() - 1, 0), &mut nearest);
         }
         nearest.map(|(_, number)| number)
     }
@@ -150,9 +199,13 @@ impl Boxes {
         &self,
         point: Vector2<f64>,
         exact: &impl Fn(usize) -> f64,
+        counts: &impl Fn(usize, usize) -> bool,
         (level, number): (usize, usize),
         nearest: &mut Option<(f64, usize)>,
     ) {
+        if !counts(level, number) {
+            return;
+        }
         if level == 0 {
             let found = (exact(number), number);
             if nearest.is_none_or(|nearest| found < nearest) {
@@ -167,7 +220,7 @@ impl Boxes {
         let halves = if second < first { [second, first] } else { [first, second] };
         for (distance, half) in halves {
             if half < below.len() && nearest.is_none_or(|(best, _)| distance <= best) {
-                self.descend(point, exact, (level - 1, half), nearest);
+                self.descend(point, exact, counts, (level - 1, half), nearest);
             }
         }
     }

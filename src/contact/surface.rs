@@ -223,6 +223,8 @@ impl Segment {
 pub struct Surface {
     /// The segments
     pub segments: Vec<Segment>,
+    /// If the surface is the slave as well, how far a point may lie behind what it touches [L]
+    pub own_depth: Option<f64>,
     /// The chain each segment belongs to
     chain_of: Vec<usize>,
     chains: Vec<Chain>,
@@ -274,6 +276,17 @@ impl Surface {
             self.segments[k].beyond = [before.map(|k| straight[k].ends[0]), after.map(|k| straight[k].ends[1])];
         }
         self
+    }
+
+    /// The same surface as the master of itself.
+    pub fn against_itself(self, depth: f64) -> Self {
+        Self { own_depth: Some(depth), ..self }
+    }
+
+    /// Share of the slave's length that counts: half of a surface against itself, on which every contact is met from both
+    /// sides.
+    pub fn share(&self) -> f64 {
+        if self.own_depth.is_some() { 0.5 } else { 1.0 }
     }
 
     /// The segment after `segment` along s, if there is one.

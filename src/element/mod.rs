@@ -11,7 +11,7 @@ mod mass;
 pub mod pressure;
 mod solid;
 
-pub use mass::{consistent_mass, lumped_mass};
+pub use mass::{consistent_mass, lumped_mass, redistributed};
 pub use solid::SolidElement;
 
 /// An element that cannot be built on its nodes.

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use super::csv::Table;
 use super::{Attempt, Observer};
-use crate::configuration::Configuration;
 use crate::contact::force::{ContactState, Status};
 use crate::contact::pair::ContactPair;
 use crate::error::Error;
@@ -55,14 +54,13 @@ impl Observer for History {
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
         let Self(table) = self;
-        let x = model.configuration(&state.displacement);
         table.number(state.time);
         table.number(state.dt);
         table.text(&attempt.step.name);
         table.count(attempt.iterations.len());
         energy_row(&state.energy).into_iter().for_each(|energy| table.number(energy));
         for (pair, states) in model.contacts.iter().zip(&state.contacts) {
-            contact_row(pair, states, &x).into_iter().for_each(|number| table.number(number));
+            contact_row(pair, states).into_iter().for_each(|number| table.number(number));
         }
         for set in &model.watch {
             watched_row(set, state).into_iter().for_each(|number| table.number(number));
@@ -89,11 +87,11 @@ fn energy_row(energy: &Energy) -> [f64; ENERGIES.len()] {
 }
 
 /// The columns of one contact: forces are ∫ p ds and ∫ q ds, means are taken over the closed length.
-fn contact_row(pair: &ContactPair, states: &[ContactState], x: &Configuration) -> [f64; CONTACT.len()] {
+fn contact_row(pair: &ContactPair, states: &[ContactState]) -> [f64; CONTACT.len()] {
     let (mut normal, mut tangential, mut closed, mut slipping, mut slip) = (0.0, 0.0, 0.0, 0.0, 0.0);
     let (mut penetration, mut largest_elastic, mut elastic) = (0.0f64, 0.0f64, 0.0);
     for (point, state) in pair.points.iter().zip(states) {
-        let (friction, length) = (&state.friction, point.current_length(x));
+        let (friction, length) = (&state.friction, state.length);
         if state.status() == Status::Open {
             continue;
         }

@@ -137,11 +137,8 @@ impl Finished {
 
     /// Normal and tangential force of the first contact, ∫ p ds and ∫ q ds.
     pub fn contact_force(&self, state: &State) -> [f64; 2] {
-        let x = self.model.configuration(&state.displacement);
-        let points = self.model.contacts[0].points.iter().zip(&state.contacts[0]);
-        points.fold([0.0, 0.0], |[n, t], (point, contact)| {
-            let length = point.current_length(&x);
-            [n + length * contact.friction.pressure, t + length * contact.friction.traction]
+        state.contacts[0].iter().fold([0.0, 0.0], |[n, t], contact| {
+            [n + contact.length * contact.friction.pressure, t + contact.length * contact.friction.traction]
         })
     }
 }
