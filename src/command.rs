@@ -20,6 +20,7 @@ use crate::output::progress::Progress;
 use crate::output::summary::{self, About, Ending, LawSummary, Summary};
 use crate::output::warnings::Warnings;
 use crate::run;
+use crate::state::Energy;
 
 /// More threads than this are a slip of the keyboard.
 const MOST_THREADS: usize = 1024;
@@ -130,6 +131,25 @@ fn conclude(summary: &Summary, model: &Model, folder: &Path) {
         model.dofs(),
         report.wall_s.total,
         folder.display()
+    );
+    if model.steps.iter().any(|step| step.scheme.is_dynamic() || step.rupture.is_some()) {
+        audit(&report.energy);
+    }
+}
+
+/// Where the energy of a dynamic run came from and went.
+fn audit(energy: &Energy) {
+    let share = if energy.turnover() > 0.0 { 100.0 * energy.error() / energy.turnover() } else { 0.0 };
+    eprintln!("energy: {:.6e} at the start, {:.6e} from outside", energy.initial, energy.external_work);
+    eprintln!(
+        "        {:.6e} kinetic, {:.6e} strain, {:.6e} in contacts",
+        energy.kinetic, energy.strain, energy.contact_elastic
+    );
+    eprintln!(
+        "        {:.6e} taken by friction, {:.6e} by damping, {:.1e} ({share:.4} %) unaccounted for",
+        energy.friction_dissipation,
+        energy.damping_dissipation,
+        energy.error()
     );
 }
 

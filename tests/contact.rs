@@ -374,7 +374,13 @@ fn check_mortar_tangent(
     let was = mortar.overlaps(surface, &Index::new(&pair.master, &before), &before);
     let weights = mortar.weights(k, surface, &was, &before);
     let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.laws[0].initial_state() };
-    let old = ContactState { friction: pressed, foot: Some(MasterPoint { segment: 0, xi: 0.0 }), length: 1.0, gap, multiplier: 0.0 };
+    let old = ContactState {
+        friction: pressed,
+        foot: Some(MasterPoint { segment: 0, xi: 0.0 }),
+        length: 1.0,
+        gap,
+        multiplier: 0.0,
+    };
     let increment = Increment { dt: 0.3, fading: 0.0, presume: Presume::Nothing, promised: None };
     let evaluate = |x: &Positions| {
         let x = Configuration::undeformed(x);
