@@ -2,6 +2,7 @@
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::ValueEnum;
 
@@ -73,7 +74,7 @@ impl From<Error> for Failure {
 pub fn run(path: &Path, out: Option<PathBuf>, threads: Option<usize>, quiet: bool) -> Result<(), Failure> {
     use_threads(threads)?;
     let case = case::read(path)?;
-    let model = case::build(&case, path)?;
+    let model = Arc::new(case::build(&case, path)?);
     let folder = out.unwrap_or_else(|| default_folder(path));
     prepare(&folder)?;
 
@@ -82,7 +83,7 @@ pub fn run(path: &Path, out: Option<PathBuf>, threads: Option<usize>, quiet: boo
     let mut warnings = Warnings::default();
     warnings.list.extend(case::lost_velocity(&model));
     let mut fields = match case.output.fields {
-        true => Some(Fields::create(&folder, &model, &model.initial_state(), case.output.every)?),
+        true => Some(Fields::create(&folder, model.clone(), &model.initial_state(), case.output.every)?),
         false => None,
     };
     let mut fronts = match case.output.fronts {

@@ -5,6 +5,7 @@ use thiserror::Error;
 use crate::friction::LawFailure;
 use crate::linear::LinearFailure;
 use crate::newton::NewtonFailure;
+use crate::time::told;
 
 /// Why the equations could not be evaluated at a trial state.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -30,7 +31,7 @@ pub enum TrialFailure {
         cause: LawFailure,
     },
     /// A support or load expression has no finite value.
-    #[error("a support or load at node {node} is not a finite number at time {time}: check its expression")]
+    #[error("a support or load at node {node} is not a finite number at time {}: check its expression", told(*time))]
     Undefined {
         /// its tag in the mesh file
         node: u64,
@@ -84,7 +85,7 @@ impl StepFailure {
 #[derive(Debug, Error)]
 pub enum Error {
     /// An increment cannot be made small enough.
-    #[error("step `{step}` stopped at time {time}: {cause} (increment {dt:.3e}, smallest allowed {min:.3e})")]
+    #[error("step `{step}` stopped at time {}: {cause} (increment {dt:.3e}, smallest allowed {min:.3e})", told(*time))]
     StepTooSmall {
         /// step
         step: String,
@@ -98,7 +99,7 @@ pub enum Error {
         cause: StepFailure,
     },
     /// No smaller increment can help.
-    #[error("step `{step}` stopped at time {time}: {cause}")]
+    #[error("step `{step}` stopped at time {}: {cause}", told(*time))]
     Unsolvable {
         /// step
         step: String,
@@ -108,7 +109,7 @@ pub enum Error {
         cause: StepFailure,
     },
     /// A friction law driven alone could not answer.
-    #[error("the law stopped after time {time}: {cause}")]
+    #[error("the law stopped after time {}: {cause}", told(*time))]
     Law {
         /// time reached
         time: f64,

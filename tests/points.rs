@@ -5,6 +5,7 @@ mod common;
 
 use std::f64::consts::PI;
 use std::path::Path;
+use std::sync::Arc;
 
 use common::{Blocks, Finished, close, distance, finish, model, turned};
 use fecontact::error::Error;
@@ -569,9 +570,9 @@ fn points_are_written_and_warned_of() {
         loads: json!([{"on": "block", "force": {"x": "0", "y": "-40 - 20*t"}}]),
         ..Default::default()
     };
-    let model = model(&slider.case());
+    let model = Arc::new(model(&slider.case()));
     let mut history = History::create(folder.path(), &model).unwrap();
-    let mut fields = Fields::create(folder.path(), &model, &model.initial_state(), 1).unwrap();
+    let mut fields = Fields::create(folder.path(), model.clone(), &model.initial_state(), 1).unwrap();
     let mut warnings = Warnings::default();
     run(&model, &mut [&mut history, &mut fields, &mut warnings]).1.unwrap();
     drop((history, fields));

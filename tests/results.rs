@@ -1,11 +1,15 @@
-//! What a run writes for its reader: the columns of `history.csv`, and lines of progress.
+//! What a run writes for its reader: the columns of `history.csv`, the frames, and lines of progress.
+
+mod common;
 
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use common::{Blocks, close};
 use serde_json::{Value, json};
 use tempfile::TempDir;
+use vtkio::model::{Attribute, CellType, DataSet, UnstructuredGridPiece};
 
 const ALPHA_T: f64 = 800.0;
 
@@ -96,4 +100,65 @@ fn progress_does_not_drown_its_reader() {
     assert!(String::from_utf8_lossy(&output.stderr).contains("not every increment has a line"));
     let rows = fs::read_to_string(folder.path().join("out/case/history.csv")).unwrap().lines().count();
     assert_eq!(rows, 3000 + 1);
+}
+
+/// A frame as another reader of VTU files finds it.
+fn frame(path: &Path) -> UnstructuredGridPiece {
+    let DataSet::UnstructuredGrid { pieces, .. } = vtkio::Vtk::import(path).unwrap().data else { panic!("{path:?}") };
+    pieces.into_iter().next().unwrap().into_loaded_piece_data(None).unwrap()
+}
+
+fn values(attributes: &[Attribute], name: &str) -> Vec<f64> {
+    let array = attributes.iter().find_map(|attribute| match attribute {
+        Attribute::DataArray(array) if array.name == name => Some(array),
+        _ => None,
+    });
+    array.unwrap_or_else(|| panic!("no array `{name}`")).data.cast_into().unwrap()
+}
+
+/// A block pressed between walls: ε_yy = −δ/h, σ_yy = (λ + 2G) ε_yy, σ_xx = σ_zz = λ ε_yy, in closed form.
+#[test]
+fn frames_hold_the_uniform_stress_of_a_pressed_block() {
+    let folder = TempDir::new().unwrap();
+    let (young, nu, strain) = (1000.0, 0.25, -0.01);
+    let (lambda, shear) = (young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), 0.5 * young / (1.0 + nu));
+    let walls = json!([
+        {"on": "block_bottom", "uy": 0}, {"on": "block_left", "ux": 0}, {"on": "block_right", "ux": 0},
+        {"on": "block_top", "uy": 2.0 * strain}
+    ]);
+    let case = json!({
+        "mesh": Blocks::default().rectangle("block", [3, 2], [0.0, 0.0], [3.0, 2.0]).json(),
+        "bodies": {"block": {"material": {"model": "linear", "E": young, "nu": nu}}},
+        "steps": [{"name": "press", "duration": 1, "scheme": "static", "dt": {"initial": 0.5}, "supports": walls}]
+    });
+    run(folder.path(), &case);
+    let out = folder.path().join("out/case");
+    let collection = fs::read_to_string(out.join("solid.pvd")).unwrap();
+    assert_eq!(collection.matches("<DataSet ").count(), 3, "{collection}");
+    assert!(!out.join("contact.pvd").exists(), "there is no contact");
+    for (number, share) in [(0, 0.0), (1, 0.5), (2, 1.0)] {
+        let piece = frame(&out.join(format!("solid/{number:05}.vtu")));
+        let places: Vec<f64> = piece.points.cast_into().unwrap();
+        assert_eq!(places.len(), 3 * 12);
+        assert_eq!(piece.cells.types, [CellType::Quad; 6]);
+        assert_eq!(values(&piece.data.cell, "body"), [0.0; 6]);
+        let displacement = values(&piece.data.point, "displacement");
+        for (x, u) in places.chunks_exact(3).zip(displacement.chunks_exact(3)) {
+            close("u_x", u[0], 0.0, 1e-14);
+            close("u_y", u[1], share * strain * x[1], 1e-14);
+        }
+        let (across, along) = (share * lambda * strain, share * (lambda + 2.0 * shear) * strain);
+        for stress in values(&piece.data.point, "stress").chunks_exact(4) {
+            for (value, expected) in stress.iter().zip([across, along, across, 0.0]) {
+                close("stress", *value, expected, 1e-10);
+            }
+        }
+        let pressure = -(along + 2.0 * across) / 3.0;
+        values(&piece.data.point, "pressure").iter().for_each(|&p| close("pressure", p, pressure, 1e-10));
+        let von_mises = (along - across).abs();
+        values(&piece.data.point, "von_mises").iter().for_each(|&s| close("von Mises", s, von_mises, 1e-10));
+        let reaction = values(&piece.data.point, "reaction");
+        let on_top = reaction.chunks_exact(3).zip(places.chunks_exact(3)).filter(|(_, x)| x[1] == 2.0);
+        close("force on top", on_top.map(|(force, _)| force[1]).sum(), 3.0 * along, 1e-10);
+    }
 }

@@ -227,7 +227,7 @@ fn at_start(alpha_n: f64, state: &ContactState, old: &ContactState) -> Tractions
 const FARTHEST: usize = 8;
 
 /// Elements whose forces and tangents are held at once before they are added.
-const BATCH: usize = 4096;
+const BATCH: usize = 1024;
 
 /// Elements that are done sooner than another thread wakes up.
 const FEW: usize = 64;

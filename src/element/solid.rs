@@ -93,7 +93,10 @@ impl SolidElement {
         u: &[Vector2<f64>],
         force: &mut [f64],
     ) -> Result<f64, InvertedElement> {
-        self.evaluate(material, u, force, None)
+        let mut forces = [Vector2::zeros(); 9];
+        let energy = self.nodal_forces(material, u, &mut forces[..u.len()])?;
+        force.chunks_exact_mut(2).zip(&forces).for_each(|(force, f)| force.copy_from_slice(f.as_slice()));
+        Ok(energy)
     }
 
     /// Writes the internal force (2) on each node over `forces`; returns the stored energy.
@@ -106,19 +109,13 @@ impl SolidElement {
         u: &[Vector2<f64>],
         forces: &mut [Vector2<f64>],
     ) -> Result<f64, InvertedElement> {
-        if self.centre.is_none() {
-            return match self.kind {
-                ElementKind::T3 => self.gathered::<3, 1>(material, u, forces),
-                ElementKind::T6 => self.gathered::<6, 3>(material, u, forces),
-                ElementKind::Q4 => self.gathered::<4, 4>(material, u, forces),
-                ElementKind::Q8 => self.gathered::<8, 9>(material, u, forces),
-                ElementKind::Q9 => self.gathered::<9, 9>(material, u, forces),
-            };
+        match self.kind {
+            ElementKind::T3 => self.gathered::<3, 1>(material, u, forces),
+            ElementKind::T6 => self.gathered::<6, 3>(material, u, forces),
+            ElementKind::Q4 => self.gathered::<4, 4>(material, u, forces),
+            ElementKind::Q8 => self.gathered::<8, 9>(material, u, forces),
+            ElementKind::Q9 => self.gathered::<9, 9>(material, u, forces),
         }
-        let mut flat = [0.0; 18];
-        let energy = self.force(material, u, &mut flat[..2 * u.len()])?;
-        forces.iter_mut().zip(flat.chunks_exact(2)).for_each(|(force, f)| *force = Vector2::new(f[0], f[1]));
-        Ok(energy)
     }
 
     /// Force (2) of an element of N nodes and at most M quadrature points, known when this is compiled.
@@ -136,8 +133,20 @@ impl SolidElement {
         for (deformation, gradients) in deformations.iter_mut().zip(gradients) {
             *deformation = deformation_gradient(gradients, u);
         }
-        let mut stresses = [Matrix2::zeros(); M];
-        let energy = material.stresses(&deformations[..points], &self.volumes, &mut stresses[..points])?;
+        let (deformations, mut stresses) = (&mut deformations[..points], [Matrix2::zeros(); M]);
+        let energy = match self.centre(u)? {
+            None => material.stresses(deformations, &self.volumes, &mut stresses[..points])?,
+            Some(centre) => {
+                let mut stretches = [1.0; M];
+                for (stretch, deformation) in stretches.iter_mut().zip(&mut *deformations) {
+                    *stretch = centre.stretch(deformation)?;
+                    *deformation *= *stretch;
+                }
+                let energy = material.stresses(deformations, &self.volumes, &mut stresses[..points])?;
+                stresses.iter_mut().zip(&stretches).for_each(|(stress, stretch)| *stress /= *stretch);
+                energy
+            }
+        };
         let mut sums = [Vector2::zeros(); N];
         for (stress, gradients) in stresses.iter().zip(gradients) {
             for (sum, gradient) in sums.iter_mut().zip(gradients) {
@@ -159,7 +168,13 @@ impl SolidElement {
         force: &mut [f64],
         tangent: &mut [f64],
     ) -> Result<f64, InvertedElement> {
-        self.evaluate(material, u, force, Some(tangent))
+        match self.kind {
+            ElementKind::T3 => self.evaluate::<3>(material, u, force, tangent),
+            ElementKind::T6 => self.evaluate::<6>(material, u, force, tangent),
+            ElementKind::Q4 => self.evaluate::<4>(material, u, force, tangent),
+            ElementKind::Q8 => self.evaluate::<8>(material, u, force, tangent),
+            ElementKind::Q9 => self.evaluate::<9>(material, u, force, tangent),
+        }
     }
 
     /// Cauchy stress at each quadrature point.
@@ -190,13 +205,17 @@ impl SolidElement {
         u: &[Vector2<f64>],
     ) -> Result<Vec<CauchyStress>, InvertedElement> {
         let stresses = self.stresses(material, u)?;
-        let points = DMatrix::from_fn(stresses.len(), 4, |point, component| {
-            let CauchyStress { xx, yy, zz, xy } = stresses[point];
-            [xx, yy, zz, xy][component]
-        });
-        let corners = corner_fit(self.kind) * points;
+        let fit = corner_fit(self.kind);
+        let mut corners = [[0.0; 4]; 4];
+        for (a, corner) in corners.iter_mut().enumerate().take(fit.nrows()) {
+            for (point, &CauchyStress { xx, yy, zz, xy }) in stresses.iter().enumerate() {
+                let weight = fit[(a, point)];
+                corner.iter_mut().zip([xx, yy, zz, xy]).for_each(|(sum, stress)| *sum += weight * stress);
+            }
+        }
         let at = |values: &[usize]| {
-            let mean = |component| values.iter().map(|&a| corners[(a, component)]).sum::<f64>() / values.len() as f64;
+            let mean =
+                |component: usize| values.iter().map(|&a| corners[a][component]).sum::<f64>() / values.len() as f64;
             CauchyStress { xx: mean(0), yy: mean(1), zz: mean(2), xy: mean(3) }
         };
         let n = self.kind.corners();
@@ -210,61 +229,34 @@ impl SolidElement {
         Ok(nodal)
     }
 
-    fn evaluate(
+    /// Force (2) and tangent (3). The number of nodes is known when this is compiled, so that the loops over them are
+    /// unrolled.
+    fn evaluate<const N: usize>(
         &self,
         material: &dyn Material,
         u: &[Vector2<f64>],
         force: &mut [f64],
-        tangent: Option<&mut [f64]>,
-    ) -> Result<f64, InvertedElement> {
-        match self.kind {
-            ElementKind::T3 => self.evaluate_nodes::<3>(material, u, force, tangent),
-            ElementKind::T6 => self.evaluate_nodes::<6>(material, u, force, tangent),
-            ElementKind::Q4 => self.evaluate_nodes::<4>(material, u, force, tangent),
-            ElementKind::Q8 => self.evaluate_nodes::<8>(material, u, force, tangent),
-            ElementKind::Q9 => self.evaluate_nodes::<9>(material, u, force, tangent),
-        }
-    }
-
-    /// The number of nodes is known when this is compiled, so that the loops over them are unrolled.
-    fn evaluate_nodes<const N: usize>(
-        &self,
-        material: &dyn Material,
-        u: &[Vector2<f64>],
-        force: &mut [f64],
-        mut tangent: Option<&mut [f64]>,
+        tangent: &mut [f64],
     ) -> Result<f64, InvertedElement> {
         force.fill(0.0);
-        if let Some(tangent) = &mut tangent {
-            tangent.fill(0.0);
-        }
+        tangent.fill(0.0);
         let centre = self.centre(u)?;
         let mut energy = 0.0;
         let mut blocks = [[[[0.0; 2]; 2]; N]; N];
         for (gradients, &volume) in self.gradients.as_chunks::<N>().0.iter().zip(&self.volumes) {
             let deformation = deformation_gradient(gradients, u);
-            if tangent.is_none() && centre.is_none() {
-                let (stress, stored) = material.stress(&deformation)?;
-                energy += volume * stored;
-                add_force(gradients, &(volume * stress), force);
-                continue;
-            }
             let response = match &centre {
                 Some(centre) => centre.respond(material, &deformation)?,
                 None => material.respond(&deformation)?,
             };
             energy += volume * response.energy;
             add_force(gradients, &(volume * response.stress), force);
-            if let Some(tangent) = &mut tangent {
-                add_tangent(gradients, &(volume * response.tangent), &mut blocks);
-                if let Some(centre) = &centre {
-                    centre.add_tangent(gradients, &deformation, volume, &response, tangent);
-                }
+            add_tangent(gradients, &(volume * response.tangent), &mut blocks);
+            if let Some(centre) = &centre {
+                centre.add_tangent(gradients, &deformation, volume, &response, tangent);
             }
         }
-        if let Some(tangent) = tangent {
-            add_blocks(&blocks, tangent);
-        }
+        add_blocks(&blocks, tangent);
         Ok(energy)
     }
 

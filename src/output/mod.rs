@@ -9,6 +9,7 @@ pub mod newton_log;
 pub mod plot;
 pub mod progress;
 pub mod summary;
+pub mod vtu;
 pub mod warnings;
 
 use crate::error::Error;

@@ -10,6 +10,7 @@ use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
 use crate::error::Error;
 use crate::model::Model;
+use crate::time::told;
 
 /// Penetration, as a share of the slave's edge, that is worth a warning.
 const DEEP: f64 = 0.01;
@@ -44,7 +45,7 @@ impl Observer for Warnings {
                     if self.given.insert((number, kind)) {
                         let at = point.at(&x);
                         let place =
-                            format!("contact `{}` at ({:.6}, {:.6}), t = {}", pair.name, at.x, at.y, state.time);
+                            format!("contact `{}` at ({:.6}, {:.6}), t = {}", pair.name, at.x, at.y, told(state.time));
                         self.list.push(format!("{place}: {message}"));
                     }
                 }
@@ -61,7 +62,7 @@ impl Warnings {
         let pivots = solves().map(|solve| solve.perturbed_pivots).max().unwrap_or(0);
         let fallback = solves().any(|solve| solve.fallback);
         if (pivots > 0 || fallback) && self.perturbed.insert(attempt.step.name.clone()) {
-            let start = format!("step `{}`, t = {}", attempt.step.name, attempt.old.time + attempt.dt);
+            let start = format!("step `{}`, t = {}", attempt.step.name, told(attempt.old.time + attempt.dt));
             let found = match (pivots, fallback) {
                 (0, _) => "the fronts of the tangent were not exact enough, and a slower solver took over".into(),
                 (pivots, false) => format!("{pivots} pivots of the tangent vanished and were replaced"),
@@ -77,7 +78,7 @@ impl Warnings {
         let Some((error, allowed)) = attempt.local_error.zip(step.increments.error) else { return };
         if error > allowed && self.inexact.insert(step.name.clone()) {
             let start =
-                format!("step `{}`, t = {}: the increment {dt:.3e} is the shortest allowed", step.name, old.time);
+                format!("step `{}`, t = {}: the increment {dt:.3e} is the shortest allowed", step.name, told(old.time));
             self.list.push(format!("{start}, and its error {error:.3e} exceeds {allowed:.3e}; lower dt.min"));
         }
     }

@@ -28,17 +28,18 @@ impl Scaling {
         }
         self.rows.iter_mut().for_each(|size| *size = inverse_power_of_two(*size));
         self.columns.resize(n, 0.0);
-        self.values.clear();
+        self.values.resize(matrix.values.len(), 0.0);
+        let mut rest = &mut self.values[..];
         for (column, rows, values) in columns(matrix, &matrix.values) {
-            let start = self.values.len();
+            let scaled = rest.split_off_mut(..values.len()).unwrap_or_default();
             let mut largest = 0.0f64;
-            for (&row, pair) in rows.iter().zip(values.chunks_exact(2)) {
-                let scaled = [pair[0] * self.rows[2 * row], pair[1] * self.rows[2 * row + 1]];
+            for ((&row, pair), scaled) in rows.iter().zip(values.chunks_exact(2)).zip(scaled.chunks_exact_mut(2)) {
+                scaled[0] = pair[0] * self.rows[2 * row];
+                scaled[1] = pair[1] * self.rows[2 * row + 1];
                 largest = scaled[0].abs().max(scaled[1].abs()).max(largest);
-                self.values.extend(scaled);
             }
             let factor = inverse_power_of_two(largest);
-            self.values[start..].iter_mut().for_each(|value| *value *= factor);
+            scaled.iter_mut().for_each(|value| *value *= factor);
             self.columns[column] = factor;
         }
     }
