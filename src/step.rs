@@ -68,8 +68,7 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
     }
     if state.increment == 0 {
         state.energy.kinetic = kinetic_energy(step, &state, work);
-        state.energy.contact_elastic =
-            contact_energy(model, &state.contacts);
+        state.energy.contact_elastic = contact_energy(model, &state.contacts);
         state.energy.initial = state.energy.kinetic + state.energy.contact_elastic;
     }
     Ok(state)

@@ -16,8 +16,7 @@ type Positions = Vec<Vector2<f64>>;
 
 /// In one step an increment: under error control the answer jumps, by less than the tolerance, where the number of sub-steps
 /// changes, and so does a difference quotient taken there (`the_controlled_answer_jumps_only_where_sub_steps_change`).
-const SUPER: &str =
-    r#"{"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "r": 100, "kappa": 10, "xi": 0.02, "structure": 1.8,
+const SUPER: &str = r#"{"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "r": 100, "kappa": 10, "xi": 0.02, "structure": 1.8,
         "integration": "backward_euler"}"#;
 const COULOMB: &str = r#"{"law": "coulomb", "mu": 0.3}"#;
 const FRICTIONLESS: &str = r#"{"law": "frictionless"}"#;
@@ -377,7 +376,13 @@ fn check_mortar_tangent(
     let was = mortar.overlaps(surface, &Index::new(&pair.master, &before), &before);
     let weights = mortar.weights(k, surface, &was, &before);
     let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.laws[0].initial_state() };
-    let old = ContactState { friction: pressed, foot: Some(MasterPoint { segment: 0, xi: 0.0 }), length: 1.0, gap, multiplier: 0.0 };
+    let old = ContactState {
+        friction: pressed,
+        foot: Some(MasterPoint { segment: 0, xi: 0.0 }),
+        length: 1.0,
+        gap,
+        multiplier: 0.0,
+    };
     let increment = Increment { dt: 0.3, fading: 0.0, presume: Presume::Nothing, promised: None };
     let evaluate = |x: &Positions| {
         let x = Configuration::undeformed(x);

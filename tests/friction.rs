@@ -829,7 +829,12 @@ fn the_case_file_names_a_law_and_its_parameters() {
 /// of evaluations stays.
 #[test]
 fn the_controlled_answer_jumps_only_where_sub_steps_change() {
-    let law = law(&SuperSubloadingParameters { integration: Integration::Controlled, xi: 0.02, structure: Some(1.8), ..PAPER });
+    let law = law(&SuperSubloadingParameters {
+        integration: Integration::Controlled,
+        xi: 0.02,
+        structure: Some(1.8),
+        ..PAPER
+    });
     let old = FrictionState { traction: 2.0, pressure: 20.0, ..law.initial_state() };
     let (step, pressure) = (1e-6, 30.0);
     let at = |k: usize| respond(&law, &old, 0.005 + step * k as f64, pressure, 0.3);

@@ -234,7 +234,8 @@ fn a_slip_annulus_weakens_as_it_grows_and_heals_in_a_hold() {
     let modulus = 210_000.0 / (2.0 * (1.0 - 0.3 * 0.3));
     let a = (4.0 * force(run.at(1.1))[1] * 50.0 / (std::f64::consts::PI * modulus)).sqrt();
     let mut before = pressed.len();
-    let shifted: Vec<&State> = run.states.iter().filter(|state| state.time > 1.1 + 1e-9 && state.time < 2.1 + 1e-9).collect();
+    let shifted: Vec<&State> =
+        run.states.iter().filter(|state| state.time > 1.1 + 1e-9 && state.time < 2.1 + 1e-9).collect();
     for state in &shifted {
         let found = closed(state);
         let stuck: Vec<usize> = (0..found.len()).filter(|&k| found[k].1.ratio() < 0.9).collect();
@@ -258,7 +259,12 @@ fn a_slip_annulus_weakens_as_it_grows_and_heals_in_a_hold() {
         let expected = mu_s - (mu_s - start.mu) * healing;
         assert!((end.mu - expected).abs() < 1e-9, "μ({at}) = {}, not {expected}", end.mu);
         assert_eq!(end.plastic_slip, start.plastic_slip);
-        assert!((end.traction - start.traction).abs() < 1e-6 * 857.0, "traction {} to {}", start.traction, end.traction);
+        assert!(
+            (end.traction - start.traction).abs() < 1e-6 * 857.0,
+            "traction {} to {}",
+            start.traction,
+            end.traction
+        );
     }
     assert!(run.iterations.iter().all(|&n| n <= MOST_ITERATIONS), "{:?}", run.iterations);
 }
@@ -404,7 +410,9 @@ fn with_nodes_shuffled(case: &mut Value, model: &Model) {
             Group::Elements(all) => {
                 case["mesh"]["elements"][name] = all.iter().map(|&e| json!(moved(&mesh.elements[e].nodes))).collect()
             }
-            Group::Edges(all) => case["mesh"]["edges"][name] = all.iter().map(|edge| json!(moved(&edge.nodes))).collect(),
+            Group::Edges(all) => {
+                case["mesh"]["edges"][name] = all.iter().map(|edge| json!(moved(&edge.nodes))).collect()
+            }
             Group::Nodes(all) => case["mesh"]["points"][name] = json!(moved(all)),
         }
     }
@@ -439,9 +447,9 @@ const CHANGES: [(&str, Change); 6] = [
 /// Largest p/α_n and |q|/α_t together: what the penalties let the surfaces move that should not.
 fn give(run: &Finished) -> f64 {
     let pair = &run.model.contacts[0];
-    let (p, q) = run.last().contacts[0].iter().fold((0.0f64, 0.0f64), |(p, q), state| {
-        (p.max(state.friction.pressure), q.max(state.friction.traction.abs()))
-    });
+    let (p, q) = run.last().contacts[0]
+        .iter()
+        .fold((0.0f64, 0.0f64), |(p, q), state| (p.max(state.friction.pressure), q.max(state.friction.traction.abs())));
     let stiffness = pair.laws[0].stiffness();
     p / pair.alpha_n + if stiffness > 0.0 { q / stiffness } else { 0.0 }
 }
@@ -484,7 +492,9 @@ fn answers_do_not_depend_on_numerical_choices() {
 #[test]
 #[ignore = "slow: minutes"]
 fn answers_of_the_augmented_lagrangian_do_not_depend_on_the_penalty() {
-    for Static { case, answer, .. } in STATIC.into_iter().filter(|problem| ["hertz_q4", "greco"].contains(&problem.case)) {
+    for Static { case, answer, .. } in
+        STATIC.into_iter().filter(|problem| ["hertz_q4", "greco"].contains(&problem.case))
+    {
         let answers = [0.1, 1.0, 100.0].map(|factor| {
             let (model, _) = solve(case, as_it_is);
             let (run, _) = solve(case, |given| {
@@ -529,16 +539,21 @@ fn ironing() {
         (0..=190).map(|k| at(1.5 + 0.05 * f64::from(k))).collect::<Vec<_>>()
     };
     let bend = |f: &[[f64; 2]]| {
-        let most = |i: usize| f.windows(3).map(|f| (f[0][i] - 2.0 * f[1][i] + f[2][i]).abs() / f[1][i].abs()).fold(0.0, f64::max);
+        let most = |i: usize| {
+            f.windows(3).map(|f| (f[0][i] - 2.0 * f[1][i] + f[2][i]).abs() / f[1][i].abs()).fold(0.0, f64::max)
+        };
         [most(0), most(1)]
     };
     let mean = |f: &[[f64; 2]], i: usize| f.iter().map(|f| f[i]).sum::<f64>() / f.len() as f64;
     let [coarse, fine] = ["ironing_q4", "ironing_q4_fine"].map(|mesh| forces("ironing_q4", mesh));
     let quadratic = forces("ironing_q8", "ironing_q8");
-    let apart = [0, 1].map(|i| coarse.iter().zip(&fine).fold(0.0f64, |most, (a, b)| most.max((a[i] / b[i] - 1.0).abs())));
+    let apart =
+        [0, 1].map(|i| coarse.iter().zip(&fine).fold(0.0f64, |most, (a, b)| most.max((a[i] / b[i] - 1.0).abs())));
     let means = [0, 1].map(|i| (mean(&quadratic, i) / mean(&fine, i) - 1.0).abs());
     let [bends @ .., ripple] = [&coarse, &fine, &quadratic].map(|forces| bend(forces));
-    println!("two meshes: {apart:?} apart at most; quadratic elements: {means:?} on the mean; bends {bends:?}, {ripple:?}");
+    println!(
+        "two meshes: {apart:?} apart at most; quadratic elements: {means:?} on the mean; bends {bends:?}, {ripple:?}"
+    );
     assert!(apart.iter().chain(&means).all(|apart| *apart < 0.03));
     assert!(bends.iter().flatten().all(|bend| *bend < 0.025) && ripple[0] < 0.07 && ripple[1] < 0.025);
 }

@@ -95,7 +95,12 @@ fn a_whole_surface_touches_itself_at_the_lips_only() {
         let x = all.model.configuration(&all.last().displacement);
         for (point, state) in all.model.contacts[0].points.iter().zip(&all.last().contacts[0]) {
             let at = point.at(&x);
-            assert!(state.status() == Status::Open || (at.x < -0.9 && at.y.abs() < 0.2), "{method}: closed at {}, {}: {state:?}", at.x, at.y);
+            assert!(
+                state.status() == Status::Open || (at.x < -0.9 && at.y.abs() < 0.2),
+                "{method}: closed at {}, {}: {state:?}",
+                at.x,
+                at.y
+            );
         }
         let [expected, found] = [&lips, &all].map(|run| run.reaction("south", run.last())[1]);
         println!("{method}: squeezed by {expected:.6} against the lips, {found:.6} against the whole surface");
@@ -133,8 +138,11 @@ fn tangent_of_self_contact_equals_differences() {
             let contribution = &closed.contribution;
             let dofs: Vec<usize> = contribution.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]).collect();
             for (row, &dof) in dofs.iter().enumerate() {
-                along[dof] +=
-                    dofs.iter().enumerate().map(|(k, &other)| contribution.tangent[(row, k)] * direction[other]).sum::<f64>();
+                along[dof] += dofs
+                    .iter()
+                    .enumerate()
+                    .map(|(k, &other)| contribution.tangent[(row, k)] * direction[other])
+                    .sum::<f64>();
             }
             closed_points += 1;
         }

@@ -89,7 +89,8 @@ fn on_surface(
 ) -> Kinematics {
     let MasterPoint { segment, xi } = projection.foot;
     let curve = &surface.segments[segment];
-    let path = from.and_then(|from| surface.path(from, projection.foot)).filter(|path| slides(surface, path, projection, x));
+    let path =
+        from.and_then(|from| surface.path(from, projection.foot)).filter(|path| slides(surface, path, projection, x));
     let path = path.unwrap_or_default();
     let mut masters: Vec<usize> = curve.nodes().collect();
     masters.extend(path.iter().flat_map(|&(j, ..)| surface.segments[j].nodes()));
