@@ -130,3 +130,25 @@ fn ruptures_are_checked() {
     refused(&|case| case["bodies"]["slab"]["material"]["density"] = json!(0.0), "give a density");
     refused(&|case| case["contacts"]["base"]["normal"]["penetration"] = json!(1e-9), "takes the plain penalty");
 }
+
+#[test]
+fn a_static_step_stops_a_motion_and_tells_what_it_took() {
+    // A pulled bar is let go and stopped in full swing: what it had of motion and of stress out of balance counts as damped.
+    for scheme in [json!({"newmark": {}}), json!({"explicit": {}})] {
+        let run = finish(&json!({
+            "mesh": Blocks::default().rectangle("bar", [10, 1], [0.0, 0.0], [1.0, 0.1]).json(),
+            "bodies": {"bar": {"material": {"model": "linear", "E": 4.0, "nu": 0.0, "density": 1.0}}},
+            "steps": [
+                {"name": "pull", "duration": 1, "dt": {"initial": 1},
+                 "supports": [{"on": "bar_left", "ux": 0, "uy": 0}], "loads": [{"on": "bar_right", "force": {"x": 1e-3}}]},
+                {"name": "free", "duration": 0.35, "dt": {"initial": 0.005}, "scheme": scheme,
+                 "loads": [{"on": "bar_right", "force": {"x": "0"}}]},
+                {"name": "stop", "duration": 1, "dt": {"initial": 0.5}, "scheme": "static"},
+            ],
+        }));
+        let energy = &run.last().energy;
+        close("strain", energy.strain, 0.0, 1e-9 * energy.external_work);
+        close("damped", energy.damping_dissipation, energy.external_work, 0.01 * energy.external_work);
+        close("energy", energy.error(), 0.0, 0.01 * energy.external_work);
+    }
+}
