@@ -822,3 +822,37 @@ fn the_case_file_names_a_law_and_its_parameters() {
     let unknown = read(r#"{"law": "coulomb", "mu": 0.3, "mu_s": 0.4}"#).expect_err("unknown key").to_string();
     assert!(unknown.contains("mu_s"), "{unknown}");
 }
+
+/// The controlled integration answers with a smooth curve from one number of sub-steps to the next, and jumps there, by no
+/// more than its tolerance: a difference quotient taken across such a place is off, whatever the tangent. Told by the tangent
+/// itself: over a slip of 1e-6 the traction changes by the mean of the tangents at both ends, to 1e-10 μ_s p where the number
+/// of evaluations stays.
+#[test]
+fn the_controlled_answer_jumps_only_where_sub_steps_change() {
+    let law = law(&SuperSubloadingParameters {
+        integration: Integration::Controlled,
+        xi: 0.02,
+        structure: Some(1.8),
+        ..PAPER
+    });
+    let old = FrictionState { traction: 2.0, pressure: 20.0, ..law.initial_state() };
+    let (step, pressure) = (1e-6, 30.0);
+    let at = |k: usize| respond(&law, &old, 0.005 + step * k as f64, pressure, 0.3);
+    let (mut smooth, mut jump, mut jumps) = (0.0f64, 0.0f64, 0);
+    let mut before = at(0);
+    for k in 1..=30_000 {
+        let now = at(k);
+        let expected = 0.5 * step * (before.dtraction_dslip + now.dtraction_dslip);
+        let off = (now.state.traction - before.state.traction - expected).abs() / (0.4 * pressure);
+        match now.evaluations == before.evaluations {
+            true => smooth = smooth.max(off),
+            false => {
+                jump = jump.max(off);
+                jumps += usize::from(off > 1e-10);
+            }
+        }
+        before = now;
+    }
+    println!("off by {smooth:.1e} on the way, by up to {jump:.1e} at {jumps} places");
+    assert!(smooth < 1e-10 && jump < 1e-6 && jumps > 0, "{smooth}, {jump}, {jumps}");
+}

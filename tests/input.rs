@@ -283,8 +283,12 @@ fn contacts_are_checked() {
     );
     refused_edits(&[("/contacts/base/slave", json!("block"))], &["contacts.base.slave: ", "not of edges"]);
     refused_edits(
-        &[("/contacts/base/master", json!("block_bottom"))],
-        &["contacts.base: ", "the edge between nodes 6 and 7 is both slave (`block_bottom`) and master"],
+        &[("/mesh/edges/part", json!([[6, 7]])), ("/contacts/base/master", json!("part"))],
+        &[
+            "contacts.base: ",
+            "the edge between nodes 6 and 7 is both slave (`block_bottom`) and master",
+            "for contact of a surface with itself name the same group of edges twice",
+        ],
     );
 }
 
@@ -848,4 +852,28 @@ proptest::proptest! {
         let model = fecontact::case::read(&path).and_then(|case| fecontact::case::build(&case, &path));
         let _ = model.map_err(|error| error.to_string());
     }
+}
+
+/// The slave's group as its own master is contact of a surface with itself, and told as such.
+#[test]
+fn a_surface_may_touch_itself() {
+    let folder = TempDir::new().expect("a temporary folder");
+    write(folder.path(), "own.json", with(&[("/contacts/base/master", json!("block_bottom"))]).to_string());
+    let output = fecontact(folder.path(), &["check", "own.json"]);
+    let told = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success() && told.contains("slave block_bottom against master itself"), "{told}");
+}
+
+/// Mass moved off a slave is for implicit steps.
+#[test]
+fn an_explicit_step_needs_the_mass_of_every_node() {
+    refused_edits(
+        &[
+            ("/contacts/base/massless", json!(true)),
+            ("/steps/0/scheme", json!({"explicit": {}})),
+            ("/bodies/ground/material/density", json!(1)),
+            ("/bodies/block/material/density", json!(1)),
+        ],
+        &["contacts.base.massless: ", "the explicit step `press` needs the mass of every node: leave it out"],
+    );
 }

@@ -285,7 +285,6 @@ fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPa
         return Err(Complaint::new(friction + ".alpha_t", "is missing: a slave group of points has no default for it"));
     }
     check_stiffness(&format!("{place}.normal"), "alpha_n", alpha_n)?;
-    let mut points = points;
     let laws = along::laws(&place, input, &mut points, &model.mesh, 0.5 * alpha_n)?;
     for law in laws.iter().filter(|law| law.stiffness() > 0.0) {
         check_stiffness(&friction, "alpha_t", law.stiffness())?;
