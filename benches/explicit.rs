@@ -1,6 +1,7 @@
 //! Explicit increments of a block of fully integrated neo-Hookean Q4 elements: element updates a second of processor time,
-//! whole increments counted (forces, sums, time integration), on one thread and on all. What a fused multiply-add loop can do on this
-//! machine stands beside it, for the share of its arithmetic that an update takes.
+//! whole increments counted (forces, sums, time integration), on one thread and on all. What loops of multiply-adds and of
+//! reading and writing long arrays can do on this machine stands beside it, for the shares of its arithmetic and of its
+//! memory that an update takes.
 
 use std::time::Instant;
 
@@ -15,6 +16,11 @@ const SIDE: usize = 300;
 /// Floating-point operations of one update, counted in the source: at each of 4 points F (32), invariants and stress with
 /// one logarithm (60), nodal forces (32); sums at the nodes (8).
 const OPERATIONS: f64 = 4.0 * (32.0 + 60.0 + 32.0) + 8.0;
+
+/// Bytes that an update moves to and from memory, counted in the source, a written line being read first: of the element its
+/// gradients and volumes (368), nodes (72), forces and energy written (160) and gathered (96); at its node, of which there
+/// is one an element, the displaced positions (128), loads and sums (120), rates and the audit (152).
+const BYTES: f64 = 1096.0;
 
 /// Processor time of this process where the system tells (other programs take their share of the wall clock), else wall
 /// time.
@@ -98,15 +104,30 @@ fn arithmetic() -> f64 {
     f64::from(rounds) * 64.0 / clock.seconds()
 }
 
+/// Bytes a second that one thread moves in a = b + f c over arrays far longer than the caches; the lines of a are read first.
+fn memory() -> f64 {
+    let n = 1 << 24;
+    let [b, c] = std::hint::black_box([vec![1.0f64; n], vec![2.0f64; n]]);
+    let mut a = vec![0.0f64; n];
+    let clock = Clock::start();
+    a.iter_mut().zip(b.iter().zip(&c)).for_each(|(a, (b, c))| *a = b + 0.5 * c);
+    let seconds = clock.seconds();
+    assert!(std::hint::black_box(a).iter().all(|a| *a == 2.0));
+    32.0 * n as f64 / seconds
+}
+
 fn main() {
     let limit = (0..3).map(|_| arithmetic()).fold(0.0, f64::max);
-    println!("one thread: {:.2} Gflop/s of multiply-adds", 1e-9 * limit);
+    let bandwidth = (0..5).map(|_| memory()).fold(0.0, f64::max);
+    println!("one thread: {:.2} Gflop/s of multiply-adds, {:.2} GB/s of memory", 1e-9 * limit, 1e-9 * bandwidth);
     for threads in [1, std::thread::available_parallelism().map_or(1, usize::from)] {
         let rate = updates(threads);
         println!(
-            "{threads} thread(s): {:.2} million element updates in a second of processor time, {:.0} % of the multiply-adds",
+            "{threads} thread(s): {:.2} million element updates in a second of processor time, {:.0} % of the multiply-adds, \
+             {:.0} % of the memory",
             1e-6 * rate,
-            100.0 * rate * OPERATIONS / limit
+            100.0 * rate * OPERATIONS / limit,
+            100.0 * rate * BYTES / bandwidth
         );
     }
 }

@@ -1,6 +1,6 @@
 //! Supports and loads: what is prescribed or applied at a node, and how it varies in time and space.
 
-use exmex::{Express, FlatEx};
+use exmex::{Express, FlatEx, FloatOpsFactory, MatchLiteral, NumberMatcher};
 use nalgebra::{Matrix2, Rotation2, Vector2};
 
 /// How a prescribed quantity varies, as given in the case.
@@ -18,7 +18,21 @@ pub enum Drive {
 
 /// A parsed expression in x, y and t.
 #[derive(Clone, Debug)]
-pub struct Expression(Box<FlatEx<f64>>);
+pub struct Expression(Box<FlatEx<f64, FloatOpsFactory<f64>, Decimal>>);
+
+/// A number as Rust and JSON write it, with an exponent such as 2.5e-3, which the parser's own literals lack.
+#[derive(Clone, Debug)]
+struct Decimal;
+
+impl MatchLiteral for Decimal {
+    fn is_literal(text: &str) -> Option<&str> {
+        let mantissa = NumberMatcher::is_literal(text)?;
+        let exponent = text[mantissa.len()..].strip_prefix(['e', 'E']);
+        let unsigned = exponent.map_or("", |power| power.strip_prefix(['+', '-']).unwrap_or(power));
+        let digits = unsigned.bytes().take_while(u8::is_ascii_digit).count();
+        Some(if digits == 0 { mantissa } else { &text[..text.len() - unsigned.len() + digits] })
+    }
+}
 
 impl Expression {
     /// Parse an expression.
@@ -26,7 +40,7 @@ impl Expression {
     /// # Errors
     /// What the parser could not read, or the first variable that is none of x, y, t.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let parsed = exmex::parse::<f64>(text).map_err(|error| error.to_string())?;
+        let parsed = FlatEx::parse(text).map_err(|error| error.to_string())?;
         match parsed.var_names().iter().find(|name| !["t", "x", "y"].contains(&name.as_str())) {
             Some(name) => Err(format!("`{name}` is not one of the variables x, y, t")),
             None => Ok(Self(Box::new(parsed))),

@@ -20,6 +20,7 @@ use crate::output::progress::Progress;
 use crate::output::summary::{self, About, Ending, LawSummary, Summary};
 use crate::output::warnings::Warnings;
 use crate::run;
+use crate::state::Energy;
 
 /// More threads than this are a slip of the keyboard.
 const MOST_THREADS: usize = 1024;
@@ -104,6 +105,7 @@ pub fn run(path: &Path, out: Option<PathBuf>, threads: Option<usize>, quiet: boo
         units: case.units.clone(),
         friction: case.contacts.iter().map(|(name, contact)| (name.clone(), contact.friction)).collect(),
         wave_speeds: fronts::wave_speeds(&model),
+        front_slip_rate: case.output.fronts.map(|fronts| fronts.slip_rate),
     };
     let summary = Summary::new(about, &model, report, result.as_ref().err(), warnings.list);
     summary::write(&summary, &folder)?;
@@ -129,6 +131,25 @@ fn conclude(summary: &Summary, model: &Model, folder: &Path) {
         model.dofs(),
         report.wall_s.total,
         folder.display()
+    );
+    if model.steps.iter().any(|step| step.scheme.is_dynamic() || step.rupture.is_some()) {
+        audit(&report.energy);
+    }
+}
+
+/// Where the energy of a dynamic run came from and went.
+fn audit(energy: &Energy) {
+    let share = if energy.turnover() > 0.0 { 100.0 * energy.error() / energy.turnover() } else { 0.0 };
+    eprintln!("energy: {:.6e} at the start, {:.6e} from outside", energy.initial, energy.external_work);
+    eprintln!(
+        "        {:.6e} kinetic, {:.6e} strain, {:.6e} in contacts",
+        energy.kinetic, energy.strain, energy.contact_elastic
+    );
+    eprintln!(
+        "        {:.6e} taken by friction, {:.6e} by damping, {:.1e} ({share:.4} %) unaccounted for",
+        energy.friction_dissipation,
+        energy.damping_dissipation,
+        energy.error()
     );
 }
 
@@ -162,6 +183,7 @@ pub fn law(path: &Path, out: Option<PathBuf>) -> Result<(), Failure> {
         units: input.units,
         friction: [("law".into(), input.friction)].into(),
         wave_speeds: [0.0; 3],
+        front_slip_rate: None,
     };
     let summary = LawSummary { ending: Ending::new(result.as_ref().err()), about, report };
     summary::write(&summary, &folder)?;

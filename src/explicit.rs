@@ -5,31 +5,36 @@
 //! Δt ≤ 2/ω,   ω² ≤ max over elements of (λ_e + max over its nodes of k/m)                                    (1)
 //! λ_e = ‖A⁴‖^¼ ≥ largest eigenvalue of A = M_e^-½ K_e M_e^-½                                                   (2)
 //! k: Σ |w_a| Σ |w_b| max(α_n, α_t) ℓ of the contact points at the node, and its springs                           (3)
+//! Δt² ω² + 2 Δt c ≤ 4   or   Δt ≤ 4/(c + √(c² + 4 ω²)),   c: (2) of the viscous K_e                          (4)
 //! ```
 //! (1) holds because a sum of stiffnesses vibrates no faster than the fastest of its parts, each with its share of the
 //! mass (Irons & Treharne), the shares of elements and contact being in the ratio of their ω²; (2) with the Frobenius
 //! norm is at most 8^⅛ = 1.3 times the eigenvalue, commonly 1.05; (3) is Gershgorin's theorem. Every contact point that
-//! faces the master counts, open or closed.
+//! faces the master counts, open or closed. (4) takes the place of Δt ≤ 2/ω in a viscous body, whose stress is that of
+//! the mean velocity of the increment before, (u₁ − u₀)/Δt: with a damping ratio ζ = c/(2ω) it is 2/ω (√(1 + ζ²) − ζ).
+//! Damping by the masses and dashpots act at the end of the increment and cost nothing.
 //!
 //! Contact answers in each increment as it does in an implicit one: the friction law takes the slip of the whole increment
 //! and returns the traction at its end, an elastic predictor and a plastic corrector. No sign of a velocity is asked for, so
-//! that stick and slip do not chatter; a point that sticks swings on its contact spring.
+//! that stick and slip do not chatter; a point that sticks swings on its contact spring. If that is much stiffer than an
+//! element, the swing is faster than any wave of the mesh and stays where it is: an impact rattles, unless the body is
+//! viscous.
 //!
 //! Source: Irons & Treharne (1971), Proc. 3rd Conf. Matrix Methods in Struct. Mech., WPAFB; Belytschko, Liu, Moran &
 //! Elkhodary (2014), Nonlinear Finite Elements for Continua and Structures, §6.2.
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
-use nalgebra::{DMatrix, Matrix2, Vector2};
+use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 use rayon::prelude::*;
 
 use crate::assembly::{Assembler, Trial};
+use crate::boundary::Prescribed;
 use crate::contact::surface::Master;
 use crate::energy::{contact_energy, friction_dissipation, work_of_drivers};
 use crate::error::{StepFailure, TrialFailure};
 use crate::model::{Model, Step};
-use crate::state::{State, StepStart};
+use crate::state::State;
 use crate::time::{start_acceleration, supported_rates};
 
 /// Increments after which the longest stable one is looked at again: in that time a deformation changes little.
@@ -42,10 +47,14 @@ const ROUND_OFF: f64 = 1e-9;
 pub struct Explicit<'m> {
     model: &'m Model,
     step: &'m Step,
-    /// Mass of every node [M]
+    /// Mass of every node, that of copies with the nodes they move with and with the copies as well [M]
     mass: Vec<f64>,
-    /// Dashpots and absorbing sides, one entry a node
+    /// Dashpots, absorbing sides and damping by the masses, one entry a node
     dampers: Vec<Damper>,
+    /// Their forces at the last time [F]
+    pulls: Vec<Vector2<f64>>,
+    /// Viscous forces of the bodies at the last two times, which resist; empty if there are none [F]
+    viscous: [Vec<f64>; 2],
     /// Longest stable increment when last looked at [T]
     stable: f64,
     /// Increments since then
@@ -74,14 +83,27 @@ impl<'m> Explicit<'m> {
         state: &mut State,
         assembler: &mut Assembler,
     ) -> Result<Self, StepFailure> {
-        state.step_start =
-            Arc::new(StepStart { displacement: state.displacement.clone(), reaction: state.reaction.clone() });
-        state.last_increment = None;
+        state.begin_step();
+        Self::go_on(model, step, state, assembler)
+    }
+
+    /// As [`Explicit::begin`], at any time within a step.
+    ///
+    /// # Errors
+    /// As [`Explicit::begin`].
+    pub fn go_on(
+        model: &'m Model,
+        step: &'m Step,
+        state: &mut State,
+        assembler: &mut Assembler,
+    ) -> Result<Self, StepFailure> {
         let mut explicit = Self {
             model,
             step,
             mass: masses(model),
-            dampers: dampers(step),
+            dampers: dampers(model, step),
+            pulls: Vec::new(),
+            viscous: [(); 2].map(|()| vec![0.0; if model.is_viscous() { model.dofs() } else { 0 }]),
             stable: 0.0,
             since: LOOK_AGAIN,
             displacement: state.displacement.clone(),
@@ -93,13 +115,19 @@ impl<'m> Explicit<'m> {
     }
 
     /// The forces and accelerations at the start of the step.
-    fn start(&self, state: &mut State, assembler: &mut Assembler) -> Result<(), StepFailure> {
+    fn start(&mut self, state: &mut State, assembler: &mut Assembler) -> Result<(), StepFailure> {
         let (model, step) = (self.model, self.step);
         let still = Trial { old: state, step, time: state.time, dt: 0.0 };
         assembler.forces(still, &state.displacement).map_err(StepFailure::Start)?;
-        let evaluation = &assembler.evaluation;
-        let mut damping = vec![0.0; model.dofs()];
-        self.pull(state.time, &state.velocity, &mut damping);
+        if model.is_viscous() {
+            let gathered = assembler.gather_viscous(&state.displacement, &state.velocity, &mut self.viscous[1]);
+            gathered.map_err(StepFailure::Start)?;
+        }
+        self.pulls = self.pull(state.time, &state.velocity);
+        let damping = self.damping();
+        let evaluation = &mut assembler.evaluation;
+        model.ties.gather(2, &mut evaluation.force);
+        model.ties.gather(2, &mut evaluation.loads);
         let mut acceleration: Vec<f64> = evaluation
             .force
             .iter()
@@ -115,6 +143,7 @@ impl<'m> Explicit<'m> {
             external[dof] += evaluation.force[dof] - damping[dof] + self.mass[dof / 2] * acceleration[dof];
         }
         state.force = evaluation.force.iter().zip(&damping).map(|(f, d)| f - d).collect();
+        model.ties.spread(2, &mut acceleration);
         state.acceleration = acceleration;
         state.external = external;
         state.damping = damping;
@@ -126,8 +155,8 @@ impl<'m> Explicit<'m> {
         Ok(())
     }
 
-    /// Equal increments to a time, none longer than is stable. The energies of the state are complete at the end only,
-    /// the work and dissipation in between having been summed.
+    /// Equal increments to a time, none longer than is stable. The energies and the damping of the state are complete at the
+    /// end only, the work and dissipation in between having been summed.
     ///
     /// # Errors
     /// [`StepFailure`] when an element inverts, a friction law fails, a load has no value, or the motion has none.
@@ -145,6 +174,7 @@ impl<'m> Explicit<'m> {
             self.since += 1;
             increments += 1;
         }
+        state.damping = self.damping();
         state.energy.kinetic = self.kinetic_energy(state, state.dt);
         state.energy.contact_elastic = contact_energy(self.model, &state.contacts);
         match state.energy.kinetic.is_finite() {
@@ -173,21 +203,22 @@ impl<'m> Explicit<'m> {
             }
             u[support.dof] = places[3];
         }
+        model.ties.spread(2, &mut u);
         assembler.forces(trial, &u)?;
+        self.resist(dt, &u, state, assembler)?;
         let evaluation = &mut assembler.evaluation;
+        model.ties.gather(2, &mut evaluation.force);
+        model.ties.gather(2, &mut evaluation.loads);
 
         if !model.contacts.is_empty() {
             state.energy.friction_dissipation += friction_dissipation(&state.contacts, &evaluation.contacts);
         }
         let way = |dof: usize, old: &[f64]| u[dof] - old[dof];
-        let supported = step.supports.iter().map(|support| support.dof);
-        let damped = self.dampers.iter().flat_map(|damper| [2 * damper.node, 2 * damper.node + 1]);
-        let special: Vec<(usize, f64)> =
-            supported.chain(damped).map(|dof| (dof, way(dof, &state.displacement))).collect();
-        let damped = &special[step.supports.len()..];
-        let mut dissipated = work_on(&state.damping, damped);
+        let ways: Vec<f64> = step.supports.iter().map(|support| way(support.dof, &state.displacement)).collect();
+        let damped = |damper: &Damper| [0, 1].map(|i| way(2 * damper.node + i, &state.displacement)).into();
+        let damped: Vec<Vector2<f64>> = self.dampers.iter().map(damped).collect();
         let mut work = work_of_drivers(model, step, [state.time, time], |dof| way(dof, &state.displacement));
-        dissipated -= work;
+        let mut dissipated = work + self.viscous_work(&u, &state.displacement) - mean_work(&self.pulls, &damped);
 
         let before: Vec<f64> = step.supports.iter().map(|support| state.velocity[support.dof]).collect();
         work += self.accelerate(dt, state, &evaluation.force, &evaluation.loads, &u);
@@ -198,20 +229,22 @@ impl<'m> Explicit<'m> {
             let dof = support.dof;
             (state.velocity[dof], state.acceleration[dof]) = supported_rates(places, before, dt);
         }
-        if !self.dampers.is_empty() {
-            self.pull(time, &state.velocity, &mut state.damping);
-            damped.iter().for_each(|&(dof, _)| state.force[dof] -= state.damping[dof]);
+        model.ties.spread(2, &mut state.velocity);
+        model.ties.spread(2, &mut state.acceleration);
+        self.pulls = self.pull(time, &state.velocity);
+        for (damper, pull) in self.dampers.iter().zip(&self.pulls) {
+            (0..2).for_each(|i| state.force[2 * damper.node + i] -= pull[i]);
         }
-        for (support, (dof, way)) in step.supports.iter().zip(&special) {
+        for (Prescribed { dof, .. }, way) in step.supports.iter().zip(&ways) {
             let reaction = state.force[*dof] + self.mass[dof / 2] * state.acceleration[*dof];
-            state.reaction[support.dof] = reaction;
+            state.reaction[*dof] = reaction;
             state.external[*dof] += reaction;
             work += 0.5 * reaction * way;
         }
-        dissipated += work_on(&state.damping, damped);
+        dissipated -= mean_work(&self.pulls, &damped);
 
         state.energy.external_work += work;
-        state.energy.damping_dissipation -= dissipated;
+        state.energy.damping_dissipation += dissipated;
         state.energy.strain = evaluation.strain_energy;
         state.contacts = std::mem::take(&mut evaluation.contacts);
         self.displacement = std::mem::replace(&mut state.displacement, u);
@@ -247,38 +280,73 @@ impl<'m> Explicit<'m> {
         if self.dampers.is_empty() {
             return;
         }
-        let mut pull = std::mem::take(&mut state.damping);
-        self.pull(time, &state.velocity, &mut pull);
-        for Damper { node, coefficients } in &self.dampers {
+        for (Damper { node, coefficients }, pull) in self.dampers.iter().zip(self.pull(time, &state.velocity)) {
             let inertia = Matrix2::identity() * self.mass[*node] + coefficients * (0.5 * dt);
             let Some(inverse) = inertia.try_inverse() else { continue };
-            let change = inverse * Vector2::new(pull[2 * node], pull[2 * node + 1]);
+            let change = inverse * pull;
             for i in 0..2 {
                 state.acceleration[2 * node + i] += change[i];
                 state.velocity[2 * node + i] += 0.5 * dt * change[i];
             }
         }
-        state.damping = pull;
     }
 
-    /// Write the forces of dashpots and absorbing sides over `pull`, which is zero elsewhere.
-    fn pull(&self, time: f64, velocity: &[f64], pull: &mut [f64]) {
-        for Damper { node, coefficients } in &self.dampers {
-            let force = -coefficients * Vector2::new(velocity[2 * node], velocity[2 * node + 1]);
-            (pull[2 * node], pull[2 * node + 1]) = (force.x, force.y);
+    /// Force of every damper on its node [F].
+    fn pull(&self, time: f64, velocity: &[f64]) -> Vec<Vector2<f64>> {
+        let resist = |Damper { node, coefficients }: &Damper| {
+            -coefficients * Vector2::new(velocity[2 * node], velocity[2 * node + 1])
+        };
+        let mut pulls: Vec<Vector2<f64>> = self.dampers.iter().map(resist).collect();
+        for dashpot in self.step.loads.dashpots.iter().filter(|dashpot| dashpot.driver.is_some()) {
+            let node = self.model.ties.original(dashpot.dof / 2);
+            if let Ok(k) = self.dampers.binary_search_by_key(&node, |damper| damper.node) {
+                let driver = dashpot.driver_velocity(self.model.mesh.nodes[dashpot.dof / 2], time);
+                pulls[k][dashpot.dof % 2] += dashpot.coefficient * driver;
+            }
         }
-        for dashpot in &self.step.loads.dashpots {
-            pull[dashpot.dof] +=
-                dashpot.coefficient * dashpot.driver_velocity(self.model.mesh.nodes[dashpot.dof / 2], time);
+        pulls
+    }
+
+    /// Forces of dampers and viscous bodies on all dofs at the last time [F].
+    fn damping(&self) -> Vec<f64> {
+        let mut damping: Vec<f64> = self.viscous[1].iter().map(|resisting| -resisting).collect();
+        damping.resize(self.model.dofs(), 0.0);
+        for (damper, pull) in self.dampers.iter().zip(&self.pulls) {
+            (0..2).for_each(|i| damping[2 * damper.node + i] += pull[i]);
         }
+        damping
+    }
+
+    /// Add the viscous forces of the bodies at `u`, under the mean velocity of the increment, to the evaluated forces.
+    fn resist(&mut self, dt: f64, u: &[f64], state: &State, assembler: &mut Assembler) -> Result<(), TrialFailure> {
+        if !self.model.is_viscous() {
+            return Ok(());
+        }
+        self.viscous.reverse();
+        let velocity: Vec<f64> = u.iter().zip(&state.displacement).map(|(new, old)| (new - old) / dt).collect();
+        assembler.gather_viscous(u, &velocity, &mut self.viscous[1])?;
+        let force = assembler.evaluation.force.iter_mut();
+        force.zip(&self.viscous[1]).for_each(|(force, viscous)| *force += viscous);
+        Ok(())
+    }
+
+    /// What the viscous forces take over an increment: mean force × way [F·L].
+    fn viscous_work(&self, u: &[f64], old: &[f64]) -> f64 {
+        let [before, now] = &self.viscous;
+        let forces = before.iter().zip(now);
+        forces.zip(u.iter().zip(old)).map(|((f0, f1), (u1, u0))| 0.5 * (f0 + f1) * (u1 - u0)).sum()
     }
 
     /// ½ v₋ᵀ M v₊ of the velocities half an increment before and after: by (7) and (8) its change is exactly the mean force
     /// times the way, so that what the audit of energies leaves is not the scheme's own swing, ⅛ Δt² aᵀ M a.
     fn kinetic_energy(&self, state: &State, dt: f64) -> f64 {
-        let motion = state.velocity.chunks_exact(2).zip(state.acceleration.chunks_exact(2)).zip(&self.mass);
         let square = |v: &[f64]| v[0] * v[0] + v[1] * v[1];
-        motion.map(|((v, a), m)| 0.5 * m * (square(v) - 0.25 * dt * dt * square(a))).sum()
+        let of = |node: usize| {
+            let [v, a] = [&state.velocity, &state.acceleration].map(|rates| &rates[2 * node..2 * node + 2]);
+            0.5 * self.mass[node] * (square(v) - 0.25 * dt * dt * square(a))
+        };
+        let copies: f64 = self.model.ties.pairs().iter().map(|&(copy, _)| of(copy)).sum();
+        (0..self.mass.len()).map(of).sum::<f64>() - copies
     }
 
     /// The safe share of (1), but no more than the step allows [T].
@@ -287,18 +355,17 @@ impl<'m> Explicit<'m> {
         let added = self.added_stiffness(state);
         let softness = |node: usize| if self.mass[node] > 0.0 { added[node] / self.mass[node] } else { 0.0 };
         let of_element = |e: usize| {
-            let fastest = element_bound(model, e, &state.displacement)?;
+            let [elastic, viscous] = element_bounds(model, e, &state.displacement)?;
             let nodes = model.mesh.elements[e].nodes.iter();
-            Ok(fastest + nodes.map(|&node| softness(node)).fold(0.0, f64::max))
+            Ok(longest(elastic + nodes.map(|&node| softness(node)).fold(0.0, f64::max), viscous))
         };
         let elements: Vec<Result<f64, TrialFailure>> =
             (0..model.mesh.elements.len()).into_par_iter().with_min_len(64).map(of_element).collect();
-        let mut fastest = (0..added.len()).map(softness).fold(0.0, f64::max);
+        let mut shortest = (0..added.len()).map(|node| longest(softness(node), 0.0)).fold(f64::INFINITY, f64::min);
         for bound in elements {
-            fastest = bound.map_err(StepFailure::Start)?.max(fastest);
+            shortest = bound.map_err(StepFailure::Start)?.min(shortest);
         }
-        let safety = self.step.scheme.safety();
-        Ok((safety * 2.0 / fastest.sqrt()).min(self.step.increments.max))
+        Ok((self.step.scheme.safety() * shortest).min(self.step.increments.max))
     }
 
     /// k of (3) at every node [F/L].
@@ -319,23 +386,39 @@ impl<'m> Explicit<'m> {
             }
         }
         self.step.loads.springs.iter().for_each(|spring| added[spring.dof / 2] += spring.stiffness);
+        model.ties.gather(1, &mut added);
+        model.ties.spread(1, &mut added);
         added
     }
 }
 
-/// ½ Σ f Δu over some dofs and their ways.
-fn work_on(force: &[f64], ways: &[(usize, f64)]) -> f64 {
-    ways.iter().map(|&(dof, way)| 0.5 * force[dof] * way).sum()
+/// ½ Σ f·Δu: half the work of forces that act at one end of an increment.
+fn mean_work(forces: &[Vector2<f64>], ways: &[Vector2<f64>]) -> f64 {
+    forces.iter().zip(ways).map(|(force, way)| 0.5 * force.dot(way)).sum()
 }
 
-/// Dashpots and absorbing sides of each node.
-fn dampers(step: &Step) -> Vec<Damper> {
+/// (4) from ω² and c [T].
+fn longest(square: f64, viscous: f64) -> f64 {
+    4.0 / (viscous + (viscous * viscous + 4.0 * square).sqrt())
+}
+
+/// Dashpots, absorbing sides and damping by the masses of each node.
+fn dampers(model: &Model, step: &Step) -> Vec<Damper> {
     let mut total: BTreeMap<usize, Matrix2<f64>> = BTreeMap::new();
+    for body in model.bodies.iter().filter(|body| body.damping.mass > 0.0) {
+        for &e in &body.elements {
+            for (&node, mass) in model.mesh.elements[e].nodes.iter().zip(model.element_lumped_mass(e).iter()) {
+                let node = model.ties.original(node);
+                *total.entry(node).or_default() += Matrix2::from_diagonal_element(body.damping.mass * mass);
+            }
+        }
+    }
     for dashpot in &step.loads.dashpots {
-        total.entry(dashpot.dof / 2).or_default()[(dashpot.dof % 2, dashpot.dof % 2)] += dashpot.coefficient;
+        total.entry(model.ties.original(dashpot.dof / 2)).or_default()[(dashpot.dof % 2, dashpot.dof % 2)] +=
+            dashpot.coefficient;
     }
     for absorber in &step.loads.absorbers {
-        *total.entry(absorber.node).or_default() += absorber.coefficients;
+        *total.entry(model.ties.original(absorber.node)).or_default() += absorber.coefficients;
     }
     total.into_iter().map(|(node, coefficients)| Damper { node, coefficients }).collect()
 }
@@ -351,11 +434,13 @@ fn masses(model: &Model) -> Vec<f64> {
     for point in &model.point_masses {
         point.nodes.iter().for_each(|&node| mass[node] += point.mass);
     }
+    model.ties.gather(1, &mut mass);
+    model.ties.spread(1, &mut mass);
     mass
 }
 
-/// λ_e of (2) at the displacement `u` [1/T²].
-fn element_bound(model: &Model, e: usize, u: &[f64]) -> Result<f64, TrialFailure> {
+/// λ_e and c of an element at the displacement `u` [1/T², 1/T].
+fn element_bounds(model: &Model, e: usize, u: &[f64]) -> Result<[f64; 2], TrialFailure> {
     let nodes = &model.mesh.elements[e].nodes;
     let body = &model.bodies[model.body_of_element[e]];
     let local: Vec<Vector2<f64>> = nodes.iter().map(|&node| Vector2::new(u[2 * node], u[2 * node + 1])).collect();
@@ -368,11 +453,24 @@ fn element_bound(model: &Model, e: usize, u: &[f64]) -> Result<f64, TrialFailure
         jacobian: inverted.jacobian,
     })?;
     let mass = model.element_lumped_mass(e);
-    let scaled = DMatrix::from_fn(n, n, |i, j| tangent[(i, j)] / (mass[i / 2] * mass[j / 2]).sqrt());
+    let elastic = largest_eigenvalue(&tangent, &mass);
+    if body.damping.stiffness == 0.0 {
+        return Ok([elastic, 0.0]);
+    }
+    // What remains of the viscous tangent at rest is its derivative with respect to the velocities.
+    let (law, still) = ((&*body.material, body.damping.stiffness), vec![Vector2::zeros(); nodes.len()]);
+    model.solids[e].viscous_tangent(law, [&local, &still], &vec![1.0; n], tangent.as_mut_slice());
+    Ok([elastic, largest_eigenvalue(&tangent, &mass)])
+}
+
+/// The bound (2) of a matrix and the lumped masses of its nodes.
+fn largest_eigenvalue(matrix: &DMatrix<f64>, mass: &DVector<f64>) -> f64 {
+    let n = matrix.nrows();
+    let scaled = DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] / (mass[i / 2] * mass[j / 2]).sqrt());
     let largest = scaled.amax();
     if largest == 0.0 {
-        return Ok(0.0);
+        return 0.0;
     }
     let square = (&scaled / largest).pow(2);
-    Ok(largest * (&square * &square).norm().powf(0.25))
+    largest * (&square * &square).norm().powf(0.25)
 }

@@ -83,6 +83,13 @@ pub fn judge(model: &Model, step: &Step, [old, new]: [&State; 2], iterations: us
     judged(true, if grows { share } else { 1.0 })
 }
 
+/// Highest slip rate of a contact point from one state to a later one [L/T].
+pub fn fastest_slip(old: &State, new: &State) -> f64 {
+    let points = old.contacts.iter().flatten().zip(new.contacts.iter().flatten());
+    let slips = points.map(|(old, new)| (new.friction.plastic_slip - old.friction.plastic_slip).abs());
+    slips.fold(0.0, f64::max) / (new.time - old.time)
+}
+
 /// C Δt² |a₁ − a₀|, the largest of all free dofs; those without mass follow without error of their own [L].
 fn local_error(model: &Model, step: &Step, old: &State, new: &State) -> f64 {
     let constant = step.scheme.error_constant().unwrap_or(0.0);

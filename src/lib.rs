@@ -57,4 +57,5 @@ pub mod shape;
 pub mod state;
 pub mod step;
 pub mod system;
+pub mod ties;
 pub mod time;

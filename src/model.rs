@@ -12,7 +12,18 @@ use crate::material::Material;
 use crate::mesh::{Element, Mesh};
 use crate::newton;
 use crate::state::{Energy, State, StepStart};
+use crate::ties::Ties;
 use crate::time::Scheme;
+
+/// Rayleigh's damping of a body: C = η M + τ K, K being that of [`crate::material`]'s viscous stress. A vibration ω of a
+/// body that only this damps has the damping ratio ½ (η/ω + τ ω).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Damping {
+    /// η: share of the masses [1/T]
+    pub mass: f64,
+    /// τ: share of the stiffness, Kelvin–Voigt's time of retardation [T]
+    pub stiffness: f64,
+}
 
 /// A body: a material on a group of elements.
 #[derive(Debug)]
@@ -21,6 +32,8 @@ pub struct Body {
     pub name: String,
     /// bulk law
     pub material: Box<dyn Material>,
+    /// damping in dynamic steps
+    pub damping: Damping,
     /// its elements
     pub elements: Vec<usize>,
     /// its nodes, ascending
@@ -62,6 +75,8 @@ pub struct Step {
     pub scheme: Scheme,
     /// increments
     pub increments: Increments,
+    /// when and how the step goes on explicitly, if it may
+    pub rupture: Option<Box<Rupture>>,
     /// prescribed dofs, ascending
     pub supports: Vec<Prescribed>,
     /// dofs that were prescribed in the step before and are free now; their reaction is ramped off
@@ -71,6 +86,17 @@ pub struct Step {
     /// c₀ of every dof: dashpots c₀ (1 − share of the step that has passed) that keep bodies from floating until contact
     /// holds them; empty if none are asked for [F T/L]
     pub stabilization: Vec<f64>,
+}
+
+/// When a static or implicit step turns to explicit increments, and back.
+#[derive(Clone, Debug)]
+pub struct Rupture {
+    /// Slip rate of a contact point above which it does [L/T]
+    pub slip_rate: f64,
+    /// Time over whose mean no point may slip that fast when it turns back: that of a shear wave across the model [T]
+    pub calm: f64,
+    /// The step as it goes on explicitly
+    pub explicit: Step,
 }
 
 /// A set of nodes whose mean displacement and reaction the history reports.
@@ -93,6 +119,8 @@ pub struct Model {
     pub massless: Vec<bool>,
     /// bodies
     pub bodies: Vec<Body>,
+    /// nodes of periodic sides
+    pub ties: Ties,
     /// point masses
     pub point_masses: Vec<PointMass>,
     /// body of each element
@@ -125,6 +153,11 @@ impl Model {
     /// The configuration x = X + u.
     pub fn configuration(&self, displacement: &[f64]) -> Configuration<'_> {
         Configuration::new(&self.mesh.nodes, displacement)
+    }
+
+    /// Whether some body has the viscous stress of Kelvin and Voigt.
+    pub fn is_viscous(&self) -> bool {
+        self.bodies.iter().any(|body| body.damping.stiffness > 0.0)
     }
 
     /// Consistent mass matrix of an element, the same for both directions [M].

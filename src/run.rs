@@ -3,19 +3,23 @@
 use std::time::Instant;
 
 use crate::boundary::Span;
-use crate::error::Error;
+use crate::error::{Error, StepFailure};
 use crate::explicit::Explicit;
-use crate::increments::{Judgement, bounded, judge};
+use crate::increments::{Judgement, bounded, fastest_slip, judge};
 use crate::linear::Multifrontal;
-use crate::model::{Model, Step};
+use crate::model::{Model, Rupture, Step};
 use crate::output::summary::RunReport;
 use crate::output::{Attempt, Observer};
 use crate::state::State;
-use crate::step::{Workspace, advance, begin};
+use crate::step::{Workspace, advance, begin, go_on};
 use crate::time::Scheme;
 
 /// Cut of the increment after one that could not be solved.
 const CUT: f64 = 0.5;
+
+/// Results of an explicit step if the case does not say how many, and of the time that a shear wave takes across the model
+/// where a step is explicit while a contact slips fast.
+const RESULTS: f64 = 100.0;
 
 /// Run all steps of a model. The report comes back from a stopped run as well.
 ///
@@ -23,20 +27,17 @@ const CUT: f64 = 0.5;
 /// [`Error`] when an increment cannot be made small enough, or an observer cannot write.
 pub fn run(model: &Model, observers: &mut [&mut dyn Observer]) -> (RunReport, Result<State, Error>) {
     let clock = Instant::now();
-    let mut report = RunReport::default();
-    let mut work = Workspace::new(model, Box::<Multifrontal>::default());
-    let mut state = model.initial_state();
-    let mut result = Ok(());
-    for step in &model.steps {
-        result = match step.scheme {
-            Scheme::Explicit { .. } => run_explicit(model, step, &mut state, &mut work, observers, &mut report),
-            _ => run_step(model, step, &mut state, &mut work, observers, &mut report),
-        };
-        if result.is_err() {
-            break;
-        }
-    }
+    let mut run = Run {
+        model,
+        state: model.initial_state(),
+        work: Workspace::new(model, Box::<Multifrontal>::default()),
+        report: RunReport::default(),
+        observers,
+    };
+    let mut result = model.steps.iter().try_for_each(|step| run.step(step));
+    let Run { state, work, mut report, observers, .. } = run;
     report.stabilization_work = state.energy.stabilization;
+    report.energy = state.energy;
     let waiting = Instant::now();
     for observer in observers.iter_mut() {
         result = result.and(observer.finish());
@@ -49,117 +50,182 @@ pub fn run(model: &Model, observers: &mut [&mut dyn Observer]) -> (RunReport, Re
     (report, result.map(|()| state))
 }
 
-/// Results of an explicit step if the case does not say how many.
-const RESULTS: f64 = 100.0;
+/// A run under way.
+struct Run<'m, 'o, 'p> {
+    model: &'m Model,
+    state: State,
+    work: Workspace<'m>,
+    report: RunReport,
+    observers: &'o mut [&'p mut dyn Observer],
+}
 
-/// A step of explicit increments. Observers see the state at the times of output.
-fn run_explicit(
-    model: &Model,
-    step: &Step,
-    state: &mut State,
-    work: &mut Workspace,
-    observers: &mut [&mut dyn Observer],
-    report: &mut RunReport,
-) -> Result<(), Error> {
-    let Span { start, end } = step.span;
-    let interval = model.interval.unwrap_or((end - start) / RESULTS);
-    let unsolvable = |time: f64, cause| Error::Unsolvable { step: step.name.clone(), time, cause };
-    let begun = Explicit::begin(model, step, state, &mut work.assembler);
-    let mut explicit = begun.map_err(|cause| unsolvable(state.time, cause))?;
-    for k in 1.. {
-        let old = state.clone();
-        let next = start + f64::from(k) * interval;
-        let time = if next > end - 1e-6 * interval { end } else { next };
-        let count = explicit.go_to(time, state, &mut work.assembler);
-        report.increments += count.map_err(|cause| unsolvable(state.time, cause))?;
+/// How a stretch of implicit increments ends.
+enum Stretch {
+    /// At the end of the step
+    Complete,
+    /// Before an increment in which a contact slips too fast for it
+    Rupture,
+}
+
+impl<'m> Run<'m, '_, '_> {
+    fn step(&mut self, step: &'m Step) -> Result<(), Error> {
+        if matches!(step.scheme, Scheme::Explicit { .. }) {
+            return self.explicit(step);
+        }
+        let started = begin(self.model, step, &self.state, &mut self.work);
+        self.state = started.map_err(|cause| self.unsolvable(step, cause))?;
+        while let Stretch::Rupture = self.implicit(step)? {
+            let Some(rupture) = &step.rupture else { break };
+            self.report.ruptures += 1;
+            self.rupture(rupture)?;
+            if self.state.time >= step.span.end {
+                break;
+            }
+            let resumed = go_on(self.model, step, &mut self.state, &mut self.work);
+            resumed.map_err(|cause| self.unsolvable(step, cause))?;
+        }
+        Ok(())
+    }
+
+    fn unsolvable(&self, step: &Step, cause: StepFailure) -> Error {
+        Error::Unsolvable { step: step.name.clone(), time: self.state.time, cause }
+    }
+
+    /// A step of explicit increments. Observers see the state at the times of output.
+    fn explicit(&mut self, step: &'m Step) -> Result<(), Error> {
+        let Span { start, end } = step.span;
+        let interval = self.model.interval.unwrap_or((end - start) / RESULTS);
+        let begun = Explicit::begin(self.model, step, &mut self.state, &mut self.work.assembler);
+        let mut explicit = begun.map_err(|cause| self.unsolvable(step, cause))?;
+        for k in 1.. {
+            self.explicit_to(&mut explicit, step, start + f64::from(k) * interval, interval)?;
+            if self.state.time == end {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Explicit increments within a step while a contact slips fast.
+    fn rupture(&mut self, rupture: &'m Rupture) -> Result<(), Error> {
+        let Rupture { slip_rate, calm, explicit: step } = rupture;
+        let interval = self.model.interval.unwrap_or(f64::INFINITY).min(calm / RESULTS);
+        let begun = Explicit::go_on(self.model, step, &mut self.state, &mut self.work.assembler);
+        let mut explicit = begun.map_err(|cause| self.unsolvable(step, cause))?;
+        let start = self.state.time;
+        let mut before = self.state.clone();
+        for k in 1.. {
+            self.explicit_to(&mut explicit, step, start + f64::from(k) * interval, interval)?;
+            if self.state.time == step.span.end {
+                break;
+            }
+            if self.state.time - before.time >= *calm {
+                if fastest_slip(&before, &self.state) <= *slip_rate {
+                    break;
+                }
+                before = self.state.clone();
+            }
+        }
+        Ok(())
+    }
+
+    /// Explicit increments to a time of output, or to the end of the step if that is near.
+    fn explicit_to(&mut self, explicit: &mut Explicit, step: &Step, time: f64, interval: f64) -> Result<(), Error> {
+        let end = step.span.end;
+        let time = if time > end - 1e-6 * interval { end } else { time };
+        let old = self.state.clone();
+        let count = explicit.go_to(time, &mut self.state, &mut self.work.assembler);
+        self.report.increments += count.map_err(|cause| self.unsolvable(step, cause))?;
         let told = Attempt {
             step,
             number: 1,
             old: &old,
             dt: time - old.time,
             iterations: &[],
-            accepted: Some(state),
+            accepted: Some(&self.state),
             local_error: None,
         };
-        let clock = Instant::now();
-        for observer in observers.iter_mut() {
-            observer.record(model, &told)?;
-        }
-        report.wall_s.output += clock.elapsed().as_secs_f64();
-        if time == end {
-            break;
-        }
+        tell(self.model, &told, self.observers, &mut self.report)
     }
-    Ok(())
+
+    /// Implicit or static increments until the end of the step, or until a contact slips too fast.
+    fn implicit(&mut self, step: &Step) -> Result<Stretch, Error> {
+        let mut dt = step.increments.initial;
+        let mut attempt = 1;
+        while self.state.time < step.span.end {
+            dt = bounded(step, self.state.time, dt);
+            let (iterations, outcome) = advance(self.model, step, &self.state, dt, &mut self.work);
+            self.report.newton_iterations += iterations.len();
+            self.report.factorizations += iterations.iter().filter(|iteration| iteration.newton.factorized).count();
+            let solved = outcome.map(|new| {
+                let judgement = judge(self.model, step, [&self.state, &new], iterations.len(), attempt > 1);
+                (new, judgement)
+            });
+            let fast = |new: &State| {
+                step.rupture.as_ref().is_some_and(|rupture| fastest_slip(&self.state, new) > rupture.slip_rate)
+            };
+            let too_fast = solved.as_ref().is_ok_and(|(new, _)| fast(new));
+            let accepted = solved.as_ref().ok().filter(|(_, judgement)| judgement.accepted && !too_fast);
+            let told = Attempt {
+                step,
+                number: attempt,
+                old: &self.state,
+                dt,
+                iterations: &iterations,
+                accepted: accepted.map(|(new, _)| new),
+                local_error: solved.as_ref().ok().and_then(|(_, judgement)| judgement.error),
+            };
+            tell(self.model, &told, self.observers, &mut self.report)?;
+            let shortest = CUT * dt < step.increments.min;
+            match solved {
+                Ok(_) if too_fast => {
+                    self.report.rejected += 1;
+                    if shortest {
+                        return Ok(Stretch::Rupture);
+                    }
+                    attempt += 1;
+                    dt *= CUT;
+                }
+                Ok((new, Judgement { accepted: true, next, .. })) => {
+                    self.state = new;
+                    self.report.increments += 1;
+                    attempt = 1;
+                    dt = next;
+                }
+                Ok((_, Judgement { next, .. })) => {
+                    self.report.rejected += 1;
+                    attempt += 1;
+                    dt = next;
+                }
+                Err(cause) if !cause.is_retryable() => return Err(self.unsolvable(step, cause)),
+                Err(_) if shortest && step.rupture.is_some() => {
+                    self.report.cutbacks += 1;
+                    return Ok(Stretch::Rupture);
+                }
+                Err(cause) if shortest => {
+                    let (step, time, min) = (step.name.clone(), self.state.time, step.increments.min);
+                    return Err(Error::StepTooSmall { step, time, dt, min, cause });
+                }
+                Err(_) => {
+                    self.report.cutbacks += 1;
+                    attempt += 1;
+                    dt *= CUT;
+                }
+            }
+        }
+        Ok(Stretch::Complete)
+    }
 }
 
-fn run_step(
+/// Tell all observers of an attempt.
+fn tell(
     model: &Model,
-    step: &Step,
-    state: &mut State,
-    work: &mut Workspace,
+    attempt: &Attempt,
     observers: &mut [&mut dyn Observer],
     report: &mut RunReport,
 ) -> Result<(), Error> {
-    let name = || step.name.clone();
-    *state =
-        begin(model, step, state, work).map_err(|cause| Error::Unsolvable { step: name(), time: state.time, cause })?;
-    let mut dt = step.increments.initial;
-    let mut attempt = 1;
-    while state.time < step.span.end {
-        dt = bounded(step, state.time, dt);
-        let (iterations, outcome) = advance(model, step, state, dt, work);
-        report.newton_iterations += iterations.len();
-        report.factorizations += iterations.iter().filter(|iteration| iteration.newton.factorized).count();
-        let solved = outcome.map(|new| {
-            let judgement = judge(model, step, [state, &new], iterations.len(), attempt > 1);
-            (new, judgement)
-        });
-        let accepted = solved.as_ref().ok().filter(|(_, judgement)| judgement.accepted);
-        let told = Attempt {
-            step,
-            number: attempt,
-            old: state,
-            dt,
-            iterations: &iterations,
-            accepted: accepted.map(|(new, _)| new),
-            local_error: solved.as_ref().ok().and_then(|(_, judgement)| judgement.error),
-        };
-        let clock = Instant::now();
-        for observer in observers.iter_mut() {
-            observer.record(model, &told)?;
-        }
-        report.wall_s.output += clock.elapsed().as_secs_f64();
-        match solved {
-            Ok((new, Judgement { accepted: true, next, .. })) => {
-                *state = new;
-                report.increments += 1;
-                attempt = 1;
-                dt = next;
-            }
-            Ok((_, Judgement { next, .. })) => {
-                report.rejected += 1;
-                attempt += 1;
-                dt = next;
-            }
-            Err(cause) if !cause.is_retryable() => {
-                return Err(Error::Unsolvable { step: name(), time: state.time, cause });
-            }
-            Err(cause) if CUT * dt < step.increments.min => {
-                return Err(Error::StepTooSmall {
-                    step: name(),
-                    time: state.time,
-                    dt,
-                    min: step.increments.min,
-                    cause,
-                });
-            }
-            Err(_) => {
-                report.cutbacks += 1;
-                attempt += 1;
-                dt *= CUT;
-            }
-        }
-    }
+    let clock = Instant::now();
+    observers.iter_mut().try_for_each(|observer| observer.record(model, attempt))?;
+    report.wall_s.output += clock.elapsed().as_secs_f64();
     Ok(())
 }

@@ -40,6 +40,22 @@ pub struct State {
     pub energy: Energy,
 }
 
+impl State {
+    /// Begin a step: what it counts from is the present state.
+    pub fn begin_step(&mut self) {
+        let (displacement, reaction) = (self.displacement.clone(), self.reaction.clone());
+        self.step_start = Arc::new(StepStart { displacement, reaction });
+        self.last_increment = None;
+    }
+
+    /// Take the motion out of a state, as statics does. Its energy counts as damped.
+    pub fn stop(&mut self) {
+        self.energy.damping_dissipation += std::mem::take(&mut self.energy.kinetic);
+        self.velocity.fill(0.0);
+        self.acceleration.fill(0.0);
+    }
+}
+
 /// The last accepted increment, from which the next start value is extrapolated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LastIncrement {
@@ -80,6 +96,13 @@ pub struct Energy {
 }
 
 impl Energy {
+    /// The largest of the sums in the audit: what its error is measured by.
+    pub fn turnover(&self) -> f64 {
+        let stored = self.kinetic + self.strain + self.contact_elastic;
+        let dissipated = self.friction_dissipation + self.damping_dissipation;
+        self.external_work.abs().max(self.initial.abs()).max(stored.abs()).max(dissipated.abs())
+    }
+
     /// external work + initial − (kinetic + strain + contact) − dissipation: 0 for an exact integration.
     pub fn error(&self) -> f64 {
         self.external_work + self.initial

@@ -1,7 +1,5 @@
 //! One increment: old state → new state.
 
-use std::sync::Arc;
-
 use crate::assembly::{Assembler, ContactCounts, Trial};
 use crate::contact::force::{ContactState, Status};
 use crate::energy::{contact_energy, friction_dissipation, work_of_drivers};
@@ -10,7 +8,7 @@ use crate::floating::null_motion;
 use crate::linear::{self, LinearSolver};
 use crate::model::{Model, Step};
 use crate::newton::{self, Iteration, NewtonFailure, Request};
-use crate::state::{LastIncrement, State, StepStart};
+use crate::state::{LastIncrement, State};
 use crate::system::System;
 use crate::time::start_acceleration;
 
@@ -54,17 +52,21 @@ pub struct IterationRecord {
 /// [`StepFailure`] when the initial state cannot be evaluated or a body has no mass.
 pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> Result<State, StepFailure> {
     let mut state = old.clone();
-    state.step_start = Arc::new(StepStart { displacement: old.displacement.clone(), reaction: old.reaction.clone() });
-    state.last_increment = None;
+    state.begin_step();
+    // Explicit increments leave the forces of copies with them.
+    model.ties.gather(2, &mut state.force);
     let resting = old.acceleration.iter().all(|a| *a == 0.0);
-    match step.scheme.coefficients() {
-        Some(_) if resting => start_dynamics(model, step, &mut state, work)?,
-        // The reaction of a freed support has become a load.
-        Some(_) => step.released.iter().for_each(|&dof| state.force[dof] -= old.reaction[dof]),
-        None if old.increment == 0 && model.contacts.iter().any(|pair| pair.initial.is_some()) => {
-            start_loaded(step, &mut state, work)?;
+    // The reaction of a freed support has become a load.
+    step.released.iter().for_each(|&dof| state.force[dof] -= old.reaction[dof]);
+    match step.scheme.is_dynamic() {
+        true if resting => start_dynamics(model, step, &mut state, work)?,
+        true => {}
+        false => {
+            state.stop();
+            if old.increment == 0 && model.contacts.iter().any(|pair| pair.initial.is_some()) {
+                start_loaded(step, &mut state, work)?;
+            }
         }
-        None => {}
     }
     if state.increment == 0 {
         state.energy.kinetic = kinetic_energy(step, &state, work);
@@ -72,6 +74,20 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
         state.energy.initial = state.energy.kinetic + state.energy.contact_elastic;
     }
     Ok(state)
+}
+
+/// Take up a step again after explicit increments within it.
+///
+/// # Errors
+/// [`StepFailure`] when the state cannot be evaluated or a body has no mass.
+pub fn go_on(model: &Model, step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), StepFailure> {
+    state.last_increment = None;
+    if step.scheme.is_dynamic() {
+        return start_dynamics(model, step, state, work);
+    }
+    model.ties.gather(2, &mut state.force);
+    state.stop();
+    Ok(())
 }
 
 /// Accelerations, and the forces that go with them, at a moment when dynamics begins: loads may set in with a jump.
@@ -97,6 +113,7 @@ fn start_dynamics(model: &Model, step: &Step, state: &mut State, work: &mut Work
         mass.replace_row(support.dof, scale);
         right[support.dof] = scale * start_acceleration(first.thirds(support, model), dt);
     }
+    work.assembler.tie(&mut mass, scale);
     state.acceleration = linear::solve(&mut *work.solver, &mass, &right).map_err(StepFailure::Mass)?.x;
     let inertia = work.assembler.mass().multiply(&state.acceleration);
     for support in &step.supports {
@@ -316,6 +333,7 @@ fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> Sta
     };
     let work_done = mean_work(&old.external, &external);
     let damped = mean_work(&old.damping, &evaluation.damping);
+    let relaxed = relaxation(step, &old.force, &increment);
     let stabilized: f64 = step.stabilization.iter().zip(&increment).map(|(c, du)| c * du * du).sum();
     let driven = work_of_drivers(model, step, [old.time, time], |dof| increment[dof]);
     let contact_elastic = contact_energy(model, &evaluation.contacts);
@@ -337,13 +355,23 @@ fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> Sta
         energy: old.energy,
     };
     state.energy.external_work += work_done + driven;
-    state.energy.damping_dissipation += driven - damped;
+    state.energy.damping_dissipation += driven - damped + relaxed;
     state.energy.stabilization += trial.stabilization_left() * stabilized / dt;
     state.energy.strain = evaluation.strain_energy;
     state.energy.contact_elastic = contact_elastic;
     state.energy.friction_dissipation += dissipated;
     state.energy.kinetic = kinetic_energy(step, &state, work);
     state
+}
+
+/// What forces out of balance at the start of a static increment, left by motion before it, would have set in motion.
+fn relaxation(step: &Step, force: &[f64], increment: &[f64]) -> f64 {
+    if step.scheme.is_dynamic() {
+        return 0.0;
+    }
+    let all: f64 = force.iter().zip(increment).map(|(f, du)| f * du).sum();
+    let supported: f64 = step.supports.iter().map(|support| force[support.dof] * increment[support.dof]).sum();
+    -0.5 * (all - supported)
 }
 
 fn kinetic_energy(step: &Step, state: &State, work: &mut Workspace) -> f64 {

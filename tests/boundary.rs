@@ -6,6 +6,7 @@ mod common;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use common::{Blocks, Finished, close, distance, finish};
+use fecontact::boundary::{Expression, Profile};
 use fecontact::configuration::Configuration;
 use fecontact::element::pressure::follower_pressure;
 use fecontact::state::State;
@@ -288,5 +289,26 @@ fn springs_pull_with_k_times_the_driver_less_the_node() {
         let u = (2.0 * driver + force) / 5.0;
         close("u", mean_ux(&run, "bar_right", state), u, 1e-12);
         close("reaction", run.reaction("bar_left", state)[0], -3.0 * u, 1e-12);
+    }
+}
+
+/// Exponents as in JSON; e stands for nothing else, and what is no number is told.
+#[test]
+fn numbers_in_expressions_may_have_exponents() {
+    let value =
+        |text: &str| Expression::parse(text).map(|expression| Profile::Expression(expression).value([2.0, 3.0].into()));
+    for (text, expected) in [
+        ("1e6", 1e6),
+        ("2.5E-3*x", 5e-3),
+        ("1e+2-1e1", 90.0),
+        ("x-1e-3", 2.0 - 1e-3),
+        (".5e1+4.e0", 9.0),
+        ("exp(0)+1e2^2", 1e4 + 1.0),
+        ("-3e2", -300.0),
+    ] {
+        close(text, value(text).unwrap_or_else(|error| panic!("{text}: {error}")), expected, 1e-12 * expected.abs());
+    }
+    for text in ["1e", "2e+", "1ex", "e6", "1e6.5e"] {
+        assert!(value(text).is_err(), "{text} was read");
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Module → layer. A new module must be listed.
-const LAYERS: [(&str, u32); 29] = [
+const LAYERS: [(&str, u32); 30] = [
     ("parameter", 0),
     ("configuration", 1),
     ("shape", 1),
@@ -12,6 +12,7 @@ const LAYERS: [(&str, u32); 29] = [
     ("friction", 1),
     ("material", 1),
     ("linear", 1),
+    ("ties", 1),
     ("system", 2),
     ("boundary", 3),
     ("contact", 3),

@@ -264,3 +264,123 @@ fn folders_without_results_are_refused() {
     refused(&[&run, &law], &["cannot be drawn over each other"]);
     assert_eq!(fecontact(&["plot"]).status.code(), Some(2));
 }
+
+const MAP_HEADER: &str = "time,contact,number,position,x,y,slip,slip_rate,R,mu,structure,traction,pressure";
+
+/// 41 points on 40 mm; from each start a pulse of 5 mm/s, 1 ms long, runs to the right at 1000 mm/s up to an end. Rows are
+/// 1 ms apart while something slips, and 1 s apart otherwise.
+fn slip_map(pulses: &[(f64, f64)]) -> String {
+    let mut times = vec![1.0, 2.0];
+    for (start, _) in pulses {
+        times.extend((0..=60).map(|k| start + 1e-3 * f64::from(k)));
+        times.push(start + 1.0);
+    }
+    let mut text = format!("{MAP_HEADER}\n");
+    let mut slips = [0.0; 41];
+    for (k, time) in times.iter().enumerate() {
+        for (point, slip) in slips.iter_mut().enumerate() {
+            let s = point as f64;
+            let arrives = |(start, end): &(f64, f64)| s <= *end && (time - start - 1e-3 * (s + 1.0)).abs() < 1e-6;
+            let rate = if pulses.iter().any(arrives) { 5.0 } else { 0.0 };
+            *slip += rate * if k == 0 { 0.0 } else { time - times[k - 1] };
+            let traction = if *slip > 0.0 { 1.0 } else { 2.0 };
+            writeln!(text, "{time},base,0,{s},{s},0,{slip},{rate},1,0.4,2,{traction},10").unwrap();
+        }
+    }
+    text
+}
+
+fn front_results(folder: &Path, name: &str, pulses: &[(f64, f64)]) -> std::path::PathBuf {
+    let folder = results(folder, name, 3.0);
+    let about = summary("Fronts", "mm")
+        .replace("\"dofs\"", "\"wave_speeds\": [930, 1000, 1870], \"front_slip_rate\": 1, \"dofs\"");
+    fs::write(folder.join("summary.json"), about).unwrap();
+    fs::write(folder.join("slip_map.csv"), slip_map(pulses)).unwrap();
+    folder
+}
+
+/// Left edges and tops of the cells of the darkest colour.
+fn darkest(figure: &str) -> Vec<[f64; 2]> {
+    let cell = |cell: &str| {
+        let (x, y) = cell.split_once('h').expect("a width").0.split_once(',').expect("a place");
+        [x.parse().unwrap(), y.parse().unwrap()]
+    };
+    let paths = figure.lines().filter(|line| line.starts_with("<path fill=\"#280048\""));
+    paths.flat_map(|path| path.split('M').skip(1).map(cell)).collect()
+}
+
+/// Two fronts, of which one stops half way: the map of the run shows both, and each has a map of its own in which it
+/// runs along the slope of its speed.
+#[test]
+fn fronts_are_drawn_over_space_and_time() {
+    let folder = TempDir::new().unwrap();
+    let run = front_results(folder.path(), "run", &[(3.0, 20.0), (10.0, 40.0)]);
+    assert_eq!(plot(&[&run], &run).status.code(), Some(0));
+    let whole = figure(&run, "slip_rate.svg");
+    for text in [">Slip rate of base<", ">position along the slave [mm]<", ">time [s]<", ">[mm/s]<", ">5<", ">Fronts<"]
+    {
+        assert!(whole.contains(text), "{text}");
+    }
+    assert!(!whole.contains("c_R"), "waves have no slope where a second is 40 px");
+    // The map is 720 px wide and has 41 columns; the first front reaches half of it.
+    let cells = darkest(&whole);
+    let tops: std::collections::BTreeSet<u64> = cells.iter().map(|[_, y]| y.to_bits()).collect();
+    assert!((2..=3).contains(&tops.len()), "two thin lines, of which one may lie in two rows: {cells:?}");
+
+    let events = figure(&run, "events.svg");
+    for text in [
+        ">1: t = 3.000000 s, mean slip 0.0026 mm<",
+        ">2: t = 10.000000 s, mean slip 0.005 mm<",
+        ">c_R<",
+        ">c_s<",
+        ">c_p<",
+    ] {
+        assert!(events.contains(text), "{text}");
+    }
+    // The second map stands right of the first. Columns are 330/41 px wide; 41 ms are 1/1.7 of its height of 250 px.
+    let second: Vec<[f64; 2]> = darkest(&events).into_iter().filter(|[x, _]| *x > 420.0).collect();
+    let left = second.iter().fold(f64::INFINITY, |least, [x, _]| x.min(least));
+    let bottom = second.iter().fold(0.0, |most: f64, [_, y]| y.max(most));
+    assert!(second.len() >= 41, "{}", second.len());
+    for [x, y] in &second {
+        let (s, t) = ((x - left) / 330.0 * 41.0, (bottom - y) / 250.0 * 1.7 * 41.0);
+        assert!((s - t).abs() < 2.5, "at the place {s} after {t} ms");
+    }
+
+    let snapshots = figure(&run, "traction.svg");
+    for text in [
+        "before the largest event: t = 10.000000 s",
+        "a third of its length slips",
+        "two thirds",
+        "end of the run",
+        ">peak μ p<",
+        "traction [N/mm²]",
+    ] {
+        assert!(snapshots.contains(text), "{text}");
+    }
+    assert!([&whole, &events, &snapshots].iter().all(|figure| figure.len() < 300_000));
+
+    // One front that takes the whole run is in the map of the run, with its slopes, and nowhere else.
+    let single = front_results(folder.path(), "single", &[]);
+    let mut rows = slip_map(&[(0.0, 40.0)]);
+    rows = rows
+        .lines()
+        .filter(|line| !line.starts_with("1,") && !line.starts_with("2,"))
+        .map(|line| format!("{line}\n"))
+        .collect();
+    fs::write(single.join("slip_map.csv"), rows).unwrap();
+    assert_eq!(plot(&[&single], &single).status.code(), Some(0));
+    assert!(figure(&single, "slip_rate.svg").contains(">c_p<") && !single.join("events.svg").exists());
+
+    // Nothing slips; and a row that is being written.
+    let rest = front_results(folder.path(), "rest", &[]);
+    assert_eq!(plot(&[&rest], &rest).status.code(), Some(0));
+    figure(&rest, "slip_rate.svg");
+    figure(&rest, "traction.svg");
+    assert!(!rest.join("events.svg").exists());
+    let text = slip_map(&[(3.0, 20.0), (10.0, 40.0)]);
+    let last = text.trim_end().rfind('\n').unwrap();
+    fs::write(run.join("slip_map.csv"), &text[..last - 300]).unwrap();
+    assert_eq!(plot(&[&run], &run).status.code(), Some(0));
+    assert_eq!(figure(&run, "events.svg"), events);
+}

@@ -162,3 +162,21 @@ fn frames_hold_the_uniform_stress_of_a_pressed_block() {
         close("force on top", on_top.map(|(force, _)| force[1]).sum(), 3.0 * along, 1e-10);
     }
 }
+
+#[test]
+fn a_dynamic_run_ends_with_its_energy_audit() {
+    let folder = TempDir::new().unwrap();
+    let output = run(folder.path(), &slider(10.0, 0.02));
+    let last_lines = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(last_lines.contains("energy: ") && last_lines.contains(" %) unaccounted for"), "{last_lines}");
+    let text = fs::read_to_string(folder.path().join("out/case/summary.json")).unwrap();
+    let energy = &serde_json::from_str::<Value>(&text).unwrap()["energy"];
+    let of = |name: &str| energy[name].as_f64().unwrap();
+    let history = fs::read_to_string(folder.path().join("out/case/history.csv")).unwrap();
+    let last: Vec<&str> = history.lines().last().unwrap().split(',').collect();
+    for (column, name) in ["kinetic", "strain", "contact_elastic", "friction_dissipation"].into_iter().enumerate() {
+        assert_eq!(last[4 + column].parse::<f64>().unwrap(), of(name), "{name}");
+    }
+    let error: f64 = last[10].parse().unwrap();
+    assert!(of("external_work") > 1.0 && error.abs() < 0.01 * of("external_work"), "{error} of {energy}");
+}

@@ -14,44 +14,35 @@ use fecontact::output::{Attempt, Observer};
 use fecontact::run::run;
 use serde_json::{Value, json};
 
-/// SCEC TPV205-2D (two patches of other stress) or TPV3-2D, in m, s, MPa and kg/1e6: a 30 km fault in 48 × 40 km of rock,
-/// elements of the size `h`.
+/// SCEC TPV205-2D (two patches of other stress) or TPV3-2D as in `cases/rupture/`, in m, s, MPa and kg/1e6, with elements of
+/// the size `h` in 48 × 40 km of rock.
 fn scec(h: f64, patches: bool, duration: f64, fields: Value) -> Value {
     fault_in([48e3, 20e3], h, patches, duration, fields)
 }
 
-/// The same in rock of a length, and of a height on either side.
+/// The same in rock of a length, and of a height on either side. Penalties and damping go with the elements.
 fn fault_in([length, height]: [f64; 2], h: f64, patches: bool, duration: f64, fields: Value) -> Value {
+    let name = if patches { "tpv205" } else { "tpv3" };
+    let mut case = committed(name);
     let divisions = [(length / h) as usize, (height / h) as usize];
     let blocks = Blocks::default()
         .rectangle("lower", divisions, [-0.5 * length, -height], [0.5 * length, 0.0])
         .rectangle("upper", divisions, [-0.5 * length, 0.0], [0.5 * length, height]);
-    let density = 2670.0e-6;
-    let shear = density * 3464.0 * 3464.0;
-    let material = json!({"material": {"model": "linear", "E": 2.5 * shear, "nu": 0.25, "density": density}});
-    let mut traction = vec![[-1500.0, 70.0], [-1500.0, 81.6], [1500.0, 81.6], [1500.0, 70.0]];
-    if patches {
-        let left = [[-9e3, 70.0], [-9e3, 78.0], [-6e3, 78.0], [-6e3, 70.0]];
-        let right = [[6e3, 70.0], [6e3, 62.0], [9e3, 62.0], [9e3, 70.0]];
-        traction = left.into_iter().chain(traction).chain(right).collect();
+    case["mesh"] = blocks.json();
+    let scale = |value: &mut Value, factor: f64| *value = json!(value.as_f64().expect("a number") * factor);
+    for body in ["lower", "upper"] {
+        scale(&mut case["bodies"][body]["damping"]["stiffness"], h / 100.0);
     }
-    let stiffness = 10.0 * shear / h;
-    let sides: Vec<Value> = ["lower_left", "lower_right", "lower_bottom", "upper_left", "upper_right", "upper_top"]
-        .iter()
-        .map(|side| json!({"on": side, "absorbing": true}))
-        .collect();
-    json!({
-        "mesh": blocks.json(),
-        "bodies": {"lower": material, "upper": material},
-        "contacts": {"fault": {
-            "slave": "upper_bottom", "master": "lower_top", "normal": {"alpha_n": stiffness},
-            "friction": {"law": "slip_weakening", "mu_s": 0.677, "mu_d": 0.525, "D_c": 0.4, "alpha_t": stiffness},
-            "along": {"cohesion": {"x": [[-15e3, 1e4], [-15e3, 0.0], [15e3, 0.0], [15e3, 1e4]]}},
-            "initial": {"pressure": 120.0, "traction": {"x": traction}, "balanced": true},
-        }},
-        "steps": [{"name": "rupture", "duration": duration, "scheme": {"explicit": {}}, "dt": {"initial": 1.0}, "loads": sides}],
-        "output": fields,
-    })
+    scale(&mut case["contacts"]["fault"]["normal"]["alpha_n"], 100.0 / h);
+    scale(&mut case["contacts"]["fault"]["friction"]["alpha_t"], 100.0 / h);
+    case["steps"][0]["duration"] = json!(duration);
+    case["output"] = fields;
+    case
+}
+
+fn committed(name: &str) -> Value {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/rupture/{name}.json"));
+    serde_json::from_str(&std::fs::read_to_string(path).expect("a case")).expect("JSON")
 }
 
 /// First time at which each point of the fault slips by more than the threshold, and its highest slip rate.
@@ -64,10 +55,16 @@ struct Arrivals {
     peaks: Vec<f64>,
     /// whether each point slipped by more than the threshold when last seen
     slipping: Vec<bool>,
-    /// points that stopped and set out again, and points that slipped backwards
+    /// when each point stopped
+    stopped: Vec<f64>,
+    /// points that set out again soon after they had stopped, and points that slipped backwards
     chatter: usize,
     energy_error: f64,
 }
+
+/// A point that sets out again within this time chatters; the waves from the ends of the fault that make points slip once
+/// more when all have stopped leave them longer [T]
+const SOON: f64 = 0.15;
 
 impl Observer for Arrivals {
     fn record(&mut self, _: &Model, attempt: &Attempt) -> Result<(), Error> {
@@ -78,6 +75,10 @@ impl Observer for Arrivals {
             let rate = signed.abs();
             let sets_out = rate > self.threshold;
             let again = self.arrivals[k].is_some() && sets_out && !self.slipping[k];
+            let again = again && state.time - self.stopped[k] < SOON;
+            if self.slipping[k] && !sets_out {
+                self.stopped[k] = state.time;
+            }
             self.chatter += usize::from(again || signed < -self.threshold);
             self.slipping[k] = sets_out;
             self.slips[k] = contact.friction.plastic_slip;
@@ -93,8 +94,8 @@ impl Observer for Arrivals {
     }
 }
 
-/// Arrival and highest slip rate at places along the fault; share of energy that the audit misses; how often points stopped
-/// and set out again.
+/// Arrival and highest slip rate at places along the fault; share of energy that the audit misses; how often points
+/// chattered.
 fn rupture(case: &Value, places: &[f64]) -> (BTreeMap<i64, (f64, f64)>, f64, usize) {
     let parsed = serde_json::from_value(case.clone()).expect("well formed");
     let model = case::build(&parsed, Path::new("test.json")).unwrap_or_else(|error| panic!("{error}"));
@@ -106,6 +107,7 @@ fn rupture(case: &Value, places: &[f64]) -> (BTreeMap<i64, (f64, f64)>, f64, usi
         arrivals: vec![None; n],
         peaks: vec![0.0; n],
         slipping: vec![false; n],
+        stopped: vec![0.0; n],
         chatter: 0,
         energy_error: 0.0,
     };
@@ -118,7 +120,7 @@ fn rupture(case: &Value, places: &[f64]) -> (BTreeMap<i64, (f64, f64)>, f64, usi
         let k = (0..n).min_by(|a, b| nearest(a).total_cmp(&nearest(b))).expect("points");
         (s as i64, (record.arrivals[k].unwrap_or(f64::INFINITY), record.peaks[k]))
     };
-    println!("{} times a point stopped and set out again, or slipped backwards", record.chatter);
+    println!("{} times a point stopped and set out again soon, or slipped backwards", record.chatter);
     (places.iter().map(|&s| at(s)).collect(), record.energy_error, record.chatter)
 }
 
@@ -140,9 +142,8 @@ fn compare(case: &Value, expected: &[(f64, f64)], tolerance: f64) {
         assert!((arrival - published).abs() <= tolerance * published, "at {s}: {arrival}, published {published}");
     }
     assert!(energy_error < 0.01, "{energy_error}");
-    // Once the fronts have stopped, waves from the ends of the fault run to and fro, and nothing damps those of the mesh.
-    let runs = case["steps"][0]["duration"].as_f64().is_some_and(|duration| duration <= 2.0);
-    assert!(chatter == 0 || !runs, "{chatter}");
+    // 960 points and 600 records: elastic bodies without damping have thousands.
+    assert!(chatter <= 30, "{chatter}");
 }
 
 const TPV205: [(f64, f64); 3] = [(-4500.0, 1.53), (4500.0, 1.53), (7500.0, 2.65)];
@@ -178,7 +179,7 @@ fn a_coarse_fault_breaks_in_time() {
 #[test]
 #[ignore = "minutes: 192 000 elements"]
 fn tpv205_breaks_as_published() {
-    compare(&scec(100.0, true, 12.0, quiet()), &TPV205, 0.03);
+    compare(&scec(100.0, true, 3.0, quiet()), &TPV205, 0.03);
 }
 
 #[test]
@@ -211,7 +212,7 @@ fn fronts_tell_when_and_how_fast_a_given_front_ran() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut old = model.initial_state();
     let mut fronts = Fronts::create(folder.path(), &model, &old, 0.5).expect("a file");
-    // From the middle to both ends at 2500 m/s, behind it 1 m/s of slip; after 6 s it rests, and at 9 s it starts again.
+    // From the middle to both ends at 2500 m/s, behind it 1 m/s of slip; after 6.5 s it rests, and at 9 s it starts again.
     let x = fecontact::configuration::Configuration::undeformed(&model.mesh.nodes);
     let places: Vec<f64> = model.contacts[0].points.iter().map(|point| point.at(&x).x).collect();
     for k in 1..=240 {
@@ -220,8 +221,11 @@ fn fronts_tell_when_and_how_fast_a_given_front_ran() {
         new.time = time;
         for (contact, s) in new.contacts[0].iter_mut().zip(&places) {
             let arrival = s.abs() / 2500.0;
-            contact.friction.plastic_slip = (time.min(6.0) - arrival).max(0.0) + (time - 9.0 - arrival).max(0.0);
+            let second = (time - 9.0).min(6.0);
+            contact.friction.plastic_slip = (time.min(6.5) - arrival).max(0.0) + (second - arrival).max(0.0);
         }
+        // Loads and stored energies give 3 a second.
+        (new.energy.external_work, new.energy.strain) = (5.0 * time, 2.0 * time);
         let told = Attempt {
             step: &model.steps[0],
             number: 1,
@@ -249,6 +253,10 @@ fn fronts_tell_when_and_how_fast_a_given_front_ran() {
             common::close("ratio", number(row, 8), number(row, 7) / speeds.rayleigh, 1e-9);
             common::close("ratio", number(row, 9), number(row, 7) / 3464.0, 1e-6);
         }
+        // All that is nearer to the middle has broken before; each passage is an event of its own.
+        assert_eq!(row[11], passage);
+        common::close("rupture length", number(row, 12), 2.0 * s.abs(), 2000.0);
+        common::close("energy", number(row, 13), 3.0 * (number(row, 6) - if passage == "2" { 9.0 } else { 0.0 }), 0.6);
     }
     assert!(again > 10 && found.len() > 30, "{} rows, {again} of a second front", found.len());
     let map = rows(&folder.path().join("slip_map.csv"));
@@ -292,4 +300,34 @@ fn a_balanced_fault_below_its_strength_stays_at_rest() {
     let fastest = state.velocity.iter().fold(0.0f64, |most, v| most.max(v.abs()));
     assert!(fastest < 1e-12, "{fastest}");
     assert!(model.prestress.iter().any(|force| *force != 0.0));
+}
+
+/// From the command line: the files of a case that asks for fronts, and their figures.
+#[test]
+fn a_case_that_asks_for_fronts_has_its_files_and_figures() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let case = scec(2000.0, true, 0.4, json!({"interval": 0.02, "fields": false, "fronts": {"slip_rate": 0.001}}));
+    let (path, out) = (folder.path().join("fault.json"), folder.path().join("out"));
+    std::fs::write(&path, case.to_string()).expect("written");
+    let fecontact = |arguments: &[&str]| {
+        let output =
+            std::process::Command::new(env!("CARGO_BIN_EXE_fecontact")).args(arguments).output().expect("it starts");
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    };
+    let [path, out_name] = [&path, &out].map(|path| path.to_str().expect("unicode"));
+    fecontact(&["run", path, "--out", out_name, "--quiet"]);
+    let [map, fronts, history] = ["slip_map.csv", "fronts.csv", "history.csv"].map(|name| rows(&out.join(name)));
+    // 24 edges of 2 km with two points each, at every row of the history.
+    assert_eq!((history.len(), map.len()), (20, 20 * 48));
+    // The overstressed middle is the first to slip.
+    let first =
+        fronts.iter().min_by(|a, b| a[6].parse::<f64>().unwrap().total_cmp(&b[6].parse().unwrap())).expect("a front");
+    assert!(first[0] == "fault" && first[3].parse::<f64>().unwrap().abs() < 2000.0, "{first:?}");
+    let summary: Value = serde_json::from_str(&std::fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
+    assert_eq!(summary["front_slip_rate"], 0.001);
+    common::close("c_s", summary["wave_speeds"][1].as_f64().unwrap(), 3464.0, 1e-6);
+    fecontact(&["plot", out_name]);
+    for name in ["slip_rate.svg", "traction.svg"] {
+        assert!(out.join(name).exists(), "{name}");
+    }
 }

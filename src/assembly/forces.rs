@@ -45,6 +45,15 @@ impl Gather {
     }
 }
 
+/// Values of an element's nodes, from those of all dofs.
+fn nodal(model: &Model, e: usize, all: &[f64]) -> [Vector2<f64>; 9] {
+    let mut local = [Vector2::zeros(); 9];
+    for (local, &node) in local.iter_mut().zip(&model.mesh.elements[e].nodes) {
+        *local = Vector2::new(all[2 * node], all[2 * node + 1]);
+    }
+    local
+}
+
 impl Assembler<'_> {
     /// Internal, contact and external forces at the displacement `u`, without those of dashpots, and everything else that
     /// an accepted state takes over from the evaluation but rates and reactions.
@@ -91,16 +100,49 @@ impl Assembler<'_> {
     /// Write the internal forces of the solids over `force`; returns the stored energy.
     pub fn gather_solids(&mut self, u: &[f64], force: &mut [f64]) -> Result<f64, TrialFailure> {
         let model = self.model;
-        let Gather { stride, starts, places, forces, energies } = self.gather.get_or_insert_with(|| Gather::new(model));
-        let one = |(e, force): (usize, &mut [Vector2<f64>])| {
-            let nodes = &model.mesh.elements[e].nodes;
-            let mut local = [Vector2::zeros(); 9];
-            for (local, &node) in local.iter_mut().zip(nodes) {
-                *local = Vector2::new(u[2 * node], u[2 * node + 1]);
-            }
+        let one = |e: usize, forces: &mut [Vector2<f64>]| {
+            let local = nodal(model, e, u);
             let material = &*model.bodies[model.body_of_element[e]].material;
-            model.solids[e].nodal_forces(material, &local[..nodes.len()], &mut force[..nodes.len()])
+            model.solids[e].nodal_forces(material, &local[..forces.len()], forces)
         };
+        self.gather_elements(one, force)
+    }
+
+    /// Write the viscous forces of the bodies at displacements `u` and velocities `v` over `force`.
+    ///
+    /// # Errors
+    /// None: a viscous stress needs no volume.
+    pub fn gather_viscous(&mut self, u: &[f64], v: &[f64], force: &mut [f64]) -> Result<(), TrialFailure> {
+        let model = self.model;
+        let one = |e: usize, forces: &mut [Vector2<f64>]| {
+            let body = &model.bodies[model.body_of_element[e]];
+            match body.damping.stiffness > 0.0 {
+                true => {
+                    let [u, v] = [u, v].map(|all| nodal(model, e, all));
+                    let n = forces.len();
+                    model.solids[e].viscous_forces(
+                        (&*body.material, body.damping.stiffness),
+                        [&u[..n], &v[..n]],
+                        forces,
+                    );
+                }
+                false => forces.fill(Vector2::zeros()),
+            }
+            Ok(0.0)
+        };
+        self.gather_elements(one, force).map(drop)
+    }
+
+    /// Write the sums at the nodes of what every element puts there over `force`; returns the sum of what it says.
+    fn gather_elements(
+        &mut self,
+        element: impl Fn(usize, &mut [Vector2<f64>]) -> Result<f64, InvertedElement> + Sync,
+        force: &mut [f64],
+    ) -> Result<f64, TrialFailure> {
+        let model = self.model;
+        let Gather { stride, starts, places, forces, energies } = self.gather.get_or_insert_with(|| Gather::new(model));
+        let one =
+            |(e, forces): (usize, &mut [Vector2<f64>])| element(e, &mut forces[..model.mesh.elements[e].nodes.len()]);
         let elements = forces.par_chunks_mut((*stride).max(1)).enumerate().with_min_len(FEW);
         elements.map(one).collect_into_vec(energies);
         let sum = |(node, force): (usize, &mut [f64])| {

@@ -9,6 +9,7 @@
 //! Elements and contact points are evaluated in parallel and added in a fixed order: the same bits on any number of
 //! threads.
 
+mod damping;
 mod forces;
 
 use std::sync::Arc;
@@ -25,7 +26,7 @@ use crate::element::pressure::follower_pressure;
 use crate::error::TrialFailure;
 use crate::linear::{BlockPosition, Pattern, SparseMatrix};
 use crate::material::InvertedElement;
-use crate::model::{Model, Step};
+use crate::model::{Body, Model, Step};
 use crate::newton::Request;
 use crate::state::State;
 use crate::system::{Contribution, System};
@@ -180,6 +181,8 @@ pub struct Assembler<'m> {
     /// Where each element's blocks start
     block_starts: Vec<usize>,
     mass: Option<SparseMatrix>,
+    /// η M of the bodies' damping
+    damping_mass: Option<SparseMatrix>,
     /// w of prescribed dofs [F/L]
     weight: f64,
     /// Sum of the forces' magnitudes at each dof [F]
@@ -247,6 +250,7 @@ impl<'m> Assembler<'m> {
             blocks: Vec::new(),
             block_starts,
             mass: None,
+            damping_mass: None,
             weight: weight(model),
             magnitudes: vec![0.0; model.dofs()],
             iterates: Vec::new(),
@@ -277,16 +281,48 @@ impl<'m> Assembler<'m> {
         let elements = model.mesh.elements.iter().map(|element| &element.nodes[..]);
         let edges = model.steps.iter().flat_map(|step| step.loads.pressures.iter().flat_map(|load| &load.edges));
         let all = elements.chain(edges.map(|edge| &edge[..])).chain(groups.iter().map(|group| &group[..]));
-        let pattern = Pattern::new(model.mesh.nodes.len(), all);
+        let tied = self.tied(all.clone());
+        let pattern = Pattern::new(model.mesh.nodes.len(), all.chain(tied.iter().map(|group| &group[..])));
         self.blocks.clear();
         for element in &model.mesh.elements {
-            for &column in &element.nodes {
+            let nodes: Vec<usize> = element.nodes.iter().map(|&node| model.ties.original(node)).collect();
+            for &column in &nodes {
                 let block = |&row| pattern.block(row, column).expect("the pattern couples all nodes of an element");
-                self.blocks.extend(element.nodes.iter().map(block));
+                self.blocks.extend(nodes.iter().map(block));
             }
         }
         self.pattern = Arc::new(pattern);
         self.mass = None;
+        self.damping_mass = None;
+    }
+
+    /// The groups that have copies in them, as the nodes that those move with, and every copy with its own.
+    fn tied<'a>(&self, groups: impl Iterator<Item = &'a [usize]>) -> Vec<Vec<usize>> {
+        let ties = &self.model.ties;
+        if ties.pairs().is_empty() {
+            return Vec::new();
+        }
+        let originals = |group: &[usize]| -> Vec<usize> { group.iter().map(|&node| ties.original(node)).collect() };
+        let moved = groups.map(|group| (group, originals(group))).filter(|(group, originals)| group != originals);
+        let mut tied: Vec<Vec<usize>> = moved.map(|(_, originals)| originals).collect();
+        tied.extend(ties.pairs().iter().map(|&(copy, original)| vec![copy, original]));
+        tied
+    }
+
+    /// The dof that a dof moves with.
+    fn original(&self, dof: usize) -> usize {
+        2 * self.model.ties.original(dof / 2) + dof % 2
+    }
+
+    /// Replace the equations of copies by w (x_copy − x_original) = 0.
+    pub fn tie(&self, matrix: &mut SparseMatrix, weight: f64) {
+        for &(copy, original) in self.model.ties.pairs() {
+            for d in 0..2 {
+                matrix.replace_row(2 * copy + d, weight);
+                let coupled = matrix.pattern.block(copy, original).expect("the pattern couples copies");
+                matrix.values[coupled.value(d, d)] = -weight;
+            }
+        }
     }
 
     /// Residual, and tangent on request, at the displacement `u`.
@@ -326,8 +362,11 @@ impl<'m> Assembler<'m> {
                 self.add(contribution, &mut force, values.as_deref_mut());
             }
         }
-        let loads = self.add_loads(trial, u, &x, &mut force, values.as_deref_mut())?;
+        let mut loads = self.add_loads(trial, u, &x, &mut force, values.as_deref_mut())?;
         self.add_dashpots(trial, u, &mut force, values.as_deref_mut())?;
+        for values in [&mut force, &mut loads, &mut self.evaluation.damping, &mut self.magnitudes] {
+            self.model.ties.gather(2, values);
+        }
         self.evaluation.contacts =
             responses.iter().map(|pair| pair.iter().map(|(state, _)| *state).collect()).collect();
         if tangent {
@@ -409,8 +448,9 @@ impl<'m> Assembler<'m> {
     /// each foot and a few ahead, where the point slides to. Every time the room turns out too small there will be twice
     /// as much, so that the pattern seldom changes as points slide.
     fn cover(&mut self, responses: &[PairResponse], old: &State) {
+        let original = |node: &usize| self.model.ties.original(*node);
         let coupled = |closed: &Closed| {
-            let nodes = &closed.contribution.nodes;
+            let nodes: Vec<usize> = closed.contribution.nodes.iter().map(original).collect();
             nodes.iter().all(|&a| nodes.iter().all(|&b| self.pattern.block(a, b).is_some()))
         };
         if responses.iter().flatten().filter_map(|(_, closed)| closed.as_ref()).all(coupled) {
@@ -518,6 +558,7 @@ impl<'m> Assembler<'m> {
         }
         if let Some(tangent) = tangent {
             let pattern = &self.pattern;
+            let nodes: Vec<usize> = nodes.iter().map(|&node| self.model.ties.original(node)).collect();
             let block = |row, column| pattern.block(row, column).expect("the pattern was extended to cover this point");
             let blocks: Vec<BlockPosition> =
                 nodes.iter().flat_map(|&column| nodes.iter().map(move |&row| block(row, column))).collect();
@@ -581,7 +622,7 @@ impl<'m> Assembler<'m> {
             let driver = spring.driver.as_ref().map_or(0.0, |driver| driver.value(position, time));
             force[spring.dof] -= spring.stiffness * (driver - u[spring.dof]);
             if let Some(tangent) = tangent.as_deref_mut() {
-                tangent.add_diagonal(spring.dof, spring.stiffness);
+                tangent.add_diagonal(self.original(spring.dof), spring.stiffness);
             }
         }
         for &dof in &step.released {
@@ -589,7 +630,7 @@ impl<'m> Assembler<'m> {
         }
     }
 
-    /// Subtract the forces of the dashpots.
+    /// Subtract the forces of the dashpots, and add the damping of bodies.
     fn add_dashpots(
         &mut self,
         trial: Trial,
@@ -610,7 +651,7 @@ impl<'m> Assembler<'m> {
             damping[dof] += pull;
             self.magnitudes[dof] += pull.abs();
             if let Some(tangent) = tangent.as_deref_mut() {
-                tangent.add_diagonal(dof, dashpot.coefficient * dvelocity);
+                tangent.add_diagonal(self.original(dof), dashpot.coefficient * dvelocity);
             }
         }
         for Absorber { node, coefficients } in &trial.step.loads.absorbers {
@@ -622,11 +663,12 @@ impl<'m> Assembler<'m> {
                 damping[2 * node + i] += pull;
                 self.magnitudes[2 * node + i] += pull.abs();
                 if let Some(tangent) = tangent.as_deref_mut() {
-                    tangent.add_own(*node, (i, j), coefficients[(i, j)] * dvelocity);
+                    tangent.add_own(self.model.ties.original(*node), (i, j), coefficients[(i, j)] * dvelocity);
                 }
             }
         }
-        self.stabilize(trial, u, force, tangent, &mut damping);
+        self.stabilize(trial, u, force, tangent.as_deref_mut(), &mut damping);
+        self.add_damping(trial, u, force, tangent, &mut damping);
         self.evaluation.damping = damping;
         Ok(())
     }
@@ -654,7 +696,7 @@ impl<'m> Assembler<'m> {
             self.magnitudes[dof] += pull.abs();
             squares += pull * pull;
             if let Some(tangent) = tangent.as_deref_mut() {
-                tangent.add_diagonal(dof, stiffness);
+                tangent.add_diagonal(self.original(dof), stiffness);
             }
         }
         self.evaluation.stabilization = squares.sqrt();
@@ -711,10 +753,12 @@ impl<'m> Assembler<'m> {
             let places = trial.thirds(support, self.model);
             (velocity[dof], acceleration[dof]) = supported_rates(places, old.velocity[dof], dt);
         }
+        self.model.ties.spread(2, &mut velocity);
+        self.model.ties.spread(2, &mut acceleration);
         (velocity, acceleration)
     }
 
-    /// Replace the equations of prescribed dofs by w (u − ū) = 0.
+    /// Replace the equations of prescribed dofs by w (u − ū) = 0, and those of copies.
     fn prescribe(&self, trial: Trial, u: &[f64], tangent: bool, system: &mut System) -> Result<(), TrialFailure> {
         for support in &trial.step.supports {
             let dof = support.dof;
@@ -726,6 +770,14 @@ impl<'m> Assembler<'m> {
             if tangent {
                 system.tangent.replace_row(dof, self.weight);
             }
+        }
+        for &(copy, original) in self.model.ties.pairs() {
+            for d in 0..2 {
+                system.residual[2 * copy + d] = self.weight * (u[2 * copy + d] - u[2 * original + d]);
+            }
+        }
+        if tangent {
+            self.tie(&mut system.tangent, self.weight);
         }
         Ok(())
     }
@@ -750,6 +802,13 @@ impl<'m> Assembler<'m> {
             system.round_off += f64::EPSILON * inertia;
         }
         let dvelocity = scheme.map_or(1.0 / dt, |scheme| scheme.dvelocity(dt));
+        if scheme.is_some() {
+            let longest = way.iter().fold(0.0f64, |longest, way| longest.max(*way));
+            let viscosity = |body: &Body| body.damping.stiffness * body.material.stiffness();
+            let resistance = |body: &Body| viscosity(body) * (body.nodes.len() as f64).sqrt();
+            let resistance: f64 = self.model.bodies.iter().map(resistance).sum();
+            system.round_off += f64::EPSILON * resistance * dvelocity * longest;
+        }
         for dashpot in &step.loads.dashpots {
             system.round_off += f64::EPSILON * dashpot.coefficient * dvelocity * way[dashpot.dof];
         }
@@ -771,7 +830,8 @@ impl<'m> Assembler<'m> {
                 add_blocks(&mut mass, &blocks[starts[e]..starts[e + 1]], both.as_slice(), n);
             }
             for point in &model.point_masses {
-                let dofs = point.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
+                let nodes = point.nodes.iter().map(|&node| model.ties.original(node));
+                let dofs = nodes.flat_map(|node| [2 * node, 2 * node + 1]);
                 dofs.for_each(|dof| mass.add_diagonal(dof, point.mass));
             }
             mass
@@ -792,6 +852,7 @@ fn weight(model: &Model) -> f64 {
 /// or, in statics, the mean of the increment. An increment of no length leaves v as it is.
 fn velocity(model: &Model, trial: Trial, u: &[f64], dof: usize) -> (f64, f64) {
     let Trial { old, step, dt, .. } = trial;
+    let dof = 2 * model.ties.original(dof / 2) + dof % 2;
     let (increment, before) = (u[dof] - old.displacement[dof], old.velocity[dof]);
     if dt == 0.0 {
         return (before, 0.0);

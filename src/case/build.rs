@@ -7,11 +7,11 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::error::{CaseError, Complaint};
 use super::file::{
-    Case, CircleInput, Components, ContactInput, DashpotInput, DriveInput, Formulation, IncrementsInput, LoadInput,
-    MasterInput, MeshSource, Method, NodeInput, Place, PlaneInput, PointMassInput, PolylineInput, RigidInput,
-    SpringInput, StepInput, TimeInput,
+    Case, CircleInput, Components, ContactInput, DampingInput, DashpotInput, DriveInput, Formulation, IncrementsInput,
+    LoadInput, MasterInput, MeshSource, Method, NodeInput, Place, PlaneInput, PointMassInput, PolylineInput,
+    RigidInput, RuptureInput, SpringInput, StepInput, TimeInput,
 };
-use super::{along, initial, names, supported};
+use super::{along, initial, names, periodic, supported};
 use crate::boundary::{
     Absorber, Amplitude, Dashpot, DeadLoad, Drive, Expression, FollowerPressure, Loads, Motion, Prescribed, Span,
     Spring,
@@ -22,10 +22,12 @@ use crate::contact::pair::ContactPair;
 use crate::contact::rigid::{Circle, Plane, Polyline, Rigid};
 use crate::contact::surface::{Master, SlavePoint, Surface, gauss_points, in_order, lone_point, nodal_points};
 use crate::element::{SolidElement, consistent_mass};
+use crate::material::Material;
 use crate::mesh::{Edge, Group, Mesh, gmsh};
-use crate::model::{Body, Increments, Model, PointMass, Step, WatchedSet};
+use crate::model::{Body, Damping, Increments, Model, PointMass, Rupture, Step, WatchedSet};
 use crate::newton;
 use crate::shape;
+use crate::ties::Ties;
 use crate::time::Scheme;
 
 /// Largest number of Newton iterations that makes sense to allow.
@@ -71,6 +73,7 @@ fn build_on(case: &Case, mesh: Mesh) -> Checked<Model> {
         massless: vec![false; mesh.nodes.len()],
         mesh,
         bodies,
+        ties: Ties::default(),
         point_masses: Vec::new(),
         body_of_element,
         solids,
@@ -82,13 +85,13 @@ fn build_on(case: &Case, mesh: Mesh) -> Checked<Model> {
         interval: case.output.interval,
     };
     model.point_masses = point_masses(case, &model.mesh)?;
+    model.ties = periodic::ties(&case.periodic, &model.mesh)?;
     model.contacts = contacts(case, &model)?;
     model.massless = massless(case, &model.mesh)?;
     model.prestress = initial::prestress(case, &model);
     model.steps = steps(case, &model)?;
     model.initial_velocity = initial::velocities(case, &model)?;
-    model.watch =
-        case.watch.iter().enumerate().map(|(k, name)| watched(&model.mesh, k, name)).collect::<Checked<_>>()?;
+    model.watch = case.watch.iter().enumerate().map(|(k, name)| watched(&model, k, name)).collect::<Checked<_>>()?;
     if case.output.every == 0 {
         let message = "is 0: must be at least 1 (to write no fields, give \"fields\": false)";
         return Err(Complaint::new("output.every", message));
@@ -123,7 +126,8 @@ fn massless(case: &Case, mesh: &Mesh) -> Checked<Vec<bool>> {
 /// Explicit steps solve no equations, and so cannot raise pressures until penetrations are small, nor find where a node
 /// without mass is.
 fn check_explicit(case: &Case, model: &Model) -> Checked<()> {
-    let Some(k) = model.steps.iter().position(|step| matches!(step.scheme, Scheme::Explicit { .. })) else {
+    let explicit = |step: &Step| step.rupture.is_some() || matches!(step.scheme, Scheme::Explicit { .. });
+    let Some(k) = model.steps.iter().position(explicit) else {
         return Ok(());
     };
     if let Some((name, _)) = case.contacts.iter().find(|(_, input)| input.massless) {
@@ -169,10 +173,12 @@ fn bodies(case: &Case, mesh: &Mesh) -> Checked<(Vec<Body>, Vec<usize>)> {
         };
         let material = input.material.build().map_err(|error| Complaint::new(format!("{place}.material"), error))?;
         check_stiffness(&format!("{place}.material"), "the stiffness lambda + 2 G", material.stiffness())?;
+        let damping = damping(&input.damping, &*material, &format!("{place}.damping"))?;
         for &element in elements {
             body_of_element[element] = bodies.len();
         }
-        bodies.push(Body { name: name.clone(), material, elements: elements.clone(), nodes: mesh.nodes_of(group) });
+        let (elements, nodes) = (elements.clone(), mesh.nodes_of(group));
+        bodies.push(Body { name: name.clone(), material, damping, elements, nodes });
     }
     match body_of_element.iter().position(|&body| body == usize::MAX) {
         Some(element) => {
@@ -184,6 +190,20 @@ fn bodies(case: &Case, mesh: &Mesh) -> Checked<(Vec<Body>, Vec<usize>)> {
         }
         None => Ok((bodies, body_of_element)),
     }
+}
+
+fn damping(input: &DampingInput, material: &dyn Material, place: &str) -> Checked<Damping> {
+    let DampingInput { mass, stiffness } = *input;
+    for (key, value) in [("mass", mass), ("stiffness", stiffness)] {
+        if !(value >= 0.0 && value.is_finite()) {
+            return Err(Complaint::new(format!("{place}.{key}"), format!("is {value}: must be zero or positive")));
+        }
+    }
+    if mass > 0.0 && material.density() == 0.0 {
+        let message = "has no effect on a body without mass: give material.density, or damp by stiffness";
+        return Err(Complaint::new(format!("{place}.mass"), message));
+    }
+    Ok(Damping { mass, stiffness })
 }
 
 fn point_masses(case: &Case, mesh: &Mesh) -> Checked<Vec<PointMass>> {
@@ -265,7 +285,6 @@ fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPa
         return Err(Complaint::new(friction + ".alpha_t", "is missing: a slave group of points has no default for it"));
     }
     check_stiffness(&format!("{place}.normal"), "alpha_n", alpha_n)?;
-    let mut points = points;
     let laws = along::laws(&place, input, &mut points, &model.mesh, 0.5 * alpha_n)?;
     for law in laws.iter().filter(|law| law.stiffness() > 0.0) {
         check_stiffness(&friction, "alpha_t", law.stiffness())?;
@@ -447,9 +466,11 @@ fn check_disjoint(
     Err(Complaint::new(place, message))
 }
 
-fn watched(mesh: &Mesh, k: usize, name: &str) -> Checked<WatchedSet> {
-    let group = mesh.group(name).map_err(|error| Complaint::new(format!("watch[{k}]"), error))?;
-    Ok(WatchedSet { name: name.into(), nodes: mesh.nodes_of(group) })
+/// The reactions of copies are with the nodes they move with.
+fn watched(model: &Model, k: usize, name: &str) -> Checked<WatchedSet> {
+    let group = model.mesh.group(name).map_err(|error| Complaint::new(format!("watch[{k}]"), error))?;
+    let nodes: BTreeSet<usize> = model.mesh.nodes_of(group).into_iter().map(|node| model.ties.original(node)).collect();
+    Ok(WatchedSet { name: name.into(), nodes: nodes.into_iter().collect() })
 }
 
 fn steps(case: &Case, model: &Model) -> Checked<Vec<Step>> {
@@ -517,7 +538,9 @@ impl StepBuilder<'_> {
         let supports = self.supports.values().cloned().collect();
         let stabilization = stabilization(&format!("{place}.stabilize"), input, self.model)?;
         let (name, scheme) = (input.name.clone(), input.scheme);
-        Ok(Step { name, span, scheme, increments, supports, released, loads, stabilization })
+        let mut step = Step { name, span, scheme, increments, rupture: None, supports, released, loads, stabilization };
+        step.rupture = rupture(&format!("{place}.rupture"), input, &step, self.model)?.map(Box::new);
+        Ok(step)
     }
 
     /// Take over the supports of the step before, replace those named again, and list the dofs that are freed.
@@ -531,6 +554,7 @@ impl StepBuilder<'_> {
         for (k, support) in input.supports.iter().enumerate() {
             let place = format!("{place}.supports[{k}]");
             let nodes = nodes_at(&self.model.mesh, &support.on, &format!("{place}.on"))?;
+            let nodes: Vec<usize> = nodes.into_iter().map(|node| self.model.ties.original(node)).collect();
             let directions = [("ux", 0, &support.ux), ("uy", 1, &support.uy)];
             if support.rotation.is_none() && directions.iter().all(|(_, _, given)| given.is_none()) {
                 return Err(Complaint::new(place, "prescribes nothing: give ux, uy or rotation"));
@@ -888,6 +912,27 @@ fn stabilization(place: &str, input: &StepInput, model: &Model) -> Checked<Vec<f
         dofs.for_each(|dof| coefficients[dof] = coefficient);
     }
     Ok(coefficients)
+}
+
+fn rupture(place: &str, input: &StepInput, step: &Step, model: &Model) -> Checked<Option<Rupture>> {
+    let Some(RuptureInput { slip_rate, safety }) = input.rupture else { return Ok(None) };
+    if !(slip_rate > 0.0 && slip_rate.is_finite()) {
+        return Err(Complaint::new(format!("{place}.slip_rate"), format!("is {slip_rate}: must be positive")));
+    }
+    if matches!(step.scheme, Scheme::Explicit { .. }) {
+        return Err(Complaint::new(place, "is for static and implicit steps: this one is explicit throughout"));
+    }
+    if model.contacts.is_empty() {
+        return Err(Complaint::new(place, "needs a contact that may slip: leave it out"));
+    }
+    let scheme = Scheme::Explicit { safety };
+    scheme.check().map_err(|error| Complaint::new(place, error))?;
+    let slowest = |body: &Body| (body.material.shear_modulus() / body.material.density()).sqrt();
+    let slowest = model.bodies.iter().map(slowest).fold(f64::INFINITY, f64::min);
+    let calm = (model.mesh.diagonal() / slowest).max(step.increments.min);
+    let increments = Increments { error: None, ..step.increments };
+    let explicit = Step { scheme, increments, stabilization: Vec::new(), ..step.clone() };
+    Ok(Some(Rupture { slip_rate, calm, explicit }))
 }
 
 fn increments(place: &str, input: Option<IncrementsInput>, span: Span, scheme: Scheme) -> Checked<Increments> {

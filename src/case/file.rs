@@ -29,6 +29,10 @@ pub struct Case {
     /// Point masses by the name of a mesh group: a mass at each of its nodes
     #[serde(default)]
     pub point_masses: BTreeMap<String, PointMassInput>,
+    /// Periodic sides: pairs of groups whose nodes lie alike. What leaves by one side comes in by the other: each node
+    /// moves as its partner does, and what acts on one acts on both
+    #[serde(default)]
+    pub periodic: Vec<[String; 2]>,
     /// Contacts by a name of your choice
     #[serde(default)]
     pub contacts: BTreeMap<String, ContactInput>,
@@ -74,6 +78,20 @@ pub struct BodyInput {
     /// Element formulation
     #[serde(default)]
     pub element: Formulation,
+    /// Damping of the body in dynamic steps; none unless given
+    #[serde(default)]
+    pub damping: DampingInput,
+}
+
+/// Rayleigh damping. A vibration of angular frequency w decays with the damping ratio (mass/w + stiffness w)/2.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct DampingInput {
+    /// Force per momentum: damps slow motions most, free flight included [1/T]
+    pub mass: f64,
+    /// Kelvin-Voigt: viscous stress, this time times the elastic stress of the rate of strain; damps fast vibrations most,
+    /// and makes explicit increments shorter [T]
+    pub stiffness: f64,
 }
 
 /// How the elements of a body are integrated.
@@ -314,12 +332,33 @@ pub struct StepInput {
     /// resist motion, at the start of the step as if this share of the body's stiffness lambda + 2G moved it in the
     /// time of the step; they fade linearly and are gone at its end. 1e-3 is a good start. Not inherited
     pub stabilize: Option<f64>,
+    /// Static and implicit steps: the step goes on explicitly while a contact slips fast. Not inherited
+    pub rupture: Option<RuptureInput>,
     /// Supports; inherited, and replaced where the same group and direction is named again
     #[serde(default)]
     pub supports: Vec<SupportInput>,
     /// Loads; inherited, and replaced where the same group and kind is named again
     #[serde(default)]
     pub loads: Vec<LoadInput>,
+}
+
+/// When a step goes on explicitly, and returns to its own scheme. An increment in which a contact point slips faster than
+/// `slip_rate`, or that cannot be solved, is halved down to `dt.min` and, if that does not help, made explicitly. The step
+/// returns when no point has slipped that fast, on the mean of the time that a shear wave takes across the model. To be
+/// noticed, an event must slip more than `slip_rate` times `dt.max`. Waves that are left die in a static step, and their
+/// energy counts as damped
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RuptureInput {
+    /// Slip rate above which increments are explicit [L/T]
+    pub slip_rate: f64,
+    /// Explicit increments as a share of the longest that is stable, above 0 and at most 1; 0.9 unless given [-]
+    #[serde(default = "nine_tenths")]
+    pub safety: f64,
+}
+
+fn nine_tenths() -> f64 {
+    0.9
 }
 
 /// Increments of a step.

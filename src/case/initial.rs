@@ -39,7 +39,16 @@ pub fn velocities(case: &Case, model: &Model) -> Result<Vec<f64>, Complaint> {
             give(format!("point_masses.{}.velocity", point.name), &point.nodes, value)?;
         }
     }
-    Ok(velocity.into_iter().flat_map(Option::unwrap_or_default).collect())
+    let velocity: Vec<[f64; 2]> = velocity.into_iter().map(Option::unwrap_or_default).collect();
+    if let Some((copy, original)) =
+        model.ties.pairs().iter().find(|(copy, original)| velocity[*copy] != velocity[*original])
+    {
+        let [a, b] = [copy, original].map(|node| model.mesh.node_tags[*node]);
+        let message =
+            format!("nodes {a} and {b} of periodic sides start with different velocities: give them the same");
+        return Err(Complaint::new("initial_velocity", message));
+    }
+    Ok(velocity.into_iter().flatten().collect())
 }
 
 /// What is wrong with velocities that a static first step takes no notice of.

@@ -9,6 +9,7 @@ pub mod file;
 mod initial;
 pub mod law_test;
 mod names;
+mod periodic;
 mod read;
 mod report;
 mod supported;

@@ -7,9 +7,9 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::file::{
-    BodyInput, Case, CircleInput, Components, ContactInput, DashpotInput, DriveInput, Formulation, InitialInput,
-    LoadInput, MasterInput, MeshSource, Method, PlaneInput, PolylineInput, RigidInput, SpringInput, StepInput,
-    TimeInput,
+    BodyInput, Case, CircleInput, Components, ContactInput, DampingInput, DashpotInput, DriveInput, Formulation,
+    InitialInput, LoadInput, MasterInput, MeshSource, Method, PlaneInput, PolylineInput, RigidInput, SpringInput,
+    StepInput, TimeInput,
 };
 use super::initial::lost_velocity;
 use crate::configuration::Configuration;
@@ -31,6 +31,7 @@ pub fn report(case: &Case, model: &Model) -> String {
     section(&mut text, "mesh", mesh(case, model));
     section(&mut text, "groups", groups(model));
     section(&mut text, "bodies", bodies(case));
+    section(&mut text, "periodic", periodic(case, model));
     section(&mut text, "points", point_masses(case, model));
     section(&mut text, "contacts", contacts(case, model, &mut warnings));
     section(&mut text, "steps", steps(case, model));
@@ -109,11 +110,24 @@ fn groups(model: &Model) -> Vec<String> {
 fn bodies(case: &Case) -> Vec<String> {
     let row = |(name, input): (&String, &BodyInput)| {
         let f_bar = if input.element == Formulation::FBar { ", f_bar elements" } else { "" };
-        [name.clone(), format!("{}{f_bar}", parameters(&input.material, "model", &[]))]
+        let DampingInput { mass, stiffness } = input.damping;
+        let damping = match mass > 0.0 || stiffness > 0.0 {
+            true => format!(", damping: mass {}, stiffness {}", number(mass), number(stiffness)),
+            false => String::new(),
+        };
+        [name.clone(), format!("{}{f_bar}{damping}", parameters(&input.material, "model", &[]))]
     };
     let mut lines = aligned(&case.bodies.iter().map(row).collect::<Vec<_>>());
     for (name, [vx, vy]) in &case.initial_velocity {
         lines.push(format!("{name} starts with the velocity ({}, {})", number(*vx), number(*vy)));
+    }
+    lines
+}
+
+fn periodic(case: &Case, model: &Model) -> Vec<String> {
+    let mut lines: Vec<String> = case.periodic.iter().map(|[a, b]| format!("{a} and {b}")).collect();
+    if !lines.is_empty() {
+        lines.push(format!("{} tied", count(model.ties.pairs().len(), "node")));
     }
     lines
 }
@@ -289,6 +303,10 @@ fn step_lines(step: &Step) -> Vec<String> {
     lines.extend(increments.error.map(|error| {
         let located = number(EVENT_LOCATION * error);
         format!("each in error by at most {} in a displacement, events of contact located to {located}", number(error))
+    }));
+    lines.extend(step.rupture.as_ref().map(|rupture| {
+        let [rate, calm] = [rupture.slip_rate, rupture.calm].map(number);
+        format!("explicit while a contact slips faster than {rate}, on the mean of {calm} when it returns")
     }));
     lines
 }

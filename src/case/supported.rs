@@ -16,9 +16,10 @@ const FREE: f64 = 1e-10;
 /// Every motion must meet stiffness or, in a dynamic step, mass.
 pub fn check(case: &Case, model: &Model) -> Result<(), Complaint> {
     for (k, step) in model.steps.iter().enumerate() {
-        if step.scheme.is_dynamic() {
+        if step.scheme.is_dynamic() || step.rupture.is_some() {
             check_mass(k, step, model)?;
-        } else {
+        }
+        if !step.scheme.is_dynamic() {
             check_lone_nodes(k, step, model)?;
         }
     }
@@ -137,6 +138,13 @@ fn free_motion(model: &Model, step: &Step, bodies: &[usize]) -> Option<String> {
         let arm = (model.mesh.nodes[node] - centre) / radius;
         let row = if dof % 2 == 0 { RowVector3::new(1.0, 0.0, -arm.y) } else { RowVector3::new(0.0, 1.0, arm.x) };
         resistance += row.transpose() * row;
+    }
+    // Periodic sides keep parallel.
+    for &(copy, original) in model.ties.pairs() {
+        if [copy, original].iter().all(|node| nodes.contains(node)) {
+            let apart = (model.mesh.nodes[copy] - model.mesh.nodes[original]).norm() / radius;
+            resistance[(2, 2)] += apart * apart;
+        }
     }
     let eigen = resistance.symmetric_eigen();
     let (weakest, value) = eigen.eigenvalues.argmin();

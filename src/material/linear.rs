@@ -63,6 +63,14 @@ impl Material for Linear {
         Ok(MaterialResponse { stress, tangent, energy: 0.5 * stress.dot(&strain), stress_zz })
     }
 
+    fn viscous_stress(&self, [_, rate]: [&Matrix2<f64>; 2]) -> Matrix2<f64> {
+        self.hooke(rate)
+    }
+
+    fn viscous_variation(&self, _: [&Matrix2<f64>; 2], [_, varied_rate]: [&Matrix2<f64>; 2]) -> Matrix2<f64> {
+        self.hooke(varied_rate)
+    }
+
     fn cauchy_stress(&self, deformation: &Matrix2<f64>) -> Result<CauchyStress, InvertedElement> {
         let MaterialResponse { stress, stress_zz, .. } = self.respond(deformation)?;
         Ok(CauchyStress { xx: stress.m11, yy: stress.m22, zz: stress_zz, xy: stress.m12 })

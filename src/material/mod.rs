@@ -8,6 +8,15 @@
 //! | [`Hencky`] | G ‖ln V‖² + λ/2 (ln J)² |
 //!
 //! All have the same two constants, λ and G, and the same response to small strains.
+//!
+//! Damping of the Kelvin–Voigt kind adds a stress proportional to the rate of strain, τ being a time:
+//!
+//! ```text
+//! P_v = τ F (C:Ė),   Ė = sym(Fᵀ Ḟ),   C:Ė = λ tr(Ė) 1 + 2 G Ė                                  (1)
+//! ```
+//!
+//! It turns with the body and does not resist a rotation. In small strains it is τ times the elastic stress of the rate
+//! of strain: the stiffness-proportional part of Rayleigh's damping.
 
 use std::fmt::Debug;
 
@@ -129,6 +138,28 @@ pub trait Material: Debug + Send + Sync {
             energy += volume * stored;
         }
         Ok(energy)
+    }
+
+    /// P_v/τ of (1) at F and Ḟ [F/(L² T)]
+    fn viscous_stress(&self, [deformation, rate]: [&Matrix2<f64>; 2]) -> Matrix2<f64> {
+        deformation * self.hooke(&(deformation.transpose() * rate))
+    }
+
+    /// Variation of P_v/τ with δF and δḞ.
+    fn viscous_variation(
+        &self,
+        [deformation, rate]: [&Matrix2<f64>; 2],
+        [varied, varied_rate]: [&Matrix2<f64>; 2],
+    ) -> Matrix2<f64> {
+        let strain = varied.transpose() * rate + deformation.transpose() * varied_rate;
+        varied * self.hooke(&(deformation.transpose() * rate)) + deformation * self.hooke(&strain)
+    }
+
+    /// C:sym(e) = λ tr(e) 1 + G (e + eᵀ)
+    fn hooke(&self, strain: &Matrix2<f64>) -> Matrix2<f64> {
+        let shear = self.shear_modulus();
+        let lambda = self.stiffness() - 2.0 * shear;
+        Matrix2::from_diagonal_element(lambda * strain.trace()) + shear * (strain + strain.transpose())
     }
 
     /// σ = P Fᵀ / J

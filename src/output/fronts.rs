@@ -2,14 +2,22 @@
 //!
 //! The slip rate is the plastic slip since the row before over the time since. A front arrives where it passes a threshold
 //! from below, in time linear between the middles of the two intervals. Its local speed is the distance of the two
-//! neighbours along the slave over the difference of their arrivals (of one neighbour at an end), if both have been passed
-//! as often.
+//! neighbours along the slave over the difference of their arrivals nearest in time (of one, where it passed no other).
+//!
+//! An event of a contact begins when a point of it passes the threshold while no other is above, and ends when none is. Its
+//! rupture length at an arrival is what the points that it has reached by then stand for, its energy released what
+//! loads and stored energies of the whole model gave since its first arrival:
+//!
+//! ```text
+//! Δ(external work − strain energy − elastic energy of contacts) = Δ(kinetic energy + dissipation)
+//! ```
 
 use std::path::{Path, PathBuf};
 
 use super::csv::Table;
 use super::{Attempt, Observer};
 use crate::configuration::Configuration;
+use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::error::Error;
 use crate::material::Material;
@@ -34,7 +42,7 @@ const MAP: [&str; 13] = [
 ];
 
 /// Columns of `fronts.csv`.
-const FRONTS: [&str; 11] = [
+const FRONTS: [&str; 14] = [
     "contact",
     "point",
     "position",
@@ -46,6 +54,9 @@ const FRONTS: [&str; 11] = [
     "speed_over_c_R",
     "speed_over_c_s",
     "speed_over_c_p",
+    "event",
+    "rupture_length",
+    "energy_released",
 ];
 
 /// c_R, c_s and c_p of an elastic body [L/T].
@@ -102,9 +113,22 @@ struct Point {
     /// Distance along the line [L]
     position: f64,
     at: [f64; 2],
+    /// Length that the point stands for [L]
+    length: f64,
     slip: f64,
     rate: f64,
-    arrivals: Vec<f64>,
+    arrivals: Vec<Arrival>,
+}
+
+/// When a front passed a point.
+#[derive(Clone, Copy, Debug)]
+struct Arrival {
+    /// [T]
+    time: f64,
+    /// Number of the event of the contact, from 1
+    event: usize,
+    /// What loads and stored energies had given since the start of the run [F·L]
+    given: f64,
 }
 
 /// The points of one contact.
@@ -113,6 +137,10 @@ struct Interface {
     name: String,
     speeds: Option<WaveSpeeds>,
     points: Vec<Point>,
+    /// Events so far
+    events: usize,
+    /// Whether a point slipped faster than the threshold in the last row
+    slipping: bool,
 }
 
 /// Writes `slip_map.csv` at every row, and `fronts.csv` at the end.
@@ -123,8 +151,8 @@ pub struct Fronts {
     /// Slip rate of a front [L/T]
     threshold: f64,
     interfaces: Vec<Interface>,
-    /// Time of the last row and length of the interval before it [T]
-    last: [f64; 2],
+    /// Times of the last two rows, and what loads and stored energies had given by then [T, F·L]
+    last: [(f64, f64); 2],
 }
 
 impl Fronts {
@@ -138,21 +166,31 @@ impl Fronts {
             path: folder.join("fronts.csv"),
             threshold,
             interfaces: model.contacts.iter().map(|pair| Interface::new(model, pair)).collect(),
-            last: [start.time, 0.0],
+            last: [(start.time, given(start)); 2],
         })
     }
 
     fn row(&mut self, model: &Model, state: &State) -> Result<(), Error> {
-        let [before, old_dt] = self.last;
-        let dt = state.time - before;
+        let [(earlier, given_earlier), (before, given_before)] = self.last;
+        let (old_dt, dt) = (before - earlier, state.time - before);
+        let now = given(state);
+        let given_at = |time: f64| match time < before {
+            true => given_before + (given_before - given_earlier) * (time - before) / old_dt,
+            false => given_before + (now - given_before) * (time - before) / dt,
+        };
         let all = self.interfaces.iter_mut().zip(&model.contacts).zip(&state.contacts).enumerate();
         for (number, ((interface, pair), states)) in all {
+            let slip_rate = |(point, state): (&Point, &ContactState)| (state.friction.plastic_slip - point.slip) / dt;
+            let slipping = interface.points.iter().zip(states).any(|both| slip_rate(both).abs() > self.threshold);
+            interface.events += usize::from(slipping && !interface.slipping);
+            interface.slipping = slipping;
             for ((point, slave), contact) in interface.points.iter_mut().zip(&pair.points).zip(states) {
                 let friction = &contact.friction;
                 let rate = (friction.plastic_slip - point.slip) / dt;
                 if point.rate.abs() <= self.threshold && rate.abs() > self.threshold {
                     let share = (self.threshold - point.rate.abs()) / (rate.abs() - point.rate.abs());
-                    point.arrivals.push(before - 0.5 * old_dt + share * 0.5 * (old_dt + dt));
+                    let time = before - 0.5 * old_dt + share * 0.5 * (old_dt + dt);
+                    point.arrivals.push(Arrival { time, event: interface.events, given: given_at(time) });
                 }
                 (point.slip, point.rate) = (friction.plastic_slip, rate);
                 self.map.number(state.time);
@@ -177,31 +215,57 @@ impl Fronts {
                 self.map.end_row()?;
             }
         }
-        self.last = [state.time, dt];
+        self.last = [(before, given_before), (state.time, now)];
         self.map.share()
     }
 
     fn fronts(&self) -> Result<(), Error> {
         let mut table = Table::create(&self.path, &FRONTS)?;
         for interface in &self.interfaces {
+            let events = interface.events();
             for (k, point) in interface.points.iter().enumerate() {
-                for (passage, &arrival) in point.arrivals.iter().enumerate() {
-                    let speed = interface.speed(k, passage);
+                for (passage, arrival) in point.arrivals.iter().enumerate() {
+                    let speed = interface.speed(k, arrival.time);
                     table.text(&interface.name);
                     table.count(k);
                     [point.position, point.at[0], point.at[1]].into_iter().for_each(|number| table.number(number));
                     table.count(passage + 1);
                     let over =
                         |of: fn(&WaveSpeeds) -> f64| interface.speeds.as_ref().map_or(f64::NAN, |s| speed / of(s));
-                    for number in [arrival, speed, over(|s| s.rayleigh), over(|s| s.shear), over(|s| s.pressure)] {
+                    for number in [arrival.time, speed, over(|s| s.rayleigh), over(|s| s.shear), over(|s| s.pressure)] {
                         table.number(number);
                     }
+                    table.count(arrival.event);
+                    let (length, released) = events[arrival.event - 1].by(arrival);
+                    table.number(length);
+                    table.number(released);
                     table.end_row()?;
                 }
             }
         }
         table.flush()
     }
+}
+
+/// An event of a contact: its arrivals in order of time, each with the length that it had broken by then.
+#[derive(Clone, Debug, Default)]
+struct Event {
+    reached: Vec<(Arrival, f64)>,
+}
+
+impl Event {
+    /// Rupture length and energy released by an arrival of the event [L, F·L].
+    fn by(&self, arrival: &Arrival) -> (f64, f64) {
+        let until = self.reached.partition_point(|(other, _)| other.time <= arrival.time);
+        let first = self.reached.first().map_or(arrival.given, |(first, _)| first.given);
+        (self.reached[..until].last().map_or(0.0, |(_, length)| *length), arrival.given - first)
+    }
+}
+
+/// What loads and stored energies have given since the start of the run [F·L].
+fn given(state: &State) -> f64 {
+    let energy = &state.energy;
+    energy.external_work - energy.strain - energy.contact_elastic
 }
 
 impl Interface {
@@ -215,20 +279,51 @@ impl Interface {
                 if k > range.start {
                     position += (at - pair.points[k - 1].at(&x)).norm();
                 }
-                points.push(Point { line, position, at: at.into(), slip: 0.0, rate: 0.0, arrivals: Vec::new() });
+                let length = pair.points[k].current_length(&x);
+                let (at, arrivals) = (at.into(), Vec::new());
+                points.push(Point { line, position, at, length, slip: 0.0, rate: 0.0, arrivals });
             }
         }
-        Self { name: pair.name.clone(), speeds: WaveSpeeds::behind(model, pair), points }
+        let speeds = WaveSpeeds::behind(model, pair);
+        Self { name: pair.name.clone(), speeds, points, events: 0, slipping: false }
     }
 
-    /// Local speed of the front that passes a point for the n-th time [L/T]; NaN if no neighbour was passed as often.
-    fn speed(&self, k: usize, passage: usize) -> f64 {
+    /// What each event had reached by when.
+    fn events(&self) -> Vec<Event> {
+        let mut events = vec![Event::default(); self.events];
+        for point in &self.points {
+            let mut last = 0;
+            for arrival in point.arrivals.iter() {
+                // A point that stops and sets out again within an event has broken once.
+                let length = if arrival.event == last { 0.0 } else { point.length };
+                last = arrival.event;
+                events[last - 1].reached.push((*arrival, length));
+            }
+        }
+        for event in &mut events {
+            event.reached.sort_by(|(a, _), (b, _)| a.time.total_cmp(&b.time));
+            let mut total = 0.0;
+            for (_, length) in &mut event.reached {
+                total += *length;
+                *length = total;
+            }
+        }
+        events
+    }
+
+    /// Local speed of the front that passes a point at a time [L/T]; NaN if it passed no neighbour.
+    fn speed(&self, k: usize, arrival: f64) -> f64 {
         let own = &self.points[k];
+        let nearest = |arrivals: &[Arrival], time: f64| {
+            arrivals.iter().map(|a| a.time).min_by(|a, b| (a - time).abs().total_cmp(&(b - time).abs()))
+        };
+        // A neighbour that only another front has passed tells nothing of this one.
         let passed = |k: usize| {
             let point = self.points.get(k).filter(|point| point.line == own.line)?;
-            Some((point.position, *point.arrivals.get(passage)?))
+            let there = nearest(&point.arrivals, arrival)?;
+            (nearest(&own.arrivals, there) == Some(arrival)).then_some((point.position, there))
         };
-        let here = passed(k);
+        let here = Some((own.position, arrival));
         let (before, after) = (k.checked_sub(1).and_then(passed).or(here), passed(k + 1).or(here));
         match before.zip(after) {
             Some(((s0, t0), (s1, t1))) if s1 > s0 => (s1 - s0) / (t1 - t0).abs(),

@@ -10,6 +10,7 @@ use super::law::LawReport;
 use crate::error::Error;
 use crate::friction::FrictionParameters;
 use crate::model::Model;
+use crate::state::Energy;
 
 /// Counts and times of a run.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -20,10 +21,14 @@ pub struct RunReport {
     pub cutbacks: usize,
     /// attempts that were solved, and repeated because their error was too large or they met an event of contact
     pub rejected: usize,
+    /// times that a step turned to explicit increments because a contact slipped fast
+    pub ruptures: usize,
     /// linear solves, those of failed attempts included
     pub newton_iterations: usize,
     /// matrix factorizations
     pub factorizations: usize,
+    /// energies at the end
+    pub energy: Energy,
     /// energy that went into the stabilization of floating bodies [F·L]
     pub stabilization_work: f64,
     /// wall time by phase
@@ -59,6 +64,8 @@ pub struct About {
     pub friction: BTreeMap<String, FrictionParameters>,
     /// Rayleigh, shear and pressure wave speeds of the first contact's slave body [L/T]
     pub wave_speeds: [f64; 3],
+    /// slip rate that makes a front, if the case asks for fronts [L/T]
+    pub front_slip_rate: Option<f64>,
 }
 
 /// How it ended: the first lines of every `summary.json`.

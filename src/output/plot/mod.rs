@@ -4,9 +4,11 @@
 
 mod axis;
 mod chart;
+mod interface;
 mod law;
 mod read;
 mod run;
+mod snapshots;
 mod space_time;
 mod svg;
 mod thin;
@@ -16,13 +18,14 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use self::chart::Figure;
+use self::interface::Interface;
+use self::space_time::Map;
 use super::csv::failed;
 use super::summary::About;
 use crate::error::Error;
 
 /// Files that [`draw`] may write.
-pub const FIGURES: [&str; 9] = [
+pub const FIGURES: [&str; 11] = [
     "law.svg",
     "displacement.svg",
     "friction.svg",
@@ -32,6 +35,8 @@ pub const FIGURES: [&str; 9] = [
     "energy.svg",
     "newton.svg",
     "slip_rate.svg",
+    "events.svg",
+    "traction.svg",
 ];
 
 /// Why there are no figures.
@@ -66,34 +71,42 @@ pub fn draw(folders: &[PathBuf], out: &Path) -> Result<Vec<PathBuf>, PlotError> 
     }
     let sources = sources(folders)?;
     let mut written = Vec::new();
-    let mut write = |name: &str, figure: Figure| {
-        std::fs::create_dir_all(out).map_err(|cause| failed(out, &cause))?;
-        let path = out.join(name);
-        std::fs::write(&path, figure.svg()).map_err(|cause| failed(&path, &cause))?;
-        written.push(path);
-        Ok(())
-    };
-    let mut maps = Vec::new();
-    if let [source] = &sources[..] {
-        for (number, map) in space_time::Map::read(&source.folder)? {
-            let name = source.about.friction.keys().nth(number).map_or("", String::as_str);
-            maps.push((number, map.svg(&format!("Slip rate of {name}"), source)));
-        }
-    }
-    match folders.iter().filter(|folder| is_law(folder)).count() {
-        0 => run::figures(&sources, write)?,
-        laws if laws == folders.len() => write("law.svg", law::figure(&sources)?)?,
-        _ => return Err(unreadable(&folders[0], "runs and laws driven alone cannot be drawn over each other")),
-    }
-    for (number, svg) in maps {
-        // The first contact has the plain name; others are told apart by their numbers.
-        let name = if number == 0 { "slip_rate.svg".into() } else { format!("slip_rate_{number}.svg") };
+    let mut write = |name: &str, svg: String| {
         std::fs::create_dir_all(out).map_err(|cause| failed(out, &cause))?;
         let path = out.join(name);
         std::fs::write(&path, svg).map_err(|cause| failed(&path, &cause))?;
         written.push(path);
+        Ok(())
+    };
+    match folders.iter().filter(|folder| is_law(folder)).count() {
+        0 => run::figures(&sources, |name, figure| write(name, figure.svg()))?,
+        laws if laws == folders.len() => write("law.svg", law::figure(&sources)?.svg())?,
+        _ => return Err(unreadable(&folders[0], "runs and laws driven alone cannot be drawn over each other")),
+    }
+    if let [source] = &sources[..] {
+        for (number, interface) in Interface::read(&source.folder)? {
+            draw_interface(&interface, number, source, &mut write)?;
+        }
     }
     Ok(written)
+}
+
+/// The figures of what happened along one interface. Those of the first contact have the plain names, others are told
+/// apart by their numbers.
+fn draw_interface(
+    interface: &Interface,
+    number: usize,
+    source: &Source,
+    mut write: impl FnMut(&str, String) -> Result<(), PlotError>,
+) -> Result<(), PlotError> {
+    let name = source.about.friction.keys().nth(number).map_or("the interface", String::as_str);
+    let file = |what: &str| if number == 0 { format!("{what}.svg") } else { format!("{what}_{number}.svg") };
+    let map = Map { interface, name, source };
+    write(&file("slip_rate"), map.whole())?;
+    if let Some(events) = map.events() {
+        write(&file("events"), events)?;
+    }
+    write(&file("traction"), snapshots::figure(interface, name, source).svg())
 }
 
 /// A result folder.

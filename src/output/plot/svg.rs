@@ -109,6 +109,18 @@ impl Drawing {
         );
     }
 
+    /// Filled rectangles of one colour, each with its upper left and its lower right corner.
+    pub fn fill_all(&mut self, rectangles: &[[[f64; 2]; 2]], colour: &str) {
+        let _ = write!(self.0, "<path fill=\"{colour}\" shape-rendering=\"crispEdges\" d=\"");
+        // Corners are rounded, not sizes: no gaps open between neighbours.
+        let round = |x: f64| (10.0 * x).round() / 10.0;
+        for [[left, top], [right, bottom]] in rectangles {
+            let (width, height) = (round(*right) - round(*left), round(*bottom) - round(*top));
+            let _ = write!(self.0, "M{left:.1},{top:.1}h{width:.1}v{height:.1}h{:.1}z", -width);
+        }
+        self.0 += "\"/>\n";
+    }
+
     /// A mark.
     pub fn mark(&mut self, [x, y]: [f64; 2], shape: Shape, colour: &str) {
         let style = format!("fill=\"white\" stroke=\"{colour}\" stroke-width=\"1.2\"");

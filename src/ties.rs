@@ -1,0 +1,58 @@
+//! Nodes that move as one: the two sides of a periodic model.
+//!
+//! Every node of a side is a copy of its partner on the other: u, v and a are those of the partner, and what acts on the
+//! copy acts on the partner. The copy keeps its own position, so that the elements beside it know their shape.
+
+/// Copies and the nodes they move with.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Ties {
+    /// (copy, the node it moves with, which is no copy), ascending
+    pairs: Vec<(usize, usize)>,
+}
+
+impl Ties {
+    /// Ties between pairs of nodes. Nodes joined by several pairs, as the corners of a model that is periodic both ways, all
+    /// move with the first of them.
+    pub fn new(nodes: usize, joined: &[[usize; 2]]) -> Self {
+        let mut first: Vec<usize> = (0..nodes).collect();
+        // The first of a set points at itself, and everything at an earlier one.
+        let root = |first: &[usize], mut node: usize| {
+            while first[node] != node {
+                node = first[node];
+            }
+            node
+        };
+        for &[a, b] in joined {
+            let (a, b) = (root(&first, a), root(&first, b));
+            first[a.max(b)] = a.min(b);
+        }
+        let pairs = (0..nodes).map(|node| (node, root(&first, node))).filter(|(node, root)| node != root).collect();
+        Self { pairs }
+    }
+
+    /// (copy, the node it moves with), ascending.
+    pub fn pairs(&self) -> &[(usize, usize)] {
+        &self.pairs
+    }
+
+    /// The node that a node moves with: itself unless it is a copy.
+    pub fn original(&self, node: usize) -> usize {
+        self.pairs.binary_search_by_key(&node, |(copy, _)| *copy).map_or(node, |k| self.pairs[k].1)
+    }
+
+    /// Add what copies have, with `width` values a node, to the nodes they move with, and leave them nothing.
+    pub fn gather(&self, width: usize, values: &mut [f64]) {
+        for &(copy, original) in &self.pairs {
+            for i in 0..width {
+                values[width * original + i] += std::mem::take(&mut values[width * copy + i]);
+            }
+        }
+    }
+
+    /// Give copies what the nodes have that they move with.
+    pub fn spread(&self, width: usize, values: &mut [f64]) {
+        for &(copy, original) in &self.pairs {
+            values.copy_within(width * original..width * (original + 1), width * copy);
+        }
+    }
+}
