@@ -488,14 +488,15 @@ fn answers_do_not_depend_on_numerical_choices() {
     assert!(wrong.is_empty(), "{wrong:?}");
 }
 
-/// With the augmented Lagrangian the penetration is no excuse: α_n times 0.1 and times 100, to penetrations of 1e-6 mm.
+/// With the augmented Lagrangian the penetration is no excuse: α_n times 0.1 and times 10, to penetrations of 1e-6 mm,
+/// while α_t stays.
 #[test]
 #[ignore = "slow: minutes"]
 fn answers_of_the_augmented_lagrangian_do_not_depend_on_the_penalty() {
     for Static { case, answer, .. } in
         STATIC.into_iter().filter(|problem| ["hertz_q4", "greco"].contains(&problem.case))
     {
-        let answers = [0.1, 1.0, 100.0].map(|factor| {
+        let answers = [0.1, 1.0, 10.0].map(|factor| {
             let (model, _) = solve(case, as_it_is);
             let (run, _) = solve(case, |given| {
                 with_penalties(given, &model.model, [factor, 1.0]);
