@@ -12,8 +12,9 @@
 //! f_a = −Σ_j W_ja t_j
 //! ```
 //!
-//! n_j is the mean normal of the edges at the node, turned into the slave. Since Σ_j φ_j = 1, a uniform pressure puts on
-//! both sides exactly what it should: the patch test is passed. The nodes at a corner of more than 45° count once a side.
+//! n_j is the normal of the edges at the node, turned into the slave: s_j is the direction of ∫ φ_j dx. Since Σ_j φ_j = 1, a
+//! uniform pressure puts on both sides exactly what it should: the patch test is passed. The nodes at a corner of more than 45°
+//! count once a side.
 //! All variations come with [`Dual`] numbers.
 
 use nalgebra::{DVector, Vector2};
@@ -23,7 +24,7 @@ use super::dual::{Dual, DualVector};
 use super::force::Meeting;
 use super::kinematics::Kinematics;
 use super::projection::normal_of;
-use super::search::{FACING, Index};
+use super::search::Index;
 use super::surface::{LengthShare, MasterPoint, Segment, SlavePoint, Surface, Weights, lone_point};
 use crate::configuration::Configuration;
 use crate::shape;
@@ -110,6 +111,9 @@ pub struct Overlaps(Vec<Vec<Overlap>>);
 /// Master segments farther from a slave edge than this many of its lengths are not looked at: far enough for the deep
 /// penetrations of first iterates, which must not pass for contact lost.
 const REACH: f64 = 10.0;
+
+/// A slave edge and a master segment face each other when the cosine between their outward normals is below this.
+const EDGE_ON: f64 = -0.01;
 
 impl Mortar {
     /// Cut all slave edges.
@@ -207,13 +211,13 @@ impl Mortar {
         nodes
     }
 
-    /// s_j: mean direction of the edges at a point.
+    /// s_j: mean direction ∫ φ_j dx of the edges at a point.
     fn along(&self, point: usize, frame: &Frame) -> DualVector {
         let mut sum = DualVector::default();
-        for &(e, _) in &self.at[point] {
-            let edge = &self.edges[e];
-            let chord = frame.at(edge[1]).minus(frame.at(edge[0]));
-            sum.add_scaled(&Dual::constant(1.0), &chord);
+        for share in self.at[point].iter().flat_map(|&(e, a)| share(&self.edges[e], a)) {
+            for (node, slope) in share.tangent {
+                sum.add_scaled(&Dual::constant(share.factor * slope), frame.at(node));
+            }
         }
         sum.normalized()
     }
@@ -403,7 +407,8 @@ fn cut(edge: &[usize], surface: &Surface, index: &Index, x: &Configuration) -> V
     let mut candidates = Vec::new();
     for segment in index.around(edge, reach, x) {
         let [a, b] = surface.segments[segment].ends;
-        if normal_of(x.between(a, b).normalize()).dot(&normal) >= FACING {
+        // A segment is taken in nearly edge-on, where it faces next to nothing: the average must not jump as it turns.
+        if normal_of(x.between(a, b).normalize()).dot(&normal) >= EDGE_ON {
             continue;
         }
         // Both run along s, so the start of the segment comes first.
