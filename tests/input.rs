@@ -320,6 +320,15 @@ fn rigid_masters_and_formulations_that_make_no_sense_are_refused() {
         &[("/contacts/base/normal", json!({"penetration": 0}))],
         &["contacts.base.normal.penetration: ", "positive"],
     );
+    refused_edits(
+        &[
+            ("/contacts/base/normal", json!({"penetration": 1e-6})),
+            ("/steps/0/scheme", json!({"wilson": {"theta": 1.4}})),
+            ("/bodies/block/material/density", json!(1)),
+            ("/bodies/ground/material/density", json!(1)),
+        ],
+        &["contacts.base.normal.penetration: ", "Wilson", "leave it out"],
+    );
 }
 
 #[test]
@@ -790,6 +799,18 @@ fn bad_input_leaves_earlier_results_alone() {
     assert_eq!(fs::read(folder.path().join("out/case/summary.json")).unwrap(), before);
 }
 
+/// The default penalty is that of the softer side, whichever is the slave.
+#[test]
+fn default_penalty_is_that_of_the_softer_side() {
+    let folder = TempDir::new().unwrap();
+    let mut case = with(&[("/contacts/base/normal", json!({})), ("/bodies/ground/material/E", json!(100))]);
+    case["contacts"]["base"]["friction"].as_object_mut().unwrap().remove("alpha_t");
+    write(folder.path(), "case.json", case.to_string());
+    let output = fecontact(folder.path(), &["check", "case.json"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("alpha_n 1346.15 "), "a tenth of 10 (λ + 2G)/h = 13461.5 is not in:\n{text}");
+}
+
 #[test]
 fn check_tells_what_was_understood() {
     let folder = TempDir::new().unwrap();
@@ -803,7 +824,7 @@ fn check_tells_what_was_understood() {
         "block_bottom   3 edges",
         "neo_hookean: E 1000",
         "6 contact points",
-        "alpha_n 13439.4 (10 (λ + 2G)/h of the elements behind the slave)",
+        "alpha_n 13439.4 (10 (λ + 2G)/h: of the softer side, over the depth of the slave's elements)",
         "alpha_t 6719.72 (alpha_n/2)",
         "surfaces overlap by up to 0.007",
         "increments start at 0.5, at least 0.01, at most 0.5",

@@ -124,9 +124,18 @@ fn massless(case: &Case, mesh: &Mesh) -> Checked<Vec<bool>> {
 }
 
 /// Explicit steps solve no equations, and so cannot raise pressures until penetrations are small, nor find where a node
-/// without mass is.
+/// without mass is. Wilson's equilibrium lies beyond the increment, and so do the multipliers found there.
 fn check_explicit(case: &Case, model: &Model) -> Checked<()> {
     let explicit = |step: &Step| step.rupture.is_some() || matches!(step.scheme, Scheme::Explicit { .. });
+    let augmented = model.contacts.iter().find(|pair| pair.penetration.is_some());
+    if let (Some(pair), Some(step)) = (augmented, model.steps.iter().find(|step| step.scheme.theta() > 1.0)) {
+        let message = format!(
+            "the step `{}` seeks equilibrium beyond its increments (Wilson-θ), where multipliers mean nothing: leave it out, \
+             or take another scheme",
+            step.name
+        );
+        return Err(Complaint::new(format!("contacts.{}.normal.penetration", pair.name), message));
+    }
     let Some(k) = model.steps.iter().position(explicit) else {
         return Ok(());
     };
@@ -134,7 +143,7 @@ fn check_explicit(case: &Case, model: &Model) -> Checked<()> {
         let message = format!("the explicit step `{}` needs the mass of every node: leave it out", model.steps[k].name);
         return Err(Complaint::new(format!("contacts.{name}.massless"), message));
     }
-    match model.contacts.iter().find(|pair| pair.penetration.is_some()) {
+    match augmented {
         Some(pair) => Err(Complaint::new(
             format!("contacts.{}.normal.penetration", pair.name),
             format!(
@@ -418,7 +427,8 @@ fn check_stiffness(place: &str, name: &str, value: f64) -> Checked<()> {
     Err(Complaint::new(place, message))
 }
 
-/// α_n = 10 (λ + 2G)/h, the mean over the elements behind the slave; h is the depth of an element behind its edge.
+/// α_n = 10 (λ + 2G)/h, the mean over the slave's edges: λ + 2G of the softer of the two sides, which is the one that the
+/// penalty must not give way beside, and h, the depth of the element behind the edge.
 fn default_stiffness(place: &str, input: &ContactInput, model: &Model) -> Checked<f64> {
     let name = &input.slave;
     if input.area.is_some() {
@@ -426,11 +436,14 @@ fn default_stiffness(place: &str, input: &ContactInput, model: &Model) -> Checke
         return Err(Complaint::new(format!("{place}.normal.alpha_n"), message));
     }
     let slave = edges(&model.mesh, name, &format!("{place}.slave"))?;
-    let behind = |edge: &Edge| {
-        let material = &model.bodies[model.body_of_element[edge.element]].material;
-        10.0 * material.stiffness() / depth_behind(edge, model)
+    let modulus = |edge: &Edge| model.bodies[model.body_of_element[edge.element]].material.stiffness();
+    let master = match &input.master {
+        MasterInput::Group(group) => edges(&model.mesh, group, &format!("{place}.master"))?,
+        MasterInput::Rigid(_) => &[],
     };
-    Ok(slave.iter().map(behind).sum::<f64>() / slave.len() as f64)
+    let softest = master.iter().map(modulus).fold(f64::INFINITY, f64::min);
+    let stiffness = |edge: &Edge| 10.0 * modulus(edge).min(softest) / depth_behind(edge, model);
+    Ok(slave.iter().map(stiffness).sum::<f64>() / slave.len() as f64)
 }
 
 /// Depth of the element behind an edge [L].

@@ -307,8 +307,8 @@ pub enum Method {
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NormalInput {
-    /// α_n: pressure per penetration [F/L³]; 10 (λ + 2G)/h of the elements behind the slave unless given. A slave group of
-    /// points has none behind it and needs a number
+    /// α_n: pressure per penetration [F/L³]; unless given 10 (λ + 2G)/h, with λ + 2G of the softer of the two sides and the
+    /// depth h of the elements behind the slave. A slave group of points has none behind it and needs a number
     pub alpha_n: Option<f64>,
     /// Largest penetration left [L]: the pressure is raised until no closed gap is larger (augmented Lagrangian by Uzawa's
     /// method), so that the answer does not depend on alpha_n; penalty alone unless given

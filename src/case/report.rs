@@ -220,8 +220,10 @@ fn contact(case: &Case, pair: &ContactPair) -> Vec<String> {
         ContactInput { method: Method::NodeToSegment, .. } => "node_to_segment, a point at each node".into(),
         ContactInput { method: Method::Mortar, .. } => "mortar, averaged around each node".into(),
     };
-    let alpha_n =
-        if input.normal.alpha_n.is_some() { "given" } else { "10 (λ + 2G)/h of the elements behind the slave" };
+    let alpha_n = match input.normal.alpha_n {
+        Some(_) => "given",
+        None => "10 (λ + 2G)/h: of the softer side, over the depth of the slave's elements",
+    };
     let mut lines = vec![
         format!("slave {} against master {master}", input.slave),
         format!("{where_evaluated}: {}", count(pair.points.len(), "contact point")),
