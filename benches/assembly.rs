@@ -18,7 +18,7 @@ fn assembly(criterion: &mut Criterion) {
     let start = begin(&model, step, &model.initial_state(), &mut work).expect("the step begins");
     let state = advance(&model, step, &start, 1.0, &mut work).1.expect("the increment converges");
 
-    let trial = Trial { old: &state, step, time: 2.0, dt: 1.0 };
+    let trial = Trial::new(&state, step, 2.0, 1.0);
     let mut assembler = Assembler::new(&model);
     let mut system = assembler.system();
     for (name, request) in [("residual", Request::Residual), ("residual and tangent", Request::Tangent)] {

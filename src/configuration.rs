@@ -33,6 +33,11 @@ impl<'a> Configuration<'a> {
         (self.reference[to] - self.reference[from]) + (self.displacement[to] - self.displacement[from])
     }
 
+    /// How far a node has moved since another configuration.
+    pub fn since(&self, before: &Self, node: usize) -> Vector2<f64> {
+        self.displacement[node] - before.displacement[node]
+    }
+
     /// Σ w_a x_a.
     pub fn combine(&self, weights: &[(usize, f64)]) -> Vector2<f64> {
         let of =

@@ -53,7 +53,9 @@ pub enum StepFailure {
     #[error(transparent)]
     Start(TrialFailure),
     /// The augmented Lagrangian did not bring the surfaces together.
-    #[error("the penetration is still too large after {passes} passes of the augmented Lagrangian: raise alpha_n")]
+    #[error(
+        "the penetration is still too large after {passes} passes of the augmented Lagrangian: raise alpha_n, or allow more"
+    )]
     Penetration {
         /// solutions with better and better multipliers
         passes: usize,

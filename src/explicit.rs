@@ -117,7 +117,7 @@ impl<'m> Explicit<'m> {
     /// The forces and accelerations at the start of the step.
     fn start(&mut self, state: &mut State, assembler: &mut Assembler) -> Result<(), StepFailure> {
         let (model, step) = (self.model, self.step);
-        let still = Trial { old: state, step, time: state.time, dt: 0.0 };
+        let still = Trial::new(state, step, state.time, 0.0);
         assembler.forces(still, &state.displacement).map_err(StepFailure::Start)?;
         if model.is_viscous() {
             let gathered = assembler.gather_viscous(&state.displacement, &state.velocity, &mut self.viscous[1]);
@@ -135,7 +135,7 @@ impl<'m> Explicit<'m> {
             .enumerate()
             .map(|(dof, (f, d))| (d - f) / self.mass[dof / 2])
             .collect();
-        let first = Trial { old: state, step, time: state.time + self.stable, dt: self.stable };
+        let first = Trial::new(state, step, state.time + self.stable, self.stable);
         let mut external = evaluation.loads.clone();
         for support in &step.supports {
             let dof = support.dof;
@@ -195,7 +195,7 @@ impl<'m> Explicit<'m> {
                 *u = u0 + dt * (v + 0.5 * dt * a);
             }
         });
-        let trial = Trial { old: state, step, time, dt };
+        let trial = Trial::new(state, step, time, dt);
         let places: Vec<[f64; 4]> = step.supports.iter().map(|support| trial.thirds(support, model)).collect();
         for (support, places) in step.supports.iter().zip(&places) {
             if !places.iter().all(|place| place.is_finite()) {

@@ -25,7 +25,7 @@ use crate::contact::force::{ContactState, Status};
 use crate::model::{Model, Step};
 use crate::state::State;
 
-/// An increment solved in this many iterations or fewer was easy: the next one may be longer.
+/// An increment solved in this many iterations or fewer, in every pass, was easy: the next one may be longer.
 const EASY: usize = 4;
 /// Growth of the increment after an easy one.
 const GROWTH: f64 = 1.5;
@@ -62,7 +62,7 @@ pub fn bounded(step: &Step, time: f64, dt: f64) -> f64 {
     if left <= shared { remaining / left } else { dt }
 }
 
-/// Judge a solved increment from `old` to `new`; `repeated` says that an attempt at it was given up before.
+/// Judge a solved increment from `old` to `new`, which took `iterations` in its hardest pass; `repeated` says that an attempt at it was given up before.
 pub fn judge(model: &Model, step: &Step, [old, new]: [&State; 2], iterations: usize, repeated: bool) -> Judgement {
     let dt = new.dt;
     let easy = iterations <= EASY;

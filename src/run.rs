@@ -11,7 +11,7 @@ use crate::model::{Model, Rupture, Step};
 use crate::output::summary::RunReport;
 use crate::output::{Attempt, Observer};
 use crate::state::State;
-use crate::step::{Workspace, advance, begin, go_on};
+use crate::step::{IterationRecord, Workspace, advance, begin, go_on};
 use crate::time::Scheme;
 
 /// Cut of the increment after one that could not be solved.
@@ -158,7 +158,7 @@ impl<'m> Run<'m, '_, '_> {
             self.report.newton_iterations += iterations.len();
             self.report.factorizations += iterations.iter().filter(|iteration| iteration.newton.factorized).count();
             let solved = outcome.map(|new| {
-                let judgement = judge(self.model, step, [&self.state, &new], iterations.len(), attempt > 1);
+                let judgement = judge(self.model, step, [&self.state, &new], hardest_pass(&iterations), attempt > 1);
                 (new, judgement)
             });
             let fast = |new: &State| {
@@ -215,6 +215,11 @@ impl<'m> Run<'m, '_, '_> {
         }
         Ok(Stretch::Complete)
     }
+}
+
+/// Linear solves of the pass that took most: the augmented Lagrangian solves an increment several times.
+fn hardest_pass(iterations: &[IterationRecord]) -> usize {
+    iterations.chunk_by(|a, b| a.pass == b.pass).map(<[_]>::len).max().unwrap_or(0)
 }
 
 /// Tell all observers of an attempt.

@@ -41,6 +41,8 @@ pub struct IterationRecord {
     pub contacts: ContactCounts,
     /// points that the correction brought back to the status which the one before it had changed
     pub flips: usize,
+    /// number of the pass of the augmented Lagrangian; 1 for the plain penalty
+    pub pass: usize,
     /// ‖forces that stabilize‖/‖forces at work‖ after the correction [-]
     pub stabilization: f64,
 }
@@ -102,7 +104,7 @@ fn start_dynamics(model: &Model, step: &Step, state: &mut State, work: &mut Work
     let mut mass = work.assembler.mass().clone();
     let scale = mass.diagonal().into_iter().fold(0.0, f64::max);
     let dt = step.increments.initial;
-    let first = Trial { old: state, step, time: state.time + dt, dt };
+    let first = Trial::new(state, step, state.time + dt, dt);
     // Nodes without mass are in equilibrium from the first increment on.
     let without = |dof: &usize| model.massless[dof / 2] && mass.diagonal()[*dof] == 0.0;
     for dof in (0..model.dofs()).filter(without).collect::<Vec<_>>() {
@@ -132,7 +134,7 @@ fn start_loaded(step: &Step, state: &mut State, work: &mut Workspace) -> Result<
 /// Forces of the state as it is, under the loads that the step puts on it at this time.
 fn evaluate_forces(step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), StepFailure> {
     let quasi_static = Step { scheme: crate::time::Scheme::Static, ..step.clone() };
-    let trial = Trial { old: state, step: &quasi_static, time: state.time, dt: 0.0 };
+    let trial = Trial::new(state, &quasi_static, state.time, 0.0);
     work.assembler
         .evaluate(trial, &state.displacement, Request::Residual, &mut work.system)
         .map_err(StepFailure::Start)?;
@@ -155,7 +157,7 @@ pub fn advance(
 ) -> (Vec<IterationRecord>, Result<State, StepFailure>) {
     // The last increment of a step ends on its end, not within round-off of it.
     let time = if old.time + dt > step.span.end - 1e-9 * dt { step.span.end } else { old.time + dt };
-    let increment = Trial { old, step, time, dt: time - old.time };
+    let increment = Trial::new(old, step, time, time - old.time);
     let (iterations, equilibrium) = augment(model, increment.ahead(), work);
     let new = equilibrium.and_then(|u| reach_end(model, increment, u, work)).map(|u| accept(model, increment, u, work));
     (iterations, new)
@@ -164,35 +166,45 @@ pub fn advance(
 /// Solutions with better and better multipliers before an increment of the augmented Lagrangian is given up.
 const MOST_PASSES: usize = 100;
 
+/// A pass that leaves more than this share of the penetration is slow: the next one is stiffer.
+const SLOW: f64 = 0.25;
+
+/// How much stiffer.
+const STIFFER: f64 = 10.0;
+
+/// α_n is not raised to more than this many times the given one.
+const STIFFEST: f64 = 1e4;
+
 /// Equilibrium at the time of a trial; where a contact asks for the augmented Lagrangian, with multipliers that leave no
-/// more penetration than allowed (Uzawa's method).
+/// more penetration than allowed: Uzawa's method, with a penalty that is raised for the increment while passes gain little.
+///
+/// Source of the rule and its factors: Bertsekas (1982), Constrained Optimization and Lagrange Multiplier Methods, 2.2.
 fn augment(model: &Model, trial: Trial, work: &mut Workspace) -> (Vec<IterationRecord>, Result<Vec<f64>, StepFailure>) {
     let (mut iterations, mut result) = solve(model, trial, None, work);
-    let mut committed = None;
+    let (mut stiffening, mut before) = (1.0, f64::INFINITY);
     for pass in 1.. {
-        let old = committed.as_ref().unwrap_or(trial.old);
         let Ok(u) = &result else { break };
-        let Some(multiplied) = multiplied(model, old, work) else { break };
+        let found = &work.assembler.evaluation.contacts;
+        let excess = model.contacts.iter().zip(found).map(|(pair, found)| pair.excess(found)).fold(0.0, f64::max);
+        if excess <= 1.0 {
+            break;
+        }
         if pass == MOST_PASSES {
             result = Err(StepFailure::Penetration { passes: pass });
             break;
         }
-        let (more, again) = solve(model, Trial { old: &multiplied, ..trial }, Some(u.clone()), work);
-        iterations.extend(more);
+        if excess > SLOW * before {
+            stiffening = (STIFFER * stiffening).min(STIFFEST);
+        }
+        before = excess;
+        let multiplied = model.contacts.iter().zip(trial.old.contacts.iter().zip(found));
+        let contacts = multiplied.map(|(pair, (old, found))| pair.multiplied(old, found)).collect();
+        let old = State { contacts, ..trial.old.clone() };
+        let (more, again) = solve(model, Trial { old: &old, stiffening, ..trial }, Some(u.clone()), work);
+        iterations.extend(more.into_iter().map(|iteration| IterationRecord { pass: pass + 1, ..iteration }));
         result = again;
-        committed = Some(multiplied);
     }
     (iterations, result)
-}
-
-/// The committed state with the pressures just found as multipliers, if some pair is not content yet.
-fn multiplied(model: &Model, old: &State, work: &Workspace) -> Option<State> {
-    let pairs = || model.contacts.iter().zip(old.contacts.iter().zip(&work.assembler.evaluation.contacts));
-    if pairs().all(|(pair, (old, trial))| pair.is_content(old, trial)) {
-        return None;
-    }
-    let contacts = pairs().map(|(pair, (old, trial))| pair.multiplied(old, trial)).collect();
-    Some(State { contacts, ..old.clone() })
 }
 
 /// Equilibrium at the time of a trial, wherever the scheme asks for it; from the start value of a new increment unless
@@ -237,8 +249,13 @@ fn solve(
     *linear_seconds += clock.elapsed().as_secs_f64() - assembled;
     // The last state may not have been evaluated.
     seen.resize(iterations.len(), (ContactCounts::default(), 0, 0.0));
-    let record =
-        |(newton, (contacts, flips, stabilization))| IterationRecord { newton, contacts, flips, stabilization };
+    let record = |(newton, (contacts, flips, stabilization))| IterationRecord {
+        newton,
+        contacts,
+        flips,
+        pass: 1,
+        stabilization,
+    };
     let iterations = iterations.into_iter().zip(seen).map(record).collect();
     let result = match (floating, result) {
         (Some(floating), _) if old.last_increment.is_none() => Err(StepFailure::Floating(floating)),
@@ -320,7 +337,7 @@ fn reach_end(model: &Model, end: Trial, u: Vec<f64>, work: &mut Workspace) -> Re
 
 /// The new state at the converged displacement `u`.
 fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> State {
-    let Trial { old, step, time, dt } = trial;
+    let Trial { old, step, time, dt, .. } = trial;
     let evaluation = std::mem::take(&mut work.assembler.evaluation);
     let mut reaction = vec![0.0; u.len()];
     for support in &step.supports {

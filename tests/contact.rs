@@ -1,9 +1,9 @@
 //! Contact: exact tangents, feet at corners and past ends.
 
 use fecontact::configuration::Configuration;
-use fecontact::contact::force::{Closed, ContactState, Increment, Presume, Status, Tractions, closes, press, respond};
+use fecontact::contact::force::{Closed, ContactState, Increment, Status, Tractions, closes, press, respond};
 use fecontact::contact::mortar::{Mortar, mortar_points};
-use fecontact::contact::pair::{ContactPair, InitialTraction};
+use fecontact::contact::pair::{ContactPair, InitialTraction, Moment, Presumption};
 use fecontact::contact::projection::Bound;
 use fecontact::contact::rigid::{Circle, Plane, Polyline, Rigid};
 use fecontact::contact::search::Index;
@@ -20,6 +20,7 @@ const SUPER: &str = r#"{"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "r"
         "integration": "backward_euler"}"#;
 const COULOMB: &str = r#"{"law": "coulomb", "mu": 0.3}"#;
 const FRICTIONLESS: &str = r#"{"law": "frictionless"}"#;
+const MOMENT: Moment = Moment { dt: 0.3, fading: 0.0, stiffening: 1.0 };
 
 /// A wavy master of five segments, nodes 0 to 5 from left to right, and slave nodes 6, 7, 8 below it.
 ///
@@ -61,10 +62,12 @@ fn promised(
     promised: Option<Tractions>,
 ) -> (ContactState, Option<Closed>) {
     let x = &Configuration::undeformed(x);
+    // Every point had a foot before.
+    let before = x;
     let index = Index::new(&pair.master, x);
-    let increment = Increment { dt: 0.3, fading: 0.0, presume: Presume::Nothing, promised };
+    let increment = Increment { moment: MOMENT, presumption: Presumption { promised, ..Presumption::default() } };
     let projection = index.project(&pair.points[k], None, x);
-    respond(pair, &pair.points[k], projection, old, increment, x).expect("a finite increment")
+    respond(pair, &pair.points[k], projection, old, increment, [before, x]).expect("a finite increment")
 }
 
 /// Forces of one point on the given nodes.
@@ -333,6 +336,99 @@ fn tangent_equals_differences_where_contact_starts_closed_across_a_gap() {
     }
 }
 
+/// Under the augmented Lagrangian a contact that starts closed has its pressure as multiplier, and no penetration that passes
+/// would take away.
+#[test]
+fn initial_pressure_is_the_first_multiplier_of_the_augmented_lagrangian() {
+    let (edges, x) = wavy();
+    let master = Master::Mesh(Surface::new(&edges));
+    let mut pair =
+        ContactPair { penetration: Some(1e-6), ..pair(gauss_points(&[vec![6, 7], vec![7, 8]], 2), master, COULOMB) };
+    let at = Configuration::undeformed(&x);
+    pair.start_closed(vec![InitialTraction { pressure: 20.0, traction: 2.0 }; pair.points.len()], &at).expect("feet");
+    let old = pair.initial_states(&at);
+    for stiffening in [1.0, 100.0] {
+        let moment = Moment { stiffening, ..MOMENT };
+        let answer = pair.respond(&old, &at, moment, |_| Presumption::default(), &at).expect("an answer");
+        let states: Vec<ContactState> = answer.into_iter().map(|(state, _)| state).collect();
+        for state in &states {
+            let FrictionState { pressure, traction, .. } = state.friction;
+            assert!((pressure - 20.0).abs() < 1e-12 && (traction - 2.0).abs() < 1e-12, "{state:?}");
+            assert!(state.gap.abs() < 1e-15 && (state.multiplier - 20.0).abs() < 1e-12, "{state:?}");
+        }
+        assert!(pair.excess(&states) < 1e-6);
+    }
+}
+
+/// A point that nothing faced when the increment began has slipped past the material that it meets: q = α_t s·Σ w_a Δx_a while
+/// it sticks, and the tangent is that of differences. At nodes, at Gauss points, on a rigid plane, and by mortar, where the
+/// slave must come from beyond the master's end.
+#[test]
+fn points_that_nothing_faced_slip_past_what_they_meet() {
+    let (straight, x) = wavy();
+    let slave = [vec![6, 7], vec![7, 8]];
+    let surface = Master::Mesh(Surface::new(&straight));
+    let plane = Master::Rigid(Rigid::Plane(Plane {
+        point: Vector2::new(0.0, 0.05),
+        normal: Vector2::new(-0.02, 1.0).normalize(),
+    }));
+    let rough = r#"{"law": "coulomb", "mu": 1e6}"#;
+    let by_mortar = |law: &str| {
+        let (points, mortar) = mortar_points(&slave, &x);
+        ContactPair { mortar: Some(mortar), ..pair(points, surface.clone(), law) }
+    };
+    for (number, (pair, way)) in [
+        (pair(nodal_points(&slave), surface.clone(), COULOMB), 1e-5),
+        (pair(nodal_points(&slave), surface.clone(), COULOMB), 0.05),
+        (pair(gauss_points(&slave, 2), surface.clone(), SUPER), 0.001),
+        (pair(gauss_points(&slave, 2), plane, COULOMB), 1e-5),
+        (by_mortar(COULOMB), 20.0),
+        (by_mortar(rough), 20.0),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let motion = Vector2::new(-way, 0.2 * way);
+        let here = vec![0.0; 2 * x.len()];
+        let mut aside = here.clone();
+        aside[12..].chunks_mut(2).for_each(|u| u.copy_from_slice(&[-motion.x, -motion.y]));
+        let before = Configuration::new(&x, &aside);
+        let friction = pair.laws[0].initial_state();
+        let old = ContactState { friction, foot: None, length: 1.0, gap: 0.0, multiplier: 0.0 };
+        let old = vec![old; pair.points.len()];
+        let answer = |u: &[f64]| {
+            let x = Configuration::new(&x, u);
+            pair.respond(&old, &before, MOMENT, |_| Presumption::default(), &x).expect("an answer")
+        };
+        let mut closed = 0;
+        for (k, (state, found)) in answer(&here).into_iter().enumerate() {
+            let Some(found) = found else { continue };
+            closed += 1;
+            if number == 3 {
+                let slip = motion.dot(&Vector2::new(1.0, 0.02).normalize());
+                assert!((state.friction.traction.abs() - 700.0 * slip.abs()).abs() < 1e-12);
+            }
+            let (contribution, scale) = (&found.contribution, found.contribution.tangent.amax());
+            for column in 0..2 * contribution.nodes.len() {
+                let moved = |step: f64| {
+                    let mut u = here.clone();
+                    u[2 * contribution.nodes[column / 2] + column % 2] += step;
+                    answer(&u)[k].1.clone().expect("a tiny motion does not open the point").contribution.force
+                };
+                let difference = (moved(1e-6) - moved(-1e-6)) / 2e-6;
+                for (row, difference) in difference.iter().enumerate() {
+                    let tangent = contribution.tangent[(row, column)];
+                    assert!(
+                        (difference - tangent).abs() < 1e-6 * scale,
+                        "{number}: point {k}, ({row}, {column}): {tangent}, by differences {difference} (scale {scale})"
+                    );
+                }
+            }
+        }
+        assert!(closed > 0, "pair {number} is open");
+    }
+}
+
 /// Mortar: the tangent of every closed point on straight and curved, smooth and cornered edges, sticking and slipping, from
 /// a committed configuration in which the slave lay elsewhere.
 #[test]
@@ -362,6 +458,42 @@ fn mortar_tangent_equals_differences() {
     }
 }
 
+/// The direction of a slave node is the mean of its edges' under its multiplier, ∫ φ_j dx: on two parabolas of unequal length,
+/// by sums of little chords.
+#[test]
+fn mortar_normal_is_the_mean_under_the_multiplier() {
+    let on_circle = |angle: f64| Vector2::new(angle.sin(), 1.0 - angle.cos());
+    let nodes = [-0.6, -0.3, 0.0, 0.15, 0.3].map(on_circle);
+    let x: Positions = [Vector2::new(-3.0, 0.01), Vector2::new(3.0, 0.01)].into_iter().chain(nodes).collect();
+    let (master, slave) = (Surface::new(&[vec![1, 0]]), [vec![2, 4, 3], vec![4, 6, 5]]);
+    let (points, mortar) = mortar_points(&slave, &x);
+    let place = |edge: &[usize], xi: f64| {
+        let [start, end, middle] = [0.5 * xi * (xi - 1.0), 0.5 * xi * (xi + 1.0), 1.0 - xi * xi];
+        start * x[edge[0]] + end * x[edge[1]] + middle * x[edge[2]]
+    };
+    let mean = |edge: &[usize], phi: fn(f64) -> f64| -> Vector2<f64> {
+        let chord = |k: i32| place(edge, f64::from(k + 1) * 1e-3) - place(edge, f64::from(k) * 1e-3);
+        (-1000..1000).map(|k| phi((f64::from(k) + 0.5) * 1e-3) * chord(k)).sum()
+    };
+    let (start, middle, end) = (|xi: f64| (-xi).max(0.0), |xi: f64| 1.0 - xi.abs(), |xi: f64| xi.max(0.0));
+    let [first, second] = &slave;
+    let expected = [
+        mean(first, start),
+        mean(first, middle),
+        mean(first, end) + mean(second, start),
+        mean(second, middle),
+        mean(second, end),
+    ];
+    let configuration = Configuration::undeformed(&x);
+    let pair = pair(points, Master::Mesh(master.clone()), FRICTIONLESS);
+    let overlaps = mortar.overlaps(&master, &Index::new(&pair.master, &configuration), &configuration);
+    for (k, expected) in expected.into_iter().enumerate() {
+        let met = mortar.kinematics(k, &master, &overlaps, None, &configuration).expect("the master faces the point");
+        let away = (met.kinematics.tangent - expected.normalize()).norm();
+        assert!(away < 1e-6, "point {k}: {:?}, not {:?}", met.kinematics.tangent, expected.normalize());
+    }
+}
+
 /// Compare the tangent of one mortar point with central differences; whether it was closed.
 fn check_mortar_tangent(
     pair: &ContactPair,
@@ -383,7 +515,7 @@ fn check_mortar_tangent(
         gap,
         multiplier: 0.0,
     };
-    let increment = Increment { dt: 0.3, fading: 0.0, presume: Presume::Nothing, promised: None };
+    let increment = Increment { moment: MOMENT, presumption: Presumption::default() };
     let evaluate = |x: &Positions| {
         let x = Configuration::undeformed(x);
         let is = mortar.overlaps(surface, &Index::new(&pair.master, &x), &x);

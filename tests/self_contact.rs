@@ -117,7 +117,7 @@ fn tangent_of_self_contact_equals_differences() {
         let [old, new] = [&run.states[run.states.len() - 2], run.last()];
         let before = run.model.configuration(&old.displacement);
         let respond = |u: &[f64]| {
-            let moment = Moment { dt: 0.1, fading: 0.0 };
+            let moment = Moment { dt: 0.1, fading: 0.0, stiffening: 1.0 };
             let presumed = |_| Presumption::default();
             pair.respond(&old.contacts[0], &before, moment, presumed, &run.model.configuration(u)).expect("an answer")
         };

@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use crate::boundary::{Absorber, Prescribed};
 use crate::configuration::Configuration;
 use crate::contact::force::{Closed, ContactState, Presume, Status, Tractions};
-use crate::contact::pair::{Moment, PairResponse, Presumption};
+use crate::contact::pair::{ContactPair, Moment, PairResponse, Presumption};
 use crate::contact::surface::Master;
 use crate::element::pressure::follower_pressure;
 use crate::error::TrialFailure;
@@ -43,9 +43,16 @@ pub struct Trial<'a> {
     pub time: f64,
     /// Δt [T]
     pub dt: f64,
+    /// α_n of contacts under the augmented Lagrangian is this many times the one given
+    pub stiffening: f64,
 }
 
 impl<'a> Trial<'a> {
+    /// The increment from a state to a time.
+    pub fn new(old: &'a State, step: &'a Step, time: f64, dt: f64) -> Self {
+        Self { old, step, time, dt, stiffening: 1.0 }
+    }
+
     /// The increment to the time t + θ Δt at which the scheme asks for equilibrium.
     pub fn ahead(self) -> Trial<'a> {
         let theta = self.step.scheme.theta();
@@ -141,6 +148,8 @@ struct Iterate {
     /// The point as the last solve saw it, if it was closed
     closed: Option<Closed>,
     promised: Tractions,
+    /// Pressure that friction answers to at a point that has just closed, if its own is too high
+    carried: Option<f64>,
 }
 
 impl Iterate {
@@ -403,6 +412,12 @@ impl<'m> Assembler<'m> {
                     None => Tractions::default(),
                 };
             }
+            let highest = iterates.iter().map(|iterate| iterate.promised.pressure).fold(0.0, f64::max);
+            for (iterate, state) in iterates.iter_mut().zip(states) {
+                let closes = !first && iterate.closed.is_none();
+                let too_high = closes && highest > 0.0 && state.friction.pressure > highest;
+                iterate.carried = too_high.then_some(highest);
+            }
         }
     }
 
@@ -423,15 +438,16 @@ impl<'m> Assembler<'m> {
             return Ok(Vec::new());
         }
         let before = self.model.configuration(&trial.old.displacement);
-        let moment = Moment { dt: trial.dt, fading: 1.0 - self.model.steps[0].span.share(trial.time) };
+        let fading = 1.0 - self.model.steps[0].span.share(trial.time);
+        let moment = Moment { dt: trial.dt, fading, stiffening: trial.stiffening };
         let pairs = self.model.contacts.iter().zip(&trial.old.contacts).enumerate();
         pairs
             .map(|(number, (pair, old))| {
                 let presumed = |k: usize| {
                     let Some(iterates) = self.iterates.get(number) else { return Presumption::default() };
-                    let &Iterate { presumed, held, promised, .. } = &iterates[k];
+                    let &Iterate { presumed, held, promised, carried, .. } = &iterates[k];
                     match presuming {
-                        true => Presumption { presume: presumed, promised: Some(promised), held },
+                        true => Presumption { presume: presumed, promised: Some(promised), carried, held },
                         false => Presumption { held, ..Presumption::default() },
                     }
                 };
@@ -793,7 +809,8 @@ impl<'m> Assembler<'m> {
         let extent = x.extent().min(10.0 * self.model.configuration(&old.displacement).extent());
         let solids = self.weight.powi(2) * self.model.mesh.nodes.len() as f64;
         let points = self.model.contacts.iter().flat_map(|pair| pair.points.iter().map(move |point| (pair, point)));
-        let contacts: f64 = points.map(|(pair, point)| (pair.alpha_n * point.current_length(x)).powi(2)).sum();
+        let stiffness = |pair: &ContactPair| pair.normal_stiffness(trial.stiffening);
+        let contacts: f64 = points.map(|(pair, point)| (stiffness(pair) * point.current_length(x)).powi(2)).sum();
         system.round_off = f64::EPSILON * extent * (solids + contacts).sqrt();
         let way: Vec<f64> = old.displacement.iter().zip(&old.velocity).map(|(u, v)| u.abs() + (dt * v).abs()).collect();
         let scheme = step.scheme.coefficients();

@@ -7,13 +7,14 @@
 //! δt = (δp − q δθ) n − (δq + p δθ) s,   δp = −α_n δg,   δq = ∂q/∂Δu_t δΔu_t + ∂q/∂p δp
 //! ```
 //!
-//! In an increment that starts open only the slip after touch counts: Δu_t g₁/(g₁ − g₀).
+//! In an increment that starts open only the slip after touch counts: Δu_t g₁/(g₁ − g₀), nothing under the augmented
+//! Lagrangian, where g₁ = 0, and all where nothing faced the point at its start.
 
 use nalgebra::{DVector, Vector2};
 use serde::{Deserialize, Serialize};
 
 use super::kinematics::{Kinematics, kinematics};
-use super::pair::ContactPair;
+use super::pair::{ContactPair, Moment, Presumption};
 use super::projection::Projection;
 use super::surface::{MasterPoint, SlavePoint};
 use crate::configuration::Configuration;
@@ -64,15 +65,10 @@ impl ContactState {
 /// Increment of a contact point, and what the iteration presumes about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Increment {
-    /// Δt [T]
-    pub dt: f64,
-    /// Share of an initial overlap that does not count yet, 1 to 0 over the first step
-    pub fading: f64,
-    /// Presumption about the point
-    pub presume: Presume,
-    /// Tractions that the tangent turns and stretches with the surface; those of the trial state unless given. A point
-    /// with a promised pressure is closed, whatever its gap
-    pub promised: Option<Tractions>,
+    /// Length of the increment, and what it changes about every point
+    pub moment: Moment,
+    /// What the linear solve presumes about the point
+    pub presumption: Presumption,
 }
 
 /// Pressure and traction of a point, as one linear solve promised them to the next.
@@ -157,27 +153,26 @@ pub struct Meeting {
     pub foot: MasterPoint,
 }
 
-/// The trial state of one point and, if closed, what it adds to the equations.
+/// The trial state of one point and, if closed, what it adds to the equations, in the committed configuration and that of
+/// the trial.
 pub fn respond(
     pair: &ContactPair,
     slave: &SlavePoint,
     projection: Option<Projection>,
     old: &ContactState,
     increment: Increment,
-    x: &Configuration,
+    [before, x]: [&Configuration; 2],
 ) -> PointResponse {
     let Some(projection) = projection else { return open(pair, slave, None, old, increment) };
-    let (gap, foot) = (slave.gap(projection.gap, increment.fading), projection.foot);
+    let (gap, foot) = (slave.gap(projection.gap, increment.moment.fading), projection.foot);
     if !closes(pair, slave, gap, old, increment, x) {
         return open(pair, slave, Some((gap, foot)), old, increment);
     }
-    press(
-        pair,
-        slave,
-        Meeting { kinematics: kinematics(slave, &pair.master, &projection, old.foot, x), gap, foot },
-        old,
-        increment,
-    )
+    let mut kinematics = kinematics(slave, &pair.master, &projection, old.foot, x);
+    if old.foot.is_none() {
+        kinematics.count_from(before, x);
+    }
+    press(pair, slave, Meeting { kinematics, gap, foot }, old, increment)
 }
 
 /// Whether a point with this gap carries pressure, or is presumed to.
@@ -189,19 +184,15 @@ pub fn closes(
     increment: Increment,
     x: &Configuration,
 ) -> bool {
-    let promised = increment.promised.is_some_and(|promised| promised.pressure > 0.0);
-    promised || pressure(pair, gap, old) > 0.0 || touches(gap, slave.current_length(x), old, increment)
+    let promised = increment.presumption.promised.is_some_and(|promised| promised.pressure > 0.0);
+    let pressure = old.multiplier - pair.normal_stiffness(increment.moment.stiffening) * gap;
+    promised || pressure > 0.0 || touches(gap, slave.current_length(x), old, increment)
 }
 
 /// Whether a zero gap is presumed to be closed, and to stick.
 fn touches(gap: f64, length: f64, old: &ContactState, increment: Increment) -> bool {
     let zero = TOUCH * length;
-    increment.presume == Presume::Touch && old.foot.is_some() && old.gap.abs() <= zero && gap.abs() <= zero
-}
-
-/// p̄ − α_n g, below zero where the point would have to be held back.
-fn pressure(pair: &ContactPair, gap: f64, old: &ContactState) -> f64 {
-    old.multiplier - pair.alpha_n * gap
+    increment.presumption.presume == Presume::Touch && old.foot.is_some() && old.gap.abs() <= zero && gap.abs() <= zero
 }
 
 /// The state of a point without pressure.
@@ -212,7 +203,7 @@ pub fn open(
     old: &ContactState,
     increment: Increment,
 ) -> PointResponse {
-    let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.dt };
+    let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.moment.dt };
     let friction = pair.law(slave).respond(&old.friction, sliding)?.state;
     let (gap, foot) = met.unzip();
     Ok((ContactState { friction, foot, length: old.length, gap: gap.unwrap_or(0.0), multiplier: 0.0 }, None))
@@ -228,23 +219,30 @@ pub fn press(
 ) -> PointResponse {
     let law = pair.law(slave);
     let Meeting { mut kinematics, gap, foot } = meeting;
-    if old.friction.pressure == 0.0 && old.gap > TOUCH * kinematics.length {
-        count_slip_after_touch(&mut kinematics, old.gap, gap.min(0.0));
+    let apart = old.friction.pressure == 0.0 && old.gap > TOUCH * kinematics.length;
+    match pair.penetration {
+        None if apart => count_slip_after_touch(&mut kinematics, old.gap, gap.min(0.0)),
+        Some(_) if apart || old.foot.is_none() => count_no_slip(&mut kinematics),
+        _ => {}
     }
-    let pressure = pressure(pair, gap, old);
-    let sliding = Sliding { slip: kinematics.slip, pressure: carried(pressure, increment), dt: increment.dt };
+    let alpha_n = pair.normal_stiffness(increment.moment.stiffening);
+    let pressure = old.multiplier - alpha_n * gap;
+    let sliding =
+        Sliding { slip: kinematics.slip, pressure: carried(pressure, increment.presumption), dt: increment.moment.dt };
     let mut response = law.respond(&old.friction, sliding)?;
     if sliding.pressure > 0.0 {
         response.state.traction += response.dtraction_dpressure * (pressure - sliding.pressure);
         response.state.pressure = pressure;
     }
     let stiffness = law.stiffness();
-    if increment.presume == Presume::Stick {
+    if increment.presumption.presume == Presume::Stick {
         response.state.traction = old.friction.traction + stiffness * sliding.slip;
         response.dtraction_dpressure = 0.0;
     }
     // At p = 0 the law has no answer to give, and near it round-off decides which.
-    if increment.presume == Presume::Stick || sliding.pressure == 0.0 || touches(gap, kinematics.length, old, increment)
+    if increment.presumption.presume == Presume::Stick
+        || sliding.pressure == 0.0
+        || touches(gap, kinematics.length, old, increment)
     {
         response.dtraction_dslip = stiffness;
     }
@@ -253,17 +251,20 @@ pub fn press(
         foot: Some(foot),
         length: kinematics.length,
         gap,
-        multiplier: old.multiplier,
+        // The next increment begins with the same pressure, but the stiffness given.
+        multiplier: old.multiplier - (alpha_n - pair.alpha_n) * gap,
     };
-    Ok((state, Some(closed(&kinematics, &response, pair.alpha_n, increment.promised))))
+    Ok((state, Some(closed(&kinematics, &response, alpha_n, increment.presumption.promised))))
 }
 
 /// The pressure under which friction answers: that of a point which only a promise keeps closed is the promised one, from
 /// where its answer goes on in a straight line.
-fn carried(pressure: f64, increment: Increment) -> f64 {
-    if pressure > 0.0 { pressure } else { increment.promised.map_or(0.0, |promised| promised.pressure) }
+fn carried(pressure: f64, presumption: Presumption) -> f64 {
+    let promised = || presumption.promised.map_or(0.0, |promised| promised.pressure);
+    presumption.carried.unwrap_or_else(|| if pressure > 0.0 { pressure } else { promised() })
 }
 
+/// Δu_t g₁/(g₁ − g₀) in an increment that starts open, at the gap g₀, and ends at g₁.
 fn count_slip_after_touch(kinematics: &mut Kinematics, old_gap: f64, gap: f64) {
     let share = gap / (gap - old_gap);
     let dshare = -old_gap / (gap - old_gap).powi(2);
@@ -272,13 +273,19 @@ fn count_slip_after_touch(kinematics: &mut Kinematics, old_gap: f64, gap: f64) {
     kinematics.slip *= share;
 }
 
+/// Under the augmented Lagrangian g₁ = 0: the gap closes at the end of the increment.
+fn count_no_slip(kinematics: &mut Kinematics) {
+    kinematics.slip = 0.0;
+    kinematics.dslip.fill(0.0);
+}
+
 /// What a traction puts on the nodes: w_a (p n − q s) ℓ [F].
 pub fn nodal_forces(k: &Kinematics, p: f64, q: f64) -> Vec<(usize, Vector2<f64>)> {
     let force = (k.normal * p - k.tangent * q) * k.length;
     k.nodes.iter().zip(&k.relative).map(|(&node, &w)| (node, force * w)).collect()
 }
 
-/// Nodal forces of the traction and their derivative: the exact one unless other tractions are promised.
+/// Nodal forces of the traction and their derivative: the exact one unless tractions are promised or a pressure carried.
 fn closed(k: &Kinematics, response: &FrictionResponse, alpha_n: f64, promised: Option<Tractions>) -> Closed {
     let tractions = Tractions::of(&response.state);
     let turned = |Tractions { pressure: p, traction: q }: Tractions| k.normal * p - k.tangent * q;

@@ -9,6 +9,13 @@
 //! Δu_t = ∫ J dξ           δΔu_t = ∫ s·δx′ dξ + J δξ        along the surface from the old foot to the new one
 //! ```
 //!
+//! A point that nothing faced when the increment began has no old foot; it has slipped past what it faces now, Σ w_a x_a
+//! being x_s − x:
+//!
+//! ```text
+//! Δu_t = s·Σ w_a Δx_a     δΔu_t = s·Σ (w_a δx_a + δw_a Δx_a) + n·Σ w_a Δx_a δθ        Δx_a: motion in the increment
+//! ```
+//!
 //! A foot bound to a node x_v: g = ±‖x_s − x_v‖, δg = n·(δx_s − δx_v), δθ = −s·(δx_s − δx_v)/g, δξ = 0.
 
 use nalgebra::{DVector, Vector2};
@@ -151,6 +158,22 @@ fn slides(surface: &Surface, path: &Path, projection: &Projection, x: &Configura
 }
 
 impl Kinematics {
+    /// Count the slip of a point that nothing faced in the configuration `before`.
+    pub fn count_from(&mut self, before: &Configuration, x: &Configuration) {
+        let motions: Vec<Vector2<f64>> = self.nodes.iter().map(|&node| x.since(before, node)).collect();
+        let motion: Vector2<f64> = self.relative.iter().zip(&motions).map(|(&w, motion)| w * motion).sum();
+        let (n, s) = (self.normal, self.tangent);
+        self.slip = s.dot(&motion);
+        self.dslip = &self.drotation * n.dot(&motion);
+        for (a, &w) in self.relative.iter().enumerate() {
+            self.dslip[2 * a] += w * s.x;
+            self.dslip[2 * a + 1] += w * s.y;
+        }
+        for (a, dw) in &self.drelative {
+            self.dslip += dw * s.dot(&motions[*a]);
+        }
+    }
+
     /// The slave's part: its nodes, their weights, its length; everything else zero.
     fn of_slave(slave: &SlavePoint, normal: Vector2<f64>, masters: &[usize], x: &Configuration) -> Self {
         let shares = slave.length.iter().flat_map(|share| &share.tangent);

@@ -47,21 +47,28 @@ pub struct InitialTraction {
 }
 
 /// When a pair is evaluated.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
     /// Δt [T]
     pub dt: f64,
     /// Share of an initial overlap that does not count yet
     pub fading: f64,
+    /// α_n under the augmented Lagrangian is this many times the one given
+    pub stiffening: f64,
 }
 
-/// What one linear solve takes over for a point from those before.
-#[derive(Clone, Copy, Debug, Default)]
+/// What one linear solve takes over for a point from those before; an accepted state presumes nothing but `held`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Presumption {
     /// Presumption about its state
     pub presume: Presume,
-    /// Tractions promised
+    /// Tractions that the tangent turns and stretches with the surface; those of the trial state unless given. A point
+    /// with a promised pressure is closed, whatever its gap
     pub promised: Option<Tractions>,
+    /// Pressure under which friction answers, and from where its answer goes on in a straight line, at a point that has just
+    /// closed, if its own is higher than any that was promised: a stiff penalty presses a point far too hard that goes too
+    /// deep in one iterate, and would make it stick where it is to slip.
+    pub carried: Option<f64>,
     /// Segment it is held on
     pub held: Option<usize>,
 }
@@ -83,13 +90,15 @@ impl ContactPair {
     /// ```text
     /// p = p_init + α_n (g_x − g)        g_x: gap between the surfaces in the configuration x
     /// ```
+    /// Under the augmented Lagrangian p_init is the first multiplier instead.
     ///
     /// # Errors
     /// The number of the first point that no part of the master faces.
     pub fn start_closed(&mut self, initial: Vec<InitialTraction>, x: &Configuration) -> Result<(), usize> {
         let met = self.meetings(x);
         for (k, (slave, met)) in self.points.iter_mut().zip(met).enumerate() {
-            slave.touch = met.ok_or(k)?.gap + initial[k].pressure / self.alpha_n;
+            let give = if self.penetration.is_some() { 0.0 } else { initial[k].pressure / self.alpha_n };
+            slave.touch = met.ok_or(k)?.gap + give;
         }
         self.initial = Some(initial);
         Ok(())
@@ -117,7 +126,8 @@ impl ContactPair {
             }
             let length = met.as_ref().map_or_else(|| slave.current_length(x), |met| met.kinematics.length);
             let (gap, foot) = met.map(|met| (slave.gap(met.gap, 1.0), met.foot)).unzip();
-            ContactState { friction, foot, length, gap: gap.unwrap_or(0.0), multiplier: 0.0 }
+            let multiplier = if self.penetration.is_some() { friction.pressure } else { 0.0 };
+            ContactState { friction, foot, length, gap: gap.unwrap_or(0.0), multiplier }
         };
         self.points.iter().zip(self.meetings(x)).enumerate().map(state).collect()
     }
@@ -160,7 +170,7 @@ impl ContactPair {
         &self,
         old: &[ContactState],
         before: &Configuration,
-        Moment { dt, fading }: Moment,
+        moment: Moment,
         presumed: impl Fn(usize) -> Presumption + Sync,
         x: &Configuration,
     ) -> Result<PairResponse, (usize, LawFailure)> {
@@ -169,13 +179,15 @@ impl ContactPair {
             let was = mortar.overlaps(surface, &Index::new(&self.master, before), before);
             let is = mortar.overlaps(surface, &index, x);
             return self.each(old, |k, slave, old| {
-                let Presumption { presume, promised, .. } = presumed(k);
-                let increment = Increment { dt, fading, presume, promised };
+                let increment = Increment { moment, presumption: presumed(k) };
                 let weights = mortar.weights(k, surface, &was, before);
                 let Some(mut meeting) = mortar.kinematics(k, surface, &is, weights.as_ref(), x) else {
                     return open(self, slave, None, old, increment);
                 };
-                meeting.gap = slave.gap(meeting.gap, fading);
+                if weights.is_none() {
+                    meeting.kinematics.count_from(before, x);
+                }
+                meeting.gap = slave.gap(meeting.gap, moment.fading);
                 match closes(self, slave, meeting.gap, old, increment, x) {
                     true => press(self, slave, meeting, old, increment),
                     false => open(self, slave, Some((meeting.gap, meeting.foot)), old, increment),
@@ -183,9 +195,8 @@ impl ContactPair {
             });
         }
         self.each(old, |k, slave, old| {
-            let Presumption { presume, promised, held } = presumed(k);
-            let increment = Increment { dt, fading, presume, promised };
-            respond(self, slave, index.project(slave, held, x), old, increment, x)
+            let increment = Increment { moment, presumption: presumed(k) };
+            respond(self, slave, index.project(slave, increment.presumption.held, x), old, increment, [before, x])
         })
     }
 
@@ -207,13 +218,16 @@ impl ContactPair {
 }
 
 impl ContactPair {
-    /// Whether the multipliers of a pass leave no more penetration than allowed; always for the plain penalty.
-    pub fn is_content(&self, old: &[ContactState], trial: &[ContactState]) -> bool {
-        let Some(tolerance) = self.penetration else { return true };
-        let near = |new: &ContactState| new.friction.pressure == 0.0 || new.gap.abs() <= tolerance;
-        // A multiplier that no pressure answers to any more must go as well.
-        let stale = |(old, new): (&ContactState, &ContactState)| old.multiplier > 0.0 && new.friction.pressure == 0.0;
-        trial.iter().all(near) && !old.iter().zip(trial).any(stale)
+    /// Largest gap of a closed point that the multipliers of a pass leave, over the one allowed; 0 for the plain penalty.
+    pub fn excess(&self, trial: &[ContactState]) -> f64 {
+        let Some(tolerance) = self.penetration else { return 0.0 };
+        let closed = trial.iter().filter(|state| state.friction.pressure > 0.0);
+        closed.map(|state| state.gap.abs() / tolerance).fold(0.0, f64::max)
+    }
+
+    /// α_n, under the augmented Lagrangian this many times the one given.
+    pub fn normal_stiffness(&self, stiffening: f64) -> f64 {
+        if self.penetration.is_some() { stiffening * self.alpha_n } else { self.alpha_n }
     }
 
     /// The committed states with the pressures of a pass as multipliers, p̄ ← p (Uzawa's method).

@@ -43,8 +43,8 @@ impl<'a> Index<'a> {
         }
     }
 
-    /// The foot of a slave point, if a part of the master faces it, O(log N). `held` is a segment to stay on if the
-    /// point is still near it.
+    /// The foot of a slave point, if a part of the master faces it; by the tree, not by going through all. `held` is a segment
+    /// to stay on if the point is still near it.
     pub fn project(&self, slave: &SlavePoint, held: Option<usize>, x: &Configuration) -> Option<Projection> {
         let point = slave.at(x);
         match self {

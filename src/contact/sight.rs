@@ -11,7 +11,7 @@
 //! n·n_point ≥ −0.1   or   n·(x_point − x) ≤ −depth      for every θ of the branch and every x of its box
 //! ```
 //!
-//! so a point does not search its own side, nor the other side of the body, and finds what it may meet in O(log N).
+//! so a point searches neither its own side nor the other side of the body.
 
 use std::f64::consts::{PI, TAU};
 

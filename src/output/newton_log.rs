@@ -12,7 +12,7 @@ use crate::step::IterationRecord;
 #[derive(Debug)]
 pub struct NewtonLog(Table);
 
-const COLUMNS: [&str; 14] = [
+const COLUMNS: [&str; 15] = [
     "step",
     "increment",
     "attempt",
@@ -27,6 +27,7 @@ const COLUMNS: [&str; 14] = [
     "factorized",
     "stabilization",
     "flips",
+    "pass",
 ];
 
 impl NewtonLog {
@@ -43,7 +44,8 @@ impl Observer for NewtonLog {
     fn record(&mut self, _model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Self(table) = self;
         let time = attempt.old.time + attempt.dt;
-        for (k, IterationRecord { newton, contacts, flips, stabilization }) in attempt.iterations.iter().enumerate() {
+        for (k, iteration) in attempt.iterations.iter().enumerate() {
+            let IterationRecord { newton, contacts, flips, pass, stabilization } = iteration;
             table.text(&attempt.step.name);
             [attempt.old.increment + 1, attempt.number, k + 1].into_iter().for_each(|count| table.count(count));
             [time, newton.residual, newton.correction].into_iter().for_each(|number| table.number(number));
@@ -52,6 +54,7 @@ impl Observer for NewtonLog {
             table.count(usize::from(newton.factorized));
             table.number(*stabilization);
             table.count(*flips);
+            table.count(*pass);
             table.end_row()?;
         }
         table.share()
