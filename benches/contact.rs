@@ -44,7 +44,7 @@ fn update(criterion: &mut Criterion) {
             bench.iter(|| pair.points.iter().filter(|slave| index.project(slave, None, &x).is_some()).count());
         });
         let old = pair.initial_states(&x);
-        let moment = Moment { dt: 1.0, fading: 0.0 };
+        let moment = Moment { dt: 1.0, fading: 0.0, stiffening: 1.0 };
         group.bench_function(BenchmarkId::new("update", n), |bench| {
             bench.iter(|| pair.respond(&old, &x, moment, |_| Presumption::default(), &x).is_ok());
         });
@@ -52,5 +52,39 @@ fn update(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, update);
+/// A closed ring of n edges, dented until its sides nearly touch, in contact with itself: every point looks past its own
+/// neighbours for what faces it.
+fn ring(n: usize) -> (Vec<Vector2<f64>>, ContactPair) {
+    let at = |k: usize| {
+        let angle = std::f64::consts::TAU * k as f64 / n as f64;
+        Vector2::new(angle.cos(), 1e-3 * angle.sin().signum() + angle.sin() * angle.cos().powi(2))
+    };
+    let nodes = (0..n).map(at).collect();
+    // The body lies outside, its elements as thick as their edges are long.
+    let edges: Vec<Vec<usize>> = (0..n).rev().map(|k| vec![(k + 1) % n, k]).collect();
+    let (_, other) = surfaces(2);
+    let master = Master::Mesh(Surface::new(&edges).against_itself(std::f64::consts::PI / n as f64));
+    (nodes, ContactPair { name: "ring".into(), points: gauss_points(&edges, 2), master, ..other })
+}
+
+fn self_contact(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("self_contact");
+    group.sample_size(10);
+    for n in [1_000, 10_000, 100_000] {
+        let (nodes, pair) = ring(n);
+        let x = Configuration::undeformed(&nodes);
+        let index = Index::within(&pair.master, &x, &x);
+        group.bench_function(BenchmarkId::new("search", n), |bench| {
+            bench.iter(|| pair.points.iter().filter(|slave| index.project(slave, None, &x).is_some()).count());
+        });
+        let old = pair.initial_states(&x);
+        let moment = Moment { dt: 1.0, fading: 0.0, stiffening: 1.0 };
+        group.bench_function(BenchmarkId::new("update", n), |bench| {
+            bench.iter(|| pair.respond(&old, &x, moment, |_| Presumption::default(), &x).is_ok());
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, update, self_contact);
 criterion_main!(benches);
