@@ -2,6 +2,7 @@
 //   gmsh -2 -format msh41 ironing.geo -o ironing_q4.msh
 //   gmsh -2 -format msh41 -setnumber columns 108 ironing.geo -o ironing_q4_fine.msh
 //   gmsh -2 -format msh41 -setnumber order 2 -setnumber columns 48 ironing.geo -o ironing_q8.msh
+//   gmsh -2 -format msh41 -setnumber order 2 -setnumber columns 72 ironing.geo -o ironing_q8_fine.msh
 DefineConstant[ columns = 72, order = 1 ];
 Point(1) = {0, -4, 0}; Point(2) = {12, -4, 0}; Point(3) = {12, 0, 0}; Point(4) = {0, 0, 0};
 Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
