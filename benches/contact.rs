@@ -8,8 +8,11 @@ use fecontact::contact::surface::{Master, Surface, gauss_points};
 use fecontact::friction::{Coulomb, CoulombParameters};
 use nalgebra::Vector2;
 
+/// Positions of the nodes, and what lies between them.
+type Surfaces = (Vec<Vector2<f64>>, ContactPair);
+
 /// A wavy slave of n/2 edges with two points each, a trifle below a wavy master of n segments.
-fn surfaces(n: usize) -> (Vec<Vector2<f64>>, ContactPair) {
+fn surfaces(n: usize) -> Surfaces {
     let at = |x: f64, below: f64| Vector2::new(x, 0.05 * (20.0 * x).sin() - below);
     let mut nodes: Vec<_> = (0..=n).map(|k| at(k as f64 / n as f64, 0.0)).collect();
     nodes.extend((0..=n / 2).map(|k| at(k as f64 / (n / 2) as f64, 1e-3 / n as f64)));
@@ -30,31 +33,9 @@ fn surfaces(n: usize) -> (Vec<Vector2<f64>>, ContactPair) {
     (nodes, pair)
 }
 
-fn update(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("contact");
-    group.sample_size(10);
-    for n in [1_000, 30_000, 1_000_000] {
-        let (nodes, pair) = surfaces(n);
-        let x = Configuration::undeformed(&nodes);
-        group.bench_function(BenchmarkId::new("index", n), |bench| {
-            bench.iter(|| matches!(Index::new(&pair.master, &x), Index::Mesh(..)));
-        });
-        let index = Index::new(&pair.master, &x);
-        group.bench_function(BenchmarkId::new("search", n), |bench| {
-            bench.iter(|| pair.points.iter().filter(|slave| index.project(slave, None, &x).is_some()).count());
-        });
-        let old = pair.initial_states(&x);
-        let moment = Moment { dt: 1.0, fading: 0.0, stiffening: 1.0 };
-        group.bench_function(BenchmarkId::new("update", n), |bench| {
-            bench.iter(|| pair.respond(&old, &x, moment, |_| Presumption::default(), &x).is_ok());
-        });
-    }
-    group.finish();
-}
-
 /// A closed ring of n edges, dented until its sides nearly touch, in contact with itself: every point looks past its own
 /// neighbours for what faces it.
-fn ring(n: usize) -> (Vec<Vector2<f64>>, ContactPair) {
+fn ring(n: usize) -> Surfaces {
     let at = |k: usize| {
         let angle = std::f64::consts::TAU * k as f64 / n as f64;
         Vector2::new(angle.cos(), 1e-3 * angle.sin().signum() + angle.sin() * angle.cos().powi(2))
@@ -67,12 +48,16 @@ fn ring(n: usize) -> (Vec<Vector2<f64>>, ContactPair) {
     (nodes, ContactPair { name: "ring".into(), points: gauss_points(&edges, 2), master, ..other })
 }
 
-fn self_contact(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("self_contact");
+/// Index, search and whole update of surfaces of several sizes.
+fn measure(criterion: &mut Criterion, name: &str, sizes: [usize; 3], surfaces: fn(usize) -> Surfaces) {
+    let mut group = criterion.benchmark_group(name);
     group.sample_size(10);
-    for n in [1_000, 10_000, 100_000] {
-        let (nodes, pair) = ring(n);
+    for n in sizes {
+        let (nodes, pair) = surfaces(n);
         let x = Configuration::undeformed(&nodes);
+        group.bench_function(BenchmarkId::new("index", n), |bench| {
+            bench.iter(|| matches!(Index::within(&pair.master, &x, &x), Index::Mesh(..)));
+        });
         let index = Index::within(&pair.master, &x, &x);
         group.bench_function(BenchmarkId::new("search", n), |bench| {
             bench.iter(|| pair.points.iter().filter(|slave| index.project(slave, None, &x).is_some()).count());
@@ -86,5 +71,13 @@ fn self_contact(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, update, self_contact);
+fn two_surfaces(criterion: &mut Criterion) {
+    measure(criterion, "contact", [1_000, 30_000, 1_000_000], surfaces);
+}
+
+fn self_contact(criterion: &mut Criterion) {
+    measure(criterion, "self_contact", [1_000, 10_000, 100_000], ring);
+}
+
+criterion_group!(benches, two_surfaces, self_contact);
 criterion_main!(benches);
