@@ -25,6 +25,7 @@ fn surfaces(n: usize) -> Surfaces {
         points: gauss_points(&slave, 2),
         master: Master::Mesh(Surface::new(&master)),
         alpha_n: 1e4,
+        compliance: 0.0,
         laws: vec![Box::new(law)],
         initial: None,
         mortar: None,
@@ -63,7 +64,7 @@ fn measure(criterion: &mut Criterion, name: &str, sizes: [usize; 3], surfaces: f
             bench.iter(|| pair.points.iter().filter(|slave| index.project(slave, None, &x).is_some()).count());
         });
         let old = pair.initial_states(&x);
-        let moment = Moment { dt: 1.0, fading: 0.0, stiffening: 1.0 };
+        let moment = Moment { dt: 1.0, fading: 0.0, stiffening: 1.0, settles: true };
         group.bench_function(BenchmarkId::new("update", n), |bench| {
             bench.iter(|| pair.respond(&old, &x, moment, |_| Presumption::default(), &x).is_ok());
         });

@@ -195,7 +195,7 @@ impl<'m> Explicit<'m> {
                 *u = u0 + dt * (v + 0.5 * dt * a);
             }
         });
-        let trial = Trial::new(state, step, time, dt);
+        let trial = Trial { settles: false, ..Trial::new(state, step, time, dt) };
         let places: Vec<[f64; 4]> = step.supports.iter().map(|support| trial.thirds(support, model)).collect();
         for (support, places) in step.supports.iter().zip(&places) {
             if !places.iter().all(|place| place.is_finite()) {

@@ -20,7 +20,7 @@ const SUPER: &str = r#"{"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "r"
         "integration": "backward_euler"}"#;
 const COULOMB: &str = r#"{"law": "coulomb", "mu": 0.3}"#;
 const FRICTIONLESS: &str = r#"{"law": "frictionless"}"#;
-const MOMENT: Moment = Moment { dt: 0.3, fading: 0.0, stiffening: 1.0 };
+const MOMENT: Moment = Moment { dt: 0.3, fading: 0.0, stiffening: 1.0, settles: true };
 
 /// A wavy master of five segments, nodes 0 to 5 from left to right, and slave nodes 6, 7, 8 below it.
 ///
@@ -32,7 +32,7 @@ fn wavy() -> (Vec<Vec<usize>>, Positions) {
     ((0..5).map(|k| vec![k + 1, k]).collect(), x)
 }
 
-/// A pair with α_n = 1000 and, unless given, α_t = 700.
+/// A pair with α_n = 1000, c = 0.002 and, unless given, α_t = 700.
 fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
     let law =
         serde_json::from_str::<FrictionParameters>(law).expect("a law").build(700.0).expect("parameters in range");
@@ -42,6 +42,7 @@ fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
         master,
         mortar: None,
         alpha_n: 1000.0,
+        compliance: 2e-3,
         penetration: None,
         laws: vec![law],
         initial: None,
@@ -61,11 +62,21 @@ fn promised(
     x: &Positions,
     promised: Option<Tractions>,
 ) -> (ContactState, Option<Closed>) {
+    let increment = Increment { moment: MOMENT, presumption: Presumption { promised, ..Presumption::default() } };
+    answer(pair, k, old, x, increment)
+}
+
+fn answer(
+    pair: &ContactPair,
+    k: usize,
+    old: &ContactState,
+    x: &Positions,
+    increment: Increment,
+) -> (ContactState, Option<Closed>) {
     let x = &Configuration::undeformed(x);
     // Every point had a foot before.
     let before = x;
     let index = Index::new(&pair.master, x);
-    let increment = Increment { moment: MOMENT, presumption: Presumption { promised, ..Presumption::default() } };
     let projection = index.project(&pair.points[k], None, x);
     respond(pair, &pair.points[k], projection, old, increment, [before, x]).expect("a finite increment")
 }
@@ -139,7 +150,8 @@ fn tangent_equals_differences_in_stick_partial_and_full_slip_and_after_touch() {
                     (-1.4, -0.02, "backward slip over two segments"),
                     (0.02, 0.03, "touch within the increment"),
                 ] {
-                    let old = pulled(&pair, k, &x, back, pressed, gap);
+                    let friction = if gap > 0.0 { pair.laws[0].initial_state() } else { pressed };
+                    let old = pulled(&pair, k, &x, back, friction, gap);
                     check_tangent(&pair, k, &old, &x, &format!("{law}, {what}"));
                 }
             }
@@ -210,6 +222,50 @@ fn a_promise_is_of_second_order_and_changes_no_force() {
     let (held, _) = promised(&pair, 1, &old, &lifted, other);
     assert_eq!(held.friction.pressure, -pair.alpha_n * held.gap);
     assert!(held.gap > 0.0 && held.friction.pressure < 0.0);
+}
+
+/// A point above the plane y = 0 by 0.03 at the start of an increment and pressed by p = 10 at its end, having moved by 0.005
+/// along it: it sticks with q = α_t 0.005 d/(0.03 + d). With the plain penalty d = c p + p/α_n, where bodies do not settle
+/// p/α_n; with the augmented Lagrangian d = c p, whatever α_n.
+#[test]
+fn slip_counts_from_touch() {
+    let plane = Rigid::Plane(Plane { point: Vector2::zeros(), normal: Vector2::new(0.0, 1.0) });
+    let plain = pair(gauss_points(&[vec![0, 1]], 2), Master::Rigid(plane), COULOMB);
+    let check = |pair: &ContactPair, deep: f64, moment: Moment, d: f64| {
+        let x = vec![Vector2::new(0.2, -deep), Vector2::new(0.9, -deep)];
+        let old = pulled(pair, 0, &x, 0.005, pair.laws[0].initial_state(), 0.03);
+        check_tangent(pair, 0, &old, &x, "after touch");
+        let friction = answer(pair, 0, &old, &x, Increment { moment, presumption: Presumption::default() }).0.friction;
+        assert!((friction.pressure - 10.0).abs() < 1e-12);
+        let expected = 700.0 * 0.005 * d / (0.03 + d);
+        assert!((friction.traction - expected).abs() < 1e-12, "{}, not {expected}", friction.traction);
+    };
+    check(&plain, 0.01, MOMENT, 0.02 + 0.01);
+    check(&plain, 0.01, Moment { settles: false, ..MOMENT }, 0.01);
+    let augmented = ContactPair { penetration: Some(1e-6), ..plain };
+    check(&augmented, 0.01, MOMENT, 0.02);
+    check(&augmented, 0.0001, Moment { stiffening: 100.0, ..MOMENT }, 0.02);
+}
+
+/// Friction of a point that has just closed far too deep answers under the pressure carried, and goes on from there in a
+/// straight line: a correction that leaves this pressure finds the answer of the law, in stick and in slip, from a gap and from
+/// touch.
+#[test]
+fn a_carried_pressure_is_where_the_answer_is_exact() {
+    let plane = Rigid::Plane(Plane { point: Vector2::zeros(), normal: Vector2::new(0.0, 1.0) });
+    let pair = pair(gauss_points(&[vec![0, 1]], 2), Master::Rigid(plane), COULOMB);
+    let at = |y: f64| vec![Vector2::new(0.2, y), Vector2::new(0.9, y)];
+    for (back, gap) in [(0.002, 0.03), (0.2, 0.03), (0.002, 0.0), (0.2, 0.0)] {
+        let old = pulled(&pair, 0, &at(-0.04), back, pair.laws[0].initial_state(), gap);
+        let increment =
+            |carried| Increment { moment: MOMENT, presumption: Presumption { carried, ..Presumption::default() } };
+        let (deep, closed) = answer(&pair, 0, &old, &at(-0.04), increment(Some(5.0)));
+        assert!((deep.friction.pressure - 40.0).abs() < 1e-12);
+        let promise = closed.expect("a closed point").promise(|dof| if dof % 2 == 1 { 0.035 } else { 0.0 });
+        let there = answer(&pair, 0, &old, &at(-0.005), increment(None)).0.friction;
+        let off = (promise.pressure - there.pressure).abs().max((promise.traction - there.traction).abs());
+        assert!(off < 1e-12 && there.traction > 0.0, "{promise:?}, {there:?}");
+    }
 }
 
 /// Plane, disk, hole, and a polyline with a ridge that the first point has gone through and a line for the second.
@@ -507,14 +563,10 @@ fn check_mortar_tangent(
     let before = Configuration::undeformed(before);
     let was = mortar.overlaps(surface, &Index::new(&pair.master, &before), &before);
     let weights = mortar.weights(k, surface, &was, &before);
-    let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.laws[0].initial_state() };
-    let old = ContactState {
-        friction: pressed,
-        foot: Some(MasterPoint { segment: 0, xi: 0.0 }),
-        length: 1.0,
-        gap,
-        multiplier: 0.0,
-    };
+    let open = pair.laws[0].initial_state();
+    let friction = if gap > 0.0 { open } else { FrictionState { traction: 2.0, pressure: 20.0, ..open } };
+    let old =
+        ContactState { friction, foot: Some(MasterPoint { segment: 0, xi: 0.0 }), length: 1.0, gap, multiplier: 0.0 };
     let increment = Increment { moment: MOMENT, presumption: Presumption::default() };
     let evaluate = |x: &Positions| {
         let x = Configuration::undeformed(x);

@@ -19,11 +19,12 @@ use rayon::prelude::*;
 
 use crate::boundary::{Absorber, Prescribed};
 use crate::configuration::Configuration;
-use crate::contact::force::{Closed, ContactState, Presume, Status, Tractions};
+use crate::contact::force::{Closed, ContactState, Presume, SLIPPING, Status, Tractions};
 use crate::contact::pair::{ContactPair, Moment, PairResponse, Presumption};
 use crate::contact::surface::Master;
 use crate::element::pressure::follower_pressure;
 use crate::error::TrialFailure;
+use crate::friction::FrictionState;
 use crate::linear::{BlockPosition, Pattern, SparseMatrix};
 use crate::material::InvertedElement;
 use crate::model::{Body, Model, Step};
@@ -45,12 +46,14 @@ pub struct Trial<'a> {
     pub dt: f64,
     /// α_n of contacts under the augmented Lagrangian is this many times the one given
     pub stiffening: f64,
+    /// Whether the bodies give way under the pressures that come up within the increment; central differences move first
+    pub settles: bool,
 }
 
 impl<'a> Trial<'a> {
     /// The increment from a state to a time.
     pub fn new(old: &'a State, step: &'a Step, time: f64, dt: f64) -> Self {
-        Self { old, step, time, dt, stiffening: 1.0 }
+        Self { old, step, time, dt, stiffening: 1.0, settles: true }
     }
 
     /// The increment to the time t + θ Δt at which the scheme asks for equilibrium.
@@ -141,6 +144,8 @@ struct Iterate {
     /// segments of the last two solves
     segments: [Option<usize>; 2],
     presumed: Presume,
+    /// Whether the last solve presumed it to stick
+    stuck: bool,
     /// Segment the point stays on for the rest of the increment. Between two segments that meet in a ridge the closest
     /// point jumps, and with it the normal: a point near the bisector would go to and fro without end, because the
     /// forces on either side leave a jump in which no equilibrium lies.
@@ -148,21 +153,13 @@ struct Iterate {
     /// The point as the last solve saw it, if it was closed
     closed: Option<Closed>,
     promised: Tractions,
-    /// Pressure that friction answers to at a point that has just closed, if its own is too high
+    /// Pressure that friction answers to at a point that has just closed
     carried: Option<f64>,
 }
 
 impl Iterate {
-    /// Take note of the state at which the next linear solve starts.
-    fn note(&mut self, state: &ContactState, first: bool) {
-        let slip = state.friction.plastic_increment;
-        let reversed = self.slip * slip < 0.0 && self.presumed == Presume::Nothing;
-        self.presumed = match (first, reversed) {
-            (true, _) => Presume::Touch,
-            (false, true) => Presume::Stick,
-            (false, false) => Presume::Nothing,
-        };
-        self.slip = slip;
+    /// Take note of where the next linear solve starts.
+    fn note_segment(&mut self, state: &ContactState) {
         let segment = state.foot.map(|foot| foot.segment);
         let [last, before] = self.segments;
         if segment.is_some() && segment == before && segment != last {
@@ -170,7 +167,30 @@ impl Iterate {
         }
         self.segments = [segment, last];
     }
+
+    /// Watch the slip that the next linear solve starts from. Presumes sticking where the point slips the other way than
+    /// at the last solve, or was presumed to stick and slips, but would not with the tractions that this promised: it missed
+    /// the narrow range of sticking only for its own error.
+    fn watch_slip(&mut self, friction: &FrictionState) {
+        let slip = friction.plastic_increment;
+        // A point that only a promise keeps closed has a negative pressure.
+        let slips = slip != 0.0 && friction.traction.abs() >= SLIPPING * friction.mu * friction.pressure.abs();
+        let strength = friction.mu * self.promised.pressure;
+        // A law that slips at R < 1 does so with these tractions as well, unless they are far lower or the slip abates.
+        let held = if slip.abs() < ABATES * self.slip.abs() { strength } else { SLIPPING * strength };
+        let sticks = match self.stuck {
+            true => slips && self.promised.traction.abs() < held,
+            false => self.slip * slip < 0.0,
+        };
+        if sticks {
+            self.presumed = Presume::Stick;
+        }
+        self.slip = slip;
+    }
 }
+
+/// Slip that is below this share of what it was at the last solve comes to rest.
+const ABATES: f64 = 0.5;
 
 /// Seconds spent by phase.
 #[derive(Clone, Copy, Debug, Default)]
@@ -223,14 +243,16 @@ struct Buffers {
 /// one: a start value extrapolated past the edge of a contact penetrates far too deep.
 const MOST_GROWTH: f64 = 2.0;
 
-/// A point that was closed and would have to be drawn back by more than this many times its pressure has left.
+/// The penalty may have drawn a point that was closed back by this many p/α_n.
 const MOST_PULL: f64 = 10.0;
 
-/// What the start of an increment promises: a point that was closed still is, unless it is so far away that it has left.
-fn at_start(alpha_n: f64, state: &ContactState, old: &ContactState) -> Tractions {
+/// What the start of an increment promises: a point that was closed still is, unless it is farther away than the bodies
+/// would follow if its pressure went, and the penalty would reach.
+fn at_start(pair: &ContactPair, state: &ContactState, old: &ContactState) -> Tractions {
+    let reach = old.friction.pressure * (pair.compliance + MOST_PULL / pair.alpha_n);
     match state.friction.pressure > 0.0 {
         true => Tractions::of(&state.friction).limited(MOST_GROWTH * old.friction.pressure),
-        false if alpha_n * state.gap <= MOST_PULL * old.friction.pressure => Tractions::of(&old.friction),
+        false if state.gap <= reach => Tractions::of(&old.friction),
         false => Tractions::default(),
     }
 }
@@ -349,9 +371,12 @@ impl<'m> Assembler<'m> {
         let clock = std::time::Instant::now();
         let tangent = request == Request::Tangent;
         if tangent {
-            self.presume(trial.old, u);
+            self.presume(trial, u);
         }
-        let responses = self.contacts(trial, tangent, &x)?;
+        let mut responses = self.contacts(trial, tangent, &x)?;
+        if tangent && self.presume_sticking(&responses) {
+            responses = self.contacts(trial, tangent, &x)?;
+        }
         self.seconds.contact += clock.elapsed().as_secs_f64();
 
         let clock = std::time::Instant::now();
@@ -396,8 +421,8 @@ impl<'m> Assembler<'m> {
         self.iterates.clear();
     }
 
-    /// What the next linear solve presumes about each point, from its last two iterates.
-    fn presume(&mut self, old: &State, u: &[f64]) {
+    /// What the next linear solve presumes about each point, from its last two iterates, but for sticking.
+    fn presume(&mut self, Trial { old, stiffening, .. }: Trial, u: &[f64]) {
         let first = self.iterates.is_empty();
         self.iterates.resize_with(self.model.contacts.len(), Vec::new);
         let at = &self.linearized_at;
@@ -405,20 +430,34 @@ impl<'m> Assembler<'m> {
         for (iterates, ((pair, states), old)) in self.iterates.iter_mut().zip(pairs) {
             iterates.resize_with(states.len(), Iterate::default);
             for ((iterate, state), old) in iterates.iter_mut().zip(states).zip(old) {
-                iterate.note(state, first);
+                let was_closed = if first { old.friction.pressure > 0.0 } else { iterate.closed.is_some() };
+                let closes = !was_closed && state.friction.pressure > 0.0;
+                iterate.carried = closes.then(|| pair.shared(state.friction.pressure, stiffening));
                 iterate.promised = match &iterate.closed {
                     Some(closed) => closed.promise(|dof| u[dof] - at[dof]),
-                    None if first => at_start(pair.alpha_n, state, old),
+                    None if first => at_start(pair, state, old),
                     None => Tractions::default(),
                 };
-            }
-            let highest = iterates.iter().map(|iterate| iterate.promised.pressure).fold(0.0, f64::max);
-            for (iterate, state) in iterates.iter_mut().zip(states) {
-                let closes = !first && iterate.closed.is_none();
-                let too_high = closes && highest > 0.0 && state.friction.pressure > highest;
-                iterate.carried = too_high.then_some(highest);
+                iterate.note_segment(state);
+                iterate.stuck = iterate.presumed == Presume::Stick;
+                iterate.presumed = if first { Presume::Touch } else { Presume::Nothing };
             }
         }
+    }
+
+    /// Presume sticking where points slip to and fro between the linear solves; whether there are any.
+    fn presume_sticking(&mut self, responses: &[PairResponse]) -> bool {
+        let mut any = false;
+        for (iterates, (pair, responses)) in self.iterates.iter_mut().zip(self.model.contacts.iter().zip(responses)) {
+            let rough = pair.points.iter().map(|slave| pair.law(slave).stiffness() > 0.0);
+            for ((iterate, (state, _)), rough) in iterates.iter_mut().zip(responses).zip(rough) {
+                if rough {
+                    iterate.watch_slip(&state.friction);
+                    any |= iterate.presumed == Presume::Stick;
+                }
+            }
+        }
+        any
     }
 
     /// Keep the points as the next linear solve sees them.
@@ -439,7 +478,7 @@ impl<'m> Assembler<'m> {
         }
         let before = self.model.configuration(&trial.old.displacement);
         let fading = 1.0 - self.model.steps[0].span.share(trial.time);
-        let moment = Moment { dt: trial.dt, fading, stiffening: trial.stiffening };
+        let moment = Moment { dt: trial.dt, fading, stiffening: trial.stiffening, settles: trial.settles };
         let pairs = self.model.contacts.iter().zip(&trial.old.contacts).enumerate();
         pairs
             .map(|(number, (pair, old))| {

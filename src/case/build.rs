@@ -277,9 +277,15 @@ fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPa
         let message = "is mortar, which needs an edge group as master: use gauss_to_segment on a rigid body";
         return Err(Complaint::new(format!("{place}.method"), message));
     }
-    let alpha_n = match input.normal.alpha_n {
-        Some(alpha_n) => alpha_n,
-        None => default_stiffness(&place, input, model)?,
+    let elastic = elastic_stiffness(&place, input, model)?;
+    let alpha_n = match (input.normal.alpha_n, elastic) {
+        (Some(alpha_n), _) => alpha_n,
+        (None, Some(elastic)) => 10.0 * elastic,
+        (None, None) => {
+            let message =
+                format!("is missing: there are no elements behind the points of `{}` to choose it by", input.slave);
+            return Err(Complaint::new(format!("{place}.normal.alpha_n"), message));
+        }
     };
     if alpha_n <= 0.0 {
         let message = format!("is {alpha_n}: must be positive (leave it out for 10 (λ + 2G)/h)");
@@ -304,6 +310,7 @@ fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPa
         master,
         mortar,
         alpha_n,
+        compliance: elastic.map_or(0.0, |elastic| 1.0 / elastic),
         penetration: input.normal.penetration,
         laws,
         initial: None,
@@ -427,13 +434,12 @@ fn check_stiffness(place: &str, name: &str, value: f64) -> Checked<()> {
     Err(Complaint::new(place, message))
 }
 
-/// α_n = 10 (λ + 2G)/h, the mean over the slave's edges: λ + 2G of the softer of the two sides, which is the one that the
-/// penalty must not give way beside, and h, the depth of the element behind the edge.
-fn default_stiffness(place: &str, input: &ContactInput, model: &Model) -> Checked<f64> {
+/// (λ + 2G)/h, the mean over the slave's edges: λ + 2G of the softer of the two sides, which is the one that the penalty
+/// must not give way beside, and h, the depth of the element behind the edge. None where the slave has no edges.
+fn elastic_stiffness(place: &str, input: &ContactInput, model: &Model) -> Checked<Option<f64>> {
     let name = &input.slave;
     if input.area.is_some() {
-        let message = format!("is missing: there are no elements behind the points of `{name}` to choose it by");
-        return Err(Complaint::new(format!("{place}.normal.alpha_n"), message));
+        return Ok(None);
     }
     let slave = edges(&model.mesh, name, &format!("{place}.slave"))?;
     let modulus = |edge: &Edge| model.bodies[model.body_of_element[edge.element]].material.stiffness();
@@ -442,8 +448,8 @@ fn default_stiffness(place: &str, input: &ContactInput, model: &Model) -> Checke
         MasterInput::Rigid(_) => &[],
     };
     let softest = master.iter().map(modulus).fold(f64::INFINITY, f64::min);
-    let stiffness = |edge: &Edge| 10.0 * modulus(edge).min(softest) / depth_behind(edge, model);
-    Ok(slave.iter().map(stiffness).sum::<f64>() / slave.len() as f64)
+    let stiffness = |edge: &Edge| modulus(edge).min(softest) / depth_behind(edge, model);
+    Ok(Some(slave.iter().map(stiffness).sum::<f64>() / slave.len() as f64))
 }
 
 /// Depth of the element behind an edge [L].

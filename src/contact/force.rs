@@ -7,8 +7,16 @@
 //! δt = (δp − q δθ) n − (δq + p δθ) s,   δp = −α_n δg,   δq = ∂q/∂Δu_t δΔu_t + ∂q/∂p δp
 //! ```
 //!
-//! In an increment that starts open only the slip after touch counts: Δu_t g₁/(g₁ − g₀), nothing under the augmented
-//! Lagrangian, where g₁ = 0, and all where nothing faced the point at its start.
+//! In an increment that starts open, at the gap g₀, only the slip after touch counts; all where nothing faced the point at
+//! its start. The surfaces approach at a steady rate, first through the gap and then by what the pressure pushes in:
+//!
+//! ```text
+//! Δu_t d/(g₀ + d),   d = c p + p/α_n             c: compliance of the bodies; 0 in central differences, which move first;
+//!                                                no p/α_n under the augmented Lagrangian, which leaves no penetration
+//! ```
+//!
+//! Without c a point that comes in with a high pressure would stick for its stiff penalty alone, and spring away by all it
+//! has missed in the increment after.
 
 use nalgebra::{DVector, Vector2};
 use serde::{Deserialize, Serialize};
@@ -47,6 +55,9 @@ pub enum Status {
     Slip,
 }
 
+/// R from which on plastic slip counts as slipping.
+pub const SLIPPING: f64 = 0.9;
+
 impl ContactState {
     /// Open, stick or slip. The super/subloading law slips plastically a little whenever it is loaded, so only plastic
     /// slip near the peak surface counts as slipping.
@@ -54,7 +65,7 @@ impl ContactState {
         let friction = &self.friction;
         if friction.pressure <= 0.0 {
             Status::Open
-        } else if friction.plastic_increment != 0.0 && (friction.mu == 0.0 || friction.ratio() >= 0.9) {
+        } else if friction.plastic_increment != 0.0 && (friction.mu == 0.0 || friction.ratio() >= SLIPPING) {
             Status::Slip
         } else {
             Status::Stick
@@ -132,7 +143,8 @@ pub enum Presume {
     Touch,
     /// The point sticks, q = q₀ + α_t Δu_t whatever its size. From one iterate to the next it slipped one way and then
     /// the other, past the narrow and stiff range of sticking that lies between: the tangents on both sides are soft,
-    /// and Newton's method would jump to and fro for ever.
+    /// and Newton's method would jump to and fro for ever. It is presumed again where the point then slips although the
+    /// tractions that were promised would have held it.
     Stick,
 }
 
@@ -220,30 +232,27 @@ pub fn press(
     let law = pair.law(slave);
     let Meeting { mut kinematics, gap, foot } = meeting;
     let apart = old.friction.pressure == 0.0 && old.gap > TOUCH * kinematics.length;
-    match pair.penetration {
-        None if apart => count_slip_after_touch(&mut kinematics, old.gap, gap.min(0.0)),
-        Some(_) if apart || old.foot.is_none() => count_no_slip(&mut kinematics),
-        _ => {}
-    }
     let alpha_n = pair.normal_stiffness(increment.moment.stiffening);
     let pressure = old.multiplier - alpha_n * gap;
-    let sliding =
-        Sliding { slip: kinematics.slip, pressure: carried(pressure, increment.presumption), dt: increment.moment.dt };
+    let carried = carried(pressure, increment.presumption);
+    let compliance = pair.compliance_after_touch(increment.moment.settles);
+    let dslip_dpressure =
+        if apart { count_slip_after_touch(&mut kinematics, old.gap, compliance, carried, alpha_n) } else { 0.0 };
+    let sliding = Sliding { slip: kinematics.slip, pressure: carried, dt: increment.moment.dt };
     let mut response = law.respond(&old.friction, sliding)?;
-    if sliding.pressure > 0.0 {
-        response.state.traction += response.dtraction_dpressure * (pressure - sliding.pressure);
-        response.state.pressure = pressure;
-    }
     let stiffness = law.stiffness();
     if increment.presumption.presume == Presume::Stick {
         response.state.traction = old.friction.traction + stiffness * sliding.slip;
+        response.dtraction_dslip = stiffness;
         response.dtraction_dpressure = 0.0;
     }
+    if carried > 0.0 {
+        let along = response.dtraction_dpressure + response.dtraction_dslip * dslip_dpressure;
+        response.state.traction += along * (pressure - carried);
+        response.state.pressure = pressure;
+    }
     // At p = 0 the law has no answer to give, and near it round-off decides which.
-    if increment.presumption.presume == Presume::Stick
-        || sliding.pressure == 0.0
-        || touches(gap, kinematics.length, old, increment)
-    {
+    if carried == 0.0 || touches(gap, kinematics.length, old, increment) {
         response.dtraction_dslip = stiffness;
     }
     let state = ContactState {
@@ -264,19 +273,16 @@ fn carried(pressure: f64, presumption: Presumption) -> f64 {
     presumption.carried.unwrap_or_else(|| if pressure > 0.0 { pressure } else { promised() })
 }
 
-/// Δu_t g₁/(g₁ − g₀) in an increment that starts open, at the gap g₀, and ends at g₁.
-fn count_slip_after_touch(kinematics: &mut Kinematics, old_gap: f64, gap: f64) {
-    let share = gap / (gap - old_gap);
-    let dshare = -old_gap / (gap - old_gap).powi(2);
-    kinematics.dslip *= share;
-    kinematics.dslip += &kinematics.dgap * (dshare * kinematics.slip);
-    kinematics.slip *= share;
-}
-
-/// Under the augmented Lagrangian g₁ = 0: the gap closes at the end of the increment.
-fn count_no_slip(kinematics: &mut Kinematics) {
-    kinematics.slip = 0.0;
-    kinematics.dslip.fill(0.0);
+/// Δu_t d/(g₀ + d) in an increment that starts open, at the gap g₀, with d the pressure times the compliance; returns its
+/// derivative by the pressure.
+fn count_slip_after_touch(k: &mut Kinematics, old_gap: f64, compliance: f64, pressure: f64, alpha_n: f64) -> f64 {
+    let way = compliance * pressure;
+    let share = way / (old_gap + way);
+    let dslip_dpressure = k.slip * compliance * old_gap / (old_gap + way).powi(2);
+    k.dslip *= share;
+    k.dslip -= &k.dgap * (alpha_n * dslip_dpressure);
+    k.slip *= share;
+    dslip_dpressure
 }
 
 /// What a traction puts on the nodes: w_a (p n − q s) ℓ [F].

@@ -29,6 +29,9 @@ pub struct ContactPair {
     pub mortar: Option<Mortar>,
     /// α_n: normal penalty stiffness [F/L³]
     pub alpha_n: f64,
+    /// c: how far a pressure pushes the bodies in, about the depth of an element over λ + 2G; 0 for points without elements
+    /// [L³/F]
+    pub compliance: f64,
     /// Largest penetration left by the augmented Lagrangian; plain penalty if not given [L]
     pub penetration: Option<f64>,
     /// The friction laws, each with the parameters of some of the points
@@ -55,6 +58,8 @@ pub struct Moment {
     pub fading: f64,
     /// α_n under the augmented Lagrangian is this many times the one given
     pub stiffening: f64,
+    /// Whether the bodies give way under the pressures that come up within the increment
+    pub settles: bool,
 }
 
 /// What one linear solve takes over for a point from those before; an accepted state presumes nothing but `held`.
@@ -66,8 +71,8 @@ pub struct Presumption {
     /// with a promised pressure is closed, whatever its gap
     pub promised: Option<Tractions>,
     /// Pressure under which friction answers, and from where its answer goes on in a straight line, at a point that has just
-    /// closed, if its own is higher than any that was promised: a stiff penalty presses a point far too hard that goes too
-    /// deep in one iterate, and would make it stick where it is to slip.
+    /// closed: a stiff penalty presses a point far too hard that goes too deep in one iterate, and would make it stick
+    /// where it is to slip.
     pub carried: Option<f64>,
     /// Segment it is held on
     pub held: Option<usize>,
@@ -228,6 +233,19 @@ impl ContactPair {
     /// α_n, under the augmented Lagrangian this many times the one given.
     pub fn normal_stiffness(&self, stiffening: f64) -> f64 {
         if self.penetration.is_some() { stiffening * self.alpha_n } else { self.alpha_n }
+    }
+
+    /// d/p: how far a pressure brings the surfaces after touch. It pushes the bodies in by c p where they settle, and the plain
+    /// penalty gives way by p/α_n [L³/F].
+    pub fn compliance_after_touch(&self, settles: bool) -> f64 {
+        let bodies = if settles { self.compliance } else { 0.0 };
+        if self.penetration.is_some() { bodies } else { bodies + 1.0 / self.alpha_n }
+    }
+
+    /// What is left of the pressure of a point that closed within one iterate once the bodies have taken their share of its
+    /// penetration: p/(1 + α_n c).
+    pub fn shared(&self, pressure: f64, stiffening: f64) -> f64 {
+        pressure / (1.0 + self.normal_stiffness(stiffening) * self.compliance)
     }
 
     /// The committed states with the pressures of a pass as multipliers, p̄ ← p (Uzawa's method).
