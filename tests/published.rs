@@ -158,8 +158,9 @@ fn hertz_small_strain() -> Solved {
 /// q = μ p₀ √(1 − x²/a²) − [|x| < c] μ p₀ (c/a) √(1 − x²/c²)
 /// ```
 ///
-/// Compared for |x| < 0.97 a, but not within three elements of ±c, where q has a cusp (its slope is
-/// infinite there): the two beside it are off by 12 and 3 %.
+/// Compared for |x| < 0.97 a, but not within four elements of ±c, where q has a cusp (its slope is
+/// infinite there): the two beside it are off by 12 and 3 %, and the one just past three by 2.3 % with small increments. Pressing
+/// alone leaves q up to 0.9 % of μ p₀, because the bodies are not half-planes.
 fn mindlin() -> Solved {
     let (run, seconds) = solve("mindlin", as_it_is);
     let ([q_total, p_total], mu, radius) = (run.reaction("cylinder_top", run.last()), 0.3, 50.0);
@@ -177,7 +178,7 @@ fn mindlin() -> Solved {
         let x = x - centre;
         if x.abs() < 0.97 * a {
             p_error = p_error.max((p - p0 * ellipse(x, a)).abs() / p0);
-            if (x.abs() - c).abs() > 3.0 * element {
+            if (x.abs() - c).abs() > 4.0 * element {
                 let expected = mu * p0 * (ellipse(x, a) - c / a * ellipse(x, c));
                 q_error = q_error.max((q - expected).abs() / (mu * p0));
             }
@@ -514,7 +515,7 @@ fn answers_do_not_depend_on_numerical_choices() {
     assert!(wrong.is_empty(), "{wrong:?}");
 }
 
-/// The answer with the augmented Lagrangian at α_n times a factor, to 1e-5 of the way, while α_t stays.
+/// The answer with the augmented Lagrangian at α_n times a factor, to 1e-5 of the way, while α_t stays; no increment is hard.
 fn augmented(Static { case, answer, way, .. }: &Static, model: &Model, factor: f64) -> f64 {
     let (run, seconds) = solve(case, |given| {
         with_penalties(given, model, [factor, 1.0]);
@@ -526,6 +527,8 @@ fn augmented(Static { case, answer, way, .. }: &Static, model: &Model, factor: f
         "{case}, alpha_n × {factor}: {found:.7e}, {mean:.1} iterations, {} cut-backs, {seconds:.0} s",
         report.cutbacks
     );
+    // None as measured; round-off may decide otherwise where states are on edge.
+    assert!(report.cutbacks <= 3);
     found
 }
 
@@ -537,7 +540,7 @@ fn problem(name: &str) -> Static {
 #[test]
 #[ignore = "slow: minutes"]
 fn answers_of_the_augmented_lagrangian_do_not_depend_on_the_penalty() {
-    for problem in STATIC.into_iter().filter(|problem| !problem.case.starts_with("ironing")) {
+    for problem in STATIC {
         let (base, _) = solve(problem.case, as_it_is);
         let answers = [0.01, 1.0, 100.0].map(|factor| augmented(&problem, &base.model, factor));
         for found in answers {
