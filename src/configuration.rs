@@ -38,11 +38,16 @@ impl<'a> Configuration<'a> {
         self.displacement[node] - before.displacement[node]
     }
 
-    /// Σ w_a x_a.
+    /// Σ w_a x_a of weights that sum to zero, as those of a direction do: the same wherever the origin lies.
     pub fn combine(&self, weights: &[(usize, f64)]) -> Vector2<f64> {
-        let of =
-            |positions: &[Vector2<f64>]| weights.iter().map(|&(node, w)| positions[node] * w).sum::<Vector2<f64>>();
-        of(self.reference) + of(&self.displacement)
+        let Some(&(first, _)) = weights.first() else { return Vector2::zeros() };
+        weights.iter().map(|&(node, w)| self.between(first, node) * w).sum()
+    }
+
+    /// X − origin and u of a point, whose weights sum to one.
+    pub fn apart(&self, weights: &[(usize, f64)], origin: Vector2<f64>) -> [Vector2<f64>; 2] {
+        let sum = |of: &dyn Fn(usize) -> Vector2<f64>| weights.iter().map(|&(node, w)| of(node) * w).sum();
+        [sum(&|node| self.reference[node] - origin), sum(&|node| self.displacement[node])]
     }
 
     /// Largest distance of a node from the origin [L].

@@ -32,6 +32,13 @@ fn wavy() -> (Vec<Vec<usize>>, Positions) {
     ((0..5).map(|k| vec![k + 1, k]).collect(), x)
 }
 
+/// The points at the given places. They got there from the origin by displacements: a foot on a rigid body is counted from
+/// that of the reference position.
+fn displaced(x: &Positions) -> Configuration<'static> {
+    static ORIGIN: [Vector2<f64>; 16] = [Vector2::new(0.0, 0.0); 16];
+    Configuration::new(&ORIGIN[..x.len()], &x.iter().flat_map(|x| [x.x, x.y]).collect::<Vec<_>>())
+}
+
 /// A pair with α_n = 1000, c = 0.002 and, unless given, α_t = 700.
 fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
     let law =
@@ -73,7 +80,7 @@ fn answer(
     x: &Positions,
     increment: Increment,
 ) -> (ContactState, Option<Closed>) {
-    let x = &Configuration::undeformed(x);
+    let x = &displaced(x);
     // Every point had a foot before.
     let before = x;
     let index = Index::new(&pair.master, x);
@@ -113,12 +120,12 @@ fn check_tangent(pair: &ContactPair, k: usize, old: &ContactState, x: &Positions
 
 /// A committed state whose foot lies `back` before the present one.
 fn pulled(pair: &ContactPair, k: usize, x: &Positions, back: f64, friction: FrictionState, gap: f64) -> ContactState {
-    let x = &Configuration::undeformed(x);
+    let x = &displaced(x);
     let foot = Index::new(&pair.master, x).project(&pair.points[k], None, x).expect("the point faces the master").foot;
     let at = foot.segment as f64 + foot.xi - back;
     let foot = match &pair.master {
         Master::Mesh(_) => MasterPoint { segment: at.floor() as usize, xi: at - at.floor() },
-        Master::Rigid(_) => MasterPoint { segment: 0, xi: foot.xi - back },
+        Master::Rigid(_) => MasterPoint { xi: foot.xi - back, ..foot },
     };
     ContactState { friction, foot: Some(foot), length: 1.0, gap, multiplier: 0.0 }
 }
@@ -293,14 +300,16 @@ fn tangent_equals_differences_on_rigid_bodies() {
 /// Feet on a disk and in a hole of radius 2, and the way round through ±π, by polar coordinates.
 #[test]
 fn feet_on_a_rigid_circle() {
-    let outward = Vector2::new(0.0, -1.0);
     for (hole, side) in [(false, 1.0), (true, -1.0)] {
         let body = Rigid::Circle(Circle { centre: Vector2::new(1.0, 1.0), radius: 2.0, hole });
         let at = |angle: f64| Vector2::new(1.0, 1.0) + Vector2::new(angle.cos(), angle.sin()) * 2.1;
-        let [from, to] = [3.1, -3.1].map(|angle| body.project(at(angle), Some(outward)).expect("a foot"));
+        let (point, here) = (&lone_point(0, 1.0), vec![at(3.1)]);
+        let moved = at(-3.1) - at(3.1);
+        let ways = [vec![0.0, 0.0], vec![moved.x, moved.y]].map(|u| Configuration::new(&here, &u));
+        let [from, to] = [&ways[0], &ways[1]].map(|x| body.project(point, x).expect("a foot"));
         assert!((from.gap - 0.1 * side).abs() < 1e-14);
         // From 3.1 to 2π − 3.1 counter-clockwise, which is against s on a disk.
-        let way = body.way(from.foot, to.foot);
+        let way = body.way(point, from.foot, to.foot, &ways[1]);
         assert!((way + side * 2.0 * (2.0 * std::f64::consts::PI - 6.2)).abs() < 1e-14, "{way}");
     }
 }
@@ -369,7 +378,7 @@ fn tangent_equals_differences_where_contact_starts_closed_across_a_gap() {
     for points in [lone, gauss_points(&[vec![6, 7], vec![7, 8]], 2)] {
         for master in [Master::Mesh(Surface::new(&edges)), Master::Rigid(Rigid::Plane(plane))] {
             let mut pair = pair(points.clone(), master, SUPER);
-            let at = Configuration::undeformed(&x);
+            let at = displaced(&x);
             pair.start_closed(vec![InitialTraction { pressure: 20.0, traction: 2.0 }; pair.points.len()], &at)
                 .expect("a foot for each");
             for k in 0..pair.points.len() {

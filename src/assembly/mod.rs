@@ -141,15 +141,13 @@ impl ContactCounts {
 struct Iterate {
     /// plastic slip of the increment at the last solve [L]
     slip: f64,
-    /// segments of the last two solves
+    /// Segments of its feet at the last two solves
     segments: [Option<usize>; 2],
+    /// The two segments between which the foot went to and fro
+    astride: Option<[usize; 2]>,
     presumed: Presume,
     /// Whether the last solve presumed it to stick
     stuck: bool,
-    /// Segment the point stays on for the rest of the increment. Between two segments that meet in a ridge the closest
-    /// point jumps, and with it the normal: a point near the bisector would go to and fro without end, because the
-    /// forces on either side leave a jump in which no equilibrium lies.
-    held: Option<usize>,
     /// The point as the last solve saw it, if it was closed
     closed: Option<Closed>,
     promised: Tractions,
@@ -158,13 +156,11 @@ struct Iterate {
 }
 
 impl Iterate {
-    /// Take note of where the next linear solve starts.
+    /// Take note of the segment on which the next linear solve starts.
     fn note_segment(&mut self, state: &ContactState) {
         let segment = state.foot.map(|foot| foot.segment);
         let [last, before] = self.segments;
-        if segment.is_some() && segment == before && segment != last {
-            self.held = segment;
-        }
+        self.astride = segment.zip(last).filter(|(segment, last)| segment != last && Some(*segment) == before).map(Into::into);
         self.segments = [segment, last];
     }
 
@@ -483,12 +479,11 @@ impl<'m> Assembler<'m> {
         pairs
             .map(|(number, (pair, old))| {
                 let presumed = |k: usize| {
-                    let Some(iterates) = self.iterates.get(number) else { return Presumption::default() };
-                    let &Iterate { presumed, held, promised, carried, .. } = &iterates[k];
-                    match presuming {
-                        true => Presumption { presume: presumed, promised: Some(promised), carried, held },
-                        false => Presumption { held, ..Presumption::default() },
-                    }
+                    let Some(iterates) = self.iterates.get(number).filter(|_| presuming) else {
+                        return Presumption::default();
+                    };
+                    let &Iterate { presumed, promised, carried, astride, .. } = &iterates[k];
+                    Presumption { presume: presumed, promised: Some(promised), carried, astride }
                 };
                 pair.respond(old, &before, moment, presumed, x).map_err(|(point, cause)| TrialFailure::Friction {
                     contact: pair.name.clone(),

@@ -81,7 +81,7 @@ fn on_rigid(
     k.vary(&slave.position, n, |k| &mut k.dgap);
     k.vary(&slave.position, s * turn, |k| &mut k.drotation);
     if let Some(from) = from {
-        k.slip = body.way(from, projection.foot);
+        k.slip = body.way(slave, from, projection.foot, x);
         k.vary(&slave.position, s * advance, |k| &mut k.dslip);
     }
     k

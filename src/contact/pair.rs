@@ -62,7 +62,7 @@ pub struct Moment {
     pub settles: bool,
 }
 
-/// What one linear solve takes over for a point from those before; an accepted state presumes nothing but `held`.
+/// What one linear solve takes over for a point from those before; an accepted state presumes nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Presumption {
     /// Presumption about its state
@@ -74,8 +74,8 @@ pub struct Presumption {
     /// closed: a stiff penalty presses a point far too hard that goes too deep in one iterate, and would make it stick
     /// where it is to slip.
     pub carried: Option<f64>,
-    /// Segment it is held on
-    pub held: Option<usize>,
+    /// Two segments between which its foot goes to and fro
+    pub astride: Option<[usize; 2]>,
 }
 
 /// Fewer points than this are not worth waking other threads for.
@@ -166,8 +166,8 @@ impl ContactPair {
         }
     }
 
-    /// Every point's trial state and contribution in the configuration `x`, each with its own presumption and, if it is
-    /// held on one, its segment; `before` is the committed configuration. Pure, and the same for any number of threads.
+    /// Every point's trial state and contribution in the configuration `x`, each with its own presumption; `before`
+    /// is the committed configuration. Pure, and the same for any number of threads.
     ///
     /// # Errors
     /// The number of the first point whose friction law fails, and why.
@@ -201,7 +201,9 @@ impl ContactPair {
         }
         self.each(old, |k, slave, old| {
             let increment = Increment { moment, presumption: presumed(k) };
-            respond(self, slave, index.project(slave, increment.presumption.held, x), old, increment, [before, x])
+            let valley = increment.presumption.astride.and_then(|segments| index.in_valley(slave, segments, x));
+            let projection = valley.or_else(|| index.project(slave, old.foot, x));
+            respond(self, slave, projection, old, increment, [before, x])
         })
     }
 
@@ -269,8 +271,7 @@ impl ContactPair {
             return (0..self.points.len()).map(|k| met(k).map_or(0.0, |met| rate(met.kinematics))).collect();
         }
         let slips = |(slave, state): (&SlavePoint, &ContactState)| {
-            let segment = state.foot.map(|foot| foot.segment);
-            let projection = index.project(slave, segment, x);
+            let projection = index.project(slave, state.foot, x);
             projection.map_or(0.0, |projection| rate(kinematics(slave, &self.master, &projection, state.foot, x)))
         };
         self.points.iter().zip(states).map(slips).collect()

@@ -59,7 +59,7 @@ pub fn on_segment(slave: &SlavePoint, surface: &Surface, segment: usize, x: &Con
             // Smooth segments share the normal at their node: the foot goes over from one to the other.
             let smooth = surface.segments[segment].beyond[side].and_then(|_| {
                 let found = on_curve(slave, surface, neighbour, x);
-                (-HELD..=1.0 + HELD).contains(&found.foot.xi).then_some(found)
+                (-OVERHANG..=1.0 + OVERHANG).contains(&found.foot.xi).then_some(found)
             });
             smooth.or_else(|| Some(at_node(slave, surface, segment, neighbour, xi, x)))
         }
@@ -69,57 +69,69 @@ pub fn on_segment(slave: &SlavePoint, surface: &Surface, segment: usize, x: &Con
 }
 
 /// Foot of a slave point on the line or curve of a segment.
-fn on_curve(slave: &SlavePoint, surface: &Surface, segment: usize, x: &Configuration) -> Projection {
+pub fn on_curve(slave: &SlavePoint, surface: &Surface, segment: usize, x: &Configuration) -> Projection {
     let curve = &surface.segments[segment];
-    let xi = nearest(slave, curve, x);
-    let normal = normal_of(x.combine(&curve.slope(xi)).normalize());
-    let gap = offset(slave, curve, xi, x).dot(&normal);
-    Projection { foot: MasterPoint { segment, xi }, gap, normal, bound: Bound::Segment }
+    let Nearest { xi, offset, slope, .. } = nearest(slave, curve, x);
+    let normal = normal_of(slope.normalize());
+    Projection { foot: MasterPoint { segment, xi }, gap: offset.dot(&normal), normal, bound: Bound::Segment }
 }
 
-/// x_s − x(ξ).
-fn offset(slave: &SlavePoint, curve: &Segment, xi: f64, x: &Configuration) -> Vector2<f64> {
-    curve.position(xi).iter().map(|&(node, w)| slave.offset(node, x) * w).sum()
+/// The closest point of a curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// ξ
+    pub xi: f64,
+    /// x_s − x(ξ) [L]
+    pub offset: Vector2<f64>,
+    /// x′ [L]
+    pub slope: Vector2<f64>,
+    /// Steps that Newton's method took
+    pub steps: usize,
 }
 
 /// Iterations for the foot on a curve; a few suffice unless the point is near the centre of curvature.
 const MOST_STEPS: usize = 60;
 
-/// ξ of the closest point, (x_s − x(ξ))·x′ = 0: at once on a straight line, by Newton's method on a curve.
-fn nearest(slave: &SlavePoint, curve: &Segment, x: &Configuration) -> f64 {
+/// Beyond the ends by this share of its length a curve is of no interest, and may turn back: a foot is looked for no
+/// farther.
+const BEYOND: f64 = 0.2;
+
+/// The closest point, (x_s − x(ξ))·x′ = 0: at once on a straight line, by Newton's method on a curve.
+pub fn nearest(slave: &SlavePoint, curve: &Segment, x: &Configuration) -> Nearest {
     let [a, b] = curve.ends;
     let along = x.between(a, b);
     let mut xi = slave.offset(a, x).dot(&along) / along.norm_squared();
     if curve.is_straight() {
-        return xi;
+        // By the weights on both ends: from the nearer one the offset is the more exact.
+        let offset = slave.offset(a, x) * (1.0 - xi) + slave.offset(b, x) * xi;
+        return Nearest { xi, offset, slope: along, steps: 0 };
     }
-    // Beyond the ends the curve is of no interest, and may turn back.
-    xi = xi.clamp(-HELD, 1.0 + HELD);
-    for _ in 0..MOST_STEPS {
-        let (slope, bend) = (x.combine(&curve.slope(xi)), x.combine(&curve.bend(xi)));
-        let offset = offset(slave, curve, xi, x);
+    // x_s − x(ξ) = Σ c_k ξᵏ
+    let [c0, c1, c2, c3] = curve.powers(|node| -slave.offset(node, x)).map(|c| -c);
+    let offset = |xi: f64| c0 + (c1 + (c2 + c3 * xi) * xi) * xi;
+    let slope = |xi: f64| -(c1 + (c2 * 2.0 + c3 * (3.0 * xi)) * xi);
+    let bend = |xi: f64| -(c2 * 2.0 + c3 * (6.0 * xi));
+    let within = |xi: f64| xi.clamp(-BEYOND, 1.0 + BEYOND);
+    xi = within(xi);
+    let mut steps = 0;
+    while steps < MOST_STEPS {
+        let (apart, slope) = (offset(xi), slope(xi));
+        let square = slope.norm_squared();
         // Beyond the centre of curvature the second derivative of the distance would change its sign.
-        let stiffness = (slope.norm_squared() - offset.dot(&bend)).max(0.5 * slope.norm_squared());
-        let step = offset.dot(&slope) / stiffness;
-        xi = (xi + step).clamp(-1.0, 2.0);
-        if step.abs() < f64::EPSILON {
+        let stiffness = (square - apart.dot(&bend(xi))).max(0.5 * square);
+        let before = xi;
+        xi = within(xi + apart.dot(&slope) / stiffness);
+        steps += 1;
+        // What round-off in the offset leaves is no step any more; nor is one against the end.
+        if (xi - before).abs() <= 4.0 * f64::EPSILON * (1.0 + (apart.norm_squared() / square).sqrt()) {
             break;
         }
     }
-    xi
-}
-
-/// A point held on a segment may pass its ends by this share of its length.
-const HELD: f64 = 0.1;
-
-/// Foot of a slave point on a segment it is held on, as long as it stays near.
-pub fn on_held_segment(slave: &SlavePoint, surface: &Surface, segment: usize, x: &Configuration) -> Option<Projection> {
-    let projection = on_curve(slave, surface, segment, x);
-    (-HELD..=1.0 + HELD).contains(&projection.foot.xi).then_some(projection)
+    Nearest { xi, offset: offset(xi), slope: slope(xi), steps }
 }
 
 /// Closest point is the node between two segments: outside a convex corner or, penetrating, inside a concave one.
-fn at_node(
+pub fn at_node(
     slave: &SlavePoint,
     surface: &Surface,
     segment: usize,

@@ -4,7 +4,8 @@ use nalgebra::Vector2;
 
 use super::projection::{Bound, Projection, normal_of, tangent_of};
 use super::search::FACING;
-use super::surface::MasterPoint;
+use super::surface::{MasterPoint, SlavePoint};
+use crate::configuration::Configuration;
 
 /// A rigid body.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,51 +47,64 @@ pub struct Polyline {
 }
 
 impl Rigid {
-    /// The foot of `point`, a point of a surface with the normal `outward`, if of any; `None` past the end of a polyline.
-    pub fn project(&self, point: Vector2<f64>, outward: Option<Vector2<f64>>) -> Option<Projection> {
+    /// The foot of a slave point; `None` past the end of a polyline.
+    ///
+    /// X and u are kept apart: what a displacement changes is exact, however far away a plane's point or a circle's centre
+    /// lies.
+    pub fn project(&self, slave: &SlavePoint, x: &Configuration) -> Option<Projection> {
         match self {
-            Self::Plane(plane) => Some(plane.project(point)),
-            Self::Circle(circle) => circle.project(point),
-            Self::Polyline(polyline) => polyline.project(point, outward),
-        }
-    }
-
-    /// The way from one foot to another along s [L].
-    pub fn way(&self, from: MasterPoint, to: MasterPoint) -> f64 {
-        let way = to.xi - from.xi;
-        match self {
-            Self::Circle(circle) => {
-                let round = 2.0 * std::f64::consts::PI * circle.radius;
-                way - round * (way / round).round()
+            Self::Plane(plane) => Some(plane.project(x.apart(&slave.position, plane.point))),
+            Self::Circle(circle) => circle.project(x.apart(&slave.position, circle.centre)),
+            Self::Polyline(polyline) => {
+                polyline.project(|corner| x.apart(&slave.position, corner), slave.outward(x))
             }
-            _ => way,
         }
     }
-}
 
-fn foot(arc: f64) -> MasterPoint {
-    MasterPoint { segment: 0, xi: arc }
+    /// The way of a slave point's foot from one place to another along s [L].
+    pub fn way(&self, slave: &SlavePoint, from: MasterPoint, to: MasterPoint, x: &Configuration) -> f64 {
+        let way = to.xi - from.xi;
+        let round_trip = |way: f64, round: f64| way - round * (way / round).round();
+        match self {
+            Self::Plane(_) => way,
+            Self::Circle(circle) => round_trip(way, 2.0 * std::f64::consts::PI * circle.radius),
+            Self::Polyline(polyline) => {
+                let start = |line: usize| {
+                    let [reference, _] = x.apart(&slave.position, polyline.corners[line]);
+                    polyline.arcs[line] + reference.dot(&polyline.direction(line))
+                };
+                let apart = if from.segment == to.segment { 0.0 } else { start(to.segment) - start(from.segment) };
+                match polyline.is_closed() {
+                    true => round_trip(way + apart, polyline.arcs[polyline.arcs.len() - 1]),
+                    false => way + apart,
+                }
+            }
+        }
+    }
 }
 
 impl Plane {
-    fn project(&self, point: Vector2<f64>) -> Projection {
-        let offset = point - self.point;
+    fn project(&self, [reference, displacement]: [Vector2<f64>; 2]) -> Projection {
+        let (n, s) = (self.normal, tangent_of(self.normal));
+        let foot = MasterPoint { segment: 0, xi: displacement.dot(&s) };
         let bound = Bound::Rigid { advance: 1.0, turn: 0.0 };
-        let foot = foot(offset.dot(&tangent_of(self.normal)));
-        Projection { foot, gap: offset.dot(&self.normal), normal: self.normal, bound }
+        Projection { foot, gap: reference.dot(&n) + displacement.dot(&n), normal: n, bound }
     }
 }
 
 impl Circle {
     /// Polar coordinates: g = ±(d − r), δ(arc) = r/d s·δx, δθ = ∓1/d s·δx. The centre has no foot.
-    fn project(&self, point: Vector2<f64>) -> Option<Projection> {
-        let offset = point - self.centre;
-        let distance = offset.norm();
+    ///
+    /// d − r = (|X| − r) + (2 X·u + u·u)/(d + |X|), so that a large radius does not cancel what u changes.
+    fn project(&self, [reference, displacement]: [Vector2<f64>; 2]) -> Option<Projection> {
+        let offset = reference + displacement;
+        let (distance, start) = (offset.norm(), reference.norm());
         let sign = if self.hole { -1.0 } else { 1.0 };
-        let angle = offset.y.atan2(offset.x);
+        let farther = displacement.dot(&(reference + offset)) / (distance + start);
+        let angle = reference.perp(&displacement).atan2(reference.dot(&offset));
         (distance > 0.0).then(|| Projection {
-            foot: foot(-sign * self.radius * angle),
-            gap: sign * (distance - self.radius),
+            foot: MasterPoint { segment: 0, xi: -sign * self.radius * angle },
+            gap: sign * ((start - self.radius) + farther),
             normal: offset * (sign / distance),
             bound: Bound::Rigid { advance: self.radius / distance, turn: -sign / distance },
         })
@@ -108,36 +122,51 @@ impl Polyline {
         Self { arcs: arcs.collect(), corners }
     }
 
-    /// The nearest line that faces the point. Between two lines the foot is their corner; past the ends there is none.
-    fn project(&self, point: Vector2<f64>, outward: Option<Vector2<f64>>) -> Option<Projection> {
-        let closed = self.corners.first() == self.corners.last();
+    fn is_closed(&self) -> bool {
+        self.corners.first() == self.corners.last()
+    }
+
+    /// s of a line.
+    fn direction(&self, line: usize) -> Vector2<f64> {
+        (self.corners[line + 1] - self.corners[line]).normalize()
+    }
+
+    /// The nearest line that faces a point, given by X and u from any corner. Between two lines the foot is their corner;
+    /// past the ends there is none.
+    fn project(
+        &self,
+        from: impl Fn(Vector2<f64>) -> [Vector2<f64>; 2],
+        outward: Option<Vector2<f64>>,
+    ) -> Option<Projection> {
         let last = self.corners.len() - 2;
-        let direction = |k: usize| (self.corners[k + 1] - self.corners[k]).normalize();
-        let faces = |k: usize| outward.is_none_or(|outward| normal_of(direction(k)).dot(&outward) < FACING);
+        let faces = |k: usize| outward.is_none_or(|outward| normal_of(self.direction(k)).dot(&outward) < FACING);
         let nearest = (0..=last).filter(|&k| faces(k)).map(|k| {
-            let (s, offset) = (direction(k), point - self.corners[k]);
+            let [reference, displacement] = from(self.corners[k]);
+            let (s, offset) = (self.direction(k), reference + displacement);
             let along = offset.dot(&s).clamp(0.0, self.arcs[k + 1] - self.arcs[k]);
             (k, along, (offset - s * along).norm())
         });
         let (k, along, distance) = nearest.min_by(|a, b| a.2.total_cmp(&b.2))?;
-        let (s, offset, length) = (direction(k), point - self.corners[k], self.arcs[k + 1] - self.arcs[k]);
+        let [reference, displacement] = from(self.corners[k]);
+        let (s, offset, length) = (self.direction(k), reference + displacement, self.arcs[k + 1] - self.arcs[k]);
         let (past_start, past_end) = (offset.dot(&s) < 0.0, offset.dot(&s) > length);
         let neighbour = match (past_start, past_end) {
-            (true, _) if k > 0 || closed => Some(k.checked_sub(1).unwrap_or(last)),
-            (_, true) if k < last || closed => Some(if k < last { k + 1 } else { 0 }),
+            (true, _) if k > 0 || self.is_closed() => Some(k.checked_sub(1).unwrap_or(last)),
+            (_, true) if k < last || self.is_closed() => Some(if k < last { k + 1 } else { 0 }),
             (false, false) => None,
             _ => return None,
         };
-        let foot = foot(self.arcs[k] + along);
         let Some(neighbour) = neighbour else {
             let normal = normal_of(s);
-            let bound = Bound::Rigid { advance: 1.0, turn: 0.0 };
-            return Some(Projection { foot, gap: offset.dot(&normal), normal, bound });
+            let gap = reference.dot(&normal) + displacement.dot(&normal);
+            let foot = MasterPoint { segment: k, xi: displacement.dot(&s) };
+            return Some(Projection { foot, gap, normal, bound: Bound::Rigid { advance: 1.0, turn: 0.0 } });
         };
         let arm = offset - s * along;
-        let mean = normal_of(s + direction(neighbour)).normalize();
+        let mean = normal_of(s + self.direction(neighbour)).normalize();
         let gap = if arm.dot(&mean) < 0.0 { -distance } else { distance };
         let (normal, turn) = if gap == 0.0 { (mean, 0.0) } else { (arm / gap, -1.0 / gap) };
+        let foot = MasterPoint { segment: k, xi: along - reference.dot(&s) };
         Some(Projection { foot, gap, normal, bound: Bound::Rigid { advance: 0.0, turn } })
     }
 }

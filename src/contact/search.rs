@@ -5,10 +5,10 @@ use std::collections::BinaryHeap;
 
 use nalgebra::Vector2;
 
-use super::projection::{Bound, Projection, normal_of, on_held_segment, on_segment};
+use super::projection::{Bound, Projection, at_node, normal_of, on_curve, on_segment};
 use super::rigid::Rigid;
 use super::sight::Sight;
-use super::surface::{Master, Segment, SlavePoint, Surface};
+use super::surface::{Master, MasterPoint, Segment, SlavePoint, Surface};
 use crate::configuration::Configuration;
 
 /// A slave and a segment face each other when the cosine between their outward normals is below this: the sides of a
@@ -43,20 +43,44 @@ impl<'a> Index<'a> {
         }
     }
 
-    /// The foot of a slave point, if a part of the master faces it; by the tree, not by going through all. `held` is a segment
-    /// to stay on if the point is still near it.
-    pub fn project(&self, slave: &SlavePoint, held: Option<usize>, x: &Configuration) -> Option<Projection> {
-        let point = slave.at(x);
+    /// The foot of a slave point that had another at the start of the increment, if it had one, and if a part of the master
+    /// faces it.
+    pub fn project(&self, slave: &SlavePoint, from: Option<MasterPoint>, x: &Configuration) -> Option<Projection> {
+        let nearest = self.nearest(slave, x)?;
+        match (self, from) {
+            (Self::Mesh(surface, _, sight), Some(from)) => {
+                let outward = slave.outward(x);
+                let viewer = sight.as_ref().and_then(|sight| sight.point(slave));
+                let meets = |segment: usize| match (sight, &viewer) {
+                    (Some(sight), Some(viewer)) => sight.may_meet(viewer, 0, segment),
+                    _ => faces(surface, segment, outward, x),
+                };
+                Some(behind_ridge(slave, surface, nearest, from, meets, x))
+            }
+            _ => Some(nearest),
+        }
+    }
+
+    /// The foot presumed for a point that goes to and fro between two segments: their node, if they meet in a valley. The
+    /// closest point is the node only in a strip as narrow as the penetration times the turn of the normal, and Newton's
+    /// method steps over it from either side for ever.
+    pub fn in_valley(&self, slave: &SlavePoint, [a, b]: [usize; 2], x: &Configuration) -> Option<Projection> {
+        let Self::Mesh(surface, ..) = self else { return None };
+        let [first, second] = if surface.next(a) == Some(b) { [a, b] } else { [b, a] };
+        let direction = |segment: usize, xi: f64| x.combine(&surface.segments[segment].slope(xi));
+        let is_valley = surface.next(first) == Some(second) && direction(first, 1.0).perp(&direction(second, 0.0)) > 0.0;
+        is_valley.then(|| at_node(slave, surface, first, second, 1.0, x)).filter(|at| at.gap < 0.0)
+    }
+
+    /// The foot on what is nearest; by the tree, not by going through all.
+    fn nearest(&self, slave: &SlavePoint, x: &Configuration) -> Option<Projection> {
         match self {
-            Self::Rigid(body) => body.project(point, slave.outward(x)),
+            Self::Rigid(body) => body.project(slave, x),
             Self::Mesh(surface, boxes, sight) => {
-                if let Some(held) = held.and_then(|segment| on_held_segment(slave, surface, segment, x)) {
-                    return Some(held);
-                }
                 if let Some(sight) = sight {
                     let viewer = sight.point(slave)?;
                     let may_meet = |level, number| sight.may_meet(&viewer, level, number);
-                    let nearest = boxes.nearest_one(point, surface, x, may_meet)?;
+                    let nearest = boxes.nearest_one(slave, surface, x, may_meet)?;
                     // Only between two segments that it may meet can a point lie behind their node: a segment of the far
                     // side of a hole is seen past its end, through the body, by points on the other side of the wall.
                     let beside = |at: &Projection| {
@@ -67,15 +91,12 @@ impl<'a> Index<'a> {
                     });
                 }
                 let outward = slave.outward(x);
-                let facing = |segment: usize| {
-                    let [a, b] = surface.segments[segment].ends;
-                    outward.is_none_or(|outward| normal_of(x.between(a, b).normalize()).dot(&outward) < FACING)
-                };
-                let first = boxes.nearest_one(point, surface, x, |_, _| true).filter(|&segment| facing(segment));
+                let facing = |segment: usize| faces(surface, segment, outward, x);
+                let first = boxes.nearest_one(slave, surface, x, |_, _| true).filter(|&segment| facing(segment));
                 if let Some(found) = first.and_then(|segment| on_segment(slave, surface, segment, x)) {
                     return Some(found);
                 }
-                let nearest = boxes.nearest(point, surface, x).take(CANDIDATES);
+                let nearest = boxes.nearest(slave, surface, x).take(CANDIDATES);
                 let mut facing = nearest.filter(|&segment| facing(segment)).enumerate();
                 // A node is the foot only of a point that nothing nearer faces: past the end of a surface, where the
                 // last segment has no foot, each inner node would be one, far away and deep.
@@ -91,7 +112,8 @@ impl<'a> Index<'a> {
     pub fn around(&self, edge: &[usize], reach: f64, x: &Configuration) -> Vec<usize> {
         let Self::Mesh(_, boxes, sight) = self else { return Vec::new() };
         let reach = Vector2::new(reach, reach);
-        let each = edge.iter().map(|&node| Box2 { low: x.at(node) - reach, high: x.at(node) + reach });
+        let at = |node: usize| x.between(boxes.origin, node);
+        let each = edge.iter().map(|&node| Box2 { low: at(node) - reach, high: at(node) + reach });
         let mut found = each.reduce(|sum, one| sum.around(&one)).map_or_else(Vec::new, |all| boxes.meeting(&all));
         if let Some(sight) = sight {
             let viewer = sight.edge(edge);
@@ -101,10 +123,39 @@ impl<'a> Index<'a> {
     }
 }
 
+/// Whether a segment faces a point whose surface looks `outward`, if it has a surface.
+fn faces(surface: &Surface, segment: usize, outward: Option<Vector2<f64>>, x: &Configuration) -> bool {
+    let [a, b] = surface.segments[segment].ends;
+    outward.is_none_or(|outward| normal_of(x.between(a, b).normalize()).dot(&outward) < FACING)
+}
+
+/// Behind a ridge, where a point lies behind several segments, it belongs to the one on the side of its old foot: what is
+/// nearest changes at the bisector, and the normal with it.
+fn behind_ridge(
+    slave: &SlavePoint,
+    surface: &Surface,
+    nearest: Projection,
+    from: MasterPoint,
+    meets: impl Fn(usize) -> bool,
+    x: &Configuration,
+) -> Projection {
+    if nearest.bound != Bound::Segment || nearest.gap >= 0.0 || from.segment == nearest.foot.segment {
+        return nearest;
+    }
+    let way = surface.path(nearest.foot, from).unwrap_or_default();
+    let earlier = way.iter().skip(1).map(|&(segment, ..)| segment).take_while(|&segment| meets(segment));
+    let behind = earlier.map(|segment| on_curve(slave, surface, segment, x));
+    behind.take_while(|at| at.gap < 0.0 && (0.0..=1.0).contains(&at.foot.xi)).last().unwrap_or(nearest)
+}
+
 /// A binary tree of boxes around the segments of a surface. Segments that follow each other are near each other, so the
 /// tree simply halves their range: it is built without sorting.
+///
+/// All places are relative to a node of the surface: which segment is the nearest must not be decided by the round-off of
+/// coordinates far from the origin.
 pub struct Boxes {
     segments: usize,
+    origin: usize,
     /// Level by level from the leaves, one box a segment, to the root; each level has half the boxes of the one before
     levels: Vec<Vec<Box2>>,
 }
@@ -117,9 +168,9 @@ pub struct Box2 {
 }
 
 impl Box2 {
-    /// The box of a segment's nodes.
-    pub fn of(segment: &Segment, x: &Configuration) -> Self {
-        let point = |node: usize| Self { low: x.at(node), high: x.at(node) };
+    /// The box of a segment's nodes, their places relative to a node `origin`.
+    pub fn of(segment: &Segment, origin: usize, x: &Configuration) -> Self {
+        let point = |node: usize| Self { low: x.between(origin, node), high: x.between(origin, node) };
         segment.nodes().fold(point(segment.ends[0]), |sum, node| sum.around(&point(node)))
     }
 
@@ -150,13 +201,15 @@ impl Box2 {
 
 impl Boxes {
     fn new(surface: &Surface, x: &Configuration) -> Self {
-        let mut levels: Vec<Vec<Box2>> = vec![surface.segments.iter().map(|segment| Box2::of(segment, x)).collect()];
+        let origin = surface.origin();
+        let mut levels: Vec<Vec<Box2>> =
+            vec![surface.segments.iter().map(|segment| Box2::of(segment, origin, x)).collect()];
         while let Some(last) = levels.last().filter(|last| last.len() > 1) {
             let halved = last.chunks(2).map(|pair| pair.iter().skip(1).fold(pair[0], |sum, one| sum.around(one)));
             let halved = halved.collect();
             levels.push(halved);
         }
-        Self { segments: surface.segments.len(), levels }
+        Self { segments: surface.segments.len(), origin, levels }
     }
 
     /// The segments whose boxes meet another, in order along the surface.
@@ -181,12 +234,13 @@ impl Boxes {
     /// and segments (level 0) that do not count are passed over.
     fn nearest_one(
         &self,
-        point: Vector2<f64>,
+        slave: &SlavePoint,
         surface: &Surface,
         x: &Configuration,
         counts: impl Fn(usize, usize) -> bool,
     ) -> Option<usize> {
-        let exact = |number: usize| distance_from_segment(point, &surface.segments[number], x);
+        let exact = |number: usize| distance_from_segment(slave, &surface.segments[number], x);
+        let point = slave.offset(self.origin, x);
         let mut nearest = None;
         if self.segments > 0 {
             self.descend(point, &exact, &counts, (self.levels.len() - 1, 0), &mut nearest);
@@ -226,7 +280,8 @@ impl Boxes {
     }
 
     /// The segments by their distance from a point, the nearest first; of equally near ones the first along the surface.
-    fn nearest(&self, point: Vector2<f64>, surface: &Surface, x: &Configuration) -> impl Iterator<Item = usize> {
+    fn nearest(&self, slave: &SlavePoint, surface: &Surface, x: &Configuration) -> impl Iterator<Item = usize> {
+        let point = slave.offset(self.origin, x);
         let mut open = BinaryHeap::new();
         if self.segments > 0 {
             open.push(Candidate { distance: 0.0, level: self.levels.len() - 1, number: 0, exact: false });
@@ -237,7 +292,7 @@ impl Boxes {
                     return Some(number);
                 }
                 if level == 0 {
-                    let distance = distance_from_segment(point, &surface.segments[number], x);
+                    let distance = distance_from_segment(slave, &surface.segments[number], x);
                     open.push(Candidate { distance, level, number, exact: true });
                     continue;
                 }
@@ -253,9 +308,9 @@ impl Boxes {
 }
 
 /// Squared distance of a point from a segment; of a parabola from the two chords on either side of its middle.
-fn distance_from_segment(point: Vector2<f64>, segment: &Segment, x: &Configuration) -> f64 {
+fn distance_from_segment(slave: &SlavePoint, segment: &Segment, x: &Configuration) -> f64 {
     let from_chord = |[a, b]: [usize; 2]| {
-        let (along, offset) = (x.between(a, b), point - x.at(a));
+        let (along, offset) = (x.between(a, b), slave.offset(a, x));
         let xi = (offset.dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
         (offset - along * xi).norm_squared()
     };

@@ -41,6 +41,7 @@ struct Branch {
 
 /// A point or an edge of the surface that looks out.
 pub struct Viewer {
+    /// Place relative to the surface's origin
     at: Vector2<f64>,
     outward: Vector2<f64>,
     angle: f64,
@@ -55,7 +56,7 @@ impl<'a> Sight<'a> {
         let mut branch = |segment: &Segment| {
             let normal = normal_of(before.between(segment.ends[0], segment.ends[1]));
             angle += turn(normal.y.atan2(normal.x) - angle);
-            Branch { bounds: Box2::of(segment, before), turn: [angle; 2] }
+            Branch { bounds: Box2::of(segment, surface.origin(), before), turn: [angle; 2] }
         };
         let mut levels = vec![surface.segments.iter().map(&mut branch).collect::<Vec<_>>()];
         while let Some(last) = levels.last().filter(|last| last.len() > 1) {
@@ -69,13 +70,14 @@ impl<'a> Sight<'a> {
     pub fn point(&self, slave: &SlavePoint) -> Option<Viewer> {
         let shares = slave.length.iter().flat_map(|share| &share.tangent);
         let own = slave.position.iter().chain(shares).map(|&(node, _)| node).collect();
-        slave.outward(self.before).map(|outward| Viewer::new(slave.at(self.before), outward, own))
+        slave.outward(self.before).map(|outward| Viewer::new(slave.offset(self.surface.origin(), self.before), outward, own))
     }
 
     /// An edge as a viewer, from its middle; the body is on its left.
     pub fn edge(&self, edge: &[usize]) -> Viewer {
         let along = self.before.between(edge[0], edge[1]);
-        let middle = self.before.combine(&[(edge[0], 0.5), (edge[1], 0.5)]);
+        let at = |node: usize| self.before.between(self.surface.origin(), node);
+        let middle = 0.5 * (at(edge[0]) + at(edge[1]));
         Viewer::new(middle, -normal_of(along.normalize()), edge.to_vec())
     }
 
@@ -89,7 +91,7 @@ impl<'a> Sight<'a> {
         let [start, end] = segment.ends;
         let normal = normal_of(self.before.between(start, end).normalize());
         normal.dot(&viewer.outward) < FACING
-            && normal.dot(&(viewer.at - self.before.at(start))) > -self.depth
+            && normal.dot(&(viewer.at - self.before.between(self.surface.origin(), start))) > -self.depth
             && !segment.nodes().any(|node| viewer.own.contains(&node))
     }
 }

@@ -43,7 +43,8 @@ pub struct SlavePoint {
 impl SlavePoint {
     /// Current position.
     pub fn at(&self, x: &Configuration) -> Vector2<f64> {
-        x.combine(&self.position)
+        let [reference, displacement] = x.apart(&self.position, Vector2::zeros());
+        reference + displacement
     }
 
     /// g: gap of the surfaces − gap at touch, an overlap counted but for the share that fades.
@@ -123,9 +124,10 @@ fn edge_point(edge: &[usize], xi: f64, weight: f64) -> SlavePoint {
 /// A material point of the master: segment and coordinate along it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MasterPoint {
-    /// Segment number (0 for a rigid body)
+    /// Segment number; of a rigid body the number of its line
     pub segment: usize,
-    /// 0 … 1 along the segment; on a rigid body the arc length along s [-] or [L]
+    /// 0 … 1 along the segment; on a rigid body the way along s (of line number `segment`) from where the point's
+    /// reference position has its foot [-] or [L]
     pub xi: f64,
 }
 
@@ -213,6 +215,24 @@ impl Segment {
         weights
     }
 
+    /// Coefficients c_k of x(ξ) = Σ c_k ξᵏ for nodes at the given places.
+    pub fn powers(&self, at: impl Fn(usize) -> Vector2<f64>) -> [Vector2<f64>; 4] {
+        let [start, end] = self.ends;
+        let [a, b] = [at(start), at(end)];
+        if let Some(middle) = self.middle {
+            let m = at(middle);
+            return [a, 4.0 * (m - a) - (b - a), 2.0 * (b - m) - 2.0 * (m - a), Vector2::zeros()];
+        }
+        if !self.is_smooth() {
+            return [a, b - a, Vector2::zeros(), Vector2::zeros()];
+        }
+        let [before, after] = self.beyond;
+        let slope_at_start = before.map_or(b - a, |before| 0.5 * (b - at(before)));
+        let slope_at_end = after.map_or(b - a, |after| 0.5 * (at(after) - a));
+        let along = b - a;
+        [a, slope_at_start, 3.0 * along - 2.0 * slope_at_start - slope_at_end, slope_at_start + slope_at_end - 2.0 * along]
+    }
+
     fn with(&self, values: Vec<f64>, factor: f64) -> Weights {
         self.nodes().zip(values).map(|(node, value)| (node, factor * value)).collect()
     }
@@ -281,6 +301,11 @@ impl Surface {
     /// The same surface as the master of itself.
     pub fn against_itself(self, depth: f64) -> Self {
         Self { own_depth: Some(depth), ..self }
+    }
+
+    /// A node that places on the surface may be counted from; 0 where there is no segment.
+    pub fn origin(&self) -> usize {
+        self.segments.first().map_or(0, |segment| segment.ends[0])
     }
 
     /// Share of the slave's length that counts: half of a surface against itself, on which every contact is met from both
