@@ -83,6 +83,10 @@ pub fn run(path: &Path, out: Option<PathBuf>, threads: Option<usize>, quiet: boo
     let mut newton_log = NewtonLog::create(&folder)?;
     let mut warnings = Warnings::default();
     warnings.list.extend(case::lost_velocity(&model));
+    warnings.list.extend(case::concerns(&case, &model.mesh));
+    if !quiet {
+        case::choices(&case, &model.mesh).iter().for_each(|choice| eprintln!("{choice}"));
+    }
     let mut fields = match case.output.fields {
         true => Some(Fields::create(&folder, model.clone(), &model.initial_state(), case.output.every)?),
         false => None,

@@ -53,6 +53,7 @@ fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
         penetration: None,
         laws: vec![law],
         initial: None,
+        reverse: None,
     }
 }
 

@@ -11,6 +11,7 @@ use super::file::{
     LoadInput, MasterInput, MeshSource, Method, NodeInput, Place, PlaneInput, PointMassInput, PolylineInput,
     RigidInput, RuptureInput, SpringInput, StepInput, TimeInput,
 };
+use super::method::{Chosen, choose};
 use super::{along, initial, names, periodic, supported};
 use crate::boundary::{
     Absorber, Amplitude, Dashpot, DeadLoad, Drive, Expression, FollowerPressure, Loads, Motion, Prescribed, Span,
@@ -18,7 +19,7 @@ use crate::boundary::{
 };
 use crate::configuration::Configuration;
 use crate::contact::mortar::{Mortar, mortar_points};
-use crate::contact::pair::ContactPair;
+use crate::contact::pair::{ContactPair, Reverse};
 use crate::contact::rigid::{Circle, Plane, Polyline, Rigid};
 use crate::contact::surface::{Master, SlavePoint, Surface, gauss_points, in_order, lone_point, nodal_points};
 use crate::element::{SolidElement, consistent_mass};
@@ -273,10 +274,6 @@ fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPa
     if let Master::Mesh(surface) = &master {
         points.iter_mut().flat_map(|point| &mut point.length).for_each(|length| length.factor *= surface.share());
     }
-    if mortar.is_some() && matches!(master, Master::Rigid(_)) {
-        let message = "is mortar, which needs an edge group as master: use gauss_to_segment on a rigid body";
-        return Err(Complaint::new(format!("{place}.method"), message));
-    }
     let elastic = elastic_stiffness(&place, input, model)?;
     let alpha_n = match (input.normal.alpha_n, elastic) {
         (Some(alpha_n), _) => alpha_n,
@@ -314,6 +311,7 @@ fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPa
         penetration: input.normal.penetration,
         laws,
         initial: None,
+        reverse: reverse(input, &model.mesh),
     };
     if let Some(initial) = &input.initial {
         initial::close(&mut pair, initial, model, &format!("{place}.initial"))?;
@@ -326,6 +324,17 @@ fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPa
         pair.start_fitting(&Configuration::undeformed(&model.mesh.nodes));
     }
     Ok(pair)
+}
+
+/// The nodes of a mesh master against the edges of the slave.
+fn reverse(input: &ContactInput, mesh: &Mesh) -> Option<Reverse> {
+    let MasterInput::Group(master) = &input.master else { return None };
+    let [master, slave] = [master, &input.slave].map(|name| match mesh.group(name) {
+        Ok(Group::Edges(edges)) => in_order(&node_lists(edges)),
+        _ => Vec::new(),
+    });
+    let seen = !input.is_own() && !slave.is_empty();
+    seen.then(|| Reverse { nodes: nodal_points(&master), slave: Master::Mesh(Surface::new(&slave)) })
 }
 
 /// Points of the edges, or the points themselves, each with the given area; and the edges if contact is averaged over them.
@@ -349,12 +358,17 @@ fn slave_points(place: &str, input: &ContactInput, mesh: &Mesh) -> Checked<(Vec<
         let message = format!("`{name}` is a group of edges, which have lengths of their own: leave the area out");
         return Err(Complaint::new(area, message));
     }
-    if !(2..=4).contains(&input.points) {
-        return Err(Complaint::new(format!("{place}.points"), format!("is {}: must be 2, 3 or 4", input.points)));
+    let Chosen { method, points, .. } = choose(input, mesh);
+    if !(2..=4).contains(&points) {
+        return Err(Complaint::new(format!("{place}.points"), format!("is {points}: must be 2, 3 or 4")));
     }
-    Ok(match input.method {
+    if input.points.is_some() && method != Method::GaussToSegment {
+        let message = format!("is for gauss_to_segment, and the method is {}: leave it out", method.name());
+        return Err(Complaint::new(format!("{place}.points"), message));
+    }
+    Ok(match method {
         Method::NodeToSegment => (nodal_points(&edges), None),
-        Method::GaussToSegment => (gauss_points(&edges, input.points), None),
+        Method::GaussToSegment => (gauss_points(&edges, points), None),
         Method::Mortar => {
             let (points, mortar) = mortar_points(&edges, &mesh.nodes);
             (points, Some(mortar))
@@ -378,7 +392,7 @@ fn master(place: &str, input: &ContactInput, points: &[SlavePoint], model: &Mode
                 return Ok(Master::Mesh(surface));
             }
             let refused = |why: &str| Err(Complaint::new(format!("{place}.smooth"), why));
-            if input.method == Method::Mortar {
+            if input.method == Some(Method::Mortar) {
                 return refused("is not for mortar, which averages the gap: leave it out, or take gauss_to_segment");
             }
             if master.iter().any(|edge| edge.nodes.len() > 2) {

@@ -128,12 +128,12 @@ pub struct ContactInput {
     /// Edge group, or a rigid body. The slave's group again: contact of the surface with itself, each point of which then
     /// stands for half its length, because every contact is met from both sides
     pub master: MasterInput,
-    /// Where contact is evaluated
-    #[serde(default)]
-    pub method: Method,
-    /// Gauss points a slave edge (gauss_to_segment), 2 to 4
-    #[serde(default = "two")]
-    pub points: usize,
+    /// Where contact is evaluated. Unless given: mortar where an edge of either side is quadratic or a side curved (its
+    /// direction turns by more than 1° between two corners of more than 45°); gauss_to_segment between straight linear
+    /// edges, with a `smooth` master, and where `points` are given
+    pub method: Option<Method>,
+    /// Gauss points a slave edge (gauss_to_segment), 2 to 4; 2 unless given
+    pub points: Option<usize>,
     /// Whether the master's straight edges are taken for a smooth curve through their nodes (not by mortar), so that nothing
     /// jumps where a slave slides from one to the next. Corners of more than 45° stay
     #[serde(default)]
@@ -225,10 +225,6 @@ pub enum ProfileTable {
     Y(Vec<[f64; 2]>),
 }
 
-fn two() -> usize {
-    2
-}
-
 /// The master side.
 #[derive(Clone, Debug, JsonSchema)]
 #[schemars(untagged)]
@@ -291,16 +287,26 @@ pub struct PolylineInput {
 }
 
 /// Where contact is evaluated.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
     /// At the slave's nodes, with tributary lengths
     NodeToSegment,
     /// At Gauss points of the slave's edges
-    #[default]
     GaussToSegment,
-    /// Averaged around the slave's nodes, integrated exactly over non-matching meshes; the master is an edge group
+    /// Averaged around the slave's nodes, integrated exactly over non-matching meshes
     Mortar,
+}
+
+impl Method {
+    /// Its name in a case.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NodeToSegment => "node_to_segment",
+            Self::GaussToSegment => "gauss_to_segment",
+            Self::Mortar => "mortar",
+        }
+    }
 }
 
 /// Normal contact.

@@ -8,6 +8,7 @@ mod explain;
 pub mod file;
 mod initial;
 pub mod law_test;
+mod method;
 mod names;
 mod periodic;
 mod read;
@@ -17,6 +18,7 @@ mod supported;
 pub use build::build;
 pub use error::CaseError;
 pub use initial::lost_velocity;
+pub use method::{choices, concerns};
 pub use report::report;
 
 use std::path::Path;

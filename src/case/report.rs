@@ -12,17 +12,18 @@ use super::file::{
     StepInput, TimeInput,
 };
 use super::initial::lost_velocity;
+use super::method::{Chosen, choose, concerns};
 use crate::configuration::Configuration;
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
 use crate::increments::EVENT_LOCATION;
-use crate::mesh::Group;
+use crate::mesh::{Group, Mesh};
 use crate::model::{Model, PointMass, Step};
 use crate::shape::ElementKind;
 
 /// A readable account of a checked case.
 pub fn report(case: &Case, model: &Model) -> String {
-    let mut warnings: Vec<String> = lost_velocity(model).into_iter().collect();
+    let mut warnings: Vec<String> = lost_velocity(model).into_iter().chain(concerns(case, &model.mesh)).collect();
     let mut text = String::new();
     if !model.title.is_empty() {
         text += &format!("{}\n\n", model.title);
@@ -162,7 +163,7 @@ fn contacts(case: &Case, model: &Model, warnings: &mut Vec<String>) -> Vec<Strin
     let mut lines = Vec::new();
     for pair in &model.contacts {
         lines.push(pair.name.clone());
-        lines.extend(contact(case, pair).into_iter().map(|line| format!("  {line}")));
+        lines.extend(contact(case, &model.mesh, pair).into_iter().map(|line| format!("  {line}")));
         let start = match &case.contacts[&pair.name].initial {
             Some(initial) => initial_tractions(initial, pair),
             None => initial_gaps(model, pair, warnings),
@@ -191,7 +192,7 @@ fn range(values: impl Iterator<Item = f64> + Clone) -> String {
     if number(low) == number(high) { number(low) } else { format!("{} to {}", number(low), number(high)) }
 }
 
-fn contact(case: &Case, pair: &ContactPair) -> Vec<String> {
+fn contact(case: &Case, mesh: &Mesh, pair: &ContactPair) -> Vec<String> {
     let input = &case.contacts[&pair.name];
     let master = match &input.master {
         MasterInput::Group(_) if input.is_own() => "itself".into(),
@@ -214,11 +215,16 @@ fn contact(case: &Case, pair: &ContactPair) -> Vec<String> {
     };
     let where_evaluated = match input {
         ContactInput { area: Some(area), .. } => format!("each point stands for the area {}", number(*area)),
-        ContactInput { method: Method::GaussToSegment, points, .. } => {
-            format!("gauss_to_segment, {points} points an edge")
+        _ => {
+            let Chosen { method, points, because, .. } = choose(input, mesh);
+            let how = match method {
+                Method::GaussToSegment => format!("{points} points an edge"),
+                Method::NodeToSegment => "a point at each node".into(),
+                Method::Mortar => "averaged around each node".into(),
+            };
+            let because = because.map_or(String::new(), |because| format!(" ({because})"));
+            format!("{}, {how}{because}", method.name())
         }
-        ContactInput { method: Method::NodeToSegment, .. } => "node_to_segment, a point at each node".into(),
-        ContactInput { method: Method::Mortar, .. } => "mortar, averaged around each node".into(),
     };
     let alpha_n = match input.normal.alpha_n {
         Some(_) => "given",

@@ -63,12 +63,13 @@ pub fn kinematics(
     x: &Configuration,
 ) -> Kinematics {
     match master {
-        Master::Rigid(body) => on_rigid(slave, body, projection, from, x),
+        Master::Rigid(body) => past_rigid(slave, body, projection, from, x),
         Master::Mesh(surface) => on_surface(slave, surface, projection, from, x),
     }
 }
 
-fn on_rigid(
+/// Kinematics of `slave` projected on a rigid body, with the slip counted from the committed foot `from`.
+pub fn past_rigid(
     slave: &SlavePoint,
     body: &Rigid,
     projection: &Projection,

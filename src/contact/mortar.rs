@@ -16,16 +16,20 @@
 //! uniform pressure puts on both sides exactly what it should: the patch test is passed. The nodes at a corner of more than 45°
 //! count once a side.
 //! All variations come with [`Dual`] numbers.
+//!
+//! Against a rigid body nothing is cut: g_j and Δu_t,j are the means of what the points of Gauss's rule between two nodes
+//! have, each with its own foot, and n_j is the direction of the mean of their normals.
 
 use nalgebra::{DVector, Vector2};
 use rayon::prelude::*;
 
 use super::dual::{Dual, DualVector};
 use super::force::Meeting;
-use super::kinematics::Kinematics;
-use super::projection::normal_of;
+use super::kinematics::{Kinematics, past_rigid};
+use super::projection::{normal_of, tangent_of};
+use super::rigid::Rigid;
 use super::search::Index;
-use super::surface::{LengthShare, MasterPoint, Segment, SlavePoint, Surface, Weights, lone_point};
+use super::surface::{CORNER, LengthShare, MasterPoint, Segment, SlavePoint, Surface, Weights, edge_point, lone_point};
 use crate::configuration::Configuration;
 use crate::shape;
 
@@ -36,10 +40,9 @@ pub struct Mortar {
     edges: Vec<Vec<usize>>,
     /// Edges at each point, with the number of its shape function there
     at: Vec<Vec<(usize, usize)>>,
+    /// Points of Gauss's rule around each point, their lengths times φ_j
+    around: Vec<Vec<SlavePoint>>,
 }
-
-/// Edges that turn by more than this at a node have a corner there: the cosine.
-const CORNER: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// The nodes of the slave edges as contact points, each side of a corner a point of its own.
 pub fn mortar_points(edges: &[Vec<usize>], positions: &[Vector2<f64>]) -> (Vec<SlavePoint>, Mortar) {
@@ -61,9 +64,11 @@ pub fn mortar_points(edges: &[Vec<usize>], positions: &[Vector2<f64>]) -> (Vec<S
             }
         }
     }
-    let shares = |of: &Vec<(usize, usize)>| of.iter().flat_map(|&(e, a)| share(&edges[e], a)).collect();
-    let points = nodes.iter().zip(&at).map(|(&node, at)| SlavePoint { length: shares(at), ..lone_point(node, 0.0) });
-    (points.collect(), Mortar { edges: edges.to_vec(), at })
+    let around = |of: &Vec<(usize, usize)>| of.iter().flat_map(|&(e, a)| gauss_around(&edges[e], a)).collect();
+    let around: Vec<Vec<SlavePoint>> = at.iter().map(around).collect();
+    let shares = |around: &[SlavePoint]| around.iter().flat_map(|point| point.length.clone()).collect();
+    let points = nodes.iter().zip(&around).map(|(&node, at)| SlavePoint { length: shares(at), ..lone_point(node, 0.0) });
+    (points.collect(), Mortar { edges: edges.to_vec(), at, around })
 }
 
 /// φ_a at ξ on an edge of n nodes, and its derivative: linear from node to node.
@@ -76,17 +81,17 @@ fn hat(n: usize, a: usize, xi: f64) -> (f64, f64) {
     }
 }
 
-/// ∫ φ_a ds over an edge, by Gauss's rule between its nodes.
-fn share(edge: &[usize], a: usize) -> Vec<LengthShare> {
-    let slope = |xi: f64| edge.iter().copied().zip(shape::edge_derivatives(edge.len(), xi)).collect();
+/// The points of Gauss's rule between the nodes of an edge, that ∫ φ_a ds is the sum of their lengths.
+fn gauss_around(edge: &[usize], a: usize) -> Vec<SlavePoint> {
     let parts: &[[f64; 2]] = if edge.len() == 2 { &[[-1.0, 1.0]] } else { &[[-1.0, 0.0], [0.0, 1.0]] };
     let points = |&[start, end]: &[f64; 2]| {
         let half = 0.5 * (end - start);
         shape::gauss(2).into_iter().map(move |(at, weight)| (start + half * (1.0 + at), half * weight))
     };
     let all = parts.iter().flat_map(points);
-    all.map(|(xi, weight)| LengthShare { factor: weight * hat(edge.len(), a, xi).0, tangent: slope(xi) })
-        .filter(|share| share.factor > 0.0)
+    all.map(|(xi, weight)| (xi, weight * hat(edge.len(), a, xi).0))
+        .filter(|(_, weight)| *weight > 0.0)
+        .map(|(xi, weight)| edge_point(edge, xi, weight))
         .collect()
 }
 
@@ -177,6 +182,71 @@ impl Mortar {
         Some(Meeting { kinematics, gap: gap.value, foot })
     }
 
+    /// Where a point meets a rigid body; `None` where that faces none of its surroundings. `before` is the committed
+    /// configuration.
+    pub fn on_rigid(&self, point: usize, body: &Rigid, before: &Configuration, x: &Configuration) -> Option<Meeting> {
+        let met = self.around[point].iter().filter_map(|slave| {
+            let projection = body.project(slave, x)?;
+            let from = body.project(slave, before).map(|was| was.foot);
+            let mut kinematics = past_rigid(slave, body, &projection, from, x);
+            if from.is_none() {
+                kinematics.count_from(before, x);
+            }
+            Some((projection, kinematics))
+        });
+        let met: Vec<_> = met.collect();
+        let foot = met.first()?.0.foot;
+        let mut nodes: Vec<usize> = Vec::new();
+        for node in met.iter().flat_map(|(_, k)| &k.nodes) {
+            if !nodes.contains(node) {
+                nodes.push(*node);
+            }
+        }
+        let zero = DVector::zeros(2 * nodes.len());
+        // Sums of ℓ times gap, slip, n and weights, and their variations.
+        let (mut length, mut gap, mut slip, mut along) = (0.0, 0.0, 0.0, Vector2::zeros());
+        let [mut dlength, mut dgap, mut dslip, mut dx, mut dy] = [(); 5].map(|()| zero.clone());
+        let mut weights = vec![0.0; nodes.len()];
+        let mut dweights = vec![zero.clone(); nodes.len()];
+        for (projection, k) in &met {
+            let local: Vec<usize> =
+                k.nodes.iter().filter_map(|node| nodes.iter().position(|other| other == node)).collect();
+            let add = |sum: &mut DVector<f64>, factor: f64, row: &DVector<f64>| {
+                for (dof, value) in row.iter().enumerate() {
+                    sum[2 * local[dof / 2] + dof % 2] += factor * value;
+                }
+            };
+            length += k.length;
+            gap += k.length * projection.gap;
+            slip += k.length * k.slip;
+            along += k.length * k.normal;
+            add(&mut dlength, 1.0, &k.dlength);
+            for (sum, value, row) in [(&mut dgap, projection.gap, &k.dgap), (&mut dslip, k.slip, &k.dslip)] {
+                add(sum, value, &k.dlength);
+                add(sum, k.length, row);
+            }
+            for (sum, n, s) in [(&mut dx, k.normal.x, k.tangent.x), (&mut dy, k.normal.y, k.tangent.y)] {
+                add(sum, n, &k.dlength);
+                add(sum, -k.length * s, &k.drotation);
+            }
+            for (&at, &w) in local.iter().zip(&k.relative) {
+                weights[at] += k.length * w;
+                add(&mut dweights[at], w, &k.dlength);
+            }
+        }
+        let normal = along.normalize();
+        let tangent = tangent_of(normal);
+        let mean = |value: f64, row: DVector<f64>| (value / length, (row - &dlength * (value / length)) / length);
+        let ((gap, dgap), (slip, dslip)) = (mean(gap, dgap), mean(slip, dslip));
+        let (relative, drelative): (Vec<f64>, Vec<_>) =
+            weights.into_iter().zip(dweights).map(|(w, dw)| mean(w, dw)).unzip();
+        let drotation = -(dx * tangent.x + dy * tangent.y) / along.norm();
+        let drelative = drelative.into_iter().enumerate().collect();
+        let kinematics =
+            Kinematics { nodes, relative, normal, tangent, slip, length, dgap, dslip, drotation, dlength, drelative };
+        Some(Meeting { kinematics, gap, foot })
+    }
+
     /// Weights of r_j in a configuration; `None` where no master faces the point.
     pub fn weights(&self, point: usize, surface: &Surface, overlaps: &Overlaps, x: &Configuration) -> Option<Weights> {
         let frame = Frame::new(self.nodes(point, surface, overlaps), false, x);
@@ -214,9 +284,9 @@ impl Mortar {
     /// s_j: mean direction ∫ φ_j dx of the edges at a point.
     fn along(&self, point: usize, frame: &Frame) -> DualVector {
         let mut sum = DualVector::default();
-        for share in self.at[point].iter().flat_map(|&(e, a)| share(&self.edges[e], a)) {
-            for (node, slope) in share.tangent {
-                sum.add_scaled(&Dual::constant(share.factor * slope), frame.at(node));
+        for LengthShare { factor, tangent } in self.around[point].iter().flat_map(|at| &at.length) {
+            for &(node, slope) in tangent {
+                sum.add_scaled(&Dual::constant(factor * slope), frame.at(node));
             }
         }
         sum.normalized()

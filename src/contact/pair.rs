@@ -1,5 +1,6 @@
 //! A slave surface, its master, and the laws between them, evaluated point by point.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use nalgebra::Vector2;
@@ -38,6 +39,17 @@ pub struct ContactPair {
     pub laws: Vec<Box<dyn FrictionLaw>>,
     /// Tractions of every point at the start of a contact that starts closed
     pub initial: Option<Vec<InitialTraction>>,
+    /// The two sides the other way round, to see what the slave's points do not: how deep master nodes lie in the slave
+    pub reverse: Option<Reverse>,
+}
+
+/// The nodes of a mesh master as points, and the slave as their master.
+#[derive(Clone, Debug)]
+pub struct Reverse {
+    /// Master nodes
+    pub nodes: Vec<SlavePoint>,
+    /// Slave surface
+    pub slave: Master,
 }
 
 /// Tractions that act at a point of a contact when the run starts.
@@ -155,6 +167,9 @@ impl ContactPair {
                 let overlaps = mortar.overlaps(surface, &index, x);
                 (0..self.points.len()).map(|k| mortar.kinematics(k, surface, &overlaps, None, x)).collect()
             }
+            (Some(mortar), Master::Rigid(body)) => {
+                (0..self.points.len()).map(|k| mortar.on_rigid(k, body, x, x)).collect()
+            }
             _ => {
                 let meet = |slave: &SlavePoint| {
                     let projection = index.project(slave, None, x)?;
@@ -192,10 +207,15 @@ impl ContactPair {
                 if weights.is_none() {
                     meeting.kinematics.count_from(before, x);
                 }
-                meeting.gap = slave.gap(meeting.gap, moment.fading);
-                match closes(self, slave, meeting.gap, old, increment, x) {
-                    true => press(self, slave, meeting, old, increment),
-                    false => open(self, slave, Some((meeting.gap, meeting.foot)), old, increment),
+                answer(self, slave, meeting, old, increment, x)
+            });
+        }
+        if let (Some(mortar), Master::Rigid(body)) = (&self.mortar, &self.master) {
+            return self.each(old, |k, slave, old| {
+                let increment = Increment { moment, presumption: presumed(k) };
+                match mortar.on_rigid(k, body, before, x) {
+                    Some(meeting) => answer(self, slave, meeting, old, increment, x),
+                    None => open(self, slave, None, old, increment),
                 }
             });
         }
@@ -224,12 +244,49 @@ impl ContactPair {
     }
 }
 
+/// The answer of a point whose average is known; its gap is still that of the surfaces.
+fn answer(
+    pair: &ContactPair,
+    slave: &SlavePoint,
+    mut meeting: Meeting,
+    old: &ContactState,
+    increment: Increment,
+    x: &Configuration,
+) -> PointResponse {
+    meeting.gap = slave.gap(meeting.gap, increment.moment.fading);
+    match closes(pair, slave, meeting.gap, old, increment, x) {
+        true => press(pair, slave, meeting, old, increment),
+        false => open(pair, slave, Some((meeting.gap, meeting.foot)), old, increment),
+    }
+}
+
 impl ContactPair {
     /// Largest gap of a closed point that the multipliers of a pass leave, over the one allowed; 0 for the plain penalty.
     pub fn excess(&self, trial: &[ContactState]) -> f64 {
         let Some(tolerance) = self.penetration else { return 0.0 };
         let closed = trial.iter().filter(|state| state.friction.pressure > 0.0);
         closed.map(|state| state.gap.abs() / tolerance).fold(0.0, f64::max)
+    }
+
+    /// The master node that lies deepest in slave edges with closed points: place, depth [L], and depth over the length of
+    /// that edge [-].
+    pub fn deepest_master_node(&self, states: &[ContactState], x: &Configuration) -> Option<(Vector2<f64>, f64, f64)> {
+        let Some(Reverse { nodes, slave: Master::Mesh(slave) }) = &self.reverse else { return None };
+        let closed = self.points.iter().zip(states).filter(|(_, state)| state.friction.pressure > 0.0);
+        let closed = closed.flat_map(|(point, _)| &point.length).flat_map(|share| share.tangent.iter().map(|(node, _)| *node));
+        let closed: BTreeSet<usize> = closed.collect();
+        if closed.is_empty() {
+            return None;
+        }
+        let index = Index::new(&self.reverse.as_ref()?.slave, x);
+        let depth = |point: &SlavePoint| {
+            let met = index.project(point, None, x).filter(|met| met.gap < 0.0)?;
+            let [a, b] = slave.segments[met.foot.segment].ends;
+            let share = -met.gap / x.between(a, b).norm();
+            // What is farther in than an edge is long lies behind another part of the body.
+            (share < 1.0 && closed.contains(&a) && closed.contains(&b)).then(|| (point.at(x), -met.gap, share))
+        };
+        nodes.iter().filter_map(depth).max_by(|a, b| a.2.total_cmp(&b.2))
     }
 
     /// α_n, under the augmented Lagrangian this many times the one given.
@@ -268,6 +325,10 @@ impl ContactPair {
             let overlaps = mortar.overlaps(surface, &index, x);
             let met =
                 |k| mortar.kinematics(k, surface, &overlaps, mortar.weights(k, surface, &overlaps, x).as_ref(), x);
+            return (0..self.points.len()).map(|k| met(k).map_or(0.0, |met| rate(met.kinematics))).collect();
+        }
+        if let (Some(mortar), Master::Rigid(body)) = (&self.mortar, &self.master) {
+            let met = |k| mortar.on_rigid(k, body, x, x);
             return (0..self.points.len()).map(|k| met(k).map_or(0.0, |met| rate(met.kinematics))).collect();
         }
         let slips = |(slave, state): (&SlavePoint, &ContactState)| {

@@ -109,7 +109,8 @@ pub fn lone_point(node: usize, area: f64) -> SlavePoint {
     SlavePoint { position: vec![(node, 1.0)], length: Vec::new(), area, touch: 0.0, law: 0, overlap: 0.0 }
 }
 
-fn edge_point(edge: &[usize], xi: f64, weight: f64) -> SlavePoint {
+/// The point of an edge at ξ, that stands for a share of the edge's length.
+pub fn edge_point(edge: &[usize], xi: f64, weight: f64) -> SlavePoint {
     let with = |values: Vec<f64>| edge.iter().copied().zip(values).collect();
     SlavePoint {
         position: with(shape::edge_values(edge.len(), xi)),
@@ -238,6 +239,10 @@ impl Segment {
     }
 }
 
+/// Edges that turn by more than 45° at a node have a corner there: the cosine, with a margin, so that round-off does not
+/// decide about the corners of an octagon.
+pub const CORNER: f64 = 0.7;
+
 /// Segments of a mesh surface, each running along s (the body on its right), chains in order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surface {
@@ -289,7 +294,7 @@ impl Surface {
             (positions[b] - positions[a]).normalize()
         };
         let joined = |k: usize, other: Option<usize>| {
-            other.filter(|&other| direction(k).dot(&direction(other)) > std::f64::consts::FRAC_1_SQRT_2)
+            other.filter(|&other| direction(k).dot(&direction(other)) > CORNER)
         };
         for k in 0..straight.len() {
             let (before, after) = (joined(k, self.previous(k)), joined(k, self.next(k)));

@@ -10,7 +10,8 @@ use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
 use crate::error::Error;
 use crate::model::Model;
-use crate::time::told;
+use crate::state::State;
+use crate::time::{Scheme, told};
 
 /// Penetration, as a share of the slave's edge, that is worth a warning.
 const DEEP: f64 = 0.01;
@@ -30,6 +31,7 @@ pub struct Warnings {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
     DeepPenetration,
+    DeepMasterNode,
     SeveralAnswers,
 }
 
@@ -50,12 +52,44 @@ impl Observer for Warnings {
                     }
                 }
             }
+            let fading = model.steps[0].span.share(state.time) < 1.0 && pair.points.iter().any(|p| p.overlap > 0.0);
+            let explicit = matches!(attempt.step.scheme, Scheme::Explicit { .. });
+            if !(fading || explicit || pair.initial.is_some()) {
+                self.deep_master_node(number, pair, state, &x);
+            }
         }
         Ok(())
     }
 }
 
 impl Warnings {
+    /// The points of the slave do not see a master node between them. (Where gaps are not those of the surfaces there is
+    /// nothing to compare with: under initial tractions, and while a shrink fit is brought in. Explicit increments are too
+    /// many to look at.)
+    fn deep_master_node(
+        &mut self,
+        number: usize,
+        pair: &ContactPair,
+        state: &State,
+        x: &Configuration,
+    ) {
+        if self.given.contains(&(number, Kind::DeepMasterNode)) {
+            return;
+        }
+        let deepest = pair.deepest_master_node(&state.contacts[number], x);
+        let Some((at, depth, share)) = deepest.filter(|(.., share)| *share > DEEP) else { return };
+        self.given.insert((number, Kind::DeepMasterNode));
+        let time = told(state.time);
+        self.list.push(format!(
+            "contact `{}` at ({:.6}, {:.6}), t = {time}: a node of the master lies {depth:.3e} deep in the slave, {:.1} % of \
+             its edge; refine both sides there, make the finer one the slave, or raise alpha_n",
+            pair.name,
+            at.x,
+            at.y,
+            100.0 * share
+        ));
+    }
+
     /// A matrix that is singular or nearly so may still have given an answer.
     fn lost_pivots(&mut self, attempt: &Attempt) {
         let solves = || attempt.iterations.iter().map(|iteration| iteration.newton);
