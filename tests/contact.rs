@@ -4,10 +4,10 @@ use fecontact::configuration::Configuration;
 use fecontact::contact::force::{Closed, ContactState, Increment, Status, Tractions, closes, press, respond};
 use fecontact::contact::mortar::{Mortar, mortar_points};
 use fecontact::contact::pair::{ContactPair, InitialTraction, Moment, Presumption};
-use fecontact::contact::projection::Bound;
+use fecontact::contact::projection::{Bound, nearest};
 use fecontact::contact::rigid::{Circle, Plane, Polyline, Rigid};
 use fecontact::contact::search::Index;
-use fecontact::contact::surface::{Master, MasterPoint, SlavePoint, Surface, gauss_points, lone_point, nodal_points};
+use fecontact::contact::surface::{Master, MasterPoint, Segment, SlavePoint, Surface, gauss_points, lone_point, nodal_points};
 use fecontact::friction::{FrictionParameters, FrictionState};
 use fecontact::system::Contribution;
 use nalgebra::Vector2;
@@ -338,6 +338,126 @@ fn feet_on_a_quadratic_edge_lie_on_the_parabola() {
         let slip = fecontact::contact::kinematics::kinematics(&pair.points[0], &pair.master, &found, from, &at).slip;
         let arc = 0.5 * (4.0f64 + 0.25).sqrt() / 4.0 + 0.25f64.asinh();
         assert!((slip - arc).abs() < 1e-9, "{slip}, exactly {arc}");
+    }
+}
+
+/// The foot on a spline or a parabola is found in a few steps wherever the point lies: before, beside and behind the curve
+/// and past its ends, where the search stops at once.
+#[test]
+fn a_foot_on_a_curve_takes_few_steps() {
+    let (edges, x) = wavy();
+    let mut bent = x.clone();
+    bent.remove(4);
+    let curves = [
+        (Surface::new(&edges).smoothed(&x), x.clone()),
+        (Surface::new(&[vec![2, 0, 1], vec![4, 2, 3]]), bent),
+    ];
+    let point = lone_point(0, 1.0);
+    for (surface, nodes) in curves {
+        let mut most = 0;
+        for (i, j) in (-40..=40).flat_map(|i| (-10..=10).map(move |j| (i, j))) {
+            for segment in &surface.segments {
+                let at = Vector2::new(2.5 + 0.1 * f64::from(i), 0.03 * f64::from(j));
+                // The point takes the place of a node that the surface does not have.
+                let mut x = vec![at];
+                x.extend(&nodes);
+                let moved = |node: usize| node + 1;
+                let segment = Segment {
+                    ends: segment.ends.map(moved),
+                    middle: segment.middle.map(moved),
+                    beyond: segment.beyond.map(|node| node.map(moved)),
+                };
+                let found = nearest(&point, &segment, &Configuration::undeformed(&x));
+                if (0.0..=1.0).contains(&found.xi) {
+                    let cosine = found.offset.dot(&found.slope.normalize());
+                    assert!(cosine.abs() < 1e-14, "{at:?}: {found:?}");
+                }
+                most = most.max(found.steps);
+            }
+        }
+        println!("at most {most} steps");
+        assert!(most <= 8, "{most} steps");
+    }
+}
+
+/// A roof: behind its ridge, where a point lies behind both sides, it belongs to the side it comes from, up to where its foot
+/// reaches the ridge; elsewhere to the nearest.
+#[test]
+fn behind_a_ridge_a_point_belongs_to_the_side_it_comes_from() {
+    let (slope, depth) = (0.5f64, 0.1);
+    let (angle, reach) = (slope.atan(), depth * slope);
+    // Top edges run right to left: segment 0 is the left side, which comes first along s.
+    let master = Master::Mesh(Surface::new(&[vec![1, 0], vec![2, 1]]));
+    let side = |along: f64, from: Option<usize>| {
+        // From the ridge by `along` to the right, `depth` below it.
+        let at = Vector2::new(along, -depth);
+        let x = vec![Vector2::new(-1.0, -slope), Vector2::zeros(), Vector2::new(1.0, -slope), at];
+        let x = Configuration::undeformed(&x);
+        let from = from.map(|segment| MasterPoint { segment, xi: 0.5 });
+        let found = Index::new(&master, &x).project(&lone_point(3, 1.0), from, &x).expect("a foot");
+        let right = if found.foot.segment == 1 { along } else { -along };
+        assert!((found.gap - (right * angle.sin() - depth * angle.cos())).abs() < 1e-14, "{found:?}");
+        found.foot.segment
+    };
+    for along in [0.5, 0.9, 0.99].map(|share| share * reach) {
+        assert_eq!([Some(0), None, Some(1)].map(|from| side(along, from)), [0, 1, 1], "{along}");
+        assert_eq!([Some(0), None, Some(1)].map(|from| side(-along, from)), [0, 0, 1], "{along}");
+    }
+    for along in [1.01, 3.0].map(|share| share * reach) {
+        assert_eq!([Some(0), None, Some(1)].map(|from| side(along, from)), [1; 3], "{along}");
+        assert_eq!([Some(0), None, Some(1)].map(|from| side(-along, from)), [0; 3], "{along}");
+    }
+}
+
+/// Mortar on rigid bodies: the tangent of every closed point equals differences, on straight and on curved edges, from a
+/// place in which the slave lay elsewhere.
+#[test]
+fn mortar_tangent_on_rigid_bodies_equals_differences() {
+    let x: Positions = [(0.2, -0.01), (0.6, -0.05), (0.9, -0.03)].map(|(x, y)| Vector2::new(x, y)).to_vec();
+    for body in [
+        Rigid::Plane(Plane { point: Vector2::new(0.0, 0.0), normal: Vector2::new(-0.06, 1.0).normalize() }),
+        Rigid::Circle(Circle { centre: Vector2::new(0.5, -3.0), radius: 3.0, hole: false }),
+        Rigid::Circle(Circle { centre: Vector2::new(0.5, 2.0), radius: 1.9, hole: true }),
+        Rigid::Polyline(Polyline::new([(-1.0, 0.0), (2.0, 0.03)].map(|(x, y)| Vector2::new(x, y)).to_vec())),
+    ] {
+        for slave in [vec![vec![0, 1], vec![1, 2]], vec![vec![0, 2, 1]]] {
+            let (points, mortar) = mortar_points(&slave, &x);
+            let pair = ContactPair { mortar: Some(mortar), ..pair(points, Master::Rigid(body.clone()), SUPER) };
+            let mut closed = 0;
+            for (way, gap) in [(1e-5, -0.02), (0.02, -0.02), (-0.3, -0.02), (0.02, 0.03)] {
+                let before: Positions = x.iter().map(|x| x - Vector2::new(way, 0.0)).collect();
+                let friction = pair.laws[0].initial_state();
+                let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..friction };
+                let friction = if gap > 0.0 { friction } else { pressed };
+                let foot = Some(MasterPoint { segment: 0, xi: 0.0 });
+                let old = vec![ContactState { friction, foot, length: 1.0, gap, multiplier: 0.0 }; pair.points.len()];
+                let answer = |x: &Positions| {
+                    let (before, x) = (displaced(&before), displaced(x));
+                    pair.respond(&old, &before, MOMENT, |_| Presumption::default(), &x).expect("an answer")
+                };
+                for (k, (_, found)) in answer(&x).into_iter().enumerate() {
+                    let Some(Closed { contribution, .. }) = found else { continue };
+                    closed += 1;
+                    let scale = contribution.tangent.amax();
+                    for column in 0..2 * contribution.nodes.len() {
+                        let moved = |step: f64| {
+                            let mut x = x.clone();
+                            x[contribution.nodes[column / 2]][column % 2] += step;
+                            answer(&x)[k].1.clone().expect("a tiny motion does not open the point").contribution.force
+                        };
+                        let difference = (moved(1e-6) - moved(-1e-6)) / 2e-6;
+                        for (row, difference) in difference.iter().enumerate() {
+                            let tangent = contribution.tangent[(row, column)];
+                            assert!(
+                                (difference - tangent).abs() < 1e-6 * scale,
+                                "{body:?}: point {k}, ({row}, {column}): {tangent}, by differences {difference}"
+                            );
+                        }
+                    }
+                }
+            }
+            assert!(closed >= 8, "{closed} points were tested");
+        }
     }
 }
 

@@ -195,14 +195,14 @@ fn a_tube_pressed_flat_touches_itself() {
     assert_eq!(run.report.cutbacks, 0);
     assert!(run.iterations.iter().all(|&n| n <= 12), "{:?}", run.iterations);
     // Between the bar and the inside, and between the inside and the plate, the walls are cut free: each carries it all.
-    let bar: f64 = pair("bar")
-        .filter(|(_, state)| state.friction.pressure > 0.0)
-        .map(|(point, state)| {
-            let offset = (point.at(&x) - Vector2::new(0.0, 24.0)).normalize();
-            let along = Vector2::new(offset.y, -offset.x);
-            -point.current_length(&x) * (offset * state.friction.pressure - along * state.friction.traction).y
-        })
-        .sum();
+    let number = run.model.contacts.iter().position(|pair| pair.name == "bar").expect("a contact of the case");
+    let [old, new] = [&run.states[run.states.len() - 2], run.last()];
+    let [before, x] = [old, new].map(|state| run.model.configuration(&state.displacement));
+    let moment = Moment { dt: new.dt, fading: 0.0, stiffening: 1.0, settles: true };
+    let nothing = |_| Presumption::default();
+    let answer = run.model.contacts[number].respond(&old.contacts[number], &before, moment, nothing, &x);
+    let closed = answer.expect("an answer").into_iter().filter_map(|(_, closed)| closed);
+    let bar: f64 = closed.map(|closed| closed.contribution.force.iter().skip(1).step_by(2).sum::<f64>()).sum();
     close("the bar presses", bar, plate, 1e-6 * plate);
 }
 

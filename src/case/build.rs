@@ -362,10 +362,6 @@ fn slave_points(place: &str, input: &ContactInput, mesh: &Mesh) -> Checked<(Vec<
     if !(2..=4).contains(&points) {
         return Err(Complaint::new(format!("{place}.points"), format!("is {points}: must be 2, 3 or 4")));
     }
-    if input.points.is_some() && method != Method::GaussToSegment {
-        let message = format!("is for gauss_to_segment, and the method is {}: leave it out", method.name());
-        return Err(Complaint::new(format!("{place}.points"), message));
-    }
     Ok(match method {
         Method::NodeToSegment => (nodal_points(&edges), None),
         Method::GaussToSegment => (gauss_points(&edges, points), None),

@@ -130,6 +130,9 @@ pub fn nearest(slave: &SlavePoint, curve: &Segment, x: &Configuration) -> Neares
     Nearest { xi, offset: offset(xi), slope: slope(xi), steps }
 }
 
+/// A point nearer to a node than this share of the segment is on it.
+const ON_NODE: f64 = 1e-13;
+
 /// Closest point is the node between two segments: outside a convex corner or, penetrating, inside a concave one.
 pub fn at_node(
     slave: &SlavePoint,
@@ -145,8 +148,10 @@ pub fn at_node(
     let node = surface.segments[segment].ends[end];
     let offset = slave.offset(node, x);
     let side = if offset.dot(&mean) < 0.0 { -1.0 } else { 1.0 };
-    let gap = side * offset.norm();
-    // A point exactly on the node has no direction of its own.
+    // A point on the node has no direction of its own, and what round-off gives it is none.
+    let [a, b] = surface.segments[segment].ends;
+    let on_node = offset.norm() <= ON_NODE * x.between(a, b).norm();
+    let gap = if on_node { 0.0 } else { side * offset.norm() };
     let normal = if gap == 0.0 { mean.normalize() } else { offset / gap };
     Projection { foot: MasterPoint { segment, xi }, gap, normal, bound: Bound::Node(node) }
 }

@@ -48,7 +48,9 @@ impl<'a> Index<'a> {
     pub fn project(&self, slave: &SlavePoint, from: Option<MasterPoint>, x: &Configuration) -> Option<Projection> {
         let nearest = self.nearest(slave, x)?;
         match (self, from) {
-            (Self::Mesh(surface, _, sight), Some(from)) => {
+            (Self::Mesh(surface, _, sight), Some(from))
+                if nearest.bound == Bound::Segment && nearest.gap < 0.0 && nearest.foot.segment != from.segment =>
+            {
                 let outward = slave.outward(x);
                 let viewer = sight.as_ref().and_then(|sight| sight.point(slave));
                 let meets = |segment: usize| match (sight, &viewer) {
@@ -129,8 +131,9 @@ fn faces(surface: &Surface, segment: usize, outward: Option<Vector2<f64>>, x: &C
     outward.is_none_or(|outward| normal_of(x.between(a, b).normalize()).dot(&outward) < FACING)
 }
 
-/// Behind a ridge, where a point lies behind several segments, it belongs to the one on the side of its old foot: what is
-/// nearest changes at the bisector, and the normal with it.
+/// Behind a ridge, where a point lies behind several segments, it belongs to the one on the side of its old foot. The
+/// nearest one changes at the bisector, and the normal with it, forwards and back as Newton's method goes; its old foot does
+/// not change within an increment.
 fn behind_ridge(
     slave: &SlavePoint,
     surface: &Surface,
@@ -139,9 +142,6 @@ fn behind_ridge(
     meets: impl Fn(usize) -> bool,
     x: &Configuration,
 ) -> Projection {
-    if nearest.bound != Bound::Segment || nearest.gap >= 0.0 || from.segment == nearest.foot.segment {
-        return nearest;
-    }
     let way = surface.path(nearest.foot, from).unwrap_or_default();
     let earlier = way.iter().skip(1).map(|&(segment, ..)| segment).take_while(|&segment| meets(segment));
     let behind = earlier.map(|segment| on_curve(slave, surface, segment, x));

@@ -43,6 +43,27 @@ impl Blocks {
         self
     }
 
+    /// Add a whole ring of n × m elements with the groups `b`, `b_inside` and `b_outside`.
+    pub fn ring(mut self, name: &str, [n, m]: [usize; 2], [inner, outer]: [f64; 2]) -> Self {
+        let first = self.nodes.len();
+        let node = |i: usize, j: usize| first + j * n + i % n;
+        for j in 0..=m {
+            let radius = inner + (outer - inner) * j as f64 / m as f64;
+            let angle = |i: usize| std::f64::consts::TAU * i as f64 / n as f64;
+            self.nodes.extend((0..n).map(|i| [radius * angle(i).cos(), radius * angle(i).sin()]));
+        }
+        let elements: Vec<[usize; 4]> = (0..n * m)
+            .map(|e| (e % n, e / n))
+            .map(|(i, j)| [node(i, j), node(i, j + 1), node(i + 1, j + 1), node(i + 1, j)])
+            .collect();
+        let inside: Vec<[usize; 2]> = (0..n).map(|i| [node(i + 1, 0), node(i, 0)]).collect();
+        let outside: Vec<[usize; 2]> = (0..n).map(|i| [node(i, m), node(i + 1, m)]).collect();
+        self.elements.insert(name.into(), json!(elements));
+        self.edges.insert(format!("{name}_inside"), json!(inside));
+        self.edges.insert(format!("{name}_outside"), json!(outside));
+        self
+    }
+
     /// Add a rectangle from `low` to `high`.
     pub fn rectangle(self, name: &str, divisions: [usize; 2], low: [f64; 2], high: [f64; 2]) -> Self {
         self.block(name, divisions, |s, t| [low[0] + s * (high[0] - low[0]), low[1] + t * (high[1] - low[1])])
@@ -60,6 +81,42 @@ impl Blocks {
     pub fn json(&self) -> Value {
         json!({"nodes": self.nodes, "elements": self.elements, "edges": self.edges})
     }
+}
+
+/// The same mesh of quadratic elements; `middle` places a node between two corners.
+pub fn quadratic(mesh: &Value, middle: impl Fn([f64; 2], [f64; 2]) -> [f64; 2]) -> Value {
+    let mut nodes: Vec<[f64; 2]> = serde_json::from_value(mesh["nodes"].clone()).expect("places");
+    let mut middles = std::collections::BTreeMap::new();
+    let mut refine = |groups: &Value, closed: bool| -> Value {
+        let mut groups: std::collections::BTreeMap<String, Vec<Vec<usize>>> =
+            serde_json::from_value(groups.clone()).expect("groups");
+        for corners in groups.values_mut().flatten() {
+            let sides = if closed { corners.len() } else { 1 };
+            for k in 0..sides {
+                let ends = [corners[k], corners[(k + 1) % (sides.max(2))]];
+                let key = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+                corners.push(*middles.entry(key).or_insert_with(|| {
+                    nodes.push(middle(nodes[key[0]], nodes[key[1]]));
+                    nodes.len() - 1
+                }));
+            }
+        }
+        json!(groups)
+    };
+    let (elements, edges) = (refine(&mesh["elements"], true), refine(&mesh["edges"], false));
+    json!({"nodes": nodes, "elements": elements, "edges": edges})
+}
+
+/// Half way between two points.
+pub fn half_way(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [0, 1].map(|i| 0.5 * (a[i] + b[i]))
+}
+
+/// Half way between two points on or inside a circle about the origin, on an arc if both have the same radius.
+pub fn half_way_round(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    let (a, b) = (Vector2::from(a), Vector2::from(b));
+    let (middle, radius) = (0.5 * (a + b), 0.5 * (a.norm() + b.norm()));
+    (middle * (radius / middle.norm())).into()
 }
 
 /// A vector turned counter-clockwise.
