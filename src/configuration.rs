@@ -44,9 +44,4 @@ impl<'a> Configuration<'a> {
             |positions: &[Vector2<f64>]| weights.iter().map(|&(node, w)| positions[node] * w).sum::<Vector2<f64>>();
         of(self.reference) + of(&self.displacement)
     }
-
-    /// Largest distance of a node from the origin [L].
-    pub fn extent(&self) -> f64 {
-        (0..self.reference.len()).fold(0.0, |extent, node| self.at(node).norm_squared().max(extent)).sqrt()
-    }
 }

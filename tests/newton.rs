@@ -8,11 +8,12 @@ use fecontact::system::System;
 fn root(start: f64, equation: impl Fn(f64) -> Result<[f64; 3], ()>) -> Outcome<()> {
     let pattern = std::sync::Arc::new(Pattern::new(1, std::iter::once(&[0usize][..])));
     let tangent = SparseMatrix::zero(pattern);
-    let mut system = System { residual: vec![0.0; 2], tangent, forces: 1.0, round_off: 0.0 };
+    let mut system = System { residual: vec![0.0; 2], tangent, forces: 1.0, imbalance: 1.0 };
     let settings = Settings { tolerance: 1e-12, max_iterations: 30 };
     solve(vec![start, 0.0], settings, &mut Multifrontal::default(), &mut system, |u, request, system| {
         let [r, slope, share] = equation(u[0])?;
         system.residual = vec![r, 0.0];
+        system.imbalance = r.abs();
         if request == Request::Tangent {
             system.tangent.clear();
             system.tangent.add_diagonal(0, slope);
