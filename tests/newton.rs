@@ -140,3 +140,26 @@ fn no_motion_is_too_small_to_be_solved_for() {
     close("prescribed", run.last().displacement[2 * top], 2e-16, 1e-28);
     assert!(run.iterations.iter().all(|iterations| *iterations > 0));
 }
+
+/// A block on a rigid plane pressed by 150 MPa from its left and 50 MPa from above (after the GRECO block of
+/// `cases/validation`), 2³⁸ from the origin: all nodes are multiples of 2.5, and so exact. The pressures must not be taken for
+/// round-off of the positions.
+#[test]
+fn loads_far_from_the_origin_are_solved_for() {
+    let tractions = |shift: f64| {
+        let run = finish(&json!({
+            "mesh": Blocks::default().rectangle("block", [16, 16], [shift, 0.0], [shift + 40.0, 40.0]).json(),
+            "bodies": {"block": {"material": {"model": "linear", "E": 130000, "nu": 0.2}}},
+            "contacts": {"base": {"slave": "block_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+                                  "method": "node_to_segment", "friction": {"law": "coulomb", "mu": 1}}},
+            "steps": [{"name": "load", "duration": 1, "dt": {"initial": 0.1}, "supports": [{"on": "block_right", "ux": 0}],
+                       "loads": [{"on": "block_left", "pressure": 150}, {"on": "block_top", "pressure": 50}]}],
+        }));
+        let friction = run.last().contacts[0].iter().map(|point| [point.friction.pressure, point.friction.traction]);
+        friction.collect::<Vec<_>>()
+    };
+    let near = tractions(0.0);
+    let pressure = near.iter().map(|[p, _]| 2.5 * p).sum::<f64>();
+    assert!((pressure / 2000.0 - 1.0).abs() < 0.1, "the bottom carries most of 40 × 50: {pressure}");
+    close("tractions", difference(&near, &tractions(2f64.powi(38))), 0.0, 1e-9);
+}
