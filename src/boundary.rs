@@ -1,7 +1,7 @@
 //! Supports and loads: what is prescribed or applied at a node, and how it varies in time and space.
 
 use exmex::{Express, FlatEx, FloatOpsFactory, MatchLiteral, NumberMatcher};
-use nalgebra::{Matrix2, Rotation2, Vector2};
+use nalgebra::{Matrix2, Vector2};
 
 /// How a prescribed quantity varies, as given in the case.
 #[derive(Clone, Debug)]
@@ -188,9 +188,12 @@ impl Prescribed {
         match &self.motion {
             Motion::Displacement(drive, span) => drive.value(position, time, *span, start[component]),
             Motion::Rotation { about, angle } => {
-                let arm = position + start - about;
+                let arm = (position - about) + start;
                 let turn = angle.value(position, time) - angle.at_start_of(step, position);
-                (start + Rotation2::new(turn) * arm - arm)[component]
+                // Q − I, to the last digit of small angles as well
+                let (sine, versed) = (turn.sin(), 2.0 * (0.5 * turn).sin().powi(2));
+                let moved = Vector2::new(-versed * arm.x - sine * arm.y, sine * arm.x - versed * arm.y);
+                (start + moved)[component]
             }
         }
     }

@@ -49,9 +49,4 @@ impl<'a> Configuration<'a> {
         let sum = |of: &dyn Fn(usize) -> Vector2<f64>| weights.iter().map(|&(node, w)| of(node) * w).sum();
         [sum(&|node| self.reference[node] - origin), sum(&|node| self.displacement[node])]
     }
-
-    /// Largest distance of a node from the origin [L].
-    pub fn extent(&self) -> f64 {
-        (0..self.reference.len()).fold(0.0, |extent, node| self.at(node).norm_squared().max(extent)).sqrt()
-    }
 }

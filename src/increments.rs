@@ -1,6 +1,7 @@
 //! How long an increment is: whether a solved one is accepted, and the length of the next attempt.
 //!
-//! Without error control every solved increment is accepted, and the next one is longer if few iterations did it.
+//! Without error control every solved increment is accepted, and the next one is longer if few tangents did it. Corrections
+//! with an old tangent do not count: whether they are made is a question of cost.
 //!
 //! With error control, ε being the error allowed:
 //!
@@ -25,7 +26,7 @@ use crate::contact::force::{ContactState, Status};
 use crate::model::{Model, Step};
 use crate::state::State;
 
-/// An increment solved in this many iterations or fewer, in every pass, was easy: the next one may be longer.
+/// An increment solved with this many tangents or fewer, in every pass, was easy: the next one may be longer.
 const EASY: usize = 4;
 /// Growth of the increment after an easy one.
 const GROWTH: f64 = 1.5;
@@ -40,6 +41,10 @@ const WORTHWHILE: f64 = 1.25;
 
 /// Excess of what is left of a step over an increment that is not worth another one.
 const ROUND_OFF: f64 = 1e-6;
+
+/// An increment is as short as may be when it is this many times the shortest: sharing what is left of a step stretches it
+/// by less, and the times at its ends are rounded.
+const SHORTEST: f64 = 1.0 + 10.0 * ROUND_OFF;
 
 /// What becomes of a solved increment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,10 +67,10 @@ pub fn bounded(step: &Step, time: f64, dt: f64) -> f64 {
     if left <= shared { remaining / left } else { dt }
 }
 
-/// Judge a solved increment from `old` to `new`, which took `iterations` in its hardest pass; `repeated` says that an attempt at it was given up before.
-pub fn judge(model: &Model, step: &Step, [old, new]: [&State; 2], iterations: usize, repeated: bool) -> Judgement {
+/// Judge a solved increment from `old` to `new`, which took so many `tangents` in its hardest pass; `repeated` says that an attempt at it was given up before.
+pub fn judge(model: &Model, step: &Step, [old, new]: [&State; 2], tangents: usize, repeated: bool) -> Judgement {
     let dt = new.dt;
-    let easy = iterations <= EASY;
+    let easy = tangents <= EASY;
     let Some(allowed) = step.increments.error else {
         return Judgement { accepted: true, next: if easy { dt * GROWTH } else { dt }, error: None };
     };
@@ -73,10 +78,11 @@ pub fn judge(model: &Model, step: &Step, [old, new]: [&State; 2], iterations: us
     let share = (SAFETY * (allowed / error).cbrt()).clamp(LEAST_SHARE, GROWTH);
     let judged = |accepted: bool, share: f64| Judgement { accepted, next: share * dt, error: Some(error) };
     let shortest = step.increments.min;
-    if dt > shortest && error > allowed {
+    let can_shorten = new.time > old.time + SHORTEST * shortest;
+    if can_shorten && error > allowed {
         return Judgement { next: (share * dt).max(shortest), ..judged(false, share) };
     }
-    if dt > shortest && slip_at_events(model, old, new) > EVENT_LOCATION * allowed {
+    if can_shorten && slip_at_events(model, old, new) > EVENT_LOCATION * allowed {
         return Judgement { next: (0.5 * dt).max(shortest), ..judged(false, share) };
     }
     let grows = easy && !repeated && share > WORTHWHILE;

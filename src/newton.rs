@@ -1,12 +1,12 @@
 //! Newton's method for r(u) = 0; knows no finite elements.
 //!
 //! ```text
-//! K(u_k) Δu = −r(u_k),   u_{k+1} = u_k + Δu        until ‖r‖ ≤ tolerance × ‖forces at work‖
+//! K(u_k) Δu = −r(u_k),   u_{k+1} = u_k + Δu        until every part has ‖r‖ ≤ tolerance × ‖f‖
 //! ```
 //!
-//! The tangent is consistent, so the residual falls quadratically near the solution. A residual that has reached
-//! round-off also ends the iteration: nothing is gained by fighting it. Only that spares the first linear solve: what a
-//! start value within the tolerance still lacks would add up from increment to increment.
+//! The tangent is consistent, so the residual falls quadratically near the solution. What the parts are, and which residuals
+//! round-off leaves, is for those to say who know the equations ([`System::imbalance`]). No start value is accepted without a
+//! linear solve: what it still lacks within the tolerance would add up from increment to increment.
 
 use thiserror::Error;
 
@@ -16,7 +16,7 @@ use crate::system::System;
 /// When to stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// ‖r‖/‖forces at work‖ of a solution [-]
+    /// ‖r‖/‖f‖ of every part of a solution [-]
     pub tolerance: f64,
     /// Linear solves before giving up
     pub max_iterations: usize,
@@ -25,7 +25,7 @@ pub struct Settings {
 /// One linear solve, and where it led.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Iteration {
-    /// ‖r‖/‖forces at work‖ after the correction; NaN if the corrected state could not be evaluated [-]
+    /// ‖r‖/‖f‖ of the worst part after the correction; NaN if the corrected state could not be evaluated [-]
     pub residual: f64,
     /// Largest entry of the correction [L]
     pub correction: f64,
@@ -87,9 +87,9 @@ const DIVERGENCE: f64 = 1e4;
 /// How much less an old tangent may gain than the iteration before did, and how much it must gain to be used again.
 const OLD_TANGENT: f64 = 10.0;
 
-/// Share of the cost of a new tangent's factors that corrections with an old one may take, the residuals that each needs
-/// not counted.
-const OLD_TANGENT_COST: f64 = 0.35;
+/// Most corrections with an old tangent that are worth saving the factors of a new one. The same for every model and
+/// machine: what a run computes must not depend on what its factors cost.
+const OLD_TANGENT_CORRECTIONS: f64 = 3.0;
 
 /// Smallest part of a correction that is tried where the whole of it leads to a state that cannot be evaluated.
 const LEAST_PART: f64 = 0.125;
@@ -110,19 +110,17 @@ pub fn solve<E>(
         // Near a kink of the equations it promises more than it keeps, every time.
         let mut old_tangent_serves = true;
         loop {
-            let size = norm(&system.residual);
-            let residual = size / system.forces.max(f64::MIN_POSITIVE);
+            let (size, residual) = (norm(&system.residual), system.imbalance);
             let done = iterations.len();
-            if !(system.forces.is_finite() && system.round_off.is_finite()) {
+            if !system.forces.is_finite() {
                 return Err(NewtonFailure::Overflow);
             }
             if let Some(last) = iterations.last_mut() {
                 last.residual = residual;
-                let kept_promise = last.factorized || size <= before / OLD_TANGENT;
+                let kept_promise = last.factorized || residual <= before / OLD_TANGENT;
                 old_tangent_serves &= kept_promise && !last.fallback;
             }
-            let solved = done > 0 && size <= settings.tolerance * system.forces;
-            if solved || size <= system.round_off {
+            if done > 0 && residual <= settings.tolerance {
                 return Ok(());
             }
             if done <= 2 {
@@ -135,9 +133,8 @@ pub fn solve<E>(
                 return Err(NewtonFailure::TooManyIterations { residual, iterations: done });
             }
             let slower = if iterations.last().is_some_and(|last| last.factorized) { OLD_TANGENT } else { 1.0 };
-            let corrections = corrections_left(size, slower * size / before, settings.tolerance * system.forces);
-            let affordable = (OLD_TANGENT_COST * solver.solutions_per_factorization()).max(1.0);
-            let factorized = done == 0 || !(old_tangent_serves && corrections <= affordable);
+            let corrections = corrections_left(residual, slower * residual / before, settings.tolerance);
+            let factorized = done == 0 || !(old_tangent_serves && corrections <= OLD_TANGENT_CORRECTIONS);
             let mut solution = if factorized {
                 evaluate(&u, Request::Tangent, system).map_err(NewtonFailure::Evaluation)?;
                 let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();
@@ -170,7 +167,7 @@ pub fn solve<E>(
                     *u -= part * x;
                 }
             };
-            before = size;
+            before = residual;
         }
     })();
     (iterations, result.map(|()| u))

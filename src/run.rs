@@ -217,9 +217,10 @@ impl<'m> Run<'m, '_, '_> {
     }
 }
 
-/// Linear solves of the pass that took most: the augmented Lagrangian solves an increment several times.
+/// Tangents of the pass that took most: the augmented Lagrangian solves an increment several times.
 fn hardest_pass(iterations: &[IterationRecord]) -> usize {
-    iterations.chunk_by(|a, b| a.pass == b.pass).map(<[_]>::len).max().unwrap_or(0)
+    let tangents = |pass: &[IterationRecord]| pass.iter().filter(|iteration| iteration.newton.factorized).count();
+    iterations.chunk_by(|a, b| a.pass == b.pass).map(tangents).max().unwrap_or(0)
 }
 
 /// Tell all observers of an attempt.

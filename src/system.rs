@@ -13,8 +13,9 @@ pub struct System {
     pub tangent: SparseMatrix,
     /// Norm of the forces at work: every element's and contact point's share counted without its sign [F]
     pub forces: f64,
-    /// Norm of the residual that round-off alone can leave [F]
-    pub round_off: f64,
+    /// Largest ‖r‖/‖f‖ of all parts that must be in equilibrium by themselves, forces that round-off hides not counted as
+    /// small [-]
+    pub imbalance: f64,
 }
 
 /// What one contact point or point element adds: forces and tangent of its nodes, two dofs a node.

@@ -402,3 +402,15 @@ fn an_error_that_cannot_be_met_is_told() {
         assert!(told[0].contains(part), "{}", told[0]);
     }
 }
+
+/// An error that no increment meets, and increments whose ends are rounded: t + 0.01 − t is now above, now below 0.01. Every
+/// attempt is as short as may be, and accepted.
+#[test]
+fn the_shortest_increment_is_the_shortest_after_rounding_too() {
+    let mut case = bar(&trapezoidal(), 1e-12);
+    case["steps"][0]["duration"] = json!(1);
+    case["steps"][0]["dt"] = json!({"initial": 0.01, "min": 0.01, "max": 0.05, "error": 1e-12});
+    case["initial_velocity"] = json!({"bar": [1, 0]});
+    let run = finish(&case);
+    assert_eq!((run.states.len(), run.report.rejected), (100, 0));
+}

@@ -10,6 +10,7 @@
 //! threads.
 
 mod damping;
+mod equilibrium;
 mod forces;
 
 use std::sync::Arc;
@@ -27,11 +28,12 @@ use crate::error::TrialFailure;
 use crate::friction::FrictionState;
 use crate::linear::{BlockPosition, Pattern, SparseMatrix};
 use crate::material::InvertedElement;
-use crate::model::{Body, Model, Step};
+use crate::model::{Model, Step};
 use crate::newton::Request;
 use crate::state::State;
 use crate::system::{Contribution, System};
 use crate::time::{Coefficients, supported_rates};
+use equilibrium::Equilibrium;
 
 /// One increment to be solved: from where, to when, under which step.
 #[derive(Clone, Copy, Debug)]
@@ -212,6 +214,7 @@ pub struct Assembler<'m> {
     weight: f64,
     /// Sum of the forces' magnitudes at each dof [F]
     magnitudes: Vec<f64>,
+    equilibrium: Equilibrium,
     /// One entry a contact point, empty before the first linear solve of an increment
     iterates: Vec<Vec<Iterate>>,
     /// u of the last linear solve [L]
@@ -280,6 +283,7 @@ impl<'m> Assembler<'m> {
             damping_mass: None,
             weight: weight(model),
             magnitudes: vec![0.0; model.dofs()],
+            equilibrium: Equilibrium::new(model),
             iterates: Vec::new(),
             linearized_at: Vec::new(),
             evaluation: Evaluation::default(),
@@ -298,7 +302,7 @@ impl<'m> Assembler<'m> {
             residual: vec![0.0; self.model.dofs()],
             tangent: SparseMatrix::zero(self.pattern.clone()),
             forces: 0.0,
-            round_off: 0.0,
+            imbalance: f64::INFINITY,
         }
     }
 
@@ -387,6 +391,7 @@ impl<'m> Assembler<'m> {
         self.magnitudes.fill(0.0);
         let mut force = vec![0.0; u.len()];
         let strain_energy = self.add_solids(u, &mut force, values.as_deref_mut())?;
+        self.equilibrium.note_contacts(self.model, trial, &responses);
         for (_, closed) in responses.iter().flatten() {
             if let Some(Closed { contribution, .. }) = closed {
                 self.add(contribution, &mut force, values.as_deref_mut());
@@ -407,7 +412,7 @@ impl<'m> Assembler<'m> {
         self.evaluation.force = force;
         self.balance(trial, u, values, &mut system.residual);
         self.prescribe(trial, u, tangent, system)?;
-        self.measure(trial, system, &x);
+        self.measure(trial, u, system);
         self.seconds.assembly += clock.elapsed().as_secs_f64();
         Ok(())
     }
@@ -830,43 +835,6 @@ impl<'m> Assembler<'m> {
             self.tie(&mut system.tangent, self.weight);
         }
         Ok(())
-    }
-
-    /// Norm of the forces at work, and of the residual that round-off in the positions alone can leave: in the forces
-    /// of solids and contacts, and in the accelerations, which are differences of displacements over Δt².
-    ///
-    /// Positions count up to ten times the extent of the committed state: an iterate farther away is lost, and must not
-    /// pass for imprecise.
-    fn measure(&mut self, trial: Trial, system: &mut System, x: &Configuration) {
-        let Trial { old, step, dt, .. } = trial;
-        system.forces = crate::linear::norm(&self.magnitudes);
-        let extent = x.extent().min(10.0 * self.model.configuration(&old.displacement).extent());
-        let solids = self.weight.powi(2) * self.model.mesh.nodes.len() as f64;
-        let points = self.model.contacts.iter().flat_map(|pair| pair.points.iter().map(move |point| (pair, point)));
-        let stiffness = |pair: &ContactPair| pair.normal_stiffness(trial.stiffening);
-        let contacts: f64 = points.map(|(pair, point)| (stiffness(pair) * point.current_length(x)).powi(2)).sum();
-        system.round_off = f64::EPSILON * extent * (solids + contacts).sqrt();
-        let way: Vec<f64> = old.displacement.iter().zip(&old.velocity).map(|(u, v)| u.abs() + (dt * v).abs()).collect();
-        let scheme = step.scheme.coefficients();
-        if let Some(scheme) = scheme {
-            let inertia = crate::linear::norm(&self.mass().multiply(&way)) * scheme.dacceleration(dt);
-            system.round_off += f64::EPSILON * inertia;
-        }
-        let dvelocity = scheme.map_or(1.0 / dt, |scheme| scheme.dvelocity(dt));
-        if scheme.is_some() {
-            let longest = way.iter().fold(0.0f64, |longest, way| longest.max(*way));
-            let viscosity = |body: &Body| body.damping.stiffness * body.material.stiffness();
-            let resistance = |body: &Body| viscosity(body) * (body.nodes.len() as f64).sqrt();
-            let resistance: f64 = self.model.bodies.iter().map(resistance).sum();
-            system.round_off += f64::EPSILON * resistance * dvelocity * longest;
-        }
-        for dashpot in &step.loads.dashpots {
-            system.round_off += f64::EPSILON * dashpot.coefficient * dvelocity * way[dashpot.dof];
-        }
-        for Absorber { node, coefficients } in &step.loads.absorbers {
-            let way = way[2 * node] + way[2 * node + 1];
-            system.round_off += f64::EPSILON * coefficients.norm() * dvelocity * way;
-        }
     }
 
     /// The mass matrix on the current pattern: consistent in the elements, and the point masses on the diagonal.

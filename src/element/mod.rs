@@ -36,15 +36,16 @@ pub enum ElementError {
 /// ∂N_a/∂X of all nodes and det(∂X/∂ξ) at the reference coordinates `at`.
 ///
 /// ```text
-/// ∂X/∂ξ = Σ_a X_a ⊗ ∂N_a/∂ξ,   ∂N_a/∂X = (∂X/∂ξ)⁻ᵀ ∂N_a/∂ξ
+/// ∂X/∂ξ = Σ_a (X_a − X_1) ⊗ ∂N_a/∂ξ,   ∂N_a/∂X = (∂X/∂ξ)⁻ᵀ ∂N_a/∂ξ
 /// ```
+/// Positions count from the first node, so that nothing is lost far from the origin.
 fn gradients(
     kind: ElementKind,
     at: [f64; 2],
     positions: &[Vector2<f64>],
 ) -> Result<(Vec<Vector2<f64>>, f64), ElementError> {
     let derivatives: Vec<_> = kind.derivatives(at).into_iter().map(Vector2::from).collect();
-    let map: Matrix2<f64> = positions.iter().zip(&derivatives).map(|(x, d)| x * d.transpose()).sum();
+    let map: Matrix2<f64> = positions.iter().zip(&derivatives).map(|(x, d)| (x - positions[0]) * d.transpose()).sum();
     let jacobian = map.determinant();
     match map.transpose().try_inverse() {
         Some(inverse) if jacobian > 0.0 => Ok((derivatives.iter().map(|d| inverse * d).collect(), jacobian)),

@@ -47,11 +47,6 @@ pub trait LinearSolver {
     fn perturbed_pivots(&self) -> usize {
         0
     }
-
-    /// How many solutions with the last factors take as long as new factors, by operations and memory traffic.
-    fn solutions_per_factorization(&self) -> f64 {
-        1.0
-    }
 }
 
 /// A solution and how well it satisfies its equations.

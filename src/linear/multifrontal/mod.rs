@@ -118,14 +118,6 @@ impl LinearSolver for Multifrontal {
     fn perturbed_pivots(&self) -> usize {
         self.factors.replaced
     }
-
-    fn solutions_per_factorization(&self) -> f64 {
-        // A value of the factors is read in the time of so many operations: from 20 000 to 300 000 equations.
-        const OPERATIONS_PER_VALUE: f64 = 27.0;
-        self.symbolic
-            .as_ref()
-            .map_or(1.0, |symbolic| symbolic.work() / (OPERATIONS_PER_VALUE * symbolic.values().max(1) as f64))
-    }
 }
 
 #[cfg(test)]

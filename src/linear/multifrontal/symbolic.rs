@@ -103,11 +103,6 @@ impl Symbolic {
         Ok(Self { pattern, nodes: elimination.nodes, fronts, entries, forests })
     }
 
-    /// Floating-point operations of a factorization.
-    pub fn work(&self) -> f64 {
-        self.fronts.iter().map(Front::work).sum()
-    }
-
     /// Number of values in the factors.
     pub fn values(&self) -> usize {
         self.fronts.last().map_or(0, |front| front.values.end)
