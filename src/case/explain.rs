@@ -38,7 +38,7 @@ fn unknown(message: &str) -> String {
             clipped(name),
             known.join("`, `")
         ),
-        None => format!("`{}` is not known here: nothing may stand in this object", clipped(name)),
+        None => format!("`{}` is not known here: leave it out, nothing more may stand in this object", clipped(name)),
     }
 }
 
