@@ -72,26 +72,36 @@ impl FrictionState {
         Self { traction, pressure, mu, plastic_increment: 0.0, ..self }
     }
 
-    /// The state after plastic slip has brought the traction down from the elastic `trial` to `traction`.
+    /// The state after plastic slip along sgn q has brought the traction down from the elastic `trial` to `traction`.
     ///
     /// ```text
-    /// Δλ = (|q_tr| − |q|)/α_t                   plastic slip, along sgn q
-    /// ΔW = ½ (⟨q₀ sgn q⟩ + |q|) Δλ ≥ 0          work dissipated; plastic slip starts from q = 0 after a reversal
+    /// Δλ = (|q_tr| − |q|)/α_t       plastic slip
+    /// ΔW = ∫ |q| dλ = q̄ Δλ ≥ 0      work dissipated; q̄, the mean of |q| over the plastic slip, is the law's to know
     /// ```
-    /// Without a reversal the work ½(q₀ + q)Δu of the increment is exactly the elastic energy gained plus ΔW.
-    fn slid(self, trial: f64, traction: f64, pressure: f64, mu: f64, stiffness: f64) -> Self {
+    /// The work ∫ q du of the increment, along the path that the law takes inside it, is Δ(q²/2α_t) + ΔW.
+    fn slid(self, trial: f64, traction: f64, mean: f64, (pressure, mu): (f64, f64), stiffness: f64) -> Self {
         let sign = traction.signum();
         let slip = ((trial - traction) * sign / stiffness).max(0.0);
-        let work = 0.5 * ((self.traction * sign).max(0.0) + traction.abs()) * slip;
         Self {
             traction,
             pressure,
             mu,
             plastic_slip: self.plastic_slip + sign * slip,
             plastic_increment: sign * slip,
-            dissipation: self.dissipation + work,
+            dissipation: self.dissipation + mean * slip,
         }
     }
+}
+
+/// |q| where plastic slip sets in, in an increment along which the elastic traction and the strength both go evenly from
+/// their first value to their second, and the traction ends above. One that is above from the start slips from there.
+///
+/// Both lines are counted along the sign of the trial, so a traction of the other sign unloads elastically, passes zero,
+/// and loads elastically up to the strength.
+fn traction_at_yield(elastic: [f64; 2], strength: [f64; 2]) -> f64 {
+    let (below, above) = ((strength[0] - elastic[0]).max(0.0), elastic[1] - strength[1]);
+    let share = if above > 0.0 { below / (below + above) } else { 1.0 };
+    elastic[0].max(strength[0] + share * (strength[1] - strength[0]))
 }
 
 /// Relative motion of the two surfaces during one increment.

@@ -2,7 +2,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::root::{Trial, bracketed_root};
-use super::{FrictionLaw, FrictionResponse, FrictionState, LawFailure, Sliding};
+use super::{FrictionLaw, FrictionResponse, FrictionState, LawFailure, Sliding, traction_at_yield};
 use crate::parameter::{InvalidParameter, require_not_negative, require_positive};
 
 /// Parameters of [`RateAndState`] as the case file writes them.
@@ -61,6 +61,9 @@ pub enum StateEvolution {
 /// and Δλ is the *smallest* root of G(Δλ) = |q_tr| − α_t Δλ − |q|(Δλ) with |q| from (2) at the end of the increment. G is
 /// positive at Δλ = 0 and negative at |q_tr|/α_t. Where α_t exceeds the weakening by slip, G falls throughout; else ln Δλ
 /// is led up to the first root by bounds of the slope, and never over it. The method is of first order in Δt.
+///
+/// The work dissipated is ∫ |q| dλ = ½ (q_y + |q|) Δλ with slip at the rate V once the traction, elastic until then, has
+/// met at q_y what (2) asks for V; that goes evenly from its value at the start to |q|.
 ///
 /// # Errors
 /// [`LawFailure`] when the increment or the answer is not finite, or time goes backwards.
@@ -169,14 +172,8 @@ impl Relaxation<'_> {
         let RateAndState { a, reference_rate, alpha_t, .. } = *self.law;
         let (psi, dpsi) = self.psi(slip);
         let fastness = 0.5 / (reference_rate * self.dt);
-        // arsinh(eʷ) and its derivative by w, without eʷ where it would overflow
         let w = slip.ln() + fastness.ln() + psi / a;
-        let (arsinh, rate) = if w > 20.0 {
-            (w + std::f64::consts::LN_2, 1.0)
-        } else {
-            let sinh = w.exp();
-            (sinh.asinh(), sinh / sinh.hypot(1.0))
-        };
+        let (arsinh, rate) = arsinh_of_exp(w);
         let traction = a * self.pressure * arsinh;
         let direct = if slip > 0.0 { rate / slip } else { fastness * (psi / a).exp() };
         let slope = alpha_t + self.pressure * (a * direct + rate * dpsi);
@@ -277,6 +274,15 @@ impl Relaxation<'_> {
     }
 }
 
+/// arsinh(eʷ) and its derivative by w, without eʷ where it would overflow.
+fn arsinh_of_exp(w: f64) -> (f64, f64) {
+    if w > 20.0 {
+        return (w + std::f64::consts::LN_2, 1.0);
+    }
+    let sinh = w.exp();
+    (sinh.asinh(), sinh / sinh.hypot(1.0))
+}
+
 impl FrictionLaw for RateAndState {
     fn initial_state(&self) -> FrictionState {
         FrictionState { mu: self.initial_mu, ..FrictionState::default() }
@@ -298,9 +304,14 @@ impl FrictionLaw for RateAndState {
         }
         let (found, evaluations) = relaxation.solve();
         let traction = trial.signum() * found.traction.min(trial.abs());
+        // What (2) asks at the start for the slip rate of the increment
+        let rate_share = (trial.abs() - traction.abs()) / alpha_t / (2.0 * self.reference_rate * dt);
+        let before = self.a * old.pressure * arsinh_of_exp(rate_share.ln() + old.mu / self.a).0;
+        let elastic = [trial.signum() * old.traction, trial.abs()];
+        let mean = 0.5 * (traction_at_yield(elastic, [before, traction.abs()]) + traction.abs());
         let softness = alpha_t / found.slope;
         FrictionResponse {
-            state: old.slid(trial, traction, pressure, found.psi, alpha_t),
+            state: old.slid(trial, traction, mean, (pressure, found.psi), alpha_t),
             dtraction_dslip: alpha_t * (1.0 - softness),
             dtraction_dpressure: traction / pressure * softness,
             evaluations,

@@ -78,7 +78,8 @@ fn one() -> f64 {
 /// *controlled* integration solves (3) for slip and time that pass in step with one another, which leaves no error
 /// where μ only weakens or only recovers (m = n = 1). How much the order of weakening and recovery matters is found by
 /// halving the increment, and halving again, until q, μ p and the mean of q are right to the tolerance (`path.rs`).
-/// The dissipation is then ∫ q dλ. The tangent is that of what was computed; for one step
+/// The dissipation is ∫ R μ p dλ, R along its curve and μ p linear in ∫ R dλ over a step; the work of the increment,
+/// ∫ q du, is this and what the contact has stored. The tangent is that of what was computed; for one step
 /// ```text
 /// D = α_t + p (U μ + R ∂μ/∂Δλ),   ∂q/∂Δu = α_t (1 − α_t/D),   ∂q/∂p = sgn(q_tr) α_t R μ/D.
 /// ```
@@ -147,7 +148,8 @@ impl SuperSubloading {
         if old.traction.abs() <= strength * (1.0 + EXCESS) {
             return old;
         }
-        old.slid(old.traction, strength.copysign(old.traction), old.pressure, old.mu, self.alpha_t)
+        let mean = 0.5 * (old.traction.abs() + strength);
+        old.slid(old.traction, strength.copysign(old.traction), mean, (old.pressure, old.mu), self.alpha_t)
     }
 
     /// One step of the slip equation over the whole increment.
@@ -170,9 +172,14 @@ impl SuperSubloading {
         }
         let (end, evaluations) = equation.solve(start);
         let strength = trial.signum() * end.reach.ratio * end.peak.mu;
+        // Plastic slip starts from the old pressure, or from that where the traction passes 0.
+        let passed = if reversed { old.traction / (old.traction - trial) } else { 0.0 };
+        let start_pressure = old.pressure + passed * (pressure - old.pressure);
+        let mean = self.curve.mean_ratio(&equation.start, &end.reach)
+            * (0.5 * (old.mu * start_pressure + end.peak.mu * pressure));
         let softness = self.alpha_t / end.slope.max(LEAST_SLOPE * self.alpha_t);
         FrictionResponse {
-            state: old.slid(trial, strength * pressure, pressure, end.peak.mu, self.alpha_t),
+            state: old.slid(trial, strength * pressure, mean, (pressure, end.peak.mu), self.alpha_t),
             dtraction_dslip: self.alpha_t * (1.0 - softness),
             dtraction_dpressure: strength * softness,
             evaluations,
