@@ -68,7 +68,7 @@ impl FrictionLaw for Coulomb {
             let mean = 0.5 * (at_yield + strength);
             (old.slid(trial, sign * strength, mean, (pressure, mu), alpha_t), 0.0, sign * mu)
         };
-        FrictionResponse { state, dtraction_dslip, dtraction_dpressure, evaluations: 0 }.checked()
+        FrictionResponse { state, dtraction_dslip, dtraction_dpressure, evaluations: 0 }.checked(alpha_t)
     }
 
     fn stiffness(&self) -> f64 {

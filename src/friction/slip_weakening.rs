@@ -1,7 +1,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{FrictionLaw, FrictionResponse, FrictionState, LawFailure, Sliding, traction_at_yield};
+use super::{FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Sliding, traction_at_yield};
 use crate::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 
 /// Parameters of [`SlipWeakening`] as the case file writes them.
@@ -130,17 +130,17 @@ impl FrictionLaw for SlipWeakening {
         let Self { mu_d, weakening, cohesion, alpha_t, .. } = *self;
         let Sliding { slip, pressure, .. } = sliding.checked()?;
         if pressure <= 0.0 {
-            return FrictionResponse::elastic(old.parted(old.mu, alpha_t), 0.0).checked();
+            return FrictionResponse::elastic(old.parted(old.mu, alpha_t), 0.0).checked(alpha_t);
         }
         let trial = old.traction + alpha_t * slip;
         let excess = trial.abs() - cohesion - old.mu * pressure;
         if excess <= 0.0 {
-            return FrictionResponse::elastic(old.stuck(trial, pressure, old.mu), alpha_t).checked();
+            return FrictionResponse::elastic(old.stuck(trial, pressure, old.mu), alpha_t).checked(alpha_t);
         }
         let net = alpha_t - weakening * pressure;
         let slid = excess / net;
         let (mu, softness) = if net > 0.0 && old.mu - weakening * slid > mu_d {
-            (old.mu - weakening * slid, alpha_t / net)
+            (old.mu - weakening * slid, alpha_t / net.max(LEAST_SLOPE * alpha_t))
         } else {
             (old.mu.min(mu_d), 1.0)
         };
@@ -151,7 +151,7 @@ impl FrictionLaw for SlipWeakening {
             dtraction_dpressure: trial.signum() * mu * softness,
             evaluations: 0,
         }
-        .checked()
+        .checked(alpha_t)
     }
 
     fn stiffness(&self) -> f64 {
