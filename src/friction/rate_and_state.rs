@@ -137,6 +137,8 @@ struct Relaxation<'a> {
 struct Outcome {
     /// Δλ [L]
     slip: f64,
+    /// ln Δλ, from that of the largest slip down
+    log: f64,
     /// w: |q| = a p arsinh(eʷ)
     log_sinh: f64,
     /// G [F/L²]
@@ -184,7 +186,7 @@ impl Relaxation<'_> {
         let traction = a * self.pressure * arsinh;
         let direct = if slip > 0.0 { rate / slip } else { fastness * (psi / a).exp() };
         let slope = alpha_t + self.pressure * (a * direct + rate * dpsi);
-        Outcome { slip, log_sinh: w, excess: self.trial - alpha_t * slip - traction, slope, psi, traction }
+        Outcome { slip, log: 0.0, log_sinh: w, excess: self.trial - alpha_t * slip - traction, slope, psi, traction }
     }
 
     /// Bound of Δλ ∂ψ/∂Δλ for all slips up to this one: healing within the increment, of which the slip law knows some.
@@ -241,7 +243,7 @@ impl Relaxation<'_> {
         let RateAndState { a, alpha_t, .. } = *self.law;
         let [less, more] = self.effect_bounds(low.slip, high.slip).map(|effect| a + effect);
         // w grows with ln Δλ by (a + ∂ψ/∂ln Δλ)/a.
-        let way = (high.slip / low.slip).ln() / a;
+        let way = (high.log - low.log) / a;
         let least = (low.log_sinh + way * less.min(0.0)).max(high.log_sinh - way * more.max(0.0));
         let most = (low.log_sinh + way * more.max(0.0)).min(high.log_sinh - way * less.min(0.0));
         let [slow, fast] = [least, most].map(|w| arsinh_of_exp(w).1);
@@ -287,63 +289,57 @@ impl Relaxation<'_> {
     /// # Errors
     /// [`LawFailure::NotConverged`] when it is not found.
     fn solve(&self) -> Result<(Outcome, usize), LawFailure> {
-        let mut evaluations = 0;
-        let mut at = |slip: f64| {
-            evaluations += 1;
-            self.outcome(slip)
-        };
         let (least, most) = (self.least().max(f64::MIN_POSITIVE), self.trial / self.law.alpha_t);
-        let mut found = at(least);
+        let mut evaluations = 0;
+        // By the logarithm of Δλ, in which (2) is nearly linear; from the largest down, so that round-off is least.
+        let mut at = |log: f64| {
+            evaluations += 1;
+            Outcome { log, ..self.outcome(most * log.exp()) }
+        };
+        let mut found = at(least.ln() - most.ln());
         let enough = PRECISION * self.trial;
         if found.excess <= enough {
             return Ok((found, evaluations));
         }
-        let bracket =
-            if self.is_monotone() { Some((least, most)) } else { self.first_root_bracket(found, most, &mut at) };
-        // In ln Δλ, by which (2) is nearly linear; counted from the largest, so that round-off is as small as can be.
-        let Some([low, high]) = bracket.map(|(low, high)| [low, high].map(|slip| (slip / most).ln())) else {
+        let bracket = if self.is_monotone() { Some((found.log, 0.0)) } else { self.first_root_bracket(found, &mut at) };
+        let Some(bracket) = bracket else {
             return Err(LawFailure::NotConverged { evaluations, rest: found.excess, trial: self.trial });
         };
-        bracketed_root((low, high), low, |log| {
-            found = at(most * log.exp());
+        bracketed_root(bracket, bracket.0, |log| {
+            found = at(log);
             let step = found.excess / (found.slope * found.slip).max(f64::MIN_POSITIVE);
             Trial { value: found.excess, step, done: found.excess.abs() <= enough }
         });
         Ok((found, evaluations))
     }
 
-    /// Two slips that hold the smallest root between them, and no other unless they cannot be told apart; none if it is
-    /// not to be found.
+    /// Two logarithms of Δλ that hold that of the smallest root between them, and no other unless they cannot be told
+    /// apart; none if it is not to be found.
     ///
     /// Pieces are examined from the left with bounds D₋ ≤ −∂G/∂ln Δλ ≤ D₊ on each: a piece holds one root or none if
     /// D₋ > 0, none if G stays positive between the lines of slope −D₊ from its left end and −D₋ from its right, and is
     /// halved otherwise. G changes with the square of the distance from where two roots merge, so that some dozens of
     /// pieces tell whether they have.
-    fn first_root_bracket(
-        &self,
-        mut left: Outcome,
-        most: f64,
-        at: &mut impl FnMut(f64) -> Outcome,
-    ) -> Option<(f64, f64)> {
-        let mut right = at(most);
+    fn first_root_bracket(&self, mut left: Outcome, at: &mut impl FnMut(f64) -> Outcome) -> Option<(f64, f64)> {
+        let mut right = at(0.0);
         for _ in 0..MOST_PIECES {
-            let way = (right.slip / left.slip).ln();
+            let way = right.log - left.log;
             let [least_fall, most_fall] = self.fall_bounds(&left, &right);
-            let narrow = way <= LEAST_PIECE;
+            let narrow = way <= LEAST_PIECE * (1.0 + left.log.abs());
             if right.excess <= 0.0 && (least_fall > 0.0 || narrow) {
-                return Some((left.slip, right.slip));
+                return Some((left.log, right.log));
             }
             let crossing_needs = left.excess / most_fall.max(0.0) + right.excess / (-least_fall).max(0.0);
             let rootless = right.excess > 0.0 && (least_fall > 0.0 || crossing_needs > way);
             if rootless || narrow {
-                if right.slip >= most {
-                    return Some((left.slip, most)); // but for round-off G is not positive there
+                if right.log >= 0.0 {
+                    return Some((left.log, 0.0)); // but for round-off G is not positive there
                 }
-                let next = (right.slip * (2.0 * way).exp()).min(most);
+                let next = (right.log + 2.0 * way).min(0.0);
                 left = right;
                 right = at(next);
             } else {
-                right = at(left.slip * (0.5 * way).exp());
+                right = at(left.log + 0.5 * way);
             }
         }
         None
