@@ -135,7 +135,7 @@ impl LoadPath<'_> {
             return Ok(if halves.slide() { self.extrapolated(&halves) } else { fine });
         }
         if self.drive(from, &fine) <= SNAP * self.tolerance * self.evolution.mu_s * self.pressure(fine.x) {
-            return Ok(snapped(from, fine));
+            return Ok(fine);
         }
         if halvings == 0 || self.evaluations > MAX_EVALUATIONS {
             let trial = from.traction + self.alpha_t * self.slip * (fine.x - from.x);
@@ -297,9 +297,8 @@ impl LoadPath<'_> {
         let (dq_dslip, dmu_dslip) = derivatives(0);
         let (dq_dpressure, dmu_dpressure) = derivatives(1);
 
-        // ∫ q dλ, μ p taken as linear in ∫ R dλ
-        let mean_strength = 0.5 * (from.mu * start_pressure + peak.mu * pressure);
-        let work = self.curve.mean_ratio(&from.reach, &reach) * mean_strength * slip;
+        let strengths = [from.mu * start_pressure, peak.mu * pressure];
+        let work = mean_traction(self.curve, [&from.reach, &reach], strengths, [from.traction, traction]) * slip;
         Station {
             x,
             traction,
@@ -337,9 +336,18 @@ impl LoadPath<'_> {
     }
 }
 
-/// The end of a sub-step in which the traction snaps: the contact springs back with the slip, so that the traction falls
-/// evenly with it, above the strength, and all that is released is dissipated.
-fn snapped(from: &Station, to: Station) -> Station {
-    let mean = 0.5 * (from.traction + to.traction);
-    Station { work: from.work + mean * (to.plastic_slip - from.plastic_slip), ..to }
+/// Mean of q over the plastic slip of a step: μ p is taken as linear in ∫ R dλ. Where the traction falls, it is itself taken
+/// as linear in λ, which it is where it snaps: the contact springs back, and what the strength does not take is lost too.
+pub(super) fn mean_traction(
+    curve: &SlidingCurve,
+    reaches: [&Reach; 2],
+    strengths: [f64; 2],
+    tractions: [f64; 2],
+) -> f64 {
+    let mean = |[start, end]: [f64; 2]| 0.5 * (start + end);
+    if tractions[1] < tractions[0] {
+        mean(tractions)
+    } else {
+        curve.mean_ratio(reaches[0], reaches[1]) * mean(strengths)
+    }
 }

@@ -36,7 +36,7 @@ pub struct SlipWeakeningParameters {
 /// Δλ = (|q_tr| − c − μ_d p)/α_t              else, and where W p ≥ α_t: friction falls faster than the contact unloads
 /// ```
 /// Nothing is left of the error in time. The work dissipated is ∫ |q| dλ along even paths of slip and pressure: elastic up
-/// to the strength, then at the strength, which is a quotient of linear functions of λ while μ falls; where friction falls
+/// to the strength, then at the strength; where friction falls
 /// faster than the contact unloads, |q| falls with α_t λ from one strength to the other. μ itself remembers the slip: D = (μ_s − μ)/W. A traction above the strength, as
 /// a run may start with, slips off in the first increment.
 ///
@@ -84,11 +84,15 @@ impl SlipWeakening {
         if old.mu <= mu_d || elastic[0] > before[0] {
             return 0.5 * (at_yield + at_end);
         }
-        // Over the increment the elastic traction gains so much on the strength, at the first μ and at the second:
+        // Over the increment the elastic traction gains on the strength, at the first μ and at the second, and the share of
+        // the increment that has passed is a quotient of linear functions of λ, whose denominator goes from one to the other.
         let gain = |mu: f64| elastic[1] - elastic[0] - mu * (pressure - old.pressure);
-        let falling = |to: f64, mu: f64| at_yield + (to - at_yield) * end_share(gain(mu) / gain(old.mu) - 1.0);
+        let falling = |to: f64, slip: f64, mu: f64| {
+            let lag = end_share(gain(mu) / gain(old.mu) - 1.0) - 0.5;
+            0.5 * (at_yield + to) + lag * (alpha_t * slip + to - at_yield)
+        };
         if mu > mu_d {
-            return falling(at_end, mu);
+            return falling(at_end, slip, mu);
         }
         let pressure_at_yield = (at_yield - cohesion) / old.mu;
         // Slip until μ_d is reached, the traction then, and the mean of |q| so far
@@ -96,7 +100,7 @@ impl SlipWeakening {
             let fallen = (old.mu - mu_d) / weakening;
             let share = (strength(mu_d, old.pressure) + alpha_t * fallen - elastic[0]) / gain(mu_d);
             let level = strength(mu_d, old.pressure + share.clamp(0.0, 1.0) * (pressure - old.pressure));
-            (fallen.min(slip), level, falling(level, mu_d))
+            (fallen.min(slip), level, falling(level, fallen, mu_d))
         } else {
             let level = strength(mu_d, pressure_at_yield);
             (((at_yield - level) / alpha_t).min(slip), level, 0.5 * (at_yield + level))
@@ -106,14 +110,15 @@ impl SlipWeakening {
 }
 
 /// How much of the mean of (A + B λ)/(C + D λ) over a stretch of λ is its value at the end, the rest being its value at
-/// the beginning, if the denominator gains the share `z` of itself on the way; a half if it gains nothing.
+/// the beginning, if the denominator gains the share `z` of itself on the way; a half if it gains nothing, or if slip would
+/// have to cease on the way.
 ///
 /// ```text
 /// (1 + z)/z (1 − ln(1 + z)/z)
 /// ```
 fn end_share(z: f64) -> f64 {
     if z <= -1.0 {
-        0.0 // slip would cease on the way
+        0.5
     } else if z.abs() < 1e-3 {
         (1.0 + z) * (0.5 - z * (1.0 / 3.0 - z * (0.25 - z * (0.2 - z / 6.0))))
     } else {

@@ -1,7 +1,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::path::LoadPath;
+use super::path::{LoadPath, mean_traction};
 use super::peak::{Evolution, Integration};
 use super::slip_equation::{ROUND_OFF, SlidingCurve, SlipEquation};
 use super::{Approach, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Sliding};
@@ -78,8 +78,8 @@ fn one() -> f64 {
 /// *controlled* integration solves (3) for slip and time that pass in step with one another, which leaves no error
 /// where μ only weakens or only recovers (m = n = 1). How much the order of weakening and recovery matters is found by
 /// halving the increment, and halving again, until q, μ p and the mean of q are right to the tolerance (`path.rs`).
-/// The dissipation is ∫ R μ p dλ, R along its curve and μ p linear in ∫ R dλ over a step; the work of the increment,
-/// ∫ q du, is this and what the contact has stored. The tangent is that of what was computed; for one step
+/// The dissipation is ∫ |q| dλ, over a step with R along its curve and μ p linear in ∫ R dλ, or where |q| falls with |q|
+/// linear in λ; the work of the increment, ∫ q du, is this and what the contact has stored. The tangent is that of what was computed; for one step
 /// ```text
 /// D = α_t + p (U μ + R ∂μ/∂Δλ),   ∂q/∂Δu = α_t (1 − α_t/D),   ∂q/∂p = sgn(q_tr) α_t R μ/D.
 /// ```
@@ -175,8 +175,9 @@ impl SuperSubloading {
         // Plastic slip starts from the old pressure, or from that where the traction passes 0.
         let passed = if reversed { old.traction / (old.traction - trial) } else { 0.0 };
         let start_pressure = old.pressure + passed * (pressure - old.pressure);
-        let mean = self.curve.mean_ratio(&equation.start, &end.reach)
-            * (0.5 * (old.mu * start_pressure + end.peak.mu * pressure));
+        let strengths = [old.mu * start_pressure, end.peak.mu * pressure];
+        let tractions = [if reversed { 0.0 } else { old.traction.abs() }, strength.abs() * pressure];
+        let mean = mean_traction(&self.curve, [&equation.start, &end.reach], strengths, tractions);
         let softness = self.alpha_t / end.slope.max(LEAST_SLOPE * self.alpha_t);
         Ok(FrictionResponse {
             state: old.slid(trial, strength * pressure, mean, (pressure, end.peak.mu), self.alpha_t),
