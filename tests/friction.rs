@@ -707,14 +707,16 @@ struct Derivative {
     largest: f64,
     /// Round-off of q.
     noise: f64,
+    /// Whether there are no sub-steps.
+    one_step: bool,
 }
 
 impl Derivative {
     /// Whether central differences of fourth order agree, for some change of the argument large enough to see beyond
     /// round-off and small enough to stay on one branch where D > 0.05 α_t and the tangent hardly turns; `None` if there
-    /// is no such change.
-    fn agrees(&self, respond: impl Fn(f64) -> (Option<f64>, FrictionResponse), alpha_t: f64) -> Option<bool> {
-        let (branch, answer) = respond(0.0);
+    /// is no such change, or the sub-steps are not the same, between which the answer may jump by the tolerance.
+    fn agrees(&self, respond: impl Fn(f64) -> Option<(Option<f64>, FrictionResponse)>, alpha_t: f64) -> Option<bool> {
+        let (branch, answer) = respond(0.0)?;
         let sharp = |answer: &FrictionResponse| 1.0 - answer.dtraction_dslip / alpha_t >= 20.0;
         if sharp(&answer) || self.largest == 0.0 {
             return None;
@@ -729,11 +731,12 @@ impl Derivative {
             .map(|factor| factor * self.largest)
             .filter(|h| self.noise < 1e-6 * self.scale * h)
             .filter_map(|h| {
-                let points = [-2.0, -1.0, 1.0, 2.0].map(|factor| respond(factor * h));
+                let points = [respond(-2.0 * h)?, respond(-h)?, respond(h)?, respond(2.0 * h)?];
                 let [a, b, c, d] = points.map(|(_, answer)| answer.state.traction);
                 let difference = (a - 8.0 * b + 8.0 * c - d) / (12.0 * h);
                 let agrees = (difference - self.value).abs() < 1e-5 * self.scale;
-                points.iter().all(resolved).then_some(agrees)
+                let same_steps = points.iter().all(|(_, point)| point.evaluations == answer.evaluations);
+                (points.iter().all(resolved) && (agrees || self.one_step || same_steps)).then_some(agrees)
             });
         let first = agreement.next()?;
         Some(first || agreement.any(|agrees| agrees))
@@ -781,16 +784,18 @@ fn answer_a_million_random_increments(integration: Integration, sample: usize) {
                 scale: dslip.abs().max(alpha_t),
                 largest: 1e-3 * length.min(trial / alpha_t),
                 noise,
+                one_step: integration == Integration::BackwardEuler,
             };
             let by_pressure = Derivative {
                 value: dpressure,
                 scale: dpressure.abs().max(answer.state.mu),
                 largest: 1e-3 * pressure.abs(),
                 noise,
+                one_step: integration == Integration::BackwardEuler,
             };
             let answer_at = |slip, pressure| {
-                let branch = branch(&law, &parameters, &old, Sliding { slip, pressure, dt });
-                (branch, respond(&law, &old, slip, pressure, dt))
+                let at = Sliding { slip, pressure, dt };
+                Some((branch(&law, &parameters, &old, at), law.respond(&old, at).ok()?))
             };
             let by_slip = by_slip.agrees(|h| answer_at(slip + h, pressure), alpha_t);
             let by_pressure = by_pressure.agrees(|h| answer_at(slip, pressure + h), alpha_t);
@@ -805,6 +810,8 @@ fn answer_a_million_random_increments(integration: Integration, sample: usize) {
     });
     let (compared, failed, total) = (compared.into_inner(), failed.into_inner(), LAWS as usize * INCREMENTS);
     println!("{total} increments, {failed} too long to converge, tangents of {compared} compared");
+    // Long rests under pressures far beyond the limit of uniqueness, in which the contact sticks and slips without end.
+    assert!(failed * 400 <= total, "{failed} of {total} increments were not answered");
     assert!(compared * sample * 20 >= total * 17, "tangents of only {compared} of {total} increments were compared");
 }
 
