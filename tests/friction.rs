@@ -478,6 +478,31 @@ fn coulomb_loops_dissipate_their_area() {
     }
 }
 
+/// Along straight lines of slip and pressure Coulomb friction is integrated exactly: one increment, whatever happens inside,
+/// is seven.
+#[test]
+fn coulomb_increments_add_up() {
+    let law = Coulomb::new(&CoulombParameters { mu: 0.3, alpha_t: None }, 1000.0).expect("valid parameters");
+    let mut random = Random(5);
+    let mut slid = 0;
+    for _ in 0..20_000 {
+        let pressure = [random.magnitude(-3.0, 2.0), random.magnitude(-3.0, 2.0)];
+        let traction = 0.3 * pressure[0] * random.between(-1.0, 1.0);
+        let old = FrictionState { traction, pressure: pressure[0], ..law.initial_state() };
+        let slip = random.sign() * random.magnitude(-6.0, 0.0);
+        let one = respond(&law, &old, slip, pressure[1], 1.0).state;
+        let many = (1..=7).fold(old, |old, k| {
+            let now = pressure[0] + f64::from(k) / 7.0 * (pressure[1] - pressure[0]);
+            respond(&law, &old, slip / 7.0, now, 1.0).state
+        });
+        let scale = traction.abs() + 1000.0 * slip.abs() + pressure[0].max(pressure[1]);
+        assert_close(many.traction, one.traction, 1e-13 * scale, "q");
+        assert_close(many.dissipation, one.dissipation, 1e-13 * scale * scale / 1000.0, "dissipation");
+        slid += usize::from(one.dissipation > 0.0);
+    }
+    assert!(slid > 5000, "{slid}");
+}
+
 /// κ = ξ = 0: between q = 0 and R the slip u = R μ p/α_t − li(R)/r dissipates μ p ∫ R dλ = −μ p li(R²)/r.
 #[test]
 fn super_subloading_loops_dissipate_their_closed_form() {
