@@ -1,8 +1,8 @@
 //! Slip weakening and rate-and-state friction alone: tangents, closed forms, differential equations.
 
 use fecontact::friction::{
-    FrictionLaw, FrictionResponse, FrictionState, RateAndState, RateAndStateParameters, Sliding, SlipWeakening,
-    SlipWeakeningParameters, StateEvolution,
+    FrictionLaw, FrictionResponse, FrictionState, RateAndState, RateAndStateParameters, STEEPEST, Sliding,
+    SlipWeakening, SlipWeakeningParameters, StateEvolution,
 };
 
 const WEAKENING: SlipWeakeningParameters =
@@ -176,7 +176,116 @@ fn weakening_dissipates_what_the_work_leaves() {
     assert_close(state.dissipation + stored, work, 2e-3 * work, "energy");
 }
 
+/// Slip and pressure to and fro in `parts` equal increments a stroke.
+fn strokes(law: &dyn FrictionLaw, points: &[[f64; 2]], parts: usize, dt: f64) -> FrictionState {
+    let start = FrictionState { pressure: points[0][1], ..law.initial_state() };
+    points.windows(2).fold(start, |old, stroke| {
+        let [[u0, p0], [u1, p1]] = [stroke[0], stroke[1]];
+        (1..=parts).fold(old, |old, k| {
+            let (share, part) = (k as f64 / parts as f64, 1.0 / parts as f64);
+            respond(law, &old, (u1 - u0) * part, p0 + share * (p1 - p0), dt * part).state
+        })
+    })
+}
+
+/// ∫ (c + μ(D) p) dD at constant pressure: the dissipation of slip to and fro depends on the slip alone, and one increment
+/// with a reversal inside books the same as a thousand.
+#[test]
+fn weakening_dissipates_the_strength_over_the_slip() {
+    let law = weakening(SlipWeakeningParameters { cohesion: 1.5, ..WEAKENING });
+    let turns = [0.3, -0.2, 0.4, -0.6, 0.5, 0.0];
+    let points: Vec<[f64; 2]> = [0.0].iter().chain(&turns).map(|u| [*u, 10.0]).collect();
+    for parts in [1, 2, 3, 7, 1000] {
+        let state = strokes(&law, &points, parts, 1.0);
+        // After the first slip to the strength, α_t Δλ = α_t |Δu| − (the strengths before and after), stroke by stroke.
+        let (mut slipped, mut strength, mut at) = (0.0, 0.0, 0.0);
+        let mut work = 0.0;
+        for turn in turns {
+            let elastic = 1000.0 * f64::abs(turn - at) - strength;
+            let before = 1.5 + 10.0 * (0.6 - 0.1 * slipped);
+            let weak = (elastic - before) / 999.0;
+            let slip = if slipped + weak < 1.0 { weak } else { (elastic - 6.5) / 1000.0 };
+            let weak = slip.min(1.0 - slipped);
+            work += weak * (before - 0.5 * weak) + (slip - weak) * 6.5;
+            slipped = (slipped + slip).min(1.0);
+            strength = 1.5 + 10.0 * (0.6 - 0.1 * slipped);
+            at = turn;
+        }
+        assert_close(state.dissipation, work, 1e-12 * work, &format!("{parts} parts"));
+        assert!(state.mu == 0.5, "all strokes weaken");
+    }
+}
+
+/// Along straight lines of slip and pressure the answer is exact, and so is the dissipation: many increments book the same
+/// as one, and the trapezoidal rule tends to it.
+#[test]
+fn weakening_dissipates_the_same_in_one_increment_as_in_many() {
+    let law = weakening(SlipWeakeningParameters { cohesion: 0.5, critical_slip: 0.05, ..WEAKENING });
+    let cases = [
+        [[0.0, 10.0], [0.02, 14.0]],
+        [[0.0, 10.0], [0.04, 4.0]],
+        [[0.0, 10.0], [0.3, 25.0]],
+        [[0.0, 0.0], [0.03, 12.0]],
+        [[0.0, 0.0], [0.3, 12.0]],
+    ];
+    for line in cases {
+        let one = strokes(&law, &line, 1, 1.0);
+        for parts in [2, 5, 1000] {
+            let many = strokes(&law, &line, parts, 1.0);
+            assert_close(many.traction, one.traction, 1e-11, "traction");
+            let what = format!("{line:?} in {parts}");
+            assert_close(many.dissipation, one.dissipation, 1e-12 * one.dissipation, &what);
+        }
+        let (parts, mut old, mut work) = (200_000, FrictionState { pressure: line[0][1], ..law.initial_state() }, 0.0);
+        for k in 1..=parts {
+            let share = f64::from(k) / f64::from(parts);
+            let slip = line[1][0] / f64::from(parts);
+            let new = respond(&law, &old, slip, line[0][1] + share * (line[1][1] - line[0][1]), 1.0).state;
+            work += 0.5 * (old.traction + new.traction) * slip;
+            old = new;
+        }
+        let stored = one.traction.powi(2) / 2000.0;
+        assert_close(one.dissipation + stored, work, 1e-8 * work, &format!("{line:?}: work"));
+    }
+}
+
+/// A snap releases what the contact had stored: nothing is lost from the account.
+#[test]
+fn a_snap_dissipates_what_it_releases() {
+    let law = weakening(SlipWeakeningParameters { alpha_t: Some(0.9), ..WEAKENING });
+    // Elastic up to 6, down to 5 at once, and on at 5.
+    let work = 0.5 * 6.0 * 6.0 / 0.9 + 5.0 * (7.0 - 6.0 / 0.9);
+    for parts in [1, 2, 1000] {
+        let state = strokes(&law, &[[0.0, 10.0], [7.0, 10.0]], parts, 1.0);
+        assert_close(state.dissipation + 0.5 * 25.0 / 0.9, work, 1e-12 * work, "work");
+    }
+}
+
 // Rate and state
+
+/// The work of slip to and fro, in increments that hold the reversals, against that of many small ones: what is dissipated
+/// tends to ∮ q du at the first order of the method, and is right to a hundredth where a stroke has twenty increments.
+#[test]
+fn rate_and_state_dissipates_the_work_of_slip_to_and_fro() {
+    for evolution in [StateEvolution::Ageing, StateEvolution::Slip] {
+        let law = rate_and_state(RateAndStateParameters { evolution, alpha_t: Some(5.0), ..RATE_AND_STATE });
+        let loops = |parts: u32| {
+            let (mut old, mut work) = (FrictionState { pressure: 100.0, ..law.initial_state() }, 0.0);
+            for k in 0..8 * parts {
+                let slip = if (k / parts) % 2 == 0 { 1.0 } else { -1.0 } * 100.0 / f64::from(parts);
+                let new = respond(&law, &old, slip, 100.0, slip.abs()).state;
+                assert!(new.dissipation >= old.dissipation);
+                work += 0.5 * (old.traction + new.traction) * slip;
+                old = new;
+            }
+            [old.dissipation + 0.1 * old.traction.powi(2), work]
+        };
+        let [fine, work] = loops(20_000);
+        println!("{evolution:?} {fine} {work} {:?}", [1, 2, 5, 10, 20, 40, 80].map(|n| loops(n)[0] / work - 1.0));
+        assert_close(fine, work, 2e-4 * work, "energy");
+        assert_close(loops(20)[0], work, 1e-2 * work, "energy in 20 increments a stroke");
+    }
+}
 
 #[test]
 fn steady_sliding_has_the_coefficient_of_its_rate() {
@@ -357,7 +466,7 @@ fn answers_meet_their_equations_and_are_the_first_root() {
             }
         }
     }
-    assert!(most < 400, "{most} evaluations");
+    assert!(most < 100, "{most} evaluations");
 }
 
 #[test]
@@ -411,8 +520,12 @@ fn no_increment_panics_or_is_not_a_number() {
             let slip = sign * magnitude(&mut random, -12.0, 3.0);
             let pressure = if random.unit() < 0.1 { 0.0 } else { magnitude(&mut random, -6.0, 9.0) };
             let dt = if random.unit() < 0.1 { 0.0 } else { magnitude(&mut random, -12.0, 12.0) };
-            let new = respond(&*law, &state, slip, pressure, dt).state;
+            let answer = respond(&*law, &state, slip, pressure, dt);
+            let new = answer.state;
             assert!(new.dissipation >= state.dissipation && new.traction * slip.signum() * 0.0 == 0.0);
+            assert!(answer.dtraction_dslip.abs() <= STEEPEST * law.stiffness());
+            assert!(answer.dtraction_dpressure.abs() <= STEEPEST);
+            assert!(answer.evaluations < 200, "{} evaluations", answer.evaluations);
             state = new;
         }
     }

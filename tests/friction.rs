@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fecontact::friction::{
     Approach, Coulomb, CoulombParameters, FrictionLaw, FrictionParameters, FrictionResponse, FrictionState,
-    Frictionless, Integration, LawFailure, Sliding, SuperSubloading, SuperSubloadingParameters,
+    Frictionless, Integration, LawFailure, STEEPEST, Sliding, SuperSubloading, SuperSubloadingParameters,
 };
 use rayon::prelude::*;
 
@@ -316,7 +316,26 @@ fn a_sharp_law_of_constant_coefficient_is_coulomb_friction() {
         assert_close(a.traction, b.traction, 1e-5 * 0.2 * PRESSURE, "q");
     }
     assert!(b.dissipation > 1.0);
-    assert_close(a.dissipation, b.dissipation, 1e-3 * b.dissipation, "dissipation");
+}
+
+/// At a constant pressure a single step books what Coulomb friction does; where the pressure jumps, sub-steps find where
+/// slip sets in.
+#[test]
+fn a_sharp_law_of_constant_coefficient_dissipates_like_coulomb_friction() {
+    let coulomb = Coulomb::new(&CoulombParameters { mu: 0.2, alpha_t: None }, 1000.0).expect("valid parameters");
+    for (integration, jumps) in [(Integration::BackwardEuler, false), (Integration::Controlled, true)] {
+        let sharp = law(&SuperSubloadingParameters { r: 1e9, integration, ..CONSTANT });
+        let mut random = Random(1);
+        let (mut a, mut b) = (sharp.initial_state(), coulomb.initial_state());
+        for _ in 0..3000 {
+            let slip = 0.1 * random.between(-1.0, 1.0);
+            let pressure = PRESSURE * if jumps { random.between(0.1, 1.0) } else { 1.0 };
+            a = respond(&sharp, &a, slip, pressure, 0.1).state;
+            b = respond(&coulomb, &b, slip, pressure, 0.1).state;
+        }
+        assert!(b.dissipation > 100.0);
+        assert_close(a.dissipation, b.dissipation, 1e-5 * b.dissipation, &format!("{integration:?}"));
+    }
 }
 
 #[test]
@@ -419,20 +438,154 @@ fn unloading_is_elastic() {
     assert!(back.state.ratio() < 0.6);
 }
 
+// Work: ∮ q du = dissipation, in increments with a reversal inside as well
+
+/// The states after strokes to these points of slip and pressure, each in `parts` equal increments.
+fn strokes(law: &dyn FrictionLaw, points: &[[f64; 2]], parts: usize, dt: f64) -> FrictionState {
+    let start = FrictionState { pressure: points[0][1], ..law.initial_state() };
+    points.windows(2).fold(start, |old, stroke| {
+        let [[u0, p0], [u1, p1]] = [stroke[0], stroke[1]];
+        (1..=parts).fold(old, |old, k| {
+            let (share, part) = (k as f64 / parts as f64, 1.0 / parts as f64);
+            respond(law, &old, (u1 - u0) * part, p0 + share * (p1 - p0), dt * part).state
+        })
+    })
+}
+
 #[test]
-fn work_is_stored_or_dissipated() {
-    let law = law(&BACKWARD_EULER);
-    let mut random = Random(3);
-    let (mut state, mut work) = (law.initial_state(), 0.0);
-    for _ in 0..1000 {
-        let slip = 0.01 * random.unit();
-        let new = respond(&law, &state, slip, PRESSURE * random.between(0.5, 1.0), 0.1).state;
-        work += 0.5 * (state.traction + new.traction) * slip;
-        state = new;
+fn coulomb_loops_dissipate_their_area() {
+    let law = Coulomb::new(&CoulombParameters { mu: 0.2, alpha_t: None }, 1000.0).expect("valid parameters");
+    let (limit, amplitude) = (0.2 * PRESSURE, 0.1);
+    let turns = [0.0, 1.0, -1.0, 1.0, -1.0, 1.0].map(|turn| [turn * amplitude, PRESSURE]);
+    for parts in [1, 2, 3, 7, 1000] {
+        // The first stroke, and four times half of the parallelogram.
+        let work = limit * (amplitude - limit / 1000.0) + 4.0 * 2.0 * limit * (amplitude - limit / 1000.0);
+        let state = strokes(&law, &turns, parts, 1.0);
+        assert_close(state.dissipation, work, 1e-12 * work, &format!("{parts} increments a stroke"));
     }
-    let stored = state.traction.powi(2) / 2000.0;
-    assert!(work > 50.0);
-    assert_close(stored + state.dissipation, work, 1e-10 * work, "energy");
+    // The pressure falls with the slip to the right, from p to p/2: the traction is elastic up to u_y, and then on the
+    // strength, along which dλ = du + μ |dp|/α_t.
+    let turns = [[0.0, PRESSURE], [amplitude, 0.5 * PRESSURE], [0.0, PRESSURE]];
+    let fall = 0.2 * 0.5 * PRESSURE / amplitude;
+    let at_first = limit / (1000.0 + fall);
+    let there = 0.5 * (1000.0 * at_first + 0.5 * limit) * (amplitude - at_first) * (1.0 + fall / 1000.0);
+    // Back: −q = α_t s − μ p/2 meets μ p (1 + s/A)/2 at s after the turn.
+    let turned = limit / (1000.0 - fall);
+    let back = 0.5 * (1000.0 * turned - 0.5 * limit + limit) * (amplitude - turned) * (1.0 - fall / 1000.0);
+    for parts in [1, 2, 3, 7, 1000] {
+        let state = strokes(&law, &turns, parts, 1.0);
+        assert_close(state.dissipation, there + back, 1e-12 * (there + back), &format!("{parts}, pressure varies"));
+    }
+}
+
+/// Along straight lines of slip and pressure Coulomb friction is integrated exactly: one increment, whatever happens inside,
+/// is seven.
+#[test]
+fn coulomb_increments_add_up() {
+    let law = Coulomb::new(&CoulombParameters { mu: 0.3, alpha_t: None }, 1000.0).expect("valid parameters");
+    let mut random = Random(5);
+    let mut slid = 0;
+    for _ in 0..20_000 {
+        let pressure = [random.magnitude(-3.0, 2.0), random.magnitude(-3.0, 2.0)];
+        let traction = 0.3 * pressure[0] * random.between(-1.0, 1.0);
+        let old = FrictionState { traction, pressure: pressure[0], ..law.initial_state() };
+        let slip = random.sign() * random.magnitude(-6.0, 0.0);
+        let one = respond(&law, &old, slip, pressure[1], 1.0).state;
+        let many = (1..=7).fold(old, |old, k| {
+            let now = pressure[0] + f64::from(k) / 7.0 * (pressure[1] - pressure[0]);
+            respond(&law, &old, slip / 7.0, now, 1.0).state
+        });
+        let scale = traction.abs() + 1000.0 * slip.abs() + pressure[0].max(pressure[1]);
+        assert_close(many.traction, one.traction, 1e-13 * scale, "q");
+        assert_close(many.dissipation, one.dissipation, 1e-13 * scale * scale / 1000.0, "dissipation");
+        slid += usize::from(one.dissipation > 0.0);
+    }
+    assert!(slid > 5000, "{slid}");
+}
+
+/// κ = ξ = 0: between q = 0 and R the slip u = R μ p/α_t − li(R)/r dissipates μ p ∫ R dλ = −μ p li(R²)/r.
+#[test]
+fn super_subloading_loops_dissipate_their_closed_form() {
+    let strength = 0.2 * PRESSURE;
+    for integration in [Integration::BackwardEuler, Integration::Controlled] {
+        let law = law(&SuperSubloadingParameters { integration, ..CONSTANT });
+        for parts in [1, 2, 3, 7, 100] {
+            let (mut points, mut work, mut before, mut at) = (vec![[0.0, PRESSURE]], 0.0, 0.0, 0.0);
+            for (k, ratio) in [0.6, 0.9, 0.99, 0.5, 0.999, 0.95].into_iter().enumerate() {
+                let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+                at += sign * (strength * (ratio + before) / 1000.0 + minus_li(ratio) / 100.0);
+                points.push([at, PRESSURE]);
+                work += strength * minus_li(ratio * ratio) / 100.0;
+                before = ratio;
+            }
+            let state = strokes(&law, &points, parts, 1.0);
+            assert_close(state.traction, -0.95 * strength, 1e-10 * strength, "q");
+            assert_close(state.dissipation, work, 1e-12 * work, &format!("{integration:?}, {parts} parts"));
+        }
+    }
+}
+
+/// With weakening, recovery, exponents and a pressure that varies: one increment a stroke under error control against 4000
+/// with a much smaller tolerance, and those against the trapezoidal ∮ q du.
+#[test]
+fn controlled_increments_dissipate_the_work_of_their_path() {
+    let base = SuperSubloadingParameters { integration: Integration::Controlled, xi: 0.05, ..PAPER };
+    let variants = [
+        base,
+        SuperSubloadingParameters { m: 1.5, n: 0.7, elastic_core: 0.2, ..base },
+        SuperSubloadingParameters { approach: Approach::Cotangent, structure: Some(1.3), ..base },
+    ];
+    let points = [[0.0, 60.0], [0.12, 80.0], [-0.1, 90.0], [0.15, 50.0], [0.0, 70.0]];
+    for parameters in variants {
+        let fine_law = law(&SuperSubloadingParameters { tolerance: Some(1e-10), ..parameters });
+        let (mut old, mut work, parts) = (FrictionState { pressure: 60.0, ..fine_law.initial_state() }, 0.0, 4000);
+        for stroke in points.windows(2) {
+            let [[u0, p0], [u1, p1]] = [stroke[0], stroke[1]];
+            for k in 1..=parts {
+                let slip = (u1 - u0) / f64::from(parts);
+                let pressure = p0 + f64::from(k) / f64::from(parts) * (p1 - p0);
+                let new = respond(&fine_law, &old, slip, pressure, 2.0 / f64::from(parts)).state;
+                assert!(new.dissipation >= old.dissipation);
+                work += 0.5 * (old.traction + new.traction) * slip;
+                old = new;
+            }
+        }
+        let stored = old.traction.powi(2) / 2000.0;
+        assert_close(old.dissipation + stored, work, 1e-5 * work, "the trapezoidal rule");
+        for parts in [1, 2, 5] {
+            let state = strokes(&law(&parameters), &points, parts, 2.0);
+            // The mean of q is right to the tolerance 1e-6 μ_s p, along 0.64 of slip.
+            assert_close(state.dissipation, old.dissipation, 4.0 * 1e-6 * 0.4 * 90.0 * 0.64, &format!("{parts} parts"));
+        }
+    }
+}
+
+/// Under a soft contact the traction snaps: what the contact had stored is dissipated, and one increment a stroke books
+/// ∮ q du of many.
+#[test]
+fn a_snap_dissipates_what_it_releases() {
+    let parameters = SuperSubloadingParameters {
+        alpha_t: Some(200.0),
+        r: 2000.0,
+        integration: Integration::Controlled,
+        xi: 0.0,
+        ..PAPER
+    };
+    let law = law(&parameters);
+    let (mut old, mut work, parts) = (FrictionState { pressure: PRESSURE, ..law.initial_state() }, 0.0, 20_000);
+    let mut snapped = 0.0f64;
+    for _ in 0..parts {
+        let slip = 0.4 / f64::from(parts);
+        let new = respond(&law, &old, slip, PRESSURE, 0.0).state;
+        work += 0.5 * (old.traction + new.traction) * slip;
+        snapped = snapped.max(old.traction - new.traction);
+        old = new;
+    }
+    assert!(snapped > 2.0, "the traction falls by {snapped} at most");
+    let stored = |state: &FrictionState| state.traction.powi(2) / 400.0;
+    assert_close(old.dissipation + stored(&old), work, 1e-4 * work, "many");
+    let one = strokes(&law, &[[0.0, PRESSURE], [0.4, PRESSURE]], 1, 0.0);
+    assert_close(one.dissipation + stored(&one), work, 1e-4 * work, "one");
 }
 
 // Tangents
@@ -545,6 +698,8 @@ fn check_answer(parameters: &SuperSubloadingParameters, old: &FrictionState, ans
     assert!(parameters.mu_k <= new.mu && new.mu <= parameters.mu_s, "μ = {}", new.mu);
     assert!(new.dissipation >= old.dissipation, "dissipation fell to {}", new.dissipation);
     assert!(new.traction * new.plastic_increment >= 0.0, "plastic slip against friction");
+    assert!(answer.dtraction_dslip.abs() <= STEEPEST * parameters.alpha_t.expect("given"));
+    assert!(answer.dtraction_dpressure.abs() <= STEEPEST);
 }
 
 /// Branch of an increment: open, elastic, or slipping in one direction, from the trial traction alone. Slip that does not
@@ -577,14 +732,16 @@ struct Derivative {
     largest: f64,
     /// Round-off of q.
     noise: f64,
+    /// Whether there are no sub-steps.
+    one_step: bool,
 }
 
 impl Derivative {
     /// Whether central differences of fourth order agree, for some change of the argument large enough to see beyond
     /// round-off and small enough to stay on one branch where D > 0.05 α_t and the tangent hardly turns; `None` if there
-    /// is no such change.
-    fn agrees(&self, respond: impl Fn(f64) -> (Option<f64>, FrictionResponse), alpha_t: f64) -> Option<bool> {
-        let (branch, answer) = respond(0.0);
+    /// is no such change, or the sub-steps are not the same, between which the answer may jump by the tolerance.
+    fn agrees(&self, respond: impl Fn(f64) -> Option<(Option<f64>, FrictionResponse)>, alpha_t: f64) -> Option<bool> {
+        let (branch, answer) = respond(0.0)?;
         let sharp = |answer: &FrictionResponse| 1.0 - answer.dtraction_dslip / alpha_t >= 20.0;
         if sharp(&answer) || self.largest == 0.0 {
             return None;
@@ -599,11 +756,12 @@ impl Derivative {
             .map(|factor| factor * self.largest)
             .filter(|h| self.noise < 1e-6 * self.scale * h)
             .filter_map(|h| {
-                let points = [-2.0, -1.0, 1.0, 2.0].map(|factor| respond(factor * h));
+                let points = [respond(-2.0 * h)?, respond(-h)?, respond(h)?, respond(2.0 * h)?];
                 let [a, b, c, d] = points.map(|(_, answer)| answer.state.traction);
                 let difference = (a - 8.0 * b + 8.0 * c - d) / (12.0 * h);
                 let agrees = (difference - self.value).abs() < 1e-5 * self.scale;
-                points.iter().all(resolved).then_some(agrees)
+                let same_steps = points.iter().all(|(_, point)| point.evaluations == answer.evaluations);
+                (points.iter().all(resolved) && (agrees || self.one_step || same_steps)).then_some(agrees)
             });
         let first = agreement.next()?;
         Some(first || agreement.any(|agrees| agrees))
@@ -614,7 +772,7 @@ impl Derivative {
 fn answer_a_million_random_increments(integration: Integration, sample: usize) {
     const LAWS: u64 = 18_200;
     const INCREMENTS: usize = 55;
-    let compared = AtomicUsize::new(0);
+    let (compared, failed) = (AtomicUsize::new(0), AtomicUsize::new(0));
     (0..LAWS).into_par_iter().for_each(|seed| {
         let mut random = Random(seed.wrapping_mul(0x1234_5678_9abc_def1));
         let parameters = random_parameters(&mut random, integration);
@@ -628,7 +786,13 @@ fn answer_a_million_random_increments(integration: Integration, sample: usize) {
             let old = state;
             let at = random_sliding(&mut random, &parameters, &old);
             let Sliding { slip, pressure, dt } = at;
-            let answer = respond(&law, &old, slip, pressure, dt);
+            let answer = match law.respond(&old, at) {
+                Err(LawFailure::NotConverged { .. }) => {
+                    failed.fetch_add(1, Ordering::Relaxed);
+                    continue;
+                }
+                answer => answer.expect("a finite increment is answered"),
+            };
             check_answer(&parameters, &old, &answer);
 
             state = answer.state;
@@ -645,16 +809,18 @@ fn answer_a_million_random_increments(integration: Integration, sample: usize) {
                 scale: dslip.abs().max(alpha_t),
                 largest: 1e-3 * length.min(trial / alpha_t),
                 noise,
+                one_step: integration == Integration::BackwardEuler,
             };
             let by_pressure = Derivative {
                 value: dpressure,
                 scale: dpressure.abs().max(answer.state.mu),
                 largest: 1e-3 * pressure.abs(),
                 noise,
+                one_step: integration == Integration::BackwardEuler,
             };
             let answer_at = |slip, pressure| {
-                let branch = branch(&law, &parameters, &old, Sliding { slip, pressure, dt });
-                (branch, respond(&law, &old, slip, pressure, dt))
+                let at = Sliding { slip, pressure, dt };
+                Some((branch(&law, &parameters, &old, at), law.respond(&old, at).ok()?))
             };
             let by_slip = by_slip.agrees(|h| answer_at(slip + h, pressure), alpha_t);
             let by_pressure = by_pressure.agrees(|h| answer_at(slip, pressure + h), alpha_t);
@@ -667,8 +833,10 @@ fn answer_a_million_random_increments(integration: Integration, sample: usize) {
             }
         }
     });
-    let (compared, total) = (compared.into_inner(), LAWS as usize * INCREMENTS);
-    println!("{total} increments, tangents of {compared} compared");
+    let (compared, failed, total) = (compared.into_inner(), failed.into_inner(), LAWS as usize * INCREMENTS);
+    println!("{total} increments, {failed} too long to converge, tangents of {compared} compared");
+    // Long rests under pressures far beyond the limit of uniqueness, in which the contact sticks and slips without end.
+    assert!(failed * 400 <= total, "{failed} of {total} increments were not answered");
     assert!(compared * sample * 20 >= total * 17, "tangents of only {compared} of {total} increments were compared");
 }
 

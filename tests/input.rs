@@ -45,6 +45,20 @@ fn good() -> Value {
     })
 }
 
+/// Pointers of all objects inside a document.
+fn objects(value: &Value, pointer: &str, found: &mut Vec<String>) {
+    match value {
+        Value::Object(object) => {
+            found.push(pointer.into());
+            object.iter().for_each(|(key, value)| objects(value, &format!("{pointer}/{key}"), found));
+        }
+        Value::Array(list) => {
+            list.iter().enumerate().for_each(|(k, value)| objects(value, &format!("{pointer}/{k}"), found));
+        }
+        _ => {}
+    }
+}
+
 /// The good case with the values at these JSON pointers set.
 fn with(edits: &[(&str, Value)]) -> Value {
     edited(good(), edits)
@@ -118,6 +132,70 @@ fn the_good_case_is_good() {
         let output = fecontact(folder.path(), &arguments);
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     }
+}
+
+/// Whatever a value is chosen from: no variant lets a key pass that it does not know, nor does an object inside it.
+#[test]
+fn every_variant_refuses_unknown_keys() {
+    let friction = "/contacts/base/friction";
+    let material = "/bodies/block/material";
+    let master = "/contacts/base/master";
+    let (mesh, ux, scheme) = ("/mesh", "/steps/0/supports/1/ux", "/steps/0/scheme");
+    let elastic = |model: &str| json!({"model": model, "E": 1000, "nu": 0.3});
+    let drag = json!({"rate": 1});
+    for (pointer, value) in [
+        (friction, json!({"law": "frictionless"})),
+        (friction, json!({"law": "coulomb", "mu": 0.3})),
+        (friction, json!({"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "r": 100})),
+        (friction, json!({"law": "slip_weakening", "mu_s": 0.4, "mu_d": 0.2, "D_c": 1})),
+        (friction, json!({"law": "rate_and_state", "f_0": 0.6, "V_0": 1, "a": 0.01, "b": 0.02, "D_c": 1})),
+        (material, elastic("linear")),
+        (material, elastic("saint_venant_kirchhoff")),
+        (material, elastic("neo_hookean")),
+        (material, elastic("hencky")),
+        (master, json!({"plane": {"point": [0, 0], "normal": [0, 1]}})),
+        (master, json!({"circle": {"centre": [0, -5], "radius": 5}})),
+        (master, json!({"polyline": {"points": [[0, 0], [4, 0]]}})),
+        (mesh, good()["mesh"].clone()),
+        (ux, json!({"rate": 1})),
+        (ux, json!({"table": [[0, 0], [1, 1]]})),
+        (scheme, json!({"newmark": {"beta": 0.3}})),
+        (scheme, json!({"hht": {"alpha": -0.05}})),
+        (scheme, json!({"generalized_alpha": {"rho_infinity": 0.8}})),
+        (scheme, json!({"explicit": {"safety": 0.9}})),
+        (scheme, json!({"wilson": {"theta": 1.4}})),
+        ("/steps/0/dt", json!({"initial": 0.5, "min": 0.01, "max": 0.5})),
+        ("/steps/0/supports/1/on", json!({"node": 1})),
+        ("/steps/0/supports/1", json!({"on": "block_top", "rotation": {"about": [0, 0], "angle": drag}})),
+        ("/steps/0/loads", json!([{"on": "block_top", "pressure": drag}])),
+        ("/steps/0/loads", json!([{"on": "block_top", "traction": {"x": drag}}])),
+        ("/steps/0/loads", json!([{"on": "block", "gravity": {"x": 1}}])),
+        ("/steps/0/loads", json!([{"on": "block_top", "force": {"x": 1}}])),
+        ("/steps/0/loads", json!([{"on": "block_top", "spring": {"kx": 1, "driver": {"x": drag}}}])),
+        ("/steps/0/loads", json!([{"on": "block_top", "dashpot": {"cx": 1, "driver": {"x": drag}}}])),
+        ("/newton", json!({"tolerance": 1e-8})),
+        ("/output", json!({"every": 1, "fronts": {"slip_rate": 1}})),
+    ] {
+        let case = with(&[(pointer, value.clone())]);
+        let mut places = Vec::new();
+        objects(&value, pointer, &mut places);
+        for place in places {
+            let bad = edited(case.clone(), &[(&format!("{place}/stray"), json!(1))]);
+            let folder = TempDir::new().unwrap();
+            write(folder.path(), "bad.json", bad.to_string());
+            let message = stderr(&fecontact(folder.path(), &["check", "bad.json"]));
+            // What is chosen by its only key has two now.
+            let told =
+                message.contains("stray") || message.contains("2 entries") || message.contains("exactly one key");
+            assert!(told, "{place}: {message}");
+            refused(folder.path(), &["check", "bad.json"], &["bad.json: "]);
+        }
+    }
+    let frictionless = json!({"law": "frictionless", "mu": 0.3});
+    refused_edits(
+        &[(friction, frictionless)],
+        &["contacts.base.friction.mu: ", "`mu` is not known here", "leave it out"],
+    );
 }
 
 #[test]

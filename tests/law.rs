@@ -395,6 +395,25 @@ fn a_test_that_stops_keeps_its_rows() {
     assert!(done.summary["reason"].as_str().unwrap().contains("the law stopped after time 0.5"));
 }
 
+/// Nine days of sticking and slipping without end in one step, far beyond the limit of uniqueness: an answer to the
+/// tolerance is not to be had, and none is given. Shorter steps are answered.
+#[test]
+fn a_step_that_does_not_converge_stops_the_test() {
+    let friction = json!({"law": "super_subloading", "mu_s": 0.054, "mu_k": 0.015, "alpha_t": 8600, "r": 260,
+                          "kappa": 30, "xi": 2.6e-4, "tolerance": 1e-3});
+    let test = |dt: f64| {
+        json!({"friction": friction, "initial": {"pressure": 1800},
+               "path": [{"duration": 8e5, "dt": dt, "slip": 0.5}]})
+    };
+    let folder = TempDir::new().unwrap();
+    let output = law(folder.path(), &test(8e5));
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(stderr(&output).contains("friction did not converge within 20"), "{}", stderr(&output));
+    let done = Done::read(&folder.path().join("out/test"), String::new());
+    assert!(done.summary["reason"].as_str().unwrap().contains("did not converge"));
+    assert!(Done::of(&test(1e3)).last("dissipation") > 0.0);
+}
+
 /// Every committed test runs, and has a title.
 #[test]
 fn committed_tests_run() {

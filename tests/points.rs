@@ -476,6 +476,55 @@ fn stick_slip_keeps_account_of_its_energy() {
     assert!(errors[0] < 1e-3 && errors[1] < 1e-4, "{errors:?}");
 }
 
+/// A block pulled to and fro over Coulomb friction by a spring whose end moves as 2 sin 2πt, four times.
+fn shaken(friction: Value, scheme: Value, parts: u32) -> State {
+    let slider = Slider {
+        friction,
+        initial: json!({"pressure": 80}),
+        scheme,
+        times: [1.0 / f64::from(parts), 4.0],
+        loads: json!([
+            force(0.0, [0.0, -40.0]),
+            {"on": "block", "spring": {"kx": K, "driver": {"x": format!("2*sin({:?}*t)", 2.0 * PI)}}},
+        ]),
+        ..Default::default()
+    };
+    slider.run().last().clone()
+}
+
+/// In statics the end of the spring goes 2, seven times 4, and 2 at last, of which what spring and contact take up in series
+/// is no slip; the reversals lie inside increments of any length, and the dissipation does not know. The work of the spring
+/// is that of the trapezoidal rule: the books are balanced to the second order.
+#[test]
+fn a_block_pulled_to_and_fro_dissipates_its_slip_at_any_increment() {
+    let limit = 0.4 * 40.0;
+    let elastic = limit / K + limit / (ALPHA * AREA);
+    let slip = (2.0 - elastic) + 7.0 * (4.0 - 2.0 * elastic) + (2.0 - 2.0 * elastic);
+    let error = |parts| {
+        let energy = shaken(coulomb(0.4), json!("static"), parts).energy;
+        close("dissipation", energy.friction_dissipation, limit * slip, 1e-11 * limit * slip);
+        (energy.error() / energy.friction_dissipation).abs()
+    };
+    let [_, coarse, fine] = [20, 160, 5120].map(error);
+    println!("energy errors {coarse:e}, {fine:e}");
+    // A factor of 1024, give or take where in their increments the reversals and yields lie.
+    assert!(fine < 1e-6 && coarse / fine > 300.0, "{coarse:e} became {fine:e}");
+}
+
+/// By the trapezoidal rule: of second order too, for a law of no and of much memory.
+#[test]
+fn the_books_of_a_block_in_motion_to_and_fro_are_balanced_to_the_second_order() {
+    for friction in [coulomb(0.4), super_subloading()] {
+        let [coarse, fine] = [160, 5120].map(|parts| {
+            let energy = shaken(friction.clone(), trapezoidal(), parts).energy;
+            assert!(energy.friction_dissipation > 30.0);
+            (energy.error() / energy.friction_dissipation).abs()
+        });
+        println!("energy errors {coarse:e}, {fine:e}");
+        assert!(fine < 1e-6 && coarse / fine > 300.0, "{coarse:e} became {fine:e}");
+    }
+}
+
 /// Two columns with a gap between them, pressed with what their contact starts with: the gap stays what it was, whatever
 /// the penalty. Without an initial state the upper column falls through the gap.
 #[test]

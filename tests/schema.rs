@@ -102,6 +102,30 @@ fn bad_tests_of_a_law_are_not() {
 }
 
 #[test]
+fn no_object_takes_unknown_keys() {
+    let mut open = Vec::new();
+    find_open(&schema(), "", &mut open);
+    find_open(&printed(&["schema", "law"]), "law", &mut open);
+    assert!(open.is_empty(), "any key may stand at {open:#?}");
+}
+
+/// Objects of known keys that leave room for others.
+fn find_open(schema: &Value, place: &str, open: &mut Vec<String>) {
+    if schema.get("properties").is_some_and(Value::is_object) && schema["additionalProperties"] != json!(false) {
+        open.push(place.into());
+    }
+    match schema {
+        Value::Object(object) => {
+            object.iter().for_each(|(key, value)| find_open(value, &format!("{place}/{key}"), open))
+        }
+        Value::Array(list) => {
+            list.iter().enumerate().for_each(|(k, value)| find_open(value, &format!("{place}/{k}"), open))
+        }
+        _ => {}
+    }
+}
+
+#[test]
 fn every_key_is_explained() {
     let mut silent = Vec::new();
     find_silent(&schema(), "", &mut silent);

@@ -5,6 +5,9 @@ const LONGEST: usize = 100;
 
 const OBJECT: &str = "an object {…}";
 
+/// serde's complaint of an object whose only key should choose a variant.
+pub const SEVERAL_KEYS: &str = "invalid value: map, expected map with a single key";
+
 /// A complaint of serde as a sentence; unknown names come with the nearest known one.
 pub fn explain(message: &str) -> String {
     if message.starts_with("unknown field") || message.starts_with("unknown variant") {
@@ -12,6 +15,9 @@ pub fn explain(message: &str) -> String {
     }
     if let Some(rest) = message.strip_prefix("missing field ") {
         return format!("the key {rest} is missing here");
+    }
+    if message == SEVERAL_KEYS {
+        return "has several keys, but must be an object {…} with exactly one key".into();
     }
     let Some((found, expected)) = message.split_once(", expected ") else { return clipped(message) };
     let expected = plain_expected(expected);
@@ -38,7 +44,7 @@ fn unknown(message: &str) -> String {
             clipped(name),
             known.join("`, `")
         ),
-        None => format!("`{}` is not known here: nothing may stand in this object", clipped(name)),
+        None => format!("`{}` is not known here: leave it out, nothing more may stand in this object", clipped(name)),
     }
 }
 

@@ -13,7 +13,7 @@ use serde_json::{Map, Value};
 use serde_path_to_error::{Path as KeyPath, Segment};
 
 use super::error::{CaseError, Complaint};
-use super::explain::{clipped, explain};
+use super::explain::{SEVERAL_KEYS, clipped, explain};
 
 /// No case is larger: large meshes have files of their own [MiB].
 const LARGEST: u64 = 16;
@@ -171,7 +171,7 @@ fn place(path: &KeyPath, key: Option<&str>) -> String {
 /// The key to blame inside an object whose law is chosen by a tag, where serde loses the way: the one without which the
 /// complaint changes.
 fn blamed_key<T: DeserializeOwned>(document: &Value, path: &KeyPath, message: &str) -> Option<String> {
-    if message.starts_with("missing field") {
+    if message.starts_with("missing field") || message == SEVERAL_KEYS {
         return None;
     }
     let keys = object_at(&mut document.clone(), path)?.keys().cloned().collect::<Vec<_>>();

@@ -1,7 +1,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{FrictionLaw, FrictionResponse, FrictionState, LawFailure, Sliding};
+use super::{FrictionLaw, FrictionResponse, FrictionState, LawFailure, Sliding, traction_at_yield};
 use crate::parameter::{InvalidParameter, require_positive};
 
 /// Parameters of [`Coulomb`] as the case file writes them.
@@ -21,7 +21,12 @@ pub struct CoulombParameters {
 /// q̇ = α_t (v − λ sgn q)                      slip = elastic + plastic
 /// |q| ≤ μ p,   λ ≥ 0,   λ (|q| − μ p) = 0     sticking or sliding
 /// ```
-/// An increment is elastic if the trial q₀ + α_t Δu is not above μ p, else q = μ p along the trial.
+/// An increment is elastic if the trial q₀ + α_t Δu is not above μ p, else q = μ p along the trial. With slip and pressure
+/// going evenly over the increment this is exact: the traction is elastic up to q_y, where it meets μ p, and slides at
+/// μ p from there to the end, which dissipates
+/// ```text
+/// ΔW = ½ (q_y + |q|) Δλ,   Δλ = (|q_tr| − |q|)/α_t
+/// ```
 ///
 /// # Errors
 /// [`LawFailure`] when the increment or the answer is not finite, or time goes backwards.
@@ -58,10 +63,12 @@ impl FrictionLaw for Coulomb {
         } else if trial.abs() <= mu * pressure {
             (old.stuck(trial, pressure, mu), alpha_t, 0.0)
         } else {
-            let sign = trial.signum();
-            (old.slid(trial, sign * mu * pressure, pressure, mu, alpha_t), 0.0, sign * mu)
+            let (sign, strength) = (trial.signum(), mu * pressure);
+            let at_yield = traction_at_yield([sign * old.traction, trial.abs()], [mu * old.pressure, strength]);
+            let mean = 0.5 * (at_yield + strength);
+            (old.slid(trial, sign * strength, mean, (pressure, mu), alpha_t), 0.0, sign * mu)
         };
-        FrictionResponse { state, dtraction_dslip, dtraction_dpressure, evaluations: 0 }.checked()
+        FrictionResponse { state, dtraction_dslip, dtraction_dpressure, evaluations: 0 }.checked(alpha_t)
     }
 
     fn stiffness(&self) -> f64 {

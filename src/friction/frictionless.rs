@@ -19,7 +19,7 @@ impl FrictionLaw for Frictionless {
             plastic_increment: slip,
             dissipation: old.dissipation,
         };
-        FrictionResponse { state, dtraction_dslip: 0.0, dtraction_dpressure: 0.0, evaluations: 0 }.checked()
+        FrictionResponse { state, dtraction_dslip: 0.0, dtraction_dpressure: 0.0, evaluations: 0 }.checked(0.0)
     }
 
     fn stiffness(&self) -> f64 {

@@ -72,26 +72,36 @@ impl FrictionState {
         Self { traction, pressure, mu, plastic_increment: 0.0, ..self }
     }
 
-    /// The state after plastic slip has brought the traction down from the elastic `trial` to `traction`.
+    /// The state after plastic slip along sgn q has brought the traction down from the elastic `trial` to `traction`.
     ///
     /// ```text
-    /// Δλ = (|q_tr| − |q|)/α_t                   plastic slip, along sgn q
-    /// ΔW = ½ (⟨q₀ sgn q⟩ + |q|) Δλ ≥ 0          work dissipated; plastic slip starts from q = 0 after a reversal
+    /// Δλ = (|q_tr| − |q|)/α_t       plastic slip
+    /// ΔW = ∫ |q| dλ = q̄ Δλ ≥ 0      work dissipated; q̄, the mean of |q| over the plastic slip, is the law's to know
     /// ```
-    /// Without a reversal the work ½(q₀ + q)Δu of the increment is exactly the elastic energy gained plus ΔW.
-    fn slid(self, trial: f64, traction: f64, pressure: f64, mu: f64, stiffness: f64) -> Self {
+    /// The work ∫ q du of the increment, along the path that the law takes inside it, is Δ(q²/2α_t) + ΔW.
+    fn slid(self, trial: f64, traction: f64, mean: f64, (pressure, mu): (f64, f64), stiffness: f64) -> Self {
         let sign = traction.signum();
         let slip = ((trial - traction) * sign / stiffness).max(0.0);
-        let work = 0.5 * ((self.traction * sign).max(0.0) + traction.abs()) * slip;
         Self {
             traction,
             pressure,
             mu,
             plastic_slip: self.plastic_slip + sign * slip,
             plastic_increment: sign * slip,
-            dissipation: self.dissipation + work,
+            dissipation: self.dissipation + mean * slip,
         }
     }
+}
+
+/// |q| where plastic slip sets in, in an increment along which the elastic traction and the strength both go evenly from
+/// their first value to their second, and the traction ends above. One that is above from the start slips from there.
+///
+/// Both lines are counted along the sign of the trial, so a traction of the other sign unloads elastically, passes zero,
+/// and loads elastically up to the strength.
+fn traction_at_yield(elastic: [f64; 2], strength: [f64; 2]) -> f64 {
+    let (below, above) = ((strength[0] - elastic[0]).max(0.0), elastic[1] - strength[1]);
+    let share = if above > 0.0 { below / (below + above) } else { 1.0 };
+    elastic[0].max(strength[0] + share * (strength[1] - strength[0]))
 }
 
 /// Relative motion of the two surfaces during one increment.
@@ -119,6 +129,14 @@ impl Sliding {
     }
 }
 
+/// No law answers a tangent |∂q/∂Δu_t| above this many times α_t, or |∂q/∂p| above it. Where two roots of a law's equation
+/// of plastic slip merge the traction snaps, and just before it the derivative grows without bound, like the inverse of the
+/// root of the distance to the snap. It is exact up to here; beyond, the distance is lost in round-off.
+pub const STEEPEST: f64 = 1e8;
+
+/// Least −∂G/∂Δλ over α_t of an equation of plastic slip that a tangent is computed with.
+const LEAST_SLOPE: f64 = 1.0 / STEEPEST;
+
 /// The answer of a law to one increment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionResponse {
@@ -138,8 +156,11 @@ impl FrictionResponse {
         Self { state, dtraction_dslip: stiffness, dtraction_dpressure: 0.0, evaluations: 0 }
     }
 
-    /// Refuses numbers that have overflowed, and those of a committed state that was not finite.
-    fn checked(self) -> Result<Self, LawFailure> {
+    /// Bounds the tangent to what [`FrictionLaw::respond`] promises for the stiffness α_t, and refuses numbers that have
+    /// overflowed, and those of a committed state that was not finite.
+    fn checked(mut self, stiffness: f64) -> Result<Self, LawFailure> {
+        self.dtraction_dslip = self.dtraction_dslip.clamp(-STEEPEST * stiffness, STEEPEST * stiffness);
+        self.dtraction_dpressure = self.dtraction_dpressure.clamp(-STEEPEST, STEEPEST);
         let FrictionState { traction, pressure, mu, plastic_slip, plastic_increment, dissipation } = self.state;
         let state = traction + pressure + mu + plastic_slip + plastic_increment + dissipation;
         if (state + self.dtraction_dslip + self.dtraction_dpressure).is_finite() {
@@ -169,6 +190,18 @@ pub enum LawFailure {
         /// increment length [T]
         dt: f64,
     },
+    /// The equation of plastic slip was not solved, or the sub-steps of the increment did not come to agree.
+    #[error(
+        "friction did not converge within {evaluations} evaluations: {rest:.3e} of the trial traction {trial:.3e} is left"
+    )]
+    NotConverged {
+        /// evaluations of the equation of plastic slip
+        evaluations: usize,
+        /// what is left out of balance, or the difference between sub-steps [F/L²]
+        rest: f64,
+        /// |q_tr|: traction without plastic slip [F/L²]
+        trial: f64,
+    },
     /// The state was not finite, or the increment is so large that it no longer is.
     #[error("the friction state is not finite: the traction is {traction}")]
     Overflow {
@@ -182,10 +215,12 @@ pub trait FrictionLaw: Debug + Send + Sync {
     /// State of a point that has just come into contact.
     fn initial_state(&self) -> FrictionState;
 
-    /// q and the state variables at the end of the increment, with the consistent tangent ∂q/∂Δu_t, ∂q/∂p.
+    /// q and the state variables at the end of the increment, with the consistent tangent ∂q/∂Δu_t, ∂q/∂p, limited to
+    /// ± [`STEEPEST`] times α_t, or 1.
     ///
     /// # Errors
-    /// [`LawFailure`] when the increment or the answer is not finite, or time goes backwards.
+    /// [`LawFailure`] when the increment or the answer is not finite, time goes backwards, or the law's equations are not
+    /// solved to their tolerance.
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Result<FrictionResponse, LawFailure>;
 
     /// α_t: tangential contact stiffness; the contact stores q²/(2 α_t). 0 without friction [F/L³]

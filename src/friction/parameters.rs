@@ -11,10 +11,11 @@ use crate::parameter::InvalidParameter;
 
 /// A friction law and its parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(tag = "law", rename_all = "snake_case")]
+#[serde(tag = "law", rename_all = "snake_case", deny_unknown_fields)]
 pub enum FrictionParameters {
     /// No friction
-    Frictionless,
+    // Not a unit variant: serde would let any other key pass.
+    Frictionless {},
     /// Elastic until |q| = μ p, then sliding at constant μ
     Coulomb(CoulombParameters),
     /// Time-dependent super/subloading-surface friction: slip weakens the interface, rest heals it
@@ -32,7 +33,7 @@ impl FrictionParameters {
     /// [`InvalidParameter`] when a parameter is out of its range.
     pub fn build(&self, default_alpha_t: f64) -> Result<Box<dyn FrictionLaw>, InvalidParameter> {
         Ok(match self {
-            Self::Frictionless => Box::new(Frictionless),
+            Self::Frictionless {} => Box::new(Frictionless),
             Self::Coulomb(parameters) => Box::new(Coulomb::new(parameters, default_alpha_t)?),
             Self::SuperSubloading(parameters) => Box::new(SuperSubloading::new(parameters, default_alpha_t)?),
             Self::SlipWeakening(parameters) => Box::new(SlipWeakening::new(parameters, default_alpha_t)?),

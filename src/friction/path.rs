@@ -2,19 +2,16 @@
 
 use super::peak::Evolution;
 use super::slip_equation::{Point, ROUND_OFF, Reach, SlidingCurve, SlipEquation};
+use super::{LEAST_SLOPE, LawFailure, STEEPEST};
 
-/// Least D/α_t: where two roots of the slip equation merge D is 0, and known only to the square root of the round-off.
-pub(super) const LEAST_SLOPE: f64 = 1e-8;
+/// Sub-steps are halved at most so often: until slip, pressure and time no longer change in floating point.
+const MAX_HALVINGS: u32 = 48;
 
-/// Sub-steps are halved at most so often.
-const MAX_HALVINGS: u32 = 16;
-
-/// Sub-steps that could not be halved enough, after which all are taken as they are: beyond the limit of uniqueness the
-/// traction may jump any number of times.
-const MAX_JUMPS: usize = 8;
-
-/// Evaluations of the slip equation after which sub-steps are taken as they are.
+/// Evaluations of the slip equation after which the increment is given up: it is far too long.
 const MAX_EVALUATIONS: usize = 20_000;
+
+/// A sub-step in which q and μ p change by this share of the tolerance, but for a snap, is short enough to hold a snap.
+const SNAP: f64 = 1e-3;
 
 /// Errors below this, relative to the tractions they come from, are round-off.
 const NOISE: f64 = 2e-13;
@@ -47,8 +44,6 @@ pub(super) struct LoadPath<'a> {
     pub dtime: Derivative,
     /// Evaluations of the slip equation so far
     pub evaluations: usize,
-    /// Sub-steps that could not be halved enough
-    pub jumps: usize,
 }
 
 /// A point of the path.
@@ -102,8 +97,11 @@ impl LoadPath<'_> {
     }
 
     /// The end of the path.
-    pub(super) fn end(&mut self, start: &Station) -> Station {
-        let end = self.advance(start, 1.0);
+    ///
+    /// # Errors
+    /// [`LawFailure::NotConverged`] when sub-steps do not come to agree.
+    pub(super) fn end(&mut self, start: &Station) -> Result<Station, LawFailure> {
+        let end = self.advance(start, 1.0)?;
         self.refine(start, end, [0.0; 3], MAX_HALVINGS)
     }
 
@@ -112,9 +110,18 @@ impl LoadPath<'_> {
     /// Two halves of the sub-step are compared with the whole and, where they differ too much, refined in their turn.
     /// As errors are proportional to the third power of the sub-step, the difference should then be an eighth: what it
     /// is `expected` to be. What it differs from that is an error that extrapolation cannot remove.
-    fn refine(&mut self, from: &Station, coarse: Station, expected: Differences, halvings: u32) -> Station {
-        let middle = self.advance(from, 0.5 * (from.x + coarse.x));
-        let fine = self.advance(&middle, coarse.x);
+    ///
+    /// Where the traction snaps the halves never agree: a sub-step that is so short that nothing else can happen in it is
+    /// a snap, whose place is known as well as the tolerance asks.
+    fn refine(
+        &mut self,
+        from: &Station,
+        coarse: Station,
+        expected: Differences,
+        halvings: u32,
+    ) -> Result<Station, LawFailure> {
+        let middle = self.advance(from, 0.5 * (from.x + coarse.x))?;
+        let fine = self.advance(&middle, coarse.x)?;
         let halves = Halves { from, coarse: &coarse, middle: &middle, fine: &fine };
         let (differences, allowed) = (self.differences(&halves), self.allowed(&halves));
         let overlooked = coarse.overlooked.max(middle.overlooked).max(fine.overlooked);
@@ -124,14 +131,32 @@ impl LoadPath<'_> {
                 let left = if halves.slide() { left.min((differences[i] - expected[i]).abs()) } else { left };
                 left <= allowed[i]
             });
-        self.jumps += usize::from(!agree && halvings == 0);
-        if agree || halvings == 0 || self.jumps > MAX_JUMPS || self.evaluations > MAX_EVALUATIONS {
-            return if agree && halves.slide() { self.extrapolated(&halves) } else { fine };
+        if agree {
+            return Ok(if halves.slide() { self.extrapolated(&halves) } else { fine });
+        }
+        if self.drive(from, &fine) <= SNAP * self.tolerance * self.evolution.mu_s * self.pressure(fine.x) {
+            return Ok(fine);
+        }
+        if halvings == 0 || self.evaluations > MAX_EVALUATIONS {
+            let trial = from.traction + self.alpha_t * self.slip * (fine.x - from.x);
+            let rest = differences[0].abs().max(overlooked);
+            return Err(LawFailure::NotConverged { evaluations: self.evaluations, rest, trial });
         }
         let expected = differences.map(|difference| difference / 8.0);
-        let middle = self.refine(from, middle, expected, halvings - 1);
-        let coarse = self.advance(&middle, coarse.x);
+        let middle = self.refine(from, middle, expected, halvings - 1)?;
+        let coarse = self.advance(&middle, coarse.x)?;
         self.refine(&middle, coarse, expected, halvings - 1)
+    }
+
+    /// Most that slip, pressure and time change the traction or the strength by over a sub-step without a snap.
+    fn drive(&self, from: &Station, to: &Station) -> f64 {
+        let share = to.x - from.x;
+        let recovery =
+            self.evolution.recovery(from.mu.min(to.mu)) * self.time * self.pressure(from.x).max(self.pressure(to.x));
+        share
+            * (self.alpha_t * self.slip.abs()
+                + self.evolution.mu_s * (self.pressures[1] - self.pressures[0]).abs()
+                + recovery)
     }
 
     /// Differences between a sub-step and its halves.
@@ -195,7 +220,7 @@ impl LoadPath<'_> {
 
     /// One sub-step.
     #[inline]
-    fn advance(&mut self, from: &Station, x: f64) -> Station {
+    fn advance(&mut self, from: &Station, x: f64) -> Result<Station, LawFailure> {
         let share = x - from.x;
         let equation = SlipEquation {
             curve: self.curve,
@@ -209,11 +234,11 @@ impl LoadPath<'_> {
         };
         let (sticks, start) = equation.start();
         if sticks {
-            return self.stick(from, x, equation.trial);
+            return Ok(self.stick(from, x, equation.trial));
         }
-        let (end, evaluations) = equation.solve(start);
+        let (end, evaluations) = equation.solve(start)?;
         self.evaluations += evaluations;
-        self.slide(from, x, &end)
+        Ok(self.slide(from, x, &end))
     }
 
     /// A sub-step without plastic slip.
@@ -265,16 +290,15 @@ impl LoadPath<'_> {
             let dstrength = pressure * (peak.mu * inherited * dratio + reach.ratio * dmu)
                 + reach.ratio * peak.mu * self.dpressure(x)[i];
             let dslip = (dtrial - dstrength) * per_slope;
-            let limit = if i == 0 { self.alpha_t / LEAST_SLOPE } else { 1.0 / LEAST_SLOPE };
+            let limit = if i == 0 { STEEPEST * self.alpha_t } else { STEEPEST };
             let dtraction = (dtrial - self.alpha_t * dslip).clamp(-limit, limit);
             (dtraction, (dmu + peak.slope * dslip).clamp(-limit / pressure, limit / pressure))
         };
         let (dq_dslip, dmu_dslip) = derivatives(0);
         let (dq_dpressure, dmu_dpressure) = derivatives(1);
 
-        // ∫ q dλ, μ p taken as linear in ∫ R dλ
-        let mean_strength = 0.5 * (from.mu * start_pressure + peak.mu * pressure);
-        let work = self.curve.mean_ratio(&from.reach, &reach) * mean_strength * slip;
+        let strengths = [from.mu * start_pressure, peak.mu * pressure];
+        let work = mean_traction(self.curve, [&from.reach, &reach], strengths, [from.traction, traction]) * slip;
         Station {
             x,
             traction,
@@ -309,5 +333,21 @@ impl LoadPath<'_> {
     /// Derivatives of p
     fn dpressure(&self, x: f64) -> Derivative {
         [(1.0 - x) * self.dstart_pressure[0], (1.0 - x) * self.dstart_pressure[1] + x]
+    }
+}
+
+/// Mean of q over the plastic slip of a step: μ p is taken as linear in ∫ R dλ. Where the traction falls, it is itself taken
+/// as linear in λ, which it is where it snaps: the contact springs back, and what the strength does not take is lost too.
+pub(super) fn mean_traction(
+    curve: &SlidingCurve,
+    reaches: [&Reach; 2],
+    strengths: [f64; 2],
+    tractions: [f64; 2],
+) -> f64 {
+    let mean = |[start, end]: [f64; 2]| 0.5 * (start + end);
+    if tractions[1] < tractions[0] {
+        mean(tractions)
+    } else {
+        curve.mean_ratio(reaches[0], reaches[1]) * mean(strengths)
     }
 }

@@ -2,7 +2,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::root::{Trial, bracketed_root};
-use super::{FrictionLaw, FrictionResponse, FrictionState, LawFailure, Sliding};
+use super::{FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Sliding, traction_at_yield};
 use crate::parameter::{InvalidParameter, require_not_negative, require_positive};
 
 /// Parameters of [`RateAndState`] as the case file writes them.
@@ -59,8 +59,11 @@ pub enum StateEvolution {
 /// ln θ₁ = e⁻ˣ ln θ₀ + (1 − e⁻ˣ) ln(D_c/V)        slip law                                                    (5)
 /// ```
 /// and Δλ is the *smallest* root of G(Δλ) = |q_tr| − α_t Δλ − |q|(Δλ) with |q| from (2) at the end of the increment. G is
-/// positive at Δλ = 0 and negative at |q_tr|/α_t. Where α_t exceeds the weakening by slip, G falls throughout; else ln Δλ
-/// is led up to the first root by bounds of the slope, and never over it. The method is of first order in Δt.
+/// positive at Δλ = 0 and negative at |q_tr|/α_t. Where α_t exceeds the weakening by slip, G falls throughout; else bounds
+/// of its slope single out the first root. The method is of first order in Δt.
+///
+/// The work dissipated is ∫ |q| dλ = ½ (q_y + |q|) Δλ with slip at the rate V once the traction, elastic until then, has
+/// met at q_y what (2) asks for V; that goes evenly from its value at the start to |q|.
 ///
 /// # Errors
 /// [`LawFailure`] when the increment or the answer is not finite, or time goes backwards.
@@ -108,8 +111,11 @@ impl RateAndState {
 /// G is right to this share of |q_tr|.
 const PRECISION: f64 = 1e-14;
 
-/// Most evaluations that lead up to the first root. The way is only long where two roots are about to merge.
-const MOST_EVALUATIONS: usize = 500;
+/// Most pieces of the bracket that are examined for the first root; many only where two roots are about to merge.
+const MOST_PIECES: usize = 1000;
+
+/// Pieces of the bracket of ln Δλ narrower than this hold roots that cannot be told apart.
+const LEAST_PIECE: f64 = 1e-13;
 
 /// Exponents above it would overflow.
 const MOST_EXPONENT: f64 = 700.0;
@@ -129,6 +135,12 @@ struct Relaxation<'a> {
 /// What an increment comes to if it slips by Δλ.
 #[derive(Clone, Copy)]
 struct Outcome {
+    /// Δλ [L]
+    slip: f64,
+    /// ln Δλ, from that of the largest slip down
+    log: f64,
+    /// w: |q| = a p arsinh(eʷ)
+    log_sinh: f64,
     /// G [F/L²]
     excess: f64,
     /// −∂G/∂Δλ [F/L³]
@@ -169,18 +181,12 @@ impl Relaxation<'_> {
         let RateAndState { a, reference_rate, alpha_t, .. } = *self.law;
         let (psi, dpsi) = self.psi(slip);
         let fastness = 0.5 / (reference_rate * self.dt);
-        // arsinh(eʷ) and its derivative by w, without eʷ where it would overflow
         let w = slip.ln() + fastness.ln() + psi / a;
-        let (arsinh, rate) = if w > 20.0 {
-            (w + std::f64::consts::LN_2, 1.0)
-        } else {
-            let sinh = w.exp();
-            (sinh.asinh(), sinh / sinh.hypot(1.0))
-        };
+        let (arsinh, rate) = arsinh_of_exp(w);
         let traction = a * self.pressure * arsinh;
         let direct = if slip > 0.0 { rate / slip } else { fastness * (psi / a).exp() };
         let slope = alpha_t + self.pressure * (a * direct + rate * dpsi);
-        Outcome { excess: self.trial - alpha_t * slip - traction, slope, psi, traction }
+        Outcome { slip, log: 0.0, log_sinh: w, excess: self.trial - alpha_t * slip - traction, slope, psi, traction }
     }
 
     /// Bound of Δλ ∂ψ/∂Δλ for all slips up to this one: healing within the increment, of which the slip law knows some.
@@ -195,17 +201,56 @@ impl Relaxation<'_> {
         b * self.dt * reference_rate / critical_slip * -at * (at - self.log_state).min(MOST_EXPONENT).exp()
     }
 
-    /// The same from a slip to e times as much.
-    fn healing_from(&self, slip: f64) -> f64 {
+    /// Bounds of ∂ψ/∂ln Δλ between two slips: from the monotony of its parts, and exact where the slips are the same.
+    ///
+    /// ```text
+    /// ageing:  −b (c + g (x − c)),  c = 1 − x/(eˣ − 1),  g = θ₀ e⁻ˣ/θ₁     x, c and x − c rise with x, g falls
+    /// slip:    b (x e⁻ˣ ln(D_c/V θ₀) − (1 − e⁻ˣ))                           ln(D_c/V θ₀) falls with x
+    /// ```
+    fn effect_bounds(&self, low: f64, high: f64) -> [f64; 2] {
         let RateAndState { b, reference_rate, critical_slip, evolution, .. } = *self.law;
-        if evolution == StateEvolution::Ageing {
-            return 0.0;
-        }
-        let x = slip / critical_slip;
-        let slower = ((reference_rate * self.dt).ln() - slip.ln() - self.log_state).max(0.0);
-        // x e⁻ˣ has its maximum at 1.
-        let share = if x >= 1.0 { x * (-x).exp() } else { (x * std::f64::consts::E).min((-1.0f64).exp()) };
-        b * share * slower
+        let x = [low / critical_slip, high / critical_slip];
+        let time = self.dt * reference_rate / critical_slip;
+        let [less, more] = match evolution {
+            StateEvolution::Ageing => {
+                let fresh = x.map(|x| if x < 1e-4 { 0.5 * x * (1.0 - x / 6.0) } else { 1.0 - x / x.exp_m1() });
+                let grown = x.map(|x| {
+                    let share = if x > 0.0 { -(-x).exp_m1() / x } else { 1.0 };
+                    let old = self.log_state.exp() * (-x).exp();
+                    if old > 0.0 { old / (old + time * share) } else { 0.0 }
+                });
+                let gone = |at: usize, grown: f64| fresh[at] + grown * (x[at] - fresh[at]).max(0.0);
+                [-gone(1, grown[0]), -gone(0, grown[1])]
+            }
+            StateEvolution::Slip => {
+                let slower = [low, high].map(|slip| (reference_rate * self.dt).ln() - slip.ln() - self.log_state);
+                let [at_low, at_high] = x.map(|x| x * (-x).exp());
+                // x e⁻ˣ has its maximum at 1.
+                let most = if x[0] < 1.0 && 1.0 < x[1] { (-1.0f64).exp() } else { at_low.max(at_high) };
+                let least = at_low.min(at_high);
+                let healed = [
+                    slower[1] * if slower[1] > 0.0 { least } else { most },
+                    slower[0] * if slower[0] > 0.0 { most } else { least },
+                ];
+                [healed[0] + (-x[1]).exp_m1(), healed[1] + (-x[0]).exp_m1()]
+            }
+        };
+        [b * less, b * more]
+    }
+
+    /// Bounds of −∂G/∂ln Δλ between two slips.
+    fn fall_bounds(&self, low: &Outcome, high: &Outcome) -> [f64; 2] {
+        let RateAndState { a, alpha_t, .. } = *self.law;
+        let [less, more] = self.effect_bounds(low.slip, high.slip).map(|effect| a + effect);
+        // w grows with ln Δλ by (a + ∂ψ/∂ln Δλ)/a.
+        let way = (high.log - low.log) / a;
+        let least = (low.log_sinh + way * less.min(0.0)).max(high.log_sinh - way * more.max(0.0));
+        let most = (low.log_sinh + way * more.max(0.0)).min(high.log_sinh - way * less.min(0.0));
+        let [slow, fast] = [least, most].map(|w| arsinh_of_exp(w).1);
+        [
+            alpha_t * low.slip + self.pressure * less * if less > 0.0 { slow } else { fast },
+            alpha_t * high.slip + self.pressure * more * if more > 0.0 { fast } else { slow },
+        ]
     }
 
     /// Whether G falls throughout.
@@ -240,41 +285,74 @@ impl Relaxation<'_> {
     }
 
     /// The smallest root, and the evaluations it took.
-    fn solve(&self) -> (Outcome, usize) {
-        let alpha_t = self.law.alpha_t;
+    ///
+    /// # Errors
+    /// [`LawFailure::NotConverged`] when it is not found.
+    fn solve(&self) -> Result<(Outcome, usize), LawFailure> {
+        let (least, most) = (self.least().max(f64::MIN_POSITIVE), self.trial / self.law.alpha_t);
         let mut evaluations = 0;
-        let mut slip = self.least().max(f64::MIN_POSITIVE);
-        let mut found = self.outcome(slip);
-        let enough = PRECISION * self.trial;
-        let most = self.trial / alpha_t;
-        if self.is_monotone() {
-            // In ln Δλ, by which (2) is nearly linear.
-            let bracket = (slip.ln(), most.ln());
-            bracketed_root(bracket, bracket.0, |log| {
-                evaluations += 1;
-                slip = log.exp();
-                found = self.outcome(slip);
-                let step = found.excess / (found.slope * slip).max(f64::MIN_POSITIVE);
-                Trial { value: found.excess, step, done: found.excess.abs() <= enough }
-            });
-            return (found, evaluations);
-        }
-        let RateAndState { a, alpha_t, .. } = *self.law;
-        let rise = self.pressure * (a + self.healing(most));
-        while found.excess > enough && evaluations < MOST_EVALUATIONS {
-            // From Δλ to Δλ eᵟ, α_t Δλ grows by the factor eᵟ, and |q| at most by rise δ and by a factor kᵟ, since
-            // arsinh is concave. So three δ after which G is not negative, the first two for δ ≤ 1:
-            let healing = self.healing_from(slip);
-            let loss = alpha_t * slip * std::f64::consts::E + self.pressure * (a + healing);
-            let near = (found.excess / loss).min(1.0);
-            let early = (self.trial / (self.trial - found.excess)).ln() / (1.0 + healing / a);
-            let far = (0.5 * found.excess / rise).min((0.5 * found.excess / (alpha_t * slip)).ln_1p());
-            slip = (slip * near.max(early.min(1.0)).max(far).exp()).min(most);
-            found = self.outcome(slip);
+        // By the logarithm of Δλ, in which (2) is nearly linear; from the largest down, so that round-off is least.
+        let mut at = |log: f64| {
             evaluations += 1;
+            Outcome { log, ..self.outcome(most * log.exp()) }
+        };
+        let mut found = at(least.ln() - most.ln());
+        let enough = PRECISION * self.trial;
+        if found.excess <= enough {
+            return Ok((found, evaluations));
         }
-        (found, evaluations)
+        let bracket = if self.is_monotone() { Some((found.log, 0.0)) } else { self.first_root_bracket(found, &mut at) };
+        let Some(bracket) = bracket else {
+            return Err(LawFailure::NotConverged { evaluations, rest: found.excess, trial: self.trial });
+        };
+        bracketed_root(bracket, bracket.0, |log| {
+            found = at(log);
+            let step = found.excess / (found.slope * found.slip).max(f64::MIN_POSITIVE);
+            Trial { value: found.excess, step, done: found.excess.abs() <= enough }
+        });
+        Ok((found, evaluations))
     }
+
+    /// Two logarithms of Δλ that hold that of the smallest root between them, and no other unless they cannot be told
+    /// apart; none if it is not to be found.
+    ///
+    /// Pieces are examined from the left with bounds D₋ ≤ −∂G/∂ln Δλ ≤ D₊ on each: a piece holds one root or none if
+    /// D₋ > 0, none if G stays positive between the lines of slope −D₊ from its left end and −D₋ from its right, and is
+    /// halved otherwise. G changes with the square of the distance from where two roots merge, so that some dozens of
+    /// pieces tell whether they have.
+    fn first_root_bracket(&self, mut left: Outcome, at: &mut impl FnMut(f64) -> Outcome) -> Option<(f64, f64)> {
+        let mut right = at(0.0);
+        for _ in 0..MOST_PIECES {
+            let way = right.log - left.log;
+            let [least_fall, most_fall] = self.fall_bounds(&left, &right);
+            let narrow = way <= LEAST_PIECE * (1.0 + left.log.abs());
+            if right.excess <= 0.0 && (least_fall > 0.0 || narrow) {
+                return Some((left.log, right.log));
+            }
+            let crossing_needs = left.excess / most_fall.max(0.0) + right.excess / (-least_fall).max(0.0);
+            let rootless = right.excess > 0.0 && (least_fall > 0.0 || crossing_needs > way);
+            if rootless || narrow {
+                if right.log >= 0.0 {
+                    return Some((left.log, 0.0)); // but for round-off G is not positive there
+                }
+                let next = (right.log + 2.0 * way).min(0.0);
+                left = right;
+                right = at(next);
+            } else {
+                right = at(left.log + 0.5 * way);
+            }
+        }
+        None
+    }
+}
+
+/// arsinh(eʷ) and its derivative by w, without eʷ where it would overflow.
+fn arsinh_of_exp(w: f64) -> (f64, f64) {
+    if w > 20.0 {
+        return (w + std::f64::consts::LN_2, 1.0);
+    }
+    let sinh = w.exp();
+    (sinh.asinh(), sinh / sinh.hypot(1.0))
 }
 
 impl FrictionLaw for RateAndState {
@@ -291,21 +369,28 @@ impl FrictionLaw for RateAndState {
             // No time to slip in, or nothing to slip for.
             let mu = if dt == 0.0 { old.mu } else { relaxation.psi(0.0).0 };
             if pressure <= 0.0 {
-                return FrictionResponse::elastic(old.parted(mu, alpha_t), 0.0).checked();
+                return FrictionResponse::elastic(old.parted(mu, alpha_t), 0.0).checked(alpha_t);
             }
-            let softness = if dt == 0.0 { 0.0 } else { alpha_t / relaxation.outcome(0.0).slope };
-            return FrictionResponse::elastic(old.stuck(trial, pressure, mu), alpha_t * (1.0 - softness)).checked();
+            let softness =
+                if dt == 0.0 { 0.0 } else { alpha_t / relaxation.outcome(0.0).slope.max(LEAST_SLOPE * alpha_t) };
+            return FrictionResponse::elastic(old.stuck(trial, pressure, mu), alpha_t * (1.0 - softness))
+                .checked(alpha_t);
         }
-        let (found, evaluations) = relaxation.solve();
+        let (found, evaluations) = relaxation.solve()?;
         let traction = trial.signum() * found.traction.min(trial.abs());
-        let softness = alpha_t / found.slope;
+        // What (2) asks at the start for the slip rate of the increment
+        let rate_share = (trial.abs() - traction.abs()) / alpha_t / (2.0 * self.reference_rate * dt);
+        let before = self.a * old.pressure * arsinh_of_exp(rate_share.ln() + old.mu / self.a).0;
+        let elastic = [trial.signum() * old.traction, trial.abs()];
+        let mean = 0.5 * (traction_at_yield(elastic, [before, traction.abs()]) + traction.abs());
+        let softness = alpha_t / found.slope.max(LEAST_SLOPE * alpha_t);
         FrictionResponse {
-            state: old.slid(trial, traction, pressure, found.psi, alpha_t),
+            state: old.slid(trial, traction, mean, (pressure, found.psi), alpha_t),
             dtraction_dslip: alpha_t * (1.0 - softness),
             dtraction_dpressure: traction / pressure * softness,
             evaluations,
         }
-        .checked()
+        .checked(alpha_t)
     }
 
     fn stiffness(&self) -> f64 {

@@ -1,7 +1,7 @@
 //! A root finder that cannot leave its bracket.
 
-/// Bisection alone resolves any bracket of doubles in fewer evaluations than this.
-const MAX_EVALUATIONS: usize = 200;
+/// Evaluations after which the bracket is only halved, which resolves any bracket in about fifty more: the search ends.
+const MOST_PROPOSALS: usize = 100;
 
 /// What f says about a trial argument of [`bracketed_root`].
 pub(super) struct Trial {
@@ -23,7 +23,7 @@ pub(super) fn bracketed_root((mut low, mut high): (f64, f64), guess: f64, mut f:
     let resolution = 8.0 * f64::EPSILON * low.abs().max(high.abs());
     let mut step = high - low;
     let mut x = if low < guess && guess < high { guess } else { low + 0.5 * step };
-    for _ in 0..MAX_EVALUATIONS {
+    for evaluation in 0.. {
         let trial = f(x);
         if trial.done {
             return;
@@ -34,7 +34,8 @@ pub(super) fn bracketed_root((mut low, mut high): (f64, f64), guess: f64, mut f:
             high = x;
         }
         let proposed = x + trial.step;
-        let safe = low < proposed && proposed < high && trial.step.abs() <= 0.5 * step.abs();
+        let safe =
+            evaluation < MOST_PROPOSALS && low < proposed && proposed < high && trial.step.abs() <= 0.5 * step.abs();
         let next = if safe { proposed } else { low + 0.5 * (high - low) };
         step = next - x;
         if step.abs() <= resolution {

@@ -1,9 +1,9 @@
 //! The scalar equation of plastic slip, and its smallest root.
 
-use super::Approach;
 use super::approach::Progress;
 use super::peak::{Evolution, Peak};
 use super::root::{Trial, bracketed_root};
+use super::{Approach, LawFailure};
 
 /// How R follows from plastic slip.
 ///
@@ -182,16 +182,19 @@ impl SlipEquation<'_> {
     }
 
     /// The smallest root, and how many evaluations it took.
+    ///
+    /// # Errors
+    /// [`LawFailure::NotConverged`] when it is not singled out.
     #[inline]
-    pub(super) fn solve(&self, start: Point) -> (Point, usize) {
+    pub(super) fn solve(&self, start: Point) -> Result<(Point, usize), LawFailure> {
         if start.close {
-            return (start.moved(self), 1);
+            return Ok((start.moved(self), 1));
         }
         let mut evaluations = 1;
         let end = self.curve.beyond(self.trial / self.alpha_t, &self.start);
         let unique = self.pressure * self.evolution.weakening(start.peak.mu) < self.alpha_t;
         let bracket =
-            if unique { (self.start.coordinate, end) } else { self.first_root_bracket(start, end, &mut evaluations) };
+            if unique { (self.start.coordinate, end) } else { self.first_root_bracket(start, end, &mut evaluations)? };
         let mut point = start;
         bracketed_root(bracket, self.guess(&start), |coordinate| {
             evaluations += 1;
@@ -199,7 +202,7 @@ impl SlipEquation<'_> {
             let done = point.close || point.residual.abs() <= TOLERANCE * self.trial;
             Trial { value: point.residual, step: point.step, done }
         });
-        (point.moved(self), evaluations)
+        Ok((point.moved(self), evaluations))
     }
 
     #[inline(always)]
@@ -258,7 +261,7 @@ impl SlipEquation<'_> {
     /// Pieces of the bracket are examined from the left with bounds D₋ ≤ D ≤ D₊ of the slope on each: it holds one
     /// root or none if D₋ > 0, none if G stays positive between the lines of slope −D₊ from its left end and −D₋ from
     /// its right, and is halved otherwise.
-    fn first_root_bracket(&self, start: Point, end: f64, evaluations: &mut usize) -> (f64, f64) {
+    fn first_root_bracket(&self, start: Point, end: f64, evaluations: &mut usize) -> Result<(f64, f64), LawFailure> {
         let mut at = |coordinate| {
             *evaluations += 1;
             self.at(coordinate)
@@ -271,18 +274,21 @@ impl SlipEquation<'_> {
             let (least, most) = self.slope_bounds(&left, &right);
             let narrow = high - low <= LEAST_PIECE * (1.0 + low.abs());
             if right.residual <= 0.0 && (least > 0.0 || narrow) {
-                return (low, high);
+                return Ok((low, high));
             }
             let crossing_needs = left.residual / most.max(0.0) + right.residual / (-least).max(0.0);
             let rootless = right.residual > 0.0 && (least > 0.0 || crossing_needs > right.slip - left.slip);
             if rootless || narrow {
+                if high >= end {
+                    return Ok((low, end)); // but for round-off G is not positive there
+                }
                 left = right;
                 right = at(end.min(high + 2.0 * (high - low)));
             } else {
                 right = at(low + 0.5 * (high - low));
             }
         }
-        (left.reach.coordinate, end)
+        Err(LawFailure::NotConverged { evaluations: *evaluations, rest: left.residual, trial: self.trial })
     }
 
     /// Least and greatest D between two points, from the monotony of U, R, μ and ∂μ/∂Δλ.

@@ -1,7 +1,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{FrictionLaw, FrictionResponse, FrictionState, LawFailure, Sliding};
+use super::{FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Sliding, traction_at_yield};
 use crate::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 
 /// Parameters of [`SlipWeakening`] as the case file writes them.
@@ -35,7 +35,9 @@ pub struct SlipWeakeningParameters {
 /// Δλ = (|q_tr| − c − μ₀ p)/(α_t − W p)      if μ stays above μ_d,
 /// Δλ = (|q_tr| − c − μ_d p)/α_t              else, and where W p ≥ α_t: friction falls faster than the contact unloads
 /// ```
-/// Nothing is left of the error in time. μ itself remembers the slip: D = (μ_s − μ)/W. A traction above the strength, as
+/// Nothing is left of the error in time. The work dissipated is ∫ |q| dλ along even paths of slip and pressure: elastic up
+/// to the strength, then at the strength; where friction falls
+/// faster than the contact unloads, |q| falls with α_t λ from one strength to the other. μ itself remembers the slip: D = (μ_s − μ)/W. A traction above the strength, as
 /// a run may start with, slips off in the first increment.
 ///
 /// # Errors
@@ -70,6 +72,60 @@ impl SlipWeakening {
     }
 }
 
+impl SlipWeakening {
+    /// Mean of |q| over the plastic slip of an increment that ends with (p, μ).
+    fn mean_traction(&self, old: &FrictionState, trial: f64, (pressure, mu): (f64, f64)) -> f64 {
+        let Self { mu_d, weakening, cohesion, alpha_t, .. } = *self;
+        let elastic = [trial.signum() * old.traction, trial.abs()];
+        let strength = |mu: f64, pressure: f64| cohesion + mu * pressure;
+        let before = [strength(old.mu, old.pressure), strength(old.mu, pressure)];
+        let (at_yield, at_end) = (traction_at_yield(elastic, before), strength(mu, pressure));
+        let slip = (elastic[1] - at_end) / alpha_t;
+        if old.mu <= mu_d || elastic[0] > before[0] {
+            return 0.5 * (at_yield + at_end);
+        }
+        // Over the increment the elastic traction gains on the strength, at the first μ and at the second, and the share of
+        // the increment that has passed is a quotient of linear functions of λ, whose denominator goes from one to the other.
+        let gain = |mu: f64| elastic[1] - elastic[0] - mu * (pressure - old.pressure);
+        let falling = |to: f64, slip: f64, mu: f64| {
+            let lag = end_share(gain(mu) / gain(old.mu) - 1.0) - 0.5;
+            0.5 * (at_yield + to) + lag * (alpha_t * slip + to - at_yield)
+        };
+        if mu > mu_d {
+            return falling(at_end, slip, mu);
+        }
+        let pressure_at_yield = (at_yield - cohesion) / old.mu;
+        // Slip until μ_d is reached, the traction then, and the mean of |q| so far
+        let (fallen, level, mean) = if weakening * pressure_at_yield < alpha_t {
+            let fallen = (old.mu - mu_d) / weakening;
+            let share = (strength(mu_d, old.pressure) + alpha_t * fallen - elastic[0]) / gain(mu_d);
+            let level = strength(mu_d, old.pressure + share.clamp(0.0, 1.0) * (pressure - old.pressure));
+            (fallen.min(slip), level, falling(level, fallen, mu_d))
+        } else {
+            let level = strength(mu_d, pressure_at_yield);
+            (((at_yield - level) / alpha_t).min(slip), level, 0.5 * (at_yield + level))
+        };
+        (mean * fallen + 0.5 * (level + at_end) * (slip - fallen)) / slip
+    }
+}
+
+/// How much of the mean of (A + B λ)/(C + D λ) over a stretch of λ is its value at the end, the rest being its value at
+/// the beginning, if the denominator gains the share `z` of itself on the way; a half if it gains nothing, or if slip would
+/// have to cease on the way.
+///
+/// ```text
+/// (1 + z)/z (1 − ln(1 + z)/z)
+/// ```
+fn end_share(z: f64) -> f64 {
+    if z <= -1.0 {
+        0.5
+    } else if z.abs() < 1e-3 {
+        (1.0 + z) * (0.5 - z * (1.0 / 3.0 - z * (0.25 - z * (0.2 - z / 6.0))))
+    } else {
+        (1.0 + z) / z * (1.0 - z.ln_1p() / z)
+    }
+}
+
 impl FrictionLaw for SlipWeakening {
     fn initial_state(&self) -> FrictionState {
         FrictionState { mu: self.mu_s, ..FrictionState::default() }
@@ -79,28 +135,28 @@ impl FrictionLaw for SlipWeakening {
         let Self { mu_d, weakening, cohesion, alpha_t, .. } = *self;
         let Sliding { slip, pressure, .. } = sliding.checked()?;
         if pressure <= 0.0 {
-            return FrictionResponse::elastic(old.parted(old.mu, alpha_t), 0.0).checked();
+            return FrictionResponse::elastic(old.parted(old.mu, alpha_t), 0.0).checked(alpha_t);
         }
         let trial = old.traction + alpha_t * slip;
         let excess = trial.abs() - cohesion - old.mu * pressure;
         if excess <= 0.0 {
-            return FrictionResponse::elastic(old.stuck(trial, pressure, old.mu), alpha_t).checked();
+            return FrictionResponse::elastic(old.stuck(trial, pressure, old.mu), alpha_t).checked(alpha_t);
         }
         let net = alpha_t - weakening * pressure;
         let slid = excess / net;
         let (mu, softness) = if net > 0.0 && old.mu - weakening * slid > mu_d {
-            (old.mu - weakening * slid, alpha_t / net)
+            (old.mu - weakening * slid, alpha_t / net.max(LEAST_SLOPE * alpha_t))
         } else {
             (old.mu.min(mu_d), 1.0)
         };
         let traction = trial.signum() * (cohesion + mu * pressure);
         FrictionResponse {
-            state: old.slid(trial, traction, pressure, mu, alpha_t),
+            state: old.slid(trial, traction, self.mean_traction(old, trial, (pressure, mu)), (pressure, mu), alpha_t),
             dtraction_dslip: alpha_t * (1.0 - softness),
             dtraction_dpressure: trial.signum() * mu * softness,
             evaluations: 0,
         }
-        .checked()
+        .checked(alpha_t)
     }
 
     fn stiffness(&self) -> f64 {

@@ -1,10 +1,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::path::{LEAST_SLOPE, LoadPath};
+use super::path::{LoadPath, mean_traction};
 use super::peak::{Evolution, Integration};
 use super::slip_equation::{ROUND_OFF, SlidingCurve, SlipEquation};
-use super::{Approach, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Sliding};
+use super::{Approach, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Sliding};
 use crate::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 
 /// Parameters of [`SuperSubloading`] as the case file writes them.
@@ -78,7 +78,8 @@ fn one() -> f64 {
 /// *controlled* integration solves (3) for slip and time that pass in step with one another, which leaves no error
 /// where μ only weakens or only recovers (m = n = 1). How much the order of weakening and recovery matters is found by
 /// halving the increment, and halving again, until q, μ p and the mean of q are right to the tolerance (`path.rs`).
-/// The dissipation is then ∫ q dλ. The tangent is that of what was computed; for one step
+/// The dissipation is ∫ |q| dλ, over a step with R along its curve and μ p linear in ∫ R dλ, or where |q| falls with |q|
+/// linear in λ; the work of the increment, ∫ q du, is this and what the contact has stored. The tangent is that of what was computed; for one step
 /// ```text
 /// D = α_t + p (U μ + R ∂μ/∂Δλ),   ∂q/∂Δu = α_t (1 − α_t/D),   ∂q/∂p = sgn(q_tr) α_t R μ/D.
 /// ```
@@ -147,11 +148,12 @@ impl SuperSubloading {
         if old.traction.abs() <= strength * (1.0 + EXCESS) {
             return old;
         }
-        old.slid(old.traction, strength.copysign(old.traction), old.pressure, old.mu, self.alpha_t)
+        let mean = 0.5 * (old.traction.abs() + strength);
+        old.slid(old.traction, strength.copysign(old.traction), mean, (old.pressure, old.mu), self.alpha_t)
     }
 
     /// One step of the slip equation over the whole increment.
-    fn step(&self, old: &FrictionState, trial: f64, sliding: Sliding) -> FrictionResponse {
+    fn step(&self, old: &FrictionState, trial: f64, sliding: Sliding) -> Result<FrictionResponse, LawFailure> {
         let Sliding { pressure, dt, .. } = sliding;
         let reversed = trial * old.traction.signum() < 0.0;
         let equation = SlipEquation {
@@ -166,21 +168,27 @@ impl SuperSubloading {
         };
         let (sticks, start) = equation.start();
         if sticks {
-            return FrictionResponse::elastic(old.stuck(trial, pressure, start.peak.mu), self.alpha_t);
+            return Ok(FrictionResponse::elastic(old.stuck(trial, pressure, start.peak.mu), self.alpha_t));
         }
-        let (end, evaluations) = equation.solve(start);
+        let (end, evaluations) = equation.solve(start)?;
         let strength = trial.signum() * end.reach.ratio * end.peak.mu;
+        // Plastic slip starts from the old pressure, or from that where the traction passes 0.
+        let passed = if reversed { old.traction / (old.traction - trial) } else { 0.0 };
+        let start_pressure = old.pressure + passed * (pressure - old.pressure);
+        let strengths = [old.mu * start_pressure, end.peak.mu * pressure];
+        let tractions = [if reversed { 0.0 } else { old.traction.abs() }, strength.abs() * pressure];
+        let mean = mean_traction(&self.curve, [&equation.start, &end.reach], strengths, tractions);
         let softness = self.alpha_t / end.slope.max(LEAST_SLOPE * self.alpha_t);
-        FrictionResponse {
-            state: old.slid(trial, strength * pressure, pressure, end.peak.mu, self.alpha_t),
+        Ok(FrictionResponse {
+            state: old.slid(trial, strength * pressure, mean, (pressure, end.peak.mu), self.alpha_t),
             dtraction_dslip: self.alpha_t * (1.0 - softness),
             dtraction_dpressure: strength * softness,
             evaluations,
-        }
+        })
     }
 
     /// An increment in which slip may be plastic, in sub-steps: from the start, or from where the traction passes 0.
-    fn follow(&self, old: &FrictionState, trial: f64, sliding: Sliding) -> FrictionResponse {
+    fn follow(&self, old: &FrictionState, trial: f64, sliding: Sliding) -> Result<FrictionResponse, LawFailure> {
         let Sliding { slip, pressure, dt } = sliding;
         let reversed = old.traction != 0.0 && trial * old.traction.signum() < 0.0;
         let sign = if reversed || old.traction == 0.0 { trial.signum() } else { old.traction.signum() };
@@ -195,7 +203,6 @@ impl SuperSubloading {
             time: dt,
             dtime: [0.0; 2],
             evaluations: 0,
-            jumps: 0,
         };
         let start = if reversed {
             let share = old.traction / (old.traction - trial);
@@ -210,9 +217,9 @@ impl SuperSubloading {
         } else {
             path.start(old.traction.abs(), old.ratio().min(1.0), old.mu, [0.0; 2])
         };
-        let end = path.end(&start);
+        let end = path.end(&start)?;
         let plastic_slip = sign * end.plastic_slip;
-        FrictionResponse {
+        Ok(FrictionResponse {
             state: FrictionState {
                 traction: sign * end.traction,
                 pressure,
@@ -224,7 +231,7 @@ impl SuperSubloading {
             dtraction_dslip: end.dtraction[0],
             dtraction_dpressure: sign * end.dtraction[1],
             evaluations: path.evaluations,
-        }
+        })
     }
 }
 
@@ -237,7 +244,7 @@ impl FrictionLaw for SuperSubloading {
         let Sliding { slip, pressure, dt } = sliding.checked()?;
         if pressure <= 0.0 {
             let (mu, _) = self.evolution.rested(self.evolution.clamp(old.mu), dt);
-            return FrictionResponse::elastic(old.parted(mu, self.alpha_t), 0.0).checked();
+            return FrictionResponse::elastic(old.parted(mu, self.alpha_t), 0.0).checked(self.alpha_t);
         }
         let old = self.within_strength(old);
         let trial = old.traction + self.alpha_t * slip;
@@ -245,13 +252,13 @@ impl FrictionLaw for SuperSubloading {
             && trial.abs() * old.pressure <= old.traction.abs() * pressure * (1.0 + ROUND_OFF);
         if falls && old.pressure > 0.0 {
             let (mu, _) = self.evolution.rested(old.mu, dt);
-            return FrictionResponse::elastic(old.stuck(trial, pressure, mu), self.alpha_t).checked();
+            return FrictionResponse::elastic(old.stuck(trial, pressure, mu), self.alpha_t).checked(self.alpha_t);
         }
         match self.integration {
             Integration::Controlled => self.follow(&old, trial, sliding),
             Integration::BackwardEuler => self.step(&old, trial, sliding),
-        }
-        .checked()
+        }?
+        .checked(self.alpha_t)
     }
 
     fn stiffness(&self) -> f64 {
