@@ -279,10 +279,15 @@ fn steps(case: &Case, model: &Model) -> Vec<String> {
     let (mut supports, mut loads) = (InForce::new(), InForce::new());
     for (step, input) in model.steps.iter().zip(&case.steps) {
         lines.push(step.name.clone());
-        lines.extend(step_lines(step).into_iter().map(|line| format!("  {line}")));
-        supports.step(written_supports(input));
-        loads.step(input.loads.iter().map(written_load));
-        lines.extend(supports.lines("held").into_iter().chain(loads.lines("loaded")).map(|line| format!("  {line}")));
+        let mut told = step_lines(step);
+        let freed = if step.scheme.is_dynamic() { "at once" } else { "its reaction fades over the step" };
+        told.extend(supports.step(written_supports(input)).map(|(on, kind)| format!("freed {on}: {kind}, {freed}")));
+        told.extend(loads.step(input.loads.iter().map(written_load)).map(|(on, kind)| {
+            let ended = if ENDS_AT_ONCE.contains(&kind) { "at once" } else { "it fades over the step" };
+            format!("ended {on}: {kind}, {ended}")
+        }));
+        told.extend(supports.lines("held").into_iter().chain(loads.lines("loaded")));
+        lines.extend(told.into_iter().map(|line| format!("  {line}")));
         lines.push(format!("  {} prescribed", count(step.supports.len(), "dof")));
     }
     lines
@@ -321,6 +326,9 @@ struct Written {
     kept: bool,
 }
 
+/// Loads without a value that could fade.
+const ENDS_AT_ONCE: [&str; 3] = ["spring", "dashpot", "absorbing side"];
+
 /// Place, kind and value of one entry of a step.
 type Entry = (String, &'static str, Option<String>);
 
@@ -329,14 +337,20 @@ impl InForce {
         Self(BTreeMap::new())
     }
 
-    fn step(&mut self, entries: impl IntoIterator<Item = Entry>) {
+    /// Take over what is written; returns what is ended.
+    fn step(&mut self, entries: impl IntoIterator<Item = Entry>) -> impl Iterator<Item = (String, &'static str)> {
         self.0.values_mut().for_each(|written| written.kept = true);
+        let mut ended = Vec::new();
         for (on, kind, text) in entries {
             match text {
-                Some(text) => self.0.insert((on, kind), Written { text, kept: false }),
-                None => self.0.remove(&(on, kind)),
-            };
+                Some(text) => drop(self.0.insert((on, kind), Written { text, kept: false })),
+                None => {
+                    self.0.remove(&(on.clone(), kind));
+                    ended.push((on, kind));
+                }
+            }
         }
+        ended.into_iter()
     }
 
     fn lines(&self, verb: &str) -> Vec<String> {
@@ -417,8 +431,8 @@ fn newton(case: &Case) -> String {
 fn output(case: &Case) -> Vec<String> {
     let fields = match (case.output.fields, case.output.every) {
         (false, _) => "no fields".into(),
-        (true, 1) => "fields at every increment".into(),
-        (true, every) => format!("fields every {every} increments, and at the end of each step"),
+        (true, 1) => "fields with every row of the history".into(),
+        (true, every) => format!("fields with every {every}th row of the history, and at the end of each step"),
     };
     let watched = if case.watch.is_empty() { "no group".into() } else { case.watch.join(", ") };
     let mut lines = vec![format!("history watches {watched}"), fields];
