@@ -12,12 +12,13 @@ mod names;
 mod periodic;
 mod read;
 mod report;
+mod start;
 mod supported;
 
 pub use build::build;
 pub use error::CaseError;
-pub use initial::lost_velocity;
 pub use report::report;
+pub use start::warnings;
 
 use std::path::Path;
 

@@ -11,18 +11,19 @@ use super::file::{
     InitialInput, LoadInput, MasterInput, MeshSource, Method, PlaneInput, PolylineInput, RigidInput, SpringInput,
     StepInput, TimeInput,
 };
-use super::initial::lost_velocity;
-use crate::configuration::Configuration;
+use super::start;
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
 use crate::increments::EVENT_LOCATION;
 use crate::mesh::Group;
 use crate::model::{Model, PointMass, Step};
+use crate::output::warnings::several_answers;
 use crate::shape::ElementKind;
 
 /// A readable account of a checked case.
 pub fn report(case: &Case, model: &Model) -> String {
-    let mut warnings: Vec<String> = lost_velocity(model).into_iter().collect();
+    let mut warnings = start::warnings(case, model);
+    warnings.extend(model.contacts.iter().filter_map(pressed_too_hard));
     let mut text = String::new();
     if !model.title.is_empty() {
         text += &format!("{}\n\n", model.title);
@@ -33,7 +34,7 @@ pub fn report(case: &Case, model: &Model) -> String {
     section(&mut text, "bodies", bodies(case));
     section(&mut text, "periodic", periodic(case, model));
     section(&mut text, "points", point_masses(case, model));
-    section(&mut text, "contacts", contacts(case, model, &mut warnings));
+    section(&mut text, "contacts", contacts(case, model));
     section(&mut text, "steps", steps(case, model));
     section(&mut text, "newton", vec![newton(case)]);
     section(&mut text, "output", output(case));
@@ -57,7 +58,7 @@ fn aligned(rows: &[[String; 2]]) -> Vec<String> {
 }
 
 /// A number with at most six digits, in powers of ten where it is very large or small.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     let rounded = format!("{value:.5e}").parse().unwrap_or(value);
     match rounded {
         0.0 => "0".into(),
@@ -66,7 +67,7 @@ fn number(value: f64) -> String {
     }
 }
 
-fn count(count: usize, what: &str) -> String {
+pub(super) fn count(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
@@ -158,14 +159,14 @@ fn plain(value: &Value) -> String {
     }
 }
 
-fn contacts(case: &Case, model: &Model, warnings: &mut Vec<String>) -> Vec<String> {
+fn contacts(case: &Case, model: &Model) -> Vec<String> {
     let mut lines = Vec::new();
     for pair in &model.contacts {
         lines.push(pair.name.clone());
         lines.extend(contact(case, pair).into_iter().map(|line| format!("  {line}")));
         let start = match &case.contacts[&pair.name].initial {
             Some(initial) => initial_tractions(initial, pair),
-            None => initial_gaps(model, pair, warnings),
+            None => start::gaps(model, pair, &case.contacts[&pair.name]),
         };
         lines.push(format!("  {start}"));
     }
@@ -182,6 +183,14 @@ fn initial_tractions(initial: &InitialInput, pair: &ContactPair) -> String {
     let mu = range(points().map(mu));
     let balanced = if initial.balanced { ", balanced by an initial stress of the bodies" } else { "" };
     format!("starts closed with the pressure {p} and the traction {q}{balanced}; mu {mu}, structure {structure}")
+}
+
+/// An initial pressure under which the answer may snap; a run meets it in its first increment.
+fn pressed_too_hard(pair: &ContactPair) -> Option<String> {
+    let pressed = pair.points.iter().zip(pair.initial.iter().flatten());
+    let limits = pressed.filter_map(|(point, initial)| Some((initial.pressure, pair.law(point).uniqueness_limit()?)));
+    let (pressure, limit) = limits.filter(|(pressure, limit)| pressure > limit).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(format!("contact `{}`: {}", pair.name, several_answers(pressure, limit)))
 }
 
 /// One number, or the range of several.
@@ -249,29 +258,6 @@ fn contact(case: &Case, pair: &ContactPair) -> Vec<String> {
         ));
     }
     lines
-}
-
-fn initial_gaps(model: &Model, pair: &ContactPair, warnings: &mut Vec<String>) -> String {
-    let states = pair.initial_states(&Configuration::undeformed(&model.mesh.nodes));
-    let gaps: Vec<f64> = states.iter().filter(|state| state.foot.is_some()).map(|state| state.gap).collect();
-    let [low, high] =
-        [gaps.iter().copied().fold(f64::INFINITY, f64::min), gaps.iter().copied().fold(f64::NEG_INFINITY, f64::max)];
-    let mut warn = |message: String| warnings.push(format!("contact `{}`: {message}", pair.name));
-    let beside = count(states.len() - gaps.len(), "contact point");
-    if gaps.is_empty() {
-        warn("no point of the slave faces the master; check which groups are named, and where they lie".into());
-        return format!("initial gap: {beside}, and none faces the master");
-    }
-    if gaps.len() < states.len() {
-        warn(format!("{beside} of the slave face no part of the master"));
-    }
-    if low < 0.0 {
-        warn(format!("surfaces overlap by up to {} at the start, and press from the first increment on", number(-low)));
-    }
-    match low == high {
-        true => format!("initial gap {} everywhere", number(low)),
-        false => format!("initial gap from {} to {}", number(low), number(high)),
-    }
 }
 
 fn steps(case: &Case, model: &Model) -> Vec<String> {
