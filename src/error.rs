@@ -78,11 +78,14 @@ pub enum StepFailure {
     /// An element collapsed in explicit increments of any length.
     #[error(
         "{0}, in shorter increments as well: the mesh is crushed there; let it be struck or driven more slowly, make it \
-         finer or stiffer there, or give the body viscosity (damping.stiffness)"
+         finer or stiffer there, give the body viscosity (damping.stiffness), or a law that resists crushing (neo_hookean, \
+         hencky)"
     )]
     Collapsed(TrialFailure),
     /// A body is held by nothing.
-    #[error("{0}; give it a support, a spring, or contact that is closed at the start, or `stabilize` the step")]
+    #[error(
+        "{0}; give it a support, a spring, or contact that is closed at the start, or `stabilize` the step (a stabilized one: by more)"
+    )]
     Floating(String),
     /// A trial state lost the contact that held a body.
     #[error("the iterations lost contact: {0}")]

@@ -117,7 +117,8 @@ impl Resistance {
     fn null_motion(&self, group: &[usize]) -> Option<DVector<f64>> {
         if group.len() <= FEW_PARTS {
             let size = 3 * group.len();
-            let at = |i: usize, j: usize| self.blocks.get(&(group[i / 3], group[j / 3])).map_or(0.0, |b| b[(i % 3, j % 3)]);
+            let at =
+                |i: usize, j: usize| self.blocks.get(&(group[i / 3], group[j / 3])).map_or(0.0, |b| b[(i % 3, j % 3)]);
             let decomposed = DMatrix::from_fn(size, size, at).svd(false, true);
             let (smallest, value) = decomposed.singular_values.argmin();
             let motion = decomposed.v_t?.row(smallest).transpose();
@@ -142,7 +143,8 @@ impl Resistance {
     /// A of a group, two nodes of two dofs for the three motions of a part; the fourth dof is held.
     fn sparse(&self, group: &[usize]) -> SparseMatrix {
         let place: BTreeMap<usize, usize> = group.iter().enumerate().map(|(k, &part)| (part, k)).collect();
-        let within = || self.blocks.iter().filter_map(|((row, column), b)| Some((*place.get(row)?, *place.get(column)?, b)));
+        let within =
+            || self.blocks.iter().filter_map(|((row, column), b)| Some((*place.get(row)?, *place.get(column)?, b)));
         let coupled: Vec<[usize; 4]> =
             within().map(|(row, column, _)| [2 * row, 2 * row + 1, 2 * column, 2 * column + 1]).collect();
         let pattern = Pattern::new(2 * group.len(), coupled.iter().map(|nodes| &nodes[..]));
@@ -242,7 +244,8 @@ fn rigid_motions(parts: &Parts, x: &Configuration) -> Vec<Matrix2x3<f64>> {
 fn describe(model: &Model, parts: &Parts, group: &[usize], motion: &DVector<f64>) -> String {
     let largest = motion.amax();
     let name = |part: usize| {
-        let names: Vec<String> = parts.bodies[part].iter().map(|&body| format!("`{}`", model.bodies[body].name)).collect();
+        let names: Vec<String> =
+            parts.bodies[part].iter().map(|&body| format!("`{}`", model.bodies[body].name)).collect();
         format!("{} {}", if names.len() == 1 { "body" } else { "bodies" }, names.join(" and "))
     };
     let moving: Vec<usize> = (0..motion.len()).filter(|&k| motion[k].abs() > 0.1 * largest).collect();

@@ -180,7 +180,9 @@ impl<'m> Run<'m, '_, '_> {
                 (new, judgement)
             });
             let fast = |new: &State| {
-                step.rupture.as_ref().is_some_and(|rupture| fastest_slip(self.model, &self.state, new) > rupture.slip_rate)
+                step.rupture
+                    .as_ref()
+                    .is_some_and(|rupture| fastest_slip(self.model, &self.state, new) > rupture.slip_rate)
             };
             let too_fast = solved.as_ref().is_ok_and(|(new, _)| fast(new));
             let accepted = solved.as_ref().ok().filter(|(_, judgement)| judgement.accepted && !too_fast);

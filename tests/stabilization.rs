@@ -158,7 +158,11 @@ fn one_of_a_thousand_bodies_floats() {
         let model = model_at(&row(1000, smooth, lifted), Path::new("test.json"));
         let text = run(&model, &mut []).1.err().map(|error| error.to_string()).expect("a body floats");
         assert!(text.contains(expected), "{text}");
-        assert_eq!(text.matches("body `").count(), if lifted.is_some() { text.matches("b637").count() } else { 1 }, "{text}");
+        assert_eq!(
+            text.matches("body `").count(),
+            if lifted.is_some() { text.matches("b637").count() } else { 1 },
+            "{text}"
+        );
     }
 }
 

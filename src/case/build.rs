@@ -496,15 +496,14 @@ fn steps(case: &Case, model: &Model) -> Checked<Vec<Step>> {
     if case.steps.is_empty() {
         return Err(Complaint::new("steps", "is empty: give at least one step"));
     }
-    let mut builder =
-        StepBuilder {
-            model,
-            start: 0.0,
-            scheme: Scheme::Static,
-            increments: None,
-            supports: BTreeMap::new(),
-            loads: BTreeMap::new(),
-        };
+    let mut builder = StepBuilder {
+        model,
+        start: 0.0,
+        scheme: Scheme::Static,
+        increments: None,
+        supports: BTreeMap::new(),
+        loads: BTreeMap::new(),
+    };
     case.steps.iter().enumerate().map(|(k, step)| builder.next(&format!("steps[{k}]"), step)).collect()
 }
 

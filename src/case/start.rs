@@ -34,7 +34,10 @@ pub(super) fn gaps(model: &Model, pair: &ContactPair, input: &ContactInput) -> S
     let gaps = Gaps::of(model, pair);
     let fit = gaps.fit.map(|(overlap, at)| {
         let place = format!("at ({}, {})", number(at.x), number(at.y));
-        format!("; shrink fit: the surfaces overlap by up to {}, {place}, brought in over the first step", number(overlap))
+        format!(
+            "; shrink fit: the surfaces overlap by up to {}, {place}, brought in over the first step",
+            number(overlap)
+        )
     });
     let fit = match (fit, input.shrink_fit) {
         (None, true) => "; shrink fit: the surfaces overlap nowhere".into(),

@@ -73,9 +73,11 @@ impl Audit {
 fn round_off(model: &Model, state: &State) -> f64 {
     let x = model.configuration(&state.displacement);
     let solids = model.bodies.iter().map(|body| body.material.stiffness()).fold(0.0, f64::max);
-    let contacts = model.contacts.iter().zip(&state.contacts).flat_map(|(pair, states)| {
-        states.iter().map(move |contact| pair.alpha_n * contact.length)
-    });
+    let contacts = model
+        .contacts
+        .iter()
+        .zip(&state.contacts)
+        .flat_map(|(pair, states)| states.iter().map(move |contact| pair.alpha_n * contact.length));
     f64::EPSILON * contacts.fold(solids, f64::max) * x.extent() * (model.mesh.nodes.len() as f64).sqrt()
 }
 
@@ -97,7 +99,9 @@ fn remedy(model: &Model, step: &Step) -> &'static str {
             "an impact sets nodes ringing that increments do not resolve: make the contact `massless`, take a scheme that \
              damps (hht), or shorter increments (dt.error)"
         }
-        (true, false) => "take a scheme that damps what increments do not resolve (hht), or shorter increments (dt.error)",
+        (true, false) => {
+            "take a scheme that damps what increments do not resolve (hht), or shorter increments (dt.error)"
+        }
         (false, true) => {
             "what increments do not resolve is damped, or rings where bodies strike: take shorter increments (dt.error), or \
              make the contact `massless`"
