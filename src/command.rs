@@ -82,9 +82,10 @@ pub fn run(path: &Path, out: Option<PathBuf>, threads: Option<usize>, quiet: boo
     let mut history = History::create(&folder, &model)?;
     let mut newton_log = NewtonLog::create(&folder)?;
     let mut warnings = Warnings::default();
-    warnings.list.extend(case::lost_velocity(&model));
-    warnings.list.extend(case::concerns(&case, &model.mesh));
+    warnings.list = case::warnings(&case, &model);
+    let told = warnings.list.len();
     if !quiet {
+        warnings.list.iter().for_each(|warning| eprintln!("warning: {warning}"));
         case::choices(&case, &model.mesh).iter().for_each(|choice| eprintln!("{choice}"));
     }
     let mut fields = match case.output.fields {
@@ -111,20 +112,19 @@ pub fn run(path: &Path, out: Option<PathBuf>, threads: Option<usize>, quiet: boo
         wave_speeds: fronts::wave_speeds(&model),
         front_slip_rate: case.output.fronts.map(|fronts| fronts.slip_rate),
     };
+    let supplied = warnings.audit.supplied;
     let summary = Summary::new(about, &model, report, result.as_ref().err(), warnings.list);
     summary::write(&summary, &folder)?;
     if !quiet {
-        conclude(&summary, &model, &folder);
+        summary.warnings[told..].iter().for_each(|warning| eprintln!("warning: {warning}"));
+        conclude(&summary, &model, &folder, supplied);
     }
     result?;
     Ok(())
 }
 
 /// The last lines of a run on stderr.
-fn conclude(summary: &Summary, model: &Model, folder: &Path) {
-    for warning in &summary.warnings {
-        eprintln!("warning: {warning}");
-    }
+fn conclude(summary: &Summary, model: &Model, folder: &Path, supplied: f64) {
     let report = &summary.report;
     eprintln!(
         "{} increments, {} cut-backs, {} rejected, {} linear solves of {} dofs in {:.2} s; results in {}",
@@ -137,20 +137,20 @@ fn conclude(summary: &Summary, model: &Model, folder: &Path) {
         folder.display()
     );
     if model.steps.iter().any(|step| step.scheme.is_dynamic() || step.rupture.is_some()) {
-        audit(&report.energy);
+        audit(&report.energy, supplied);
     }
 }
 
-/// Where the energy of a dynamic run came from and went.
-fn audit(energy: &Energy) {
-    let share = if energy.turnover() > 0.0 { 100.0 * energy.error() / energy.turnover() } else { 0.0 };
+/// Where the energy of a dynamic run came from and went; `supplied` is the most that there was.
+fn audit(energy: &Energy, supplied: f64) {
+    let share = if supplied > 0.0 { 100.0 * energy.error() / supplied } else { 0.0 };
     eprintln!("energy: {:.6e} at the start, {:.6e} from outside", energy.initial, energy.external_work);
     eprintln!(
         "        {:.6e} kinetic, {:.6e} strain, {:.6e} in contacts",
         energy.kinetic, energy.strain, energy.contact_elastic
     );
     eprintln!(
-        "        {:.6e} taken by friction, {:.6e} by damping, {:.1e} ({share:.4} %) unaccounted for",
+        "        {:.6e} taken by friction, {:.6e} by damping, {:.1e} ({share:.4} % of all there was) unaccounted for",
         energy.friction_dissipation,
         energy.damping_dissipation,
         energy.error()

@@ -20,6 +20,16 @@ pub enum TrialFailure {
         /// det F
         jacobian: f64,
     },
+    /// An element has hardly any volume left.
+    #[error("element {element} of body `{body}` is crushed to {share:.1e} of its size")]
+    Crushed {
+        /// its tag in the mesh file
+        element: u64,
+        /// its body
+        body: String,
+        /// what is left of its size
+        share: f64,
+    },
     /// A friction law could not answer.
     #[error("contact `{contact}`, point {point}: {cause}")]
     Friction {
@@ -65,8 +75,17 @@ pub enum StepFailure {
         "the motion grows beyond all bounds: lower the safety of the explicit scheme, or look at loads and supports"
     )]
     Unbounded,
+    /// An element collapsed in explicit increments of any length.
+    #[error(
+        "{0}, in shorter increments as well: the mesh is crushed there; let it be struck or driven more slowly, make it \
+         finer or stiffer there, give the body viscosity (damping.stiffness), or a law that resists crushing (neo_hookean, \
+         hencky)"
+    )]
+    Collapsed(TrialFailure),
     /// A body is held by nothing.
-    #[error("{0}; give it a support, a spring, or contact that is closed at the start, or `stabilize` the step")]
+    #[error(
+        "{0}; give it a support, a spring, or contact that is closed at the start, or `stabilize` the step (a stabilized one: by more)"
+    )]
     Floating(String),
     /// A trial state lost the contact that held a body.
     #[error("the iterations lost contact: {0}")]
@@ -74,6 +93,22 @@ pub enum StepFailure {
 }
 
 impl StepFailure {
+    /// Whether shorter explicit increments have a chance: an element collapsed, or the motion grew without bounds.
+    pub fn is_collapse(&self) -> bool {
+        use TrialFailure::{Crushed, Inverted};
+        matches!(self, Self::Unbounded | Self::Start(Inverted { .. } | Crushed { .. }))
+    }
+
+    /// The same, after shorter increments have not helped.
+    pub fn after_all(self) -> Self {
+        match self {
+            Self::Start(failure @ (TrialFailure::Inverted { .. } | TrialFailure::Crushed { .. })) => {
+                Self::Collapsed(failure)
+            }
+            other => other,
+        }
+    }
+
     /// Whether a smaller increment has a chance.
     pub fn is_retryable(&self) -> bool {
         match self {

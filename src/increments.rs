@@ -89,11 +89,18 @@ pub fn judge(model: &Model, step: &Step, [old, new]: [&State; 2], tangents: usiz
     judged(true, if grows { share } else { 1.0 })
 }
 
-/// Highest slip rate of a contact point from one state to a later one [L/T].
-pub fn fastest_slip(old: &State, new: &State) -> f64 {
-    let points = old.contacts.iter().flatten().zip(new.contacts.iter().flatten());
-    let slips = points.map(|(old, new)| (new.friction.plastic_slip - old.friction.plastic_slip).abs());
-    slips.fold(0.0, f64::max) / (new.time - old.time)
+/// Highest slip rate of a contact point with friction from one state to a later one [L/T].
+pub fn fastest_slip(model: &Model, old: &State, new: &State) -> f64 {
+    let mut fastest = 0.0f64;
+    for (pair, (old, new)) in model.contacts.iter().zip(old.contacts.iter().zip(&new.contacts)) {
+        for (slave, (old, new)) in pair.points.iter().zip(old.iter().zip(new)) {
+            // What slides freely has nothing to break.
+            if pair.law(slave).stiffness() > 0.0 {
+                fastest = fastest.max((new.friction.plastic_slip - old.friction.plastic_slip).abs());
+            }
+        }
+    }
+    fastest / (new.time - old.time)
 }
 
 /// C Δt² |a₁ − a₀|, the largest of all free dofs; those without mass follow without error of their own [L].

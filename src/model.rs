@@ -64,6 +64,14 @@ pub struct Increments {
     pub error: Option<f64>,
 }
 
+impl Increments {
+    /// The same, but none longer than `longest`: a stabilized step has a last increment after its dashpots have faded.
+    pub fn at_most(self, longest: f64) -> Self {
+        let Self { initial, min, max, error } = self;
+        Self { initial: initial.min(longest), min: min.min(longest), max: max.min(longest), error }
+    }
+}
+
 /// A step: a time span with its supports, loads, scheme and increments.
 #[derive(Clone, Debug)]
 pub struct Step {
@@ -79,7 +87,8 @@ pub struct Step {
     pub rupture: Option<Box<Rupture>>,
     /// prescribed dofs, ascending
     pub supports: Vec<Prescribed>,
-    /// dofs that were prescribed in the step before and are free now; their reaction is ramped off
+    /// dofs that were prescribed in the step before and are free in this static one: their reaction is ramped off. In a
+    /// dynamic step it is gone at once
     pub released: Vec<usize>,
     /// loads, springs and dashpots
     pub loads: Loads,

@@ -120,7 +120,7 @@ impl<'m> Run<'m, '_, '_> {
                 break;
             }
             if self.state.time - before.time >= *calm {
-                if fastest_slip(&before, &self.state) <= *slip_rate {
+                if fastest_slip(self.model, &before, &self.state) <= *slip_rate {
                     break;
                 }
                 before = self.state.clone();
@@ -134,18 +134,36 @@ impl<'m> Run<'m, '_, '_> {
         let end = step.span.end;
         let time = if time > end - 1e-6 * interval { end } else { time };
         let old = self.state.clone();
-        let count = explicit.go_to(time, &mut self.state, &mut self.work.assembler);
-        self.report.increments += count.map_err(|cause| self.unsolvable(step, cause))?;
-        let told = Attempt {
+        let attempt = |number: usize| Attempt {
             step,
-            number: 1,
+            number,
             old: &old,
             dt: time - old.time,
             iterations: &[],
-            accepted: Some(&self.state),
+            accepted: None,
             local_error: None,
         };
-        tell(self.model, &told, self.observers, &mut self.report)
+        for number in 1.. {
+            let outcome = explicit.go_to(time, &mut self.state, &mut self.work.assembler);
+            let cause = match outcome {
+                Ok(count) => {
+                    self.report.increments += count;
+                    let told = Attempt { accepted: Some(&self.state), ..attempt(number) };
+                    return tell(self.model, &told, self.observers, &mut self.report);
+                }
+                Err(cause) if !cause.is_collapse() => return Err(self.unsolvable(step, cause)),
+                Err(cause) => cause,
+            };
+            self.report.cutbacks += 1;
+            tell(self.model, &attempt(number), self.observers, &mut self.report)?;
+            let collapsed = std::mem::replace(&mut self.state, old.clone());
+            let again = explicit.more_carefully(&mut self.state, &mut self.work.assembler);
+            if !again.map_err(|cause| self.unsolvable(step, cause))? {
+                self.state = collapsed;
+                return Err(self.unsolvable(step, cause.after_all()));
+            }
+        }
+        Ok(())
     }
 
     /// Implicit or static increments until the end of the step, or until a contact slips too fast.
@@ -162,7 +180,9 @@ impl<'m> Run<'m, '_, '_> {
                 (new, judgement)
             });
             let fast = |new: &State| {
-                step.rupture.as_ref().is_some_and(|rupture| fastest_slip(&self.state, new) > rupture.slip_rate)
+                step.rupture
+                    .as_ref()
+                    .is_some_and(|rupture| fastest_slip(self.model, &self.state, new) > rupture.slip_rate)
             };
             let too_fast = solved.as_ref().is_ok_and(|(new, _)| fast(new));
             let accepted = solved.as_ref().ok().filter(|(_, judgement)| judgement.accepted && !too_fast);

@@ -96,11 +96,9 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// The largest of the sums in the audit: what its error is measured by.
-    pub fn turnover(&self) -> f64 {
-        let stored = self.kinetic + self.strain + self.contact_elastic;
-        let dissipated = self.friction_dissipation + self.damping_dissipation;
-        self.external_work.abs().max(self.initial.abs()).max(stored.abs()).max(dissipated.abs())
+    /// What was there to be stored and dissipated: energy at the start and work from outside.
+    pub fn supplied(&self) -> f64 {
+        self.initial.abs().max((self.initial + self.external_work).abs())
     }
 
     /// external work + initial − (kinetic + strain + contact) − dissipation: 0 for an exact integration.

@@ -57,11 +57,10 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
     state.begin_step();
     // Explicit increments leave the forces of copies with them.
     model.ties.gather(2, &mut state.force);
-    let resting = old.acceleration.iter().all(|a| *a == 0.0);
     // The reaction of a freed support has become a load.
     step.released.iter().for_each(|&dof| state.force[dof] -= old.reaction[dof]);
     match step.scheme.is_dynamic() {
-        true if resting => start_dynamics(model, step, &mut state, work)?,
+        true if rests(old) || frees(step, old) => start_dynamics(model, step, &mut state, work)?,
         true => {}
         false => {
             state.stop();
@@ -76,6 +75,17 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
         state.energy.initial = state.energy.kinetic + state.energy.contact_elastic;
     }
     Ok(state)
+}
+
+/// Whether nothing accelerates.
+fn rests(state: &State) -> bool {
+    state.acceleration.iter().all(|a| *a == 0.0)
+}
+
+/// Whether a dof with a reaction is free from now on: without it, accelerations jump.
+fn frees(step: &Step, old: &State) -> bool {
+    let held = |dof: &usize| step.supports.binary_search_by_key(dof, |support| support.dof).is_ok();
+    (0..old.reaction.len()).any(|dof| old.reaction[dof] != 0.0 && !held(&dof))
 }
 
 /// Take up a step again after explicit increments within it.

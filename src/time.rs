@@ -32,7 +32,7 @@
 //! v½ = v₀ + ½ Δt a₀,   u₁ = u₀ + Δt v½                                                                       (7)
 //! (M + ½ Δt c) a₁ = −F(u₁) + c (v_driver − v½),   v₁ = v½ + ½ Δt a₁                                          (8)
 //! ```
-//! It is of second order and stable while ω Δt ≤ 2 for every vibration ω; `explicit.rs` has the bound of ω.
+//! It is of second order and stable while ω Δt ≤ 2 for every vibration ω; `explicit/` has the bound of ω.
 //!
 //! # Supports
 //! A prescribed dof follows its support and not (2), by which a jerk would ring. Its velocity is that of the support, and

@@ -4,7 +4,8 @@ mod common;
 
 use std::f64::consts::PI;
 
-use common::{Blocks, Finished, close, finish, model};
+use common::{Blocks, Finished, Record, close, finish, model};
+use fecontact::run::run;
 use nalgebra::DMatrix;
 use serde_json::{Value, json};
 
@@ -185,12 +186,86 @@ fn a_moving_support_drags_its_body() {
 
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
-    let run = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-        pool.install(|| finish(&bars(json!({"explicit": {}}), 80)))
+    // The second is crushed, and parts of it are repeated.
+    for case in [bars(json!({"explicit": {}}), 80), struck("neo_hookean", 1.0, 1.0, 0.3)] {
+        let run = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+            pool.install(|| finish(&case))
+        };
+        let [one, three] = [run(1), run(3)];
+        assert_eq!(one.states, three.states);
+    }
+}
+
+/// A bar of ρ = 1, E = 1, ν = 0.3, c_p = 1.16, that hits a rigid wall at the speed `v`; every other node inside is moved by
+/// the share `skew` of an element's size.
+fn struck(law: &str, v: f64, safety: f64, skew: f64) -> Value {
+    let mut blocks = Blocks::default().rectangle("bar", [4, 20], [0.0, 0.0], [0.1, 0.5]);
+    for (k, node) in blocks.nodes.iter_mut().enumerate() {
+        let (i, j) = (k % 5, k / 5);
+        if (1..4).contains(&i) && (1..20).contains(&j) && (i + j) % 2 == 1 {
+            *node = node.map(|x| x + 0.025 * skew);
+        }
+    }
+    json!({
+        "mesh": blocks.json(),
+        "bodies": {"bar": {"material": {"model": law, "E": 1, "nu": 0.3, "density": 1}}},
+        "contacts": {"wall": {
+            "slave": "bar_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+            "normal": {"alpha_n": 100}, "friction": {"law": "frictionless"},
+        }},
+        "initial_velocity": {"bar": [0, -v]},
+        "steps": [{"name": "hit", "duration": 1, "scheme": {"explicit": {"safety": safety}}, "dt": {"initial": 1}}],
+        "output": {"interval": 0.1},
+    })
+}
+
+/// An impact at 0.43 c_p compresses elements by two fifths within two increments of the undeformed mesh: increments follow.
+/// Half of the bar's energy and more comes back as motion, and its momentum is that of the contact force. Slow impacts
+/// take no more increments than ever: the bound of the undeformed mesh, but for a few per cent of strain.
+#[test]
+fn a_fast_impact_is_followed_by_the_increments() {
+    for (safety, allowed) in [(1.0, 0.05), (0.9, 0.05), (0.3, 0.02)] {
+        let run = finish(&struck("neo_hookean", 0.5, safety, 0.0));
+        assert_eq!(run.report.cutbacks, 0);
+        let energy = run.states.iter().map(|state| (state.energy.error() / state.energy.initial).abs());
+        let worst = energy.fold(0.0, f64::max);
+        assert!(worst < allowed, "safety {safety}: {worst}");
+        let flies: f64 = run.last().velocity.iter().skip(1).step_by(2).sum();
+        assert!(flies > 0.0, "it has come back");
+    }
+    let increments = |v: f64| finish(&struck("neo_hookean", v, 0.9, 0.0)).report.increments;
+    assert!(increments(0.01) <= increments(1e-6) + 10, "{} of {}", increments(0.01), increments(1e-6));
+}
+
+/// Twice as fast the mesh collapses all the same: from the last row the increments are made shorter, and the run goes on. A
+/// law that gives way when crushed ends the run with what, where and why.
+#[test]
+fn a_collapse_is_repeated_more_carefully_and_told_if_that_does_not_help() {
+    let run_of = |case: &Value| {
+        let mut record = Record::default();
+        let (report, result) = run(&model(case), &mut [&mut record]);
+        (report, result.map(drop).map_err(|error| error.to_string()), record)
     };
-    let [one, three] = [run(1), run(3)];
-    assert_eq!(one.states, three.states);
+    let (report, result, record) = run_of(&struck("neo_hookean", 1.0, 1.0, 0.3));
+    assert_eq!(result, Ok(()));
+    assert!(report.cutbacks > 0 && record.failed == report.cutbacks && record.states.len() == 10, "{report:?}");
+    let (report, result, record) = run_of(&struck("saint_venant_kirchhoff", 0.5, 0.9, 0.0));
+    let text = result.expect_err("it is crushed");
+    assert!(report.cutbacks == 4 && record.states.len() < 10, "{report:?}");
+    for part in [
+        "step `hit` stopped at time 0.0",
+        "element 0 of body `bar`",
+        "in shorter increments as well: the mesh is crushed there",
+        "damping.stiffness",
+    ] {
+        assert!(text.contains(part), "`{part}` is not in: {text}");
+    }
+    // A support that drives a block flat leaves nothing to hope for, and is told before increments shrink for ever.
+    let mut flat = struck("neo_hookean", 0.0, 0.9, 0.0);
+    flat["steps"][0]["supports"] = json!([{"on": "bar_bottom", "uy": 0}, {"on": "bar_top", "uy": {"rate": -0.6}}]);
+    let text = run_of(&flat).1.expect_err("it is crushed");
+    assert!(text.contains("the mesh is crushed there"), "{text}");
 }
 
 #[test]

@@ -961,6 +961,78 @@ fn check_tells_what_was_understood() {
     }
 }
 
+/// What `check` warns of reaches a run: once on stderr, once in the summary.
+#[test]
+fn warnings_of_check_reach_the_run() {
+    let folder = TempDir::new().unwrap();
+    write(folder.path(), "case.json", with(&[("/mesh/nodes/6/1", json!(-0.01))]).to_string());
+    let check = fecontact(folder.path(), &["check", "case.json"]);
+    let told = "surfaces overlap by up to 0.00788675 at the start, at (0.711325, -0.00788675)";
+    assert!(String::from_utf8_lossy(&check.stdout).contains(told), "{}", String::from_utf8_lossy(&check.stdout));
+    let run = fecontact(folder.path(), &["run", "case.json"]);
+    assert_eq!(stderr(&run).matches(told).count(), 1, "{}", stderr(&run));
+    let summary: Value =
+        serde_json::from_str(&fs::read_to_string(folder.path().join("out/case/summary.json")).unwrap()).unwrap();
+    let warnings = summary["warnings"].as_array().unwrap();
+    assert_eq!(warnings.iter().filter(|warning| warning.as_str().unwrap().contains(told)).count(), 1, "{warnings:?}");
+}
+
+/// Overlap that is round-off of the positions is none, near the origin and far from it; that of a shrink fit is told, and no
+/// reason to warn.
+#[test]
+fn overlap_is_told_where_it_means_something() {
+    let folder = TempDir::new().unwrap();
+    let checked = |case: &Value| {
+        write(folder.path(), "case.json", case.to_string());
+        String::from_utf8(fecontact(folder.path(), &["check", "case.json"]).stdout).unwrap()
+    };
+    let text = checked(&with(&[("/mesh/nodes/6/1", json!(-1.2e-18))]));
+    assert!(text.contains("initial gap 0 everywhere") && text.contains("warnings  none"), "{text}");
+    let mut far = with(&[("/mesh/nodes/6/1", json!(-1e-10))]);
+    for node in far["mesh"]["nodes"].as_array_mut().unwrap() {
+        *node = json!([node[0], node[1].as_f64().unwrap() + 1e5]);
+    }
+    let text = checked(&far);
+    assert!(text.contains("surfaces overlap by up to"), "1e-10 is seen at 1e5:\n{text}");
+    far["mesh"]["nodes"][6][1] = json!(1e5 - 2e-11);
+    let text = checked(&far);
+    assert!(text.contains("warnings  none"), "one digit of 1e5:\n{text}");
+    let text = checked(&with(&[("/mesh/nodes/6/1", json!(-0.01)), ("/contacts/base/shrink_fit", json!(true))]));
+    let told =
+        "shrink fit: the surfaces overlap by up to 0.00788675, at (0.711325, -0.00788675), brought in over the first";
+    assert!(text.contains(told) && text.contains("warnings  none"), "{text}");
+}
+
+/// A step inherits the scheme; `check` says which each has, and how what is freed or ended goes.
+#[test]
+fn check_tells_scheme_and_endings_of_each_step() {
+    let folder = TempDir::new().unwrap();
+    let mut case = good();
+    for body in ["block", "ground"] {
+        case["bodies"][body]["material"]["density"] = json!(1e-3);
+    }
+    case["steps"][0]["scheme"] = json!({"newmark": {}});
+    case["steps"][0]["loads"] =
+        json!([{"on": "block_top", "traction": {"x": 1}}, {"on": "block_top", "spring": {"kx": 1}}]);
+    let free = json!({"name": "free", "duration": 1, "supports": [{"on": "block_top", "uy": null}],
+                      "loads": [{"on": "block_top", "traction": null}, {"on": "block_top", "spring": null}]});
+    let rest = json!({"name": "rest", "duration": 1, "scheme": "static", "supports": [{"on": "block_top", "ux": null, "uy": 0}]});
+    case["steps"].as_array_mut().unwrap().extend([free, rest]);
+    write(folder.path(), "case.json", case.to_string());
+    let text = String::from_utf8(fecontact(folder.path(), &["check", "case.json"]).stdout).unwrap();
+    for part in [
+        "time 0 to 1, newmark",
+        "time 1 to 2, newmark",
+        "freed block_top: uy, at once",
+        "ended block_top: traction, it fades over the step",
+        "ended block_top: spring, at once",
+        "time 2 to 3, static",
+        "freed block_top: ux, its reaction fades over the step",
+    ] {
+        assert!(text.contains(part), "`{part}` is not in:\n{text}");
+    }
+}
+
 proptest::proptest! {
     #[test]
     fn no_text_makes_the_expression_parser_panic(text in "[-+*/^()xyt0-9. a-z{},πé]{0,40}") {
@@ -1006,4 +1078,26 @@ fn an_explicit_step_needs_the_mass_of_every_node() {
         ],
         &["contacts.base.massless: ", "the explicit step `press` needs the mass of every node: leave it out"],
     );
+}
+
+/// What the numbers of a mesh far from the origin cannot say is told, by `check` and by `run`: at 1e8 they have 2e-8 of round-off,
+/// a share of 2e-8 of these edges; at 1e7 a tenth of that.
+#[test]
+fn positions_that_round_off_blurs_are_told() {
+    let moved = |shift: f64| {
+        let mut case = good();
+        let nodes = case["mesh"]["nodes"].as_array_mut().expect("a list");
+        nodes.iter_mut().for_each(|node| node[0] = json!(node[0].as_f64().expect("a number") + shift));
+        case
+    };
+    let told = "their positions have 2e-8 of round-off";
+    let folder = TempDir::new().unwrap();
+    write(folder.path(), "far.json", moved(1e8).to_string());
+    let text = String::from_utf8(fecontact(folder.path(), &["check", "far.json"]).stdout).unwrap();
+    assert!(text.contains(told), "{text}");
+    let run = fecontact(folder.path(), &["run", "far.json", "--out", "far"]);
+    assert_eq!((run.status.code(), stderr(&run).matches(told).count()), (Some(0), 1), "{}", stderr(&run));
+    write(folder.path(), "near.json", moved(1e7).to_string());
+    let text = String::from_utf8(fecontact(folder.path(), &["check", "near.json"]).stdout).unwrap();
+    assert!(text.contains("warnings  none"), "{text}");
 }

@@ -180,3 +180,53 @@ fn a_dynamic_run_ends_with_its_energy_audit() {
     let error: f64 = last[10].parse().unwrap();
     assert!(of("external_work") > 1.0 && error.abs() < 0.01 * of("external_work"), "{error} of {energy}");
 }
+
+/// Frames of an explicit step come with every n-th row of the history, not with every n-th of its many increments, and with
+/// the last.
+#[test]
+fn frames_of_explicit_steps_come_with_every_nth_row() {
+    for (every, interval, expected) in [
+        (1, 0.25, vec![0.0, 0.25, 0.5, 0.75, 1.0]),
+        (4, 0.05, vec![0.0, 0.2, 0.4, 0.6, 0.8, 1.0]),
+        (7, 0.04, vec![0.0, 0.28, 0.56, 0.84, 1.0]),
+    ] {
+        let folder = TempDir::new().unwrap();
+        let case = json!({
+            "mesh": Blocks::default().rectangle("bar", [10, 2], [0.0, 0.0], [1.0, 0.1]).json(),
+            "bodies": {"bar": {"material": {"model": "linear", "E": 1000, "nu": 0, "density": 1}}},
+            "initial_velocity": {"bar": [0, 1e-3]},
+            "steps": [{"name": "free", "duration": 1, "scheme": {"explicit": {}}, "supports": [{"on": "bar_left", "ux": 0}]}],
+            "output": {"every": every, "interval": interval}
+        });
+        run(folder.path(), &case);
+        let collection = fs::read_to_string(folder.path().join("out/case/solid.pvd")).unwrap();
+        let times = collection.split("timestep=\"").skip(1).map(|rest| rest.split('"').next().unwrap());
+        let times: Vec<f64> = times.map(|time| time.parse().unwrap()).collect();
+        assert_eq!(times.len(), expected.len(), "every {every}: {times:?}");
+        times.iter().zip(&expected).for_each(|(time, expected)| close("time of a frame", *time, *expected, 1e-9));
+    }
+}
+
+/// What slides without friction has a map of its slip, and no fronts.
+#[test]
+fn frictionless_contacts_have_no_fronts() {
+    for (friction, fronts) in [(json!({"law": "frictionless"}), false), (json!({"law": "coulomb", "mu": 0.1}), true)] {
+        let folder = TempDir::new().unwrap();
+        let case = json!({
+            "mesh": Blocks::default().rectangle("slab", [4, 2], [0.0, 0.0], [1.0, 0.5]).json(),
+            "bodies": {"slab": {"material": {"model": "linear", "E": 1000, "nu": 0.3}}},
+            "contacts": {"guide": {
+                "slave": "slab_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+                "friction": friction, "initial": {"pressure": 1}
+            }},
+            "steps": [{"name": "slide", "duration": 1, "dt": {"initial": 0.1},
+                       "supports": [{"on": "slab_top", "ux": {"rate": 0.1}, "uy": 0}]}],
+            "output": {"fields": false, "fronts": {"slip_rate": 0.01}}
+        });
+        run(folder.path(), &case);
+        let rows =
+            |name: &str| fs::read_to_string(folder.path().join("out/case").join(name)).unwrap().lines().count() - 1;
+        assert_eq!(rows("slip_map.csv"), 10 * 8);
+        assert_eq!(rows("fronts.csv") > 0, fronts, "{friction}");
+    }
+}

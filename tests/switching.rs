@@ -152,3 +152,24 @@ fn a_static_step_stops_a_motion_and_tells_what_it_took() {
         close("energy", energy.error(), 0.0, 0.01 * energy.external_work);
     }
 }
+
+/// A slab that slides on a guide without friction, faster than a rupture would: there is nothing to break. The ten
+/// increments stay ten.
+#[test]
+fn frictionless_sliding_is_no_rupture() {
+    let run = finish(&json!({
+        "mesh": Blocks::default().rectangle("slab", [8, 4], [0.0, 0.0], [1.0, 0.5]).json(),
+        "bodies": {"slab": {"material": {"model": "linear", "E": 1000, "nu": 0.3, "density": 1e-3}}},
+        "contacts": {"guide": {
+            "slave": "slab_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+            "friction": {"law": "frictionless"}, "initial": {"pressure": 1},
+        }},
+        "steps": [{
+            "name": "slide", "duration": 1, "dt": {"initial": 0.1}, "rupture": {"slip_rate": 0.01},
+            "supports": [{"on": "slab_top", "ux": {"rate": 0.1}, "uy": 0}],
+        }],
+    }));
+    let slid = run.last().contacts[0][0].friction.plastic_slip.abs();
+    close("slip", slid, 0.1, 1e-9);
+    assert_eq!((run.report.increments, run.report.ruptures, run.report.rejected), (10, 0, 0));
+}

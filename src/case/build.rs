@@ -506,8 +506,14 @@ fn steps(case: &Case, model: &Model) -> Checked<Vec<Step>> {
     if case.steps.is_empty() {
         return Err(Complaint::new("steps", "is empty: give at least one step"));
     }
-    let mut builder =
-        StepBuilder { model, start: 0.0, increments: None, supports: BTreeMap::new(), loads: BTreeMap::new() };
+    let mut builder = StepBuilder {
+        model,
+        start: 0.0,
+        scheme: Scheme::Static,
+        increments: None,
+        supports: BTreeMap::new(),
+        loads: BTreeMap::new(),
+    };
     case.steps.iter().enumerate().map(|(k, step)| builder.next(&format!("steps[{k}]"), step)).collect()
 }
 
@@ -515,6 +521,7 @@ fn steps(case: &Case, model: &Model) -> Checked<Vec<Step>> {
 struct StepBuilder<'m> {
     model: &'m Model,
     start: f64,
+    scheme: Scheme,
     increments: Option<IncrementsInput>,
     supports: BTreeMap<usize, Prescribed>,
     loads: BTreeMap<(String, LoadKind), LoadInForce>,
@@ -547,12 +554,16 @@ impl StepBuilder<'_> {
             let message = format!("is {}: must be positive", input.duration);
             return Err(Complaint::new(format!("{place}.duration"), message));
         }
-        input.scheme.check().map_err(|error| Complaint::new(format!("{place}.scheme"), error))?;
+        self.scheme = input.scheme.unwrap_or(self.scheme);
+        let scheme = self.scheme;
+        scheme.check().map_err(|error| Complaint::new(format!("{place}.scheme"), error))?;
         let span = Span { start: self.start, end: self.start + input.duration };
         self.start = span.end;
         self.increments = input.dt.or(self.increments);
-        let increments = increments(&format!("{place}.dt"), self.increments, span, input.scheme)?;
-        let released = self.supports(place, input, span)?;
+        let increments = increments(&format!("{place}.dt"), self.increments, span, scheme)?;
+        let freed = self.supports(place, input, span)?;
+        // In motion there is no rest of the reaction: what held is gone.
+        let released = if scheme.is_dynamic() { Vec::new() } else { freed };
         for (k, load) in input.loads.iter().enumerate() {
             self.load(&format!("{place}.loads[{k}]"), load, span)?;
         }
@@ -565,8 +576,9 @@ impl StepBuilder<'_> {
             loads.absorbers.extend(load.absorbers.iter().cloned());
         }
         let supports = self.supports.values().cloned().collect();
-        let stabilization = stabilization(&format!("{place}.stabilize"), input, self.model)?;
-        let (name, scheme) = (input.name.clone(), input.scheme);
+        let stabilization = stabilization(&format!("{place}.stabilize"), input, scheme, self.model)?;
+        let increments = if stabilization.is_empty() { increments } else { increments.at_most(0.5 * input.duration) };
+        let name = input.name.clone();
         let mut step = Step { name, span, scheme, increments, rupture: None, supports, released, loads, stabilization };
         step.rupture = rupture(&format!("{place}.rupture"), input, &step, self.model)?.map(Box::new);
         Ok(step)
@@ -924,14 +936,14 @@ pub(super) fn expression(text: &str, place: &str) -> Checked<Expression> {
 }
 
 /// c₀ of every dof: the nodes of a body share `stabilize` × (λ + 2G) × duration.
-fn stabilization(place: &str, input: &StepInput, model: &Model) -> Checked<Vec<f64>> {
+fn stabilization(place: &str, input: &StepInput, scheme: Scheme, model: &Model) -> Checked<Vec<f64>> {
     let Some(share) = input.stabilize else { return Ok(Vec::new()) };
     if !(share > 0.0 && share <= 1.0) {
         let message =
             format!("is {share}: must be a share of the stiffness, above 0 and at most 1 (1e-3 is a good start)");
         return Err(Complaint::new(place, message));
     }
-    if input.scheme != Scheme::Static {
+    if scheme != Scheme::Static {
         return Err(Complaint::new(place, "is for static steps: in a dynamic one inertia holds the bodies"));
     }
     let mut coefficients = vec![0.0; model.dofs()];

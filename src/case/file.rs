@@ -329,21 +329,25 @@ pub struct StepInput {
     pub name: String,
     /// Length of the step [T]
     pub duration: f64,
-    /// Time scheme
-    #[serde(default)]
-    pub scheme: Scheme,
+    /// Time scheme; inherited from the step before unless given, static in the first step
+    pub scheme: Option<Scheme>,
     /// Increments; inherited from the step before unless given
     pub dt: Option<IncrementsInput>,
     /// Static steps only, where bodies are held by nothing until contact holds them: dashpots at all nodes of every body
     /// resist motion, at the start of the step as if this share of the body's stiffness lambda + 2G moved it in the
-    /// time of the step; they fade linearly and are gone at its end. 1e-3 is a good start. Not inherited
+    /// time of the step; they fade linearly and are gone at its end, which takes at least two increments. 1e-3 is a good
+    /// start. Not inherited
     pub stabilize: Option<f64>,
     /// Static and implicit steps: the step goes on explicitly while a contact slips fast. Not inherited
     pub rupture: Option<RuptureInput>,
-    /// Supports; inherited, and replaced where the same group and direction is named again
+    /// Supports; inherited, and replaced where the same group and direction is named again. One that null frees is gone at
+    /// once in dynamic and explicit steps; in a static step, also while `rupture` makes it explicit, its reaction stays as a
+    /// force that fades linearly over the step
     #[serde(default)]
     pub supports: Vec<SupportInput>,
-    /// Loads; inherited, and replaced where the same group and kind is named again
+    /// Loads; inherited, and replaced where the same group and kind is named again. In any scheme null takes a pressure,
+    /// traction, force or gravity linearly to zero over the step, as the value 0 would, and ends springs, dashpots and
+    /// absorbing sides at once. A table or expression makes an end as sudden as it is to be
     #[serde(default)]
     pub loads: Vec<LoadInput>,
 }
@@ -388,13 +392,13 @@ pub struct IncrementsInput {
 pub struct SupportInput {
     /// Where
     pub on: Place,
-    /// Displacement in x [L]; null frees it
+    /// Displacement in x [L]; null frees it, see `supports`
     #[serde(default, deserialize_with = "present")]
     pub ux: Option<Option<DriveInput>>,
-    /// Displacement in y [L]; null frees it
+    /// Displacement in y [L]; null frees it, see `supports`
     #[serde(default, deserialize_with = "present")]
     pub uy: Option<Option<DriveInput>>,
-    /// Rigid rotation about a point, instead of ux and uy; null frees it
+    /// Rigid rotation about a point, instead of ux and uy; null frees it, see `supports`
     #[serde(default, deserialize_with = "present")]
     pub rotation: Option<Option<RotationInput>>,
 }
@@ -562,7 +566,7 @@ impl Default for NewtonInput {
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputInput {
-    /// Fields are written every n-th increment, and at the end of each step
+    /// Fields are written with every n-th row of the history, and at the end of each step
     pub every: usize,
     /// Whether fields are written at all
     pub fields: bool,

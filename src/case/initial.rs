@@ -52,7 +52,7 @@ pub fn velocities(case: &Case, model: &Model) -> Result<Vec<f64>, Complaint> {
 }
 
 /// What is wrong with velocities that a static first step takes no notice of.
-pub fn lost_velocity(model: &Model) -> Option<String> {
+pub(super) fn lost_velocity(model: &Model) -> Option<String> {
     let first = model.steps.first().filter(|step| !step.scheme.is_dynamic())?;
     let moving = model.initial_velocity.iter().any(|v| *v != 0.0);
     moving.then(|| {

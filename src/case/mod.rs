@@ -13,13 +13,14 @@ mod names;
 mod periodic;
 mod read;
 mod report;
+mod start;
 mod supported;
 
 pub use build::build;
 pub use error::CaseError;
-pub use initial::lost_velocity;
-pub use method::{choices, concerns};
+pub use method::choices;
 pub use report::report;
+pub use start::warnings;
 
 use std::path::Path;
 

@@ -11,19 +11,20 @@ use super::file::{
     InitialInput, LoadInput, MasterInput, MeshSource, Method, PlaneInput, PolylineInput, RigidInput, SpringInput,
     StepInput, TimeInput,
 };
-use super::initial::lost_velocity;
-use super::method::{Chosen, choose, concerns};
-use crate::configuration::Configuration;
+use super::method::{Chosen, choose};
+use super::start;
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
 use crate::increments::EVENT_LOCATION;
 use crate::mesh::{Group, Mesh};
 use crate::model::{Model, PointMass, Step};
+use crate::output::warnings::several_answers;
 use crate::shape::ElementKind;
 
 /// A readable account of a checked case.
 pub fn report(case: &Case, model: &Model) -> String {
-    let mut warnings: Vec<String> = lost_velocity(model).into_iter().chain(concerns(case, &model.mesh)).collect();
+    let mut warnings = start::warnings(case, model);
+    warnings.extend(model.contacts.iter().filter_map(pressed_too_hard));
     let mut text = String::new();
     if !model.title.is_empty() {
         text += &format!("{}\n\n", model.title);
@@ -34,7 +35,7 @@ pub fn report(case: &Case, model: &Model) -> String {
     section(&mut text, "bodies", bodies(case));
     section(&mut text, "periodic", periodic(case, model));
     section(&mut text, "points", point_masses(case, model));
-    section(&mut text, "contacts", contacts(case, model, &mut warnings));
+    section(&mut text, "contacts", contacts(case, model));
     section(&mut text, "steps", steps(case, model));
     section(&mut text, "newton", vec![newton(case)]);
     section(&mut text, "output", output(case));
@@ -58,7 +59,7 @@ fn aligned(rows: &[[String; 2]]) -> Vec<String> {
 }
 
 /// A number with at most six digits, in powers of ten where it is very large or small.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     let rounded = format!("{value:.5e}").parse().unwrap_or(value);
     match rounded {
         0.0 => "0".into(),
@@ -67,7 +68,7 @@ fn number(value: f64) -> String {
     }
 }
 
-fn count(count: usize, what: &str) -> String {
+pub(super) fn count(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
@@ -159,14 +160,14 @@ fn plain(value: &Value) -> String {
     }
 }
 
-fn contacts(case: &Case, model: &Model, warnings: &mut Vec<String>) -> Vec<String> {
+fn contacts(case: &Case, model: &Model) -> Vec<String> {
     let mut lines = Vec::new();
     for pair in &model.contacts {
         lines.push(pair.name.clone());
         lines.extend(contact(case, &model.mesh, pair).into_iter().map(|line| format!("  {line}")));
         let start = match &case.contacts[&pair.name].initial {
             Some(initial) => initial_tractions(initial, pair),
-            None => initial_gaps(model, pair, warnings),
+            None => start::gaps(model, pair, &case.contacts[&pair.name]),
         };
         lines.push(format!("  {start}"));
     }
@@ -183,6 +184,14 @@ fn initial_tractions(initial: &InitialInput, pair: &ContactPair) -> String {
     let mu = range(points().map(mu));
     let balanced = if initial.balanced { ", balanced by an initial stress of the bodies" } else { "" };
     format!("starts closed with the pressure {p} and the traction {q}{balanced}; mu {mu}, structure {structure}")
+}
+
+/// An initial pressure under which the answer may snap; a run meets it in its first increment.
+fn pressed_too_hard(pair: &ContactPair) -> Option<String> {
+    let pressed = pair.points.iter().zip(pair.initial.iter().flatten());
+    let limits = pressed.filter_map(|(point, initial)| Some((initial.pressure, pair.law(point).uniqueness_limit()?)));
+    let (pressure, limit) = limits.filter(|(pressure, limit)| pressure > limit).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(format!("contact `{}`: {}", pair.name, several_answers(pressure, limit)))
 }
 
 /// One number, or the range of several.
@@ -257,38 +266,20 @@ fn contact(case: &Case, mesh: &Mesh, pair: &ContactPair) -> Vec<String> {
     lines
 }
 
-fn initial_gaps(model: &Model, pair: &ContactPair, warnings: &mut Vec<String>) -> String {
-    let states = pair.initial_states(&Configuration::undeformed(&model.mesh.nodes));
-    let gaps: Vec<f64> = states.iter().filter(|state| state.foot.is_some()).map(|state| state.gap).collect();
-    let [low, high] =
-        [gaps.iter().copied().fold(f64::INFINITY, f64::min), gaps.iter().copied().fold(f64::NEG_INFINITY, f64::max)];
-    let mut warn = |message: String| warnings.push(format!("contact `{}`: {message}", pair.name));
-    let beside = count(states.len() - gaps.len(), "contact point");
-    if gaps.is_empty() {
-        warn("no point of the slave faces the master; check which groups are named, and where they lie".into());
-        return format!("initial gap: {beside}, and none faces the master");
-    }
-    if gaps.len() < states.len() {
-        warn(format!("{beside} of the slave face no part of the master"));
-    }
-    if low < 0.0 {
-        warn(format!("surfaces overlap by up to {} at the start, and press from the first increment on", number(-low)));
-    }
-    match low == high {
-        true => format!("initial gap {} everywhere", number(low)),
-        false => format!("initial gap from {} to {}", number(low), number(high)),
-    }
-}
-
 fn steps(case: &Case, model: &Model) -> Vec<String> {
     let mut lines = Vec::new();
     let (mut supports, mut loads) = (InForce::new(), InForce::new());
     for (step, input) in model.steps.iter().zip(&case.steps) {
         lines.push(step.name.clone());
-        lines.extend(step_lines(step).into_iter().map(|line| format!("  {line}")));
-        supports.step(written_supports(input));
-        loads.step(input.loads.iter().map(written_load));
-        lines.extend(supports.lines("held").into_iter().chain(loads.lines("loaded")).map(|line| format!("  {line}")));
+        let mut told = step_lines(step);
+        let freed = if step.scheme.is_dynamic() { "at once" } else { "its reaction fades over the step" };
+        told.extend(supports.step(written_supports(input)).map(|(on, kind)| format!("freed {on}: {kind}, {freed}")));
+        told.extend(loads.step(input.loads.iter().map(written_load)).map(|(on, kind)| {
+            let ended = if ENDS_AT_ONCE.contains(&kind) { "at once" } else { "it fades over the step" };
+            format!("ended {on}: {kind}, {ended}")
+        }));
+        told.extend(supports.lines("held").into_iter().chain(loads.lines("loaded")));
+        lines.extend(told.into_iter().map(|line| format!("  {line}")));
         lines.push(format!("  {} prescribed", count(step.supports.len(), "dof")));
     }
     lines
@@ -327,6 +318,9 @@ struct Written {
     kept: bool,
 }
 
+/// Loads without a value that could fade.
+const ENDS_AT_ONCE: [&str; 3] = ["spring", "dashpot", "absorbing side"];
+
 /// Place, kind and value of one entry of a step.
 type Entry = (String, &'static str, Option<String>);
 
@@ -335,14 +329,20 @@ impl InForce {
         Self(BTreeMap::new())
     }
 
-    fn step(&mut self, entries: impl IntoIterator<Item = Entry>) {
+    /// Take over what is written; returns what is ended.
+    fn step(&mut self, entries: impl IntoIterator<Item = Entry>) -> impl Iterator<Item = (String, &'static str)> {
         self.0.values_mut().for_each(|written| written.kept = true);
+        let mut ended = Vec::new();
         for (on, kind, text) in entries {
             match text {
-                Some(text) => self.0.insert((on, kind), Written { text, kept: false }),
-                None => self.0.remove(&(on, kind)),
-            };
+                Some(text) => drop(self.0.insert((on, kind), Written { text, kept: false })),
+                None => {
+                    self.0.remove(&(on.clone(), kind));
+                    ended.push((on, kind));
+                }
+            }
         }
+        ended.into_iter()
     }
 
     fn lines(&self, verb: &str) -> Vec<String> {
@@ -423,8 +423,8 @@ fn newton(case: &Case) -> String {
 fn output(case: &Case) -> Vec<String> {
     let fields = match (case.output.fields, case.output.every) {
         (false, _) => "no fields".into(),
-        (true, 1) => "fields at every increment".into(),
-        (true, every) => format!("fields every {every} increments, and at the end of each step"),
+        (true, 1) => "fields with every row of the history".into(),
+        (true, every) => format!("fields with every {every}th row of the history, and at the end of each step"),
     };
     let watched = if case.watch.is_empty() { "no group".into() } else { case.watch.join(", ") };
     let mut lines = vec![format!("history watches {watched}"), fields];

@@ -42,6 +42,10 @@ impl Material for Linear {
         self.lame.shear
     }
 
+    fn is_linear(&self) -> bool {
+        true
+    }
+
     #[inline(always)]
     fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
         if !deformation.iter().all(|component| component.is_finite()) {

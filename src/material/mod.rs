@@ -106,6 +106,11 @@ pub trait Material: Debug + Send + Sync {
     /// G: shear modulus of the undeformed material [F/L²]
     fn shear_modulus(&self) -> f64;
 
+    /// Whether ∂P/∂F is the same at every F.
+    fn is_linear(&self) -> bool {
+        false
+    }
+
     /// P, ∂P/∂F, W and σ_zz at the in-plane deformation gradient F.
     ///
     /// # Errors

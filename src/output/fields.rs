@@ -22,6 +22,8 @@ use nalgebra::Vector2;
 #[derive(Debug)]
 pub struct Fields {
     every: usize,
+    /// Rows of the history so far
+    rows: usize,
     /// States to be written; `None` when there are no more
     frames: Option<SyncSender<State>>,
     /// `None` when it has ended
@@ -40,8 +42,8 @@ struct Collection {
 }
 
 impl Fields {
-    /// Start the series in `folder`, with the state at rest as the first frame; then every n-th accepted increment and
-    /// the last of each step are written.
+    /// Start the series in `folder`, with the state at rest as the first frame; then that of every n-th row of
+    /// the history and the last of each step are written.
     ///
     /// # Errors
     /// [`Error::Output`] when a file cannot be written.
@@ -61,7 +63,7 @@ impl Fields {
             }
             Ok(())
         });
-        let mut fields = Self { every, frames: Some(frames), writer: Some(writer) };
+        let mut fields = Self { every, rows: 0, frames: Some(frames), writer: Some(writer) };
         fields.write(start)?;
         Ok(fields)
     }
@@ -75,12 +77,9 @@ impl Fields {
 
 impl Observer for Fields {
     fn record(&mut self, _: &Model, attempt: &Attempt) -> Result<(), Error> {
-        match attempt.accepted {
-            Some(state) if state.increment % self.every == 0 || state.time >= attempt.step.span.end => {
-                self.write(state)
-            }
-            _ => Ok(()),
-        }
+        let Some(state) = attempt.accepted else { return Ok(()) };
+        self.rows += 1;
+        if self.rows % self.every == 0 || state.time >= attempt.step.span.end { self.write(state) } else { Ok(()) }
     }
 
     fn finish(&mut self) -> Result<(), Error> {

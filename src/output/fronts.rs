@@ -11,6 +11,8 @@
 //! ```text
 //! Δ(external work − strain energy − elastic energy of contacts) = Δ(kinetic energy + dissipation)
 //! ```
+//!
+//! A contact without friction has a slip map, but no fronts.
 
 use std::path::{Path, PathBuf};
 
@@ -115,6 +117,8 @@ struct Point {
     at: [f64; 2],
     /// Length that the point stands for [L]
     length: f64,
+    /// Whether it has friction: what slides freely has no fronts
+    rubs: bool,
     slip: f64,
     rate: f64,
     arrivals: Vec<Arrival>,
@@ -181,13 +185,14 @@ impl Fronts {
         let all = self.interfaces.iter_mut().zip(&model.contacts).zip(&state.contacts).enumerate();
         for (number, ((interface, pair), states)) in all {
             let slip_rate = |(point, state): (&Point, &ContactState)| (state.friction.plastic_slip - point.slip) / dt;
-            let slipping = interface.points.iter().zip(states).any(|both| slip_rate(both).abs() > self.threshold);
+            let mut rubbing = interface.points.iter().zip(states).filter(|(point, _)| point.rubs);
+            let slipping = rubbing.any(|both| slip_rate(both).abs() > self.threshold);
             interface.events += usize::from(slipping && !interface.slipping);
             interface.slipping = slipping;
             for ((point, slave), contact) in interface.points.iter_mut().zip(&pair.points).zip(states) {
                 let friction = &contact.friction;
                 let rate = (friction.plastic_slip - point.slip) / dt;
-                if point.rate.abs() <= self.threshold && rate.abs() > self.threshold {
+                if point.rubs && point.rate.abs() <= self.threshold && rate.abs() > self.threshold {
                     let share = (self.threshold - point.rate.abs()) / (rate.abs() - point.rate.abs());
                     let time = before - 0.5 * old_dt + share * 0.5 * (old_dt + dt);
                     point.arrivals.push(Arrival { time, event: interface.events, given: given_at(time) });
@@ -280,8 +285,9 @@ impl Interface {
                     position += (at - pair.points[k - 1].at(&x)).norm();
                 }
                 let length = pair.points[k].current_length(&x);
+                let rubs = pair.law(&pair.points[k]).stiffness() > 0.0;
                 let (at, arrivals) = (at.into(), Vec::new());
-                points.push(Point { line, position, at, length, slip: 0.0, rate: 0.0, arrivals });
+                points.push(Point { line, position, at, length, rubs, slip: 0.0, rate: 0.0, arrivals });
             }
         }
         let speeds = WaveSpeeds::behind(model, pair);

@@ -1,5 +1,6 @@
 //! What a run leaves behind: observers of every attempt, and the files they write.
 
+pub mod audit;
 mod csv;
 pub mod fields;
 pub mod fronts;

@@ -1,8 +1,9 @@
-//! Things a user should know about a result: deep penetration, pressure past the law's uniqueness bound, and errors in
-//! time larger than allowed.
+//! Things a user should know about a result: deep penetration, pressure past the law's uniqueness bound, errors in time
+//! larger than allowed, and energy that came from nowhere or is lost.
 
 use std::collections::BTreeSet;
 
+use super::audit::Audit;
 use super::{Attempt, Observer};
 use crate::configuration::Configuration;
 use crate::contact::force::ContactState;
@@ -26,6 +27,8 @@ pub struct Warnings {
     inexact: BTreeSet<String>,
     /// Steps whose linear systems have been warned about
     perturbed: BTreeSet<String>,
+    /// The balance of energies so far
+    pub audit: Audit,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -40,6 +43,7 @@ impl Observer for Warnings {
         let Some(state) = attempt.accepted else { return Ok(()) };
         self.error_in_time(attempt);
         self.lost_pivots(attempt);
+        self.audit.record(model, attempt.step, attempt.old, state);
         let x = model.configuration(&state.displacement);
         for (number, (pair, states)) in model.contacts.iter().zip(&state.contacts).enumerate() {
             for (point, contact) in pair.points.iter().zip(states).filter(|(_, c)| c.friction.pressure > 0.0) {
@@ -60,6 +64,19 @@ impl Observer for Warnings {
         }
         Ok(())
     }
+
+    fn finish(&mut self) -> Result<(), Error> {
+        self.list.extend(self.audit.concern());
+        Ok(())
+    }
+}
+
+/// What is to be said of a pressure past the bound of uniqueness.
+pub fn several_answers(pressure: f64, limit: f64) -> String {
+    format!(
+        "the pressure {pressure:.6e} passes {limit:.6e}, above which weakening may outrun the contact stiffness and the \
+         answer snaps; raise alpha_t"
+    )
 }
 
 impl Warnings {
@@ -131,12 +148,8 @@ fn concerns(
         let percent = 100.0 * share;
         format!("the penetration {:.3e} is {percent:.1} % of the slave's edge; raise alpha_n", -gap)
     });
-    let several = pair.law(point).uniqueness_limit().filter(|limit| pressure > *limit).map(|limit| {
-        format!(
-            "the pressure {pressure:.6e} passes {limit:.6e}, above which weakening may outrun the contact stiffness and \
-             the answer snaps; raise alpha_t"
-        )
-    });
+    let limit = pair.law(point).uniqueness_limit().filter(|limit| pressure > *limit);
+    let several = limit.map(|limit| several_answers(pressure, limit));
     let deep = deep.map(|message| (Kind::DeepPenetration, message));
     deep.into_iter().chain(several.map(|message| (Kind::SeveralAnswers, message)))
 }

@@ -10,7 +10,7 @@
 //! (1) holds because a sum of stiffnesses vibrates no faster than the fastest of its parts, each with its share of the
 //! mass (Irons & Treharne), the shares of elements and contact being in the ratio of their ω²; (2) with the Frobenius
 //! norm is at most 8^⅛ = 1.3 times the eigenvalue, commonly 1.05; (3) is Gershgorin's theorem. Every contact point that
-//! faces the master counts, open or closed. (4) takes the place of Δt ≤ 2/ω in a viscous body, whose stress is that of
+//! faces the master counts, open or closed. [`stability`] says when these are found again. (4) takes the place of Δt ≤ 2/ω in a viscous body, whose stress is that of
 //! the mean velocity of the increment before, (u₁ − u₀)/Δt: with a damping ratio ζ = c/(2ω) it is 2/ω (√(1 + ζ²) − ζ).
 //! Damping by the masses and dashpots act at the end of the increment and cost nothing.
 //!
@@ -23,22 +23,31 @@
 //! Source: Irons & Treharne (1971), Proc. 3rd Conf. Matrix Methods in Struct. Mech., WPAFB; Belytschko, Liu, Moran &
 //! Elkhodary (2014), Nonlinear Finite Elements for Continua and Structures, §6.2.
 
+mod stability;
+
 use std::collections::BTreeMap;
 
-use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+use nalgebra::{Matrix2, Vector2};
 use rayon::prelude::*;
 
 use crate::assembly::{Assembler, Trial};
 use crate::boundary::Prescribed;
-use crate::contact::surface::Master;
 use crate::energy::{contact_energy, friction_dissipation, work_of_drivers};
 use crate::error::{StepFailure, TrialFailure};
 use crate::model::{Model, Step};
 use crate::state::State;
 use crate::time::{start_acceleration, supported_rates};
+use stability::Stability;
 
-/// Increments after which the longest stable one is looked at again: in that time a deformation changes little.
-const LOOK_AGAIN: usize = 200;
+/// Share of its size that no element changes by more than in an increment: what strikes it is stopped by its stiffness
+/// before it is turned inside out.
+const MOST_CHANGE: f64 = 0.1;
+
+/// How much shorter increments are after those before collapsed.
+const CUT: f64 = 0.5;
+
+/// Increments are not made shorter than this share of the safe ones.
+const MOST_CAREFUL: f64 = 0.125;
 
 /// Share of a step's end within which an output falls on it.
 const ROUND_OFF: f64 = 1e-9;
@@ -55,11 +64,15 @@ pub struct Explicit<'m> {
     pulls: Vec<Vector2<f64>>,
     /// Viscous forces of the bodies at the last two times, which resist; empty if there are none [F]
     viscous: [Vec<f64>; 2],
-    /// Longest stable increment when last looked at [T]
+    stability: Stability<'m>,
+    /// Share of the safe increment that is taken: less after a collapse
+    care: f64,
+    /// The longest increment to take, when last looked at [T]
     stable: f64,
-    /// Increments since then
-    since: usize,
+    /// Displacements at the end of the increment that is next
     displacement: Vec<f64>,
+    /// Where each support goes in it
+    places: Vec<[f64; 4]>,
 }
 
 /// C of the force −C v on one node [F T/L].
@@ -97,6 +110,29 @@ impl<'m> Explicit<'m> {
         state: &mut State,
         assembler: &mut Assembler,
     ) -> Result<Self, StepFailure> {
+        Self::with_care(1.0, model, step, state, assembler)
+    }
+
+    /// Shorter increments, from the state before others in which the mesh collapsed or the motion grew without bounds;
+    /// `false` if they are as short as it makes sense.
+    ///
+    /// # Errors
+    /// As [`Explicit::begin`].
+    pub fn more_carefully(&mut self, state: &mut State, assembler: &mut Assembler) -> Result<bool, StepFailure> {
+        if self.care <= MOST_CAREFUL {
+            return Ok(false);
+        }
+        *self = Self::with_care(CUT * self.care, self.model, self.step, state, assembler)?;
+        Ok(true)
+    }
+
+    fn with_care(
+        care: f64,
+        model: &'m Model,
+        step: &'m Step,
+        state: &mut State,
+        assembler: &mut Assembler,
+    ) -> Result<Self, StepFailure> {
         let mut explicit = Self {
             model,
             step,
@@ -104,12 +140,13 @@ impl<'m> Explicit<'m> {
             dampers: dampers(model, step),
             pulls: Vec::new(),
             viscous: [(); 2].map(|()| vec![0.0; if model.is_viscous() { model.dofs() } else { 0 }]),
+            stability: Stability::new(model, state)?,
+            care,
             stable: 0.0,
-            since: LOOK_AGAIN,
             displacement: state.displacement.clone(),
+            places: Vec::new(),
         };
-        explicit.stable = explicit.stable_increment(state)?;
-        explicit.since = 0;
+        explicit.stable = explicit.stable_increment(state);
         explicit.start(state, assembler)?;
         Ok(explicit)
     }
@@ -137,11 +174,15 @@ impl<'m> Explicit<'m> {
             .collect();
         let first = Trial::new(state, step, state.time + self.stable, self.stable);
         let mut external = evaluation.loads.clone();
+        // A freed support has no reaction any more.
+        let mut reaction = vec![0.0; model.dofs()];
         for support in &step.supports {
             let dof = support.dof;
             acceleration[dof] = start_acceleration(first.thirds(support, model), self.stable);
-            external[dof] += evaluation.force[dof] - damping[dof] + self.mass[dof / 2] * acceleration[dof];
+            reaction[dof] = evaluation.force[dof] - damping[dof] + self.mass[dof / 2] * acceleration[dof];
+            external[dof] += reaction[dof];
         }
+        state.reaction = reaction;
         state.force = evaluation.force.iter().zip(&damping).map(|(f, d)| f - d).collect();
         model.ties.spread(2, &mut acceleration);
         state.acceleration = acceleration;
@@ -155,6 +196,12 @@ impl<'m> Explicit<'m> {
         Ok(())
     }
 
+    /// The safe share of (1), but no more than the step allows [T].
+    fn stable_increment(&self, state: &State) -> f64 {
+        let longest = self.stability.longest_increment(self.step, &self.mass, state);
+        (self.step.scheme.safety() * self.care * longest).min(self.step.increments.max)
+    }
+
     /// Equal increments to a time, none longer than is stable. The energies and the damping of the state are complete at the
     /// end only, the work and dissipation in between having been summed.
     ///
@@ -163,15 +210,8 @@ impl<'m> Explicit<'m> {
     pub fn go_to(&mut self, time: f64, state: &mut State, assembler: &mut Assembler) -> Result<usize, StepFailure> {
         let mut increments = 0;
         while state.time < time {
-            if self.since >= LOOK_AGAIN {
-                self.stable = self.stable_increment(state)?;
-                self.since = 0;
-            }
-            let left = time - state.time;
-            let count = (left / self.stable - ROUND_OFF).ceil().max(1.0);
-            let end = if count == 1.0 { time } else { state.time + left / count };
+            let end = self.next(time, state)?;
             self.advance(end, state, assembler).map_err(StepFailure::Start)?;
-            self.since += 1;
             increments += 1;
         }
         state.damping = self.damping();
@@ -183,27 +223,64 @@ impl<'m> Explicit<'m> {
         }
     }
 
-    /// One increment in place.
+    /// End of the next increment on the way to a time, and the displacements there. Where an element changes, or a contact
+    /// does, the longest stable increment is found again.
+    fn next(&mut self, time: f64, state: &State) -> Result<f64, StepFailure> {
+        let end = part(state.time, time, self.stable);
+        let way = self.predict(end, state)?;
+        if !self.stability.may_change(way, state) {
+            return Ok(end);
+        }
+        let changed = self.stability.changed(&self.displacement);
+        self.stability.look(&changed, state)?;
+        self.stable = self.stable_increment(state);
+        let end = part(state.time, time, self.stable);
+        self.predict(end, state)?;
+        let excess = self.stability.largest_change(&self.displacement) / (MOST_CHANGE * self.care);
+        if excess <= 1.0 || !excess.is_finite() {
+            return Ok(end);
+        }
+        let end = part(state.time, time, (end - state.time) / excess);
+        self.predict(end, state)?;
+        Ok(end)
+    }
+
+    /// (7), and where the supports go; returns the longest way of a dof [L].
+    fn predict(&mut self, time: f64, state: &State) -> Result<f64, StepFailure> {
+        let (model, step, dt) = (self.model, self.step, time - state.time);
+        let old = (&state.displacement, &state.velocity, &state.acceleration);
+        let ways = self.displacement.par_chunks_mut(CHUNK).enumerate().map(|(chunk, u)| {
+            let (u0, v, a) = (&old.0[CHUNK * chunk..], &old.1[CHUNK * chunk..], &old.2[CHUNK * chunk..]);
+            let mut longest = 0.0f64;
+            for (((u, u0), v), a) in u.iter_mut().zip(u0).zip(v).zip(a) {
+                let way = dt * (v + 0.5 * dt * a);
+                *u = u0 + way;
+                longest = longest.max(way.abs());
+            }
+            longest
+        });
+        let mut longest = ways.reduce(|| 0.0, f64::max);
+        let trial = Trial::new(state, step, time, dt);
+        self.places.clear();
+        self.places.extend(step.supports.iter().map(|support| trial.thirds(support, model)));
+        for (support, places) in step.supports.iter().zip(&self.places) {
+            if !places.iter().all(|place| place.is_finite()) {
+                let node = model.mesh.node_tags[support.dof / 2];
+                return Err(StepFailure::Start(TrialFailure::Undefined { node, time }));
+            }
+            self.displacement[support.dof] = places[3];
+            longest = longest.max((places[3] - state.displacement[support.dof]).abs());
+        }
+        model.ties.spread(2, &mut self.displacement);
+        Ok(longest)
+    }
+
+    /// One increment in place, to the displacements predicted.
     fn advance(&mut self, time: f64, state: &mut State, assembler: &mut Assembler) -> Result<(), TrialFailure> {
         let (model, step) = (self.model, self.step);
         let dt = time - state.time;
-        let mut u = std::mem::take(&mut self.displacement);
-        let old = (&state.displacement, &state.velocity, &state.acceleration);
-        u.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, u)| {
-            let (u0, v, a) = (&old.0[CHUNK * chunk..], &old.1[CHUNK * chunk..], &old.2[CHUNK * chunk..]);
-            for (((u, u0), v), a) in u.iter_mut().zip(u0).zip(v).zip(a) {
-                *u = u0 + dt * (v + 0.5 * dt * a);
-            }
-        });
+        let u = std::mem::take(&mut self.displacement);
         let trial = Trial { settles: false, ..Trial::new(state, step, time, dt) };
-        let places: Vec<[f64; 4]> = step.supports.iter().map(|support| trial.thirds(support, model)).collect();
-        for (support, places) in step.supports.iter().zip(&places) {
-            if !places.iter().all(|place| place.is_finite()) {
-                return Err(TrialFailure::Undefined { node: model.mesh.node_tags[support.dof / 2], time });
-            }
-            u[support.dof] = places[3];
-        }
-        model.ties.spread(2, &mut u);
         assembler.forces(trial, &u)?;
         self.resist(dt, &u, state, assembler)?;
         let evaluation = &mut assembler.evaluation;
@@ -225,7 +302,7 @@ impl<'m> Explicit<'m> {
         std::mem::swap(&mut state.force, &mut evaluation.force);
         std::mem::swap(&mut state.external, &mut evaluation.loads);
         self.damp(time, dt, state);
-        for ((support, places), before) in step.supports.iter().zip(places).zip(before) {
+        for ((support, &places), before) in step.supports.iter().zip(&self.places).zip(before) {
             let dof = support.dof;
             (state.velocity[dof], state.acceleration[dof]) = supported_rates(places, before, dt);
         }
@@ -348,58 +425,18 @@ impl<'m> Explicit<'m> {
         let copies: f64 = self.model.ties.pairs().iter().map(|&(copy, _)| of(copy)).sum();
         (0..self.mass.len()).map(of).sum::<f64>() - copies
     }
+}
 
-    /// The safe share of (1), but no more than the step allows [T].
-    fn stable_increment(&self, state: &State) -> Result<f64, StepFailure> {
-        let model = self.model;
-        let added = self.added_stiffness(state);
-        let softness = |node: usize| if self.mass[node] > 0.0 { added[node] / self.mass[node] } else { 0.0 };
-        let of_element = |e: usize| {
-            let [elastic, viscous] = element_bounds(model, e, &state.displacement)?;
-            let nodes = model.mesh.elements[e].nodes.iter();
-            Ok(longest(elastic + nodes.map(|&node| softness(node)).fold(0.0, f64::max), viscous))
-        };
-        let elements: Vec<Result<f64, TrialFailure>> =
-            (0..model.mesh.elements.len()).into_par_iter().with_min_len(64).map(of_element).collect();
-        let mut shortest = (0..added.len()).map(|node| longest(softness(node), 0.0)).fold(f64::INFINITY, f64::min);
-        for bound in elements {
-            shortest = bound.map_err(StepFailure::Start)?.min(shortest);
-        }
-        Ok((self.step.scheme.safety() * shortest).min(self.step.increments.max))
-    }
-
-    /// k of (3) at every node [F/L].
-    fn added_stiffness(&self, state: &State) -> Vec<f64> {
-        let model = self.model;
-        let x = model.configuration(&state.displacement);
-        let mut added = vec![0.0; self.mass.len()];
-        for (pair, states) in model.contacts.iter().zip(&state.contacts) {
-            for (slave, state) in pair.points.iter().zip(states) {
-                let Some(foot) = state.foot else { continue };
-                let stiffness = pair.alpha_n.max(pair.law(slave).stiffness()) * slave.current_length(&x);
-                let mut weights = slave.position.clone();
-                if let Master::Mesh(surface) = &pair.master {
-                    weights.extend(surface.segments[foot.segment].position(foot.xi));
-                }
-                let total: f64 = weights.iter().map(|(_, w)| w.abs()).sum();
-                weights.iter().for_each(|(node, w)| added[*node] += stiffness * w.abs() * total);
-            }
-        }
-        self.step.loads.springs.iter().for_each(|spring| added[spring.dof / 2] += spring.stiffness);
-        model.ties.gather(1, &mut added);
-        model.ties.spread(1, &mut added);
-        added
-    }
+/// End of the first of equal increments from one time to another, none longer than `longest`.
+fn part(start: f64, end: f64, longest: f64) -> f64 {
+    let left = end - start;
+    let count = (left / longest - ROUND_OFF).ceil().max(1.0);
+    if count == 1.0 { end } else { start + left / count }
 }
 
 /// ½ Σ f·Δu: half the work of forces that act at one end of an increment.
 fn mean_work(forces: &[Vector2<f64>], ways: &[Vector2<f64>]) -> f64 {
     forces.iter().zip(ways).map(|(force, way)| 0.5 * force.dot(way)).sum()
-}
-
-/// (4) from ω² and c [T].
-fn longest(square: f64, viscous: f64) -> f64 {
-    4.0 / (viscous + (viscous * viscous + 4.0 * square).sqrt())
 }
 
 /// Dashpots, absorbing sides and damping by the masses of each node.
@@ -437,40 +474,4 @@ fn masses(model: &Model) -> Vec<f64> {
     model.ties.gather(1, &mut mass);
     model.ties.spread(1, &mut mass);
     mass
-}
-
-/// λ_e and c of an element at the displacement `u` [1/T², 1/T].
-fn element_bounds(model: &Model, e: usize, u: &[f64]) -> Result<[f64; 2], TrialFailure> {
-    let nodes = &model.mesh.elements[e].nodes;
-    let body = &model.bodies[model.body_of_element[e]];
-    let local: Vec<Vector2<f64>> = nodes.iter().map(|&node| Vector2::new(u[2 * node], u[2 * node + 1])).collect();
-    let n = 2 * nodes.len();
-    let (mut force, mut tangent) = (vec![0.0; n], DMatrix::zeros(n, n));
-    let answer = model.solids[e].force_and_tangent(&*body.material, &local, &mut force, tangent.as_mut_slice());
-    answer.map_err(|inverted| TrialFailure::Inverted {
-        element: model.mesh.element_tags[e],
-        body: body.name.clone(),
-        jacobian: inverted.jacobian,
-    })?;
-    let mass = model.element_lumped_mass(e);
-    let elastic = largest_eigenvalue(&tangent, &mass);
-    if body.damping.stiffness == 0.0 {
-        return Ok([elastic, 0.0]);
-    }
-    // What remains of the viscous tangent at rest is its derivative with respect to the velocities.
-    let (law, still) = ((&*body.material, body.damping.stiffness), vec![Vector2::zeros(); nodes.len()]);
-    model.solids[e].viscous_tangent(law, [&local, &still], &vec![1.0; n], tangent.as_mut_slice());
-    Ok([elastic, largest_eigenvalue(&tangent, &mass)])
-}
-
-/// The bound (2) of a matrix and the lumped masses of its nodes.
-fn largest_eigenvalue(matrix: &DMatrix<f64>, mass: &DVector<f64>) -> f64 {
-    let n = matrix.nrows();
-    let scaled = DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] / (mass[i / 2] * mass[j / 2]).sqrt());
-    let largest = scaled.amax();
-    if largest == 0.0 {
-        return 0.0;
-    }
-    let square = (&scaled / largest).pow(2);
-    largest * (&square * &square).norm().powf(0.25)
 }

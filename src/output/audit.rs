@@ -1,0 +1,111 @@
+//! Whether the energies of a run balance, and what to do if they do not.
+//!
+//! ```text
+//! error = initial + external work − (kinetic + strain + contact) − dissipation                  0 if all is resolved
+//! ```
+//!
+//! The error is measured by the most that there was to be stored or dissipated: initial energy and external work.
+
+use crate::model::{Model, Step};
+use crate::state::State;
+use crate::time::{Scheme, told};
+
+/// Share of the energy there was that is worth a warning.
+const WORTH_TELLING: f64 = 0.01;
+
+/// Errors within this many times what round-off of the forces does on the way mean nothing.
+const ROUND_OFF: f64 = 100.0;
+
+/// The balance of energies so far.
+#[derive(Clone, Debug, Default)]
+pub struct Audit {
+    /// The most that there was to be stored or dissipated [F·L]
+    pub supplied: f64,
+    /// Error at the last row [F·L]
+    error: f64,
+    /// Its largest value, and when [F·L, T]
+    worst: (f64, f64),
+    /// What every step added to it, and what may help
+    steps: Vec<(String, f64, &'static str)>,
+    /// What round-off of the forces may have worked [F·L]
+    noise: f64,
+}
+
+impl Audit {
+    /// Take note of a row, from the state before it.
+    pub fn record(&mut self, model: &Model, step: &Step, old: &State, new: &State) {
+        let error = new.energy.error();
+        self.supplied = self.supplied.max(new.energy.supplied());
+        if self.steps.last().is_none_or(|(name, ..)| *name != step.name) {
+            self.steps.push((step.name.clone(), 0.0, remedy(model, step)));
+        }
+        let increments = self.steps.last_mut().map(|(_, sum, _)| sum);
+        increments.into_iter().for_each(|sum| *sum += error - self.error);
+        self.error = error;
+        if error.abs() > self.worst.0.abs() || error.is_nan() {
+            self.worst = (error, new.time);
+        }
+        let ways = old.displacement.iter().zip(&new.displacement).map(|(old, new)| (new - old).abs());
+        self.noise += round_off(model, new) * ways.fold(0.0, f64::max);
+    }
+
+    /// What is to be told at the end of a run, if anything is.
+    pub fn concern(&self) -> Option<String> {
+        let (worst, time) = self.worst;
+        if worst.abs() <= (WORTH_TELLING * self.supplied).max(ROUND_OFF * self.noise) {
+            return None;
+        }
+        let largest = self.steps.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+        let (name, _, remedy) = largest?;
+        let percent = 100.0 * worst.abs() / self.supplied;
+        let fate = if worst < 0.0 { "came from nowhere" } else { "is lost" };
+        Some(format!(
+            "the energies do not balance: by t = {}, {:.3e} {fate}, {percent:.3} % of all there was ({:.3e} at the start and \
+             from outside), most of it in step `{name}`: {remedy}",
+            told(time),
+            worst.abs(),
+            self.supplied
+        ))
+    }
+}
+
+/// Round-off of the forces on a model [F].
+fn round_off(model: &Model, state: &State) -> f64 {
+    let reach = state.displacement.iter().fold(model.mesh.diagonal(), |most, u| most.max(u.abs()));
+    let solids = model.bodies.iter().map(|body| body.material.stiffness()).fold(0.0, f64::max);
+    let contacts = model
+        .contacts
+        .iter()
+        .zip(&state.contacts)
+        .flat_map(|(pair, states)| states.iter().map(move |contact| pair.alpha_n * contact.length));
+    f64::EPSILON * contacts.fold(solids, f64::max) * reach * (model.mesh.nodes.len() as f64).sqrt()
+}
+
+/// What may bring the energies of a step into balance.
+fn remedy(model: &Model, step: &Step) -> &'static str {
+    let keeps_all = match step.scheme {
+        Scheme::Static => return "take shorter increments (dt.max)",
+        Scheme::Explicit { .. } => {
+            return "lower the safety of the explicit scheme, or give the bodies viscosity (damping.stiffness)";
+        }
+        Scheme::Newmark { gamma, .. } => gamma == 0.5,
+        Scheme::Hht { alpha } => alpha == 0.0,
+        Scheme::GeneralizedAlpha { rho_infinity } => rho_infinity == 1.0,
+        Scheme::Wilson { .. } => false,
+    };
+    let rings = !model.contacts.is_empty() && !model.massless.contains(&true);
+    match (keeps_all, rings) {
+        (true, true) => {
+            "an impact sets nodes ringing that increments do not resolve: make the contact `massless`, take a scheme that \
+             damps (hht), or shorter increments (dt.error)"
+        }
+        (true, false) => {
+            "take a scheme that damps what increments do not resolve (hht), or shorter increments (dt.error)"
+        }
+        (false, true) => {
+            "what increments do not resolve is damped, or rings where bodies strike: take shorter increments (dt.error), or \
+             make the contact `massless`"
+        }
+        (false, false) => "what increments do not resolve is damped by the scheme: take shorter increments (dt.error)",
+    }
+}
