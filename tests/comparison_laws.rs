@@ -272,7 +272,7 @@ fn rate_and_state_dissipates_the_work_of_slip_to_and_fro() {
         let loops = |parts: u32| {
             let (mut old, mut work) = (FrictionState { pressure: 100.0, ..law.initial_state() }, 0.0);
             for k in 0..8 * parts {
-                let slip = if (k / parts) % 2 == 0 { 1.0 } else { -1.0 } * 100.0 / f64::from(parts);
+                let slip = if (k / parts).is_multiple_of(2) { 1.0 } else { -1.0 } * 100.0 / f64::from(parts);
                 let new = respond(&law, &old, slip, 100.0, slip.abs()).state;
                 assert!(new.dissipation >= old.dissipation);
                 work += 0.5 * (old.traction + new.traction) * slip;

@@ -99,9 +99,11 @@ impl FrictionState {
 /// Both lines are counted along the sign of the trial, so a traction of the other sign unloads elastically, passes zero,
 /// and loads elastically up to the strength.
 fn traction_at_yield(elastic: [f64; 2], strength: [f64; 2]) -> f64 {
-    let (below, above) = ((strength[0] - elastic[0]).max(0.0), elastic[1] - strength[1]);
-    let share = if above > 0.0 { below / (below + above) } else { 1.0 };
-    elastic[0].max(strength[0] + share * (strength[1] - strength[0]))
+    let (below, above) = (strength[0] - elastic[0], elastic[1] - strength[1]);
+    if below <= 0.0 || above <= 0.0 {
+        return elastic[0].max(0.0);
+    }
+    strength[0] + below / (below + above) * (strength[1] - strength[0])
 }
 
 /// Relative motion of the two surfaces during one increment.
