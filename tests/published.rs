@@ -8,6 +8,7 @@ mod common;
 use std::path::Path;
 
 use common::{Finished, finish_at};
+use fecontact::configuration::Configuration;
 use fecontact::contact::force::Status;
 use fecontact::friction::FrictionState;
 use fecontact::mesh::Group;
@@ -347,8 +348,12 @@ fn quadratic_elements_have_the_pressure_of_hertz_by_default() {
         let (load, radius) = (35_000.0, 50.0);
         let a = (4.0 * load * radius / (std::f64::consts::PI * modulus)).sqrt();
         let p0 = 2.0 * load / (std::f64::consts::PI * a);
-        let inside = tractions(&run, run.last()).into_iter().filter(|[x, ..]| *x < 0.92 * a);
-        let errors: Vec<f64> = inside.map(|[x, p, _]| p / p0 - (1.0 - (x / a).powi(2)).sqrt()).collect();
+        // Small strain knows no difference between the places before and after.
+        let places = Configuration::undeformed(&run.model.mesh.nodes);
+        let points = run.model.contacts[0].points.iter().zip(&run.last().contacts[0]);
+        let points = points.map(|(point, contact)| (point.at(&places).x, contact.friction.pressure));
+        let inside = points.filter(|(x, _)| *x < 0.92 * a);
+        let errors: Vec<f64> = inside.map(|(x, p)| p / p0 - (1.0 - (x / a).powi(2)).sqrt()).collect();
         let most = errors.iter().fold(0.0f64, |most, error| most.max(error.abs()));
         println!("change {k}: {} points, off by {:.2} % of p0", errors.len(), 100.0 * most);
         assert!(errors.len() >= 10 && most < 0.02);
