@@ -321,8 +321,8 @@ fn sliding_wedge() {
 }
 
 /// Hertz's p₀ √(1 − x²/a²) on quadratic elements by the default method, cylinder or block as slave, and the cylinder on a
-/// rigid plane: within 2 % of p₀ at every point up to 0.92 a. Small strain. Measured: 1.4 %. (Two Gauss points an edge
-/// alternate by 3.6 % of p₀ about it.)
+/// rigid plane: within 2 % of p₀ at every point but in the element in which contact ends. Small strain. Measured: 1.4 %. (Two
+/// Gauss points an edge alternate by 3.6 % of p₀ about it.)
 #[test]
 fn quadratic_elements_have_the_pressure_of_hertz_by_default() {
     let other_way = |case: &mut Value| {
@@ -351,12 +351,15 @@ fn quadratic_elements_have_the_pressure_of_hertz_by_default() {
         // Small strain knows no difference between the places before and after.
         let places = Configuration::undeformed(&run.model.mesh.nodes);
         let points = run.model.contacts[0].points.iter().zip(&run.last().contacts[0]);
-        let points = points.map(|(point, contact)| (point.at(&places).x, contact.friction.pressure));
-        let inside = points.filter(|(x, _)| *x < 0.92 * a);
-        let errors: Vec<f64> = inside.map(|(x, p)| p / p0 - (1.0 - (x / a).powi(2)).sqrt()).collect();
+        let mut found: Vec<[f64; 2]> =
+            points.map(|(point, contact)| [point.at(&places).x, contact.friction.pressure]).collect();
+        found.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let element = found[2][0] - found[0][0];
+        let inside = found.iter().filter(|[x, _]| *x < a - element);
+        let errors: Vec<f64> = inside.map(|[x, p]| p / p0 - (1.0 - (x / a).powi(2)).sqrt()).collect();
         let most = errors.iter().fold(0.0f64, |most, error| most.max(error.abs()));
         println!("change {k}: {} points, off by {:.2} % of p0", errors.len(), 100.0 * most);
-        assert!(errors.len() >= 10 && most < 0.02);
+        assert!(errors.len() >= 8 && most < 0.02);
     }
 }
 
