@@ -28,6 +28,7 @@ fn surfaces(n: usize) -> Surfaces {
         compliance: 0.0,
         laws: vec![Box::new(law)],
         initial: None,
+        reverse: None,
         mortar: None,
         penetration: None,
     };

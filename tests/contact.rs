@@ -7,7 +7,9 @@ use fecontact::contact::pair::{ContactPair, InitialTraction, Moment, Presumption
 use fecontact::contact::projection::{Bound, nearest};
 use fecontact::contact::rigid::{Circle, Plane, Polyline, Rigid};
 use fecontact::contact::search::Index;
-use fecontact::contact::surface::{Master, MasterPoint, Segment, SlavePoint, Surface, gauss_points, lone_point, nodal_points};
+use fecontact::contact::surface::{
+    Master, MasterPoint, Segment, SlavePoint, Surface, gauss_points, lone_point, nodal_points,
+};
 use fecontact::friction::{FrictionParameters, FrictionState};
 use fecontact::system::Contribution;
 use nalgebra::Vector2;
@@ -342,20 +344,20 @@ fn feet_on_a_quadratic_edge_lie_on_the_parabola() {
 }
 
 /// The foot on a spline or a parabola is found in a few steps wherever the point lies: before, beside and behind the curve
-/// and past its ends, where the search stops at once.
+/// and past its ends, where the search stops at once; but for points near the centre of curvature of a parabola.
 #[test]
 fn a_foot_on_a_curve_takes_few_steps() {
     let (edges, x) = wavy();
     let mut bent = x.clone();
     bent.remove(4);
     let curves = [
-        (Surface::new(&edges).smoothed(&x), x.clone()),
-        (Surface::new(&[vec![2, 0, 1], vec![4, 2, 3]]), bent),
+        (Surface::new(&edges).smoothed(&x), x.clone(), 10, 6),
+        (Surface::new(&[vec![2, 0, 1], vec![4, 2, 3]]), bent, 6, 8),
     ];
     let point = lone_point(0, 1.0);
-    for (surface, nodes) in curves {
+    for (surface, nodes, rows, allowed) in curves {
         let mut most = 0;
-        for (i, j) in (-40..=40).flat_map(|i| (-10..=10).map(move |j| (i, j))) {
+        for (i, j) in (-40..=40).flat_map(|i| (-rows..=rows).map(move |j| (i, j))) {
             for segment in &surface.segments {
                 let at = Vector2::new(2.5 + 0.1 * f64::from(i), 0.03 * f64::from(j));
                 // The point takes the place of a node that the surface does not have.
@@ -376,7 +378,7 @@ fn a_foot_on_a_curve_takes_few_steps() {
             }
         }
         println!("at most {most} steps");
-        assert!(most <= 8, "{most} steps");
+        assert!(most <= allowed, "{most} steps");
     }
 }
 

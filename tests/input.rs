@@ -902,12 +902,12 @@ fn the_method_follows_from_the_surfaces() {
         let [told, _] = outcome("check", &[bent(by)]);
         assert!(told.contains(pointwise), "bent by {by}:\n{told}");
     }
-    let [told, _] = outcome("check", &[bent(0.01)]);
+    let [told, _] = outcome("check", &[bent(0.05)]);
     assert!(told.contains("mortar, averaged around each node (chosen because surfaces are curved)"), "{told}");
-    let [_, told] = outcome("run", &[bent(0.01)]);
+    let [_, told] = outcome("run", &[bent(0.05)]);
     assert!(told.contains("contact `base`: mortar, chosen because surfaces are curved"), "{told}");
     for method in ["node_to_segment", "gauss_to_segment"] {
-        let named = [bent(0.01), ("/contacts/base/method", json!(method))];
+        let named = [bent(0.05), ("/contacts/base/method", json!(method))];
         let concern = format!("contact `base`: {method} on curved or quadratic surfaces: pressures scatter");
         let [checked, _] = outcome("check", &named);
         let [_, run] = outcome("run", &named);
@@ -915,7 +915,7 @@ fn the_method_follows_from_the_surfaces() {
         let [checked, _] = outcome("check", &[named[1].clone()]);
         assert!(!checked.contains("curved"), "{checked}");
     }
-    let [told, _] = outcome("check", &[bent(0.01), ("/contacts/base/smooth", json!(true))]);
+    let [told, _] = outcome("check", &[bent(0.05), ("/contacts/base/smooth", json!(true))]);
     assert!(told.contains("gauss_to_segment") && told.contains("leave `smooth` out for mortar"), "{told}");
 }
 
@@ -931,8 +931,7 @@ fn check_tells_what_was_understood() {
         "14 nodes, 5 elements (5 Q4), 28 dofs",
         "block_bottom   3 edges",
         "neo_hookean: E 1000",
-        // One node is out of line by 2°.
-        "mortar, averaged around each node (chosen because surfaces are curved): 4 contact points",
+        "gauss_to_segment, 2 points an edge (chosen because surfaces are straight and linear): 6 contact points",
         "alpha_n 13439.4 (10 (λ + 2G)/h: of the softer side, over the depth of the slave's elements)",
         "alpha_t 6719.72 (alpha_n/2)",
         "surfaces overlap by up to 0.007",

@@ -8,6 +8,7 @@ mod common;
 use std::path::Path;
 
 use common::{Finished, finish_at};
+use fecontact::configuration::Configuration;
 use fecontact::contact::force::Status;
 use fecontact::friction::FrictionState;
 use fecontact::mesh::Group;
@@ -317,6 +318,49 @@ fn greco_block() {
 #[test]
 fn sliding_wedge() {
     wedge().check();
+}
+
+/// Hertz's p₀ √(1 − x²/a²) on quadratic elements by the default method, cylinder or block as slave, and the cylinder on a
+/// rigid plane: within 2 % of p₀ at every point but in the element in which contact ends. Small strain. Measured: 1.4 %. (Two
+/// Gauss points an edge alternate by 3.6 % of p₀ about it.)
+#[test]
+fn quadratic_elements_have_the_pressure_of_hertz_by_default() {
+    let other_way = |case: &mut Value| {
+        let contact = &mut case["contacts"]["base"];
+        contact["slave"] = json!("cylinder_contact");
+        contact["master"] = json!("block_contact");
+    };
+    let rigid = |case: &mut Value| {
+        let contact = &mut case["contacts"]["base"];
+        contact["slave"] = json!("cylinder_contact");
+        contact["master"] = json!({"plane": {"point": [0, 0], "normal": [0, 1]}});
+        let supports = case["steps"][0]["supports"].as_array_mut().expect("supports");
+        supports.retain(|support| !support["on"].as_str().expect("a group").starts_with("block_"));
+        supports.push(json!({"on": "block", "ux": 0, "uy": 0}));
+    };
+    let both = 1.0 / (0.91 / 70_000.0 + 0.91 / 210_000.0);
+    let changes: [fn(&mut Value); 3] = [as_it_is, other_way, rigid];
+    for (k, (change, modulus)) in changes.into_iter().zip([both, both, 210_000.0 / 0.91]).enumerate() {
+        let (run, _) = solve("hertz_q8_small_strain", |case| {
+            case["contacts"]["base"].as_object_mut().expect("a contact").remove("method");
+            change(case);
+        });
+        let (load, radius) = (35_000.0, 50.0);
+        let a = (4.0 * load * radius / (std::f64::consts::PI * modulus)).sqrt();
+        let p0 = 2.0 * load / (std::f64::consts::PI * a);
+        // Small strain knows no difference between the places before and after.
+        let places = Configuration::undeformed(&run.model.mesh.nodes);
+        let points = run.model.contacts[0].points.iter().zip(&run.last().contacts[0]);
+        let mut found: Vec<[f64; 2]> =
+            points.map(|(point, contact)| [point.at(&places).x, contact.friction.pressure]).collect();
+        found.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let element = found[2][0] - found[0][0];
+        let inside = found.iter().filter(|[x, _]| *x < a - element);
+        let errors: Vec<f64> = inside.map(|[x, p]| p / p0 - (1.0 - (x / a).powi(2)).sqrt()).collect();
+        let most = errors.iter().fold(0.0f64, |most, error| most.max(error.abs()));
+        println!("change {k}: {} points, off by {:.2} % of p0", errors.len(), 100.0 * most);
+        assert!(errors.len() >= 8 && most < 0.02);
+    }
 }
 
 /// Pointwise contact finds the same u_y as mortar, master and slave either way round, penalty times 0.1 and times 10: within

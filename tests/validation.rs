@@ -281,8 +281,7 @@ fn a_ring_on_a_rigid_circle_has_the_pressure_of_lame() {
         let expected = delta * modulus / ((a + b) / (b - a) + if hole { -nu } else { nu });
         let mesh = |n: usize| Blocks::default().ring("ring", [n, 6], radii).json();
         for mesh in [mesh(80), quadratic(&mesh(24), half_way_round)] {
-            let [slave, free] =
-                if hole { ["ring_outside", "ring_inside"] } else { ["ring_inside", "ring_outside"] };
+            let [slave, free] = if hole { ["ring_outside", "ring_inside"] } else { ["ring_inside", "ring_outside"] };
             let radius = if hole { 1.0 - delta } else { 1.0 + delta };
             let run = finish(&json!({
                 "mesh": mesh,
@@ -371,7 +370,10 @@ fn accepted_contact_states_follow_from_the_committed_ones() {
             });
             over += changed.count();
         }
-        println!("{method}, height {height}: {} iterations, {} cut-backs", run.report.newton_iterations, run.report.cutbacks);
+        println!(
+            "{method}, height {height}: {} iterations, {} cut-backs",
+            run.report.newton_iterations, run.report.cutbacks
+        );
     }
     assert!(over > 100, "{over} points went over a node");
 }

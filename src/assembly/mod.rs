@@ -162,7 +162,8 @@ impl Iterate {
     fn note_segment(&mut self, state: &ContactState) {
         let segment = state.foot.map(|foot| foot.segment);
         let [last, before] = self.segments;
-        self.astride = segment.zip(last).filter(|(segment, last)| segment != last && Some(*segment) == before).map(Into::into);
+        self.astride =
+            segment.zip(last).filter(|(segment, last)| segment != last && Some(*segment) == before).map(Into::into);
         self.segments = [segment, last];
     }
 

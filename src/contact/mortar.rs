@@ -67,7 +67,8 @@ pub fn mortar_points(edges: &[Vec<usize>], positions: &[Vector2<f64>]) -> (Vec<S
     let around = |of: &Vec<(usize, usize)>| of.iter().flat_map(|&(e, a)| gauss_around(&edges[e], a)).collect();
     let around: Vec<Vec<SlavePoint>> = at.iter().map(around).collect();
     let shares = |around: &[SlavePoint]| around.iter().flat_map(|point| point.length.clone()).collect();
-    let points = nodes.iter().zip(&around).map(|(&node, at)| SlavePoint { length: shares(at), ..lone_point(node, 0.0) });
+    let points =
+        nodes.iter().zip(&around).map(|(&node, at)| SlavePoint { length: shares(at), ..lone_point(node, 0.0) });
     (points.collect(), Mortar { edges: edges.to_vec(), at, around })
 }
 

@@ -273,7 +273,8 @@ impl ContactPair {
     pub fn deepest_master_node(&self, states: &[ContactState], x: &Configuration) -> Option<(Vector2<f64>, f64, f64)> {
         let Some(Reverse { nodes, slave: Master::Mesh(slave) }) = &self.reverse else { return None };
         let closed = self.points.iter().zip(states).filter(|(_, state)| state.friction.pressure > 0.0);
-        let closed = closed.flat_map(|(point, _)| &point.length).flat_map(|share| share.tangent.iter().map(|(node, _)| *node));
+        let closed =
+            closed.flat_map(|(point, _)| &point.length).flat_map(|share| share.tangent.iter().map(|(node, _)| *node));
         let closed: BTreeSet<usize> = closed.collect();
         if closed.is_empty() {
             return None;

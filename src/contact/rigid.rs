@@ -55,9 +55,7 @@ impl Rigid {
         match self {
             Self::Plane(plane) => Some(plane.project(x.apart(&slave.position, plane.point))),
             Self::Circle(circle) => circle.project(x.apart(&slave.position, circle.centre)),
-            Self::Polyline(polyline) => {
-                polyline.project(|corner| x.apart(&slave.position, corner), slave.outward(x))
-            }
+            Self::Polyline(polyline) => polyline.project(|corner| x.apart(&slave.position, corner), slave.outward(x)),
         }
     }
 

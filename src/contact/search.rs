@@ -70,7 +70,8 @@ impl<'a> Index<'a> {
         let Self::Mesh(surface, ..) = self else { return None };
         let [first, second] = if surface.next(a) == Some(b) { [a, b] } else { [b, a] };
         let direction = |segment: usize, xi: f64| x.combine(&surface.segments[segment].slope(xi));
-        let is_valley = surface.next(first) == Some(second) && direction(first, 1.0).perp(&direction(second, 0.0)) > 0.0;
+        let is_valley =
+            surface.next(first) == Some(second) && direction(first, 1.0).perp(&direction(second, 0.0)) > 0.0;
         is_valley.then(|| at_node(slave, surface, first, second, 1.0, x)).filter(|at| at.gap < 0.0)
     }
 

@@ -70,7 +70,9 @@ impl<'a> Sight<'a> {
     pub fn point(&self, slave: &SlavePoint) -> Option<Viewer> {
         let shares = slave.length.iter().flat_map(|share| &share.tangent);
         let own = slave.position.iter().chain(shares).map(|&(node, _)| node).collect();
-        slave.outward(self.before).map(|outward| Viewer::new(slave.offset(self.surface.origin(), self.before), outward, own))
+        slave
+            .outward(self.before)
+            .map(|outward| Viewer::new(slave.offset(self.surface.origin(), self.before), outward, own))
     }
 
     /// An edge as a viewer, from its middle; the body is on its left.

@@ -231,7 +231,12 @@ impl Segment {
         let slope_at_start = before.map_or(b - a, |before| 0.5 * (b - at(before)));
         let slope_at_end = after.map_or(b - a, |after| 0.5 * (at(after) - a));
         let along = b - a;
-        [a, slope_at_start, 3.0 * along - 2.0 * slope_at_start - slope_at_end, slope_at_start + slope_at_end - 2.0 * along]
+        [
+            a,
+            slope_at_start,
+            3.0 * along - 2.0 * slope_at_start - slope_at_end,
+            slope_at_start + slope_at_end - 2.0 * along,
+        ]
     }
 
     fn with(&self, values: Vec<f64>, factor: f64) -> Weights {
@@ -293,9 +298,8 @@ impl Surface {
             let [a, b] = straight[k].ends;
             (positions[b] - positions[a]).normalize()
         };
-        let joined = |k: usize, other: Option<usize>| {
-            other.filter(|&other| direction(k).dot(&direction(other)) > CORNER)
-        };
+        let joined =
+            |k: usize, other: Option<usize>| other.filter(|&other| direction(k).dot(&direction(other)) > CORNER);
         for k in 0..straight.len() {
             let (before, after) = (joined(k, self.previous(k)), joined(k, self.next(k)));
             self.segments[k].beyond = [before.map(|k| straight[k].ends[0]), after.map(|k| straight[k].ends[1])];

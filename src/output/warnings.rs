@@ -83,13 +83,7 @@ impl Warnings {
     /// The points of the slave do not see a master node between them. (Where gaps are not those of the surfaces there is
     /// nothing to compare with: under initial tractions, and while a shrink fit is brought in. Explicit increments are too
     /// many to look at.)
-    fn deep_master_node(
-        &mut self,
-        number: usize,
-        pair: &ContactPair,
-        state: &State,
-        x: &Configuration,
-    ) {
+    fn deep_master_node(&mut self, number: usize, pair: &ContactPair, state: &State, x: &Configuration) {
         if self.given.contains(&(number, Kind::DeepMasterNode)) {
             return;
         }
