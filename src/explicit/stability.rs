@@ -14,10 +14,10 @@ use crate::model::{Model, Step};
 use crate::state::State;
 
 /// Share of its size by which an element may change before it is looked at again: its bound is exact to about as much.
-const CHANGED: f64 = 0.02;
+const CHANGED: f64 = 0.04;
 
 /// Share of its size by which an element may have changed before it is compared.
-const LATEST: f64 = 0.05;
+const LATEST: f64 = 0.06;
 
 /// Share of its size to which an element may be crushed: increments would become shorter without end.
 const CRUSHED: f64 = 1e-3;
