@@ -150,7 +150,7 @@ fn audit(energy: &Energy, supplied: f64) {
         energy.kinetic, energy.strain, energy.contact_elastic
     );
     eprintln!(
-        "        {:.6e} taken by friction, {:.6e} by damping, {:.1e} ({share:.4} % of all there was) unaccounted for",
+        "        {:.6e} taken by friction, {:.6e} by damping, {:.1e} ({share:.4} %) unaccounted for",
         energy.friction_dissipation,
         energy.damping_dissipation,
         energy.error()

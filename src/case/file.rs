@@ -354,9 +354,9 @@ pub struct StepInput {
 
 /// When a step goes on explicitly, and returns to its own scheme. An increment in which a contact point slips faster than
 /// `slip_rate`, or that cannot be solved, is halved down to `dt.min` and, if that does not help, made explicitly. The step
-/// returns when no point has slipped that fast, on the mean of the time that a shear wave takes across the model. To be
-/// noticed, an event must slip more than `slip_rate` times `dt.max`. Waves that are left die in a static step, and their
-/// energy counts as damped
+/// returns when no point has slipped that fast, on the mean of the time that a shear wave takes across the model. What slides
+/// without friction does not count. To be noticed, an event must slip more than `slip_rate` times `dt.max`. Waves that are
+/// left die in a static step, and their energy counts as damped
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RuptureInput {
@@ -573,7 +573,7 @@ pub struct OutputInput {
     /// Explicit steps write a row of the history (and fields, every n-th time) at multiples of this since the start of the
     /// step [T]; a hundredth of the step unless given. Implicit steps do so at every increment
     pub interval: Option<f64>,
-    /// Slip over time and place (slip_map.csv), and the fronts that run along the contacts (fronts.csv)
+    /// Slip over time and place (slip_map.csv), and the fronts that run along contacts with friction (fronts.csv)
     pub fronts: Option<FrontsInput>,
 }
 

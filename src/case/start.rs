@@ -14,7 +14,7 @@ use crate::mesh::Mesh;
 use crate::model::Model;
 
 /// Round-off of a gap, as a share of the positions that it is the difference of.
-const OF_POSITIONS: f64 = 64.0 * f64::EPSILON;
+const OF_POSITIONS: f64 = 8.0 * f64::EPSILON;
 
 /// Overlap, as a share of the slave's edge, that presses with nothing: 10⁻¹¹ (λ + 2G) with the default penalty.
 const OF_EDGE: f64 = 1e-12;

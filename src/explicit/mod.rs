@@ -197,8 +197,12 @@ impl<'m> Explicit<'m> {
     }
 
     /// The safe share of (1), but no more than the step allows [T].
-    fn stable_increment(&self, state: &State) -> f64 {
+    fn stable_increment(&mut self, state: &State) -> f64 {
         let longest = self.stability.longest_increment(self.step, &self.mass, state);
+        self.safe(longest)
+    }
+
+    fn safe(&self, longest: f64) -> f64 {
         (self.step.scheme.safety() * self.care * longest).min(self.step.increments.max)
     }
 
@@ -228,15 +232,18 @@ impl<'m> Explicit<'m> {
     fn next(&mut self, time: f64, state: &State) -> Result<f64, StepFailure> {
         let end = part(state.time, time, self.stable);
         let way = self.predict(end, state)?;
-        if !self.stability.may_change(way, state) {
-            return Ok(end);
-        }
+        self.stability.moved(way);
         let changed = self.stability.changed(&self.displacement);
         self.stability.look(&changed, state)?;
-        self.stable = self.stable_increment(state);
+        match self.stability.contacts_changed(state) {
+            true => self.stable = self.stable_increment(state),
+            false if changed.is_empty() => return Ok(end),
+            // What became longer waits for the next look at all.
+            false => self.stable = self.safe(self.stability.longest_of(&changed)).min(self.stable),
+        }
         let end = part(state.time, time, self.stable);
         self.predict(end, state)?;
-        let excess = self.stability.largest_change(&self.displacement) / (MOST_CHANGE * self.care);
+        let excess = self.stability.largest_change(&changed, &self.displacement) / (MOST_CHANGE * self.care);
         if excess <= 1.0 || !excess.is_finite() {
             return Ok(end);
         }
@@ -245,21 +252,27 @@ impl<'m> Explicit<'m> {
         Ok(end)
     }
 
-    /// (7), and where the supports go; returns the longest way of a dof [L].
+    /// (7), and where the supports go; returns how far two nodes move against each other at most [L].
     fn predict(&mut self, time: f64, state: &State) -> Result<f64, StepFailure> {
         let (model, step, dt) = (self.model, self.step, time - state.time);
         let old = (&state.displacement, &state.velocity, &state.acceleration);
         let ways = self.displacement.par_chunks_mut(CHUNK).enumerate().map(|(chunk, u)| {
             let (u0, v, a) = (&old.0[CHUNK * chunk..], &old.1[CHUNK * chunk..], &old.2[CHUNK * chunk..]);
-            let mut longest = 0.0f64;
-            for (((u, u0), v), a) in u.iter_mut().zip(u0).zip(v).zip(a) {
-                let way = dt * (v + 0.5 * dt * a);
-                *u = u0 + way;
-                longest = longest.max(way.abs());
+            let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+            let rates = v.chunks_exact(2).zip(a.chunks_exact(2));
+            for ((u, u0), (v, a)) in u.chunks_exact_mut(2).zip(u0.chunks_exact(2)).zip(rates) {
+                for i in 0..2 {
+                    let way = dt * (v[i] + 0.5 * dt * a[i]);
+                    u[i] = u0[i] + way;
+                    low[i] = if way < low[i] { way } else { low[i] };
+                    high[i] = if way > high[i] { way } else { high[i] };
+                }
             }
-            longest
+            (low, high)
         });
-        let mut longest = ways.reduce(|| 0.0, f64::max);
+        let ways: Vec<([f64; 2], [f64; 2])> = ways.collect();
+        let mut low = ways.iter().fold([f64::INFINITY; 2], |low, (of, _)| [0, 1].map(|i| low[i].min(of[i])));
+        let mut high = ways.iter().fold([f64::NEG_INFINITY; 2], |high, (_, of)| [0, 1].map(|i| high[i].max(of[i])));
         let trial = Trial::new(state, step, time, dt);
         self.places.clear();
         self.places.extend(step.supports.iter().map(|support| trial.thirds(support, model)));
@@ -269,10 +282,11 @@ impl<'m> Explicit<'m> {
                 return Err(StepFailure::Start(TrialFailure::Undefined { node, time }));
             }
             self.displacement[support.dof] = places[3];
-            longest = longest.max((places[3] - state.displacement[support.dof]).abs());
+            let (i, way) = (support.dof % 2, places[3] - state.displacement[support.dof]);
+            (low[i], high[i]) = (low[i].min(way), high[i].max(way));
         }
         model.ties.spread(2, &mut self.displacement);
-        Ok(longest)
+        Ok((high[0] - low[0]).hypot(high[1] - low[1]))
     }
 
     /// One increment in place, to the displacements predicted.

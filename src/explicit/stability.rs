@@ -2,8 +2,8 @@
 //!
 //! An element has its own bound until its shape has changed: a node moved, against its first one, by more than the share
 //! [`CHANGED`] of the element's size, which is its area over its diagonal. That is told before the increment in which it
-//! happens, from the displacements at its end, which are known. While no node has moved as far since all elements were
-//! compared, none is compared again. What contacts add is found again when a point meets another segment.
+//! happens, from the displacements at its end, which are known. All elements are compared as soon as nodes may have moved
+//! so far against each other that one has changed by [`LATEST`]. What contacts add is found again when a point meets another segment.
 
 use nalgebra::{DMatrix, DVector, Vector2};
 use rayon::prelude::*;
@@ -14,7 +14,10 @@ use crate::model::{Model, Step};
 use crate::state::State;
 
 /// Share of its size by which an element may change before it is looked at again: its bound is exact to about as much.
-const CHANGED: f64 = 0.02;
+const CHANGED: f64 = 0.04;
+
+/// Share of its size by which an element may have changed before it is compared.
+const LATEST: f64 = 0.06;
 
 /// Share of its size to which an element may be crushed: increments would become shorter without end.
 const CRUSHED: f64 = 1e-3;
@@ -29,9 +32,13 @@ const FEW: usize = 2048;
 pub(super) struct Stability<'m> {
     model: &'m Model,
     elements: Vec<Element>,
-    /// Displacements of the elements' nodes when they were looked at, `stride` places an element [L]
+    /// Nodes of the elements, `stride` places an element, filled up with the first one
+    nodes: Vec<usize>,
+    /// Their displacements against the first one when the element was looked at [L]
     seen: Vec<Vector2<f64>>,
     stride: usize,
+    /// k/m of (3) at every node [1/T²]
+    softness: Vec<f64>,
     /// Segment that every contact point met
     segments: Vec<Option<usize>>,
     /// Increments since contacts were looked at
@@ -50,16 +57,18 @@ struct Element {
 }
 
 impl<'m> Stability<'m> {
-    /// Look at everything.
+    /// Look at all elements.
     pub(super) fn new(model: &'m Model, state: &State) -> Result<Self, StepFailure> {
         let count = model.mesh.elements.len();
         let stride = model.mesh.elements.iter().map(|element| element.nodes.len()).max().unwrap_or(0);
         let mut stability = Self {
             model,
             elements: vec![Element { bounds: [0.0; 2], size: 0.0 }; count],
+            nodes: model.mesh.elements.iter().flat_map(|element| filled(&element.nodes, stride)).collect(),
             seen: vec![Vector2::zeros(); stride * count],
             stride,
-            segments: segments(state).collect(),
+            softness: Vec::new(),
+            segments: Vec::new(),
             since: 0,
             margin: 0.0,
         };
@@ -67,76 +76,98 @@ impl<'m> Stability<'m> {
         Ok(stability)
     }
 
-    /// Whether an increment in which no node moves by more than `way` may end with an element or a contact that must be
-    /// looked at again.
-    pub(super) fn may_change(&mut self, way: f64, state: &State) -> bool {
-        self.margin -= 2.0 * way;
+    /// Take note of an increment in which no two nodes move by more than `way` against each other.
+    pub(super) fn moved(&mut self, way: f64) {
+        self.margin -= way;
         self.since += 1;
-        self.margin < 0.0 || self.since > LOOK_AGAIN || self.contacts_changed(state)
     }
 
-    fn contacts_changed(&self, state: &State) -> bool {
-        segments(state).zip(&self.segments).any(|(now, seen)| now != *seen)
+    /// Whether what contacts add must be looked at again.
+    pub(super) fn contacts_changed(&self, state: &State) -> bool {
+        self.since > LOOK_AGAIN || segments(state).zip(&self.segments).any(|(now, seen)| now != *seen)
     }
 
-    /// Compare all elements with what they were: those that changed by more than [`CHANGED`] at the displacements `u`.
+    /// Elements that changed by more than [`CHANGED`] at the displacements `u`; all are compared, unless none can have.
     pub(super) fn changed(&mut self, u: &[f64]) -> Vec<usize> {
-        let elements = (0..self.elements.len()).into_par_iter().with_min_len(FEW);
-        elements.filter(|&e| self.change(e, u) > CHANGED * self.elements[e].size).collect()
+        if self.margin >= 0.0 {
+            return Vec::new();
+        }
+        let compare = |first: usize| {
+            let (mut changed, mut margin) = (Vec::new(), f64::INFINITY);
+            for e in first..(first + FEW).min(self.elements.len()) {
+                let (change, size) = (self.change(e, u), self.elements[e].size);
+                if change > CHANGED * size {
+                    changed.push(e);
+                } else {
+                    margin = margin.min(LATEST * size - change);
+                }
+            }
+            (changed, margin)
+        };
+        let parts: Vec<(Vec<usize>, f64)> =
+            (0..self.elements.len().div_ceil(FEW)).into_par_iter().map(|part| compare(FEW * part)).collect();
+        self.margin = parts.iter().map(|(_, margin)| *margin).fold(f64::INFINITY, f64::min);
+        parts.into_iter().flat_map(|(changed, _)| changed).collect()
     }
 
-    /// The largest change of an element at the displacements `u`, as a share of its size. From here on the elements
-    /// need no comparison until nodes have moved far enough.
-    pub(super) fn largest_change(&mut self, u: &[f64]) -> f64 {
-        let elements = (0..self.elements.len()).into_par_iter().with_min_len(FEW);
-        let compare = |e: usize| {
+    /// The largest change of elements that were just looked at again, at the displacements `u`, as a share of their size.
+    pub(super) fn largest_change(&mut self, elements: &[usize], u: &[f64]) -> f64 {
+        let mut largest = 0.0f64;
+        for &e in elements {
             let (change, size) = (self.change(e, u), self.elements[e].size);
-            (change / size, CHANGED * size - change)
-        };
-        let worse = |a: (f64, f64), b: (f64, f64)| (a.0.max(b.0), a.1.min(b.1));
-        let (largest, margin) = elements.map(compare).reduce(|| (0.0, f64::INFINITY), worse);
-        self.margin = margin;
+            largest = largest.max(change / size);
+            self.margin = self.margin.min(LATEST * size - change);
+        }
         largest
     }
 
     /// How far the nodes of an element have moved against its first one since it was looked at [L].
     fn change(&self, e: usize, u: &[f64]) -> f64 {
-        let nodes = &self.model.mesh.elements[e].nodes;
-        let seen = &self.seen[self.stride * e..];
-        let moved = |a: usize| Vector2::new(u[2 * nodes[a]], u[2 * nodes[a] + 1]) - seen[a];
-        let first = moved(0);
-        (1..nodes.len()).map(|a| (moved(a) - first).norm_squared()).fold(0.0, f64::max).sqrt()
+        let places = self.stride * e..self.stride * (e + 1);
+        let (nodes, seen) = (&self.nodes[places.clone()], &self.seen[places]);
+        let of = |node: usize| Vector2::new(u[2 * node], u[2 * node + 1]);
+        let first = of(nodes[0]);
+        let square = |(node, seen): (&usize, &Vector2<f64>)| (of(*node) - first - seen).norm_squared();
+        nodes.iter().zip(seen).map(square).fold(0.0, f64::max).sqrt()
     }
 
-    /// Look at some elements again, and at all contacts.
+    /// Look at some elements again.
     pub(super) fn look(&mut self, elements: &[usize], state: &State) -> Result<(), StepFailure> {
         let (model, u) = (self.model, &state.displacement);
         let found: Vec<Result<Element, TrialFailure>> =
             elements.par_iter().with_min_len(64).map(|&e| Element::at(model, e, u)).collect();
         for (&e, element) in elements.iter().zip(found) {
             self.elements[e] = element.map_err(StepFailure::Start)?;
-            for (seen, &node) in self.seen[self.stride * e..].iter_mut().zip(&model.mesh.elements[e].nodes) {
-                *seen = Vector2::new(u[2 * node], u[2 * node + 1]);
+            let places = self.stride * e..self.stride * (e + 1);
+            let of = |node: usize| Vector2::new(u[2 * node], u[2 * node + 1]);
+            let first = of(self.nodes[places.start]);
+            for (seen, &node) in self.seen[places.clone()].iter_mut().zip(&self.nodes[places]) {
+                *seen = of(node) - first;
             }
         }
-        self.segments.clear();
-        self.segments.extend(segments(state));
-        self.since = 0;
         Ok(())
     }
 
-    /// (1) or (4), with the masses of the nodes [T].
-    pub(super) fn longest_increment(&self, step: &Step, mass: &[f64], state: &State) -> f64 {
+    /// (1) or (4), with the masses of the nodes, after a look at all contacts [T].
+    pub(super) fn longest_increment(&mut self, step: &Step, mass: &[f64], state: &State) -> f64 {
+        self.segments.clear();
+        self.segments.extend(segments(state));
+        self.since = 0;
         let added = self.added_stiffness(step, state);
-        let softness = |node: usize| if mass[node] > 0.0 { added[node] / mass[node] } else { 0.0 };
-        let of_element = |e: usize| {
+        let softness = added.iter().zip(mass).map(|(added, mass)| if *mass > 0.0 { added / mass } else { 0.0 });
+        self.softness = softness.collect();
+        let lone = self.softness.iter().map(|softness| longest(*softness, 0.0)).fold(f64::INFINITY, f64::min);
+        self.longest_of(&(0..self.elements.len()).collect::<Vec<_>>()).min(lone)
+    }
+
+    /// (1) or (4) of some elements, with what contacts add as last looked at [T].
+    pub(super) fn longest_of(&self, elements: &[usize]) -> f64 {
+        let of_element = |&e: &usize| {
             let [elastic, viscous] = self.elements[e].bounds;
             let nodes = self.model.mesh.elements[e].nodes.iter();
-            longest(elastic + nodes.map(|&node| softness(node)).fold(0.0, f64::max), viscous)
+            longest(elastic + nodes.map(|&node| self.softness[node]).fold(0.0, f64::max), viscous)
         };
-        let elements = (0..self.elements.len()).into_par_iter().with_min_len(FEW);
-        let shortest = (0..added.len()).map(|node| longest(softness(node), 0.0)).fold(f64::INFINITY, f64::min);
-        elements.map(of_element).reduce(|| f64::INFINITY, f64::min).min(shortest)
+        elements.iter().map(of_element).fold(f64::INFINITY, f64::min)
     }
 
     /// k of (3) at every node [F/L].
@@ -161,6 +192,12 @@ impl<'m> Stability<'m> {
         model.ties.spread(1, &mut added);
         added
     }
+}
+
+/// The nodes of an element and as often the first one as it takes to fill `stride` places.
+fn filled(nodes: &[usize], stride: usize) -> impl Iterator<Item = usize> {
+    let first = nodes.iter().take(1).cycle();
+    nodes.iter().chain(first).take(stride).copied()
 }
 
 /// Segment that every contact point meets; `None` where it faces no master.
