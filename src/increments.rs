@@ -22,6 +22,7 @@
 //! goes within one increment, such as a short pulse of a load, needs a `max` that meets it.
 
 use crate::contact::force::{ContactState, Status};
+use crate::contact::pair::Arrival;
 use crate::model::{Model, Step};
 use crate::state::State;
 
@@ -37,6 +38,15 @@ const SAFETY: f64 = 0.8;
 const LEAST_SHARE: f64 = 0.1;
 /// A change that is not worth having: increments of one length keep the orders of the scheme.
 const WORTHWHILE: f64 = 1.25;
+
+/// Share of a contact's force that may be in doubt after a static increment in which points touched.
+pub const DOUBT: f64 = 0.005;
+/// Part of that which the next attempt aims at.
+const AIM: f64 = 0.5;
+/// Most that one estimate lengthens the next attempt at the rest of an increment that is made in parts.
+const MOST_SHARE: f64 = 4.0;
+/// Halvings of an increment that find where to end it: as many as it takes for round-off.
+const HALVINGS: usize = 50;
 
 /// Excess of what is left of a step over an increment that is not worth another one.
 const ROUND_OFF: f64 = 1e-6;
@@ -81,6 +91,100 @@ pub fn judge(model: &Model, step: &Step, [old, new]: [&State; 2], iterations: us
     }
     let grows = easy && !repeated && share > WORTHWHILE;
     judged(true, if grows { share } else { 1.0 })
+}
+
+/// What the attempts at an increment of a static step have shown about points that touch in it.
+#[derive(Clone, Debug, Default)]
+pub struct Touching {
+    /// End and length of the increment that is made in parts [T]
+    whole: Option<(f64, f64)>,
+    /// Largest force of each contact in an attempt [F]
+    forces: Vec<f64>,
+    /// Attempts given up
+    refused: usize,
+    /// Whether the attempt is to end where a contact touches
+    ends_in_touch: bool,
+}
+
+impl Touching {
+    /// Judge a solved increment that is accepted otherwise; `foreseen` are the contact states had its motion gone on as before.
+    /// The share of a contact's force that is in doubt comes with the judgement.
+    pub fn judge(
+        &mut self,
+        model: &Model,
+        step: &Step,
+        old: &State,
+        new: &mut State,
+        foreseen: &[Vec<ContactState>],
+        judged: Judgement,
+    ) -> (Judgement, f64) {
+        self.forces.resize(model.contacts.len(), 0.0);
+        let mut doubt = 0.0;
+        let (mut share, mut meets) = (1.0f64, false);
+        for (k, pair) in model.contacts.iter().enumerate() {
+            let states = old.contacts[k].iter().zip(&foreseen[k]).zip(&new.contacts[k]).zip(&pair.points);
+            let arrival = |(((old, foreseen), now), slave)| pair.arrival(slave, [old, foreseen, now], new.dt);
+            let unknown = Some(Arrival { at: 0.0, doubt: f64::INFINITY });
+            let arrivals: Vec<Arrival> = states.filter_map(|states| arrival(states).unwrap_or(unknown)).collect();
+            let force: f64 = new.contacts[k].iter().map(|state| state.friction.pressure.hypot(state.friction.traction) * state.length).sum();
+            self.forces[k] = self.forces[k].max(force);
+            let all: f64 = arrivals.iter().map(|arrival| arrival.doubt).sum();
+            if all > 0.0 {
+                doubt = f64::max(doubt, all / self.forces[k]);
+                let first = arrivals.iter().fold(1.0, |first: f64, arrival| first.min(arrival.at));
+                let meets_first = first > 0.0 && old.contacts[k].iter().all(|state| state.friction.pressure <= 0.0);
+                let most = if meets_first { first } else { longest(&arrivals, AIM * DOUBT * self.forces[k]) };
+                if most < share {
+                    (share, meets) = (most, meets_first);
+                }
+            }
+        }
+        if doubt > DOUBT && new.dt > step.increments.min {
+            self.whole.get_or_insert((new.time, new.dt));
+            // What was foreseen has been wrong before.
+            let most = if self.refused == 0 { 1.0 } else { 0.5 };
+            self.refused += 1;
+            self.ends_in_touch = meets;
+            let share = if meets { share } else { share.max(LEAST_SHARE) };
+            let next = (share.min(most) * new.dt).max(step.increments.min);
+            return (Judgement { accepted: false, next, ..judged }, doubt);
+        }
+        self.refused = 0;
+        self.forces.clear();
+        let touches = std::mem::take(&mut self.ends_in_touch);
+        if let Some(last) = &mut new.last_increment {
+            last.ends_in_touch = touches;
+        }
+        let Some((end, dt)) = self.whole else { return (judged, doubt) };
+        let left = end - new.time;
+        if left > step.increments.min {
+            // Where points touch one after the other, their doubt grows with Δt².
+            let share = (AIM * DOUBT / doubt).sqrt().clamp(LEAST_SHARE, MOST_SHARE);
+            let next = if touches { left } else { left.min(share * new.dt) };
+            return (Judgement { next, ..judged }, doubt);
+        }
+        self.whole = None;
+        (Judgement { next: dt, ..judged }, doubt)
+    }
+
+    /// Forget the increment: it is cut for other reasons.
+    pub fn give_up(&mut self) {
+        *self = Self::default();
+    }
+}
+
+/// Share of an increment in which the force in doubt comes to no more than `allowed`, if that of each point grows steadily
+/// once it has touched.
+fn longest(arrivals: &[Arrival], allowed: f64) -> f64 {
+    let doubt = |share: f64| -> f64 {
+        arrivals.iter().map(|a| a.doubt * ((share - a.at) / (1.0 - a.at)).max(0.0)).sum()
+    };
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if doubt(middle) > allowed { high = middle } else { low = middle }
+    }
+    low
 }
 
 /// Highest slip rate of a contact point from one state to a later one [L/T].
