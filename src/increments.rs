@@ -40,7 +40,8 @@ const LEAST_SHARE: f64 = 0.1;
 const WORTHWHILE: f64 = 1.25;
 
 /// Share of a contact's force that may be in doubt after a static increment in which points touched.
-pub const DOUBT: f64 = 0.005;
+pub const DOUBT: f64 = 0.02;
+pub static DOUBTX: std::sync::LazyLock<f64> = std::sync::LazyLock::new(|| std::env::var("DOUBT").map_or(0.02, |s| s.parse().unwrap()));
 /// Part of that which the next attempt aims at.
 const AIM: f64 = 0.5;
 /// Most that one estimate lengthens the next attempt at the rest of an increment that is made in parts.
@@ -79,10 +80,18 @@ pub fn judge(model: &Model, step: &Step, [old, new]: [&State; 2], iterations: us
     let Some(allowed) = step.increments.error else {
         return Judgement { accepted: true, next: if easy { dt * GROWTH } else { dt }, error: None };
     };
+    let shortest = step.increments.min;
+    if !step.scheme.is_dynamic() {
+        let error = slip_error(model, old, new);
+        let share = (SAFETY * (allowed / error).sqrt()).clamp(LEAST_SHARE, MOST_SHARE);
+        let accepted = dt <= shortest || error <= allowed;
+        let keeps = accepted && (repeated || share <= WORTHWHILE);
+        let next = if keeps { dt } else { (share * dt).max(shortest) };
+        return Judgement { accepted, next, error: Some(error) };
+    }
     let error = local_error(model, step, old, new);
     let share = (SAFETY * (allowed / error).cbrt()).clamp(LEAST_SHARE, GROWTH);
     let judged = |accepted: bool, share: f64| Judgement { accepted, next: share * dt, error: Some(error) };
-    let shortest = step.increments.min;
     if dt > shortest && error > allowed {
         return Judgement { next: (share * dt).max(shortest), ..judged(false, share) };
     }
@@ -133,13 +142,13 @@ impl Touching {
                 doubt = f64::max(doubt, all / self.forces[k]);
                 let first = arrivals.iter().fold(1.0, |first: f64, arrival| first.min(arrival.at));
                 let meets_first = first > 0.0 && old.contacts[k].iter().all(|state| state.friction.pressure <= 0.0);
-                let most = if meets_first { first } else { longest(&arrivals, AIM * DOUBT * self.forces[k]) };
+                let most = if meets_first { first } else { longest(&arrivals, AIM * *DOUBTX * self.forces[k]) };
                 if most < share {
                     (share, meets) = (most, meets_first);
                 }
             }
         }
-        if doubt > DOUBT && new.dt > step.increments.min {
+        if doubt > *DOUBTX && new.dt > step.increments.min {
             self.whole.get_or_insert((new.time, new.dt));
             // What was foreseen has been wrong before.
             let most = if self.refused == 0 { 1.0 } else { 0.5 };
@@ -159,7 +168,7 @@ impl Touching {
         let left = end - new.time;
         if left > step.increments.min {
             // Where points touch one after the other, their doubt grows with Δt².
-            let share = (AIM * DOUBT / doubt).sqrt().clamp(LEAST_SHARE, MOST_SHARE);
+            let share = (AIM * *DOUBTX / doubt).sqrt().clamp(LEAST_SHARE, MOST_SHARE);
             let next = if touches { left } else { left.min(share * new.dt) };
             return (Judgement { next, ..judged }, doubt);
         }
@@ -202,6 +211,21 @@ fn local_error(model: &Model, step: &Step, old: &State, new: &State) -> f64 {
     let free = heavy.filter(|(dof, _)| step.supports.binary_search_by_key(dof, |support| support.dof).is_err());
     let change = free.fold(0.0, |largest: f64, (_, (new, old))| largest.max((new - old).abs()));
     constant * new.dt.powi(2) * change
+}
+
+/// ½ Δt |v₁ − v₀|, the largest of all points that are closed at both ends, with v = plastic slip/Δt of an increment [L].
+fn slip_error(model: &Model, old: &State, new: &State) -> f64 {
+    let rate = |state: &ContactState, dt: f64| if dt > 0.0 { state.friction.plastic_increment / dt } else { 0.0 };
+    let mut largest = 0.0f64;
+    for (pair, states) in model.contacts.iter().zip(old.contacts.iter().zip(&new.contacts)) {
+        for (slave, (before, after)) in pair.points.iter().zip(states.0.iter().zip(states.1)) {
+            let closed = before.friction.pressure > 0.0 && after.friction.pressure > 0.0;
+            if closed && pair.law(slave).stiffness() > 0.0 {
+                largest = largest.max(0.5 * new.dt * (rate(after, new.dt) - rate(before, old.dt)).abs());
+            }
+        }
+    }
+    largest
 }
 
 /// Largest slip, in the increment, of a point that takes part in an event of its contact; 0 if there is none, and in the

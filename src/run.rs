@@ -220,6 +220,10 @@ impl<'m> Run<'m, '_, '_> {
                 }
                 Err(_) => {
                     touching.give_up();
+                    // Another start value may lead on where a smaller increment of the same kind would not.
+                    if let Some(last) = &mut self.state.last_increment {
+                        last.ends_in_touch = false;
+                    }
                     self.report.cutbacks += 1;
                     attempt += 1;
                     dt *= CUT;
