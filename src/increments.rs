@@ -1,8 +1,23 @@
 //! How long an increment is: whether a solved one is accepted, and the length of the next attempt.
 //!
-//! Without error control every solved increment is accepted, and the next one is longer if few iterations did it.
+//! Without error control every solved increment is accepted, and the next one is longer if few iterations did it; but
+//! static increments must know friction after touch:
 //!
-//! With error control, ε being the error allowed:
+//! - A point that was apart at the start of an increment has slipped in part before it touched. That part lies between
+//!   nothing and what it would have been had the motion before the increment gone on until touch; what friction may have to do
+//!   with it, summed over the points of a contact, must not exceed 2 % of its force. Where points slide at the limit of
+//!   friction anyway, nothing is in doubt.
+//! - Else the increment is made in parts: up to the touch that was foreseen if nothing of the contact was closed before, else
+//!   as far as few enough points touch; then on to where it should have ended. The contact's force is the largest of
+//!   all attempts at the increment.
+//! - The shortest increment is accepted whatever its doubt, which is told as a warning.
+//! - A point that touches and parts again within one increment is not seen.
+//!
+//! With error control of a static step, the slip of every closed point is in error by no more than ε in an increment, by the
+//! estimate ½ Δt |v₁ − v₀| with the mean rates v of plastic slip in this increment and the last: laws that know time are
+//! integrated to first order. As it falls with Δt², the next attempt takes Δt (ε/e)^½, with a margin.
+//!
+//! With error control of a dynamic step, ε being the error allowed:
 //!
 //! - The estimated local error e of [`crate::time`] must not exceed ε in any free displacement. As e falls with Δt³, the
 //!   next attempt takes Δt (ε/e)^⅓, with a margin. Accepted increments keep their length where the gain is small.
@@ -41,9 +56,11 @@ const WORTHWHILE: f64 = 1.25;
 
 /// Share of a contact's force that may be in doubt after a static increment in which points touched.
 pub const DOUBT: f64 = 0.02;
-pub static DOUBTX: std::sync::LazyLock<f64> = std::sync::LazyLock::new(|| std::env::var("DOUBT").map_or(0.02, |s| s.parse().unwrap()));
 /// Part of that which the next attempt aims at.
 const AIM: f64 = 0.5;
+/// Where a contact touches for the first time, an increment ends this share of the way to it. Pressed from touch itself, every
+/// increment would be the same problem but for a factor: shorter ones would not help Newton's method.
+const SHORT: f64 = 0.999;
 /// Most that one estimate lengthens the next attempt at the rest of an increment that is made in parts.
 const MOST_SHARE: f64 = 4.0;
 /// Halvings of an increment that find where to end it: as many as it takes for round-off.
@@ -128,27 +145,27 @@ impl Touching {
         judged: Judgement,
     ) -> (Judgement, f64) {
         self.forces.resize(model.contacts.len(), 0.0);
-        let mut doubt = 0.0;
+        let mut doubt = 0.0f64;
         let (mut share, mut meets) = (1.0f64, false);
         for (k, pair) in model.contacts.iter().enumerate() {
             let states = old.contacts[k].iter().zip(&foreseen[k]).zip(&new.contacts[k]).zip(&pair.points);
             let arrival = |(((old, foreseen), now), slave)| pair.arrival(slave, [old, foreseen, now], new.dt);
             let unknown = Some(Arrival { at: 0.0, doubt: f64::INFINITY });
             let arrivals: Vec<Arrival> = states.filter_map(|states| arrival(states).unwrap_or(unknown)).collect();
-            let force: f64 = new.contacts[k].iter().map(|state| state.friction.pressure.hypot(state.friction.traction) * state.length).sum();
-            self.forces[k] = self.forces[k].max(force);
+            let force = |state: &ContactState| state.friction.pressure.hypot(state.friction.traction) * state.length;
+            self.forces[k] = self.forces[k].max(new.contacts[k].iter().map(force).sum());
             let all: f64 = arrivals.iter().map(|arrival| arrival.doubt).sum();
             if all > 0.0 {
-                doubt = f64::max(doubt, all / self.forces[k]);
+                doubt = doubt.max(all / self.forces[k]);
                 let first = arrivals.iter().fold(1.0, |first: f64, arrival| first.min(arrival.at));
                 let meets_first = first > 0.0 && old.contacts[k].iter().all(|state| state.friction.pressure <= 0.0);
-                let most = if meets_first { first } else { longest(&arrivals, AIM * *DOUBTX * self.forces[k]) };
+                let most = if meets_first { SHORT * first } else { longest(&arrivals, AIM * DOUBT * self.forces[k]) };
                 if most < share {
                     (share, meets) = (most, meets_first);
                 }
             }
         }
-        if doubt > *DOUBTX && new.dt > step.increments.min {
+        if doubt > DOUBT && new.dt > step.increments.min {
             self.whole.get_or_insert((new.time, new.dt));
             // What was foreseen has been wrong before.
             let most = if self.refused == 0 { 1.0 } else { 0.5 };
@@ -159,24 +176,31 @@ impl Touching {
             return (Judgement { accepted: false, next, ..judged }, doubt);
         }
         self.refused = 0;
-        self.forces.clear();
         let touches = std::mem::take(&mut self.ends_in_touch);
         if let Some(last) = &mut new.last_increment {
             last.ends_in_touch = touches;
         }
-        let Some((end, dt)) = self.whole else { return (judged, doubt) };
+        let Some((end, dt)) = self.whole else {
+            self.forces.clear();
+            return (judged, doubt);
+        };
         let left = end - new.time;
         if left > step.increments.min {
             // Where points touch one after the other, their doubt grows with Δt².
-            let share = (AIM * *DOUBTX / doubt).sqrt().clamp(LEAST_SHARE, MOST_SHARE);
+            let share = (AIM * DOUBT / doubt).sqrt().clamp(LEAST_SHARE, MOST_SHARE);
             let next = if touches { left } else { left.min(share * new.dt) };
             return (Judgement { next, ..judged }, doubt);
         }
-        self.whole = None;
+        self.give_up();
         (Judgement { next: dt, ..judged }, doubt)
     }
 
-    /// Forget the increment: it is cut for other reasons.
+    /// The attempt could not be solved, and is made shorter.
+    pub fn cut(&mut self) {
+        self.ends_in_touch = false;
+    }
+
+    /// Forget the increment: it is repeated for other reasons.
     pub fn give_up(&mut self) {
         *self = Self::default();
     }
@@ -185,9 +209,8 @@ impl Touching {
 /// Share of an increment in which the force in doubt comes to no more than `allowed`, if that of each point grows steadily
 /// once it has touched.
 fn longest(arrivals: &[Arrival], allowed: f64) -> f64 {
-    let doubt = |share: f64| -> f64 {
-        arrivals.iter().map(|a| a.doubt * ((share - a.at) / (1.0 - a.at)).max(0.0)).sum()
-    };
+    let doubt =
+        |share: f64| -> f64 { arrivals.iter().map(|a| a.doubt * ((share - a.at) / (1.0 - a.at)).max(0.0)).sum() };
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);

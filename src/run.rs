@@ -164,7 +164,8 @@ impl<'m> Run<'m, '_, '_> {
                 let iterations = hardest_pass(&iterations);
                 let mut judgement = judge(self.model, step, [&self.state, &new], iterations, attempt > 1);
                 if judgement.accepted && !step.scheme.is_dynamic() {
-                    let judged = touching.judge(self.model, step, &self.state, &mut new, &self.work.foreseen, judgement);
+                    let judged =
+                        touching.judge(self.model, step, &self.state, &mut new, &self.work.foreseen, judgement);
                     (judgement, doubt) = (judged.0, Some(judged.1));
                 } else {
                     touching.give_up();
@@ -219,11 +220,7 @@ impl<'m> Run<'m, '_, '_> {
                     return Err(Error::StepTooSmall { step, time, dt, min, cause });
                 }
                 Err(_) => {
-                    touching.give_up();
-                    // Another start value may lead on where a smaller increment of the same kind would not.
-                    if let Some(last) = &mut self.state.last_increment {
-                        last.ends_in_touch = false;
-                    }
+                    touching.cut();
                     self.report.cutbacks += 1;
                     attempt += 1;
                     dt *= CUT;

@@ -248,7 +248,6 @@ fn solve(
         } else if tangents > 0 {
             let evaluation = &assembler.evaluation;
             let share = evaluation.stabilization / system.forces.max(f64::MIN_POSITIVE);
-            flips.weigh(crate::linear::norm(&system.residual) / system.forces.max(f64::MIN_POSITIVE));
             seen.push((ContactCounts::of(&evaluation.contacts), flips.count(&evaluation.contacts), share));
         }
         Ok(flips.share())
@@ -285,20 +284,10 @@ struct Flips {
     last: [Vec<Status>; 2],
     /// Iterations in a row in which each point came back
     returns: Vec<usize>,
-    /// Lowest residual so far [-]
-    least: Option<f64>,
-    /// Iterations since
-    idle: usize,
-    /// Corrections that are still to be halved
-    halved: usize,
 }
 
 /// Returns in a row that are taken for a cycle. The edge of a contact that is finding its place comes back once or twice.
 const CYCLE: usize = 3;
-
-/// Iterations without gain that are taken for a longer cycle, and corrections that are halved to leave it.
-const IDLE: usize = 6;
-const HALVED: usize = 5;
 
 impl Flips {
     /// Number of points that are as they were before the last iterate, and were not in it.
@@ -313,23 +302,9 @@ impl Flips {
         self.returns.iter().filter(|returns| **returns > 0).count()
     }
 
-    /// Watch the residual.
-    fn weigh(&mut self, residual: f64) {
-        self.halved = self.halved.saturating_sub(1);
-        if self.halved == 0 {
-            let gained = self.least.is_none_or(|least| residual < least);
-            self.least = if gained { Some(residual) } else { self.least };
-            self.idle = if gained { 0 } else { self.idle + 1 };
-            if self.idle == IDLE {
-                (self.idle, self.halved) = (0, HALVED);
-            }
-        }
-    }
-
-    /// Share of the next correction to take: half of it ends between the two states of a cycle. A longer cycle shows in a
-    /// residual that gains nothing.
+    /// Share of the next correction to take: half of it ends between the two states of a cycle.
     fn share(&self) -> f64 {
-        if self.halved > 0 || self.returns.iter().any(|returns| *returns >= CYCLE) { 0.5 } else { 1.0 }
+        if self.returns.iter().any(|returns| *returns >= CYCLE) { 0.5 } else { 1.0 }
     }
 }
 

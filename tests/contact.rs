@@ -565,8 +565,14 @@ fn check_mortar_tangent(
     let weights = mortar.weights(k, surface, &was, &before);
     let open = pair.laws[0].initial_state();
     let friction = if gap > 0.0 { open } else { FrictionState { traction: 2.0, pressure: 20.0, ..open } };
-    let old =
-        ContactState { friction, foot: Some(MasterPoint { segment: 0, xi: 0.0 }), length: 1.0, gap, slip: 0.0, multiplier: 0.0 };
+    let old = ContactState {
+        friction,
+        foot: Some(MasterPoint { segment: 0, xi: 0.0 }),
+        length: 1.0,
+        gap,
+        slip: 0.0,
+        multiplier: 0.0,
+    };
     let increment = Increment { moment: MOMENT, presumption: Presumption::default() };
     let evaluate = |x: &Positions| {
         let x = Configuration::undeformed(x);

@@ -15,7 +15,8 @@
 //!                                                no p/α_n under the augmented Lagrangian, which leaves no penetration
 //! ```
 //!
-//! Without c a point that comes in with a high pressure would stick for its stiff penalty alone, and spring away by all it
+//! What is accepted depends on c by no more than the error control of increments allows: it repeats increments in which friction would
+//! change with the share that counts. Without c a point that comes in with a high pressure would stick for its stiff penalty alone, and spring away by all it
 //! has missed in the increment after.
 
 use nalgebra::{DVector, Vector2};
@@ -225,7 +226,8 @@ pub fn open(
     let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.moment.dt };
     let friction = pair.law(slave).respond(&old.friction, sliding)?.state;
     let (gap, foot) = met.unzip();
-    let state = ContactState { friction, foot, length: old.length, gap: gap.unwrap_or(0.0), slip: 0.0, multiplier: 0.0 };
+    let state =
+        ContactState { friction, foot, length: old.length, gap: gap.unwrap_or(0.0), slip: 0.0, multiplier: 0.0 };
     Ok((state, None))
 }
 

@@ -270,9 +270,7 @@ impl ContactPair {
         }
         let met = foreseen.friction.pressure > 0.0 && foreseen.gap < 0.0;
         let at = if met { old.gap / (old.gap - foreseen.gap) } else { 0.0 };
-        // The bodies give way by more than the depth of an element.
-        let latest = old.gap / (old.gap + self.compliance_after_touch(true) * pressure);
-        let free = foreseen.slip * at.min(latest);
+        let free = foreseen.slip * at;
         let mut doubt = 0.0f64;
         for slip in [now.slip, now.slip - free] {
             let other = self.law(slave).respond(&old.friction, Sliding { slip, pressure, dt })?;

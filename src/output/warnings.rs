@@ -94,7 +94,8 @@ impl Warnings {
             let start =
                 format!("step `{}`, t = {}: the increment {dt:.3e} is the shortest allowed", step.name, told(old.time));
             let percent = 100.0 * doubt;
-            let found = format!("when points touched in it leaves friction of {percent:.1} % of a contact's force in doubt");
+            let found =
+                format!("when points touched in it leaves friction of {percent:.1} % of a contact's force in doubt");
             self.list.push(format!("{start}, and {found}; lower dt.min"));
         }
     }
