@@ -58,9 +58,6 @@ const WORTHWHILE: f64 = 1.25;
 pub const DOUBT: f64 = 0.02;
 /// Part of that which the next attempt aims at.
 const AIM: f64 = 0.5;
-/// Where a contact touches for the first time, an increment ends this share of the way to it. Pressed from touch itself, every
-/// increment would be the same problem but for a factor: shorter ones would not help Newton's method.
-const SHORT: f64 = 0.999;
 /// Most that one estimate lengthens the next attempt at the rest of an increment that is made in parts.
 const MOST_SHARE: f64 = 4.0;
 /// Halvings of an increment that find where to end it: as many as it takes for round-off.
@@ -159,7 +156,7 @@ impl Touching {
                 doubt = doubt.max(all / self.forces[k]);
                 let first = arrivals.iter().fold(1.0, |first: f64, arrival| first.min(arrival.at));
                 let meets_first = first > 0.0 && old.contacts[k].iter().all(|state| state.friction.pressure <= 0.0);
-                let most = if meets_first { SHORT * first } else { longest(&arrivals, AIM * DOUBT * self.forces[k]) };
+                let most = if meets_first { first } else { longest(&arrivals, AIM * DOUBT * self.forces[k]) };
                 if most < share {
                     (share, meets) = (most, meets_first);
                 }
