@@ -60,7 +60,8 @@ pub struct Increments {
     pub min: f64,
     /// never above this [T]
     pub max: f64,
-    /// local error of a displacement that an increment of a dynamic step may make; `None` lets the iterations decide [L]
+    /// local error that an increment may make in a displacement or, in a static step, in the slip of a contact point; `None`
+    /// lets the iterations decide [L]
     pub error: Option<f64>,
 }
 

@@ -5,7 +5,7 @@ use std::time::Instant;
 use crate::boundary::Span;
 use crate::error::{Error, StepFailure};
 use crate::explicit::Explicit;
-use crate::increments::{Judgement, bounded, fastest_slip, judge};
+use crate::increments::{Judgement, Touching, bounded, fastest_slip, judge};
 use crate::linear::Multifrontal;
 use crate::model::{Model, Rupture, Step};
 use crate::output::summary::RunReport;
@@ -142,6 +142,7 @@ impl<'m> Run<'m, '_, '_> {
             iterations: &[],
             accepted: None,
             local_error: None,
+            doubt: None,
         };
         for number in 1.. {
             let outcome = explicit.go_to(time, &mut self.state, &mut self.work.assembler);
@@ -170,13 +171,23 @@ impl<'m> Run<'m, '_, '_> {
     fn implicit(&mut self, step: &Step) -> Result<Stretch, Error> {
         let mut dt = step.increments.initial;
         let mut attempt = 1;
+        let mut touching = Touching::default();
         while self.state.time < step.span.end {
             dt = bounded(step, self.state.time, dt);
             let (iterations, outcome) = advance(self.model, step, &self.state, dt, &mut self.work);
             self.report.newton_iterations += iterations.len();
             self.report.factorizations += iterations.iter().filter(|iteration| iteration.newton.factorized).count();
-            let solved = outcome.map(|new| {
-                let judgement = judge(self.model, step, [&self.state, &new], hardest_pass(&iterations), attempt > 1);
+            let mut doubt = None;
+            let solved = outcome.map(|mut new| {
+                let iterations = hardest_pass(&iterations);
+                let mut judgement = judge(self.model, step, [&self.state, &new], iterations, attempt > 1);
+                if judgement.accepted && !step.scheme.is_dynamic() {
+                    let judged =
+                        touching.judge(self.model, step, &self.state, &mut new, &self.work.foreseen, judgement);
+                    (judgement, doubt) = (judged.0, Some(judged.1));
+                } else {
+                    touching.give_up();
+                }
                 (new, judgement)
             });
             let fast = |new: &State| {
@@ -194,11 +205,13 @@ impl<'m> Run<'m, '_, '_> {
                 iterations: &iterations,
                 accepted: accepted.map(|(new, _)| new),
                 local_error: solved.as_ref().ok().and_then(|(_, judgement)| judgement.error),
+                doubt,
             };
             tell(self.model, &told, self.observers, &mut self.report)?;
             let shortest = CUT * dt < step.increments.min;
             match solved {
                 Ok(_) if too_fast => {
+                    touching.give_up();
                     self.report.rejected += 1;
                     if shortest {
                         return Ok(Stretch::Rupture);
@@ -227,6 +240,7 @@ impl<'m> Run<'m, '_, '_> {
                     return Err(Error::StepTooSmall { step, time, dt, min, cause });
                 }
                 Err(_) => {
+                    touching.cut();
                     self.report.cutbacks += 1;
                     attempt += 1;
                     dt *= CUT;

@@ -63,6 +63,8 @@ pub struct LastIncrement {
     pub dt: f64,
     /// Δu [L]
     pub displacement: Vec<f64>,
+    /// Whether it ends where a contact touches: the next one does not go on like it
+    pub ends_in_touch: bool,
 }
 
 /// What supports remember from the start of a step.

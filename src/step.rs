@@ -19,6 +19,8 @@ pub struct Workspace<'m> {
     /// solves them
     pub solver: Box<dyn LinearSolver>,
     system: System,
+    /// Contact states to which the motion before the last attempt would have led, had it gone on
+    pub foreseen: Vec<Vec<ContactState>>,
     /// Seconds spent in linear solves
     pub linear_seconds: f64,
 }
@@ -28,7 +30,7 @@ impl<'m> Workspace<'m> {
     pub fn new(model: &'m Model, solver: Box<dyn LinearSolver>) -> Self {
         let assembler = Assembler::new(model);
         let system = assembler.system();
-        Self { assembler, solver, system, linear_seconds: 0.0 }
+        Self { assembler, solver, system, foreseen: Vec::new(), linear_seconds: 0.0 }
     }
 }
 
@@ -226,7 +228,7 @@ fn solve(
     work: &mut Workspace,
 ) -> (Vec<IterationRecord>, Result<Vec<f64>, StepFailure>) {
     let Trial { old, step, .. } = trial;
-    let Workspace { assembler, solver, system, linear_seconds } = work;
+    let Workspace { assembler, solver, system, foreseen, linear_seconds } = work;
     let begins = start.is_none();
     if begins {
         assembler.start_increment();
@@ -240,6 +242,11 @@ fn solve(
     let start = start.unwrap_or_else(|| start_value(trial));
     let (iterations, result) = newton::solve(start, model.newton, &mut **solver, system, |u, request, system| {
         assembler.evaluate(trial, u, request, system)?;
+        // The start value goes on with the last increment; where there is none, the first linear solve tells.
+        let foresight = if goes_on(old).is_some() { 0 } else { 1 };
+        if begins && request == Request::Residual && tangents == foresight {
+            foreseen.clone_from(&assembler.evaluation.contacts);
+        }
         if request == Request::Tangent {
             // A step begins, or its stabilization has just gone.
             let unaided =
@@ -311,18 +318,23 @@ impl Flips {
     }
 }
 
-/// Where Newton's method starts: the last increment of the step goes on at its pace. Under error control it is
+/// Where Newton's method starts: the last increment of the step goes on at its pace. In dynamics under error control it is
 /// u₀ + Δt v₀ + ½ Δt² a₀, which no accepted increment leaves by much more than the allowed error; where increments do not
 /// resolve the motion it would be far off.
 fn start_value(Trial { old, step, dt, .. }: Trial) -> Vec<f64> {
     let State { displacement, velocity, acceleration, .. } = old;
-    if step.increments.error.is_some() {
+    if step.scheme.is_dynamic() && step.increments.error.is_some() {
         let rates = velocity.iter().zip(acceleration);
         return displacement.iter().zip(rates).map(|(u, (v, a))| u + dt * (v + 0.5 * dt * a)).collect();
     }
-    let Some(last) = &old.last_increment else { return displacement.clone() };
+    let Some(last) = goes_on(old) else { return displacement.clone() };
     let share = dt / last.dt;
     displacement.iter().zip(&last.displacement).map(|(u, du)| u + share * du).collect()
+}
+
+/// The last increment of the step, if the next one is expected to be like it.
+fn goes_on(old: &State) -> Option<&LastIncrement> {
+    old.last_increment.as_ref().filter(|last| !last.ends_in_touch)
 }
 
 /// Displacement at the end of an increment from the equilibrium `u` that was just found ahead of it, and everything
@@ -377,7 +389,7 @@ fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> Sta
         damping: evaluation.damping,
         reaction,
         contacts: evaluation.contacts,
-        last_increment: Some(LastIncrement { dt, displacement: increment }),
+        last_increment: Some(LastIncrement { dt, displacement: increment, ends_in_touch: false }),
         step_start: old.step_start.clone(),
         energy: old.energy,
     };

@@ -130,7 +130,7 @@ fn pulled(pair: &ContactPair, k: usize, x: &Positions, back: f64, friction: Fric
         Master::Mesh(_) => MasterPoint { segment: at.floor() as usize, xi: at - at.floor() },
         Master::Rigid(_) => MasterPoint { xi: foot.xi - back, ..foot },
     };
-    ContactState { friction, foot: Some(foot), length: 1.0, gap, multiplier: 0.0 }
+    ContactState { friction, foot: Some(foot), length: 1.0, gap, slip: 0.0, multiplier: 0.0 }
 }
 
 #[test]
@@ -582,7 +582,7 @@ fn points_that_nothing_faced_slip_past_what_they_meet() {
         aside[12..].chunks_mut(2).for_each(|u| u.copy_from_slice(&[-motion.x, -motion.y]));
         let before = Configuration::new(&x, &aside);
         let friction = pair.laws[0].initial_state();
-        let old = ContactState { friction, foot: None, length: 1.0, gap: 0.0, multiplier: 0.0 };
+        let old = ContactState { friction, foot: None, length: 1.0, gap: 0.0, slip: 0.0, multiplier: 0.0 };
         let old = vec![old; pair.points.len()];
         let answer = |u: &[f64]| {
             let x = Configuration::new(&x, u);
@@ -697,8 +697,14 @@ fn check_mortar_tangent(
     let weights = mortar.weights(k, surface, &was, &before);
     let open = pair.laws[0].initial_state();
     let friction = if gap > 0.0 { open } else { FrictionState { traction: 2.0, pressure: 20.0, ..open } };
-    let old =
-        ContactState { friction, foot: Some(MasterPoint { segment: 0, xi: 0.0 }), length: 1.0, gap, multiplier: 0.0 };
+    let old = ContactState {
+        friction,
+        foot: Some(MasterPoint { segment: 0, xi: 0.0 }),
+        length: 1.0,
+        gap,
+        slip: 0.0,
+        multiplier: 0.0,
+    };
     let increment = Increment { moment: MOMENT, presumption: Presumption::default() };
     let evaluate = |x: &Positions| {
         let x = Configuration::undeformed(x);
@@ -750,6 +756,7 @@ fn tangent_equals_differences_at_a_concave_corner() {
         foot: Some(MasterPoint { segment: 0, xi: 0.9 }),
         length: 1.0,
         gap: -0.05,
+        slip: 0.0,
         multiplier: 0.0,
     };
     check_tangent(&pair, 1, &old, &x, "concave corner");

@@ -440,7 +440,6 @@ fn steps_are_checked() {
         ("/steps/0/scheme", json!({"wilson": {"tetha": 1.4}}), ["steps[0].scheme", "did you mean `theta`?"]),
         ("/steps/0/dt/error", json!(0), ["steps[0].dt.error: ", "is 0: must be positive"]),
         ("/steps/0/dt/error", json!(-1e-3), ["steps[0].dt.error: ", "is -0.001: must be positive"]),
-        ("/steps/0/dt/error", json!(1e-3), ["steps[0].dt.error: ", "a static step has no error in time"]),
         ("/steps/0/dt/eror", json!(1e-3), ["steps[0].dt.eror: ", "did you mean `error`?"]),
         ("/steps/0/scheme", json!({"hht": {}}), ["steps[0].scheme.hht", "the key `alpha` is missing"]),
         ("/steps/0/scheme", json!({"hht": {"alpha": -0.1}}), ["bodies.block.material.density: ", "needs a mass"]),

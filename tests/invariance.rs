@@ -230,7 +230,12 @@ impl Given {
                 tractions.reverse();
                 tractions.iter_mut().for_each(|q| *q = -*q);
             }
-            Instant { time: state.time / time, force: [component(f, along), component(f, normal)], pressures, tractions }
+            Instant {
+                time: state.time / time,
+                force: [component(f, along), component(f, normal)],
+                pressures,
+                tractions,
+            }
         });
         Answer { states: states.collect(), run }
     }
@@ -273,7 +278,8 @@ impl Answer {
     fn is_worth_comparing(&self) {
         let last = self.run.last();
         let slips = last.contacts[0].iter().map(|point| point.friction.plastic_slip.abs());
-        let (least, most) = slips.fold((f64::INFINITY, 0.0f64), |(least, most), slip| (least.min(slip), most.max(slip)));
+        let (least, most) =
+            slips.fold((f64::INFINITY, 0.0f64), |(least, most), slip| (least.min(slip), most.max(slip)));
         assert!(most > 1e-5 && least < 0.8 * most, "slip is not uniform: {least:e} to {most:e}");
         let [along, normal] = self.states.last().expect("states").force;
         assert!(along.abs() > 0.1 * normal.abs(), "friction holds something: {along:e}, {normal:e}");
@@ -298,7 +304,12 @@ fn same(first: &Given, other: &Given, tolerance: f64) {
 #[test]
 fn moved_far_from_the_origin() {
     let shift = [8_388_608.0, -8_388_608.0];
-    for first in [implicit(), explicit(), Given { method: "mortar", ..implicit() }, Given { method: "node_to_segment", ..implicit() }] {
+    for first in [
+        implicit(),
+        explicit(),
+        Given { method: "mortar", ..implicit() },
+        Given { method: "node_to_segment", ..implicit() },
+    ] {
         same(&first, &Given { shift, ..first.clone() }, 1e-9);
     }
 }

@@ -38,7 +38,7 @@ const LAYERS: [(&str, u32); 30] = [
 ];
 
 /// Modules of one layer that may see each other, in this direction only.
-const WITHIN_LAYER: [(&str, &str); 2] = [("error", "newton"), ("command", "case")];
+const WITHIN_LAYER: [(&str, &str); 3] = [("error", "newton"), ("output", "increments"), ("command", "case")];
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).expect("src can be read").map(|entry| entry.expect("an entry").path());

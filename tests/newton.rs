@@ -97,9 +97,7 @@ fn a_body_that_touches_nothing_hides_no_imbalance() {
 fn a_stiff_body_in_a_stack_hides_no_imbalance() {
     let stack = |tolerance: f64| {
         let material = |e: f64| json!({"material": {"model": "neo_hookean", "E": e, "nu": 0.3}});
-        let contact = |slave: &str, master: &str| {
-            json!({"slave": slave, "master": master, "friction": {"law": "coulomb", "mu": 0.3}})
-        };
+        let contact = |slave: &str, master: &str| json!({"slave": slave, "master": master, "friction": {"law": "coulomb", "mu": 0.3}});
         let mesh = Blocks::default()
             .rectangle("steel", [12, 3], [0.0, -0.5], [4.0, 0.0])
             .rectangle("rubber", [11, 3], [0.5, 0.0], [3.0, 0.5])

@@ -233,6 +233,7 @@ fn fronts_tell_when_and_how_fast_a_given_front_ran() {
             dt: 0.05,
             iterations: &[],
             accepted: Some(&new),
+            doubt: None,
             local_error: None,
         };
         fronts.record(&model, &told).expect("a row");

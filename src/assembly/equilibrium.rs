@@ -94,7 +94,11 @@ impl Equilibrium {
         Self {
             parts: bodies.chain(surfaces).chain(lone).collect(),
             stiffness,
-            edges: model.contacts.iter().map(|pair| longest_edge(pair, &Configuration::undeformed(&model.mesh.nodes))).collect(),
+            edges: model
+                .contacts
+                .iter()
+                .map(|pair| longest_edge(pair, &Configuration::undeformed(&model.mesh.nodes)))
+                .collect(),
             diagonal: model.mesh.diagonal(),
             contact_forces: vec![0.0; model.contacts.len()],
             contact_stiffness: vec![[0.0; 2]; count],

@@ -1004,11 +1004,8 @@ fn increments(place: &str, input: Option<IncrementsInput>, span: Span, scheme: S
         let message = format!("is {min:e}: at the time {end:e} increments below {least:.1e} are lost in round-off");
         return Err(Complaint::new(format!("{place}.min"), message));
     }
-    if input.error.is_some() && scheme.error_constant().is_none() {
+    if input.error.is_some() && scheme != Scheme::Static && scheme.error_constant().is_none() {
         let message = match scheme {
-            Scheme::Static => {
-                "needs a dynamic scheme: a static step has no error in time; give it a \"dt\" without error"
-            }
             Scheme::Explicit { .. } => "explicit takes increments as long as they are stable: leave error out",
             Scheme::Wilson { .. } => "wilson has no estimate of its error: take newmark, hht or generalized_alpha",
             _ => "newmark with beta near 1/6 has no estimate of its error: take another beta",

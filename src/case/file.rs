@@ -381,8 +381,9 @@ pub struct IncrementsInput {
     pub min: Option<f64>,
     /// Increments do not grow beyond this [T]; initial unless given, with `error` a tenth of the step
     pub max: Option<f64>,
-    /// Dynamic steps only: increments are as long as the estimated error that each makes in a displacement stays below
-    /// this [L], and events of contact (slip sets in, stops or turns round) are located to ten times this
+    /// Increments are as long as the estimated error of each stays below this [L]: in dynamic steps the error of a
+    /// displacement, and events of contact (slip sets in, stops or turns round) are located to ten times this; in static
+    /// steps the error of the slip of a contact point, half of what its plastic slip differs from that at the last rate
     pub error: Option<f64>,
 }
 

@@ -299,7 +299,14 @@ fn step_lines(step: &Step) -> Vec<String> {
     if !step.stabilization.is_empty() {
         lines.push("stabilized: dashpots that fade away hold bodies until contact does".into());
     }
-    lines.extend(increments.error.map(|error| {
+    let dynamic = step.scheme.is_dynamic();
+    lines.extend(
+        increments
+            .error
+            .filter(|_| !dynamic)
+            .map(|error| format!("each in error by at most {} in the slip of a contact point", number(error))),
+    );
+    lines.extend(increments.error.filter(|_| dynamic).map(|error| {
         let located = number(EVENT_LOCATION * error);
         format!("each in error by at most {} in a displacement, events of contact located to {located}", number(error))
     }));

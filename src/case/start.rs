@@ -28,7 +28,8 @@ pub fn warnings(case: &Case, model: &Model) -> Vec<String> {
         };
         warnings.into_iter().map(|warning| format!("contact `{}`: {warning}", pair.name)).collect::<Vec<_>>()
     };
-    let of_model = coarse_positions(&model.mesh).into_iter().chain(lost_velocity(model)).chain(concerns(case, &model.mesh));
+    let of_model =
+        coarse_positions(&model.mesh).into_iter().chain(lost_velocity(model)).chain(concerns(case, &model.mesh));
     of_model.chain(model.contacts.iter().flat_map(of_contact)).collect()
 }
 

@@ -15,7 +15,8 @@
 //!                                                no p/α_n under the augmented Lagrangian, which leaves no penetration
 //! ```
 //!
-//! Without c a point that comes in with a high pressure would stick for its stiff penalty alone, and spring away by all it
+//! What is accepted depends on c by no more than the error control of increments allows: it repeats increments in which friction would
+//! change with the share that counts. Without c a point that comes in with a high pressure would stick for its stiff penalty alone, and spring away by all it
 //! has missed in the increment after.
 
 use nalgebra::{DVector, Vector2};
@@ -40,6 +41,8 @@ pub struct ContactState {
     pub length: f64,
     /// g at the foot; a contact that starts closed counts it from where its points touch [L]
     pub gap: f64,
+    /// Δu_t of the last increment, what came before touch included; 0 while open [L]
+    pub slip: f64,
     /// p̄: pressure at zero gap, raised until the penetration is small enough; 0 for the plain penalty [F/L²]
     pub multiplier: f64,
 }
@@ -59,6 +62,11 @@ pub enum Status {
 pub const SLIPPING: f64 = 0.9;
 
 impl ContactState {
+    /// Whether a point that stands for this length is open at a gap that counts.
+    pub fn apart(&self, length: f64) -> bool {
+        self.friction.pressure == 0.0 && self.gap > TOUCH * length
+    }
+
     /// Open, stick or slip. The super/subloading law slips plastically a little whenever it is loaded, so only plastic
     /// slip near the peak surface counts as slipping.
     pub fn status(&self) -> Status {
@@ -218,7 +226,9 @@ pub fn open(
     let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.moment.dt };
     let friction = pair.law(slave).respond(&old.friction, sliding)?.state;
     let (gap, foot) = met.unzip();
-    Ok((ContactState { friction, foot, length: old.length, gap: gap.unwrap_or(0.0), multiplier: 0.0 }, None))
+    let state =
+        ContactState { friction, foot, length: old.length, gap: gap.unwrap_or(0.0), slip: 0.0, multiplier: 0.0 };
+    Ok((state, None))
 }
 
 /// The state of a closed point and what it adds to the equations.
@@ -231,7 +241,7 @@ pub fn press(
 ) -> PointResponse {
     let law = pair.law(slave);
     let Meeting { mut kinematics, gap, foot } = meeting;
-    let apart = old.friction.pressure == 0.0 && old.gap > TOUCH * kinematics.length;
+    let (apart, whole) = (old.apart(kinematics.length), kinematics.slip);
     let alpha_n = pair.normal_stiffness(increment.moment.stiffening);
     let pressure = old.multiplier - alpha_n * gap;
     let carried = carried(pressure, increment.presumption);
@@ -260,6 +270,7 @@ pub fn press(
         foot: Some(foot),
         length: kinematics.length,
         gap,
+        slip: whole,
         // The next increment begins with the same pressure, but the stiffness given.
         multiplier: old.multiplier - (alpha_n - pair.alpha_n) * gap,
     };

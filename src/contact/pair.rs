@@ -15,7 +15,7 @@ use super::mortar::Mortar;
 use super::search::Index;
 use super::surface::{Master, SlavePoint};
 use crate::configuration::Configuration;
-use crate::friction::{FrictionLaw, FrictionState, LawFailure};
+use crate::friction::{FrictionLaw, FrictionState, LawFailure, Sliding};
 
 /// Two surfaces that may touch.
 #[derive(Debug)]
@@ -59,6 +59,15 @@ pub struct InitialTraction {
     pub pressure: f64,
     /// q [F/L²]
     pub traction: f64,
+}
+
+/// Touch of a point within an increment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arrival {
+    /// When it was foreseen, as a share of the increment; 0 if it was not
+    pub at: f64,
+    /// Friction that is in doubt because the slip before touch is not known [F]
+    pub doubt: f64,
 }
 
 /// When a pair is evaluated.
@@ -144,7 +153,7 @@ impl ContactPair {
             let length = met.as_ref().map_or_else(|| slave.current_length(x), |met| met.kinematics.length);
             let (gap, foot) = met.map(|met| (slave.gap(met.gap, 1.0), met.foot)).unzip();
             let multiplier = if self.penetration.is_some() { friction.pressure } else { 0.0 };
-            ContactState { friction, foot, length, gap: gap.unwrap_or(0.0), multiplier }
+            ContactState { friction, foot, length, gap: gap.unwrap_or(0.0), slip: 0.0, multiplier }
         };
         self.points.iter().zip(self.meetings(x)).enumerate().map(state).collect()
     }
@@ -300,6 +309,34 @@ impl ContactPair {
     pub fn compliance_after_touch(&self, settles: bool) -> f64 {
         let bodies = if settles { self.compliance } else { 0.0 };
         if self.penetration.is_some() { bodies } else { bodies + 1.0 / self.alpha_n }
+    }
+
+    /// What friction may have to do with the slip before touch, at a point that was apart when the increment began and is
+    /// closed `now`: that slip lies between none and what it would have been, had the motion gone on as before until touch. `foreseen` is
+    /// the state that such a motion would have led to. 0 for any other point, and for one that slides at the limit of
+    /// friction in all these cases.
+    ///
+    /// # Errors
+    /// [`LawFailure`] when the law has no answer to one of the slips.
+    pub fn arrival(
+        &self,
+        slave: &SlavePoint,
+        [old, foreseen, now]: [&ContactState; 3],
+        dt: f64,
+    ) -> Result<Option<Arrival>, LawFailure> {
+        let pressure = now.friction.pressure;
+        if pressure <= 0.0 || !old.apart(now.length) {
+            return Ok(None);
+        }
+        let met = foreseen.friction.pressure > 0.0 && foreseen.gap < 0.0;
+        let at = if met { old.gap / (old.gap - foreseen.gap) } else { 0.0 };
+        let free = foreseen.slip * at;
+        let mut doubt = 0.0f64;
+        for slip in [now.slip, now.slip - free] {
+            let other = self.law(slave).respond(&old.friction, Sliding { slip, pressure, dt })?;
+            doubt = doubt.max((other.state.traction - now.friction.traction).abs() * now.length);
+        }
+        Ok((doubt > 0.0).then_some(Arrival { at, doubt }))
     }
 
     /// What is left of the pressure of a point that closed within one iterate once the bodies have taken their share of its

@@ -35,6 +35,9 @@ pub struct Attempt<'a> {
     pub accepted: Option<&'a State>,
     /// estimated local error of a displacement, in steps under error control [L]
     pub local_error: Option<f64>,
+    /// share of a contact's force that is in doubt because points touched at an unknown moment of the increment, in static
+    /// steps [-]
+    pub doubt: Option<f64>,
 }
 
 /// Somebody who watches a run.

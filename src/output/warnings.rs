@@ -10,6 +10,7 @@ use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
 use crate::error::Error;
+use crate::increments::DOUBT;
 use crate::model::Model;
 use crate::state::State;
 use crate::time::{Scheme, told};
@@ -25,6 +26,8 @@ pub struct Warnings {
     given: BTreeSet<(usize, Kind)>,
     /// Names of the steps whose error in time has been warned about
     inexact: BTreeSet<String>,
+    /// Names of the steps in which friction after touch was in doubt
+    doubtful: BTreeSet<String>,
     /// Steps whose linear systems have been warned about
     perturbed: BTreeSet<String>,
     /// The balance of energies so far
@@ -42,6 +45,7 @@ impl Observer for Warnings {
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
         self.error_in_time(attempt);
+        self.error_of_touch(attempt);
         self.lost_pivots(attempt);
         self.audit.record(model, attempt.step, attempt.old, state);
         let x = model.configuration(&state.displacement);
@@ -125,6 +129,19 @@ impl Warnings {
             let start =
                 format!("step `{}`, t = {}: the increment {dt:.3e} is the shortest allowed", step.name, told(old.time));
             self.list.push(format!("{start}, and its error {error:.3e} exceeds {allowed:.3e}; lower dt.min"));
+        }
+    }
+    /// The shortest increment is accepted whatever it does not know of touch.
+    fn error_of_touch(&mut self, attempt: &Attempt) {
+        let Attempt { step, dt, old, .. } = attempt;
+        let Some(doubt) = attempt.doubt.filter(|doubt| *doubt > DOUBT) else { return };
+        if self.doubtful.insert(step.name.clone()) {
+            let start =
+                format!("step `{}`, t = {}: the increment {dt:.3e} is the shortest allowed", step.name, told(old.time));
+            let percent = 100.0 * doubt;
+            let found =
+                format!("when points touched in it leaves friction of {percent:.1} % of a contact's force in doubt");
+            self.list.push(format!("{start}, and {found}; lower dt.min"));
         }
     }
 }
