@@ -481,7 +481,7 @@ impl Slab {
     }
 
     /// The force along the plane of the same slab that starts at touch, after a flight in which it is rigid.
-    fn from_touch(&self, increments: f64) -> f64 {
+    fn starting_at_touch(&self, increments: f64) -> f64 {
         let supports = json!([{"on": "slab_top", "ux": GAP / 3.0, "uy": -0.5 * GAP}]);
         let steps =
             json!([{"name": "press", "duration": 1, "dt": {"initial": 1.0 / increments}, "supports": supports}]);
@@ -519,7 +519,7 @@ fn touch_is_stepped_onto() {
         Slab { m: 8, friction: coulomb(0.2), normal: json!({}), ..Slab::default() },
     ];
     for (number, slab) in slabs.iter().enumerate() {
-        let expected = slab.from_touch(20.0);
+        let expected = slab.starting_at_touch(20.0);
         for (dt, more, error) in [(1.0, 6, 0.05), (0.1, 4, 0.01)] {
             let run = slab.with(dt);
             let (force, extra) = (shear(&run), solved(&run) - f64::round(1.0 / dt) as usize);
@@ -594,7 +594,7 @@ fn touch_costs_nothing_where_friction_does_not_ask() {
 /// touch in a step of its own, in a hundred increments from there.
 #[test]
 fn laws_that_know_time_count_from_touch() {
-    let friction = json!({"law": "rate_and_state", "f_0": 0.1, "V_0": 1e-3, "a": 0.01, "b": 0.015, "D_c": 1e-3, "theta": 0.1, "alpha_t": 1e6});
+    let friction = json!({"law": "rate_and_state", "f_0": 0.4, "V_0": 1e-3, "a": 0.01, "b": 0.015, "D_c": 1e-3, "theta": 0.1, "alpha_t": 1e6});
     let slab = Slab { friction, ..Slab::default() };
     let flight = json!({"name": "fly", "duration": 2.0 / 3.0, "dt": {"initial": 0.1}, "supports": [{"on": "slab_top", "ux": GAP / 1.5, "uy": -GAP}]});
     let pressed = json!({"name": "press", "duration": 1.0 / 3.0, "dt": {"initial": 1.0 / 300.0}, "supports": [{"on": "slab_top", "ux": GAP, "uy": -1.5 * GAP}]});
