@@ -170,6 +170,7 @@ fn frictionless_sliding_is_no_rupture() {
         }],
     }));
     let slid = run.last().contacts[0][0].friction.plastic_slip.abs();
-    close("slip", slid, 0.1, 1e-9);
+    // But for the strain across of the pressed slab, ν(1 + ν) p/E at half its length.
+    close("slip", slid, 0.1, 2e-4);
     assert_eq!((run.report.increments, run.report.ruptures, run.report.rejected), (10, 0, 0));
 }

@@ -79,7 +79,11 @@ impl Observer for Fields {
     fn record(&mut self, _: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
         self.rows += 1;
-        if self.rows % self.every == 0 || state.time >= attempt.step.span.end { self.write(state) } else { Ok(()) }
+        if self.rows.is_multiple_of(self.every) || state.time >= attempt.step.span.end {
+            self.write(state)
+        } else {
+            Ok(())
+        }
     }
 
     fn finish(&mut self) -> Result<(), Error> {
