@@ -106,7 +106,7 @@ pub fn solve<E>(
     let mut iterations: Vec<Iteration> = Vec::new();
     let result = (|| {
         let mut share = evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
-        let (mut largest_start, mut before) = (0.0f64, f64::INFINITY);
+        let (mut largest_start, mut before) = (0.0f64, [f64::INFINITY; 2]);
         // Near a kink of the equations it promises more than it keeps, every time.
         let mut old_tangent_serves = true;
         loop {
@@ -117,7 +117,7 @@ pub fn solve<E>(
             }
             if let Some(last) = iterations.last_mut() {
                 last.residual = residual;
-                let kept_promise = last.factorized || residual <= before / OLD_TANGENT;
+                let kept_promise = last.factorized || gain(size, residual, before) <= 1.0 / OLD_TANGENT;
                 old_tangent_serves &= kept_promise && !last.fallback;
             }
             if done > 0 && residual <= settings.tolerance {
@@ -133,7 +133,7 @@ pub fn solve<E>(
                 return Err(NewtonFailure::TooManyIterations { residual, iterations: done });
             }
             let slower = if iterations.last().is_some_and(|last| last.factorized) { OLD_TANGENT } else { 1.0 };
-            let corrections = corrections_left(residual, slower * residual / before, settings.tolerance);
+            let corrections = corrections_left(residual, slower * gain(size, residual, before), settings.tolerance);
             let factorized = done == 0 || !(old_tangent_serves && corrections <= OLD_TANGENT_CORRECTIONS);
             let mut solution = if factorized {
                 evaluate(&u, Request::Tangent, system).map_err(NewtonFailure::Evaluation)?;
@@ -160,17 +160,30 @@ pub fn solve<E>(
             share = loop {
                 match evaluate(&u, Request::Residual, system) {
                     Ok(share) => break share,
-                    Err(failure) if part <= LEAST_PART => return Err(NewtonFailure::Evaluation(failure)),
+                    Err(failure) if part <= LEAST_PART && factorized => {
+                        return Err(NewtonFailure::Evaluation(failure));
+                    }
+                    Err(_) if part <= LEAST_PART => {
+                        // An old tangent led astray: the next correction starts from where this one did.
+                        old_tangent_serves = false;
+                        u.iter_mut().zip(&solution.x).for_each(|(u, x)| *u -= part * x);
+                        break evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
+                    }
                     Err(_) => part *= 0.5,
                 }
                 for (u, x) in u.iter_mut().zip(&solution.x) {
                     *u -= part * x;
                 }
             };
-            before = residual;
+            before = [size, residual];
         }
     })();
     (iterations, result.map(|()| u))
+}
+
+/// Share of the residual that a correction has left: of the whole, or of what the worst part lacks if that is more.
+fn gain(size: f64, residual: f64, before: [f64; 2]) -> f64 {
+    (size / before[0]).max(residual / before[1])
 }
 
 /// How many corrections take a residual from `size` to what is allowed if each leaves the share `left` of it.
