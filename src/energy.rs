@@ -17,6 +17,20 @@ pub fn work_of_drivers(model: &Model, step: &Step, [t0, t1]: [f64; 2], way: impl
         .sum()
 }
 
+/// What bringing in the overlap of shrink fits puts in over an increment: mean force × what of the overlap came in [F·L].
+pub fn work_of_fits(model: &Model, [old, new]: [&[Vec<ContactState>]; 2], [t0, t1]: [f64; 2]) -> f64 {
+    let [before, after] = [t0, t1].map(|time| model.steps[0].span.share(time));
+    let force = |state: &ContactState| state.friction.pressure * state.length;
+    let mut work = 0.0;
+    for (pair, (old, new)) in model.contacts.iter().zip(old.iter().zip(new)) {
+        for (point, (old, new)) in pair.points.iter().zip(old.iter().zip(new)).filter(|(point, _)| point.overlap > 0.0)
+        {
+            work += 0.5 * (force(old) + force(new)) * point.overlap * (after - before);
+        }
+    }
+    work
+}
+
 /// ∫ (α_n g²/2 + q²/(2 α_t)) ds of the closed points [F·L].
 pub fn contact_energy(model: &Model, contacts: &[Vec<ContactState>]) -> f64 {
     let mut energy = 0.0;

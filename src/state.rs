@@ -91,7 +91,7 @@ pub struct Energy {
     pub damping_dissipation: f64,
     /// ∫ c v² dt of the dashpots that stabilize floating bodies, a part of the damping dissipation
     pub stabilization: f64,
-    /// work of loads, springs, supports and drivers of dashpots on the model
+    /// work of loads, springs, supports, drivers of dashpots and overlaps of shrink fits on the model
     pub external_work: f64,
     /// kinetic + strain + contact energy at the start of the run
     pub initial: f64,

@@ -2,7 +2,7 @@
 
 use crate::assembly::{Assembler, ContactCounts, Trial};
 use crate::contact::force::{ContactState, Status};
-use crate::energy::{contact_energy, friction_dissipation, work_of_drivers};
+use crate::energy::{contact_energy, friction_dissipation, work_of_drivers, work_of_fits};
 use crate::error::StepFailure;
 use crate::floating::null_motion;
 use crate::linear::{self, LinearSolver};
@@ -375,6 +375,7 @@ fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> Sta
     let relaxed = relaxation(step, &old.force, &increment);
     let stabilized: f64 = step.stabilization.iter().zip(&increment).map(|(c, du)| c * du * du).sum();
     let driven = work_of_drivers(model, step, [old.time, time], |dof| increment[dof]);
+    let fitted = work_of_fits(model, [&old.contacts, &evaluation.contacts], [old.time, time]);
     let contact_elastic = contact_energy(model, &evaluation.contacts);
     let dissipated = friction_dissipation(&old.contacts, &evaluation.contacts);
     let mut state = State {
@@ -393,7 +394,7 @@ fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> Sta
         step_start: old.step_start.clone(),
         energy: old.energy,
     };
-    state.energy.external_work += work_done + driven;
+    state.energy.external_work += work_done + driven + fitted;
     state.energy.damping_dissipation += driven - damped + relaxed;
     state.energy.stabilization += trial.stabilization_left() * stabilized / dt;
     state.energy.strain = evaluation.strain_energy;

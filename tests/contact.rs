@@ -432,7 +432,10 @@ fn mortar_tangent_on_rigid_bodies_equals_differences() {
                 let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..friction };
                 let friction = if gap > 0.0 { friction } else { pressed };
                 let foot = Some(MasterPoint { segment: 0, xi: 0.0 });
-                let old = vec![ContactState { friction, foot, length: 1.0, gap, multiplier: 0.0 }; pair.points.len()];
+                let old = vec![
+                    ContactState { friction, foot, length: 1.0, gap, slip: 0.0, multiplier: 0.0 };
+                    pair.points.len()
+                ];
                 let answer = |x: &Positions| {
                     let (before, x) = (displaced(&before), displaced(x));
                     pair.respond(&old, &before, MOMENT, |_| Presumption::default(), &x).expect("an answer")

@@ -38,8 +38,8 @@ struct Solved {
     seconds: Option<f64>,
 }
 
-/// Newton iterations that no increment of these problems may exceed.
-const MOST_ITERATIONS: usize = 12;
+/// Linear solves, those with an old tangent included, that no increment of these problems may exceed.
+const MOST_ITERATIONS: usize = 15;
 
 impl Solved {
     fn check(&self) {

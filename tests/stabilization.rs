@@ -102,7 +102,9 @@ fn what_contact_does_not_hold_is_named() {
 #[test]
 fn a_single_increment_is_stabilized_too() {
     for dt in [json!({"initial": 2}), json!({"initial": 1.5, "max": 2}), json!({"initial": 2, "min": 2})] {
-        for (blocks, turn) in [(1, 0.0), (2, 0.0), (1, 0.0175)] {
+        // A tilted block falls past the ground in its first iterate: it needs increments that may be cut.
+        let tilted = dt.get("min").is_none().then_some((1, 0.0175));
+        for (blocks, turn) in [(1, 0.0), (2, 0.0)].into_iter().chain(tilted) {
             let mut case = column(blocks, 0.02, turn, coulomb());
             case["steps"][0]["dt"] = dt.clone();
             let run = finish(&case);

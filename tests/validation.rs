@@ -433,6 +433,10 @@ fn a_shrink_fit_has_the_pressure_of_lame() {
         println!("t = {time}: mean pressure {mean:.6}, Lame {:.6}", share * pressure);
         close("mean pressure", mean, share * pressure, 0.01 * share * pressure);
     }
+    // Bringing in the overlap takes ½ p δ a length, all of which is stored.
+    let (energy, expected) = (&run.last().energy, 0.5 * pressure * delta * radii[1] * FRAC_PI_2);
+    close("work", energy.external_work, expected, 0.02 * expected);
+    close("audit", energy.error(), 0.0, 1e-3 * expected);
 }
 
 /// A block of 1 × 0.6 on ground of 4 × 0.8, with nodes that do not match.

@@ -32,7 +32,7 @@ use rayon::prelude::*;
 
 use crate::assembly::{Assembler, Trial};
 use crate::boundary::Prescribed;
-use crate::energy::{contact_energy, friction_dissipation, work_of_drivers};
+use crate::energy::{contact_energy, friction_dissipation, work_of_drivers, work_of_fits};
 use crate::error::{StepFailure, TrialFailure};
 use crate::model::{Model, Step};
 use crate::state::State;
@@ -334,6 +334,7 @@ impl<'m> Explicit<'m> {
         }
         dissipated -= mean_work(&self.pulls, &damped);
 
+        work += work_of_fits(model, [&state.contacts, &evaluation.contacts], [state.time, time]);
         state.energy.external_work += work;
         state.energy.damping_dissipation += dissipated;
         state.energy.strain = evaluation.strain_energy;
