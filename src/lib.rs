@@ -30,6 +30,8 @@
 //! - Sums run in a fixed order: the same input gives the same bits on any number of threads.
 //! - A module imports only from lower layers; `tests/layers.rs` holds the list.
 
+#![allow(rustdoc::broken_intra_doc_links, reason = "units stand in brackets: [L], [F]")]
+
 pub mod assembly;
 pub mod boundary;
 pub mod case;

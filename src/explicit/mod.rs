@@ -10,7 +10,7 @@
 //! (1) holds because a sum of stiffnesses vibrates no faster than the fastest of its parts, each with its share of the
 //! mass (Irons & Treharne), the shares of elements and contact being in the ratio of their ω²; (2) with the Frobenius
 //! norm is at most 8^⅛ = 1.3 times the eigenvalue, commonly 1.05; (3) is Gershgorin's theorem. Every contact point that
-//! faces the master counts, open or closed. [`stability`] says when these are found again. (4) takes the place of Δt ≤ 2/ω in a viscous body, whose stress is that of
+//! faces the master counts, open or closed. `stability.rs` says when these are found again. (4) takes the place of Δt ≤ 2/ω in a viscous body, whose stress is that of
 //! the mean velocity of the increment before, (u₁ − u₀)/Δt: with a damping ratio ζ = c/(2ω) it is 2/ω (√(1 + ζ²) − ζ).
 //! Damping by the masses and dashpots act at the end of the increment and cost nothing.
 //!
