@@ -28,6 +28,10 @@ use crate::system::System;
 /// Errors of a force in units of ε: every element adds a few to each node.
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
 
+/// The same for rates, as a share of it: they are exact differences of displacements, each known to ε of its size. Ringing of
+/// small amplitude far from the start lives above this, and must not be taken for round-off.
+const RATES: f64 = 0.25;
+
 /// Displacements count for round-off up to this many times the size of the model and how far it has moved: an iterate farther
 /// away is lost, and must not pass for imprecise.
 const LOST: f64 = 10.0;
@@ -202,7 +206,8 @@ impl Assembler<'_> {
         for spring in &step.loads.springs {
             squares[spring.dof / 2] += (spring.stiffness * u[spring.dof].abs().min(farthest)).powi(2);
         }
-        let way: Vec<f64> = old.displacement.iter().zip(&old.velocity).map(|(u, v)| u.abs() + (dt * v).abs()).collect();
+        let way: Vec<f64> =
+            old.displacement.iter().zip(&old.velocity).map(|(u, v)| RATES * (u.abs() + (dt * v).abs())).collect();
         let scheme = step.scheme.coefficients();
         if let (Some(scheme), Some(mass)) = (scheme, &self.mass) {
             let inertia = mass.multiply(&way);

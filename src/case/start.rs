@@ -24,6 +24,8 @@ pub fn warnings(case: &Case, model: &Model) -> Vec<String> {
     let of_contact = |pair: &ContactPair| {
         let warnings = match case.contacts[&pair.name].initial {
             Some(_) => Vec::new(),
+            // A surface commonly lies free of itself at the start.
+            None if is_its_own_master(pair) => Vec::new(),
             None => Gaps::of(model, pair).warnings(),
         };
         warnings.into_iter().map(|warning| format!("contact `{}`: {warning}", pair.name)).collect::<Vec<_>>()
@@ -31,6 +33,10 @@ pub fn warnings(case: &Case, model: &Model) -> Vec<String> {
     let of_model =
         coarse_positions(&model.mesh).into_iter().chain(lost_velocity(model)).chain(concerns(case, &model.mesh));
     of_model.chain(model.contacts.iter().flat_map(of_contact)).collect()
+}
+
+fn is_its_own_master(pair: &ContactPair) -> bool {
+    matches!(&pair.master, Master::Mesh(surface) if surface.own_depth.is_some())
 }
 
 /// A share of the shortest edge to which positions should be known: displacements of interest are thousands of times larger.
