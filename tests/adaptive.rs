@@ -676,3 +676,21 @@ fn slip_is_followed_from_milliseconds_to_months() {
         assert!((1.5..6.0).contains(&(pair[0] / pair[1])), "√10 is due: {errors:?}");
     }
 }
+
+/// Where increments may not be shortened, what friction after touch may have to do with them is told, once a step; where they
+/// may, there is nothing to tell.
+#[test]
+fn friction_left_in_doubt_by_touch_is_told() {
+    let told = |min: f64| -> Vec<String> {
+        let mut steps = all_the_way(1.0);
+        steps[0]["dt"]["min"] = json!(min);
+        let model = model(&Slab { steps, ..Slab::default() }.case());
+        let mut warnings = Warnings::default();
+        let (report, result) = run(&model, &mut [&mut warnings]);
+        assert!(result.is_ok() && (report.rejected == 0) == (min == 1.0));
+        warnings.list.into_iter().filter(|warning| warning.contains("in doubt")).collect()
+    };
+    let single = told(1.0);
+    assert!(single.len() == 1 && single[0].contains("step `in`") && single[0].contains("lower dt.min"), "{single:?}");
+    assert_eq!(told(1e-3), Vec::<String>::new());
+}
