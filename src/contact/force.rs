@@ -15,9 +15,9 @@
 //!                                                no p/α_n under the augmented Lagrangian, which leaves no penetration
 //! ```
 //!
-//! What is accepted depends on c by no more than the error control of increments allows: it repeats increments in which friction would
-//! change with the share that counts. Without c a point that comes in with a high pressure would stick for its stiff penalty alone, and spring away by all it
-//! has missed in the increment after.
+//! What is accepted depends on c by no more than the control of static increments allows: it repeats those in which friction
+//! would change with the share that counts. Without c a point that comes in with a high pressure would stick for its stiff
+//! penalty alone, and spring away by all it has missed in the increment after.
 
 use nalgebra::{DVector, Vector2};
 use serde::{Deserialize, Serialize};
