@@ -1,9 +1,13 @@
 //! Slip weakening and rate-and-state friction alone: tangents, closed forms, differential equations.
 
+#[path = "common/strokes.rs"]
+mod strokes;
+
 use fecontact::friction::{
     FrictionLaw, FrictionResponse, FrictionState, RateAndState, RateAndStateParameters, STEEPEST, Sliding,
     SlipWeakening, SlipWeakeningParameters, StateEvolution,
 };
+use strokes::strokes;
 
 const WEAKENING: SlipWeakeningParameters =
     SlipWeakeningParameters { mu_s: 0.6, mu_d: 0.5, critical_slip: 1.0, cohesion: 0.0, alpha_t: Some(1000.0) };
@@ -174,18 +178,6 @@ fn weakening_dissipates_what_the_work_leaves() {
     assert!(state.plastic_slip.abs() > 0.1 && state.mu == 0.5);
     // The trapezoidal work of an increment in which slip sets in or turns round is not exact.
     assert_close(state.dissipation + stored, work, 2e-3 * work, "energy");
-}
-
-/// Slip and pressure to and fro in `parts` equal increments a stroke.
-fn strokes(law: &dyn FrictionLaw, points: &[[f64; 2]], parts: usize, dt: f64) -> FrictionState {
-    let start = FrictionState { pressure: points[0][1], ..law.initial_state() };
-    points.windows(2).fold(start, |old, stroke| {
-        let [[u0, p0], [u1, p1]] = [stroke[0], stroke[1]];
-        (1..=parts).fold(old, |old, k| {
-            let (share, part) = (k as f64 / parts as f64, 1.0 / parts as f64);
-            respond(law, &old, (u1 - u0) * part, p0 + share * (p1 - p0), dt * part).state
-        })
-    })
 }
 
 /// ∫ (c + μ(D) p) dD at constant pressure: the dissipation of slip to and fro depends on the slip alone, and one increment

@@ -1,5 +1,8 @@
 //! The friction laws alone: tangents, closed forms, limits, convergence, and a million random increments.
 
+#[path = "common/strokes.rs"]
+mod strokes;
+
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -8,6 +11,7 @@ use fecontact::friction::{
     Frictionless, Integration, LawFailure, STEEPEST, Sliding, SuperSubloading, SuperSubloadingParameters,
 };
 use rayon::prelude::*;
+use strokes::strokes;
 
 /// Contact pressure of the paper's point-mass problems.
 const PRESSURE: f64 = 98.1;
@@ -439,18 +443,6 @@ fn unloading_is_elastic() {
 }
 
 // Work: ∮ q du = dissipation, in increments with a reversal inside as well
-
-/// The states after strokes to these points of slip and pressure, each in `parts` equal increments.
-fn strokes(law: &dyn FrictionLaw, points: &[[f64; 2]], parts: usize, dt: f64) -> FrictionState {
-    let start = FrictionState { pressure: points[0][1], ..law.initial_state() };
-    points.windows(2).fold(start, |old, stroke| {
-        let [[u0, p0], [u1, p1]] = [stroke[0], stroke[1]];
-        (1..=parts).fold(old, |old, k| {
-            let (share, part) = (k as f64 / parts as f64, 1.0 / parts as f64);
-            respond(law, &old, (u1 - u0) * part, p0 + share * (p1 - p0), dt * part).state
-        })
-    })
-}
 
 #[test]
 fn coulomb_loops_dissipate_their_area() {
