@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use fecontact::assembly::{Assembler, Trial};
 use fecontact::case;
+use fecontact::equations::{Assembler, Trial};
 use fecontact::linear::Multifrontal;
-use fecontact::newton::Request;
-use fecontact::step::{Workspace, advance, begin};
+use fecontact::linear::system::Request;
+use fecontact::time::increment::{Workspace, advance, begin};
 
 fn assembly(criterion: &mut Criterion) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/coulomb_drag_20k.json");

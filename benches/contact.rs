@@ -1,11 +1,11 @@
 //! One update of a contact: the index of the master, and every slave point with search, law and forces.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use fecontact::configuration::Configuration;
-use fecontact::contact::pair::{ContactPair, Moment, Presumption};
+use fecontact::contact::pair::{ContactIncrement, ContactPair, Presumption};
 use fecontact::contact::search::Index;
 use fecontact::contact::surface::{Master, Surface, gauss_points};
-use fecontact::friction::{Coulomb, CoulombParameters};
+use fecontact::laws::friction::{Coulomb, CoulombParameters};
+use fecontact::mesh::configuration::Configuration;
 use nalgebra::Vector2;
 
 /// Positions of the nodes, and what lies between them.
@@ -65,7 +65,7 @@ fn measure(criterion: &mut Criterion, name: &str, sizes: [usize; 3], surfaces: f
             bench.iter(|| pair.points.iter().filter(|slave| index.project(slave, None, &x).is_some()).count());
         });
         let old = pair.initial_states(&x);
-        let moment = Moment { dt: 1.0, fading: 0.0, stiffening: 1.0, settles: true };
+        let moment = ContactIncrement { dt: 1.0, fading: 0.0, stiffening: 1.0, settles: true };
         group.bench_function(BenchmarkId::new("update", n), |bench| {
             bench.iter(|| pair.respond(&old, &x, moment, |_| Presumption::default(), &x).is_ok());
         });

@@ -5,9 +5,9 @@
 
 use std::time::Instant;
 
-use fecontact::assembly::Assembler;
 use fecontact::case;
-use fecontact::explicit::Explicit;
+use fecontact::equations::Assembler;
+use fecontact::time::explicit::Explicit;
 use serde_json::{Value, json};
 
 /// Elements a side.

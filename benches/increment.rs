@@ -6,8 +6,8 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use fecontact::case;
 use fecontact::linear::Multifrontal;
 use fecontact::model::Model;
-use fecontact::state::State;
-use fecontact::step::{Workspace, advance, begin};
+use fecontact::model::state::State;
+use fecontact::time::increment::{Workspace, advance, begin};
 
 fn model() -> Model {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/coulomb_drag_5k.json");

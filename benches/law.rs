@@ -4,7 +4,7 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use fecontact::friction::{
+use fecontact::laws::friction::{
     Approach, FrictionLaw, FrictionState, Integration, Sliding, SuperSubloading, SuperSubloadingParameters,
 };
 

@@ -18,7 +18,7 @@ use std::time::Instant;
 
 use fecontact::case;
 use fecontact::model::Model;
-use fecontact::output::{Attempt, Observer};
+use fecontact::run::observer::{Attempt, Observer};
 use fecontact::run::run;
 
 /// Name of a size, and the N and B of its mesh.
@@ -71,7 +71,7 @@ fn prepare(name: &str, n: i64, b: i64) -> Result<PathBuf, Box<dyn Error>> {
 struct Forces(Vec<[f64; 2]>);
 
 impl Observer for Forces {
-    fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), fecontact::error::Error> {
+    fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), fecontact::run::error::Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
         let x = model.configuration(&state.displacement);
         let points = model.contacts[0].points.iter().zip(&state.contacts[0]);

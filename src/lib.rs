@@ -2,11 +2,29 @@
 //!
 //! # The way through the house
 //!
-//! Reading order: `main` → [`command`] → [`case`] (JSON → checks → model) → [`model`] → [`run`] (steps, increments,
-//! cut-back; [`increments`] says how long) → [`step`] (one increment: old state → new state) → [`newton`] → [`assembly`]
-//! → {[`element`] → [`material`]} and {[`contact`] → [`friction`]}; then up again: accepted [`state`] → [`output`].
+//! A room imports only from the rooms below it:
 //!
-//! A law alone: [`command`] → [`case`] → [`law_driver`] along a [`law_path`] → [`friction`] → [`output`].
+//! | room | what is in it |
+//! |---|---|
+//! | [`cli`] | commands, arguments, progress |
+//! | [`case`] | the JSON of a case: read, checked, translated to a model |
+//! | [`output`] | observers of a run and the files they write; figures |
+//! | [`run`] | steps, increments accepted and cut, observers |
+//! | [`time`] | one increment, implicit or explicit: old state → new state; how long the next one is |
+//! | [`solve`] | Newton's method; bodies that float |
+//! | [`equations`] | residual and tangent of a model at a trial displacement; energies |
+//! | [`model`] | bodies, contacts, steps, supports and loads; the state |
+//! | [`contact`] | surfaces, search, projection, mortar, forces of contact pairs |
+//! | [`linear`] | sparse matrices and their factors |
+//! | [`mesh`] | nodes, elements, groups, shapes |
+//! | [`laws`] | friction of interfaces, stress of bodies |
+//!
+//! Reading order: `main` → [`cli`] → [`case`] (JSON → checks → model) → [`model`] → [`run`] (steps, increments, cut-back;
+//! [`time::step_size`] says how long) → [`time::increment`] (one increment: old state → new state) → [`solve::newton`] →
+//! [`equations`] → {[`model::element`] → [`laws::bulk`]} and {[`contact`] → [`laws::friction`]}; then up again: accepted
+//! [`model::state`] → [`output`].
+//!
+//! A law alone: [`cli`] → [`case`] → [`run::law`] along a [`run::law_path`] → [`laws::friction`] → [`output`].
 //!
 //! # Signs
 //!
@@ -28,36 +46,19 @@
 //! - The traction is a scalar in the frame that turns with the interface; that is the co-rotational rate in 2D.
 //! - Committed and trial state are two values: accepting a state is the commit, dropping it the roll-back.
 //! - Sums run in a fixed order: the same input gives the same bits on any number of threads.
-//! - A module imports only from lower layers; `tests/layers.rs` holds the list.
+//! - A room imports only from lower ones, and no files import each other in a circle; `tests/layers.rs` holds the list.
 
 #![allow(rustdoc::broken_intra_doc_links, reason = "units stand in brackets: [L], [F]")]
 
-pub mod assembly;
-pub mod boundary;
 pub mod case;
-pub mod command;
-pub mod configuration;
+pub mod cli;
 pub mod contact;
-pub mod element;
-pub mod energy;
-pub mod error;
-pub mod explicit;
-pub mod floating;
-pub mod friction;
-pub mod increments;
-pub mod law_driver;
-pub mod law_path;
+pub mod equations;
+pub mod laws;
 pub mod linear;
-pub mod material;
 pub mod mesh;
 pub mod model;
-pub mod newton;
 pub mod output;
-pub mod parameter;
 pub mod run;
-pub mod shape;
-pub mod state;
-pub mod step;
-pub mod system;
-pub mod ties;
+pub mod solve;
 pub mod time;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use fecontact::command::{self, Failure, Input};
+use fecontact::cli::{self, Failure, Input};
 
 /// 2D finite-element contact with the time-dependent super/subloading-surface friction law.
 #[derive(Parser)]
@@ -62,11 +62,11 @@ enum Command {
 
 fn main() -> ExitCode {
     let result = match Arguments::parse().command {
-        Command::Run { case, out, threads, quiet } => command::run(&case, out, threads, quiet),
-        Command::Check { case } => command::check(&case),
-        Command::Law { test, out } => command::law(&test, out),
-        Command::Plot { folders, out } => command::plot(&folders, out),
-        Command::Schema { of } => command::schema(of),
+        Command::Run { case, out, threads, quiet } => cli::run(&case, out, threads, quiet),
+        Command::Check { case } => cli::check(&case),
+        Command::Law { test, out } => cli::law(&test, out),
+        Command::Plot { folders, out } => cli::plot(&folders, out),
+        Command::Schema { of } => cli::schema(of),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -5,15 +5,15 @@ mod common;
 use std::f64::consts::PI;
 
 use common::{Blocks, Finished, close, finish, model};
-use fecontact::error::Error;
-use fecontact::increments::{EVENT_LOCATION, judge};
 use fecontact::linear::SparseLu;
 use fecontact::model::Model;
+use fecontact::model::state::State;
 use fecontact::output::warnings::Warnings;
-use fecontact::output::{Attempt, Observer};
+use fecontact::run::error::Error;
+use fecontact::run::observer::{Attempt, Observer};
 use fecontact::run::run;
-use fecontact::state::State;
-use fecontact::step::{Workspace, advance};
+use fecontact::time::increment::{Workspace, advance};
+use fecontact::time::step_size::{EVENT_LOCATION, judge};
 use serde_json::{Value, json};
 
 fn trapezoidal() -> Value {

@@ -6,10 +6,10 @@ mod common;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use common::{Blocks, Finished, close, distance, finish};
-use fecontact::boundary::{Expression, Profile};
-use fecontact::configuration::Configuration;
-use fecontact::element::pressure::follower_pressure;
-use fecontact::state::State;
+use fecontact::mesh::configuration::Configuration;
+use fecontact::model::boundary::{Expression, Profile};
+use fecontact::model::element::pressure::follower_pressure;
+use fecontact::model::state::State;
 use nalgebra::Vector2;
 use serde_json::{Value, json};
 

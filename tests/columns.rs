@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Blocks, Finished, close, finish};
-use fecontact::state::State;
+use fecontact::model::state::State;
 use serde_json::{Value, json};
 
 /// Stresses and displacements are small beside G = 1 and the column: the units of both, in the column's.

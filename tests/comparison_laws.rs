@@ -3,7 +3,7 @@
 #[path = "common/strokes.rs"]
 mod strokes;
 
-use fecontact::friction::{
+use fecontact::laws::friction::{
     FrictionLaw, FrictionResponse, FrictionState, RateAndState, RateAndStateParameters, STEEPEST, Sliding,
     SlipWeakening, SlipWeakeningParameters, StateEvolution,
 };

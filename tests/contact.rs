@@ -1,17 +1,17 @@
 //! Contact: exact tangents, feet at corners and past ends.
 
-use fecontact::configuration::Configuration;
 use fecontact::contact::force::{Closed, ContactState, Increment, Status, Tractions, closes, press, respond};
 use fecontact::contact::mortar::{Mortar, mortar_points};
-use fecontact::contact::pair::{ContactPair, InitialTraction, Moment, Presumption};
+use fecontact::contact::pair::{ContactIncrement, ContactPair, InitialTraction, Presumption};
 use fecontact::contact::projection::{Bound, nearest};
 use fecontact::contact::rigid::{Circle, Plane, Polyline, Rigid};
 use fecontact::contact::search::Index;
 use fecontact::contact::surface::{
     Master, MasterPoint, Segment, SlavePoint, Surface, gauss_points, lone_point, nodal_points,
 };
-use fecontact::friction::{FrictionParameters, FrictionState};
-use fecontact::system::Contribution;
+use fecontact::laws::friction::{FrictionParameters, FrictionState};
+use fecontact::linear::system::Contribution;
+use fecontact::mesh::configuration::Configuration;
 use nalgebra::Vector2;
 
 type Positions = Vec<Vector2<f64>>;
@@ -22,7 +22,7 @@ const SUPER: &str = r#"{"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "r"
         "integration": "backward_euler"}"#;
 const COULOMB: &str = r#"{"law": "coulomb", "mu": 0.3}"#;
 const FRICTIONLESS: &str = r#"{"law": "frictionless"}"#;
-const MOMENT: Moment = Moment { dt: 0.3, fading: 0.0, stiffening: 1.0, settles: true };
+const MOMENT: ContactIncrement = ContactIncrement { dt: 0.3, fading: 0.0, stiffening: 1.0, settles: true };
 
 /// A wavy master of five segments, nodes 0 to 5 from left to right, and slave nodes 6, 7, 8 below it.
 ///
@@ -241,7 +241,7 @@ fn a_promise_is_of_second_order_and_changes_no_force() {
 fn slip_counts_from_touch() {
     let plane = Rigid::Plane(Plane { point: Vector2::zeros(), normal: Vector2::new(0.0, 1.0) });
     let plain = pair(gauss_points(&[vec![0, 1]], 2), Master::Rigid(plane), COULOMB);
-    let check = |pair: &ContactPair, deep: f64, moment: Moment, d: f64| {
+    let check = |pair: &ContactPair, deep: f64, moment: ContactIncrement, d: f64| {
         let x = vec![Vector2::new(0.2, -deep), Vector2::new(0.9, -deep)];
         let old = pulled(pair, 0, &x, 0.005, pair.laws[0].initial_state(), 0.03);
         check_tangent(pair, 0, &old, &x, "after touch");
@@ -251,10 +251,10 @@ fn slip_counts_from_touch() {
         assert!((friction.traction - expected).abs() < 1e-12, "{}, not {expected}", friction.traction);
     };
     check(&plain, 0.01, MOMENT, 0.02 + 0.01);
-    check(&plain, 0.01, Moment { settles: false, ..MOMENT }, 0.01);
+    check(&plain, 0.01, ContactIncrement { settles: false, ..MOMENT }, 0.01);
     let augmented = ContactPair { penetration: Some(1e-6), ..plain };
     check(&augmented, 0.01, MOMENT, 0.02);
-    check(&augmented, 0.0001, Moment { stiffening: 100.0, ..MOMENT }, 0.02);
+    check(&augmented, 0.0001, ContactIncrement { stiffening: 100.0, ..MOMENT }, 0.02);
 }
 
 /// Friction of a point that has just closed far too deep answers under the pressure carried, and goes on from there in a
@@ -539,7 +539,7 @@ fn initial_pressure_is_the_first_multiplier_of_the_augmented_lagrangian() {
     pair.start_closed(vec![InitialTraction { pressure: 20.0, traction: 2.0 }; pair.points.len()], &at).expect("feet");
     let old = pair.initial_states(&at);
     for stiffening in [1.0, 100.0] {
-        let moment = Moment { stiffening, ..MOMENT };
+        let moment = ContactIncrement { stiffening, ..MOMENT };
         let answer = pair.respond(&old, &at, moment, |_| Presumption::default(), &at).expect("an answer");
         let states: Vec<ContactState> = answer.into_iter().map(|(state, _)| state).collect();
         for state in &states {

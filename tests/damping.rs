@@ -6,9 +6,9 @@ use std::path::Path;
 
 use common::{Blocks, Finished, close, finish};
 use fecontact::case;
-use fecontact::element::SolidElement;
-use fecontact::material::{Material, MaterialParameters};
-use fecontact::shape::ElementKind;
+use fecontact::laws::bulk::{Material, MaterialParameters};
+use fecontact::mesh::shape::ElementKind;
+use fecontact::model::element::SolidElement;
 use nalgebra::{Complex, DMatrix, Rotation2, Vector2};
 use serde_json::{Value, json};
 

@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
-use fecontact::element::{ElementError, SolidElement, consistent_mass, lumped_mass};
-use fecontact::material::{CauchyStress, ElasticConstants, InvertedElement, Material, MaterialParameters};
-use fecontact::shape::{ElementKind, edge_values, gauss};
+use fecontact::laws::bulk::{CauchyStress, ElasticConstants, InvertedElement, Material, MaterialParameters};
+use fecontact::mesh::shape::{ElementKind, edge_values, gauss};
+use fecontact::model::element::{ElementError, SolidElement, consistent_mass, lumped_mass};
 use nalgebra::{DMatrix, DVector, Matrix2, Rotation2, Vector2};
 
 const KINDS: [ElementKind; 5] = [ElementKind::T3, ElementKind::T6, ElementKind::Q4, ElementKind::Q8, ElementKind::Q9];

@@ -5,8 +5,8 @@ mod common;
 use common::{Blocks, Finished, close, finish};
 use fecontact::linear::SparseLu;
 use fecontact::model::Model;
-use fecontact::state::State;
-use fecontact::step::{Workspace, advance, begin};
+use fecontact::model::state::State;
+use fecontact::time::increment::{Workspace, advance, begin};
 use serde_json::{Value, json};
 
 /// A block pressed on a ground, then dragged a third of its length; the friction law weakens and heals.

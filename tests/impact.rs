@@ -3,10 +3,10 @@
 mod common;
 
 use common::{Blocks, Finished, Record, close, finish, model};
-use fecontact::element::{consistent_mass, redistributed};
+use fecontact::mesh::shape::ElementKind;
+use fecontact::model::element::{consistent_mass, redistributed};
 use fecontact::output::warnings::Warnings;
 use fecontact::run::run;
-use fecontact::shape::ElementKind;
 use nalgebra::Vector2;
 use serde_json::{Value, json};
 
@@ -51,7 +51,7 @@ fn seen(run: &Finished) -> Impact {
         run.states.iter().map(|state| (state.time, run.contact_force(state)[0] / HEIGHT / SPEED)).collect();
     let within = |from: f64, to: f64| stress.iter().filter(move |(t, _)| (from..to).contains(t)).map(|(_, s)| *s);
     let pressed: Vec<f64> = stress.iter().filter(|(_, s)| *s > 0.0).map(|(t, _)| *t).collect();
-    let energy = |state: &fecontact::state::State| {
+    let energy = |state: &fecontact::model::state::State| {
         (state.energy.kinetic + state.energy.strain + state.energy.contact_elastic) / (0.5 * HEIGHT * SPEED * SPEED)
     };
     Impact {

@@ -1034,7 +1034,7 @@ fn check_tells_scheme_and_endings_of_each_step() {
 proptest::proptest! {
     #[test]
     fn no_text_makes_the_expression_parser_panic(text in "[-+*/^()xyt0-9. a-z{},πé]{0,40}") {
-        let _ = fecontact::boundary::Expression::parse(&text);
+        let _ = fecontact::model::boundary::Expression::parse(&text);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The super/subloading law under error control: right whatever the increment, with the tangent of what was computed.
 
-use fecontact::friction::{FrictionLaw, FrictionParameters, FrictionState, Sliding};
+use fecontact::laws::friction::{FrictionLaw, FrictionParameters, FrictionState, Sliding};
 use serde_json::{Value, json};
 
 const MU_S: f64 = 0.4;

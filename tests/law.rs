@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use fecontact::friction::{FrictionParameters, FrictionState, Sliding};
+use fecontact::laws::friction::{FrictionParameters, FrictionState, Sliding};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 

@@ -1,6 +1,6 @@
 //! The bulk laws against their energies, closed forms, differences, and the constants they refuse.
 
-use fecontact::material::{InvertedElement, Material, MaterialParameters};
+use fecontact::laws::bulk::{InvertedElement, Material, MaterialParameters};
 use nalgebra::{Matrix2, Matrix4, Rotation2, Vector4};
 use serde_json::json;
 
@@ -234,7 +234,7 @@ fn impossible_constants_are_named() {
         }
     }
     for (key, value) in [("E", f64::NAN), ("E", f64::INFINITY), ("nu", f64::NAN), ("density", f64::INFINITY)] {
-        let mut constants = fecontact::material::ElasticConstants { young: 1.0, poisson: 0.2, density: 1.0 };
+        let mut constants = fecontact::laws::bulk::ElasticConstants { young: 1.0, poisson: 0.2, density: 1.0 };
         match key {
             "E" => constants.young = value,
             "nu" => constants.poisson = value,

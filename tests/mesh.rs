@@ -4,8 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use fecontact::mesh::shape::ElementKind;
 use fecontact::mesh::{Edge, Element, Group, InlineMesh, Mesh, gmsh};
-use fecontact::shape::ElementKind;
 use nalgebra::{Matrix2, RowVector2, Vector2};
 use serde_json::{Value, json};
 

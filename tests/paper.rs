@@ -8,10 +8,10 @@ mod common;
 use std::path::{Path, PathBuf};
 
 use common::{close, model_at};
-use fecontact::error::Error;
 use fecontact::model::Model;
-use fecontact::output::summary::RunReport;
-use fecontact::output::{Attempt, Observer};
+use fecontact::run::error::Error;
+use fecontact::run::observer::{Attempt, Observer};
+use fecontact::run::report::RunReport;
 use fecontact::run::run;
 use serde_json::{Value, json};
 

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use common::{Blocks, close, finish};
 use fecontact::case;
-use fecontact::ties::Ties;
+use fecontact::mesh::ties::Ties;
 use serde_json::{Value, json};
 
 /// A periodic bar of length 1 along a direction, bent into a sine by forces and let go.

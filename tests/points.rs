@@ -8,15 +8,15 @@ use std::path::Path;
 use std::sync::Arc;
 
 use common::{Blocks, Finished, close, distance, finish, model, turned};
-use fecontact::error::Error;
-use fecontact::friction::{FrictionParameters, FrictionState, Sliding};
+use fecontact::laws::friction::{FrictionParameters, FrictionState, Sliding};
 use fecontact::model::Model;
+use fecontact::model::state::State;
 use fecontact::output::fields::Fields;
 use fecontact::output::history::History;
 use fecontact::output::warnings::Warnings;
-use fecontact::output::{Attempt, Observer};
+use fecontact::run::error::Error;
+use fecontact::run::observer::{Attempt, Observer};
 use fecontact::run::run;
-use fecontact::state::State;
 use nalgebra::{Matrix2, Vector2};
 use serde_json::{Value, json};
 

@@ -8,12 +8,12 @@ mod common;
 use std::path::Path;
 
 use common::{Finished, finish_at};
-use fecontact::configuration::Configuration;
 use fecontact::contact::force::Status;
-use fecontact::friction::FrictionState;
+use fecontact::laws::friction::FrictionState;
 use fecontact::mesh::Group;
+use fecontact::mesh::configuration::Configuration;
 use fecontact::model::Model;
-use fecontact::state::State;
+use fecontact::model::state::State;
 use nalgebra::Vector2;
 use serde_json::{Value, json};
 

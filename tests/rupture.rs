@@ -7,10 +7,10 @@ use std::path::Path;
 
 use common::Blocks;
 use fecontact::case;
-use fecontact::error::Error;
 use fecontact::model::Model;
 use fecontact::output::fronts::{Fronts, WaveSpeeds};
-use fecontact::output::{Attempt, Observer};
+use fecontact::run::error::Error;
+use fecontact::run::observer::{Attempt, Observer};
 use fecontact::run::run;
 use serde_json::{Value, json};
 
@@ -114,7 +114,7 @@ fn rupture(case: &Value, places: &[f64]) -> (BTreeMap<i64, (f64, f64)>, f64, usi
     let (report, result) = run(&model, &mut [&mut record]);
     result.unwrap_or_else(|error| panic!("{error}"));
     println!("{} increments in {:.1} s", report.increments, report.wall_s.total);
-    let x = fecontact::configuration::Configuration::undeformed(&model.mesh.nodes);
+    let x = fecontact::mesh::configuration::Configuration::undeformed(&model.mesh.nodes);
     let at = |s: f64| {
         let nearest = |k: &usize| (model.contacts[0].points[*k].at(&x).x - s).abs();
         let k = (0..n).min_by(|a, b| nearest(a).total_cmp(&nearest(b))).expect("points");
@@ -191,7 +191,7 @@ fn tpv3_breaks_as_published() {
 #[test]
 fn wave_speeds_are_those_of_the_tables() {
     // ν = 0.3: c_R/c_s = 0.9274, c_p/c_s = 1.871
-    let material: fecontact::material::MaterialParameters =
+    let material: fecontact::laws::bulk::MaterialParameters =
         serde_json::from_value(json!({"model": "hencky", "E": 2.6, "nu": 0.3, "density": 4.0})).expect("well formed");
     let speeds = WaveSpeeds::of(&*material.build().expect("in range"));
     common::close("c_s", speeds.shear, 0.5, 1e-12);
@@ -213,7 +213,7 @@ fn fronts_tell_when_and_how_fast_a_given_front_ran() {
     let mut old = model.initial_state();
     let mut fronts = Fronts::create(folder.path(), &model, &old, 0.5).expect("a file");
     // From the middle to both ends at 2500 m/s, behind it 1 m/s of slip; after 6.5 s it rests, and at 9 s it starts again.
-    let x = fecontact::configuration::Configuration::undeformed(&model.mesh.nodes);
+    let x = fecontact::mesh::configuration::Configuration::undeformed(&model.mesh.nodes);
     let places: Vec<f64> = model.contacts[0].points.iter().map(|point| point.at(&x).x).collect();
     for k in 1..=240 {
         let time = 0.05 * f64::from(k);

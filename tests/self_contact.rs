@@ -6,11 +6,11 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use common::{Blocks, Finished, close, distance, finish, finish_at};
-use fecontact::configuration::Configuration;
 use fecontact::contact::force::Status;
-use fecontact::contact::pair::{Moment, Presumption};
+use fecontact::contact::pair::{ContactIncrement, Presumption};
 use fecontact::contact::search::Index;
 use fecontact::contact::surface::{Master, Surface, gauss_points};
+use fecontact::mesh::configuration::Configuration;
 use nalgebra::Vector2;
 use serde_json::{Value, json};
 
@@ -129,7 +129,7 @@ fn tangent_of_self_contact_equals_differences() {
         let [old, new] = [&run.states[run.states.len() - 2], run.last()];
         let before = run.model.configuration(&old.displacement);
         let respond = |u: &[f64]| {
-            let moment = Moment { dt: 0.1, fading: 0.0, stiffening: 1.0, settles: true };
+            let moment = ContactIncrement { dt: 0.1, fading: 0.0, stiffening: 1.0, settles: true };
             let presumed = |_| Presumption::default();
             pair.respond(&old.contacts[0], &before, moment, presumed, &run.model.configuration(u)).expect("an answer")
         };
@@ -198,7 +198,7 @@ fn a_tube_pressed_flat_touches_itself() {
     let number = run.model.contacts.iter().position(|pair| pair.name == "bar").expect("a contact of the case");
     let [old, new] = [&run.states[run.states.len() - 2], run.last()];
     let [before, x] = [old, new].map(|state| run.model.configuration(&state.displacement));
-    let moment = Moment { dt: new.dt, fading: 0.0, stiffening: 1.0, settles: true };
+    let moment = ContactIncrement { dt: new.dt, fading: 0.0, stiffening: 1.0, settles: true };
     let nothing = |_| Presumption::default();
     let answer = run.model.contacts[number].respond(&old.contacts[number], &before, moment, nothing, &x);
     let closed = answer.expect("an answer").into_iter().filter_map(|(_, closed)| closed);

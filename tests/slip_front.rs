@@ -5,12 +5,12 @@ mod common;
 use std::path::Path;
 
 use common::{Blocks, Record, close, model, model_at};
-use fecontact::configuration::Configuration;
-use fecontact::error::Error;
+use fecontact::mesh::configuration::Configuration;
 use fecontact::model::Model;
-use fecontact::output::{Attempt, Observer};
+use fecontact::model::state::State;
+use fecontact::run::error::Error;
+use fecontact::run::observer::{Attempt, Observer};
 use fecontact::run::run;
-use fecontact::state::State;
 use serde_json::{Value, json};
 
 /// c_R/c_s and c_p/c_s for ν = 0.3.
@@ -88,7 +88,7 @@ fn length_at_loss_of_stability(friction: Value, [peak, curvature]: [f64; 2]) -> 
             > 0.2 * WEAKENING
     };
     let end = states.windows(2).position(jump);
-    assert!(end.is_some() || matches!(result, Err(Error::StepTooSmall { .. })), "stability was not lost");
+    assert!(end.is_some() || matches!(result, Err(Error::IncrementTooSmall { .. })), "stability was not lost");
     let last = &states[end.unwrap_or(states.len() - 1)];
     // Increments near the end may be too short to tell what falls.
     let before = states.iter().rev().find(|state| state.time < last.time - 2e-3).expect("an earlier state");

@@ -10,8 +10,8 @@
 mod common;
 
 use common::{Record, close, finish, model};
+use fecontact::model::state::State;
 use fecontact::run::run;
-use fecontact::state::State;
 use nalgebra::{Matrix3, Vector3};
 use serde_json::{Value, json};
 

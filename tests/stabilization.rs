@@ -5,8 +5,8 @@ mod common;
 use std::path::Path;
 
 use common::{Blocks, Finished, Record, close, finish, model_at};
+use fecontact::model::state::State;
 use fecontact::run::run;
-use fecontact::state::State;
 use serde_json::{Value, json};
 
 const PRESSURE: f64 = 2.0;

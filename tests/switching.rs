@@ -33,7 +33,7 @@ fn slab(steps: Value, interval: f64) -> Value {
 /// When the slip of the point nearest to x passes a value, linear between the records.
 fn arrival(run: &Finished, x: f64) -> f64 {
     const SLIP: f64 = 4e-6;
-    let undeformed = fecontact::configuration::Configuration::undeformed(&run.model.mesh.nodes);
+    let undeformed = fecontact::mesh::configuration::Configuration::undeformed(&run.model.mesh.nodes);
     let points = &run.model.contacts[0].points;
     let off = |k: &usize| (points[*k].at(&undeformed).x - x).abs();
     let k = (0..points.len()).min_by(|a, b| off(a).total_cmp(&off(b))).expect("points");

@@ -6,14 +6,14 @@ mod common;
 use std::f64::consts::FRAC_PI_2;
 
 use common::{Blocks, Finished, close, distance, finish, half_way, half_way_round, quadratic, turned};
-use fecontact::configuration::Configuration;
 use fecontact::contact::force::ContactState;
-use fecontact::contact::pair::{Moment, Presumption};
+use fecontact::contact::pair::{ContactIncrement, Presumption};
 use fecontact::contact::search::Index;
 use fecontact::contact::surface::{Master, SlavePoint, Surface, nodal_points};
-use fecontact::friction::FrictionState;
+use fecontact::laws::friction::FrictionState;
+use fecontact::mesh::configuration::Configuration;
+use fecontact::model::state::State;
 use fecontact::output::warnings::Warnings;
-use fecontact::state::State;
 use nalgebra::Vector2;
 use serde_json::{Value, json};
 
@@ -358,7 +358,7 @@ fn accepted_contact_states_follow_from_the_committed_ones() {
         let pair = &run.model.contacts[0];
         for states in run.states.windows(2) {
             let [before, x] = [&states[0], &states[1]].map(|state| run.model.configuration(&state.displacement));
-            let moment = Moment { dt: states[1].dt, fading: 0.0, stiffening: 1.0, settles: true };
+            let moment = ContactIncrement { dt: states[1].dt, fading: 0.0, stiffening: 1.0, settles: true };
             let nothing = |_| Presumption::default();
             let found = pair.respond(&states[0].contacts[0], &before, moment, nothing, &x).expect("an answer");
             for ((found, _), accepted) in found.iter().zip(&states[1].contacts[0]) {

@@ -9,10 +9,10 @@ use super::build::expression;
 use super::error::Complaint;
 use super::explain::explain;
 use super::file::{ContactInput, ProfileInput, ProfileTable};
-use crate::boundary::Profile;
 use crate::contact::surface::SlavePoint;
-use crate::friction::{FrictionLaw, FrictionParameters};
+use crate::laws::friction::{FrictionLaw, FrictionParameters};
 use crate::mesh::Mesh;
+use crate::model::boundary::Profile;
 
 type Checked<T> = Result<T, Complaint>;
 

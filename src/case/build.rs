@@ -13,23 +13,22 @@ use super::file::{
 };
 use super::method::{Chosen, choose};
 use super::{along, initial, names, periodic, supported};
-use crate::boundary::{
-    Absorber, Amplitude, Dashpot, DeadLoad, Drive, Expression, FollowerPressure, Loads, Motion, Prescribed, Span,
-    Spring,
-};
-use crate::configuration::Configuration;
 use crate::contact::mortar::{Mortar, mortar_points};
 use crate::contact::pair::{ContactPair, Reverse};
 use crate::contact::rigid::{Circle, Plane, Polyline, Rigid};
 use crate::contact::surface::{Master, SlavePoint, Surface, gauss_points, in_order, lone_point, nodal_points};
-use crate::element::{SolidElement, consistent_mass};
-use crate::material::Material;
+use crate::laws::bulk::Material;
+use crate::mesh::configuration::Configuration;
+use crate::mesh::shape;
+use crate::mesh::ties::Ties;
 use crate::mesh::{Edge, Group, Mesh, gmsh};
-use crate::model::{Body, Damping, Increments, Model, PointMass, Rupture, Step, WatchedSet};
-use crate::newton;
-use crate::shape;
-use crate::ties::Ties;
-use crate::time::Scheme;
+use crate::model::boundary::{
+    Absorber, Amplitude, Dashpot, DeadLoad, Drive, Expression, FollowerPressure, Loads, Motion, Prescribed, Span,
+    Spring,
+};
+use crate::model::element::{SolidElement, consistent_mass};
+use crate::model::scheme::Scheme;
+use crate::model::{Body, Damping, Increments, Model, NewtonSettings, PointMass, Rupture, Step, WatchedSet};
 
 /// Largest number of Newton iterations that makes sense to allow.
 const MOST_ITERATIONS: usize = 1000;
@@ -156,7 +155,7 @@ fn check_explicit(case: &Case, model: &Model) -> Checked<()> {
     }
 }
 
-fn newton_settings(case: &Case) -> Checked<newton::Settings> {
+fn newton_settings(case: &Case) -> Checked<NewtonSettings> {
     let newton = &case.newton;
     if !(newton.tolerance > 0.0 && newton.tolerance < 1.0) {
         let message = format!("is {}: must be between 0 and 1 (1e-8 is the default)", newton.tolerance);
@@ -166,7 +165,7 @@ fn newton_settings(case: &Case) -> Checked<newton::Settings> {
         let message = format!("is {}: must be 1 to {MOST_ITERATIONS}", newton.max_iterations);
         return Err(Complaint::new("newton.max_iterations", message));
     }
-    Ok(newton::Settings { tolerance: newton.tolerance, max_iterations: newton.max_iterations })
+    Ok(NewtonSettings { tolerance: newton.tolerance, max_iterations: newton.max_iterations })
 }
 
 fn bodies(case: &Case, mesh: &Mesh) -> Checked<(Vec<Body>, Vec<usize>)> {

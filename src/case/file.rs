@@ -6,10 +6,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer};
 
 use super::choice::Choice;
-use crate::friction::FrictionParameters;
-use crate::material::MaterialParameters;
+use crate::laws::bulk::MaterialParameters;
+use crate::laws::friction::FrictionParameters;
 use crate::mesh::InlineMesh;
-use crate::time::Scheme;
+use crate::model::scheme::Scheme;
 
 /// A case: mesh, bodies, contacts and steps.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]

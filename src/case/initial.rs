@@ -3,8 +3,8 @@
 use super::along::{defined, position, profile};
 use super::error::Complaint;
 use super::file::{Case, InitialInput};
-use crate::configuration::Configuration;
 use crate::contact::pair::{ContactPair, InitialTraction};
+use crate::mesh::configuration::Configuration;
 use crate::model::Model;
 
 /// An initial traction may pass the strength μ p by this share: numbers are written with a few digits.

@@ -11,10 +11,10 @@ use super::build::drive;
 use super::error::{CaseError, Complaint};
 use super::file::DriveInput;
 use super::schema_of;
-use crate::boundary::{Drive, Span};
-use crate::friction::{FrictionLaw, FrictionParameters, FrictionState};
-use crate::law_driver::LawTest;
-use crate::law_path::{Course, Phase, Undefined};
+use crate::laws::friction::{FrictionLaw, FrictionParameters, FrictionState};
+use crate::model::boundary::{Drive, Span};
+use crate::run::law::LawTest;
+use crate::run::law_path::{Course, Phase, Undefined};
 
 /// A test of a friction law alone: the law, and the path of slip and pressure it is driven along.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::error::Complaint;
 use crate::mesh::Mesh;
-use crate::ties::Ties;
+use crate::mesh::ties::Ties;
 
 /// Partners may be off by this share of the distance between their sides.
 const ROUNDED: f64 = 1e-6;

@@ -15,11 +15,11 @@ use super::method::{Chosen, choose};
 use super::start;
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
-use crate::increments::EVENT_LOCATION;
+use crate::mesh::shape::ElementKind;
 use crate::mesh::{Group, Mesh};
 use crate::model::{Model, PointMass, Step};
 use crate::output::warnings::several_answers;
-use crate::shape::ElementKind;
+use crate::time::step_size::EVENT_LOCATION;
 
 /// A readable account of a checked case.
 pub fn report(case: &Case, model: &Model) -> String {

@@ -6,11 +6,11 @@ use super::file::{Case, ContactInput};
 use super::initial::lost_velocity;
 use super::method::concerns;
 use super::report::{count, number};
-use crate::configuration::Configuration;
 use crate::contact::pair::ContactPair;
 use crate::contact::rigid::Rigid;
 use crate::contact::surface::{Master, SlavePoint};
 use crate::mesh::Mesh;
+use crate::mesh::configuration::Configuration;
 use crate::model::Model;
 
 /// Round-off of a gap, as a share of the positions that it is the difference of.

@@ -23,12 +23,12 @@ use nalgebra::{DVector, Vector2};
 use serde::{Deserialize, Serialize};
 
 use super::kinematics::{Kinematics, kinematics};
-use super::pair::{ContactPair, Moment, Presumption};
+use super::pair::{ContactIncrement, ContactPair, Presumption};
 use super::projection::Projection;
 use super::surface::{MasterPoint, SlavePoint};
-use crate::configuration::Configuration;
-use crate::friction::{FrictionResponse, FrictionState, LawFailure, Sliding};
-use crate::system::Contribution;
+use crate::laws::friction::{FrictionResponse, FrictionState, LawFailure, Sliding};
+use crate::linear::system::Contribution;
+use crate::mesh::configuration::Configuration;
 
 /// Memory of one contact point between increments.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -85,7 +85,7 @@ impl ContactState {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Increment {
     /// Length of the increment, and what it changes about every point
-    pub moment: Moment,
+    pub moment: ContactIncrement,
     /// What the linear solve presumes about the point
     pub presumption: Presumption,
 }

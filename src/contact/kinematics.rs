@@ -24,8 +24,8 @@ use super::projection::{Bound, Projection, normal_of, tangent_of};
 use super::rigid::Rigid;
 use super::search::FACING;
 use super::surface::{Master, MasterPoint, Path, SlavePoint, Surface};
-use crate::configuration::Configuration;
-use crate::shape;
+use crate::mesh::configuration::Configuration;
+use crate::mesh::shape;
 
 /// Kinematics of one contact point and the variations with respect to its nodes' displacements.
 #[derive(Clone, Debug, PartialEq)]

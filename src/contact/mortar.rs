@@ -30,8 +30,8 @@ use super::projection::{normal_of, tangent_of};
 use super::rigid::Rigid;
 use super::search::Index;
 use super::surface::{CORNER, LengthShare, MasterPoint, Segment, SlavePoint, Surface, Weights, edge_point, lone_point};
-use crate::configuration::Configuration;
-use crate::shape;
+use crate::mesh::configuration::Configuration;
+use crate::mesh::shape;
 
 /// The slave side: its edges, and which of them meet at each contact point.
 #[derive(Clone, Debug, PartialEq)]

@@ -14,8 +14,8 @@ use super::kinematics::{Kinematics, kinematics};
 use super::mortar::Mortar;
 use super::search::Index;
 use super::surface::{Master, SlavePoint};
-use crate::configuration::Configuration;
-use crate::friction::{FrictionLaw, FrictionState, LawFailure, Sliding};
+use crate::laws::friction::{FrictionLaw, FrictionState, LawFailure, Sliding};
+use crate::mesh::configuration::Configuration;
 
 /// Two surfaces that may touch.
 #[derive(Debug)]
@@ -72,7 +72,7 @@ pub struct Arrival {
 
 /// When a pair is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moment {
+pub struct ContactIncrement {
     /// Δt [T]
     pub dt: f64,
     /// Share of an initial overlap that does not count yet
@@ -199,7 +199,7 @@ impl ContactPair {
         &self,
         old: &[ContactState],
         before: &Configuration,
-        moment: Moment,
+        moment: ContactIncrement,
         presumed: impl Fn(usize) -> Presumption + Sync,
         x: &Configuration,
     ) -> Result<PairResponse, (usize, LawFailure)> {

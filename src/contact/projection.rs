@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use super::surface::{MasterPoint, Segment, SlavePoint, Surface};
-use crate::configuration::Configuration;
+use crate::mesh::configuration::Configuration;
 
 /// Where a slave point meets the master.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use super::projection::{Bound, Projection, normal_of, tangent_of};
 use super::search::FACING;
 use super::surface::{MasterPoint, SlavePoint};
-use crate::configuration::Configuration;
+use crate::mesh::configuration::Configuration;
 
 /// A rigid body.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,7 +9,7 @@ use super::projection::{Bound, Projection, at_node, normal_of, on_curve, on_segm
 use super::rigid::Rigid;
 use super::sight::Sight;
 use super::surface::{Master, MasterPoint, Segment, SlavePoint, Surface};
-use crate::configuration::Configuration;
+use crate::mesh::configuration::Configuration;
 
 /// A slave and a segment face each other when the cosine between their outward normals is below this: the sides of a
 /// body do not touch what its bottom rests on. A slave point of no edge faces every segment.

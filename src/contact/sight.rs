@@ -20,7 +20,7 @@ use nalgebra::Vector2;
 use super::projection::normal_of;
 use super::search::{Box2, FACING};
 use super::surface::{Segment, SlavePoint, Surface};
-use crate::configuration::Configuration;
+use crate::mesh::configuration::Configuration;
 
 /// A surface as it was when the increment began.
 pub struct Sight<'a> {

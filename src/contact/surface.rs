@@ -6,8 +6,8 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::rigid::Rigid;
-use crate::configuration::Configuration;
-use crate::shape;
+use crate::mesh::configuration::Configuration;
+use crate::mesh::shape;
 
 /// A linear combination of nodal positions, Σ w_a x_a.
 pub type Weights = Vec<(usize, f64)>;

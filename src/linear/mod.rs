@@ -3,6 +3,7 @@
 mod lu;
 mod multifrontal;
 mod sparse;
+pub mod system;
 
 pub use lu::SparseLu;
 pub use multifrontal::Multifrontal;

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use nalgebra::Vector2;
 
 use super::{Edge, Element, Group, Mesh, MeshError};
-use crate::shape::ElementKind;
+use crate::mesh::shape::ElementKind;
 
 /// A mesh as it was read. Cells name their nodes by tag; nothing is checked.
 #[derive(Debug, Default)]

@@ -4,15 +4,18 @@
 //! in a raw mesh; one check turns it into a [`Mesh`], so that a mesh keeps its promises wherever it comes from.
 
 mod check;
+pub mod configuration;
 mod error;
 pub mod gmsh;
 mod inline;
+pub mod shape;
+pub mod ties;
 
 use std::collections::BTreeMap;
 
 use nalgebra::Vector2;
 
-use crate::shape::ElementKind;
+use crate::mesh::shape::ElementKind;
 
 pub use error::{MeshError, UnknownGroup};
 pub use inline::InlineMesh;
@@ -22,7 +25,7 @@ pub use inline::InlineMesh;
 pub struct Element {
     /// kind
     pub kind: ElementKind,
-    /// node numbers, in the order of [`crate::shape`]
+    /// node numbers, in the order of [`crate::mesh::shape`]
     pub nodes: Vec<usize>,
 }
 

@@ -6,9 +6,9 @@
 //!
 //! The error is measured by the most that there was to be stored or dissipated: initial energy and external work.
 
+use crate::model::scheme::{Scheme, told};
+use crate::model::state::State;
 use crate::model::{Model, Step};
-use crate::state::State;
-use crate::time::{Scheme, told};
 
 /// Share of the energy there was that is worth a warning.
 const WORTH_TELLING: f64 = 0.01;

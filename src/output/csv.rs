@@ -5,7 +5,7 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use crate::error::Error;
+use crate::run::error::Error;
 
 /// Rows written within this time of each other go to the system together: the call would cost as much as the row.
 const BLINK: Duration = Duration::from_millis(50);

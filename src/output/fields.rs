@@ -7,15 +7,15 @@ use std::thread::JoinHandle;
 
 use super::csv::failed;
 use super::vtu::{CellType, Grid};
-use super::{Attempt, Observer};
-use crate::configuration::Configuration;
 use crate::contact::force::{ContactState, Status};
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
-use crate::error::Error;
-use crate::material::CauchyStress;
+use crate::laws::bulk::CauchyStress;
+use crate::mesh::configuration::Configuration;
 use crate::model::Model;
-use crate::state::State;
+use crate::model::state::State;
+use crate::run::error::Error;
+use crate::run::observer::{Attempt, Observer};
 use nalgebra::Vector2;
 
 /// Writes frames of the solids and of the interfaces, in the background while the run goes on.

@@ -17,14 +17,14 @@
 use std::path::{Path, PathBuf};
 
 use super::csv::Table;
-use super::{Attempt, Observer};
-use crate::configuration::Configuration;
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
-use crate::error::Error;
-use crate::material::Material;
+use crate::laws::bulk::Material;
+use crate::mesh::configuration::Configuration;
 use crate::model::Model;
-use crate::state::State;
+use crate::model::state::State;
+use crate::run::error::Error;
+use crate::run::observer::{Attempt, Observer};
 
 /// Columns of `slip_map.csv`.
 const MAP: [&str; 13] = [

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use super::csv::Table;
-use super::{Attempt, Observer};
 use crate::contact::force::{ContactState, Status};
 use crate::contact::pair::ContactPair;
-use crate::error::Error;
+use crate::model::state::{Energy, State};
 use crate::model::{Model, WatchedSet};
-use crate::state::{Energy, State};
+use crate::run::error::Error;
+use crate::run::observer::{Attempt, Observer};
 
 /// Writes `history.csv`.
 #[derive(Debug)]

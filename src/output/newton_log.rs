@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use super::csv::Table;
-use super::{Attempt, Observer};
-use crate::error::Error;
 use crate::model::Model;
-use crate::step::IterationRecord;
+use crate::run::error::Error;
+use crate::run::observer::{Attempt, Observer};
+use crate::time::increment::IterationRecord;
 
 /// Writes `newton.csv`.
 #[derive(Debug)]

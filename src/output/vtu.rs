@@ -11,7 +11,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use nalgebra::Vector2;
 
-use crate::shape::ElementKind;
+use crate::mesh::shape::ElementKind;
 
 /// Number of a cell's kind in VTK.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

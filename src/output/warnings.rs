@@ -4,16 +4,16 @@
 use std::collections::BTreeSet;
 
 use super::audit::Audit;
-use super::{Attempt, Observer};
-use crate::configuration::Configuration;
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
-use crate::error::Error;
-use crate::increments::DOUBT;
+use crate::mesh::configuration::Configuration;
 use crate::model::Model;
-use crate::state::State;
-use crate::time::{Scheme, told};
+use crate::model::scheme::{Scheme, told};
+use crate::model::state::State;
+use crate::run::error::Error;
+use crate::run::observer::{Attempt, Observer};
+use crate::time::step_size::DOUBT;
 
 /// Penetration, as a share of the slave's edge, that is worth a warning.
 const DEEP: f64 = 0.01;

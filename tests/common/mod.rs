@@ -4,12 +4,12 @@
 use std::path::Path;
 
 use fecontact::case;
-use fecontact::error::Error;
 use fecontact::model::Model;
-use fecontact::output::summary::RunReport;
-use fecontact::output::{Attempt, Observer};
+use fecontact::model::state::State;
+use fecontact::run::error::Error;
+use fecontact::run::observer::{Attempt, Observer};
+use fecontact::run::report::RunReport;
 use fecontact::run::run;
-use fecontact::state::State;
 use nalgebra::{Rotation2, Vector2};
 use serde_json::{Map, Value, json};
 

@@ -1,6 +1,6 @@
 //! Slip to and fro, for the tests of all laws.
 
-use fecontact::friction::{FrictionLaw, FrictionState, Sliding};
+use fecontact::laws::friction::{FrictionLaw, FrictionState, Sliding};
 
 /// The state after strokes between these points of slip and pressure, each in `parts` equal increments of length `dt`/`parts`.
 pub fn strokes(law: &dyn FrictionLaw, points: &[[f64; 2]], parts: usize, dt: f64) -> FrictionState {

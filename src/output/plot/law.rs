@@ -1,10 +1,10 @@
 //! The figure of a friction law driven alone.
 
-use super::super::law::{Hold, Moment, Peaks};
 use super::axis::Axis;
 use super::chart::{Curve, Figure, Look, Panel};
 use super::read::Columns;
 use super::{PlotError, Source, Units, subtitle};
+use crate::run::law_report::{Hold, PathPoint, Peaks};
 
 const WANTED: [&str; 8] = ["time", "slip", "pressure", "traction", "R", "mu", "structure", "plastic_slip"];
 
@@ -63,7 +63,7 @@ impl<'a> Test<'a> {
         let [time, slip, pressure, traction, mu] = numbers;
         let (time, slip, pressure, traction, mu) = (time?, slip?, pressure?, traction?, mu?);
         for k in 0..time.len() {
-            peaks.note(Moment::new([time[k], slip[k], pressure[k], traction[k], mu[k]]));
+            peaks.note(PathPoint::new([time[k], slip[k], pressure[k], traction[k], mu[k]]));
         }
         Ok(Self { name: &source.name, columns, holds: peaks.holds })
     }

@@ -22,7 +22,7 @@ use self::interface::Interface;
 use self::space_time::Map;
 use super::csv::failed;
 use super::summary::About;
-use crate::error::Error;
+use crate::run::error::Error;
 
 /// Files that [`draw`] may write.
 pub const FIGURES: [&str; 11] = [

@@ -6,7 +6,7 @@ use super::axis::Axis;
 use super::chart::{Curve, Figure, Look, Panel};
 use super::read::Columns;
 use super::{PlotError, Source, Units, subtitle};
-use crate::friction::FrictionParameters;
+use crate::laws::friction::FrictionParameters;
 
 /// Columns of `history.csv` that are drawn: these, ...
 const ENERGIES: [(&str, &str); 7] = [

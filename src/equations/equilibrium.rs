@@ -1,0 +1,247 @@
+//! Whether forces balance: body by body and contact by contact, each measured by its own forces.
+//!
+//! ```text
+//! ‖r‖ ≤ max(tolerance ‖f‖, ‖ρ‖)                                                                              (1)
+//! over the free dofs of         f: magnitudes, summed without sign, of
+//!   every body                  all forces on its nodes
+//!   both sides of a contact     the forces of that contact alone
+//!   every node of no body       all forces on it
+//! |u − ū| ≤ max(tolerance max |ū − u₀|, ε max |ū|)        prescribed dofs                                     (2)
+//! ```
+//!
+//! One norm over the whole model would let a stiff body hide what a soft one lacks. ρ is what round-off alone can leave at
+//! a node: that of strains in every element there, ε C h, and of the displacements, ε C |u|, with C = λ + 2G; at a closed
+//! contact point, α_n in place of C and the length ℓ it stands for, ε α_n ℓ (h + |u|); likewise in springs, and in rates,
+//! which are differences of displacements over Δt. How far a model lies from the origin does not enter: positions are only
+//! ever subtracted from each other.
+
+use super::{Assembler, Trial};
+use crate::contact::force::Closed;
+use crate::contact::pair::{ContactPair, PairResponse};
+use crate::contact::surface::Master;
+use crate::linear::norm;
+use crate::linear::system::System;
+use crate::mesh::configuration::Configuration;
+use crate::model::Model;
+use crate::model::boundary::Absorber;
+
+/// Errors of a force in units of ε: every element adds a few to each node.
+const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
+
+/// The same for rates, as a share of it: they are exact differences of displacements, each known to ε of its size. Ringing of
+/// small amplitude far from the start lives above this, and must not be taken for round-off.
+const RATES: f64 = 0.25;
+
+/// Displacements count for round-off up to this many times the size of the model and how far it has moved: an iterate farther
+/// away is lost, and must not pass for imprecise.
+const LOST: f64 = 10.0;
+
+/// What must be in equilibrium by itself.
+#[derive(Clone, Debug)]
+struct Part {
+    nodes: Vec<usize>,
+    /// Number of the contact whose forces measure it; all forces do if it is none
+    contact: Option<usize>,
+}
+
+/// The parts of a model, and what round-off can leave at their nodes.
+#[derive(Clone, Debug)]
+pub(super) struct Equilibrium {
+    parts: Vec<Part>,
+    /// Σ (C h)², Σ C² and Σ (τ C)² of the elements at each node
+    stiffness: Vec<[f64; 3]>,
+    /// Longest edge of each contact [L]
+    edges: Vec<f64>,
+    diagonal: f64,
+    /// Norm of each contact's nodal forces at the last evaluation [F]
+    contact_forces: Vec<f64>,
+    /// Σ (α_n ℓ)² (1, h²) of the closed contact points at each node at the last evaluation
+    contact_stiffness: Vec<[f64; 2]>,
+    /// Magnitudes of one contact's forces, zero in between
+    own: Vec<f64>,
+}
+
+impl Equilibrium {
+    pub(super) fn new(model: &Model) -> Self {
+        let count = model.mesh.nodes.len();
+        let mut stiffness = vec![[0.0; 3]; count];
+        let mut lone = vec![true; count];
+        for (e, element) in model.mesh.elements.iter().enumerate() {
+            let body = &model.bodies[model.body_of_element[e]];
+            let modulus = body.material.stiffness();
+            let viscous = body.damping.stiffness * modulus;
+            for &node in &element.nodes {
+                lone[node] = false;
+                let node = model.ties.original(node);
+                stiffness[node][0] += modulus * modulus * model.solids[e].volume();
+                stiffness[node][1] += modulus * modulus;
+                stiffness[node][2] += viscous * viscous;
+            }
+        }
+        let originals = |nodes: Vec<usize>| {
+            let mut nodes: Vec<usize> = nodes.into_iter().map(|node| model.ties.original(node)).collect();
+            nodes.sort_unstable();
+            nodes.dedup();
+            nodes
+        };
+        let bodies = model.bodies.iter().map(|body| Part { nodes: originals(body.nodes.clone()), contact: None });
+        let surfaces = model.contacts.iter().enumerate().map(|(k, pair)| {
+            let slave = pair.points.iter().flat_map(|point| point.position.iter().map(|&(node, _)| node));
+            let master = match &pair.master {
+                Master::Mesh(surface) => &surface.segments[..],
+                Master::Rigid(_) => &[],
+            };
+            let nodes = slave.chain(master.iter().flat_map(|segment| segment.nodes())).collect();
+            Part { nodes: originals(nodes), contact: Some(k) }
+        });
+        let lone = (0..count).filter(|&node| lone[node]).map(|node| Part { nodes: vec![node], contact: None });
+        Self {
+            parts: bodies.chain(surfaces).chain(lone).collect(),
+            stiffness,
+            edges: model
+                .contacts
+                .iter()
+                .map(|pair| longest_edge(pair, &Configuration::undeformed(&model.mesh.nodes)))
+                .collect(),
+            diagonal: model.mesh.diagonal(),
+            contact_forces: vec![0.0; model.contacts.len()],
+            contact_stiffness: vec![[0.0; 2]; count],
+            own: vec![0.0; 2 * count],
+        }
+    }
+
+    /// Keep how large the forces of every contact are, and how stiff it is.
+    pub(super) fn note_contacts(&mut self, model: &Model, trial: Trial, responses: &[PairResponse]) {
+        if !responses.is_empty() {
+            self.contact_stiffness.fill([0.0; 2]);
+        }
+        for (k, (pair, responses)) in model.contacts.iter().zip(responses).enumerate() {
+            let alpha_n = pair.normal_stiffness(trial.stiffening);
+            let closed = || responses.iter().filter_map(|(state, closed)| Some((state, closed.as_ref()?)));
+            for (state, Closed { contribution, .. }) in closed() {
+                let squared = (alpha_n * state.length).powi(2);
+                for (a, &node) in contribution.nodes.iter().enumerate() {
+                    let original = model.ties.original(node);
+                    self.contact_stiffness[original][0] += squared * self.edges[k].powi(2);
+                    self.contact_stiffness[original][1] += squared;
+                    (0..2).for_each(|i| self.own[2 * original + i] += contribution.force[2 * a + i].abs());
+                }
+            }
+            let mut sum = 0.0;
+            for (_, Closed { contribution, .. }) in closed() {
+                for &node in &contribution.nodes {
+                    let original = model.ties.original(node);
+                    for dof in [2 * original, 2 * original + 1] {
+                        sum += std::mem::take(&mut self.own[dof]).powi(2);
+                    }
+                }
+            }
+            self.contact_forces[k] = sum.sqrt();
+        }
+    }
+}
+
+impl Assembler<'_> {
+    /// Norm of the forces at work, and how far the worst part is from equilibrium, (1) and (2).
+    pub(super) fn measure(&mut self, trial: Trial, u: &[f64], system: &mut System) {
+        if trial.step.scheme.coefficients().is_some() {
+            self.mass();
+        }
+        system.forces = norm(&self.magnitudes);
+        let tolerance = self.model.newton.tolerance;
+        let mut free: Vec<f64> = system.residual.clone();
+        trial.step.supports.iter().for_each(|support| free[support.dof] = 0.0);
+        self.model.ties.pairs().iter().for_each(|&(copy, _)| free[2 * copy..2 * copy + 2].fill(0.0));
+        let mut round_off = None;
+        system.imbalance = self.missed(trial, u);
+        for part in &self.equilibrium.parts {
+            let norm = |values: &[f64]| part.nodes.iter().map(|&node| square(values, node)).sum::<f64>().sqrt();
+            let residual = norm(&free);
+            let forces = part.contact.map_or_else(|| norm(&self.magnitudes), |k| self.equilibrium.contact_forces[k]);
+            let share = if residual <= tolerance * forces {
+                if forces > 0.0 { residual / forces } else { 0.0 }
+            } else {
+                let round_off = round_off.get_or_insert_with(|| self.round_off(trial, u));
+                let hidden = part.nodes.iter().map(|&node| round_off[node]).sum::<f64>().sqrt();
+                residual / forces.max(hidden / tolerance)
+            };
+            // Not a number is no equilibrium.
+            system.imbalance = if share.is_nan() { f64::INFINITY } else { system.imbalance.max(share) };
+        }
+    }
+
+    /// Largest |u − ū| over the largest motion that is prescribed, (2); copies are prescribed by the nodes they move with.
+    fn missed(&self, trial: Trial, u: &[f64]) -> f64 {
+        let (mut missed, mut motion, mut place) = (0.0f64, 0.0f64, 0.0f64);
+        for support in &trial.step.supports {
+            let target = trial.prescribed(support, self.model);
+            missed = missed.max((u[support.dof] - target).abs());
+            motion = motion.max((target - trial.old.displacement[support.dof]).abs());
+            place = place.max(target.abs());
+        }
+        for &(copy, original) in self.model.ties.pairs() {
+            for (copy, original) in [(2 * copy, 2 * original), (2 * copy + 1, 2 * original + 1)] {
+                missed = missed.max((u[copy] - u[original]).abs());
+                place = place.max(u[original].abs());
+            }
+        }
+        if missed == 0.0 { 0.0 } else { missed / motion.max(ROUND_OFF * place / self.model.newton.tolerance) }
+    }
+
+    /// ρ² at every node [F²].
+    fn round_off(&self, trial: Trial, u: &[f64]) -> Vec<f64> {
+        let Trial { old, step, dt, .. } = trial;
+        let model = self.model;
+        let Equilibrium { stiffness, contact_stiffness, diagonal, .. } = &self.equilibrium;
+        let farthest = LOST * (diagonal + old.displacement.iter().fold(0.0, |most: f64, u| most.max(u.abs())));
+        let nodes = 0..model.mesh.nodes.len();
+        let mut squares: Vec<f64> = nodes
+            .map(|node| {
+                let [strained, moved, _] = stiffness[node];
+                let [apart, slid] = contact_stiffness[node];
+                let way = square(u, node).min(farthest * farthest);
+                strained + apart + (moved + slid) * way + square(&self.magnitudes, node)
+            })
+            .collect();
+        for spring in &step.loads.springs {
+            squares[spring.dof / 2] += (spring.stiffness * u[spring.dof].abs().min(farthest)).powi(2);
+        }
+        let way: Vec<f64> =
+            old.displacement.iter().zip(&old.velocity).map(|(u, v)| RATES * (u.abs() + (dt * v).abs())).collect();
+        let scheme = step.scheme.coefficients();
+        if let (Some(scheme), Some(mass)) = (scheme, &self.mass) {
+            let inertia = mass.multiply(&way);
+            let (dacceleration, dvelocity) = (scheme.dacceleration(dt), scheme.dvelocity(dt));
+            for (node, squared) in squares.iter_mut().enumerate() {
+                *squared += square(&inertia, node) * dacceleration.powi(2);
+                *squared += stiffness[node][2] * square(&way, node) * dvelocity.powi(2);
+            }
+        }
+        let dvelocity = scheme.map_or(1.0 / dt, |scheme| scheme.dvelocity(dt));
+        for dashpot in &step.loads.dashpots {
+            squares[dashpot.dof / 2] += (dashpot.coefficient * dvelocity * way[dashpot.dof]).powi(2);
+        }
+        for Absorber { node, coefficients } in &step.loads.absorbers {
+            squares[*node] += (coefficients.norm() * dvelocity).powi(2) * square(&way, *node);
+        }
+        model.ties.gather(1, &mut squares);
+        squares.iter_mut().for_each(|squared| *squared *= ROUND_OFF * ROUND_OFF);
+        squares
+    }
+}
+
+/// Squared length of a node's vector.
+fn square(values: &[f64], node: usize) -> f64 {
+    values[2 * node].powi(2) + values[2 * node + 1].powi(2)
+}
+
+/// Longest edge of a contact's surfaces; 0 where a point meets a rigid body [L].
+fn longest_edge(pair: &ContactPair, x: &Configuration) -> f64 {
+    let slave = pair.points.iter().filter_map(|point| point.edge_length(x));
+    let segments = match &pair.master {
+        Master::Mesh(surface) => &surface.segments[..],
+        Master::Rigid(_) => &[],
+    };
+    let master = segments.iter().map(|segment| x.between(segment.ends[0], segment.ends[1]).norm());
+    slave.chain(master).fold(0.0, f64::max)
+}

@@ -1,0 +1,63 @@
+use nalgebra::Matrix2;
+
+use super::isotropic::{Energy, Invariants};
+use super::{ElasticConstants, InvertedElement, Lame, Material, MaterialResponse};
+use crate::laws::parameter::InvalidParameter;
+
+/// Compressible neo-Hookean law.
+///
+/// ```text
+/// W = G/2 (I₁ − 3 − 2 ln J) + λ/2 (ln J)²                             (1)
+///   = G/2 m + G (J − 1 − ln J) + λ/2 (ln J)²                          (2)
+/// P = G (F − F⁻ᵀ) + λ ln J F⁻ᵀ,   σ_zz = λ ln J / J                   (3)
+/// ```
+///
+/// with m = (λ₁ − λ₂)² of the principal stretches; (2) is (1) with I₁ = m + 2J + 1 in plane strain.
+///
+/// # Errors
+/// [`InvertedElement`] when J = det F is not positive and finite.
+///
+/// Source: Bonet & Wood (2008), Nonlinear Continuum Mechanics for Finite Element Analysis, §6.4.3.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NeoHookean {
+    lame: Lame,
+    density: f64,
+}
+
+impl NeoHookean {
+    /// # Errors
+    /// [`InvalidParameter`] when a constant is out of its range.
+    pub fn new(constants: &ElasticConstants) -> Result<Self, InvalidParameter> {
+        Ok(Self { lame: constants.lame()?, density: constants.density })
+    }
+}
+
+impl Material for NeoHookean {
+    fn density(&self) -> f64 {
+        self.density
+    }
+
+    fn stiffness(&self) -> f64 {
+        self.lame.constrained_modulus()
+    }
+
+    fn shear_modulus(&self) -> f64 {
+        self.lame.shear
+    }
+
+    #[inline(always)]
+    fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
+        let invariants = Invariants::of(deformation)?;
+        let Lame { lambda, shear } = self.lame;
+        let (jacobian, j, ln_j) = (invariants.jacobian, invariants.volume_strain, invariants.ln_jacobian());
+        let energy = Energy {
+            w: 0.5 * shear * invariants.distortion + shear * (j - ln_j) + 0.5 * lambda * ln_j * ln_j,
+            w_m: 0.5 * shear,
+            w_j: (shear * j + lambda * ln_j) / jacobian,
+            w_mm: 0.0,
+            w_mj: 0.0,
+            w_jj: (shear + lambda * (1.0 - ln_j)) / (jacobian * jacobian),
+        };
+        Ok(invariants.response(&energy, lambda * ln_j / jacobian))
+    }
+}

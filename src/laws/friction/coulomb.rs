@@ -1,0 +1,89 @@
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{FrictionLaw, FrictionResponse, FrictionState, LawFailure, Sliding, traction_at_yield};
+use crate::laws::parameter::{InvalidParameter, require_positive};
+
+/// Parameters of [`Coulomb`] as the case file writes them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CoulombParameters {
+    /// μ: friction coefficient, μ > 0 [-]
+    pub mu: f64,
+    /// α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies [F/L³]
+    #[serde(default)]
+    pub alpha_t: Option<f64>,
+}
+
+/// Coulomb friction on an elastic contact: sticks below μ p, slides at μ p.
+///
+/// ```text
+/// q̇ = α_t (v − λ sgn q)                      slip = elastic + plastic
+/// |q| ≤ μ p,   λ ≥ 0,   λ (|q| − μ p) = 0     sticking or sliding
+/// ```
+/// An increment is elastic if the trial q₀ + α_t Δu is not above μ p, else q = μ p along the trial. With slip and pressure
+/// going evenly over the increment this is exact: the traction is elastic up to q_y, where it meets μ p, and slides at
+/// μ p from there to the end, which dissipates
+/// ```text
+/// ΔW = ½ (q_y + |q|) Δλ,   Δλ = (|q_tr| − |q|)/α_t
+/// ```
+///
+/// # Errors
+/// [`LawFailure`] when the increment or the answer is not finite, or time goes backwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coulomb {
+    mu: f64,
+    alpha_t: f64,
+}
+
+impl Coulomb {
+    /// The law with its parameters checked; `default_alpha_t` serves where they give no `alpha_t`.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`] when a parameter is out of its range.
+    pub fn new(parameters: &CoulombParameters, default_alpha_t: f64) -> Result<Self, InvalidParameter> {
+        let law = Self { mu: parameters.mu, alpha_t: parameters.alpha_t.unwrap_or(default_alpha_t) };
+        require_positive("mu", law.mu)?;
+        require_positive("alpha_t", law.alpha_t)?;
+        Ok(law)
+    }
+}
+
+impl FrictionLaw for Coulomb {
+    fn initial_state(&self) -> FrictionState {
+        FrictionState { mu: self.mu, ..FrictionState::default() }
+    }
+
+    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Result<FrictionResponse, LawFailure> {
+        let Self { mu, alpha_t } = *self;
+        let Sliding { slip, pressure, .. } = sliding.checked()?;
+        let trial = old.traction + alpha_t * slip;
+        let (state, dtraction_dslip, dtraction_dpressure) = if pressure <= 0.0 {
+            (old.parted(mu, alpha_t), 0.0, 0.0)
+        } else if trial.abs() <= mu * pressure {
+            (old.stuck(trial, pressure, mu), alpha_t, 0.0)
+        } else {
+            let (sign, strength) = (trial.signum(), mu * pressure);
+            let at_yield = traction_at_yield([sign * old.traction, trial.abs()], [mu * old.pressure, strength]);
+            let mean = 0.5 * (at_yield + strength);
+            (old.slid(trial, sign * strength, mean, (pressure, mu), alpha_t), 0.0, sign * mu)
+        };
+        FrictionResponse { state, dtraction_dslip, dtraction_dpressure, evaluations: 0 }.checked(alpha_t)
+    }
+
+    fn stiffness(&self) -> f64 {
+        self.alpha_t
+    }
+
+    fn structure(&self, _mu: f64) -> f64 {
+        1.0
+    }
+
+    fn starting_limit(&self, pressure: f64) -> f64 {
+        self.mu * pressure
+    }
+
+    fn uniqueness_limit(&self) -> Option<f64> {
+        None
+    }
+}

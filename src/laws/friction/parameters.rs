@@ -1,0 +1,43 @@
+//! The friction law as the case file writes it.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{
+    Coulomb, CoulombParameters, FrictionLaw, Frictionless, RateAndState, RateAndStateParameters, SlipWeakening,
+    SlipWeakeningParameters, SuperSubloading, SuperSubloadingParameters,
+};
+use crate::laws::parameter::InvalidParameter;
+
+/// A friction law and its parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "law", rename_all = "snake_case", deny_unknown_fields)]
+pub enum FrictionParameters {
+    /// No friction
+    // Not a unit variant: serde would let any other key pass.
+    Frictionless {},
+    /// Elastic until |q| = μ p, then sliding at constant μ
+    Coulomb(CoulombParameters),
+    /// Time-dependent super/subloading-surface friction: slip weakens the interface, rest heals it
+    SuperSubloading(SuperSubloadingParameters),
+    /// Friction that falls linearly with slip from static to dynamic, and does not heal
+    SlipWeakening(SlipWeakeningParameters),
+    /// Regularized rate-and-state friction: depends on the slip rate and on a state that ages or slips
+    RateAndState(RateAndStateParameters),
+}
+
+impl FrictionParameters {
+    /// The law with its parameters checked; `default_alpha_t` serves where the case gives no `alpha_t`.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`] when a parameter is out of its range.
+    pub fn build(&self, default_alpha_t: f64) -> Result<Box<dyn FrictionLaw>, InvalidParameter> {
+        Ok(match self {
+            Self::Frictionless {} => Box::new(Frictionless),
+            Self::Coulomb(parameters) => Box::new(Coulomb::new(parameters, default_alpha_t)?),
+            Self::SuperSubloading(parameters) => Box::new(SuperSubloading::new(parameters, default_alpha_t)?),
+            Self::SlipWeakening(parameters) => Box::new(SlipWeakening::new(parameters, default_alpha_t)?),
+            Self::RateAndState(parameters) => Box::new(RateAndState::new(parameters, default_alpha_t)?),
+        })
+    }
+}

@@ -1,0 +1,178 @@
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Sliding, traction_at_yield};
+use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
+
+/// Parameters of [`SlipWeakening`] as the case file writes them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SlipWeakeningParameters {
+    /// μ_s: static friction coefficient, μ_s ≥ μ_d [-]
+    pub mu_s: f64,
+    /// μ_d: friction coefficient after the slip D_c, μ_d > 0 [-]
+    pub mu_d: f64,
+    /// D_c: slip over which friction falls from μ_s to μ_d, D_c > 0 [L]
+    #[serde(rename = "D_c")]
+    pub critical_slip: f64,
+    /// c: cohesion, the strength without pressure of surfaces that touch, c ≥ 0 [F/L²]
+    #[serde(default)]
+    pub cohesion: f64,
+    /// α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies [F/L³]
+    #[serde(default)]
+    pub alpha_t: Option<f64>,
+}
+
+/// Linear slip weakening on an elastic contact: the friction of most computed earthquakes.
+///
+/// ```text
+/// q̇ = α_t (v − λ sgn q)                          slip = elastic + plastic
+/// |q| ≤ c + μ p,   λ ≥ 0                           sticking, or slipping at the strength
+/// μ = max(μ_s − W D, μ_d),   W = (μ_s − μ_d)/D_c      D = ∫ λ dt, back and forth alike; it does not heal
+/// ```
+/// An increment slips by the smallest Δλ that brings the trial |q_tr| = |q₀ + α_t Δu| down to the strength,
+/// ```text
+/// Δλ = (|q_tr| − c − μ₀ p)/(α_t − W p)      if μ stays above μ_d,
+/// Δλ = (|q_tr| − c − μ_d p)/α_t              else, and where W p ≥ α_t: friction falls faster than the contact unloads
+/// ```
+/// Nothing is left of the error in time. The work dissipated is ∫ |q| dλ along even paths of slip and pressure: elastic up
+/// to the strength, then at the strength; where friction falls
+/// faster than the contact unloads, |q| falls with α_t λ from one strength to the other. μ itself remembers the slip: D = (μ_s − μ)/W. A traction above the strength, as
+/// a run may start with, slips off in the first increment.
+///
+/// # Errors
+/// [`LawFailure`] when the increment or the answer is not finite, or time goes backwards.
+///
+/// Source: Ida (1972), J. Geophys. Res. 77, 3796; Harris et al. (2009), Seismol. Res. Lett. 80, 119 (its use in the
+/// community's test problems).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlipWeakening {
+    mu_s: f64,
+    mu_d: f64,
+    /// W [1/L]
+    weakening: f64,
+    cohesion: f64,
+    alpha_t: f64,
+}
+
+impl SlipWeakening {
+    /// The law with its parameters checked; `default_alpha_t` serves where they give no `alpha_t`.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`] when a parameter is out of its range.
+    pub fn new(parameters: &SlipWeakeningParameters, default_alpha_t: f64) -> Result<Self, InvalidParameter> {
+        let SlipWeakeningParameters { mu_s, mu_d, critical_slip, cohesion, .. } = *parameters;
+        let alpha_t = parameters.alpha_t.unwrap_or(default_alpha_t);
+        require_positive("mu_d", mu_d)?;
+        require("mu_s", mu_s, mu_s >= mu_d, format!("it must be finite and not less than \"mu_d\", which is {mu_d}"))?;
+        require_positive("D_c", critical_slip)?;
+        require_not_negative("cohesion", cohesion)?;
+        require_positive("alpha_t", alpha_t)?;
+        Ok(Self { mu_s, mu_d, weakening: (mu_s - mu_d) / critical_slip, cohesion, alpha_t })
+    }
+}
+
+impl SlipWeakening {
+    /// Mean of |q| over the plastic slip of an increment that ends with (p, μ).
+    fn mean_traction(&self, old: &FrictionState, trial: f64, (pressure, mu): (f64, f64)) -> f64 {
+        let Self { mu_d, weakening, cohesion, alpha_t, .. } = *self;
+        let elastic = [trial.signum() * old.traction, trial.abs()];
+        let strength = |mu: f64, pressure: f64| cohesion + mu * pressure;
+        let before = [strength(old.mu, old.pressure), strength(old.mu, pressure)];
+        let (at_yield, at_end) = (traction_at_yield(elastic, before), strength(mu, pressure));
+        let slip = (elastic[1] - at_end) / alpha_t;
+        if old.mu <= mu_d || elastic[0] > before[0] {
+            return 0.5 * (at_yield + at_end);
+        }
+        // Over the increment the elastic traction gains on the strength, at the first μ and at the second, and the share of
+        // the increment that has passed is a quotient of linear functions of λ, whose denominator goes from one to the other.
+        let gain = |mu: f64| elastic[1] - elastic[0] - mu * (pressure - old.pressure);
+        let falling = |to: f64, slip: f64, mu: f64| {
+            let lag = end_share(gain(mu) / gain(old.mu) - 1.0) - 0.5;
+            0.5 * (at_yield + to) + lag * (alpha_t * slip + to - at_yield)
+        };
+        if mu > mu_d {
+            return falling(at_end, slip, mu);
+        }
+        let pressure_at_yield = (at_yield - cohesion) / old.mu;
+        // Slip until μ_d is reached, the traction then, and the mean of |q| so far
+        let (fallen, level, mean) = if weakening * pressure_at_yield < alpha_t {
+            let fallen = (old.mu - mu_d) / weakening;
+            let share = (strength(mu_d, old.pressure) + alpha_t * fallen - elastic[0]) / gain(mu_d);
+            let level = strength(mu_d, old.pressure + share.clamp(0.0, 1.0) * (pressure - old.pressure));
+            (fallen.min(slip), level, falling(level, fallen, mu_d))
+        } else {
+            let level = strength(mu_d, pressure_at_yield);
+            (((at_yield - level) / alpha_t).min(slip), level, 0.5 * (at_yield + level))
+        };
+        (mean * fallen + 0.5 * (level + at_end) * (slip - fallen)) / slip
+    }
+}
+
+/// How much of the mean of (A + B λ)/(C + D λ) over a stretch of λ is its value at the end, the rest being its value at
+/// the beginning, if the denominator gains the share `z` of itself on the way; a half if it gains nothing, or if slip would
+/// have to cease on the way.
+///
+/// ```text
+/// (1 + z)/z (1 − ln(1 + z)/z)
+/// ```
+fn end_share(z: f64) -> f64 {
+    if z <= -1.0 {
+        0.5
+    } else if z.abs() < 1e-3 {
+        (1.0 + z) * (0.5 - z * (1.0 / 3.0 - z * (0.25 - z * (0.2 - z / 6.0))))
+    } else {
+        (1.0 + z) / z * (1.0 - z.ln_1p() / z)
+    }
+}
+
+impl FrictionLaw for SlipWeakening {
+    fn initial_state(&self) -> FrictionState {
+        FrictionState { mu: self.mu_s, ..FrictionState::default() }
+    }
+
+    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Result<FrictionResponse, LawFailure> {
+        let Self { mu_d, weakening, cohesion, alpha_t, .. } = *self;
+        let Sliding { slip, pressure, .. } = sliding.checked()?;
+        if pressure <= 0.0 {
+            return FrictionResponse::elastic(old.parted(old.mu, alpha_t), 0.0).checked(alpha_t);
+        }
+        let trial = old.traction + alpha_t * slip;
+        let excess = trial.abs() - cohesion - old.mu * pressure;
+        if excess <= 0.0 {
+            return FrictionResponse::elastic(old.stuck(trial, pressure, old.mu), alpha_t).checked(alpha_t);
+        }
+        let net = alpha_t - weakening * pressure;
+        let slid = excess / net;
+        let (mu, softness) = if net > 0.0 && old.mu - weakening * slid > mu_d {
+            (old.mu - weakening * slid, alpha_t / net.max(LEAST_SLOPE * alpha_t))
+        } else {
+            (old.mu.min(mu_d), 1.0)
+        };
+        let traction = trial.signum() * (cohesion + mu * pressure);
+        FrictionResponse {
+            state: old.slid(trial, traction, self.mean_traction(old, trial, (pressure, mu)), (pressure, mu), alpha_t),
+            dtraction_dslip: alpha_t * (1.0 - softness),
+            dtraction_dpressure: trial.signum() * mu * softness,
+            evaluations: 0,
+        }
+        .checked(alpha_t)
+    }
+
+    fn stiffness(&self) -> f64 {
+        self.alpha_t
+    }
+
+    fn structure(&self, mu: f64) -> f64 {
+        mu / self.mu_d
+    }
+
+    fn starting_limit(&self, _pressure: f64) -> f64 {
+        f64::INFINITY
+    }
+
+    fn uniqueness_limit(&self) -> Option<f64> {
+        let pressure = self.alpha_t / self.weakening;
+        pressure.is_finite().then_some(pressure)
+    }
+}

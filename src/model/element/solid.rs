@@ -1,0 +1,423 @@
+//! A solid element at large displacements: total Lagrangian, fully integrated, with F-bar for Q4.
+
+use std::sync::OnceLock;
+
+use nalgebra::{DMatrix, Matrix2, Matrix4, Vector2};
+
+use super::{ElementError, gradients};
+use crate::laws::bulk::{CauchyStress, InvertedElement, Material, MaterialResponse, cofactor, positive_jacobian};
+use crate::mesh::shape::ElementKind;
+
+/// A solid element: what its reference geometry says at the quadrature points.
+///
+/// ```text
+/// F = 1 + Σ_a u_a ⊗ ∂N_a/∂X                              deformation gradient              (1)
+/// f_ai = ∫ P_iJ N_a,J dV                                 internal force                    (2)
+/// K_ai,bk = ∫ N_a,J A_iJkL N_b,L dV,   A = ∂P/∂F         tangent ∂f_ai/∂u_bk               (3)
+/// ```
+///
+/// F-bar (Q4 only) lets every point have the volume change of the centre, so that nearly incompressible materials
+/// do not lock. The law sees F̄, and its Cauchy stress acts on the true geometry:
+///
+/// ```text
+/// F̄ = r F,   r = √(J₀/J),   J₀ = det F₀ at the centre                                      (4)
+/// P = P(F̄) / r                                                                             (5)
+/// dP = A:dF + ½ (F₀⁻ᵀ:dF₀ − F⁻ᵀ:dF) (A:F − P),   A = A(F̄)                                  (6)
+/// ```
+///
+/// These forces have no potential: the tangent is not symmetric, and the stored energy ∫ W(F̄) dV is the work of the
+/// forces only where J = J₀. [`Linear`](crate::laws::bulk::Linear) with F-bar is linear only in the limit of small
+/// strains.
+///
+/// Source: de Souza Neto, Perić, Dutko & Owen (1996), Int. J. Solids Struct. 33, 3277,
+/// doi:10.1016/0020-7683(95)00259-6.
+#[derive(Clone, Debug)]
+pub struct SolidElement {
+    kind: ElementKind,
+    /// ∂N_a/∂X of all nodes at the first quadrature point, then at the second, … [1/L]
+    gradients: Vec<Vector2<f64>>,
+    /// Reference volume of each quadrature point: weight × det(∂X/∂ξ) [L²]
+    volumes: Vec<f64>,
+    /// ∂N_a/∂X at the centre, for F-bar [1/L]
+    centre: Option<Vec<Vector2<f64>>>,
+}
+
+/// The centre of an F-bar element at the current displacements.
+struct Centre<'a> {
+    gradients: &'a [Vector2<f64>],
+    jacobian: f64,
+    /// F₀⁻ᵀ
+    inverse_transpose: Matrix2<f64>,
+}
+
+impl SolidElement {
+    /// The element of `kind` on the reference `positions` of its nodes.
+    ///
+    /// # Errors
+    /// [`ElementError::Degenerate`] when det(∂X/∂ξ) is not positive at a quadrature point,
+    /// [`ElementError::FBarNeedsQ4`] when F-bar is asked of another kind.
+    pub fn new(kind: ElementKind, f_bar: bool, positions: &[Vector2<f64>]) -> Result<Self, ElementError> {
+        debug_assert_eq!(positions.len(), kind.nodes());
+        if f_bar && kind != ElementKind::Q4 {
+            return Err(ElementError::FBarNeedsQ4 { kind });
+        }
+        let mut element = Self { kind, gradients: Vec::new(), volumes: Vec::new(), centre: None };
+        for point in kind.quadrature() {
+            let (gradients, jacobian) = gradients(kind, point.at, positions)?;
+            element.gradients.extend(gradients);
+            element.volumes.push(point.weight * jacobian);
+        }
+        if f_bar {
+            element.centre = Some(gradients(kind, kind.centre(), positions)?.0);
+        }
+        Ok(element)
+    }
+
+    /// Kind of the element.
+    pub fn kind(&self) -> ElementKind {
+        self.kind
+    }
+
+    /// Reference volume (area times thickness 1) [L²]
+    pub fn volume(&self) -> f64 {
+        self.volumes.iter().sum()
+    }
+
+    /// Writes the internal force (2) at nodal displacements `u` over `force`; returns the stored energy.
+    ///
+    /// # Errors
+    /// [`InvertedElement`] when the material is turned inside out at a quadrature point.
+    pub fn force(
+        &self,
+        material: &dyn Material,
+        u: &[Vector2<f64>],
+        force: &mut [f64],
+    ) -> Result<f64, InvertedElement> {
+        let mut forces = [Vector2::zeros(); 9];
+        let energy = self.nodal_forces(material, u, &mut forces[..u.len()])?;
+        force.chunks_exact_mut(2).zip(&forces).for_each(|(force, f)| force.copy_from_slice(f.as_slice()));
+        Ok(energy)
+    }
+
+    /// Writes the internal force (2) on each node over `forces`; returns the stored energy.
+    ///
+    /// # Errors
+    /// [`InvertedElement`] when the material is turned inside out at a quadrature point.
+    pub fn nodal_forces(
+        &self,
+        material: &dyn Material,
+        u: &[Vector2<f64>],
+        forces: &mut [Vector2<f64>],
+    ) -> Result<f64, InvertedElement> {
+        match self.kind {
+            ElementKind::T3 => self.gathered::<3, 1>(material, u, forces),
+            ElementKind::T6 => self.gathered::<6, 3>(material, u, forces),
+            ElementKind::Q4 => self.gathered::<4, 4>(material, u, forces),
+            ElementKind::Q8 => self.gathered::<8, 9>(material, u, forces),
+            ElementKind::Q9 => self.gathered::<9, 9>(material, u, forces),
+        }
+    }
+
+    /// Force (2) of an element of N nodes and at most M quadrature points, known when this is compiled.
+    #[inline(always)]
+    fn gathered<const N: usize, const M: usize>(
+        &self,
+        material: &dyn Material,
+        u: &[Vector2<f64>],
+        forces: &mut [Vector2<f64>],
+    ) -> Result<f64, InvertedElement> {
+        let points = self.volumes.len();
+        debug_assert!(points <= M);
+        let mut deformations = [Matrix2::zeros(); M];
+        let gradients = self.gradients.as_chunks::<N>().0;
+        for (deformation, gradients) in deformations.iter_mut().zip(gradients) {
+            *deformation = deformation_gradient(gradients, u);
+        }
+        let (deformations, mut stresses) = (&mut deformations[..points], [Matrix2::zeros(); M]);
+        let energy = match self.centre(u)? {
+            None => material.stresses(deformations, &self.volumes, &mut stresses[..points])?,
+            Some(centre) => {
+                let mut stretches = [1.0; M];
+                for (stretch, deformation) in stretches.iter_mut().zip(&mut *deformations) {
+                    *stretch = centre.stretch(deformation)?;
+                    *deformation *= *stretch;
+                }
+                let energy = material.stresses(deformations, &self.volumes, &mut stresses[..points])?;
+                stresses.iter_mut().zip(&stretches).for_each(|(stress, stretch)| *stress /= *stretch);
+                energy
+            }
+        };
+        let mut sums = [Vector2::zeros(); N];
+        for (stress, gradients) in stresses.iter().zip(gradients) {
+            for (sum, gradient) in sums.iter_mut().zip(gradients) {
+                *sum += stress * gradient;
+            }
+        }
+        forces.copy_from_slice(&sums);
+        Ok(energy)
+    }
+
+    /// As [`SolidElement::force`], and writes the tangent (3) over `tangent`, column by column.
+    ///
+    /// # Errors
+    /// [`InvertedElement`] when the material is turned inside out at a quadrature point.
+    pub fn force_and_tangent(
+        &self,
+        material: &dyn Material,
+        u: &[Vector2<f64>],
+        force: &mut [f64],
+        tangent: &mut [f64],
+    ) -> Result<f64, InvertedElement> {
+        match self.kind {
+            ElementKind::T3 => self.evaluate::<3>(material, u, force, tangent),
+            ElementKind::T6 => self.evaluate::<6>(material, u, force, tangent),
+            ElementKind::Q4 => self.evaluate::<4>(material, u, force, tangent),
+            ElementKind::Q8 => self.evaluate::<8>(material, u, force, tangent),
+            ElementKind::Q9 => self.evaluate::<9>(material, u, force, tangent),
+        }
+    }
+
+    /// Forces on the nodes at displacements `u` and velocities `v` of a viscous stress of the time τ (Kelvin–Voigt), by
+    /// the element's own gradients, F-bar or not.
+    pub fn viscous_forces(
+        &self,
+        (material, tau): (&dyn Material, f64),
+        [u, v]: [&[Vector2<f64>]; 2],
+        forces: &mut [Vector2<f64>],
+    ) {
+        forces.fill(Vector2::zeros());
+        for (gradients, volume) in self.points() {
+            let (deformation, rate) = (deformation_gradient(gradients, u), rate_gradient(gradients, v));
+            let stress = tau * volume * material.viscous_stress([&deformation, &rate]);
+            forces.iter_mut().zip(gradients).for_each(|(force, gradient)| *force += stress * gradient);
+        }
+    }
+
+    /// Derivative of the viscous forces with respect to `u`, column by column, where the velocity of each dof varies
+    /// `dvelocity` times as much as its displacement.
+    pub fn viscous_tangent(
+        &self,
+        (material, tau): (&dyn Material, f64),
+        [u, v]: [&[Vector2<f64>]; 2],
+        dvelocity: &[f64],
+        tangent: &mut [f64],
+    ) {
+        tangent.fill(0.0);
+        let n = 2 * u.len();
+        for (gradients, volume) in self.points() {
+            let (deformation, rate) = (deformation_gradient(gradients, u), rate_gradient(gradients, v));
+            for (dof, (column, dvelocity)) in tangent.chunks_exact_mut(n).zip(dvelocity).enumerate() {
+                let varied = Vector2::ith(dof % 2, 1.0) * gradients[dof / 2].transpose();
+                let stress = material.viscous_variation([&deformation, &rate], [&varied, &(*dvelocity * varied)]);
+                add_force(gradients, &(tau * volume * stress), column);
+            }
+        }
+    }
+
+    /// Cauchy stress at each quadrature point.
+    ///
+    /// # Errors
+    /// [`InvertedElement`] when the material is turned inside out at a quadrature point.
+    pub fn stresses(&self, material: &dyn Material, u: &[Vector2<f64>]) -> Result<Vec<CauchyStress>, InvertedElement> {
+        let centre = self.centre(u)?;
+        self.points()
+            .map(|(gradients, _)| {
+                let deformation = deformation_gradient(gradients, u);
+                let seen = match &centre {
+                    Some(centre) => centre.stretch(&deformation)? * deformation,
+                    None => deformation,
+                };
+                material.cauchy_stress(&seen)
+            })
+            .collect()
+    }
+
+    /// Cauchy stress at each node: the (bi)linear function nearest to the stresses at the quadrature points.
+    ///
+    /// # Errors
+    /// [`InvertedElement`] when the material is turned inside out at a quadrature point.
+    pub fn nodal_stresses(
+        &self,
+        material: &dyn Material,
+        u: &[Vector2<f64>],
+    ) -> Result<Vec<CauchyStress>, InvertedElement> {
+        let stresses = self.stresses(material, u)?;
+        let fit = corner_fit(self.kind);
+        let mut corners = [[0.0; 4]; 4];
+        for (a, corner) in corners.iter_mut().enumerate().take(fit.nrows()) {
+            for (point, &CauchyStress { xx, yy, zz, xy }) in stresses.iter().enumerate() {
+                let weight = fit[(a, point)];
+                corner.iter_mut().zip([xx, yy, zz, xy]).for_each(|(sum, stress)| *sum += weight * stress);
+            }
+        }
+        let at = |values: &[usize]| {
+            let mean =
+                |component: usize| values.iter().map(|&a| corners[a][component]).sum::<f64>() / values.len() as f64;
+            CauchyStress { xx: mean(0), yy: mean(1), zz: mean(2), xy: mean(3) }
+        };
+        let n = self.kind.corners();
+        let mut nodal: Vec<_> = (0..n).map(|a| at(&[a])).collect();
+        if self.kind.nodes() > n {
+            nodal.extend((0..n).map(|edge| at(&self.kind.edge(edge).0)));
+        }
+        if self.kind == ElementKind::Q9 {
+            nodal.push(at(&[0, 1, 2, 3]));
+        }
+        Ok(nodal)
+    }
+
+    /// Force (2) and tangent (3). The number of nodes is known when this is compiled, so that the loops over them are
+    /// unrolled.
+    fn evaluate<const N: usize>(
+        &self,
+        material: &dyn Material,
+        u: &[Vector2<f64>],
+        force: &mut [f64],
+        tangent: &mut [f64],
+    ) -> Result<f64, InvertedElement> {
+        force.fill(0.0);
+        tangent.fill(0.0);
+        let centre = self.centre(u)?;
+        let mut energy = 0.0;
+        let mut blocks = [[[[0.0; 2]; 2]; N]; N];
+        for (gradients, &volume) in self.gradients.as_chunks::<N>().0.iter().zip(&self.volumes) {
+            let deformation = deformation_gradient(gradients, u);
+            let response = match &centre {
+                Some(centre) => centre.respond(material, &deformation)?,
+                None => material.respond(&deformation)?,
+            };
+            energy += volume * response.energy;
+            add_force(gradients, &(volume * response.stress), force);
+            add_tangent(gradients, &(volume * response.tangent), &mut blocks);
+            if let Some(centre) = &centre {
+                centre.add_tangent(gradients, &deformation, volume, &response, tangent);
+            }
+        }
+        add_blocks(&blocks, tangent);
+        Ok(energy)
+    }
+
+    /// Gradients and volume of each quadrature point.
+    fn points(&self) -> impl Iterator<Item = (&[Vector2<f64>], f64)> {
+        self.gradients.chunks_exact(self.kind.nodes()).zip(self.volumes.iter().copied())
+    }
+
+    fn centre(&self, u: &[Vector2<f64>]) -> Result<Option<Centre<'_>>, InvertedElement> {
+        let Some(gradients) = &self.centre else { return Ok(None) };
+        let deformation = deformation_gradient(gradients, u);
+        let jacobian = positive_jacobian(&deformation)?;
+        Ok(Some(Centre { gradients, jacobian, inverse_transpose: cofactor(&deformation) / jacobian }))
+    }
+}
+
+impl Centre<'_> {
+    /// r = √(J₀/J) of (4)
+    fn stretch(&self, deformation: &Matrix2<f64>) -> Result<f64, InvertedElement> {
+        Ok((self.jacobian / positive_jacobian(deformation)?).sqrt())
+    }
+
+    /// The law at F̄, with the stress (5).
+    fn respond(
+        &self,
+        material: &dyn Material,
+        deformation: &Matrix2<f64>,
+    ) -> Result<MaterialResponse, InvertedElement> {
+        let stretch = self.stretch(deformation)?;
+        let mut response = material.respond(&(stretch * deformation))?;
+        response.stress /= stretch;
+        Ok(response)
+    }
+
+    /// Adds the second term of (6), a dyad of a nodal force and a nodal volume change.
+    fn add_tangent(
+        &self,
+        gradients: &[Vector2<f64>],
+        deformation: &Matrix2<f64>,
+        volume: f64,
+        response: &MaterialResponse,
+        tangent: &mut [f64],
+    ) {
+        let inverse_transpose = cofactor(deformation) / deformation.determinant();
+        let stress = 0.5 * volume * (contract(&response.tangent, deformation) - response.stress);
+        let columns = tangent.chunks_exact_mut(4 * gradients.len());
+        for ((columns, at_centre), here) in columns.zip(self.gradients).zip(gradients) {
+            let volume_change = self.inverse_transpose * at_centre - inverse_transpose * here;
+            for (column, change) in columns.chunks_exact_mut(2 * gradients.len()).zip(&volume_change) {
+                add_force(gradients, &(*change * stress), column);
+            }
+        }
+    }
+}
+
+/// F of (1)
+fn deformation_gradient(gradients: &[Vector2<f64>], u: &[Vector2<f64>]) -> Matrix2<f64> {
+    u.iter().zip(gradients).fold(Matrix2::identity(), |sum, (u, gradient)| sum + u * gradient.transpose())
+}
+
+/// Ḟ = Σ_a v_a ⊗ ∂N_a/∂X
+fn rate_gradient(gradients: &[Vector2<f64>], v: &[Vector2<f64>]) -> Matrix2<f64> {
+    v.iter().zip(gradients).fold(Matrix2::zeros(), |sum, (v, gradient)| sum + v * gradient.transpose())
+}
+
+/// f_ai += P_iJ N_a,J
+fn add_force(gradients: &[Vector2<f64>], stress: &Matrix2<f64>, force: &mut [f64]) {
+    for (force, gradient) in force.chunks_exact_mut(2).zip(gradients) {
+        let f = stress * gradient;
+        force[0] += f.x;
+        force[1] += f.y;
+    }
+}
+
+/// K_ai,bk += N_a,J A_iJkL N_b,L in `blocks[b][a][k][i]` for a ≥ b: A comes from an energy, so the rest is the mirror
+/// image.
+fn add_tangent<const N: usize>(
+    gradients: &[Vector2<f64>; N],
+    tangent: &Matrix4<f64>,
+    blocks: &mut [[[[f64; 2]; 2]; N]; N],
+) {
+    for (b, (at_b, columns)) in gradients.iter().zip(blocks).enumerate() {
+        // A_iJkL N_b,L for both k
+        let stress = [0, 1].map(|k| tangent.column(k) * at_b.x + tangent.column(k + 2) * at_b.y);
+        for (at_a, block) in gradients.iter().zip(columns).skip(b) {
+            for (column, stress) in block.iter_mut().zip(&stress) {
+                column[0] += stress[0] * at_a.x + stress[2] * at_a.y;
+                column[1] += stress[1] * at_a.x + stress[3] * at_a.y;
+            }
+        }
+    }
+}
+
+/// Add the blocks and their mirror image to the tangent, column by column.
+fn add_blocks<const N: usize>(blocks: &[[[[f64; 2]; 2]; N]; N], tangent: &mut [f64]) {
+    for (b, columns) in blocks.iter().enumerate() {
+        for (a, block) in columns.iter().enumerate().skip(b) {
+            for (k, column) in block.iter().enumerate() {
+                for (i, value) in column.iter().enumerate() {
+                    tangent[(2 * b + k) * 2 * N + 2 * a + i] += value;
+                    if a > b {
+                        tangent[(2 * a + i) * 2 * N + 2 * b + k] += value;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A_iJkL F_kL
+fn contract(tangent: &Matrix4<f64>, f: &Matrix2<f64>) -> Matrix2<f64> {
+    let stress =
+        tangent.column(0) * f.m11 + tangent.column(1) * f.m21 + tangent.column(2) * f.m12 + tangent.column(3) * f.m22;
+    Matrix2::new(stress[0], stress[2], stress[1], stress[3])
+}
+
+/// Corner values of the (bi)linear function that fits values at the quadrature points best: corners × points.
+fn corner_fit(kind: ElementKind) -> &'static DMatrix<f64> {
+    static FITS: [OnceLock<DMatrix<f64>>; 5] = [const { OnceLock::new() }; 5];
+    FITS[kind as usize].get_or_init(|| {
+        let linear = if kind.corners() == 3 { ElementKind::T3 } else { ElementKind::Q4 };
+        let points = kind.quadrature();
+        let values = points.iter().flat_map(|point| linear.values(point.at));
+        let interpolation = DMatrix::from_row_iterator(points.len(), kind.corners(), values);
+        interpolation.pseudo_inverse(1e-9).expect("1e-9 is not negative")
+    })
+}

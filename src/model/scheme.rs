@@ -1,0 +1,262 @@
+//! Time integration: how velocity and acceleration follow from displacement, and where equilibrium is asked for.
+//!
+//! ```text
+//! (1 − α_m) M a₁ + α_m M a₀ + (1 − α_f) F₁ + α_f F₀ = 0          F: internal + contact − external forces     (1)
+//! a₁ = (u₁ − u₀ − Δt v₀)/(β Δt²) − (1/(2β) − 1) a₀                                                           (2)
+//! v₁ = v₀ + Δt ((1 − γ) a₀ + γ a₁)                                                                           (3)
+//! ```
+//!
+//! | scheme | α_m | α_f | γ | β | order | ρ(∞) |
+//! |---|---|---|---|---|---|---|
+//! | Newmark | 0 | 0 | given | given | 2 for γ = ½, else 1 | 1 for γ = ½, β = ¼ |
+//! | HHT-α | 0 | −α | ½ − α | ¼ (1 − α)² | 2 | (1 + α)/(1 − α) |
+//! | generalized-α | (2ρ − 1)/(ρ + 1) | ρ/(ρ + 1) | ½ − α_m + α_f | ¼ (1 − α_m + α_f)² | 2 | ρ |
+//! | Wilson-θ | 0 | 0 | ½ | 1/6, over θ Δt | 2 | < 1 |
+//! | central differences | 0 | 0 | ½ | 0 | 2 | – |
+//!
+//! ρ(∞) is the share of a motion that the increments do not resolve, ω Δt → ∞, which is left after each of them.
+//!
+//! # Wilson-θ
+//! The acceleration is linear in time (γ = ½, β = 1/6) and equilibrium is asked for at t + θ Δt, under the loads of that
+//! time; what lies there is a trial and is dropped. With a_θ found there,
+//! ```text
+//! a₁ = a₀ + (a_θ − a₀)/θ                                                                                     (4)
+//! ```
+//! and (2), (3) over Δt give u₁ and v₁. At t + Δt equilibrium is met only to the order of the scheme. It is stable for
+//! every Δt from θ = (1 + √3)/2 = 1.366 on.
+//!
+//! # Central differences
+//! In velocity-Verlet form, so that schemes can follow one another at any time; M is lumped, F has no dashpots in it, and
+//! those, with the coefficients c on the diagonal, act at t + Δt:
+//! ```text
+//! v½ = v₀ + ½ Δt a₀,   u₁ = u₀ + Δt v½                                                                       (7)
+//! (M + ½ Δt c) a₁ = −F(u₁) + c (v_driver − v½),   v₁ = v½ + ½ Δt a₁                                          (8)
+//! ```
+//! It is of second order and stable while ω Δt ≤ 2 for every vibration ω; `explicit/` has the bound of ω.
+//!
+//! # Supports
+//! A prescribed dof follows its support and not (2), by which a jerk would ring. Its velocity is that of the support, and
+//! ```text
+//! a₁ = (v₁ − v₀)/Δt + ½ (ā₁ − ā₀)                                                                            (5)
+//! ```
+//! with ā the support's acceleration: of second order where the motion is smooth, and where the velocity jumps, from the
+//! step before or at a kink, the jump is spread over the increment. In (1) the accelerations of supports are weighted
+//! with α_f like the forces: they belong to t, those of free dofs to the time t + (α_m − α_f) Δt, to second order.
+//!
+//! # Local error
+//! With accelerations of the time t + (α_m − α_f) Δt, the displacement of one increment from exact start values is in
+//! error by
+//! ```text
+//! e = C Δt³ u⃛ + O(Δt⁴) ≈ C Δt² (a₁ − a₀),   C = β − 1/6 − ½ (α_f − α_m)                                     (6)
+//! ```
+//! By (2) this is C/β times the way from the Taylor polynomial u₀ + Δt v₀ + ½ Δt² a₀ to u₁: for the trapezoidal rule a
+//! third. So whatever happens within an increment, a slip or an impact, shows in the estimate by what it moves. Wilson-θ
+//! has no term (6): its error is of fourth order and takes accelerations of more than two times to see.
+//!
+//! Sources: Newmark (1959), J. Eng. Mech. Div. ASCE 85, 67; Wilson, Farhoomand & Bathe (1973), Earthquake Eng. Struct. Dyn.
+//! 1, 241; Hilber, Hughes & Taylor (1977), Earthquake Eng. Struct. Dyn. 5, 283; Chung & Hulbert (1993), J. Appl. Mech.
+//! 60, 371; Zienkiewicz & Xie (1991), Earthquake Eng. Struct. Dyn. 20, 871 (the estimate for Newmark's scheme).
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::laws::parameter::{InvalidParameter, require};
+
+/// Time scheme of a step, as the case file names it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Scheme {
+    /// Equilibrium without inertia; time only drives loads and the ageing of friction.
+    #[default]
+    Static,
+    /// Newmark; β = 1/4, γ = 1/2 (the trapezoidal rule) unless given.
+    Newmark {
+        /// β > 0 [-]
+        #[serde(default = "quarter")]
+        beta: f64,
+        /// γ ≥ 1/2 [-]
+        #[serde(default = "half")]
+        gamma: f64,
+    },
+    /// Hilber–Hughes–Taylor: second order, damps what the steps do not resolve.
+    Hht {
+        /// −1/3 ≤ α ≤ 0; the nearer to −1/3, the more damping [-]
+        alpha: f64,
+    },
+    /// Generalized-α: second order, and of all such schemes the one that damps least what the steps resolve.
+    GeneralizedAlpha {
+        /// 0 ≤ ρ∞ ≤ 1: what is left after an increment of a motion far too fast for it; 0.8 unless given, 1 does not damp [-]
+        #[serde(default = "four_fifths")]
+        rho_infinity: f64,
+    },
+    /// Central differences: no equations to solve, but increments no longer than the fastest vibration of a single element
+    /// or contact point allows.
+    Explicit {
+        /// 0 < safety ≤ 1: increment as a share of the longest that is stable; 0.9 unless given [-]
+        #[serde(default = "nine_tenths")]
+        safety: f64,
+    },
+    /// Wilson-θ: linear acceleration, equilibrium at t + θ Δt.
+    Wilson {
+        /// 1.37 ≤ θ ≤ 2; 1.4 unless given [-]
+        #[serde(default = "seven_fifths")]
+        theta: f64,
+    },
+}
+
+fn quarter() -> f64 {
+    0.25
+}
+
+fn half() -> f64 {
+    0.5
+}
+
+fn four_fifths() -> f64 {
+    0.8
+}
+
+fn nine_tenths() -> f64 {
+    0.9
+}
+
+fn seven_fifths() -> f64 {
+    1.4
+}
+
+/// The numbers of a dynamic scheme in the equations above.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coefficients {
+    /// Weight of the old inertia force
+    pub alpha_m: f64,
+    /// Weight of the old internal, contact and external forces
+    pub alpha_f: f64,
+    /// β
+    pub beta: f64,
+    /// γ
+    pub gamma: f64,
+}
+
+impl Scheme {
+    /// Whether masses have inertia.
+    pub fn is_dynamic(self) -> bool {
+        self != Self::Static
+    }
+
+    /// The numbers of the scheme; `None` for statics and central differences.
+    pub fn coefficients(self) -> Option<Coefficients> {
+        match self {
+            Self::Static | Self::Explicit { .. } => None,
+            Self::Newmark { beta, gamma } => Some(Coefficients { alpha_m: 0.0, alpha_f: 0.0, beta, gamma }),
+            Self::Hht { alpha } => Some(Coefficients::of_second_order(0.0, -alpha)),
+            Self::GeneralizedAlpha { rho_infinity: rho } => {
+                Some(Coefficients::of_second_order((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0)))
+            }
+            Self::Wilson { .. } => Some(Coefficients { alpha_m: 0.0, alpha_f: 0.0, beta: 1.0 / 6.0, gamma: 0.5 }),
+        }
+    }
+
+    /// θ: equilibrium is asked for at t + θ Δt; 1 but for Wilson's scheme.
+    pub fn theta(self) -> f64 {
+        match self {
+            Self::Wilson { theta } => theta,
+            _ => 1.0,
+        }
+    }
+
+    /// Share of the longest stable increment that central differences take.
+    pub fn safety(self) -> f64 {
+        match self {
+            Self::Explicit { safety } => safety,
+            _ => 1.0,
+        }
+    }
+
+    /// C of (6); `None` where it vanishes or there is no such term.
+    pub fn error_constant(self) -> Option<f64> {
+        let Coefficients { alpha_m, alpha_f, beta, .. } = self.coefficients()?;
+        let constant = (beta - 1.0 / 6.0 - 0.5 * (alpha_f - alpha_m)).abs();
+        (self.theta() == 1.0 && constant > LEAST_ERROR_CONSTANT).then_some(constant)
+    }
+
+    /// Check the parameters.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`] names the one that is out of range.
+    pub fn check(self) -> Result<(), InvalidParameter> {
+        match self {
+            Self::Static => Ok(()),
+            Self::Explicit { safety } => {
+                let fits = safety > 0.0 && safety <= 1.0;
+                require("safety", safety, fits, "it must be above 0 and at most 1, the limit of stability")
+            }
+            Self::Newmark { beta, gamma } => {
+                require("gamma", gamma, gamma >= 0.5, "it must be at least 0.5: less adds energy")?;
+                require("beta", beta, beta > 0.0, "it must be positive; 0.25 is the trapezoidal rule")
+            }
+            Self::Hht { alpha } => {
+                let fits = (-1.0 / 3.0..=0.0).contains(&alpha);
+                require("alpha", alpha, fits, "it must be between -1/3 and 0; 0 does not damp")
+            }
+            Self::GeneralizedAlpha { rho_infinity: rho } => {
+                let fits = (0.0..=1.0).contains(&rho);
+                require("rho_infinity", rho, fits, "it must be between 0 (most damping) and 1 (none)")
+            }
+            Self::Wilson { theta } => {
+                let fits = (1.37..=2.0).contains(&theta);
+                require("theta", theta, fits, "it must be between 1.37, below which long increments blow up, and 2")
+            }
+        }
+    }
+}
+
+/// Below this |C| the estimate (6) says nothing: all others of this file have |C| ≥ 1/12.
+const LEAST_ERROR_CONSTANT: f64 = 0.01;
+
+impl Coefficients {
+    /// γ and β for second order and the most damping of unresolved motions that α_m and α_f leave room for.
+    fn of_second_order(alpha_m: f64, alpha_f: f64) -> Self {
+        let shift = alpha_f - alpha_m;
+        Self { alpha_m, alpha_f, beta: 0.25 * (1.0 + shift).powi(2), gamma: 0.5 + shift }
+    }
+
+    /// ∂a₁/∂u₁ = 1/(β Δt²) [1/T²].
+    pub fn dacceleration(&self, dt: f64) -> f64 {
+        1.0 / (self.beta * dt * dt)
+    }
+
+    /// ∂v₁/∂u₁ = γ/(β Δt) [1/T].
+    pub fn dvelocity(&self, dt: f64) -> f64 {
+        self.gamma / (self.beta * dt)
+    }
+
+    /// (v₁, a₁) of one dof from its displacement increment Δu and (v₀, a₀).
+    pub fn rates(&self, increment: f64, (v, a): (f64, f64), dt: f64) -> (f64, f64) {
+        let a1 = (increment - dt * v) / (self.beta * dt * dt) - (0.5 / self.beta - 1.0) * a;
+        (v + dt * ((1.0 - self.gamma) * a + self.gamma * a1), a1)
+    }
+
+    /// Δu of one dof from (v₀, a₀) and a₁: equation (2) the other way round.
+    pub fn increment(&self, (v, a): (f64, f64), a1: f64, dt: f64) -> f64 {
+        dt * v + dt * dt * ((0.5 - self.beta) * a + self.beta * a1)
+    }
+}
+
+/// (v₁, a₁) by (5) of a dof that comes with `v` into an increment in which its support goes through four places, at its
+/// start, thirds and end.
+pub fn supported_rates(places: [f64; 4], v: f64, dt: f64) -> (f64, f64) {
+    let [start, first, second, end] = places;
+    let v1 = (11.0 * end - 18.0 * second + 9.0 * first - 2.0 * start) / (2.0 * dt);
+    let [a0, a1] = [start_acceleration(places, dt), start_acceleration([end, second, first, start], dt)];
+    (v1, (v1 - v) / dt + 0.5 * (a1 - a0))
+}
+
+/// Acceleration, at the start of an increment, of a support that goes through four places in it.
+pub fn start_acceleration([start, first, second, end]: [f64; 4], dt: f64) -> f64 {
+    9.0 * (2.0 * start - 5.0 * first + 4.0 * second - end) / (dt * dt)
+}
+
+/// A time as a reader is told it: twelve digits, without the round-off of a sum of increments.
+pub fn told(time: f64) -> f64 {
+    format!("{time:.11e}").parse().unwrap_or(time)
+}

@@ -1,0 +1,52 @@
+//! Why a run stopped.
+
+use thiserror::Error;
+
+use crate::laws::friction::LawFailure;
+use crate::model::scheme::told;
+use crate::time::failure::IncrementFailure;
+
+/// Why a run stopped.
+#[derive(Debug, Error)]
+pub enum Error {
+    /// An increment cannot be made small enough.
+    #[error("step `{step}` stopped at time {}: {cause} (increment {dt:.3e}, smallest allowed {min:.3e})", told(*time))]
+    IncrementTooSmall {
+        /// step
+        step: String,
+        /// time reached
+        time: f64,
+        /// increment that failed
+        dt: f64,
+        /// smallest allowed increment
+        min: f64,
+        /// why it failed
+        cause: IncrementFailure,
+    },
+    /// No smaller increment can help.
+    #[error("step `{step}` stopped at time {}: {cause}", told(*time))]
+    Unsolvable {
+        /// step
+        step: String,
+        /// time reached
+        time: f64,
+        /// why
+        cause: IncrementFailure,
+    },
+    /// A friction law driven alone could not answer.
+    #[error("the law stopped after time {}: {cause}", told(*time))]
+    Law {
+        /// time reached
+        time: f64,
+        /// what the law said
+        cause: LawFailure,
+    },
+    /// A result file could not be written.
+    #[error("{path}: {cause}")]
+    Output {
+        /// the file
+        path: std::path::PathBuf,
+        /// what the system said
+        cause: String,
+    },
+}

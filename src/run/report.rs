@@ -1,0 +1,43 @@
+//! Counts and times of a run.
+
+use serde::Serialize;
+
+use crate::model::state::Energy;
+
+/// Counts and times of a run.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct RunReport {
+    /// accepted increments
+    pub increments: usize,
+    /// attempts that could not be solved
+    pub cutbacks: usize,
+    /// attempts that were solved, and repeated because their error was too large or they met an event of contact
+    pub rejected: usize,
+    /// times that a step turned to explicit increments because a contact slipped fast
+    pub ruptures: usize,
+    /// linear solves, those of failed attempts included
+    pub newton_iterations: usize,
+    /// matrix factorizations
+    pub factorizations: usize,
+    /// energies at the end
+    pub energy: Energy,
+    /// energy that went into the stabilization of floating bodies [F·L]
+    pub stabilization_work: f64,
+    /// wall time by phase
+    pub wall_s: WallSeconds,
+}
+
+/// Wall time by phase [s].
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct WallSeconds {
+    /// everything
+    pub total: f64,
+    /// solids, loads, sums
+    pub assembly: f64,
+    /// search, friction, contact forces
+    pub contact: f64,
+    /// factorization and solution
+    pub linear: f64,
+    /// observers
+    pub output: f64,
+}

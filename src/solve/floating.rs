@@ -1,0 +1,258 @@
+//! Bodies that nothing holds: motions without resistance, named.
+//!
+//! The rigid motions Φ of all bodies (x, y, rotation) are tried on the tangent: A = Φᵀ K Φ, scaled by ΦᵀD Φ with D the
+//! diagonal of |K|. A vanishing singular value of A is a motion that meets no force. Groups of bodies that K does not
+//! couple are tried one by one. A node outside all bodies has its own two motions, which are tried on its block of K.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, DVector, Matrix2, Matrix2x3, Matrix3, Vector2, Vector3};
+
+use crate::linear::{LinearSolver, Multifrontal, Pattern, SparseMatrix, norm};
+use crate::mesh::configuration::Configuration;
+use crate::model::Model;
+
+/// Relative stiffness below which a motion counts as free: far above round-off, far below any contact penalty.
+const FREE: f64 = 1e-12;
+
+/// Parts of a group whose singular values cost nothing.
+const FEW_PARTS: usize = 8;
+
+/// Inverse iterations; each brings out the null motion by another 1/√ε.
+const ITERATIONS: usize = 4;
+
+/// (√5 − 1)/2: its multiples are spread evenly over the fractions.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// Motions that are named.
+const MOST_NAMED: usize = 6;
+
+const MOTIONS: [&str; 3] = ["along x", "along y", "in rotation"];
+
+/// The first motion that the tangent at `u` does not resist, in words.
+pub fn null_motion(model: &Model, u: &[f64], tangent: &SparseMatrix) -> Option<String> {
+    null_motion_of_bodies(model, u, tangent).or_else(|| null_motion_of_a_node(model, tangent))
+}
+
+/// A null motion of the first group of parts that has one.
+fn null_motion_of_bodies(model: &Model, u: &[f64], tangent: &SparseMatrix) -> Option<String> {
+    let parts = Parts::of(model);
+    let resistance = Resistance::new(model, &parts, u, tangent)?;
+    resistance.groups().iter().find_map(|group| {
+        let motion = resistance.null_motion(group)?;
+        Some(describe(model, &parts, group, &motion))
+    })
+}
+
+/// Bodies that share nodes move as one part.
+struct Parts {
+    /// Bodies of each part
+    bodies: Vec<Vec<usize>>,
+    /// Part of each node; `None` outside all bodies
+    of_node: Vec<Option<usize>>,
+}
+
+impl Parts {
+    fn of(model: &Model) -> Self {
+        let mut first: Vec<Option<usize>> = vec![None; model.mesh.nodes.len()];
+        let mut joined = Joined::new(model.bodies.len());
+        for (body, nodes) in model.bodies.iter().map(|body| &body.nodes).enumerate() {
+            nodes.iter().for_each(|&node| joined.join(body, *first[node].get_or_insert(body)));
+        }
+        let bodies = joined.groups();
+        let mut part = vec![0; model.bodies.len()];
+        bodies.iter().enumerate().for_each(|(k, bodies)| bodies.iter().for_each(|&body| part[body] = k));
+        Self { of_node: first.into_iter().map(|body| body.map(|body| part[body])).collect(), bodies }
+    }
+}
+
+/// A = Φᵀ K Φ by pairs of parts that K couples, and its scales.
+struct Resistance {
+    blocks: BTreeMap<(usize, usize), Matrix3<f64>>,
+    parts: usize,
+}
+
+impl Resistance {
+    /// `None` if a scale vanishes or is not finite.
+    fn new(model: &Model, parts: &Parts, u: &[f64], tangent: &SparseMatrix) -> Option<Self> {
+        let x = model.configuration(u);
+        let motions = rigid_motions(parts, &x);
+        let mut scales = vec![Vector3::zeros(); parts.bodies.len()];
+        let mut blocks: BTreeMap<(usize, usize), Matrix3<f64>> = BTreeMap::new();
+        for (column, part) in parts.of_node.iter().enumerate() {
+            let Some(part) = *part else { continue };
+            for &row in tangent.pattern.neighbours(column) {
+                let (Some(other), Some(block)) = (parts.of_node[row], tangent.pattern.block(row, column)) else {
+                    continue;
+                };
+                let stiffness = Matrix2::from_fn(|i, j| tangent.values[block.value(i, j)]);
+                if row == column {
+                    let diagonal = stiffness.diagonal().abs();
+                    scales[part] += motions[column].map(|m| m * m).tr_mul(&diagonal);
+                }
+                if stiffness != Matrix2::zeros() {
+                    *blocks.entry((other, part)).or_default() += motions[row].transpose() * stiffness * motions[column];
+                }
+            }
+        }
+        if scales.iter().flatten().any(|scale| !(*scale > 0.0 && scale.is_finite())) {
+            return None;
+        }
+        for (&(row, column), block) in &mut blocks {
+            block.component_div_assign(&(scales[row].map(f64::sqrt) * scales[column].map(f64::sqrt).transpose()));
+        }
+        Some(Self { blocks, parts: parts.bodies.len() })
+    }
+
+    /// Parts that are coupled, directly or through others.
+    fn groups(&self) -> Vec<Vec<usize>> {
+        let mut joined = Joined::new(self.parts);
+        self.blocks.keys().for_each(|&(row, column)| joined.join(row, column));
+        joined.groups()
+    }
+
+    /// Motion of the parts of a group, three numbers each, that meets no resistance: by singular values in a small group, by
+    /// inverse iteration with sparse factors in a large one, in which a vanishing pivot is replaced by √ε.
+    fn null_motion(&self, group: &[usize]) -> Option<DVector<f64>> {
+        if group.len() <= FEW_PARTS {
+            let size = 3 * group.len();
+            let at =
+                |i: usize, j: usize| self.blocks.get(&(group[i / 3], group[j / 3])).map_or(0.0, |b| b[(i % 3, j % 3)]);
+            let decomposed = DMatrix::from_fn(size, size, at).svd(false, true);
+            let (smallest, value) = decomposed.singular_values.argmin();
+            let motion = decomposed.v_t?.row(smallest).transpose();
+            return (value < FREE).then_some(motion);
+        }
+        let matrix = self.sparse(group);
+        let mut solver = Multifrontal::default();
+        solver.factorize(&matrix).ok()?;
+        // No motion of a few parts is at right angles to this one.
+        let mut motion: Vec<f64> = (0..matrix.size()).map(|dof| 1.0 + (dof as f64 * GOLDEN).fract()).collect();
+        for _ in 0..ITERATIONS {
+            solver.solve(&mut motion);
+            let size = norm(&motion);
+            motion.iter_mut().for_each(|m| *m /= size);
+            if norm(&matrix.multiply(&motion)) < FREE {
+                return Some(DVector::from_fn(3 * group.len(), |k, _| motion[4 * (k / 3) + k % 3]));
+            }
+        }
+        None
+    }
+
+    /// A of a group, two nodes of two dofs for the three motions of a part; the fourth dof is held.
+    fn sparse(&self, group: &[usize]) -> SparseMatrix {
+        let place: BTreeMap<usize, usize> = group.iter().enumerate().map(|(k, &part)| (part, k)).collect();
+        let within =
+            || self.blocks.iter().filter_map(|((row, column), b)| Some((*place.get(row)?, *place.get(column)?, b)));
+        let coupled: Vec<[usize; 4]> =
+            within().map(|(row, column, _)| [2 * row, 2 * row + 1, 2 * column, 2 * column + 1]).collect();
+        let pattern = Pattern::new(2 * group.len(), coupled.iter().map(|nodes| &nodes[..]));
+        let mut matrix = SparseMatrix::zero(Arc::new(pattern));
+        for (row, column, block) in within() {
+            for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+                if let Some(at) = matrix.pattern.block(2 * row + i / 2, 2 * column + j / 2) {
+                    matrix.values[at.value(i % 2, j % 2)] = block[(i, j)];
+                }
+            }
+        }
+        (0..group.len()).for_each(|k| matrix.add_diagonal(4 * k + 3, 1.0));
+        matrix
+    }
+}
+
+/// Which of a number of things are joined.
+struct Joined(Vec<usize>);
+
+impl Joined {
+    fn new(count: usize) -> Self {
+        Self((0..count).collect())
+    }
+
+    /// The lowest of those joined with one.
+    fn lowest(&mut self, of: usize) -> usize {
+        let mut at = of;
+        while self.0[at] != at {
+            self.0[at] = self.0[self.0[at]];
+            at = self.0[at];
+        }
+        at
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let [a, b] = [a, b].map(|of| self.lowest(of));
+        self.0[a.max(b)] = a.min(b);
+    }
+
+    /// Groups of those joined, each ascending, in the order of their lowest.
+    fn groups(mut self) -> Vec<Vec<usize>> {
+        let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for of in 0..self.0.len() {
+            groups.entry(self.lowest(of)).or_default().push(of);
+        }
+        groups.into_values().collect()
+    }
+}
+
+fn null_motion_of_a_node(model: &Model, tangent: &SparseMatrix) -> Option<String> {
+    let mut lone = vec![true; model.mesh.nodes.len()];
+    model.bodies.iter().flat_map(|body| &body.nodes).for_each(|&node| lone[node] = false);
+    (0..lone.len()).filter(|&node| lone[node]).find_map(|node| {
+        let block = tangent.pattern.block(node, node)?;
+        let stiffness = Matrix2::from_fn(|i, j| tangent.values[block.value(i, j)]);
+        let along = free_direction(&stiffness)?;
+        let tag = model.mesh.node_tags[node];
+        let motion = if along[0].abs() > along[1].abs() { MOTIONS[0] } else { MOTIONS[1] };
+        Some(format!("nothing resists the motion of node {tag} {motion}"))
+    })
+}
+
+/// A direction without stiffness: an axis, or the null vector of the block scaled to a unit diagonal.
+fn free_direction(stiffness: &Matrix2<f64>) -> Option<Vector2<f64>> {
+    let scale = stiffness.diagonal().map(|k| k.abs().sqrt());
+    if let Some(axis) = (0..2).find(|&axis| scale[axis] == 0.0) {
+        return Some(Vector2::ith(axis, 1.0));
+    }
+    if !scale.iter().all(|scale| scale.is_finite()) {
+        return None;
+    }
+    let decomposed = stiffness.component_div(&(scale * scale.transpose())).svd(false, true);
+    let (smallest, value) = decomposed.singular_values.argmin();
+    let direction = decomposed.v_t?.row(smallest).transpose().component_div(&scale);
+    (value < FREE).then_some(direction)
+}
+
+/// Motion of every node with its part along x, along y, and about the part's centre; none outside all bodies.
+fn rigid_motions(parts: &Parts, x: &Configuration) -> Vec<Matrix2x3<f64>> {
+    let mut centres = vec![(Vector2::zeros(), 0.0); parts.bodies.len()];
+    let owned = || parts.of_node.iter().enumerate().filter_map(|(node, part)| Some((node, (*part)?)));
+    for (node, part) in owned() {
+        centres[part].0 += x.at(node);
+        centres[part].1 += 1.0;
+    }
+    let arm = |node: usize, part: usize| x.at(node) - centres[part].0 / centres[part].1;
+    let mut radii = vec![f64::MIN_POSITIVE; parts.bodies.len()];
+    owned().for_each(|(node, part)| radii[part] = radii[part].max(arm(node, part).norm()));
+    let mut motions = vec![Matrix2x3::zeros(); parts.of_node.len()];
+    for (node, part) in owned() {
+        let arm = arm(node, part) / radii[part];
+        motions[node] = Matrix2x3::new(1.0, 0.0, -arm.y, 0.0, 1.0, arm.x);
+    }
+    motions
+}
+
+fn describe(model: &Model, parts: &Parts, group: &[usize], motion: &DVector<f64>) -> String {
+    let largest = motion.amax();
+    let name = |part: usize| {
+        let names: Vec<String> =
+            parts.bodies[part].iter().map(|&body| format!("`{}`", model.bodies[body].name)).collect();
+        format!("{} {}", if names.len() == 1 { "body" } else { "bodies" }, names.join(" and "))
+    };
+    let moving: Vec<usize> = (0..motion.len()).filter(|&k| motion[k].abs() > 0.1 * largest).collect();
+    let mut free: Vec<String> =
+        moving.iter().take(MOST_NAMED).map(|&k| format!("{} {}", name(group[k / 3]), MOTIONS[k % 3])).collect();
+    if moving.len() > MOST_NAMED {
+        free.push(format!("{} more", moving.len() - MOST_NAMED));
+    }
+    format!("nothing resists the motion of {}", free.join(" with "))
+}

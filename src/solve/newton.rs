@@ -1,0 +1,175 @@
+//! Newton's method for r(u) = 0; knows no finite elements.
+//!
+//! ```text
+//! K(u_k) Δu = −r(u_k),   u_{k+1} = u_k + Δu        until every part has ‖r‖ ≤ tolerance × ‖f‖
+//! ```
+//!
+//! The tangent is consistent, so the residual falls quadratically near the solution. What the parts are, and which residuals
+//! round-off leaves, is for those to say who know the equations ([`System::imbalance`]). No start value is accepted without a
+//! linear solve: what it still lacks within the tolerance would add up from increment to increment.
+
+use thiserror::Error;
+
+use crate::linear::system::{Request, System};
+use crate::linear::{self, LinearFailure, LinearSolver, norm};
+use crate::model::NewtonSettings;
+
+/// One linear solve, and where it led.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Iteration {
+    /// ‖r‖/‖f‖ of the worst part after the correction; NaN if the corrected state could not be evaluated [-]
+    pub residual: f64,
+    /// Largest entry of the correction [L]
+    pub correction: f64,
+    /// ‖K Δu + r‖/‖r‖ of the linear solve [-]
+    pub linear_residual: f64,
+    /// Whether K is new; if not, it is that of an earlier iterate
+    pub factorized: bool,
+    /// Pivots of K that vanished and were replaced
+    pub perturbed_pivots: usize,
+    /// Whether the fronts of K were not exact enough, and another solver took over
+    pub fallback: bool,
+}
+
+/// Why no solution was found; `E` is why the equations could not be evaluated.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum NewtonFailure<E> {
+    /// The equations could not be evaluated at a trial state.
+    #[error("{0}")]
+    Evaluation(E),
+    /// The linear system has no solution.
+    #[error("{0}")]
+    Linear(#[from] LinearFailure),
+    /// Numbers beyond double precision, against which any residual would look small.
+    #[error("the forces are too large for double precision; check the stiffnesses, loads and units")]
+    Overflow,
+    /// The residual grows.
+    #[error("Newton's method diverges (relative residual {residual:.1e} after {iterations} iterations)")]
+    Diverged {
+        /// last relative residual
+        residual: f64,
+        /// linear solves so far
+        iterations: usize,
+    },
+    /// The iterations are used up.
+    #[error("no equilibrium within {iterations} iterations (relative residual {residual:.1e})")]
+    TooManyIterations {
+        /// last relative residual
+        residual: f64,
+        /// linear solves so far
+        iterations: usize,
+    },
+}
+
+/// The iterations made, and the solution or why there is none.
+pub type Outcome<E> = (Vec<Iteration>, Result<Vec<f64>, NewtonFailure<E>>);
+
+/// Growth of the residual over its largest start value that counts as divergence.
+const DIVERGENCE: f64 = 1e4;
+
+/// How much less an old tangent may gain than the iteration before did, and how much it must gain to be used again.
+const OLD_TANGENT: f64 = 10.0;
+
+/// Most corrections with an old tangent that are worth saving the factors of a new one. The same for every model and
+/// machine: what a run computes must not depend on what its factors cost.
+const OLD_TANGENT_CORRECTIONS: f64 = 3.0;
+
+/// Smallest part of a correction that is tried where the whole of it leads to a state that cannot be evaluated.
+const LEAST_PART: f64 = 0.125;
+
+/// Solve r(u) = 0 from the start value `u`. `evaluate` fills the system at a displacement, and says which share of the
+/// next correction to take: 1, or less where it sees the iterations go to and fro.
+pub fn solve<E>(
+    mut u: Vec<f64>,
+    settings: NewtonSettings,
+    solver: &mut dyn LinearSolver,
+    system: &mut System,
+    mut evaluate: impl FnMut(&[f64], Request, &mut System) -> Result<f64, E>,
+) -> Outcome<E> {
+    let mut iterations: Vec<Iteration> = Vec::new();
+    let result = (|| {
+        let mut share = evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
+        let (mut largest_start, mut before) = (0.0f64, [f64::INFINITY; 2]);
+        // Near a kink of the equations it promises more than it keeps, every time.
+        let mut old_tangent_serves = true;
+        loop {
+            let (size, residual) = (norm(&system.residual), system.imbalance);
+            let done = iterations.len();
+            if !system.forces.is_finite() {
+                return Err(NewtonFailure::Overflow);
+            }
+            if let Some(last) = iterations.last_mut() {
+                last.residual = residual;
+                let kept_promise = last.factorized || gain(size, residual, before) <= 1.0 / OLD_TANGENT;
+                old_tangent_serves &= kept_promise && !last.fallback;
+            }
+            if done > 0 && residual <= settings.tolerance {
+                return Ok(());
+            }
+            if done <= 2 {
+                largest_start = largest_start.max(size);
+            }
+            if !size.is_finite() || size > DIVERGENCE * largest_start {
+                return Err(NewtonFailure::Diverged { residual, iterations: done });
+            }
+            if done == settings.max_iterations {
+                return Err(NewtonFailure::TooManyIterations { residual, iterations: done });
+            }
+            let slower = if iterations.last().is_some_and(|last| last.factorized) { OLD_TANGENT } else { 1.0 };
+            let corrections = corrections_left(residual, slower * gain(size, residual, before), settings.tolerance);
+            let factorized = done == 0 || !(old_tangent_serves && corrections <= OLD_TANGENT_CORRECTIONS);
+            let mut solution = if factorized {
+                evaluate(&u, Request::Tangent, system).map_err(NewtonFailure::Evaluation)?;
+                let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();
+                linear::solve(solver, &system.tangent, &right)?
+            } else {
+                let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();
+                linear::solve_again(solver, &system.tangent, &right)
+            };
+            for (u, x) in u.iter_mut().zip(&mut solution.x) {
+                *x *= share;
+                *u += *x;
+            }
+            iterations.push(Iteration {
+                residual: f64::NAN,
+                correction: solution.x.iter().fold(0.0f64, |m, x| m.max(x.abs())),
+                linear_residual: solution.residual,
+                factorized,
+                perturbed_pivots: solution.perturbed_pivots,
+                fallback: solution.fallback,
+            });
+            // A correction that turns an element inside out is far too long; a part of it may lead on.
+            let mut part = 1.0;
+            share = loop {
+                match evaluate(&u, Request::Residual, system) {
+                    Ok(share) => break share,
+                    Err(failure) if part <= LEAST_PART && factorized => {
+                        return Err(NewtonFailure::Evaluation(failure));
+                    }
+                    Err(_) if part <= LEAST_PART => {
+                        // An old tangent led astray: the next correction starts from where this one did.
+                        old_tangent_serves = false;
+                        u.iter_mut().zip(&solution.x).for_each(|(u, x)| *u -= part * x);
+                        break evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
+                    }
+                    Err(_) => part *= 0.5,
+                }
+                for (u, x) in u.iter_mut().zip(&solution.x) {
+                    *u -= part * x;
+                }
+            };
+            before = [size, residual];
+        }
+    })();
+    (iterations, result.map(|()| u))
+}
+
+/// Share of the residual that a correction has left: of the whole, or of what the worst part lacks if that is more.
+fn gain(size: f64, residual: f64, before: [f64; 2]) -> f64 {
+    (size / before[0]).max(residual / before[1])
+}
+
+/// How many corrections take a residual from `size` to what is allowed if each leaves the share `left` of it.
+fn corrections_left(size: f64, left: f64, allowed: f64) -> f64 {
+    if left < 1.0 { (allowed / size).ln() / left.ln() } else { f64::INFINITY }
+}

@@ -1,0 +1,277 @@
+//! The longest stable increment, (1) to (4) of [`super`], and when it has to be found again.
+//!
+//! An element has its own bound until its shape has changed: a node moved, against its first one, by more than the share
+//! [`CHANGED`] of the element's size, which is its area over its diagonal. That is told before the increment in which it
+//! happens, from the displacements at its end, which are known. All elements are compared as soon as nodes may have moved
+//! so far against each other that one has changed by [`LATEST`]. What contacts add is found again when a point meets another segment.
+
+use nalgebra::{DMatrix, DVector, Vector2};
+use rayon::prelude::*;
+
+use crate::contact::surface::Master;
+use crate::equations::failure::TrialFailure;
+use crate::model::state::State;
+use crate::model::{Model, Step};
+use crate::time::failure::IncrementFailure;
+
+/// Share of its size by which an element may change before it is looked at again: its bound is exact to about as much.
+const CHANGED: f64 = 0.04;
+
+/// Share of its size by which an element may have changed before it is compared.
+const LATEST: f64 = 0.06;
+
+/// Share of its size to which an element may be crushed: increments would become shorter without end.
+const CRUSHED: f64 = 1e-3;
+
+/// Increments after which what contacts and springs add is looked at in any case.
+const LOOK_AGAIN: usize = 200;
+
+/// Elements that are compared sooner than another thread wakes up.
+const FEW: usize = 2048;
+
+/// What bounds the increment, as last looked at.
+pub(super) struct Stability<'m> {
+    model: &'m Model,
+    elements: Vec<Element>,
+    /// Nodes of the elements, `stride` places an element, filled up with the first one
+    nodes: Vec<usize>,
+    /// Their displacements against the first one when the element was looked at [L]
+    seen: Vec<Vector2<f64>>,
+    stride: usize,
+    /// k/m of (3) at every node [1/T²]
+    softness: Vec<f64>,
+    /// Segment that every contact point met
+    segments: Vec<Option<usize>>,
+    /// Increments since contacts were looked at
+    since: usize,
+    /// How far nodes may move against each other until an element may have changed [L]
+    margin: f64,
+}
+
+/// One element, as last looked at.
+#[derive(Clone, Copy)]
+struct Element {
+    /// λ_e and c [1/T², 1/T]
+    bounds: [f64; 2],
+    /// Area over diagonal; infinite where the law is linear, and the bounds depend on no displacement [L]
+    size: f64,
+}
+
+impl<'m> Stability<'m> {
+    /// Look at all elements.
+    pub(super) fn new(model: &'m Model, state: &State) -> Result<Self, IncrementFailure> {
+        let count = model.mesh.elements.len();
+        let stride = model.mesh.elements.iter().map(|element| element.nodes.len()).max().unwrap_or(0);
+        let mut stability = Self {
+            model,
+            elements: vec![Element { bounds: [0.0; 2], size: 0.0 }; count],
+            nodes: model.mesh.elements.iter().flat_map(|element| filled(&element.nodes, stride)).collect(),
+            seen: vec![Vector2::zeros(); stride * count],
+            stride,
+            softness: Vec::new(),
+            segments: Vec::new(),
+            since: 0,
+            margin: 0.0,
+        };
+        stability.look(&(0..count).collect::<Vec<_>>(), state)?;
+        Ok(stability)
+    }
+
+    /// Take note of an increment in which no two nodes move by more than `way` against each other.
+    pub(super) fn moved(&mut self, way: f64) {
+        self.margin -= way;
+        self.since += 1;
+    }
+
+    /// Whether what contacts add must be looked at again.
+    pub(super) fn contacts_changed(&self, state: &State) -> bool {
+        self.since > LOOK_AGAIN || segments(state).zip(&self.segments).any(|(now, seen)| now != *seen)
+    }
+
+    /// Elements that changed by more than [`CHANGED`] at the displacements `u`; all are compared, unless none can have.
+    pub(super) fn changed(&mut self, u: &[f64]) -> Vec<usize> {
+        if self.margin >= 0.0 {
+            return Vec::new();
+        }
+        let compare = |first: usize| {
+            let (mut changed, mut margin) = (Vec::new(), f64::INFINITY);
+            for e in first..(first + FEW).min(self.elements.len()) {
+                let (change, size) = (self.change(e, u), self.elements[e].size);
+                if change > CHANGED * size {
+                    changed.push(e);
+                } else {
+                    margin = margin.min(LATEST * size - change);
+                }
+            }
+            (changed, margin)
+        };
+        let parts: Vec<(Vec<usize>, f64)> =
+            (0..self.elements.len().div_ceil(FEW)).into_par_iter().map(|part| compare(FEW * part)).collect();
+        self.margin = parts.iter().map(|(_, margin)| *margin).fold(f64::INFINITY, f64::min);
+        parts.into_iter().flat_map(|(changed, _)| changed).collect()
+    }
+
+    /// The largest change of elements that were just looked at again, at the displacements `u`, as a share of their size.
+    pub(super) fn largest_change(&mut self, elements: &[usize], u: &[f64]) -> f64 {
+        let mut largest = 0.0f64;
+        for &e in elements {
+            let (change, size) = (self.change(e, u), self.elements[e].size);
+            largest = largest.max(change / size);
+            self.margin = self.margin.min(LATEST * size - change);
+        }
+        largest
+    }
+
+    /// How far the nodes of an element have moved against its first one since it was looked at [L].
+    fn change(&self, e: usize, u: &[f64]) -> f64 {
+        let places = self.stride * e..self.stride * (e + 1);
+        let (nodes, seen) = (&self.nodes[places.clone()], &self.seen[places]);
+        let of = |node: usize| Vector2::new(u[2 * node], u[2 * node + 1]);
+        let first = of(nodes[0]);
+        let square = |(node, seen): (&usize, &Vector2<f64>)| (of(*node) - first - seen).norm_squared();
+        nodes.iter().zip(seen).map(square).fold(0.0, f64::max).sqrt()
+    }
+
+    /// Look at some elements again.
+    pub(super) fn look(&mut self, elements: &[usize], state: &State) -> Result<(), IncrementFailure> {
+        let (model, u) = (self.model, &state.displacement);
+        let found: Vec<Result<Element, TrialFailure>> =
+            elements.par_iter().with_min_len(64).map(|&e| Element::at(model, e, u)).collect();
+        for (&e, element) in elements.iter().zip(found) {
+            self.elements[e] = element.map_err(IncrementFailure::Start)?;
+            let places = self.stride * e..self.stride * (e + 1);
+            let of = |node: usize| Vector2::new(u[2 * node], u[2 * node + 1]);
+            let first = of(self.nodes[places.start]);
+            for (seen, &node) in self.seen[places.clone()].iter_mut().zip(&self.nodes[places]) {
+                *seen = of(node) - first;
+            }
+        }
+        Ok(())
+    }
+
+    /// (1) or (4), with the masses of the nodes, after a look at all contacts [T].
+    pub(super) fn longest_increment(&mut self, step: &Step, mass: &[f64], state: &State) -> f64 {
+        self.segments.clear();
+        self.segments.extend(segments(state));
+        self.since = 0;
+        let added = self.added_stiffness(step, state);
+        let softness = added.iter().zip(mass).map(|(added, mass)| if *mass > 0.0 { added / mass } else { 0.0 });
+        self.softness = softness.collect();
+        let lone = self.softness.iter().map(|softness| longest(*softness, 0.0)).fold(f64::INFINITY, f64::min);
+        self.longest_of(&(0..self.elements.len()).collect::<Vec<_>>()).min(lone)
+    }
+
+    /// (1) or (4) of some elements, with what contacts add as last looked at [T].
+    pub(super) fn longest_of(&self, elements: &[usize]) -> f64 {
+        let of_element = |&e: &usize| {
+            let [elastic, viscous] = self.elements[e].bounds;
+            let nodes = self.model.mesh.elements[e].nodes.iter();
+            longest(elastic + nodes.map(|&node| self.softness[node]).fold(0.0, f64::max), viscous)
+        };
+        elements.iter().map(of_element).fold(f64::INFINITY, f64::min)
+    }
+
+    /// k of (3) at every node [F/L].
+    fn added_stiffness(&self, step: &Step, state: &State) -> Vec<f64> {
+        let model = self.model;
+        let x = model.configuration(&state.displacement);
+        let mut added = vec![0.0; model.mesh.nodes.len()];
+        for (pair, states) in model.contacts.iter().zip(&state.contacts) {
+            for (slave, state) in pair.points.iter().zip(states) {
+                let Some(foot) = state.foot else { continue };
+                let stiffness = pair.alpha_n.max(pair.law(slave).stiffness()) * slave.current_length(&x);
+                let mut weights = slave.position.clone();
+                if let Master::Mesh(surface) = &pair.master {
+                    weights.extend(surface.segments[foot.segment].position(foot.xi));
+                }
+                let total: f64 = weights.iter().map(|(_, w)| w.abs()).sum();
+                weights.iter().for_each(|(node, w)| added[*node] += stiffness * w.abs() * total);
+            }
+        }
+        step.loads.springs.iter().for_each(|spring| added[spring.dof / 2] += spring.stiffness);
+        model.ties.gather(1, &mut added);
+        model.ties.spread(1, &mut added);
+        added
+    }
+}
+
+/// The nodes of an element and as often the first one as it takes to fill `stride` places.
+fn filled(nodes: &[usize], stride: usize) -> impl Iterator<Item = usize> {
+    let first = nodes.iter().take(1).cycle();
+    nodes.iter().chain(first).take(stride).copied()
+}
+
+/// Segment that every contact point meets; `None` where it faces no master.
+fn segments(state: &State) -> impl Iterator<Item = Option<usize>> {
+    state.contacts.iter().flatten().map(|contact| contact.foot.map(|foot| foot.segment))
+}
+
+/// (4) from ω² and c [T].
+fn longest(square: f64, viscous: f64) -> f64 {
+    4.0 / (viscous + (viscous * viscous + 4.0 * square).sqrt())
+}
+
+impl Element {
+    /// Look at an element at the displacement `u`.
+    fn at(model: &Model, e: usize, u: &[f64]) -> Result<Self, TrialFailure> {
+        let nodes = &model.mesh.elements[e].nodes;
+        let body = &model.bodies[model.body_of_element[e]];
+        let local: Vec<Vector2<f64>> = nodes.iter().map(|&node| Vector2::new(u[2 * node], u[2 * node + 1])).collect();
+        let size = if body.material.is_linear() { f64::INFINITY } else { size(model, e, &local) };
+        let undeformed = size_at_rest(model, e);
+        if size < CRUSHED * undeformed {
+            let (element, body) = (model.mesh.element_tags[e], body.name.clone());
+            return Err(TrialFailure::Crushed { element, body, share: size / undeformed });
+        }
+        Ok(Self { bounds: bounds(model, e, &local)?, size })
+    }
+}
+
+fn size_at_rest(model: &Model, e: usize) -> f64 {
+    size(model, e, &vec![Vector2::zeros(); model.mesh.elements[e].nodes.len()])
+}
+
+/// Area of the polygon of an element's corners over its longest diagonal or side, at nodal displacements [L].
+fn size(model: &Model, e: usize, u: &[Vector2<f64>]) -> f64 {
+    let element = &model.mesh.elements[e];
+    let corners = element.kind.corners();
+    let place = |a: usize| model.mesh.nodes[element.nodes[a]] - model.mesh.nodes[element.nodes[0]] + (u[a] - u[0]);
+    let places: Vec<Vector2<f64>> = (0..corners).map(place).collect();
+    let area: f64 = (0..corners).map(|a| 0.5 * places[a].perp(&places[(a + 1) % corners])).sum();
+    let pairs = (0..corners).flat_map(|a| (0..a).map(move |b| (a, b)));
+    area.abs() / pairs.map(|(a, b)| (places[a] - places[b]).norm()).fold(f64::MIN_POSITIVE, f64::max)
+}
+
+/// λ_e and c of an element at nodal displacements [1/T², 1/T].
+fn bounds(model: &Model, e: usize, local: &[Vector2<f64>]) -> Result<[f64; 2], TrialFailure> {
+    let body = &model.bodies[model.body_of_element[e]];
+    let n = 2 * local.len();
+    let (mut force, mut tangent) = (vec![0.0; n], DMatrix::zeros(n, n));
+    let answer = model.solids[e].force_and_tangent(&*body.material, local, &mut force, tangent.as_mut_slice());
+    answer.map_err(|inverted| TrialFailure::Inverted {
+        element: model.mesh.element_tags[e],
+        body: body.name.clone(),
+        jacobian: inverted.jacobian,
+    })?;
+    let mass = model.element_lumped_mass(e);
+    let elastic = largest_eigenvalue(&tangent, &mass);
+    if body.damping.stiffness == 0.0 {
+        return Ok([elastic, 0.0]);
+    }
+    // What remains of the viscous tangent at rest is its derivative with respect to the velocities.
+    let (law, still) = ((&*body.material, body.damping.stiffness), vec![Vector2::zeros(); local.len()]);
+    model.solids[e].viscous_tangent(law, [local, &still], &vec![1.0; n], tangent.as_mut_slice());
+    Ok([elastic, largest_eigenvalue(&tangent, &mass)])
+}
+
+/// The bound (2) of a matrix and the lumped masses of its nodes.
+fn largest_eigenvalue(matrix: &DMatrix<f64>, mass: &DVector<f64>) -> f64 {
+    let n = matrix.nrows();
+    let scaled = DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] / (mass[i / 2] * mass[j / 2]).sqrt());
+    let largest = scaled.amax();
+    if largest == 0.0 {
+        return 0.0;
+    }
+    let square = (&scaled / largest).pow(2);
+    largest * (&square * &square).norm().powf(0.25)
+}
