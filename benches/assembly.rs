@@ -7,7 +7,9 @@ use fecontact::case;
 use fecontact::equations::{Assembler, Trial};
 use fecontact::linear::Multifrontal;
 use fecontact::linear::system::Request;
-use fecontact::time::increment::{Workspace, advance, begin};
+use fecontact::solve::Workspace;
+use fecontact::solve::contact_iteration::ContactIteration;
+use fecontact::time::increment::{advance, begin};
 
 fn assembly(criterion: &mut Criterion) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/coulomb_drag_20k.json");
@@ -20,10 +22,11 @@ fn assembly(criterion: &mut Criterion) {
 
     let trial = Trial::new(&state, step, 2.0, 1.0);
     let mut assembler = Assembler::new(&model);
+    let mut iteration = ContactIteration::default();
     let mut system = assembler.system();
     for (name, request) in [("residual", Request::Residual), ("residual and tangent", Request::Tangent)] {
         criterion.bench_function(&format!("{name}, {} dofs", model.dofs()), |bench| {
-            bench.iter(|| assembler.evaluate(trial, &state.displacement, request, &mut system).is_ok());
+            bench.iter(|| iteration.evaluate(&mut assembler, trial, &state.displacement, request, &mut system).is_ok());
         });
     }
 }

@@ -7,7 +7,8 @@ use fecontact::case;
 use fecontact::linear::Multifrontal;
 use fecontact::model::Model;
 use fecontact::model::state::State;
-use fecontact::time::increment::{Workspace, advance, begin};
+use fecontact::solve::Workspace;
+use fecontact::time::increment::{advance, begin};
 
 fn model() -> Model {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/coulomb_drag_5k.json");

@@ -4,9 +4,9 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use super::{Assembler, FEW, Trial};
+use crate::contact::pair::Presumption;
 use crate::equations::failure::TrialFailure;
 use crate::laws::bulk::InvertedElement;
-use crate::mesh::configuration::Configuration;
 use crate::model::Model;
 
 /// The forces of all elements on their nodes, and where each node finds its own.
@@ -61,11 +61,7 @@ impl Assembler<'_> {
     /// # Errors
     /// [`TrialFailure`] when an element inverts, a friction law fails, or a load has no value.
     pub fn forces(&mut self, trial: Trial, u: &[f64]) -> Result<(), TrialFailure> {
-        let clock = std::time::Instant::now();
-        let x: Configuration = self.model.configuration(u);
-        let responses = self.contacts(trial, false, &x)?;
-        self.seconds.contact += clock.elapsed().as_secs_f64();
-
+        let responses = self.interfaces(trial, u, |_, _| Presumption::default())?;
         let clock = std::time::Instant::now();
         let mut force = std::mem::take(&mut self.evaluation.force);
         force.resize(u.len(), 0.0);
@@ -80,7 +76,7 @@ impl Assembler<'_> {
         let mut loads = std::mem::take(&mut self.evaluation.loads);
         loads.clear();
         loads.resize(u.len(), 0.0);
-        self.subtract_loads(trial, u, &x, &mut loads, None);
+        self.subtract_loads(trial, u, &self.model.configuration(u), &mut loads, None);
         for (dof, (load, force)) in loads.iter_mut().zip(&mut force).enumerate() {
             *force += *load;
             *load = -*load;

@@ -20,12 +20,11 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, Vector2};
 use rayon::prelude::*;
 
-use crate::contact::force::{Closed, ContactState, Presume, SLIPPING, Status, Tractions};
+use crate::contact::force::{Closed, ContactState, Status};
 use crate::contact::pair::{ContactIncrement, ContactPair, PairResponse, Presumption};
 use crate::contact::surface::Master;
 use crate::equations::failure::TrialFailure;
 use crate::laws::bulk::InvertedElement;
-use crate::laws::friction::FrictionState;
 use crate::linear::system::Request;
 use crate::linear::system::{Contribution, System};
 use crate::linear::{BlockPosition, Pattern, SparseMatrix};
@@ -140,59 +139,6 @@ impl ContactCounts {
     }
 }
 
-/// What the linear solves of an increment started from at one contact point, and what is concluded.
-#[derive(Clone, Debug, Default)]
-struct Iterate {
-    /// plastic slip of the increment at the last solve [L]
-    slip: f64,
-    /// Segments of its feet at the last two solves
-    segments: [Option<usize>; 2],
-    /// The two segments between which the foot went to and fro
-    astride: Option<[usize; 2]>,
-    presumed: Presume,
-    /// Whether the last solve presumed it to stick
-    stuck: bool,
-    /// The point as the last solve saw it, if it was closed
-    closed: Option<Closed>,
-    promised: Tractions,
-    /// Pressure that friction answers to at a point that has just closed
-    carried: Option<f64>,
-}
-
-impl Iterate {
-    /// Take note of the segment on which the next linear solve starts.
-    fn note_segment(&mut self, state: &ContactState) {
-        let segment = state.foot.map(|foot| foot.segment);
-        let [last, before] = self.segments;
-        self.astride =
-            segment.zip(last).filter(|(segment, last)| segment != last && Some(*segment) == before).map(Into::into);
-        self.segments = [segment, last];
-    }
-
-    /// Watch the slip that the next linear solve starts from. Presumes sticking where the point slips the other way than
-    /// at the last solve, or was presumed to stick and slips, but would not with the tractions that this promised: it missed
-    /// the narrow range of sticking only for its own error.
-    fn watch_slip(&mut self, friction: &FrictionState) {
-        let slip = friction.plastic_increment;
-        // A point that only a promise keeps closed has a negative pressure.
-        let slips = slip != 0.0 && friction.traction.abs() >= SLIPPING * friction.mu * friction.pressure.abs();
-        let strength = friction.mu * self.promised.pressure;
-        // A law that slips at R < 1 does so with these tractions as well, unless they are far lower or the slip abates.
-        let held = if slip.abs() < ABATES * self.slip.abs() { strength } else { SLIPPING * strength };
-        let sticks = match self.stuck {
-            true => slips && self.promised.traction.abs() < held,
-            false => self.slip * slip < 0.0,
-        };
-        if sticks {
-            self.presumed = Presume::Stick;
-        }
-        self.slip = slip;
-    }
-}
-
-/// Slip that is below this share of what it was at the last solve comes to rest.
-const ABATES: f64 = 0.5;
-
 /// Seconds spent by phase.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Seconds {
@@ -218,10 +164,6 @@ pub struct Assembler<'m> {
     /// Sum of the forces' magnitudes at each dof [F]
     magnitudes: Vec<f64>,
     equilibrium: Equilibrium,
-    /// One entry a contact point, empty before the first linear solve of an increment
-    iterates: Vec<Vec<Iterate>>,
-    /// u of the last linear solve [L]
-    linearized_at: Vec<f64>,
     /// What was found at the last evaluated displacement
     pub evaluation: Evaluation,
     buffers: Buffers,
@@ -239,24 +181,6 @@ struct Buffers {
     forces: Vec<f64>,
     tangents: Vec<f64>,
     energies: Vec<Result<f64, InvertedElement>>,
-}
-
-/// The first linear solve of an increment takes no pressure for promised that is more than this many times the committed
-/// one: a start value extrapolated past the edge of a contact penetrates far too deep.
-const MOST_GROWTH: f64 = 2.0;
-
-/// The penalty may have drawn a point that was closed back by this many p/α_n.
-const MOST_PULL: f64 = 10.0;
-
-/// What the start of an increment promises: a point that was closed still is, unless it is farther away than the bodies
-/// would follow if its pressure went, and the penalty would reach.
-fn at_start(pair: &ContactPair, state: &ContactState, old: &ContactState) -> Tractions {
-    let reach = old.friction.pressure * (pair.compliance + MOST_PULL / pair.alpha_n);
-    match state.friction.pressure > 0.0 {
-        true => Tractions::of(&state.friction).limited(MOST_GROWTH * old.friction.pressure),
-        false if state.gap <= reach => Tractions::of(&old.friction),
-        false => Tractions::default(),
-    }
 }
 
 /// Most segments ahead of a foot that the pattern gets room for.
@@ -287,8 +211,6 @@ impl<'m> Assembler<'m> {
             weight: weight(model),
             magnitudes: vec![0.0; model.dofs()],
             equilibrium: Equilibrium::new(model),
-            iterates: Vec::new(),
-            linearized_at: Vec::new(),
             evaluation: Evaluation::default(),
             buffers: Buffers::default(),
             gather: None,
@@ -297,6 +219,11 @@ impl<'m> Assembler<'m> {
         };
         assembler.set_pattern(&[]);
         assembler
+    }
+
+    /// The model.
+    pub fn model(&self) -> &'m Model {
+        self.model
     }
 
     /// A system on the current pattern.
@@ -359,32 +286,61 @@ impl<'m> Assembler<'m> {
         }
     }
 
-    /// Residual, and tangent on request, at the displacement `u`.
+    /// Residual at the displacement `u`, no presumption made.
     ///
     /// # Errors
     /// [`TrialFailure`] when an element inverts, a friction law fails, or a load has no value.
-    pub fn evaluate(
+    pub fn residual(&mut self, trial: Trial, u: &[f64], system: &mut System) -> Result<(), TrialFailure> {
+        let responses = self.interfaces(trial, u, |_, _| Presumption::default())?;
+        self.assemble(trial, u, &responses, Request::Residual, system)
+    }
+
+    /// Responses of all contact points at the displacement `u`, with what is presumed about a point of a pair: for a tangent
+    /// alone, a residual that may be accepted knows no presumptions.
+    ///
+    /// # Errors
+    /// [`TrialFailure`] when a friction law fails.
+    pub fn interfaces(
         &mut self,
         trial: Trial,
         u: &[f64],
+        presumed: impl Fn(usize, usize) -> Presumption + Sync,
+    ) -> Result<Vec<PairResponse>, TrialFailure> {
+        if self.model.contacts.is_empty() {
+            return Ok(Vec::new());
+        }
+        let clock = std::time::Instant::now();
+        let [before, x] = [&trial.old.displacement, u].map(|u| self.model.configuration(u));
+        let fading = 1.0 - self.model.steps[0].span.share(trial.time);
+        let during = ContactIncrement { dt: trial.dt, fading, stiffening: trial.stiffening, settles: trial.settles };
+        let pairs = self.model.contacts.iter().zip(&trial.old.contacts).enumerate();
+        let respond = |(number, (pair, old)): (usize, (&ContactPair, &Vec<ContactState>))| {
+            let responses = pair.respond(old, &before, during, |point| presumed(number, point), &x);
+            let contact = || pair.name.clone();
+            responses.map_err(|(point, cause)| TrialFailure::Friction { contact: contact(), point, cause })
+        };
+        let responses = pairs.map(respond).collect();
+        self.seconds.contact += clock.elapsed().as_secs_f64();
+        responses
+    }
+
+    /// Residual, and tangent on request, at the displacement `u` with the given responses of the contact points.
+    ///
+    /// # Errors
+    /// [`TrialFailure`] when an element inverts, or a load has no value.
+    pub fn assemble(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        responses: &[PairResponse],
         request: Request,
         system: &mut System,
     ) -> Result<(), TrialFailure> {
-        let x = self.model.configuration(u);
         let clock = std::time::Instant::now();
+        let x = self.model.configuration(u);
         let tangent = request == Request::Tangent;
         if tangent {
-            self.presume(trial, u);
-        }
-        let mut responses = self.contacts(trial, tangent, &x)?;
-        if tangent && self.presume_sticking(&responses) {
-            responses = self.contacts(trial, tangent, &x)?;
-        }
-        self.seconds.contact += clock.elapsed().as_secs_f64();
-
-        let clock = std::time::Instant::now();
-        if tangent {
-            self.cover(&responses, trial.old);
+            self.cover(responses, trial.old);
             if !Arc::ptr_eq(&system.tangent.pattern, &self.pattern) {
                 system.tangent = SparseMatrix::zero(self.pattern.clone());
             }
@@ -394,7 +350,7 @@ impl<'m> Assembler<'m> {
         self.magnitudes.fill(0.0);
         let mut force = vec![0.0; u.len()];
         let strain_energy = self.add_solids(u, &mut force, values.as_deref_mut())?;
-        self.equilibrium.note_contacts(self.model, trial, &responses);
+        self.equilibrium.note_contacts(self.model, trial, responses);
         for (_, closed) in responses.iter().flatten() {
             if let Some(Closed { contribution, .. }) = closed {
                 self.add(contribution, &mut force, values.as_deref_mut());
@@ -407,9 +363,6 @@ impl<'m> Assembler<'m> {
         }
         self.evaluation.contacts =
             responses.iter().map(|pair| pair.iter().map(|(state, _)| *state).collect()).collect();
-        if tangent {
-            self.linearized(u, responses);
-        }
         self.evaluation.strain_energy = strain_energy;
         self.evaluation.loads = loads;
         self.evaluation.force = force;
@@ -418,88 +371,6 @@ impl<'m> Assembler<'m> {
         self.measure(trial, u, system);
         self.seconds.assembly += clock.elapsed().as_secs_f64();
         Ok(())
-    }
-
-    /// Forget the iterates of the increment before: the next tangent is the first of an increment.
-    pub fn start_increment(&mut self) {
-        self.iterates.clear();
-    }
-
-    /// What the next linear solve presumes about each point, from its last two iterates, but for sticking.
-    fn presume(&mut self, Trial { old, stiffening, .. }: Trial, u: &[f64]) {
-        let first = self.iterates.is_empty();
-        self.iterates.resize_with(self.model.contacts.len(), Vec::new);
-        let at = &self.linearized_at;
-        let pairs = self.model.contacts.iter().zip(&self.evaluation.contacts).zip(&old.contacts);
-        for (iterates, ((pair, states), old)) in self.iterates.iter_mut().zip(pairs) {
-            iterates.resize_with(states.len(), Iterate::default);
-            for ((iterate, state), old) in iterates.iter_mut().zip(states).zip(old) {
-                let was_closed = if first { old.friction.pressure > 0.0 } else { iterate.closed.is_some() };
-                let closes = !was_closed && state.friction.pressure > 0.0;
-                iterate.carried = closes.then(|| pair.shared(state.friction.pressure, stiffening));
-                iterate.promised = match &iterate.closed {
-                    Some(closed) => closed.promise(|dof| u[dof] - at[dof]),
-                    None if first => at_start(pair, state, old),
-                    None => Tractions::default(),
-                };
-                iterate.note_segment(state);
-                iterate.stuck = iterate.presumed == Presume::Stick;
-                iterate.presumed = if first { Presume::Touch } else { Presume::Nothing };
-            }
-        }
-    }
-
-    /// Presume sticking where points slip to and fro between the linear solves; whether there are any.
-    fn presume_sticking(&mut self, responses: &[PairResponse]) -> bool {
-        let mut any = false;
-        for (iterates, (pair, responses)) in self.iterates.iter_mut().zip(self.model.contacts.iter().zip(responses)) {
-            let rough = pair.points.iter().map(|slave| pair.law(slave).stiffness() > 0.0);
-            for ((iterate, (state, _)), rough) in iterates.iter_mut().zip(responses).zip(rough) {
-                if rough {
-                    iterate.watch_slip(&state.friction);
-                    any |= iterate.presumed == Presume::Stick;
-                }
-            }
-        }
-        any
-    }
-
-    /// Keep the points as the next linear solve sees them.
-    fn linearized(&mut self, u: &[f64], responses: Vec<PairResponse>) {
-        self.linearized_at.clear();
-        self.linearized_at.extend_from_slice(u);
-        for (iterates, responses) in self.iterates.iter_mut().zip(responses) {
-            for (iterate, (_, closed)) in iterates.iter_mut().zip(responses) {
-                iterate.closed = closed;
-            }
-        }
-    }
-
-    /// Trial states of all pairs; a tangent is taken with the presumptions, a residual that may be accepted without.
-    fn contacts(&self, trial: Trial, presuming: bool, x: &Configuration) -> Result<Vec<PairResponse>, TrialFailure> {
-        if self.model.contacts.is_empty() {
-            return Ok(Vec::new());
-        }
-        let before = self.model.configuration(&trial.old.displacement);
-        let fading = 1.0 - self.model.steps[0].span.share(trial.time);
-        let moment = ContactIncrement { dt: trial.dt, fading, stiffening: trial.stiffening, settles: trial.settles };
-        let pairs = self.model.contacts.iter().zip(&trial.old.contacts).enumerate();
-        pairs
-            .map(|(number, (pair, old))| {
-                let presumed = |k: usize| {
-                    let Some(iterates) = self.iterates.get(number).filter(|_| presuming) else {
-                        return Presumption::default();
-                    };
-                    let &Iterate { presumed, promised, carried, astride, .. } = &iterates[k];
-                    Presumption { presume: presumed, promised: Some(promised), carried, astride }
-                };
-                pair.respond(old, &before, moment, presumed, x).map_err(|(point, cause)| TrialFailure::Friction {
-                    contact: pair.name.clone(),
-                    point,
-                    cause,
-                })
-            })
-            .collect()
     }
 
     /// Make sure the pattern has room for all contact points. If it has not, it gets room for one segment more behind

@@ -17,9 +17,10 @@ use crate::model::{Model, Rupture, Step};
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};
 use crate::run::report::RunReport;
+use crate::solve::failure::IncrementFailure;
+use crate::solve::{IterationRecord, Workspace};
 use crate::time::explicit::Explicit;
-use crate::time::failure::IncrementFailure;
-use crate::time::increment::{IterationRecord, Workspace, advance, begin, go_on};
+use crate::time::increment::{advance, begin, go_on};
 use crate::time::step_size::{Judgement, Touching, bounded, fastest_slip, judge};
 
 /// Cut of the increment after one that could not be solved.

@@ -37,7 +37,7 @@ use crate::model::boundary::Prescribed;
 use crate::model::scheme::{start_acceleration, supported_rates};
 use crate::model::state::State;
 use crate::model::{Model, Step};
-use crate::time::failure::IncrementFailure;
+use crate::solve::failure::IncrementFailure;
 use stability::Stability;
 
 /// Share of its size that no element changes by more than in an increment: what strikes it is stopped by its stiffness

@@ -12,7 +12,7 @@ use crate::contact::surface::Master;
 use crate::equations::failure::TrialFailure;
 use crate::model::state::State;
 use crate::model::{Model, Step};
-use crate::time::failure::IncrementFailure;
+use crate::solve::failure::IncrementFailure;
 
 /// Share of its size by which an element may change before it is looked at again: its bound is exact to about as much.
 const CHANGED: f64 = 0.04;
