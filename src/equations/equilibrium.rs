@@ -15,12 +15,12 @@
 //! which are differences of displacements over Δt. How far a model lies from the origin does not enter: positions are only
 //! ever subtracted from each other.
 
-use super::{Assembler, Trial};
+use super::trial::Trial;
 use crate::contact::force::Closed;
 use crate::contact::pair::{ContactPair, PairResponse};
 use crate::contact::surface::Master;
-use crate::linear::norm;
 use crate::linear::system::System;
+use crate::linear::{SparseMatrix, norm};
 use crate::mesh::configuration::Configuration;
 use crate::model::Model;
 use crate::model::boundary::Absorber;
@@ -141,27 +141,31 @@ impl Equilibrium {
     }
 }
 
-impl Assembler<'_> {
+impl Equilibrium {
     /// Norm of the forces at work, and how far the worst part is from equilibrium, (1) and (2).
-    pub(super) fn measure(&mut self, trial: Trial, u: &[f64], system: &mut System) {
-        if trial.step.scheme.coefficients().is_some() {
-            self.mass();
-        }
-        system.forces = norm(&self.magnitudes);
-        let tolerance = self.model.newton.tolerance;
+    pub(super) fn measure(
+        &self,
+        (model, mass): (&Model, Option<&SparseMatrix>),
+        trial: Trial,
+        u: &[f64],
+        magnitudes: &[f64],
+        system: &mut System,
+    ) {
+        system.forces = norm(magnitudes);
+        let tolerance = model.newton.tolerance;
         let mut free: Vec<f64> = system.residual.clone();
         trial.step.supports.iter().for_each(|support| free[support.dof] = 0.0);
-        self.model.ties.pairs().iter().for_each(|&(copy, _)| free[2 * copy..2 * copy + 2].fill(0.0));
+        model.ties.pairs().iter().for_each(|&(copy, _)| free[2 * copy..2 * copy + 2].fill(0.0));
         let mut round_off = None;
-        system.imbalance = self.missed(trial, u);
-        for part in &self.equilibrium.parts {
+        system.imbalance = missed(model, trial, u);
+        for part in &self.parts {
             let norm = |values: &[f64]| part.nodes.iter().map(|&node| square(values, node)).sum::<f64>().sqrt();
             let residual = norm(&free);
-            let forces = part.contact.map_or_else(|| norm(&self.magnitudes), |k| self.equilibrium.contact_forces[k]);
+            let forces = part.contact.map_or_else(|| norm(magnitudes), |k| self.contact_forces[k]);
             let share = if residual <= tolerance * forces {
                 if forces > 0.0 { residual / forces } else { 0.0 }
             } else {
-                let round_off = round_off.get_or_insert_with(|| self.round_off(trial, u));
+                let round_off = round_off.get_or_insert_with(|| self.round_off((model, mass), trial, u, magnitudes));
                 let hidden = part.nodes.iter().map(|&node| round_off[node]).sum::<f64>().sqrt();
                 residual / forces.max(hidden / tolerance)
             };
@@ -170,29 +174,16 @@ impl Assembler<'_> {
         }
     }
 
-    /// Largest |u − ū| over the largest motion that is prescribed, (2); copies are prescribed by the nodes they move with.
-    fn missed(&self, trial: Trial, u: &[f64]) -> f64 {
-        let (mut missed, mut motion, mut place) = (0.0f64, 0.0f64, 0.0f64);
-        for support in &trial.step.supports {
-            let target = trial.prescribed(support, self.model);
-            missed = missed.max((u[support.dof] - target).abs());
-            motion = motion.max((target - trial.old.displacement[support.dof]).abs());
-            place = place.max(target.abs());
-        }
-        for &(copy, original) in self.model.ties.pairs() {
-            for (copy, original) in [(2 * copy, 2 * original), (2 * copy + 1, 2 * original + 1)] {
-                missed = missed.max((u[copy] - u[original]).abs());
-                place = place.max(u[original].abs());
-            }
-        }
-        if missed == 0.0 { 0.0 } else { missed / motion.max(ROUND_OFF * place / self.model.newton.tolerance) }
-    }
-
     /// ρ² at every node [F²].
-    fn round_off(&self, trial: Trial, u: &[f64]) -> Vec<f64> {
+    fn round_off(
+        &self,
+        (model, mass): (&Model, Option<&SparseMatrix>),
+        trial: Trial,
+        u: &[f64],
+        magnitudes: &[f64],
+    ) -> Vec<f64> {
         let Trial { old, step, dt, .. } = trial;
-        let model = self.model;
-        let Equilibrium { stiffness, contact_stiffness, diagonal, .. } = &self.equilibrium;
+        let Self { stiffness, contact_stiffness, diagonal, .. } = self;
         let farthest = LOST * (diagonal + old.displacement.iter().fold(0.0, |most: f64, u| most.max(u.abs())));
         let nodes = 0..model.mesh.nodes.len();
         let mut squares: Vec<f64> = nodes
@@ -200,7 +191,7 @@ impl Assembler<'_> {
                 let [strained, moved, _] = stiffness[node];
                 let [apart, slid] = contact_stiffness[node];
                 let way = square(u, node).min(farthest * farthest);
-                strained + apart + (moved + slid) * way + square(&self.magnitudes, node)
+                strained + apart + (moved + slid) * way + square(magnitudes, node)
             })
             .collect();
         for spring in &step.loads.springs {
@@ -209,7 +200,7 @@ impl Assembler<'_> {
         let way: Vec<f64> =
             old.displacement.iter().zip(&old.velocity).map(|(u, v)| RATES * (u.abs() + (dt * v).abs())).collect();
         let scheme = step.scheme.coefficients();
-        if let (Some(scheme), Some(mass)) = (scheme, &self.mass) {
+        if let (Some(scheme), Some(mass)) = (scheme, mass) {
             let inertia = mass.multiply(&way);
             let (dacceleration, dvelocity) = (scheme.dacceleration(dt), scheme.dvelocity(dt));
             for (node, squared) in squares.iter_mut().enumerate() {
@@ -228,6 +219,24 @@ impl Assembler<'_> {
         squares.iter_mut().for_each(|squared| *squared *= ROUND_OFF * ROUND_OFF);
         squares
     }
+}
+
+/// Largest |u − ū| over the largest motion that is prescribed, (2); copies are prescribed by the nodes they move with.
+fn missed(model: &Model, trial: Trial, u: &[f64]) -> f64 {
+    let (mut missed, mut motion, mut place) = (0.0f64, 0.0f64, 0.0f64);
+    for support in &trial.step.supports {
+        let target = trial.prescribed(support, model);
+        missed = missed.max((u[support.dof] - target).abs());
+        motion = motion.max((target - trial.old.displacement[support.dof]).abs());
+        place = place.max(target.abs());
+    }
+    for &(copy, original) in model.ties.pairs() {
+        for (copy, original) in [(2 * copy, 2 * original), (2 * copy + 1, 2 * original + 1)] {
+            missed = missed.max((u[copy] - u[original]).abs());
+            place = place.max(u[original].abs());
+        }
+    }
+    if missed == 0.0 { 0.0 } else { missed / motion.max(ROUND_OFF * place / model.newton.tolerance) }
 }
 
 /// Squared length of a node's vector.

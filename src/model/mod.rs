@@ -183,6 +183,13 @@ impl Model {
         self.bodies.iter().any(|body| body.damping.stiffness > 0.0)
     }
 
+    /// Whether dashpots, absorbing sides or viscous bodies act in a step.
+    pub fn is_damped(&self, step: &Step) -> bool {
+        let Loads { dashpots, absorbers, .. } = &step.loads;
+        !(dashpots.is_empty() && absorbers.is_empty() && step.stabilization.is_empty())
+            || self.bodies.iter().any(|body| body.damping != Damping::default())
+    }
+
     /// Consistent mass matrix of an element, the same for both directions [M].
     pub fn element_mass(&self, element: usize) -> DMatrix<f64> {
         let Element { kind, nodes } = &self.mesh.elements[element];

@@ -1,7 +1,9 @@
 //! One increment: old state → new state.
 
-use crate::equations::Trial;
-use crate::equations::energy::{contact_energy, friction_dissipation, work_of_drivers, work_of_fits};
+use super::accept::{accept, take_stock};
+use crate::equations::inertia::kinetic_energy;
+use crate::equations::supports::tie;
+use crate::equations::{Evaluation, Trial};
 use crate::linear;
 use crate::model::scheme::{Scheme, start_acceleration};
 use crate::model::state::{LastIncrement, State};
@@ -34,9 +36,8 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
         }
     }
     if state.increment == 0 {
-        state.energy.kinetic = kinetic_energy(step, &state, work);
-        state.energy.contact_elastic = contact_energy(model, &state.contacts);
-        state.energy.initial = state.energy.kinetic + state.energy.contact_elastic;
+        let kinetic = kinetic(step, &state, work);
+        take_stock(model, kinetic, &mut state);
     }
     Ok(state)
 }
@@ -89,7 +90,7 @@ fn start_dynamics(model: &Model, step: &Step, state: &mut State, work: &mut Work
         mass.replace_row(support.dof, scale);
         right[support.dof] = scale * start_acceleration(first.thirds(support, model), dt);
     }
-    work.assembler.tie(&mut mass, scale);
+    tie(model, &mut mass, scale);
     state.acceleration = linear::solve(&mut *work.solver, &mass, &right).map_err(IncrementFailure::Mass)?.x;
     let inertia = work.assembler.mass().multiply(&state.acceleration);
     for support in &step.supports {
@@ -131,7 +132,8 @@ pub fn advance(
     let time = if old.time + dt > step.span.end - 1e-9 * dt { step.span.end } else { old.time + dt };
     let increment = Trial::new(old, step, time, time - old.time);
     let (iterations, equilibrium) = augment(model, increment.ahead(), work);
-    let new = equilibrium.and_then(|u| reach_end(model, increment, u, work)).map(|u| accept(model, increment, u, work));
+    let new =
+        equilibrium.and_then(|u| reach_end(model, increment, u, work)).map(|u| reached(model, increment, u, work));
     (iterations, new)
 }
 
@@ -156,66 +158,20 @@ fn reach_end(model: &Model, end: Trial, u: Vec<f64>, work: &mut Workspace) -> Re
 }
 
 /// The new state at the converged displacement `u`.
-fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> State {
+fn reached(model: &Model, trial: Trial, mut u: Vec<f64>, work: &mut Workspace) -> State {
     let Trial { old, step, time, dt, .. } = trial;
-    let evaluation = std::mem::take(&mut work.assembler.evaluation);
-    let mut reaction = vec![0.0; u.len()];
-    for support in &step.supports {
-        reaction[support.dof] = evaluation.balance[support.dof];
-    }
-    let external: Vec<f64> = evaluation.loads.iter().zip(&reaction).map(|(load, reaction)| load + reaction).collect();
-    let increment: Vec<f64> = u.iter().zip(&old.displacement).map(|(new, old)| new - old).collect();
-    let mean_work = |old: &[f64], new: &[f64]| -> f64 {
-        (0..u.len()).map(|dof| 0.5 * (old[dof] + new[dof]) * increment[dof]).sum()
-    };
-    let work_done = mean_work(&old.external, &external);
-    let damped = mean_work(&old.damping, &evaluation.damping);
-    let relaxed = relaxation(step, &old.force, &increment);
-    let stabilized: f64 = step.stabilization.iter().zip(&increment).map(|(c, du)| c * du * du).sum();
-    let driven = work_of_drivers(model, step, [old.time, time], |dof| increment[dof]);
-    let fitted = work_of_fits(model, [&old.contacts, &evaluation.contacts], [old.time, time]);
-    let contact_elastic = contact_energy(model, &evaluation.contacts);
-    let dissipated = friction_dissipation(&old.contacts, &evaluation.contacts);
-    let mut state = State {
-        time,
-        increment: old.increment + 1,
-        dt,
-        displacement: u,
-        velocity: evaluation.velocity,
-        acceleration: evaluation.acceleration,
-        force: evaluation.force,
-        external,
-        damping: evaluation.damping,
-        reaction,
-        contacts: evaluation.contacts,
-        last_increment: Some(LastIncrement { dt, displacement: increment, ends_in_touch: false }),
-        step_start: old.step_start.clone(),
-        energy: old.energy,
-    };
-    state.energy.external_work += work_done + driven + fitted;
-    state.energy.damping_dissipation += driven - damped + relaxed;
-    state.energy.stabilization += trial.stabilization_left() * stabilized / dt;
-    state.energy.strain = evaluation.strain_energy;
-    state.energy.contact_elastic = contact_elastic;
-    state.energy.friction_dissipation += dissipated;
-    state.energy.kinetic = kinetic_energy(step, &state, work);
+    let mut found = std::mem::take(&mut work.assembler.evaluation);
+    let Evaluation { velocity, acceleration, .. } = &mut found;
+    let [velocity, acceleration] = [velocity, acceleration].map(std::mem::take);
+    let mut state = State { velocity, acceleration, reaction: vec![0.0; u.len()], ..old.clone() };
+    accept(model, step, time, &mut u, &mut found, &mut state);
+    let displacement = state.displacement.iter().zip(&old.displacement).map(|(new, old)| new - old).collect();
+    state.last_increment = Some(LastIncrement { dt, displacement, ends_in_touch: false });
+    let kinetic = kinetic(step, &state, work);
+    take_stock(model, kinetic, &mut state);
     state
 }
 
-/// What forces out of balance at the start of a static increment, left by motion before it, would have set in motion.
-fn relaxation(step: &Step, force: &[f64], increment: &[f64]) -> f64 {
-    if step.scheme.is_dynamic() {
-        return 0.0;
-    }
-    let all: f64 = force.iter().zip(increment).map(|(f, du)| f * du).sum();
-    let supported: f64 = step.supports.iter().map(|support| force[support.dof] * increment[support.dof]).sum();
-    -0.5 * (all - supported)
-}
-
-fn kinetic_energy(step: &Step, state: &State, work: &mut Workspace) -> f64 {
-    if !step.scheme.is_dynamic() {
-        return 0.0;
-    }
-    let momentum = work.assembler.mass().multiply(&state.velocity);
-    0.5 * momentum.iter().zip(&state.velocity).map(|(p, v)| p * v).sum::<f64>()
+fn kinetic(step: &Step, state: &State, work: &mut Workspace) -> f64 {
+    if step.scheme.is_dynamic() { kinetic_energy(work.assembler.mass(), &state.velocity) } else { 0.0 }
 }

@@ -73,6 +73,11 @@ impl SolidElement {
         Ok(element)
     }
 
+    /// Whether it has the volume change of its centre everywhere.
+    pub fn is_f_bar(&self) -> bool {
+        self.centre.is_some()
+    }
+
     /// Kind of the element.
     pub fn kind(&self) -> ElementKind {
         self.kind

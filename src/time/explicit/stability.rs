@@ -44,6 +44,8 @@ pub(super) struct Stability<'m> {
     segments: Vec<Option<usize>>,
     /// Increments since contacts were looked at
     since: usize,
+    /// Whether some elements were looked at again since
+    relooked: bool,
     /// How far nodes may move against each other until an element may have changed [L]
     margin: f64,
 }
@@ -71,6 +73,7 @@ impl<'m> Stability<'m> {
             softness: Vec::new(),
             segments: Vec::new(),
             since: 0,
+            relooked: false,
             margin: 0.0,
         };
         stability.look(&(0..count).collect::<Vec<_>>(), state)?;
@@ -85,7 +88,8 @@ impl<'m> Stability<'m> {
 
     /// Whether what contacts add must be looked at again.
     pub(super) fn contacts_changed(&self, state: &State) -> bool {
-        self.since > LOOK_AGAIN || segments(state).zip(&self.segments).any(|(now, seen)| now != *seen)
+        let stale = self.since > LOOK_AGAIN && (self.relooked || !self.model.contacts.is_empty());
+        stale || segments(state).zip(&self.segments).any(|(now, seen)| now != *seen)
     }
 
     /// Elements that changed by more than [`CHANGED`] at the displacements `u`; all are compared, unless none can have.
@@ -105,10 +109,17 @@ impl<'m> Stability<'m> {
             }
             (changed, margin)
         };
-        let parts: Vec<(Vec<usize>, f64)> =
-            (0..self.elements.len().div_ceil(FEW)).into_par_iter().map(|part| compare(FEW * part)).collect();
-        self.margin = parts.iter().map(|(_, margin)| *margin).fold(f64::INFINITY, f64::min);
-        parts.into_iter().flat_map(|(changed, _)| changed).collect()
+        let parts = (0..self.elements.len().div_ceil(FEW)).into_par_iter().map(|part| compare(FEW * part));
+        let (changed, margin) = parts.reduce(
+            || (Vec::new(), f64::INFINITY),
+            |(mut changed, margin), (more, other)| {
+                changed.extend(more);
+                (changed, margin.min(other))
+            },
+        );
+        self.margin = margin;
+        self.relooked |= !changed.is_empty();
+        changed
     }
 
     /// The largest change of elements that were just looked at again, at the displacements `u`, as a share of their size.
@@ -153,7 +164,7 @@ impl<'m> Stability<'m> {
     pub(super) fn longest_increment(&mut self, step: &Step, mass: &[f64], state: &State) -> f64 {
         self.segments.clear();
         self.segments.extend(segments(state));
-        self.since = 0;
+        (self.since, self.relooked) = (0, false);
         let added = self.added_stiffness(step, state);
         let softness = added.iter().zip(mass).map(|(added, mass)| if *mass > 0.0 { added / mass } else { 0.0 });
         self.softness = softness.collect();

@@ -1,0 +1,264 @@
+//! Residual and tangent of a model: the terms added up.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::coupling::Coupling;
+use super::equilibrium::Equilibrium;
+use super::evaluation::{Evaluation, Seconds};
+use super::failure::TrialFailure;
+use super::inertia::Inertia;
+use super::solids::Solids;
+use super::sums::Sums;
+use super::term::Term;
+use super::trial::Trial;
+use super::{dampers, damping, inertia, interfaces, loads, stabilization, supports};
+use crate::contact::pair::{PairResponse, Presumption};
+use crate::linear::SparseMatrix;
+use crate::linear::system::{Request, System};
+use crate::model::Model;
+
+/// Assembles a model; owns the pattern and the buffers that are used again.
+pub struct Assembler<'m> {
+    model: &'m Model,
+    coupling: Coupling<'m>,
+    solids: Solids<'m>,
+    mass: Option<SparseMatrix>,
+    /// η M of the bodies' damping
+    damping_mass: Option<SparseMatrix>,
+    /// w of prescribed dofs [F/L]
+    weight: f64,
+    /// Sum of the forces' magnitudes at each dof [F]
+    magnitudes: Vec<f64>,
+    equilibrium: Equilibrium,
+    /// What was found at the last evaluated displacement
+    pub evaluation: Evaluation,
+    /// Time spent
+    pub seconds: Seconds,
+}
+
+/// Terms that the displacements alone decide, whatever the scheme.
+const OF_PLACE: [Term; 3] = [Term::Solids, Term::Interfaces, Term::Loads];
+
+/// With those that the velocities decide, which in implicit schemes follow from the displacements.
+const OF_PLACE_AND_MOTION: [Term; 6] =
+    [Term::Solids, Term::Interfaces, Term::Loads, Term::Dampers, Term::Stabilization, Term::Damping];
+
+impl<'m> Assembler<'m> {
+    /// An assembler of a model.
+    pub fn new(model: &'m Model) -> Self {
+        Self {
+            model,
+            coupling: Coupling::new(model),
+            solids: Solids::new(model),
+            mass: None,
+            damping_mass: None,
+            weight: supports::weight(model),
+            magnitudes: vec![0.0; model.dofs()],
+            equilibrium: Equilibrium::new(model),
+            evaluation: Evaluation::default(),
+            seconds: Seconds::default(),
+        }
+    }
+
+    /// The model.
+    pub fn model(&self) -> &'m Model {
+        self.model
+    }
+
+    /// A system on the current pattern.
+    pub fn system(&self) -> System {
+        System {
+            residual: vec![0.0; self.model.dofs()],
+            tangent: self.coupling.matrix(),
+            forces: 0.0,
+            imbalance: f64::INFINITY,
+        }
+    }
+
+    /// Residual at the displacement `u`, no presumption made.
+    ///
+    /// # Errors
+    /// [`TrialFailure`] when an element inverts, a friction law fails, or a load has no value.
+    pub fn residual(&mut self, trial: Trial, u: &[f64], system: &mut System) -> Result<(), TrialFailure> {
+        let responses = self.interfaces(trial, u, |_, _| Presumption::default())?;
+        self.assemble(trial, u, &responses, Request::Residual, system)
+    }
+
+    /// Responses of all contact points at the displacement `u`, with what is presumed about a point of a pair: for a tangent
+    /// alone, a residual that may be accepted knows no presumptions.
+    ///
+    /// # Errors
+    /// [`TrialFailure`] when a friction law fails.
+    pub fn interfaces(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        presumed: impl Fn(usize, usize) -> Presumption + Sync,
+    ) -> Result<Vec<PairResponse>, TrialFailure> {
+        if self.model.contacts.is_empty() {
+            return Ok(Vec::new());
+        }
+        let clock = Instant::now();
+        let responses = interfaces::respond(self.model, trial, u, presumed);
+        self.seconds.contact += clock.elapsed().as_secs_f64();
+        responses
+    }
+
+    /// Residual, and tangent on request, at the displacement `u` with the given responses of the contact points.
+    ///
+    /// # Errors
+    /// [`TrialFailure`] when an element inverts, or a load has no value.
+    pub fn assemble(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        responses: &[PairResponse],
+        request: Request,
+        system: &mut System,
+    ) -> Result<(), TrialFailure> {
+        let clock = Instant::now();
+        let model = self.model;
+        let tangent = request == Request::Tangent;
+        if tangent {
+            self.cover(trial, responses);
+            if !Arc::ptr_eq(&system.tangent.pattern, &self.coupling.pattern) {
+                system.tangent = self.coupling.matrix();
+            }
+            system.tangent.clear();
+        }
+        self.magnitudes.fill(0.0);
+        self.evaluation.damping.clear();
+        self.add(&OF_PLACE_AND_MOTION, (trial, u), responses, true, tangent.then_some(&mut system.tangent))?;
+        model.ties.gather(2, &mut self.evaluation.damping);
+        model.ties.gather(2, &mut self.magnitudes);
+        self.equilibrium.note_contacts(model, trial, responses);
+        self.evaluation.contacts =
+            responses.iter().map(|pair| pair.iter().map(|(state, _)| *state).collect()).collect();
+        self.balance(trial, u, tangent, system);
+        supports::prescribe(model, self.weight, trial, u, tangent, system)?;
+        let mass = self.mass.as_ref().filter(|_| trial.step.scheme.coefficients().is_some());
+        self.equilibrium.measure((model, mass), trial, u, &self.magnitudes, system);
+        self.seconds.assembly += clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// Forces of what the displacement `u` alone decides, and everything else that an accepted state takes over from the
+    /// evaluation but rates, damping and reactions: what explicit increments need, which find the velocities last.
+    ///
+    /// # Errors
+    /// As [`Assembler::residual`].
+    pub fn forces(&mut self, trial: Trial, u: &[f64]) -> Result<(), TrialFailure> {
+        let responses = self.interfaces(trial, u, |_, _| Presumption::default())?;
+        let clock = Instant::now();
+        self.add(&OF_PLACE, (trial, u), &responses, false, None)?;
+        let states = responses.into_iter().map(|pair| pair.into_iter().map(|(state, _)| state).collect());
+        self.evaluation.contacts.clear();
+        self.evaluation.contacts.extend(states);
+        self.seconds.assembly += clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// Add the viscous forces of the bodies at displacements and velocities to those just found, and write what they put on
+    /// the nodes over the damping.
+    pub fn add_viscous(&mut self, motion: [&[f64]; 2]) {
+        let Evaluation { force, damping, .. } = &mut self.evaluation;
+        self.solids.viscous(motion, damping, None);
+        self.model.ties.gather(2, damping);
+        for (force, damping) in force.iter_mut().zip(damping) {
+            *force += *damping;
+            *damping = -*damping;
+        }
+    }
+
+    /// Write the sums of some terms over those of the evaluation, with their magnitudes and tangents where they are wanted.
+    /// A copy's share goes to the node it moves with.
+    fn add(
+        &mut self,
+        terms: &[Term],
+        (trial, u): (Trial, &[f64]),
+        responses: &[PairResponse],
+        scaled: bool,
+        tangent: Option<&mut SparseMatrix>,
+    ) -> Result<(), TrialFailure> {
+        let Self { model, coupling, solids, damping_mass, magnitudes, evaluation, .. } = self;
+        let Evaluation { force, loads, damping, stabilization, strain_energy, .. } = evaluation;
+        [&mut *force, &mut *damping].into_iter().for_each(|values| values.resize(u.len(), 0.0));
+        let magnitudes = scaled.then_some(&mut magnitudes[..]);
+        let mut sums = Sums { force, magnitudes, tangent, coupling };
+        for term in terms {
+            match term {
+                Term::Solids => *strain_energy = solids.add(u, &mut sums)?,
+                Term::Interfaces => interfaces::add(responses, &mut sums),
+                Term::Loads => loads::add(model, trial, u, loads, &mut sums)?,
+                Term::Dampers => dampers::add(model, trial, u, damping, &mut sums)?,
+                Term::Stabilization => *stabilization = stabilization::add(trial, u, damping, &mut sums),
+                Term::Damping => {
+                    let mass = || inertia::elements(model, coupling, |body| model.bodies[body].damping.mass);
+                    let momentum = damping::by_mass(model).then(|| &*damping_mass.get_or_insert_with(mass));
+                    damping::add(model, solids, momentum, (trial, u), damping, &mut sums);
+                }
+                // Blended with the forces of before, once all of these are known.
+                Term::Inertia => {}
+            }
+        }
+        model.ties.gather(2, force);
+        model.ties.gather(2, loads);
+        Ok(())
+    }
+
+    /// The residual as the scheme blends it from the forces and those of the masses, velocities, accelerations, and what the
+    /// supports put on their nodes.
+    fn balance(&mut self, trial: Trial, u: &[f64], tangent: bool, system: &mut System) {
+        let Self { model, coupling, mass, evaluation, magnitudes, .. } = self;
+        let Evaluation { force, reactions, velocity, acceleration, .. } = evaluation;
+        reactions.clear();
+        reactions.extend(trial.step.supports.iter().map(|support| force[support.dof]));
+        let mass =
+            trial.step.scheme.coefficients().map(|_| &*mass.get_or_insert_with(|| inertia::mass(model, coupling)));
+        let Some((mass, inertia)) = mass.and_then(|mass| Some((mass, Inertia::at(model, trial, u, mass)?))) else {
+            [velocity, acceleration].into_iter().for_each(|rates| *rates = vec![0.0; u.len()]);
+            system.residual.clone_from(force);
+            return;
+        };
+        let wanted = tangent.then_some((&mut system.tangent, mass));
+        inertia.add([&trial.old.force, force], &mut system.residual, wanted);
+        magnitudes.iter_mut().zip(&inertia.force).for_each(|(magnitude, inertia)| *magnitude += inertia.abs());
+        let supports = reactions.iter_mut().zip(&trial.step.supports);
+        supports.for_each(|(reaction, support)| *reaction += inertia.force[support.dof]);
+        (*velocity, *acceleration) = (inertia.velocity, inertia.acceleration);
+    }
+
+    /// Make room in the pattern for all contact points.
+    fn cover(&mut self, trial: Trial, responses: &[PairResponse]) {
+        if self.coupling.cover(responses, trial.old) {
+            (self.mass, self.damping_mass) = (None, None);
+        }
+    }
+
+    /// The mass matrix on the current pattern.
+    pub fn mass(&mut self) -> &SparseMatrix {
+        let Self { model, coupling, mass, .. } = self;
+        mass.get_or_insert_with(|| inertia::mass(model, coupling))
+    }
+
+    /// The tangent of one term by itself, with no supports: see [`Term::dependence`].
+    ///
+    /// # Errors
+    /// As [`Assembler::residual`].
+    pub fn tangent_of(&mut self, term: Term, trial: Trial, u: &[f64]) -> Result<SparseMatrix, TrialFailure> {
+        let responses = self.interfaces(trial, u, |_, _| Presumption::default())?;
+        self.cover(trial, &responses);
+        let mut tangent = self.coupling.matrix();
+        if term == Term::Inertia {
+            let mass = self.mass().clone();
+            let inertia = Inertia::at(self.model, trial, u, &mass);
+            inertia.into_iter().for_each(|inertia| tangent.add_columns(&mass, &inertia.factors));
+            return Ok(tangent);
+        }
+        let kept = std::mem::take(&mut self.evaluation);
+        let added = self.add(&[term], (trial, u), &responses, false, Some(&mut tangent));
+        self.evaluation = kept;
+        added.map(|()| tangent)
+    }
+}

@@ -1,0 +1,131 @@
+//! Who couples with whom: the pattern of the tangent, and where every element finds its own blocks in it.
+
+use std::sync::Arc;
+
+use crate::contact::force::Closed;
+use crate::contact::pair::PairResponse;
+use crate::contact::surface::Master;
+use crate::linear::{BlockPosition, Pattern, SparseMatrix};
+use crate::model::Model;
+use crate::model::state::State;
+
+/// Most segments ahead of a foot that the pattern gets room for.
+const FARTHEST: usize = 8;
+
+/// The pattern of a model's tangent.
+pub(super) struct Coupling<'m> {
+    model: &'m Model,
+    /// the pattern
+    pub pattern: Arc<Pattern>,
+    /// Position of the block of every node pair of every element, in the current pattern
+    blocks: Vec<BlockPosition>,
+    /// Where each element's blocks start
+    starts: Vec<usize>,
+    /// Segments that the pattern has room for ahead of each foot, when it is set next
+    ahead: usize,
+}
+
+impl<'m> Coupling<'m> {
+    /// The nodes of every element, load and pair of tied nodes.
+    pub fn new(model: &'m Model) -> Self {
+        let starts = std::iter::once(0).chain(model.mesh.elements.iter().scan(0, |sum, element| {
+            *sum += element.nodes.len().pow(2);
+            Some(*sum)
+        }));
+        let mut coupling = Self {
+            model,
+            pattern: Arc::new(Pattern::new(model.mesh.nodes.len(), std::iter::empty())),
+            blocks: Vec::new(),
+            starts: starts.collect(),
+            ahead: 1,
+        };
+        coupling.set(&[]);
+        coupling
+    }
+
+    /// Couple the nodes of all elements, loads and the given groups; find every element's blocks in the new pattern.
+    fn set(&mut self, groups: &[Vec<usize>]) {
+        let model = self.model;
+        let elements = model.mesh.elements.iter().map(|element| &element.nodes[..]);
+        let edges = model.steps.iter().flat_map(|step| step.loads.pressures.iter().flat_map(|load| &load.edges));
+        let all = elements.chain(edges.map(|edge| &edge[..])).chain(groups.iter().map(|group| &group[..]));
+        let tied = self.tied(all.clone());
+        self.pattern = Arc::new(Pattern::new(model.mesh.nodes.len(), all.chain(tied.iter().map(|group| &group[..]))));
+        let mut blocks = std::mem::take(&mut self.blocks);
+        blocks.clear();
+        model.mesh.elements.iter().for_each(|element| blocks.extend(self.blocks_between(&element.nodes)));
+        self.blocks = blocks;
+    }
+
+    /// The groups that have copies in them, as the nodes that those move with, and every copy with its own.
+    fn tied<'a>(&self, groups: impl Iterator<Item = &'a [usize]>) -> Vec<Vec<usize>> {
+        let ties = &self.model.ties;
+        if ties.pairs().is_empty() {
+            return Vec::new();
+        }
+        let originals = |group: &[usize]| -> Vec<usize> { group.iter().map(|&node| ties.original(node)).collect() };
+        let moved = groups.map(|group| (group, originals(group))).filter(|(group, originals)| group != originals);
+        let mut tied: Vec<Vec<usize>> = moved.map(|(_, originals)| originals).collect();
+        tied.extend(ties.pairs().iter().map(|&(copy, original)| vec![copy, original]));
+        tied
+    }
+
+    /// The node that a node moves with.
+    pub fn original(&self, node: usize) -> usize {
+        self.model.ties.original(node)
+    }
+
+    /// Blocks of an element, column by column.
+    pub fn blocks_of(&self, element: usize) -> &[BlockPosition] {
+        &self.blocks[self.starts[element]..self.starts[element + 1]]
+    }
+
+    /// Blocks between some nodes that the pattern couples, column by column.
+    pub fn blocks_between(&self, nodes: &[usize]) -> Vec<BlockPosition> {
+        let nodes: Vec<usize> = nodes.iter().map(|&node| self.original(node)).collect();
+        let block = |row, column| self.pattern.block(row, column).expect("nodes are coupled before they are added");
+        nodes.iter().flat_map(|&column| nodes.iter().map(move |&row| block(row, column))).collect()
+    }
+
+    /// A matrix on the current pattern.
+    pub fn matrix(&self) -> SparseMatrix {
+        SparseMatrix::zero(self.pattern.clone())
+    }
+
+    /// Make sure the pattern has room for all contact points; whether it changed. If it has not, it gets room for one
+    /// segment more behind each foot and a few ahead, where the point slides to. Every time the room turns out too small
+    /// there will be twice as much, so that the pattern seldom changes as points slide.
+    pub fn cover(&mut self, responses: &[PairResponse], old: &State) -> bool {
+        let original = |node: &usize| self.original(*node);
+        let coupled = |closed: &Closed| {
+            let nodes: Vec<usize> = closed.contribution.nodes.iter().map(original).collect();
+            nodes.iter().all(|&a| nodes.iter().all(|&b| self.pattern.block(a, b).is_some()))
+        };
+        if responses.iter().flatten().filter_map(|(_, closed)| closed.as_ref()).all(coupled) {
+            return false;
+        }
+        let mut groups = Vec::new();
+        for ((pair, responses), old) in self.model.contacts.iter().zip(responses).zip(&old.contacts) {
+            for ((slave, (state, closed)), old) in pair.points.iter().zip(responses).zip(old) {
+                let Some(foot) = state.foot.or(old.foot) else { continue };
+                let mut nodes: Vec<usize> = slave.position.iter().map(|&(node, _)| node).collect();
+                nodes.extend(closed.iter().flat_map(|closed| &closed.contribution.nodes));
+                if let Master::Mesh(surface) = &pair.master {
+                    let way = old.foot.and_then(|from| surface.path(from, foot)).unwrap_or_default();
+                    let slip: f64 = way.iter().map(|(_, from, to)| to - from).sum();
+                    let [behind, ahead] = if slip < 0.0 { [self.ahead, 1] } else { [1, self.ahead] };
+                    let back = std::iter::successors(Some(foot.segment), |&segment| surface.previous(segment));
+                    let forth = std::iter::successors(Some(foot.segment), |&segment| surface.next(segment));
+                    let around = back.take(1 + behind).chain(forth.take(1 + ahead));
+                    nodes.extend(around.flat_map(|segment| surface.segments[segment].nodes()));
+                }
+                nodes.sort_unstable();
+                nodes.dedup();
+                groups.push(nodes);
+            }
+        }
+        self.ahead = FARTHEST.min(2 * self.ahead);
+        self.set(&groups);
+        true
+    }
+}

@@ -1,0 +1,61 @@
+//! What an evaluation of the equations leaves for the accepted state.
+
+use crate::contact::force::{ContactState, Status};
+
+/// What was found at the last evaluated displacement, for the accepted state.
+#[derive(Clone, Debug, Default)]
+pub struct Evaluation {
+    /// F [F]
+    pub force: Vec<f64>,
+    /// loads [F]
+    pub loads: Vec<f64>,
+    /// forces of dashpots on the nodes [F]
+    pub damping: Vec<f64>,
+    /// norm of the forces of those that stabilize [F]
+    pub stabilization: f64,
+    /// F + M a at every support, in their order: what it puts on the node [F]
+    pub reactions: Vec<f64>,
+    /// v [L/T]
+    pub velocity: Vec<f64>,
+    /// a [L/T²]
+    pub acceleration: Vec<f64>,
+    /// trial states of all contact points
+    pub contacts: Vec<Vec<ContactState>>,
+    /// ∫ W dV [F·L]
+    pub strain_energy: f64,
+}
+
+/// Numbers of contact points by status.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ContactCounts {
+    /// open
+    pub open: usize,
+    /// sticking
+    pub stick: usize,
+    /// slipping
+    pub slip: usize,
+}
+
+impl ContactCounts {
+    /// Count the points of all pairs.
+    pub fn of(contacts: &[Vec<ContactState>]) -> Self {
+        let mut counts = Self::default();
+        for state in contacts.iter().flatten() {
+            match state.status() {
+                Status::Open => counts.open += 1,
+                Status::Stick => counts.stick += 1,
+                Status::Slip => counts.slip += 1,
+            }
+        }
+        counts
+    }
+}
+
+/// Seconds spent by phase.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Seconds {
+    /// solids, loads and sums
+    pub assembly: f64,
+    /// search, friction and contact forces
+    pub contact: f64,
+}

@@ -1,0 +1,99 @@
+//! Masses: their matrix, their forces, and the equations as the scheme blends them.
+
+use nalgebra::DMatrix;
+
+use super::coupling::Coupling;
+use super::rates::rates;
+use super::sums::add_blocks;
+use super::term::Dependence;
+use super::trial::Trial;
+use crate::linear::SparseMatrix;
+use crate::model::Model;
+
+/// M ∂a/∂u: the mass over Δt².
+pub(super) fn dependence() -> Dependence {
+    Dependence::StepSize
+}
+
+/// The mass matrix on the current pattern: consistent in the elements, and the point masses on the diagonal.
+pub(super) fn mass(model: &Model, coupling: &Coupling) -> SparseMatrix {
+    let mut mass = elements(model, coupling, |_| 1.0);
+    for point in &model.point_masses {
+        let nodes = point.nodes.iter().map(|&node| coupling.original(node));
+        let dofs = nodes.flat_map(|node| [2 * node, 2 * node + 1]);
+        dofs.for_each(|dof| mass.add_diagonal(dof, point.mass));
+    }
+    mass
+}
+
+/// Masses of the elements, each times what is said of its body.
+pub(super) fn elements(model: &Model, coupling: &Coupling, share: impl Fn(usize) -> f64) -> SparseMatrix {
+    let mut total = coupling.matrix();
+    for (e, element) in model.mesh.elements.iter().enumerate() {
+        let mass = share(model.body_of_element[e]) * model.element_mass(e);
+        let both = mass.kronecker(&DMatrix::identity(2, 2));
+        add_blocks(&mut total, coupling.blocks_of(e), both.as_slice(), element.nodes.len());
+    }
+    total
+}
+
+/// What inertia says at a trial displacement.
+pub(super) struct Inertia {
+    /// v [L/T]
+    pub velocity: Vec<f64>,
+    /// a [L/T²]
+    pub acceleration: Vec<f64>,
+    /// M a [F]
+    pub force: Vec<f64>,
+    /// M times the accelerations as (1) of [`crate::model::scheme`] weighs them [F]
+    pub weighted: Vec<f64>,
+    /// ∂(weighted a)/∂u of each dof: the factor of its column of M [1/T²]
+    pub factors: Vec<f64>,
+    /// α_f
+    pub alpha_f: f64,
+}
+
+impl Inertia {
+    /// In a dynamic increment with the mass matrix M; a prescribed dof's acceleration is its support's.
+    pub fn at(model: &Model, trial: Trial, u: &[f64], mass: &SparseMatrix) -> Option<Self> {
+        let Trial { old, step, dt, .. } = trial;
+        let scheme = step.scheme.coefficients()?;
+        let (velocity, acceleration) = rates(model, trial, u, scheme);
+        let blend = |dof: usize, weight: f64| blend(weight, old.acceleration[dof], acceleration[dof]);
+        let mut weighted: Vec<f64> = (0..u.len()).map(|dof| blend(dof, scheme.alpha_m)).collect();
+        let mut factors = vec![(1.0 - scheme.alpha_m) * scheme.dacceleration(dt); u.len()];
+        for support in &step.supports {
+            weighted[support.dof] = blend(support.dof, scheme.alpha_f);
+            factors[support.dof] = 0.0;
+        }
+        let (force, weighted) = (mass.multiply(&acceleration), mass.multiply(&weighted));
+        Some(Self { velocity, acceleration, force, weighted, factors, alpha_f: scheme.alpha_f })
+    }
+
+    /// (1) of [`crate::model::scheme`]: blend the forces and their tangent, and add those of the masses.
+    pub fn add(
+        &self,
+        [old, force]: [&[f64]; 2],
+        residual: &mut Vec<f64>,
+        tangent: Option<(&mut SparseMatrix, &SparseMatrix)>,
+    ) {
+        residual.clear();
+        let blended = old.iter().zip(force).map(|(&old, &force)| blend(self.alpha_f, old, force));
+        residual.extend(blended.zip(&self.weighted).map(|(force, inertia)| force + inertia));
+        if let Some((tangent, mass)) = tangent {
+            tangent.values.iter_mut().for_each(|value| *value *= 1.0 - self.alpha_f);
+            tangent.add_columns(mass, &self.factors);
+        }
+    }
+}
+
+/// The share `weight` of the old value and the rest of the new one.
+fn blend(weight: f64, old: f64, new: f64) -> f64 {
+    weight * old + (1.0 - weight) * new
+}
+
+/// Stored: ½ vᵀ M v [F·L].
+pub fn kinetic_energy(mass: &SparseMatrix, velocity: &[f64]) -> f64 {
+    let momentum = mass.multiply(velocity);
+    0.5 * momentum.iter().zip(velocity).map(|(p, v)| p * v).sum::<f64>()
+}

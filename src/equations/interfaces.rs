@@ -1,0 +1,76 @@
+//! Contact and friction: what the responses of all contact points add, and what they store, dissipate and take in.
+
+use super::sums::Sums;
+use super::term::Dependence;
+use super::trial::Trial;
+use crate::contact::force::{Closed, ContactState};
+use crate::contact::pair::{ContactIncrement, ContactPair, PairResponse, Presumption};
+use crate::equations::failure::TrialFailure;
+use crate::model::Model;
+
+/// Contact turns and comes and goes with the displacements, wherever there is one.
+pub(super) fn dependence(model: &Model) -> Dependence {
+    if model.contacts.is_empty() { Dependence::Nothing } else { Dependence::Displacement }
+}
+
+/// Responses of all contact points at the displacement `u`, with what is presumed about a point of a pair.
+pub(super) fn respond(
+    model: &Model,
+    trial: Trial,
+    u: &[f64],
+    presumed: impl Fn(usize, usize) -> Presumption + Sync,
+) -> Result<Vec<PairResponse>, TrialFailure> {
+    let [before, x] = [&trial.old.displacement, u].map(|u| model.configuration(u));
+    let fading = 1.0 - model.steps[0].span.share(trial.time);
+    let during = ContactIncrement { dt: trial.dt, fading, stiffening: trial.stiffening, settles: trial.settles };
+    let pairs = model.contacts.iter().zip(&trial.old.contacts).enumerate();
+    let respond = |(number, (pair, old)): (usize, (&ContactPair, &Vec<ContactState>))| {
+        let responses = pair.respond(old, &before, during, |point| presumed(number, point), &x);
+        let contact = || pair.name.clone();
+        responses.map_err(|(point, cause)| TrialFailure::Friction { contact: contact(), point, cause })
+    };
+    pairs.map(respond).collect()
+}
+
+/// Add the forces and tangents of the closed points.
+pub(super) fn add(responses: &[PairResponse], sums: &mut Sums) {
+    for (_, closed) in responses.iter().flatten() {
+        if let Some(Closed { contribution, .. }) = closed {
+            sums.contribute(contribution);
+        }
+    }
+}
+
+/// Stored: ∫ (α_n g²/2 + q²/(2 α_t)) ds of the closed points [F·L].
+pub fn stored(model: &Model, contacts: &[Vec<ContactState>]) -> f64 {
+    let mut energy = 0.0;
+    for (pair, states) in model.contacts.iter().zip(contacts) {
+        for (point, ContactState { friction, length, gap, .. }) in pair.points.iter().zip(states) {
+            let normal = if friction.pressure > 0.0 { 0.5 * pair.alpha_n * gap.powi(2) } else { 0.0 };
+            let stiffness = pair.law(point).stiffness();
+            let tangential = if stiffness > 0.0 { 0.5 * friction.traction.powi(2) / stiffness } else { 0.0 };
+            energy += length * (normal + tangential);
+        }
+    }
+    energy
+}
+
+/// Dissipated by friction from `old` to `new` [F·L].
+pub fn dissipated(old: &[Vec<ContactState>], new: &[Vec<ContactState>]) -> f64 {
+    let points = new.iter().flatten().zip(old.iter().flatten());
+    points.map(|(new, old)| new.length * (new.friction.dissipation - old.friction.dissipation)).sum()
+}
+
+/// Work of bringing in the overlap of shrink fits: mean force × what of the overlap came in [F·L].
+pub fn fitted(model: &Model, [old, new]: [&[Vec<ContactState>]; 2], [t0, t1]: [f64; 2]) -> f64 {
+    let [before, after] = [t0, t1].map(|time| model.steps[0].span.share(time));
+    let force = |state: &ContactState| state.friction.pressure * state.length;
+    let mut work = 0.0;
+    for (pair, (old, new)) in model.contacts.iter().zip(old.iter().zip(new)) {
+        for (point, (old, new)) in pair.points.iter().zip(old.iter().zip(new)).filter(|(point, _)| point.overlap > 0.0)
+        {
+            work += 0.5 * (force(old) + force(new)) * point.overlap * (after - before);
+        }
+    }
+    work
+}

@@ -1,0 +1,85 @@
+//! Loads: dead loads, pressures that follow the surface, springs, initial stress, and the reactions of freed supports.
+//! Their work is that of all external forces, see [`super::audit`].
+
+use nalgebra::Vector2;
+
+use super::sums::Sums;
+use super::term::Dependence;
+use super::trial::Trial;
+use crate::equations::failure::TrialFailure;
+use crate::model::element::pressure::follower_pressure;
+use crate::model::{Model, Step};
+
+/// A pressure is linear in the displacements and grows with time; springs are constant.
+pub(super) fn dependence(step: &Step) -> Dependence {
+    if step.loads.pressures.is_empty() { Dependence::Nothing } else { Dependence::Time }
+}
+
+/// Whether a step has any.
+fn any(model: &Model, step: &Step) -> bool {
+    let loads = &step.loads;
+    !(model.prestress.is_empty()
+        && loads.dead.is_empty()
+        && loads.pressures.is_empty()
+        && loads.springs.is_empty()
+        && step.released.is_empty())
+}
+
+/// Write all loads over `loads`, and subtract them from the forces.
+pub(super) fn add(
+    model: &Model,
+    trial: Trial,
+    u: &[f64],
+    loads: &mut Vec<f64>,
+    sums: &mut Sums,
+) -> Result<(), TrialFailure> {
+    loads.clear();
+    loads.resize(u.len(), 0.0);
+    if !any(model, trial.step) {
+        return Ok(());
+    }
+    collect(model, trial, u, loads, sums);
+    for (dof, (force, load)) in sums.force.iter_mut().zip(&*loads).enumerate() {
+        *force -= load;
+        if !load.is_finite() {
+            return Err(TrialFailure::Undefined { node: model.mesh.node_tags[dof / 2], time: trial.time });
+        }
+    }
+    if let Some(magnitudes) = &mut sums.magnitudes {
+        magnitudes.iter_mut().zip(&*loads).for_each(|(magnitude, load)| *magnitude += load.abs());
+    }
+    Ok(())
+}
+
+/// Add all loads to `loads`, and their tangents.
+fn collect(model: &Model, trial: Trial, u: &[f64], loads: &mut [f64], sums: &mut Sums) {
+    let Trial { old, step, time, .. } = trial;
+    loads.iter_mut().zip(&model.prestress).for_each(|(load, prestress)| *load += prestress);
+    for load in &step.loads.dead {
+        for &(node, weight, position) in &load.shares {
+            loads[2 * node + load.component] += weight * load.amplitude.value(position, time);
+        }
+    }
+    if !step.loads.pressures.is_empty() {
+        let x = model.configuration(u);
+        for load in &step.loads.pressures {
+            for edge in &load.edges {
+                let middle = edge.iter().map(|&node| model.mesh.nodes[node]).sum::<Vector2<f64>>() / edge.len() as f64;
+                let pressure = follower_pressure(edge, load.amplitude.value(middle, time), &x);
+                for (a, &node) in edge.iter().enumerate() {
+                    (0..2).for_each(|i| loads[2 * node + i] -= pressure.force[2 * a + i]);
+                }
+                sums.couple(&pressure);
+            }
+        }
+    }
+    for spring in &step.loads.springs {
+        let position = model.mesh.nodes[spring.dof / 2];
+        let driver = spring.driver.as_ref().map_or(0.0, |driver| driver.value(position, time));
+        loads[spring.dof] += spring.stiffness * (driver - u[spring.dof]);
+        sums.stiffen(spring.dof / 2, (spring.dof % 2, spring.dof % 2), spring.stiffness);
+    }
+    for &dof in &step.released {
+        loads[dof] += old.step_start.reaction[dof] * (1.0 - step.span.share(time));
+    }
+}

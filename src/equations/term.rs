@@ -1,0 +1,55 @@
+//! The terms of the equations, and what their tangents depend on.
+
+use super::{dampers, damping, inertia, interfaces, loads, solids, stabilization};
+use crate::model::{Model, Step};
+
+/// A term of the equations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Term {
+    /// Stress of the bodies
+    Solids,
+    /// Contact and friction
+    Interfaces,
+    /// Loads, springs, initial stress, released supports
+    Loads,
+    /// Dashpots and absorbing sides
+    Dampers,
+    /// Dashpots that stabilize a static step
+    Stabilization,
+    /// Damping of the bodies
+    Damping,
+    /// Masses
+    Inertia,
+}
+
+/// What a tangent depends on while a step lasts; each includes those before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Dependence {
+    /// Nothing: it is the same matrix throughout
+    Nothing,
+    /// Δt
+    StepSize,
+    /// t, Δt
+    Time,
+    /// u, t, Δt and the state that the increment begins with
+    Displacement,
+}
+
+impl Term {
+    /// All of them, in the order in which they are added.
+    pub const ALL: [Self; 7] =
+        [Self::Solids, Self::Interfaces, Self::Loads, Self::Dampers, Self::Stabilization, Self::Damping, Self::Inertia];
+
+    /// What its tangent depends on in a step of a model.
+    pub fn dependence(self, model: &Model, step: &Step) -> Dependence {
+        match self {
+            Self::Solids => solids::dependence(model),
+            Self::Interfaces => interfaces::dependence(model),
+            Self::Loads => loads::dependence(step),
+            Self::Dampers => dampers::dependence(step),
+            Self::Stabilization => stabilization::dependence(step),
+            Self::Damping => damping::dependence(model),
+            Self::Inertia => inertia::dependence(),
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! An increment to be solved.
+
+use nalgebra::Vector2;
+
+use crate::model::boundary::Prescribed;
+use crate::model::state::State;
+use crate::model::{Model, Step};
+
+/// One increment to be solved: from where, to when, under which step.
+#[derive(Clone, Copy, Debug)]
+pub struct Trial<'a> {
+    /// committed state
+    pub old: &'a State,
+    /// the step
+    pub step: &'a Step,
+    /// t at the end of the increment [T]
+    pub time: f64,
+    /// Δt [T]
+    pub dt: f64,
+    /// α_n of contacts under the augmented Lagrangian is this many times the one given
+    pub stiffening: f64,
+    /// Whether the bodies give way under the pressures that come up within the increment; central differences move first
+    pub settles: bool,
+}
+
+impl<'a> Trial<'a> {
+    /// The increment from a state to a time.
+    pub fn new(old: &'a State, step: &'a Step, time: f64, dt: f64) -> Self {
+        Self { old, step, time, dt, stiffening: 1.0, settles: true }
+    }
+
+    /// The increment to the time t + θ Δt at which the scheme asks for equilibrium.
+    pub fn ahead(self) -> Trial<'a> {
+        let theta = self.step.scheme.theta();
+        if theta == 1.0 { self } else { Self { time: self.old.time + theta * self.dt, dt: theta * self.dt, ..self } }
+    }
+
+    /// What is left of the dashpots that stabilize at the end of the increment, 1 to 0; exactly 0 at the end of the step.
+    pub fn stabilization_left(&self) -> f64 {
+        1.0 - self.step.span.share(self.time)
+    }
+
+    /// ū of a support at the end of the increment; not finite where its expression has no value [L].
+    pub fn prescribed(&self, support: &Prescribed, model: &Model) -> f64 {
+        let (position, start) = self.place(support, model);
+        support.value(position, self.time, self.step.span, start)
+    }
+
+    /// ū of a support at the start, thirds and end of the increment [L].
+    pub fn thirds(&self, support: &Prescribed, model: &Model) -> [f64; 4] {
+        let (position, start) = self.place(support, model);
+        support.thirds(position, [self.time - self.dt, self.time], self.step.span, start)
+    }
+
+    /// Reference position of a support, and its displacement at the start of the step.
+    fn place(&self, support: &Prescribed, model: &Model) -> (Vector2<f64>, Vector2<f64>) {
+        let node = support.dof / 2;
+        let start = &self.old.step_start.displacement[2 * node..][..2];
+        (model.mesh.nodes[node], Vector2::new(start[0], start[1]))
+    }
+}

@@ -1,0 +1,40 @@
+//! Accepting an increment, whatever the scheme: what was evaluated at its end becomes the state, and the audit of energies
+//! is kept.
+
+use crate::equations::Evaluation;
+use crate::equations::audit::Flows;
+use crate::equations::interfaces;
+use crate::model::state::State;
+use crate::model::{Model, Step};
+
+/// Make `state` that at `time` and the displacement `u`, with forces, reactions, damping and contacts as `found` there. The
+/// state's velocities and accelerations are the caller's, who knows the scheme; what they store, see [`take_stock`]. The
+/// buffers are exchanged: `u` and `found` are left with the values of before.
+pub fn accept(model: &Model, step: &Step, time: f64, u: &mut Vec<f64>, found: &mut Evaluation, state: &mut State) {
+    for (support, reaction) in step.supports.iter().zip(&found.reactions) {
+        found.loads[support.dof] += reaction;
+        state.reaction[support.dof] = *reaction;
+    }
+    let flows = Flows::between(model, step, (state, time), u, found);
+    state.energy.external_work += flows.work;
+    state.energy.damping_dissipation += flows.damping;
+    state.energy.stabilization += flows.stabilization;
+    state.energy.friction_dissipation += flows.friction;
+    state.energy.strain = found.strain_energy;
+    std::mem::swap(&mut state.displacement, u);
+    std::mem::swap(&mut state.force, &mut found.force);
+    std::mem::swap(&mut state.external, &mut found.loads);
+    std::mem::swap(&mut state.damping, &mut found.damping);
+    std::mem::swap(&mut state.contacts, &mut found.contacts);
+    (state.dt, state.time) = (time - state.time, time);
+    state.increment += 1;
+}
+
+/// What motion and contacts store at the end of an increment; at the start of a run the audit begins with it.
+pub fn take_stock(model: &Model, kinetic: f64, state: &mut State) {
+    state.energy.kinetic = kinetic;
+    state.energy.contact_elastic = interfaces::stored(model, &state.contacts);
+    if state.increment == 0 {
+        state.energy.initial = state.energy.kinetic + state.energy.contact_elastic;
+    }
+}
