@@ -6,7 +6,8 @@ use common::{Blocks, Finished, close, finish};
 use fecontact::linear::SparseLu;
 use fecontact::model::Model;
 use fecontact::model::state::State;
-use fecontact::time::increment::{Workspace, advance, begin};
+use fecontact::solve::Workspace;
+use fecontact::time::increment::{advance, begin};
 use serde_json::{Value, json};
 
 /// A block pressed on a ground, then dragged a third of its length; the friction law weakens and heals.
