@@ -12,7 +12,8 @@ use fecontact::output::warnings::Warnings;
 use fecontact::run::error::Error;
 use fecontact::run::observer::{Attempt, Observer};
 use fecontact::run::run;
-use fecontact::time::increment::{Workspace, advance};
+use fecontact::solve::Workspace;
+use fecontact::time::increment::advance;
 use fecontact::time::step_size::{EVENT_LOCATION, judge};
 use serde_json::{Value, json};
 
