@@ -54,7 +54,7 @@ fn nodal(model: &Model, e: usize, all: &[f64]) -> [Vector2<f64>; 9] {
     local
 }
 
-impl Assembler<'_> {
+impl Assembler {
     /// Internal, contact and external forces at the displacement `u`, without those of dashpots, and everything else that
     /// an accepted state takes over from the evaluation but rates and reactions.
     ///
@@ -76,7 +76,8 @@ impl Assembler<'_> {
         let mut loads = std::mem::take(&mut self.evaluation.loads);
         loads.clear();
         loads.resize(u.len(), 0.0);
-        self.subtract_loads(trial, u, &self.model.configuration(u), &mut loads, None);
+        let model = self.model.clone();
+        self.subtract_loads(trial, u, &model.configuration(u), &mut loads, None);
         for (dof, (load, force)) in loads.iter_mut().zip(&mut force).enumerate() {
             *force += *load;
             *load = -*load;
@@ -95,7 +96,7 @@ impl Assembler<'_> {
 
     /// Write the internal forces of the solids over `force`; returns the stored energy.
     pub fn gather_solids(&mut self, u: &[f64], force: &mut [f64]) -> Result<f64, TrialFailure> {
-        let model = self.model;
+        let model = &*self.model.clone();
         let one = |e: usize, forces: &mut [Vector2<f64>]| {
             let local = nodal(model, e, u);
             let material = &*model.bodies[model.body_of_element[e]].material;
@@ -109,7 +110,7 @@ impl Assembler<'_> {
     /// # Errors
     /// None: a viscous stress needs no volume.
     pub fn gather_viscous(&mut self, u: &[f64], v: &[f64], force: &mut [f64]) -> Result<(), TrialFailure> {
-        let model = self.model;
+        let model = &*self.model.clone();
         let one = |e: usize, forces: &mut [Vector2<f64>]| {
             let body = &model.bodies[model.body_of_element[e]];
             match body.damping.stiffness > 0.0 {
@@ -135,7 +136,7 @@ impl Assembler<'_> {
         element: impl Fn(usize, &mut [Vector2<f64>]) -> Result<f64, InvertedElement> + Sync,
         force: &mut [f64],
     ) -> Result<f64, TrialFailure> {
-        let model = self.model;
+        let model = &*self.model.clone();
         let Gather { stride, starts, places, forces, energies } = self.gather.get_or_insert_with(|| Gather::new(model));
         let one =
             |(e, forces): (usize, &mut [Vector2<f64>])| element(e, &mut forces[..model.mesh.elements[e].nodes.len()]);

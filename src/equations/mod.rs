@@ -19,6 +19,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, Vector2};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::contact::force::{Closed, ContactState, Status};
 use crate::contact::pair::{ContactIncrement, ContactPair, PairResponse, Presumption};
@@ -148,9 +149,19 @@ pub struct Seconds {
     pub contact: f64,
 }
 
+/// Nodes that the equations couple besides those of elements and loads. The order of elimination depends on it, and so the
+/// last bits of what is solved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Coupling {
+    /// Nodes of each contact point, and of those it may slide to
+    groups: Vec<Vec<usize>>,
+    /// Segments ahead of each foot that there will be room for, when this turns out too small
+    ahead: usize,
+}
+
 /// Assembles a model; owns the pattern and the buffers that are used again.
-pub struct Assembler<'m> {
-    model: &'m Model,
+pub struct Assembler {
+    model: Arc<Model>,
     pattern: Arc<Pattern>,
     /// Position of the block of every node pair of every element, in the current pattern
     blocks: Vec<BlockPosition>,
@@ -169,8 +180,7 @@ pub struct Assembler<'m> {
     buffers: Buffers,
     /// For explicit increments, once they begin
     gather: Option<forces::Gather>,
-    /// Segments that the pattern has room for ahead of each foot, when it is set next
-    ahead: usize,
+    coupling: Arc<Coupling>,
     /// Time spent
     pub seconds: Seconds,
 }
@@ -192,9 +202,9 @@ const BATCH: usize = 1024;
 /// Elements that are done sooner than another thread wakes up.
 const FEW: usize = 64;
 
-impl<'m> Assembler<'m> {
+impl Assembler {
     /// An assembler of a model.
-    pub fn new(model: &'m Model) -> Self {
+    pub fn new(model: &Arc<Model>) -> Self {
         let block_starts = std::iter::once(0)
             .chain(model.mesh.elements.iter().scan(0, |sum, element| {
                 *sum += element.nodes.len().pow(2);
@@ -202,7 +212,7 @@ impl<'m> Assembler<'m> {
             }))
             .collect();
         let mut assembler = Self {
-            model,
+            model: model.clone(),
             pattern: Arc::new(Pattern::new(model.mesh.nodes.len(), std::iter::empty())),
             blocks: Vec::new(),
             block_starts,
@@ -214,16 +224,29 @@ impl<'m> Assembler<'m> {
             evaluation: Evaluation::default(),
             buffers: Buffers::default(),
             gather: None,
-            ahead: 1,
+            coupling: Arc::new(Coupling { groups: Vec::new(), ahead: 1 }),
             seconds: Seconds::default(),
         };
-        assembler.set_pattern(&[]);
+        assembler.set_pattern();
         assembler
     }
 
     /// The model.
-    pub fn model(&self) -> &'m Model {
-        self.model
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Which nodes are coupled at present.
+    pub fn coupling(&self) -> Arc<Coupling> {
+        self.coupling.clone()
+    }
+
+    /// Couple the nodes as they were coupled before.
+    pub fn couple(&mut self, coupling: &Arc<Coupling>) {
+        if !Arc::ptr_eq(coupling, &self.coupling) {
+            self.coupling = coupling.clone();
+            self.set_pattern();
+        }
     }
 
     /// A system on the current pattern.
@@ -237,8 +260,9 @@ impl<'m> Assembler<'m> {
     }
 
     /// Couple the nodes of all elements, loads and the given groups; find every element's blocks in the new pattern.
-    fn set_pattern(&mut self, groups: &[Vec<usize>]) {
-        let model = self.model;
+    fn set_pattern(&mut self) {
+        let groups = &self.coupling.clone().groups;
+        let model = &*self.model.clone();
         let elements = model.mesh.elements.iter().map(|element| &element.nodes[..]);
         let edges = model.steps.iter().flat_map(|step| step.loads.pressures.iter().flat_map(|load| &load.edges));
         let all = elements.chain(edges.map(|edge| &edge[..])).chain(groups.iter().map(|group| &group[..]));
@@ -337,7 +361,8 @@ impl<'m> Assembler<'m> {
         system: &mut System,
     ) -> Result<(), TrialFailure> {
         let clock = std::time::Instant::now();
-        let x = self.model.configuration(u);
+        let model = self.model.clone();
+        let x = model.configuration(u);
         let tangent = request == Request::Tangent;
         if tangent {
             self.cover(responses, trial.old);
@@ -350,7 +375,7 @@ impl<'m> Assembler<'m> {
         self.magnitudes.fill(0.0);
         let mut force = vec![0.0; u.len()];
         let strain_energy = self.add_solids(u, &mut force, values.as_deref_mut())?;
-        self.equilibrium.note_contacts(self.model, trial, responses);
+        self.equilibrium.note_contacts(&self.model, trial, responses);
         for (_, closed) in responses.iter().flatten() {
             if let Some(Closed { contribution, .. }) = closed {
                 self.add(contribution, &mut force, values.as_deref_mut());
@@ -385,6 +410,7 @@ impl<'m> Assembler<'m> {
         if responses.iter().flatten().filter_map(|(_, closed)| closed.as_ref()).all(coupled) {
             return;
         }
+        let ahead = self.coupling.ahead;
         let mut groups = Vec::new();
         for ((pair, responses), old) in self.model.contacts.iter().zip(responses).zip(&old.contacts) {
             for ((slave, (state, closed)), old) in pair.points.iter().zip(responses).zip(old) {
@@ -394,7 +420,7 @@ impl<'m> Assembler<'m> {
                 if let Master::Mesh(surface) = &pair.master {
                     let way = old.foot.and_then(|from| surface.path(from, foot)).unwrap_or_default();
                     let slip: f64 = way.iter().map(|(_, from, to)| to - from).sum();
-                    let [behind, ahead] = if slip < 0.0 { [self.ahead, 1] } else { [1, self.ahead] };
+                    let [behind, ahead] = if slip < 0.0 { [ahead, 1] } else { [1, ahead] };
                     let back = std::iter::successors(Some(foot.segment), |&segment| surface.previous(segment));
                     let forth = std::iter::successors(Some(foot.segment), |&segment| surface.next(segment));
                     let around = back.take(1 + behind).chain(forth.take(1 + ahead));
@@ -405,8 +431,8 @@ impl<'m> Assembler<'m> {
                 groups.push(nodes);
             }
         }
-        self.ahead = FARTHEST.min(2 * self.ahead);
-        self.set_pattern(&groups);
+        self.coupling = Arc::new(Coupling { groups, ahead: FARTHEST.min(2 * ahead) });
+        self.set_pattern();
     }
 
     /// Add internal forces and tangents of the solids; returns the stored energy.
@@ -416,7 +442,7 @@ impl<'m> Assembler<'m> {
         force: &mut [f64],
         mut tangent: Option<&mut SparseMatrix>,
     ) -> Result<f64, TrialFailure> {
-        let model = self.model;
+        let model = &*self.model.clone();
         let wants_tangent = tangent.is_some();
         let widest = model.mesh.elements.iter().map(|element| element.nodes.len()).max().unwrap_or(0);
         let (dofs, stride) = (2 * widest, if wants_tangent { 4 * widest * widest } else { 1 });
@@ -571,7 +597,7 @@ impl<'m> Assembler<'m> {
         for dashpot in &trial.step.loads.dashpots {
             let dof = dashpot.dof;
             let driver = dashpot.driver_velocity(self.model.mesh.nodes[dof / 2], trial.time);
-            let (velocity, dvelocity) = velocity(self.model, trial, u, dof);
+            let (velocity, dvelocity) = velocity(&self.model, trial, u, dof);
             let pull = dashpot.coefficient * (driver - velocity);
             if !pull.is_finite() {
                 return Err(TrialFailure::Undefined { node: self.model.mesh.node_tags[dof / 2], time: trial.time });
@@ -584,7 +610,7 @@ impl<'m> Assembler<'m> {
             }
         }
         for Absorber { node, coefficients } in &trial.step.loads.absorbers {
-            let rates = [0, 1].map(|i| velocity(self.model, trial, u, 2 * node + i));
+            let rates = [0, 1].map(|i| velocity(&self.model, trial, u, 2 * node + i));
             for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 let (velocity, dvelocity) = rates[j];
                 let pull = -coefficients[(i, j)] * velocity;
@@ -679,7 +705,7 @@ impl<'m> Assembler<'m> {
         let (mut velocity, mut acceleration): (Vec<f64>, Vec<f64>) = (0..u.len()).map(free).unzip();
         for support in &step.supports {
             let dof = support.dof;
-            let places = trial.thirds(support, self.model);
+            let places = trial.thirds(support, &self.model);
             (velocity[dof], acceleration[dof]) = supported_rates(places, old.velocity[dof], dt);
         }
         self.model.ties.spread(2, &mut velocity);
@@ -691,7 +717,7 @@ impl<'m> Assembler<'m> {
     fn prescribe(&self, trial: Trial, u: &[f64], tangent: bool, system: &mut System) -> Result<(), TrialFailure> {
         for support in &trial.step.supports {
             let dof = support.dof;
-            let target = trial.prescribed(support, self.model);
+            let target = trial.prescribed(support, &self.model);
             if !target.is_finite() {
                 return Err(TrialFailure::Undefined { node: self.model.mesh.node_tags[dof / 2], time: trial.time });
             }
@@ -713,7 +739,7 @@ impl<'m> Assembler<'m> {
 
     /// The mass matrix on the current pattern: consistent in the elements, and the point masses on the diagonal.
     pub fn mass(&mut self) -> &SparseMatrix {
-        let model = self.model;
+        let model = &*self.model.clone();
         let (blocks, starts, pattern) = (&self.blocks, &self.block_starts, &self.pattern);
         self.mass.get_or_insert_with(|| {
             let mut mass = SparseMatrix::zero(pattern.clone());
