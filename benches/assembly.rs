@@ -1,6 +1,7 @@
 //! Residual, and residual with tangent, of the 20k drag problem in full sliding.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use fecontact::case;
@@ -15,6 +16,7 @@ fn assembly(criterion: &mut Criterion) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/coulomb_drag_20k.json");
     let case = case::read(&path).expect("a committed case");
     let model = case::build(&case, &path).expect("a committed case");
+    let model = Arc::new(model);
     let step = &model.steps[0];
     let mut work = Workspace::new(&model, Box::<Multifrontal>::default());
     let start = begin(&model, step, &model.initial_state(), &mut work).expect("the step begins");

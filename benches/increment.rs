@@ -1,6 +1,7 @@
 //! One whole increment of the 5k drag problem, all Newton iterations included: pressing, and full sliding.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use fecontact::case;
@@ -30,6 +31,7 @@ fn reach(model: &Model, work: &mut Workspace, counts: &[usize]) -> State {
 
 fn increments(criterion: &mut Criterion) {
     let model = model();
+    let model = Arc::new(model);
     let mut work = Workspace::new(&model, Box::<Multifrontal>::default());
     for (name, counts) in
         [("press, first increment", &[0][..]), ("drag, first increment", &[5, 0]), ("drag, sliding", &[5, 9])]

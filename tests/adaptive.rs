@@ -3,6 +3,7 @@
 mod common;
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use common::{Blocks, Finished, close, finish, model};
 use fecontact::linear::SparseLu;
@@ -12,7 +13,8 @@ use fecontact::output::warnings::Warnings;
 use fecontact::run::error::Error;
 use fecontact::run::observer::{Attempt, Observer};
 use fecontact::run::run;
-use fecontact::time::increment::{Workspace, advance};
+use fecontact::solve::Workspace;
+use fecontact::time::increment::advance;
 use fecontact::time::step_size::{EVENT_LOCATION, judge};
 use serde_json::{Value, json};
 
@@ -60,6 +62,7 @@ fn the_estimate_is_the_local_error() {
         (json!({"generalized_alpha": {"rho_infinity": 1.0}}), 0.0),
     ] {
         let model = model(&bar(&scheme, 1.0));
+        let model = Arc::new(model);
         let mut work = Workspace::new(&model, Box::<SparseLu>::default());
         for phase in [0.7, 2.0] {
             for dt in [0.02, 0.005] {
@@ -381,6 +384,7 @@ fn rejected_attempts_are_counted_apart_from_cut_backs() {
     let slider = Slider { velocity: 10.0, duration: 6.0, ..Slider::default() };
     let model = model(&slider.case(&trapezoidal(), json!({"initial": 1e-3, "min": 1e-6, "max": 1, "error": 1e-6})));
     let mut attempts = Attempts::default();
+    let model = Arc::new(model);
     let report = run(&model, &mut [&mut attempts]).0;
     assert!(report.rejected > 0 && report.cutbacks == 0);
     assert_eq!(report.rejected, attempts.0.iter().filter(|(_, accepted)| !accepted).count());
@@ -397,6 +401,7 @@ fn an_error_that_cannot_be_met_is_told() {
     let slider = Slider { velocity: 10.0, duration: 6.0, ..Slider::default() };
     let model = model(&slider.case(&trapezoidal(), json!({"initial": 0.1, "min": 0.05, "max": 1, "error": 1e-6})));
     let mut warnings = Warnings::default();
+    let model = Arc::new(model);
     let (report, result) = run(&model, &mut [&mut warnings]);
     assert!(result.is_ok() && report.increments <= 120);
     let told: Vec<_> = warnings.list.iter().filter(|warning| warning.contains("error")).collect();
@@ -546,6 +551,7 @@ fn accepted_friction_does_not_depend_on_the_compliance_after_touch() {
                 let mut model = model(&Slab { steps: all_the_way(dt), ..slab.copy() }.case());
                 model.contacts[0].compliance *= factor;
                 let mut record = common::Record::default();
+                let model = Arc::new(model);
                 run(&model, &mut [&mut record]).1.expect("a completed run");
                 let last = record.states.last().expect("an increment");
                 let top = model.mesh.nodes_of(model.mesh.group("slab_top").expect("a group"));
@@ -686,6 +692,7 @@ fn friction_left_in_doubt_by_touch_is_told() {
         steps[0]["dt"]["min"] = json!(min);
         let model = model(&Slab { steps, ..Slab::default() }.case());
         let mut warnings = Warnings::default();
+        let model = Arc::new(model);
         let (report, result) = run(&model, &mut [&mut warnings]);
         assert!(result.is_ok() && (report.rejected == 0) == (min == 1.0));
         warnings.list.into_iter().filter(|warning| warning.contains("in doubt")).collect()

@@ -3,6 +3,7 @@
 mod common;
 
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use common::{Blocks, Finished, Record, close, finish, model};
 use fecontact::run::run;
@@ -244,7 +245,7 @@ fn a_fast_impact_is_followed_by_the_increments() {
 fn a_collapse_is_repeated_more_carefully_and_told_if_that_does_not_help() {
     let run_of = |case: &Value| {
         let mut record = Record::default();
-        let (report, result) = run(&model(case), &mut [&mut record]);
+        let (report, result) = run(&Arc::new(model(case)), &mut [&mut record]);
         (report, result.map(drop).map_err(|error| error.to_string()), record)
     };
     let (report, result, record) = run_of(&struck("neo_hookean", 1.0, 1.0, 0.3));

@@ -6,8 +6,10 @@ use common::{Blocks, Finished, close, finish};
 use fecontact::linear::SparseLu;
 use fecontact::model::Model;
 use fecontact::model::state::State;
-use fecontact::time::increment::{Workspace, advance, begin};
+use fecontact::solve::Workspace;
+use fecontact::time::increment::{advance, begin};
 use serde_json::{Value, json};
+use std::sync::Arc;
 
 /// A block pressed on a ground, then dragged a third of its length; the friction law weakens and heals.
 fn dragged(method: &str, dt: f64, max_iterations: usize) -> Value {
@@ -31,7 +33,7 @@ fn dragged(method: &str, dt: f64, max_iterations: usize) -> Value {
     })
 }
 
-fn workspace(model: &Model) -> Workspace<'_> {
+fn workspace(model: &Arc<Model>) -> Workspace {
     Workspace::new(model, Box::<SparseLu>::default())
 }
 

@@ -9,6 +9,7 @@ use fecontact::output::warnings::Warnings;
 use fecontact::run::run;
 use nalgebra::Vector2;
 use serde_json::{Value, json};
+use std::sync::Arc;
 
 /// Elements along the bar
 const N: usize = 100;
@@ -111,7 +112,7 @@ fn energy_that_came_from_nowhere_is_told() {
     for (massless, stiffness, tells) in [(false, 10.0, true), (false, 1000.0, true), (true, 10.0, false)] {
         let case = struck_bar(&json!({"newmark": {}}), massless, stiffness);
         let (mut warnings, mut record) = (Warnings::default(), Record::default());
-        run(&model(&case), &mut [&mut warnings, &mut record]).1.expect("it is solved");
+        run(&Arc::new(model(&case)), &mut [&mut warnings, &mut record]).1.expect("it is solved");
         let told: Vec<&String> = warnings.list.iter().filter(|warning| warning.contains("energies")).collect();
         assert_eq!(told.len(), usize::from(tells), "{told:?}");
         let there_was = 0.5 * HEIGHT * SPEED * SPEED;

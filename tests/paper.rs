@@ -6,6 +6,7 @@
 mod common;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use common::{close, model_at};
 use fecontact::model::Model;
@@ -51,7 +52,7 @@ fn paper(name: &str) -> (Value, PathBuf) {
 
 fn finish((case, path): &(Value, PathBuf)) -> (Vec<Row>, RunReport) {
     let mut rows = Rows::default();
-    let (report, result) = run(&model_at(case, path), &mut [&mut rows]);
+    let (report, result) = run(&Arc::new(model_at(case, path)), &mut [&mut rows]);
     result.unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     (rows.0, report)
 }

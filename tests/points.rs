@@ -623,6 +623,7 @@ fn points_are_written_and_warned_of() {
     let mut history = History::create(folder.path(), &model).unwrap();
     let mut fields = Fields::create(folder.path(), model.clone(), &model.initial_state(), 1).unwrap();
     let mut warnings = Warnings::default();
+    let model = Arc::new(model);
     run(&model, &mut [&mut history, &mut fields, &mut warnings]).1.unwrap();
     drop((history, fields));
 
@@ -665,7 +666,7 @@ fn paper(name: &str, [dt, duration]: [f64; 2]) -> Vec<[f64; 5]> {
     case["steps"][0]["dt"] = json!({"initial": dt});
     case["steps"][0]["duration"] = json!(duration);
     let mut trace = Trace::default();
-    run(&model(&case), &mut [&mut trace]).1.unwrap();
+    run(&Arc::new(model(&case)), &mut [&mut trace]).1.unwrap();
     trace.0
 }
 

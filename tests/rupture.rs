@@ -4,6 +4,7 @@ mod common;
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 use common::Blocks;
 use fecontact::case;
@@ -111,6 +112,7 @@ fn rupture(case: &Value, places: &[f64]) -> (BTreeMap<i64, (f64, f64)>, f64, usi
         chatter: 0,
         energy_error: 0.0,
     };
+    let model = Arc::new(model);
     let (report, result) = run(&model, &mut [&mut record]);
     result.unwrap_or_else(|error| panic!("{error}"));
     println!("{} increments in {:.1} s", report.increments, report.wall_s.total);
@@ -296,6 +298,7 @@ fn a_balanced_fault_below_its_strength_stays_at_rest() {
     case["contacts"]["fault"]["along"] = json!({});
     let parsed = serde_json::from_value(case).expect("well formed");
     let model = case::build(&parsed, Path::new("test.json")).expect("a good case");
+    let model = Arc::new(model);
     let (_, result) = run(&model, &mut []);
     let state = result.expect("it runs");
     let fastest = state.velocity.iter().fold(0.0f64, |most, v| most.max(v.abs()));

@@ -3,6 +3,7 @@
 mod common;
 
 use std::path::Path;
+use std::sync::Arc;
 
 use common::{Blocks, Record, close, model, model_at};
 use fecontact::mesh::configuration::Configuration;
@@ -79,6 +80,7 @@ fn length_at_loss_of_stability(friction: Value, [peak, curvature]: [f64; 2]) -> 
         "steps": [{"name": "shear", "duration": 1, "dt": {"initial": 0.005, "min": 4e-5}, "supports": supports}],
     }));
     let mut record = Record::default();
+    let model = Arc::new(model);
     let (_, result) = run(&model, &mut [&mut record]);
     // Either there is no equilibrium near the last one, or the increment finds another one far away.
     let states = &record.states;
@@ -153,6 +155,7 @@ fn speed_of_front(traction: f64) -> Option<f64> {
         "output": {"interval": 0.05},
     }));
     let mut record = Slips::new(&model);
+    let model = Arc::new(model);
     let (_, result) = run(&model, &mut [&mut record]);
     result.unwrap_or_else(|error| panic!("{error}"));
     let arrivals = record.arrivals(0..record.times.len(), 0.05 * P);
@@ -310,6 +313,7 @@ fn slip_front([length, pressure, duration]: [f64; 3], columns: usize, fine: usiz
     case["steps"][0]["dt"]["error"] = json!(error);
     let model = model_at(&case, &path);
     let mut record = Slips::new(&model);
+    let model = Arc::new(model);
     let (report, result) = run(&model, &mut [&mut record]);
     result.unwrap_or_else(|error| panic!("{error}"));
     let found = events(&record, FRONT * pressure / 5.0);

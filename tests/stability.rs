@@ -14,6 +14,7 @@ use fecontact::model::state::State;
 use fecontact::run::run;
 use nalgebra::{Matrix3, Vector3};
 use serde_json::{Value, json};
+use std::sync::Arc;
 
 const MU_S: f64 = 0.4;
 const MU_K: f64 = 0.2;
@@ -84,6 +85,7 @@ fn the_critical_stiffness_parts_stable_from_unstable_sliding() {
         let k = in_series / (1.0 - in_series / ALPHA_T);
         let model = model(&slider(json!("static"), [k, 0.0], 1e-5, 0.1 / b, 20));
         let mut record = Record::default();
+        let model = Arc::new(model);
         let stopped = run(&model, &mut [&mut record]).1.is_err();
         let left = record.states.iter().any(|state| deviation(state).abs() > 1e-3);
         assert!(stopped || left, "steady sliding goes on at K'/a = {}", in_series / a);

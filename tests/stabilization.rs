@@ -3,6 +3,7 @@
 mod common;
 
 use std::path::Path;
+use std::sync::Arc;
 
 use common::{Blocks, Finished, Record, close, finish, model_at};
 use fecontact::model::state::State;
@@ -83,6 +84,7 @@ fn free_blocks_settle_on_each_other() {
 fn what_contact_does_not_hold_is_named() {
     let message = |case: &Value| {
         let model = model_at(case, Path::new("test.json"));
+        let model = Arc::new(model);
         let result = run(&model, &mut [&mut Record::default()]).1;
         result.err().map(|error| error.to_string()).expect("a body floats")
     };
@@ -158,7 +160,7 @@ fn one_of_a_thousand_bodies_floats() {
         (None, Some(637), "nothing resists the motion of body `b637` "),
     ] {
         let model = model_at(&row(1000, smooth, lifted), Path::new("test.json"));
-        let text = run(&model, &mut []).1.err().map(|error| error.to_string()).expect("a body floats");
+        let text = run(&Arc::new(model), &mut []).1.err().map(|error| error.to_string()).expect("a body floats");
         assert!(text.contains(expected), "{text}");
         assert_eq!(
             text.matches("body `").count(),
@@ -186,6 +188,6 @@ fn bodies_that_share_nodes_float_together() {
         "steps": [{"name": "press", "duration": 1, "loads": [{"on": "top", "traction": {"y": -1}}]}]
     });
     let model = model_at(&case, Path::new("test.json"));
-    let text = run(&model, &mut []).1.err().map(|error| error.to_string()).expect("it floats");
+    let text = run(&Arc::new(model), &mut []).1.err().map(|error| error.to_string()).expect("it floats");
     assert!(text.contains("nothing resists the motion of bodies `left` and `right` along x;"), "{text}");
 }

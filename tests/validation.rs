@@ -4,6 +4,7 @@
 mod common;
 
 use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
 
 use common::{Blocks, Finished, close, distance, finish, half_way, half_way_round, quadratic, turned};
 use fecontact::contact::force::ContactState;
@@ -200,6 +201,7 @@ fn master_nodes_deep_in_the_slave_are_told() {
                        "loads": [{"on": "inner_inside", "spring": soft}, {"on": "outer_outside", "spring": soft}]}],
         }));
         let (mut warnings, mut record) = (Warnings::default(), common::Record::default());
+        let model = Arc::new(model);
         let (_, result) = fecontact::run::run(&model, &mut [&mut warnings, &mut record]);
         result.expect("a run to its end");
         let state = record.states.last().expect("an increment");

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::coupling::Coupling;
+use super::coupling::{Coupling, Layout};
 use super::equilibrium::Equilibrium;
 use super::evaluation::{Evaluation, Seconds};
 use super::failure::TrialFailure;
@@ -19,10 +19,10 @@ use crate::linear::system::{Request, System};
 use crate::model::Model;
 
 /// Assembles a model; owns the pattern and the buffers that are used again.
-pub struct Assembler<'m> {
-    model: &'m Model,
-    coupling: Coupling<'m>,
-    solids: Solids<'m>,
+pub struct Assembler {
+    model: Arc<Model>,
+    layout: Layout,
+    solids: Solids,
     mass: Option<SparseMatrix>,
     /// η M of the bodies' damping
     damping_mass: Option<SparseMatrix>,
@@ -44,12 +44,12 @@ const OF_PLACE: [Term; 3] = [Term::Solids, Term::Interfaces, Term::Loads];
 const OF_PLACE_AND_MOTION: [Term; 6] =
     [Term::Solids, Term::Interfaces, Term::Loads, Term::Dampers, Term::Stabilization, Term::Damping];
 
-impl<'m> Assembler<'m> {
+impl Assembler {
     /// An assembler of a model.
-    pub fn new(model: &'m Model) -> Self {
+    pub fn new(model: &Arc<Model>) -> Self {
         Self {
-            model,
-            coupling: Coupling::new(model),
+            model: model.clone(),
+            layout: Layout::new(model),
             solids: Solids::new(model),
             mass: None,
             damping_mass: None,
@@ -62,15 +62,27 @@ impl<'m> Assembler<'m> {
     }
 
     /// The model.
-    pub fn model(&self) -> &'m Model {
-        self.model
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Which nodes are coupled at present.
+    pub fn coupling(&self) -> Arc<Coupling> {
+        self.layout.coupling.clone()
+    }
+
+    /// Couple the nodes as they were coupled before.
+    pub fn couple(&mut self, coupling: &Arc<Coupling>) {
+        if self.layout.couple(coupling) {
+            (self.mass, self.damping_mass) = (None, None);
+        }
     }
 
     /// A system on the current pattern.
     pub fn system(&self) -> System {
         System {
             residual: vec![0.0; self.model.dofs()],
-            tangent: self.coupling.matrix(),
+            tangent: self.layout.matrix(),
             forces: 0.0,
             imbalance: f64::INFINITY,
         }
@@ -100,7 +112,7 @@ impl<'m> Assembler<'m> {
             return Ok(Vec::new());
         }
         let clock = Instant::now();
-        let responses = interfaces::respond(self.model, trial, u, presumed);
+        let responses = interfaces::respond(&self.model, trial, u, presumed);
         self.seconds.contact += clock.elapsed().as_secs_f64();
         responses
     }
@@ -118,12 +130,12 @@ impl<'m> Assembler<'m> {
         system: &mut System,
     ) -> Result<(), TrialFailure> {
         let clock = Instant::now();
-        let model = self.model;
+        let model = &*self.model.clone();
         let tangent = request == Request::Tangent;
         if tangent {
             self.cover(trial, responses);
-            if !Arc::ptr_eq(&system.tangent.pattern, &self.coupling.pattern) {
-                system.tangent = self.coupling.matrix();
+            if !Arc::ptr_eq(&system.tangent.pattern, &self.layout.pattern) {
+                system.tangent = self.layout.matrix();
             }
             system.tangent.clear();
         }
@@ -181,11 +193,11 @@ impl<'m> Assembler<'m> {
         scaled: bool,
         tangent: Option<&mut SparseMatrix>,
     ) -> Result<(), TrialFailure> {
-        let Self { model, coupling, solids, damping_mass, magnitudes, evaluation, .. } = self;
+        let Self { model, layout, solids, damping_mass, magnitudes, evaluation, .. } = self;
         let Evaluation { force, loads, damping, stabilization, strain_energy, .. } = evaluation;
         [&mut *force, &mut *damping].into_iter().for_each(|values| values.resize(u.len(), 0.0));
         let magnitudes = scaled.then_some(&mut magnitudes[..]);
-        let mut sums = Sums { force, magnitudes, tangent, coupling };
+        let mut sums = Sums { force, magnitudes, tangent, layout };
         for term in terms {
             match term {
                 Term::Solids => *strain_energy = solids.add(u, &mut sums)?,
@@ -194,7 +206,7 @@ impl<'m> Assembler<'m> {
                 Term::Dampers => dampers::add(model, trial, u, damping, &mut sums)?,
                 Term::Stabilization => *stabilization = stabilization::add(trial, u, damping, &mut sums),
                 Term::Damping => {
-                    let mass = || inertia::elements(model, coupling, |body| model.bodies[body].damping.mass);
+                    let mass = || inertia::elements(model, layout, |body| model.bodies[body].damping.mass);
                     let momentum = damping::by_mass(model).then(|| &*damping_mass.get_or_insert_with(mass));
                     damping::add(model, solids, momentum, (trial, u), damping, &mut sums);
                 }
@@ -210,12 +222,12 @@ impl<'m> Assembler<'m> {
     /// The residual as the scheme blends it from the forces and those of the masses, velocities, accelerations, and what the
     /// supports put on their nodes.
     fn balance(&mut self, trial: Trial, u: &[f64], tangent: bool, system: &mut System) {
-        let Self { model, coupling, mass, evaluation, magnitudes, .. } = self;
+        let Self { model, layout, mass, evaluation, magnitudes, .. } = self;
         let Evaluation { force, reactions, velocity, acceleration, .. } = evaluation;
         reactions.clear();
         reactions.extend(trial.step.supports.iter().map(|support| force[support.dof]));
         let mass =
-            trial.step.scheme.coefficients().map(|_| &*mass.get_or_insert_with(|| inertia::mass(model, coupling)));
+            trial.step.scheme.coefficients().map(|_| &*mass.get_or_insert_with(|| inertia::mass(model, layout)));
         let Some((mass, inertia)) = mass.and_then(|mass| Some((mass, Inertia::at(model, trial, u, mass)?))) else {
             [velocity, acceleration].into_iter().for_each(|rates| *rates = vec![0.0; u.len()]);
             system.residual.clone_from(force);
@@ -231,15 +243,15 @@ impl<'m> Assembler<'m> {
 
     /// Make room in the pattern for all contact points.
     fn cover(&mut self, trial: Trial, responses: &[PairResponse]) {
-        if self.coupling.cover(responses, trial.old) {
+        if self.layout.cover(responses, trial.old) {
             (self.mass, self.damping_mass) = (None, None);
         }
     }
 
     /// The mass matrix on the current pattern.
     pub fn mass(&mut self) -> &SparseMatrix {
-        let Self { model, coupling, mass, .. } = self;
-        mass.get_or_insert_with(|| inertia::mass(model, coupling))
+        let Self { model, layout, mass, .. } = self;
+        mass.get_or_insert_with(|| inertia::mass(model, layout))
     }
 
     /// The tangent of one term by itself, with no supports: see [`Term::dependence`].
@@ -249,10 +261,10 @@ impl<'m> Assembler<'m> {
     pub fn tangent_of(&mut self, term: Term, trial: Trial, u: &[f64]) -> Result<SparseMatrix, TrialFailure> {
         let responses = self.interfaces(trial, u, |_, _| Presumption::default())?;
         self.cover(trial, &responses);
-        let mut tangent = self.coupling.matrix();
+        let mut tangent = self.layout.matrix();
         if term == Term::Inertia {
             let mass = self.mass().clone();
-            let inertia = Inertia::at(self.model, trial, u, &mass);
+            let inertia = Inertia::at(&self.model, trial, u, &mass);
             inertia.into_iter().for_each(|inertia| tangent.add_columns(&mass, &inertia.factors));
             return Ok(tangent);
         }

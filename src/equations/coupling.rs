@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use crate::contact::force::Closed;
 use crate::contact::pair::PairResponse;
 use crate::contact::surface::Master;
@@ -12,40 +14,61 @@ use crate::model::state::State;
 /// Most segments ahead of a foot that the pattern gets room for.
 const FARTHEST: usize = 8;
 
-/// The pattern of a model's tangent.
-pub(super) struct Coupling<'m> {
-    model: &'m Model,
+/// Nodes that the equations couple besides those of elements and loads. The order of elimination depends on it, and so the
+/// last bits of what is solved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Coupling {
+    /// Nodes of each contact point, and of those it may slide to
+    groups: Vec<Vec<usize>>,
+    /// Segments ahead of each foot that there will be room for, when this turns out too small
+    ahead: usize,
+}
+
+/// The pattern of a model's tangent, and where each element is in it.
+pub(super) struct Layout {
+    model: Arc<Model>,
+    /// what is coupled at present
+    pub coupling: Arc<Coupling>,
     /// the pattern
     pub pattern: Arc<Pattern>,
     /// Position of the block of every node pair of every element, in the current pattern
     blocks: Vec<BlockPosition>,
     /// Where each element's blocks start
     starts: Vec<usize>,
-    /// Segments that the pattern has room for ahead of each foot, when it is set next
-    ahead: usize,
 }
 
-impl<'m> Coupling<'m> {
+impl Layout {
     /// The nodes of every element, load and pair of tied nodes.
-    pub fn new(model: &'m Model) -> Self {
+    pub fn new(model: &Arc<Model>) -> Self {
         let starts = std::iter::once(0).chain(model.mesh.elements.iter().scan(0, |sum, element| {
             *sum += element.nodes.len().pow(2);
             Some(*sum)
         }));
-        let mut coupling = Self {
-            model,
+        let mut layout = Self {
+            model: model.clone(),
+            coupling: Arc::new(Coupling { groups: Vec::new(), ahead: 1 }),
             pattern: Arc::new(Pattern::new(model.mesh.nodes.len(), std::iter::empty())),
             blocks: Vec::new(),
             starts: starts.collect(),
-            ahead: 1,
         };
-        coupling.set(&[]);
-        coupling
+        layout.set();
+        layout
     }
 
-    /// Couple the nodes of all elements, loads and the given groups; find every element's blocks in the new pattern.
-    fn set(&mut self, groups: &[Vec<usize>]) {
-        let model = self.model;
+    /// Couple the nodes as they were coupled before; whether they were not.
+    pub fn couple(&mut self, coupling: &Arc<Coupling>) -> bool {
+        let changes = !Arc::ptr_eq(coupling, &self.coupling);
+        if changes {
+            self.coupling = coupling.clone();
+            self.set();
+        }
+        changes
+    }
+
+    /// Couple the nodes of all elements, loads and groups; find every element's blocks in the new pattern.
+    fn set(&mut self) {
+        let groups = &self.coupling.clone().groups;
+        let model = &*self.model.clone();
         let elements = model.mesh.elements.iter().map(|element| &element.nodes[..]);
         let edges = model.steps.iter().flat_map(|step| step.loads.pressures.iter().flat_map(|load| &load.edges));
         let all = elements.chain(edges.map(|edge| &edge[..])).chain(groups.iter().map(|group| &group[..]));
@@ -104,7 +127,7 @@ impl<'m> Coupling<'m> {
         if responses.iter().flatten().filter_map(|(_, closed)| closed.as_ref()).all(coupled) {
             return false;
         }
-        let mut groups = Vec::new();
+        let (mut groups, ahead) = (Vec::new(), self.coupling.ahead);
         for ((pair, responses), old) in self.model.contacts.iter().zip(responses).zip(&old.contacts) {
             for ((slave, (state, closed)), old) in pair.points.iter().zip(responses).zip(old) {
                 let Some(foot) = state.foot.or(old.foot) else { continue };
@@ -113,7 +136,7 @@ impl<'m> Coupling<'m> {
                 if let Master::Mesh(surface) = &pair.master {
                     let way = old.foot.and_then(|from| surface.path(from, foot)).unwrap_or_default();
                     let slip: f64 = way.iter().map(|(_, from, to)| to - from).sum();
-                    let [behind, ahead] = if slip < 0.0 { [self.ahead, 1] } else { [1, self.ahead] };
+                    let [behind, ahead] = if slip < 0.0 { [ahead, 1] } else { [1, ahead] };
                     let back = std::iter::successors(Some(foot.segment), |&segment| surface.previous(segment));
                     let forth = std::iter::successors(Some(foot.segment), |&segment| surface.next(segment));
                     let around = back.take(1 + behind).chain(forth.take(1 + ahead));
@@ -124,8 +147,8 @@ impl<'m> Coupling<'m> {
                 groups.push(nodes);
             }
         }
-        self.ahead = FARTHEST.min(2 * self.ahead);
-        self.set(&groups);
+        self.coupling = Arc::new(Coupling { groups, ahead: FARTHEST.min(2 * ahead) });
+        self.set();
         true
     }
 }

@@ -60,7 +60,7 @@ pub(super) fn add(
         sums.force.iter_mut().zip(&resisting).for_each(|(force, resisting)| *force += resisting);
         damping.iter_mut().zip(&resisting).for_each(|(damping, resisting)| *damping -= resisting);
         if let Some(tangent) = &mut sums.tangent {
-            solids.viscous_tangents([u, &velocity], &dvelocity, sums.coupling, tangent);
+            solids.viscous_tangents([u, &velocity], &dvelocity, sums.layout, tangent);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::coupling::Coupling;
+use super::coupling::Layout;
 use super::rates::rates;
 use super::sums::add_blocks;
 use super::term::Dependence;
@@ -16,10 +16,10 @@ pub(super) fn dependence() -> Dependence {
 }
 
 /// The mass matrix on the current pattern: consistent in the elements, and the point masses on the diagonal.
-pub(super) fn mass(model: &Model, coupling: &Coupling) -> SparseMatrix {
-    let mut mass = elements(model, coupling, |_| 1.0);
+pub(super) fn mass(model: &Model, layout: &Layout) -> SparseMatrix {
+    let mut mass = elements(model, layout, |_| 1.0);
     for point in &model.point_masses {
-        let nodes = point.nodes.iter().map(|&node| coupling.original(node));
+        let nodes = point.nodes.iter().map(|&node| layout.original(node));
         let dofs = nodes.flat_map(|node| [2 * node, 2 * node + 1]);
         dofs.for_each(|dof| mass.add_diagonal(dof, point.mass));
     }
@@ -27,12 +27,12 @@ pub(super) fn mass(model: &Model, coupling: &Coupling) -> SparseMatrix {
 }
 
 /// Masses of the elements, each times what is said of its body.
-pub(super) fn elements(model: &Model, coupling: &Coupling, share: impl Fn(usize) -> f64) -> SparseMatrix {
-    let mut total = coupling.matrix();
+pub(super) fn elements(model: &Model, layout: &Layout, share: impl Fn(usize) -> f64) -> SparseMatrix {
+    let mut total = layout.matrix();
     for (e, element) in model.mesh.elements.iter().enumerate() {
         let mass = share(model.body_of_element[e]) * model.element_mass(e);
         let both = mass.kronecker(&DMatrix::identity(2, 2));
-        add_blocks(&mut total, coupling.blocks_of(e), both.as_slice(), element.nodes.len());
+        add_blocks(&mut total, layout.blocks_of(e), both.as_slice(), element.nodes.len());
     }
     total
 }

@@ -43,5 +43,6 @@ pub mod term;
 pub mod trial;
 
 pub use assembler::Assembler;
+pub use coupling::Coupling;
 pub use evaluation::{ContactCounts, Evaluation, Seconds};
 pub use trial::Trial;

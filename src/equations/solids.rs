@@ -4,11 +4,12 @@
 //! elements put there, in their order: the same bits on any number of threads, and nothing is written twice.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use nalgebra::Vector2;
 use rayon::prelude::*;
 
-use super::coupling::Coupling;
+use super::coupling::Layout;
 use super::sums::{Sums, add_blocks};
 use super::term::Dependence;
 use crate::equations::failure::TrialFailure;
@@ -33,8 +34,8 @@ pub(super) fn dependence(model: &Model) -> Dependence {
 }
 
 /// The elements of a model, what each puts on its nodes, and where each node finds its own.
-pub(super) struct Solids<'m> {
-    model: &'m Model,
+pub(super) struct Solids {
+    model: Arc<Model>,
     runs: Vec<Run>,
     /// Where the places of each node start, and where the last one's end
     starts: Vec<usize>,
@@ -65,8 +66,8 @@ impl Run {
     }
 }
 
-impl<'m> Solids<'m> {
-    pub fn new(model: &'m Model) -> Self {
+impl Solids {
+    pub fn new(model: &Arc<Model>) -> Self {
         let elements = &model.mesh.elements;
         let mut runs: Vec<Run> = Vec::new();
         let mut starts = vec![0; model.mesh.nodes.len() + 1];
@@ -88,6 +89,7 @@ impl<'m> Solids<'m> {
             next[node] += 1;
         }
         let forces = vec![Vector2::zeros(); count];
+        let model = model.clone();
         Self { model, runs, starts, places, forces, energies: vec![Ok(0.0); elements.len()], tangents: Vec::new() }
     }
 
@@ -95,7 +97,7 @@ impl<'m> Solids<'m> {
     pub fn add(&mut self, u: &[f64], sums: &mut Sums) -> Result<f64, TrialFailure> {
         match &mut sums.tangent {
             None => self.evaluate(u),
-            Some(tangent) => self.evaluate_with_tangents(u, sums.coupling, tangent),
+            Some(tangent) => self.evaluate_with_tangents(u, sums.layout, tangent),
         }
         let energy = self.stored()?;
         self.gather(sums.force, sums.magnitudes.as_deref_mut());
@@ -104,7 +106,7 @@ impl<'m> Solids<'m> {
 
     /// Forces of all elements.
     fn evaluate(&mut self, u: &[f64]) {
-        let model = self.model;
+        let model = &*self.model;
         for run in &self.runs {
             let material = &*model.bodies[run.body].material;
             let forces = self.forces[run.places()].par_chunks_exact_mut(run.nodes);
@@ -117,8 +119,8 @@ impl<'m> Solids<'m> {
     }
 
     /// Forces and tangents of all elements, the tangents batch by batch.
-    fn evaluate_with_tangents(&mut self, u: &[f64], coupling: &Coupling, total: &mut SparseMatrix) {
-        let model = self.model;
+    fn evaluate_with_tangents(&mut self, u: &[f64], layout: &Layout, total: &mut SparseMatrix) {
+        let model = &*self.model;
         for run in &self.runs {
             let material = &*model.bodies[run.body].material;
             let (n, size) = (run.nodes, 4 * run.nodes * run.nodes);
@@ -140,7 +142,7 @@ impl<'m> Solids<'m> {
                 let all = all.zip(self.tangents.par_chunks_exact_mut(size));
                 all.zip(&mut self.energies[elements.clone()]).with_min_len(FEW).for_each(one);
                 for (e, tangent) in elements.zip(self.tangents.chunks_exact(size)) {
-                    add_blocks(total, coupling.blocks_of(e), tangent, n);
+                    add_blocks(total, layout.blocks_of(e), tangent, n);
                 }
             }
         }
@@ -177,7 +179,7 @@ impl<'m> Solids<'m> {
 
     /// Write the viscous forces of the bodies at displacements `u` and velocities `v` over `force`; they resist.
     pub fn viscous(&mut self, [u, v]: [&[f64]; 2], force: &mut [f64], magnitudes: Option<&mut [f64]>) {
-        let model = self.model;
+        let model = &*self.model;
         for run in &self.runs {
             let body = &model.bodies[run.body];
             let law = (&*body.material, body.damping.stiffness);
@@ -206,10 +208,10 @@ impl<'m> Solids<'m> {
         &mut self,
         [u, v]: [&[f64]; 2],
         dvelocity: &[f64],
-        coupling: &Coupling,
+        layout: &Layout,
         total: &mut SparseMatrix,
     ) {
-        let model = self.model;
+        let model = &*self.model;
         for run in self.runs.iter().filter(|run| model.bodies[run.body].damping.stiffness > 0.0) {
             let body = &model.bodies[run.body];
             let law = (&*body.material, body.damping.stiffness);
@@ -226,7 +228,7 @@ impl<'m> Solids<'m> {
                 let all = elements.clone().into_par_iter().zip(self.tangents.par_chunks_exact_mut(size));
                 all.with_min_len(FEW).for_each(one);
                 for (e, tangent) in elements.zip(self.tangents.chunks_exact(size)) {
-                    add_blocks(total, coupling.blocks_of(e), tangent, n);
+                    add_blocks(total, layout.blocks_of(e), tangent, n);
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! Where the terms of the equations put what they add.
 
-use super::coupling::Coupling;
+use super::coupling::Layout;
 use crate::linear::system::Contribution;
 use crate::linear::{BlockPosition, SparseMatrix};
 
@@ -13,7 +13,7 @@ pub(super) struct Sums<'a> {
     /// ∂F/∂u [F/L]
     pub tangent: Option<&'a mut SparseMatrix>,
     /// who couples with whom
-    pub coupling: &'a Coupling<'a>,
+    pub layout: &'a Layout,
 }
 
 impl Sums<'_> {
@@ -28,7 +28,7 @@ impl Sums<'_> {
     /// Add ∂f_i/∂u_j between the dofs of one node.
     pub fn stiffen(&mut self, node: usize, (i, j): (usize, usize), stiffness: f64) {
         if let Some(tangent) = &mut self.tangent {
-            tangent.add_own(self.coupling.original(node), (i, j), stiffness);
+            tangent.add_own(self.layout.original(node), (i, j), stiffness);
         }
     }
 
@@ -43,7 +43,7 @@ impl Sums<'_> {
     /// Add the tangent alone.
     pub fn couple(&mut self, contribution: &Contribution) {
         if let Some(tangent) = &mut self.tangent {
-            let blocks = self.coupling.blocks_between(&contribution.nodes);
+            let blocks = self.layout.blocks_between(&contribution.nodes);
             add_blocks(tangent, &blocks, contribution.tangent.as_slice(), contribution.nodes.len());
         }
     }

@@ -8,6 +8,8 @@ pub mod failure;
 pub mod floating;
 pub mod newton;
 
+use std::sync::Arc;
+
 use crate::contact::force::ContactState;
 use crate::equations::{Assembler, ContactCounts};
 use crate::linear::LinearSolver;
@@ -17,9 +19,9 @@ use contact_iteration::ContactIteration;
 use newton::Iteration;
 
 /// What is kept from one increment to the next to save work; it does not change any answer.
-pub struct Workspace<'m> {
+pub struct Workspace {
     /// assembles the equations
-    pub assembler: Assembler<'m>,
+    pub assembler: Assembler,
     /// what its linear solves hand down to each other
     iteration: ContactIteration,
     /// solves them
@@ -31,9 +33,9 @@ pub struct Workspace<'m> {
     pub linear_seconds: f64,
 }
 
-impl<'m> Workspace<'m> {
+impl Workspace {
     /// A workspace for a model.
-    pub fn new(model: &'m Model, solver: Box<dyn LinearSolver>) -> Self {
+    pub fn new(model: &Arc<Model>, solver: Box<dyn LinearSolver>) -> Self {
         let assembler = Assembler::new(model);
         let system = assembler.system();
         Self {

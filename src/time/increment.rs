@@ -57,14 +57,15 @@ fn frees(step: &Step, old: &State) -> bool {
 ///
 /// # Errors
 /// [`IncrementFailure`] when the state cannot be evaluated or a body has no mass.
-pub fn go_on(model: &Model, step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), IncrementFailure> {
-    state.last_increment = None;
+pub fn go_on(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> Result<State, IncrementFailure> {
+    let mut state = State { last_increment: None, ..old.clone() };
     if step.scheme.is_dynamic() {
-        return start_dynamics(model, step, state, work);
+        start_dynamics(model, step, &mut state, work)?;
+        return Ok(state);
     }
     model.ties.gather(2, &mut state.force);
     state.stop();
-    Ok(())
+    Ok(state)
 }
 
 /// Accelerations, and the forces that go with them, at a moment when dynamics begins: loads may set in with a jump.

@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test file uses a part")]
 
 use std::path::Path;
+use std::sync::Arc;
 
 use fecontact::case;
 use fecontact::model::Model;
@@ -162,7 +163,7 @@ impl Observer for Record {
 
 /// What a run left behind.
 pub struct Finished {
-    pub model: Model,
+    pub model: Arc<Model>,
     pub states: Vec<State>,
     /// Newton iterations of each increment
     pub iterations: Vec<usize>,
@@ -209,6 +210,7 @@ pub fn finish(case: &Value) -> Finished {
 pub fn finish_at(case: &Value, path: &Path) -> Finished {
     let model = model_at(case, path);
     let mut record = Record::default();
+    let model = Arc::new(model);
     let (report, result) = run(&model, &mut [&mut record]);
     result.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(record.failed, report.cutbacks + report.rejected);

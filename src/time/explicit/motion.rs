@@ -12,7 +12,7 @@ use crate::model::scheme::supported_rates;
 use crate::model::state::State;
 use crate::time::accept::accept;
 
-impl Explicit<'_> {
+impl Explicit {
     /// One increment to the displacements predicted.
     pub(super) fn advance(
         &mut self,
@@ -20,7 +20,7 @@ impl Explicit<'_> {
         state: &mut State,
         assembler: &mut Assembler,
     ) -> Result<(), TrialFailure> {
-        let (model, step) = (self.model, self.step);
+        let (model, step) = (&*self.model.clone(), &*self.step.clone());
         let dt = time - state.time;
         assembler.forces(Trial { settles: false, ..Trial::new(state, step, time, dt) }, &self.displacement)?;
         if model.is_viscous() {
@@ -64,7 +64,7 @@ impl Explicit<'_> {
     /// (8) for dofs with dashpots, of which [`Explicit::accelerate`] knows nothing: (M + ½ Δt C) (a − a_free) = C (v_driver
     /// − v_free) with what it found.
     fn damp(&mut self, time: f64, dt: f64, state: &mut State) {
-        dampers::pull(self.model, self.step, &self.dampers, time, &state.velocity, &mut self.pulls);
+        dampers::pull(&self.model, &self.step, &self.dampers, time, &state.velocity, &mut self.pulls);
         for (NodeDamper { node, coefficients }, pull) in self.dampers.iter().zip(&self.pulls) {
             let inertia = Matrix2::identity() * self.mass[*node] + coefficients * (0.5 * dt);
             let Some(inverse) = inertia.try_inverse() else { continue };
@@ -78,7 +78,7 @@ impl Explicit<'_> {
 
     /// Subtract the forces of the dampers at a velocity from what was found, and count them as damping.
     pub(super) fn add_pulls(&mut self, time: f64, velocity: &[f64], found: &mut Evaluation) {
-        dampers::pull(self.model, self.step, &self.dampers, time, velocity, &mut self.pulls);
+        dampers::pull(&self.model, &self.step, &self.dampers, time, velocity, &mut self.pulls);
         for (damper, pull) in self.dampers.iter().zip(&self.pulls) {
             for i in 0..2 {
                 found.force[2 * damper.node + i] -= pull[i];
