@@ -1,9 +1,10 @@
 //! One update of a contact: the index of the master, and every slave point with search, law and forces.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use fecontact::contact::master::Master;
 use fecontact::contact::pair::{ContactIncrement, ContactPair, Presumption};
 use fecontact::contact::search::Index;
-use fecontact::contact::surface::{Master, Surface, gauss_points};
+use fecontact::contact::surface::{Surface, gauss_points};
 use fecontact::laws::friction::{Coulomb, CoulombParameters};
 use fecontact::mesh::configuration::Configuration;
 use nalgebra::Vector2;

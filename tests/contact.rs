@@ -1,14 +1,13 @@
 //! Contact: exact tangents, feet at corners and past ends.
 
 use fecontact::contact::force::{Closed, ContactState, Increment, Status, Tractions, closes, press, respond};
+use fecontact::contact::master::Master;
 use fecontact::contact::mortar::{Mortar, mortar_points};
 use fecontact::contact::pair::{ContactIncrement, ContactPair, InitialTraction, Presumption};
 use fecontact::contact::projection::{Bound, nearest};
 use fecontact::contact::rigid::{Circle, Plane, Polyline, Rigid};
 use fecontact::contact::search::Index;
-use fecontact::contact::surface::{
-    Master, MasterPoint, Segment, SlavePoint, Surface, gauss_points, lone_point, nodal_points,
-};
+use fecontact::contact::surface::{MasterPoint, Segment, SlavePoint, Surface, gauss_points, lone_point, nodal_points};
 use fecontact::laws::friction::{FrictionParameters, FrictionState};
 use fecontact::linear::system::Contribution;
 use fecontact::mesh::configuration::Configuration;
@@ -72,7 +71,7 @@ fn promised(
     x: &Positions,
     promised: Option<Tractions>,
 ) -> (ContactState, Option<Closed>) {
-    let increment = Increment { moment: MOMENT, presumption: Presumption { promised, ..Presumption::default() } };
+    let increment = Increment { during: MOMENT, presumption: Presumption { promised, ..Presumption::default() } };
     answer(pair, k, old, x, increment)
 }
 
@@ -245,7 +244,7 @@ fn slip_counts_from_touch() {
         let x = vec![Vector2::new(0.2, -deep), Vector2::new(0.9, -deep)];
         let old = pulled(pair, 0, &x, 0.005, pair.laws[0].initial_state(), 0.03);
         check_tangent(pair, 0, &old, &x, "after touch");
-        let friction = answer(pair, 0, &old, &x, Increment { moment, presumption: Presumption::default() }).0.friction;
+        let friction = answer(pair, 0, &old, &x, Increment { during, presumption: Presumption::default() }).0.friction;
         assert!((friction.pressure - 10.0).abs() < 1e-12);
         let expected = 700.0 * 0.005 * d / (0.03 + d);
         assert!((friction.traction - expected).abs() < 1e-12, "{}, not {expected}", friction.traction);
@@ -268,7 +267,7 @@ fn a_carried_pressure_is_where_the_answer_is_exact() {
     for (back, gap) in [(0.002, 0.03), (0.2, 0.03), (0.002, 0.0), (0.2, 0.0)] {
         let old = pulled(&pair, 0, &at(-0.04), back, pair.laws[0].initial_state(), gap);
         let increment =
-            |carried| Increment { moment: MOMENT, presumption: Presumption { carried, ..Presumption::default() } };
+            |carried| Increment { during: MOMENT, presumption: Presumption { carried, ..Presumption::default() } };
         let (deep, closed) = answer(&pair, 0, &old, &at(-0.04), increment(Some(5.0)));
         assert!((deep.friction.pressure - 40.0).abs() < 1e-12);
         let promise = closed.expect("a closed point").promise(|dof| if dof % 2 == 1 { 0.035 } else { 0.0 });
@@ -708,7 +707,7 @@ fn check_mortar_tangent(
         slip: 0.0,
         multiplier: 0.0,
     };
-    let increment = Increment { moment: MOMENT, presumption: Presumption::default() };
+    let increment = Increment { during: MOMENT, presumption: Presumption::default() };
     let evaluate = |x: &Positions| {
         let x = Configuration::undeformed(x);
         let is = mortar.overlaps(surface, &Index::new(&pair.master, &x), &x);

@@ -7,9 +7,10 @@ use std::path::Path;
 
 use common::{Blocks, Finished, close, distance, finish, finish_at};
 use fecontact::contact::force::Status;
+use fecontact::contact::master::Master;
 use fecontact::contact::pair::{ContactIncrement, Presumption};
 use fecontact::contact::search::Index;
-use fecontact::contact::surface::{Master, Surface, gauss_points};
+use fecontact::contact::surface::{Surface, gauss_points};
 use fecontact::mesh::configuration::Configuration;
 use nalgebra::Vector2;
 use serde_json::{Value, json};

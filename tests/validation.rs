@@ -8,9 +8,10 @@ use std::sync::Arc;
 
 use common::{Blocks, Finished, close, distance, finish, half_way, half_way_round, quadratic, turned};
 use fecontact::contact::force::ContactState;
+use fecontact::contact::master::Master;
 use fecontact::contact::pair::{ContactIncrement, Presumption};
 use fecontact::contact::search::Index;
-use fecontact::contact::surface::{Master, SlavePoint, Surface, nodal_points};
+use fecontact::contact::surface::{SlavePoint, Surface, nodal_points};
 use fecontact::laws::friction::FrictionState;
 use fecontact::mesh::configuration::Configuration;
 use fecontact::model::state::State;

@@ -13,10 +13,11 @@ use super::file::{
 };
 use super::method::{Chosen, choose};
 use super::{along, initial, names, periodic, supported};
+use crate::contact::master::Master;
 use crate::contact::mortar::{Mortar, mortar_points};
 use crate::contact::pair::{ContactPair, Reverse};
 use crate::contact::rigid::{Circle, Plane, Polyline, Rigid};
-use crate::contact::surface::{Master, SlavePoint, Surface, gauss_points, in_order, lone_point, nodal_points};
+use crate::contact::surface::{SlavePoint, Surface, gauss_points, in_order, lone_point, nodal_points};
 use crate::laws::bulk::Material;
 use crate::mesh::configuration::Configuration;
 use crate::mesh::shape;

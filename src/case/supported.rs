@@ -7,7 +7,8 @@ use nalgebra::{Matrix3, RowVector3, Vector2};
 
 use super::error::Complaint;
 use super::file::Case;
-use crate::contact::surface::{Master, Surface};
+use crate::contact::master::Master;
+use crate::contact::surface::Surface;
 use crate::model::{Model, Step};
 
 /// Share of the stiffest rigid motion below which a motion counts as free.

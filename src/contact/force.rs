@@ -19,159 +19,21 @@
 //! would change with the share that counts. Without c a point that comes in with a high pressure would stick for its stiff
 //! penalty alone, and spring away by all it has missed in the increment after.
 
-use nalgebra::{DVector, Vector2};
-use serde::{Deserialize, Serialize};
-
+pub use super::closed::{Closed, nodal_forces};
+pub use super::kinematics::Meeting;
 use super::kinematics::{Kinematics, kinematics};
-use super::pair::{ContactIncrement, ContactPair, Presumption};
+use super::pair::ContactPair;
+use super::point::{MasterPoint, SlavePoint};
+use super::presumption::Presumption;
+pub use super::presumption::{Increment, Presume, Tractions};
 use super::projection::Projection;
-use super::surface::{MasterPoint, SlavePoint};
-use crate::laws::friction::{FrictionResponse, FrictionState, LawFailure, Sliding};
-use crate::linear::system::Contribution;
+use super::state::TOUCH;
+pub use super::state::{ContactState, SLIPPING, Status};
+use crate::laws::friction::{LawFailure, Sliding};
 use crate::mesh::configuration::Configuration;
-
-/// Memory of one contact point between increments.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ContactState {
-    /// What friction remembers
-    pub friction: FrictionState,
-    /// Foot on the master, open or closed; `None` where no part of the master faces the point
-    pub foot: Option<MasterPoint>,
-    /// Length the point stands for: its own or, by mortar, the part of it that the master faces; once open, the last one [L]
-    pub length: f64,
-    /// g at the foot; a contact that starts closed counts it from where its points touch [L]
-    pub gap: f64,
-    /// Δu_t of the last increment, what came before touch included; 0 while open [L]
-    pub slip: f64,
-    /// p̄: pressure at zero gap, raised until the penetration is small enough; 0 for the plain penalty [F/L²]
-    pub multiplier: f64,
-}
-
-/// Whether a point is open, sticks or slips.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Status {
-    /// No pressure
-    Open,
-    /// Pressed, and held by friction
-    Stick,
-    /// Plastic slip in this increment at R ≥ 0.9
-    Slip,
-}
-
-/// R from which on plastic slip counts as slipping.
-pub const SLIPPING: f64 = 0.9;
-
-impl ContactState {
-    /// Whether a point that stands for this length is open at a gap that counts.
-    pub fn apart(&self, length: f64) -> bool {
-        self.friction.pressure == 0.0 && self.gap > TOUCH * length
-    }
-
-    /// Open, stick or slip. The super/subloading law slips plastically a little whenever it is loaded, so only plastic
-    /// slip near the peak surface counts as slipping.
-    pub fn status(&self) -> Status {
-        let friction = &self.friction;
-        if friction.pressure <= 0.0 {
-            Status::Open
-        } else if friction.plastic_increment != 0.0 && (friction.mu == 0.0 || friction.ratio() >= SLIPPING) {
-            Status::Slip
-        } else {
-            Status::Stick
-        }
-    }
-}
-
-/// Increment of a contact point, and what the iteration presumes about it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Increment {
-    /// Length of the increment, and what it changes about every point
-    pub moment: ContactIncrement,
-    /// What the linear solve presumes about the point
-    pub presumption: Presumption,
-}
-
-/// Pressure and traction of a point, as one linear solve promised them to the next.
-///
-/// A stiff penalty turns every error of a displacement into a pressure far too high, and that into a geometric stiffness
-/// p δn ℓ that leads the next iterate astray, or opens a point that should be closed. The promise p + δp of the linear
-/// solve is off by the square of the correction only: it makes the geometric stiffness, and says which points stay closed.
-/// The residual that a solution must meet knows no promises.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Tractions {
-    /// p [F/L²]
-    pub pressure: f64,
-    /// q [F/L²]
-    pub traction: f64,
-}
-
-impl Tractions {
-    /// Those of a state.
-    pub fn of(friction: &FrictionState) -> Self {
-        Self { pressure: friction.pressure, traction: friction.traction }
-    }
-
-    /// Both in proportion, so that the pressure is not above a limit.
-    pub fn limited(self, most: f64) -> Self {
-        let share = if self.pressure > most { most / self.pressure } else { 1.0 };
-        Self { pressure: share * self.pressure, traction: share * self.traction }
-    }
-}
-
-/// A closed point: what it adds to the equations, and how its tractions vary with its nodes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Closed {
-    /// Forces and tangent
-    pub contribution: Contribution,
-    /// p and q
-    pub tractions: Tractions,
-    /// δp [F/L³]
-    pub dpressure: DVector<f64>,
-    /// δq [F/L³]
-    pub dtraction: DVector<f64>,
-}
-
-impl Closed {
-    /// p + δp and q + δq for a correction of the nodes' displacements; none where the pressure would be negative.
-    pub fn promise(&self, correction: impl Fn(usize) -> f64) -> Tractions {
-        let dofs = || self.contribution.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
-        let along = |rates: &DVector<f64>| dofs().zip(rates).map(|(dof, rate)| rate * correction(dof)).sum::<f64>();
-        let pressure = self.tractions.pressure + along(&self.dpressure);
-        let traction = self.tractions.traction + along(&self.dtraction);
-        if pressure > 0.0 { Tractions { pressure, traction } } else { Tractions::default() }
-    }
-}
-
-/// What the next linear solve presumes about a point, for the sake of convergence; an accepted state presumes nothing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Presume {
-    /// The laws answer as they are
-    #[default]
-    Nothing,
-    /// A zero gap is closed and sticks: it would open and close for ever at p = 0
-    Touch,
-    /// The point sticks, q = q₀ + α_t Δu_t whatever its size. From one iterate to the next it slipped one way and then
-    /// the other, past the narrow and stiff range of sticking that lies between: the tangents on both sides are soft,
-    /// and Newton's method would jump to and fro for ever. It is presumed again where the point then slips although the
-    /// tractions that were promised would have held it.
-    Stick,
-}
-
-/// Contact closes at a zero gap when it is below this share of the length the point stands for.
-const TOUCH: f64 = 1e-9;
 
 /// Trial state of one point and, if closed, what it adds to the equations.
 pub type PointResponse = Result<(ContactState, Option<Closed>), LawFailure>;
-
-/// Where a slave point meets the master: its kinematics, its gap and its foot.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Meeting {
-    /// Kinematics, with slip counted from the committed state
-    pub kinematics: Kinematics,
-    /// g [L]
-    pub gap: f64,
-    /// The foot
-    pub foot: MasterPoint,
-}
 
 /// The trial state of one point and, if closed, what it adds to the equations, in the committed configuration and that of
 /// the trial.
@@ -184,7 +46,7 @@ pub fn respond(
     [before, x]: [&Configuration; 2],
 ) -> PointResponse {
     let Some(projection) = projection else { return open(pair, slave, None, old, increment) };
-    let (gap, foot) = (slave.gap(projection.gap, increment.moment.fading), projection.foot);
+    let (gap, foot) = (slave.gap(projection.gap, increment.during.fading), projection.foot);
     if !closes(pair, slave, gap, old, increment, x) {
         return open(pair, slave, Some((gap, foot)), old, increment);
     }
@@ -205,7 +67,7 @@ pub fn closes(
     x: &Configuration,
 ) -> bool {
     let promised = increment.presumption.promised.is_some_and(|promised| promised.pressure > 0.0);
-    let pressure = old.multiplier - pair.normal_stiffness(increment.moment.stiffening) * gap;
+    let pressure = old.multiplier - pair.normal_stiffness(increment.during.stiffening) * gap;
     promised || pressure > 0.0 || touches(gap, slave.current_length(x), old, increment)
 }
 
@@ -223,7 +85,7 @@ pub fn open(
     old: &ContactState,
     increment: Increment,
 ) -> PointResponse {
-    let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.moment.dt };
+    let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.during.dt };
     let friction = pair.law(slave).respond(&old.friction, sliding)?.state;
     let (gap, foot) = met.unzip();
     let state =
@@ -242,13 +104,13 @@ pub fn press(
     let law = pair.law(slave);
     let Meeting { mut kinematics, gap, foot } = meeting;
     let (apart, whole) = (old.apart(kinematics.length), kinematics.slip);
-    let alpha_n = pair.normal_stiffness(increment.moment.stiffening);
+    let alpha_n = pair.normal_stiffness(increment.during.stiffening);
     let pressure = old.multiplier - alpha_n * gap;
     let carried = carried(pressure, increment.presumption);
-    let compliance = pair.compliance_after_touch(increment.moment.settles);
+    let compliance = pair.compliance_after_touch(increment.during.settles);
     let dslip_dpressure =
         if apart { count_slip_after_touch(&mut kinematics, old.gap, compliance, carried, alpha_n) } else { 0.0 };
-    let sliding = Sliding { slip: kinematics.slip, pressure: carried, dt: increment.moment.dt };
+    let sliding = Sliding { slip: kinematics.slip, pressure: carried, dt: increment.during.dt };
     let mut response = law.respond(&old.friction, sliding)?;
     let stiffness = law.stiffness();
     if increment.presumption.presume == Presume::Stick {
@@ -274,7 +136,7 @@ pub fn press(
         // The next increment begins with the same pressure, but the stiffness given.
         multiplier: old.multiplier - (alpha_n - pair.alpha_n) * gap,
     };
-    Ok((state, Some(closed(&kinematics, &response, alpha_n, increment.presumption.promised))))
+    Ok((state, Some(super::closed::closed(&kinematics, &response, alpha_n, increment.presumption.promised))))
 }
 
 /// The pressure under which friction answers: that of a point which only a promise keeps closed is the promised one, from
@@ -294,46 +156,4 @@ fn count_slip_after_touch(k: &mut Kinematics, old_gap: f64, compliance: f64, pre
     k.dslip -= &k.dgap * (alpha_n * dslip_dpressure);
     k.slip *= share;
     dslip_dpressure
-}
-
-/// What a traction puts on the nodes: w_a (p n − q s) ℓ [F].
-pub fn nodal_forces(k: &Kinematics, p: f64, q: f64) -> Vec<(usize, Vector2<f64>)> {
-    let force = (k.normal * p - k.tangent * q) * k.length;
-    k.nodes.iter().zip(&k.relative).map(|(&node, &w)| (node, force * w)).collect()
-}
-
-/// Nodal forces of the traction and their derivative: the exact one unless tractions are promised or a pressure carried.
-fn closed(k: &Kinematics, response: &FrictionResponse, alpha_n: f64, promised: Option<Tractions>) -> Closed {
-    let tractions = Tractions::of(&response.state);
-    let turned = |Tractions { pressure: p, traction: q }: Tractions| k.normal * p - k.tangent * q;
-    let traction = turned(tractions);
-    let dpressure = &k.dgap * -alpha_n;
-    let dtraction = &k.dslip * response.dtraction_dslip + &dpressure * response.dtraction_dpressure;
-    let promised = promised.unwrap_or(tractions);
-    let turned = turned(promised);
-    let along_normal = &dpressure - &k.drotation * promised.traction;
-    let along_tangent = -(&dtraction + &k.drotation * promised.pressure);
-    // δ(t ℓ), one row a component
-    let dforce =
-        |i: usize| (&along_normal * k.normal[i] + &along_tangent * k.tangent[i]) * k.length + &k.dlength * turned[i];
-    let rows = [dforce(0), dforce(1)];
-
-    let mut result = Contribution::zero(k.nodes.clone());
-    let add = |result: &mut Contribution, node: usize, i: usize, row: &DVector<f64>, factor: f64| {
-        for (column, value) in row.iter().enumerate() {
-            result.tangent[(2 * node + i, column)] += factor * value;
-        }
-    };
-    for (node, &w) in k.relative.iter().enumerate() {
-        for (i, row) in rows.iter().enumerate() {
-            result.force[2 * node + i] = -w * traction[i] * k.length;
-            add(&mut result, node, i, row, -w);
-        }
-    }
-    for (node, dw) in &k.drelative {
-        for i in 0..2 {
-            add(&mut result, *node, i, dw, -turned[i] * k.length);
-        }
-    }
-    Closed { contribution: result, tractions, dpressure, dtraction }
 }

@@ -20,10 +20,10 @@
 
 use nalgebra::{DVector, Vector2};
 
-use super::projection::{Bound, Projection, normal_of, tangent_of};
+use super::master::Master;
+use super::projection::{Bound, FACING, Projection, normal_of, tangent_of};
 use super::rigid::Rigid;
-use super::search::FACING;
-use super::surface::{Master, MasterPoint, Path, SlavePoint, Surface};
+use super::surface::{MasterPoint, Path, SlavePoint, Surface};
 use crate::mesh::configuration::Configuration;
 use crate::mesh::shape;
 
@@ -52,6 +52,17 @@ pub struct Kinematics {
     pub dlength: DVector<f64>,
     /// δw_a of the weights that change, with their positions in `nodes` [1/L]
     pub drelative: Vec<(usize, DVector<f64>)>,
+}
+
+/// Where a slave point meets the master: its kinematics, its gap and its foot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Meeting {
+    /// Kinematics, with slip counted from the committed state
+    pub kinematics: Kinematics,
+    /// g [L]
+    pub gap: f64,
+    /// The foot
+    pub foot: MasterPoint,
 }
 
 /// Kinematics of `slave` projected on `master`, with the slip counted from the committed foot `from`.

@@ -10,13 +10,24 @@
 //! right-handed. The gap g = (x_slave − x_foot)·n is positive when open, the pressure p positive in compression, and
 //! the traction on the slave is t = p n − q s.
 
+pub mod boxes;
+pub mod closed;
+mod cuts;
 pub mod dual;
 pub mod force;
 pub mod kinematics;
+mod lines;
+pub mod master;
+mod meet;
 pub mod mortar;
+mod mortar_rigid;
 pub mod pair;
+pub mod point;
+pub mod presumption;
 pub mod projection;
+mod response;
 pub mod rigid;
 pub mod search;
 pub mod sight;
+pub mod state;
 pub mod surface;

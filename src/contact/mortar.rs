@@ -17,19 +17,18 @@
 //! count once a side.
 //! All variations come with [`Dual`] numbers.
 //!
-//! Against a rigid body nothing is cut: g_j and Δu_t,j are the means of what the points of Gauss's rule between two nodes
-//! have, each with its own foot, and n_j is the direction of the mean of their normals.
+//! Against a rigid body nothing is cut, see [`super::mortar_rigid`].
 
 use nalgebra::{DVector, Vector2};
 use rayon::prelude::*;
 
+use super::cuts::{Overlap, Overlaps, cut};
 use super::dual::{Dual, DualVector};
-use super::force::Meeting;
-use super::kinematics::{Kinematics, past_rigid};
-use super::projection::{normal_of, tangent_of};
-use super::rigid::Rigid;
+use super::kinematics::{Kinematics, Meeting};
+use super::lines::{Frame, Line};
+use super::point::{LengthShare, MasterPoint, SlavePoint, Weights, edge_point, lone_point};
 use super::search::Index;
-use super::surface::{CORNER, LengthShare, MasterPoint, Segment, SlavePoint, Surface, Weights, edge_point, lone_point};
+use super::surface::{CORNER, Segment, Surface};
 use crate::mesh::configuration::Configuration;
 use crate::mesh::shape;
 
@@ -41,7 +40,7 @@ pub struct Mortar {
     /// Edges at each point, with the number of its shape function there
     at: Vec<Vec<(usize, usize)>>,
     /// Points of Gauss's rule around each point, their lengths times φ_j
-    around: Vec<Vec<SlavePoint>>,
+    pub(super) around: Vec<Vec<SlavePoint>>,
 }
 
 /// The nodes of the slave edges as contact points, each side of a corner a point of its own.
@@ -95,31 +94,6 @@ fn gauss_around(edge: &[usize], a: usize) -> Vec<SlavePoint> {
         .map(|(xi, weight)| edge_point(edge, xi, weight))
         .collect()
 }
-
-/// A part of a slave edge that one master segment faces.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Overlap {
-    segment: usize,
-    ends: [Cut; 2],
-}
-
-/// Where a slave edge is cut.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Cut {
-    xi: f64,
-    /// The master node that projects there; none at the ends of the edge
-    node: Option<usize>,
-}
-
-/// The cuts of all slave edges in one configuration.
-pub struct Overlaps(Vec<Vec<Overlap>>);
-
-/// Master segments farther from a slave edge than this many of its lengths are not looked at: far enough for the deep
-/// penetrations of first iterates, which must not pass for contact lost.
-const REACH: f64 = 10.0;
-
-/// A slave edge and a master segment face each other when the cosine between their outward normals is below this.
-const EDGE_ON: f64 = -0.01;
 
 impl Mortar {
     /// Cut all slave edges.
@@ -181,71 +155,6 @@ impl Mortar {
             nodes: frame.nodes,
         };
         Some(Meeting { kinematics, gap: gap.value, foot })
-    }
-
-    /// Where a point meets a rigid body; `None` where that faces none of its surroundings. `before` is the committed
-    /// configuration.
-    pub fn on_rigid(&self, point: usize, body: &Rigid, before: &Configuration, x: &Configuration) -> Option<Meeting> {
-        let met = self.around[point].iter().filter_map(|slave| {
-            let projection = body.project(slave, x)?;
-            let from = body.project(slave, before).map(|was| was.foot);
-            let mut kinematics = past_rigid(slave, body, &projection, from, x);
-            if from.is_none() {
-                kinematics.count_from(before, x);
-            }
-            Some((projection, kinematics))
-        });
-        let met: Vec<_> = met.collect();
-        let foot = met.first()?.0.foot;
-        let mut nodes: Vec<usize> = Vec::new();
-        for node in met.iter().flat_map(|(_, k)| &k.nodes) {
-            if !nodes.contains(node) {
-                nodes.push(*node);
-            }
-        }
-        let zero = DVector::zeros(2 * nodes.len());
-        // Sums of ℓ times gap, slip, n and weights, and their variations.
-        let (mut length, mut gap, mut slip, mut along) = (0.0, 0.0, 0.0, Vector2::zeros());
-        let [mut dlength, mut dgap, mut dslip, mut dx, mut dy] = [(); 5].map(|()| zero.clone());
-        let mut weights = vec![0.0; nodes.len()];
-        let mut dweights = vec![zero.clone(); nodes.len()];
-        for (projection, k) in &met {
-            let local: Vec<usize> =
-                k.nodes.iter().filter_map(|node| nodes.iter().position(|other| other == node)).collect();
-            let add = |sum: &mut DVector<f64>, factor: f64, row: &DVector<f64>| {
-                for (dof, value) in row.iter().enumerate() {
-                    sum[2 * local[dof / 2] + dof % 2] += factor * value;
-                }
-            };
-            length += k.length;
-            gap += k.length * projection.gap;
-            slip += k.length * k.slip;
-            along += k.length * k.normal;
-            add(&mut dlength, 1.0, &k.dlength);
-            for (sum, value, row) in [(&mut dgap, projection.gap, &k.dgap), (&mut dslip, k.slip, &k.dslip)] {
-                add(sum, value, &k.dlength);
-                add(sum, k.length, row);
-            }
-            for (sum, n, s) in [(&mut dx, k.normal.x, k.tangent.x), (&mut dy, k.normal.y, k.tangent.y)] {
-                add(sum, n, &k.dlength);
-                add(sum, -k.length * s, &k.drotation);
-            }
-            for (&at, &w) in local.iter().zip(&k.relative) {
-                weights[at] += k.length * w;
-                add(&mut dweights[at], w, &k.dlength);
-            }
-        }
-        let normal = along.normalize();
-        let tangent = tangent_of(normal);
-        let mean = |value: f64, row: DVector<f64>| (value / length, (row - &dlength * (value / length)) / length);
-        let ((gap, dgap), (slip, dslip)) = (mean(gap, dgap), mean(slip, dslip));
-        let (relative, drelative): (Vec<f64>, Vec<_>) =
-            weights.into_iter().zip(dweights).map(|(w, dw)| mean(w, dw)).unzip();
-        let drotation = -(dx * tangent.x + dy * tangent.y) / along.norm();
-        let drelative = drelative.into_iter().enumerate().collect();
-        let kinematics =
-            Kinematics { nodes, relative, normal, tangent, slip, length, dgap, dslip, drotation, dlength, drelative };
-        Some(Meeting { kinematics, gap, foot })
     }
 
     /// Weights of r_j in a configuration; `None` where no master faces the point.
@@ -355,166 +264,4 @@ impl Averages {
             }
         }
     }
-}
-
-/// A slave edge, ξ from −1 to 1, or a master segment, ξ from 0 to 1.
-#[derive(Clone, Copy)]
-enum Line<'a> {
-    Edge(&'a [usize]),
-    Segment(&'a Segment),
-}
-
-impl Line<'_> {
-    fn nodes(&self) -> Vec<usize> {
-        match self {
-            Self::Edge(edge) => edge.to_vec(),
-            Self::Segment(segment) => segment.nodes().collect(),
-        }
-    }
-
-    /// Shape functions, first and second derivatives, as numbers.
-    fn shapes(&self, xi: f64) -> [Vec<f64>; 3] {
-        let count = self.nodes().len();
-        let (at, rate) = match self {
-            Self::Edge(_) => (xi, 1.0),
-            Self::Segment(_) => (2.0 * xi - 1.0, 2.0),
-        };
-        let scaled = |values: Vec<f64>, factor: f64| values.into_iter().map(|v| factor * v).collect::<Vec<_>>();
-        let bend = if count == 2 { vec![0.0; 2] } else { vec![1.0, 1.0, -2.0] };
-        [shape::edge_values(count, at), scaled(shape::edge_derivatives(count, at), rate), scaled(bend, rate * rate)]
-    }
-
-    fn values(&self, xi: &Dual) -> Vec<Dual> {
-        let [values, slopes, _] = self.shapes(xi.value);
-        values.into_iter().zip(slopes).map(|(value, slope)| xi.map(value, slope)).collect()
-    }
-
-    fn slope(&self, xi: &Dual, frame: &Frame) -> DualVector {
-        let [_, slopes, bends] = self.shapes(xi.value);
-        let slopes: Vec<Dual> = slopes.into_iter().zip(bends).map(|(slope, bend)| xi.map(slope, bend)).collect();
-        frame.position(self.nodes().into_iter(), &slopes)
-    }
-
-    /// ξ where the line is level with a point, (x(ξ) − point)·along = 0, near `start`. One Newton step from the solution
-    /// brings the exact variation.
-    fn coordinate(&self, point: &DualVector, along: &DualVector, start: f64, frame: &Frame) -> Dual {
-        let t = Vector2::new(along.x.value, along.y.value);
-        let p = Vector2::new(point.x.value, point.y.value);
-        let level = |node: usize| {
-            let at = frame.at(node);
-            (Vector2::new(at.x.value, at.y.value) - p).dot(&t)
-        };
-        let levels: Vec<f64> = self.nodes().into_iter().map(level).collect();
-        let xi = root(|xi| self.shapes(xi), &levels, start);
-        let fixed = Dual::constant(xi);
-        let residual = frame.position(self.nodes().into_iter(), &self.values(&fixed)).minus(point).dot(along);
-        let slope = self.slope(&fixed, frame).dot(along);
-        &fixed - &(&residual / &slope)
-    }
-}
-
-/// ξ where Σ N_a(ξ) level_a = 0, by Newton's method: one step on a straight line, a few on a parabola.
-fn root(shapes: impl Fn(f64) -> [Vec<f64>; 3], levels: &[f64], start: f64) -> f64 {
-    let sum = |values: &[f64]| values.iter().zip(levels).map(|(v, l)| v * l).sum::<f64>();
-    let mut xi = start;
-    for _ in 0..20 {
-        let [values, slopes, _] = shapes(xi);
-        let step = sum(&values) / sum(&slopes);
-        xi -= step;
-        if step.abs() < f64::EPSILON * (1.0 + xi.abs()) {
-            break;
-        }
-    }
-    xi
-}
-
-/// Positions of some nodes relative to the first, as unknowns.
-struct Frame {
-    nodes: Vec<usize>,
-    positions: Vec<DualVector>,
-}
-
-impl Frame {
-    fn new(nodes: Vec<usize>, variations: bool, x: &Configuration) -> Self {
-        let n = if variations { 2 * nodes.len() } else { 0 };
-        let position = |(k, &node): (usize, &usize)| {
-            let at = x.between(nodes[0], node);
-            DualVector { x: Dual::unknown(at.x, 2 * k, n), y: Dual::unknown(at.y, 2 * k + 1, n) }
-        };
-        Self { positions: nodes.iter().enumerate().map(position).collect(), nodes }
-    }
-
-    fn local(&self, node: usize) -> usize {
-        self.nodes.iter().position(|&n| n == node).expect("every node of an average is listed when it is built")
-    }
-
-    fn at(&self, node: usize) -> &DualVector {
-        &self.positions[self.local(node)]
-    }
-
-    fn position(&self, nodes: impl Iterator<Item = usize>, weights: &[Dual]) -> DualVector {
-        let mut sum = DualVector::default();
-        for (node, weight) in nodes.zip(weights) {
-            sum.add_scaled(weight, self.at(node));
-        }
-        sum
-    }
-
-    fn combine(&self, weights: &[Dual]) -> DualVector {
-        self.position(self.nodes.iter().copied(), weights)
-    }
-}
-
-/// Cut one slave edge where master nodes project on it; of several segments that face a part the nearest counts.
-fn cut(edge: &[usize], surface: &Surface, index: &Index, x: &Configuration) -> Vec<Overlap> {
-    let along = x.between(edge[0], edge[1]);
-    let reach = REACH * along.norm();
-    let normal = -normal_of(along.normalize());
-    let coordinate = |node: usize| {
-        let levels: Vec<f64> = edge.iter().map(|&own| x.between(node, own).dot(&along)).collect();
-        let chord = 2.0 * levels[0] / (levels[0] - levels[1]) - 1.0;
-        root(|xi| Line::Edge(edge).shapes(xi), &levels, chord)
-    };
-    let mut candidates = Vec::new();
-    for segment in index.around(edge, reach, x) {
-        let [a, b] = surface.segments[segment].ends;
-        // A segment is taken in nearly edge-on, where it faces next to nothing: the average must not jump as it turns.
-        if normal_of(x.between(a, b).normalize()).dot(&normal) >= EDGE_ON {
-            continue;
-        }
-        // Both run along s, so the start of the segment comes first.
-        let [mut first, mut last] = [a, b].map(|node| Cut { xi: coordinate(node), node: Some(node) });
-        if first.xi <= -1.0 {
-            first = Cut { xi: -1.0, node: None };
-        }
-        if last.xi >= 1.0 {
-            last = Cut { xi: 1.0, node: None };
-        }
-        if first.xi < last.xi {
-            candidates.push(Overlap { segment, ends: [first, last] });
-        }
-    }
-    let mut cuts: Vec<Cut> = candidates.iter().flat_map(|overlap| overlap.ends).collect();
-    if edge.len() == 3 {
-        cuts.push(Cut { xi: 0.0, node: None });
-    }
-    cuts.sort_by(|a, b| a.xi.total_cmp(&b.xi));
-    let distance = |overlap: &Overlap, xi: f64| {
-        let values = shape::edge_values(edge.len(), xi);
-        let [a, b] = surface.segments[overlap.segment].ends;
-        edge.iter()
-            .zip(values)
-            .map(|(&node, w)| w * x.between(a, node))
-            .sum::<Vector2<f64>>()
-            .dot(&normal_of(x.between(a, b).normalize()))
-            .abs()
-    };
-    let mut overlaps: Vec<Overlap> = Vec::new();
-    for pair in cuts.windows(2).filter(|pair| pair[0].xi < pair[1].xi) {
-        let middle = 0.5 * (pair[0].xi + pair[1].xi);
-        let facing = candidates.iter().filter(|overlap| overlap.ends[0].xi < middle && middle < overlap.ends[1].xi);
-        let nearest = facing.min_by(|a, b| distance(a, middle).total_cmp(&distance(b, middle)));
-        overlaps.extend(nearest.map(|overlap| Overlap { segment: overlap.segment, ends: [pair[0], pair[1]] }));
-    }
-    overlaps
 }

@@ -34,6 +34,10 @@ pub enum Bound {
     },
 }
 
+/// A slave and a segment face each other when the cosine between their outward normals is below this: the sides of a
+/// body do not touch what its bottom rests on. A slave point of no edge faces every segment.
+pub const FACING: f64 = -0.1;
+
 /// The first and last segment of a surface reach beyond its end by this share of their length: a slave that ends flush
 /// with its master stays in contact when it bulges by a trifle; farther out it is off the edge, and open.
 pub const OVERHANG: f64 = 0.05;

@@ -2,9 +2,8 @@
 
 use nalgebra::Vector2;
 
-use super::projection::{Bound, Projection, normal_of, tangent_of};
-use super::search::FACING;
-use super::surface::{MasterPoint, SlavePoint};
+use super::point::{MasterPoint, SlavePoint};
+use super::projection::{Bound, FACING, Projection, normal_of, tangent_of};
 use crate::mesh::configuration::Configuration;
 
 /// A rigid body.

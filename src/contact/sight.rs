@@ -17,8 +17,8 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector2;
 
-use super::projection::normal_of;
-use super::search::{Box2, FACING};
+use super::boxes::Box2;
+use super::projection::{FACING, normal_of};
 use super::surface::{Segment, SlavePoint, Surface};
 use crate::mesh::configuration::Configuration;
 
@@ -27,7 +27,7 @@ pub struct Sight<'a> {
     surface: &'a Surface,
     before: &'a Configuration<'a>,
     depth: f64,
-    /// Level by level as in [`super::search::Boxes`]
+    /// Level by level as in [`super::boxes::Boxes`]
     levels: Vec<Vec<Branch>>,
 }
 

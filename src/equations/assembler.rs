@@ -226,8 +226,7 @@ impl Assembler {
         let Evaluation { force, reactions, velocity, acceleration, .. } = evaluation;
         reactions.clear();
         reactions.extend(trial.step.supports.iter().map(|support| force[support.dof]));
-        let mass =
-            trial.step.scheme.coefficients().map(|_| &*mass.get_or_insert_with(|| inertia::mass(model, layout)));
+        let mass = trial.step.scheme.coefficients().map(|_| &*mass.get_or_insert_with(|| inertia::mass(model, layout)));
         let Some((mass, inertia)) = mass.and_then(|mass| Some((mass, Inertia::at(model, trial, u, mass)?))) else {
             [velocity, acceleration].into_iter().for_each(|rates| *rates = vec![0.0; u.len()]);
             system.residual.clone_from(force);

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::force::Closed;
+use crate::contact::master::Master;
 use crate::contact::pair::PairResponse;
-use crate::contact::surface::Master;
 use crate::linear::{BlockPosition, Pattern, SparseMatrix};
 use crate::model::Model;
 use crate::model::state::State;

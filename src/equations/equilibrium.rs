@@ -17,8 +17,8 @@
 
 use super::trial::Trial;
 use crate::contact::force::Closed;
+use crate::contact::master::Master;
 use crate::contact::pair::{ContactPair, PairResponse};
-use crate::contact::surface::Master;
 use crate::linear::system::System;
 use crate::linear::{SparseMatrix, norm};
 use crate::mesh::configuration::Configuration;

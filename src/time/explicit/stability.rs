@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use std::sync::Arc;
 
-use crate::contact::surface::Master;
+use crate::contact::master::Master;
 use crate::equations::failure::TrialFailure;
 use crate::model::state::State;
 use crate::model::{Model, Step};

@@ -1,0 +1,215 @@
+//! A tree of boxes around the segments of a surface, to find the nearest one.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use nalgebra::Vector2;
+
+use super::surface::{Segment, SlavePoint, Surface};
+use crate::mesh::configuration::Configuration;
+
+/// A binary tree of boxes around the segments of a surface. Segments that follow each other are near each other, so the
+/// tree simply halves their range: it is built without sorting.
+///
+/// All places are relative to a node of the surface: which segment is the nearest must not be decided by the round-off of
+/// coordinates far from the origin.
+pub struct Boxes {
+    segments: usize,
+    pub(super) origin: usize,
+    /// Level by level from the leaves, one box a segment, to the root; each level has half the boxes of the one before
+    levels: Vec<Vec<Box2>>,
+}
+
+/// The smallest box that holds something.
+#[derive(Clone, Copy, Debug)]
+pub struct Box2 {
+    pub(super) low: Vector2<f64>,
+    pub(super) high: Vector2<f64>,
+}
+
+impl Box2 {
+    /// The box of a segment's nodes, their places relative to a node `origin`.
+    pub fn of(segment: &Segment, origin: usize, x: &Configuration) -> Self {
+        let point = |node: usize| Self { low: x.between(origin, node), high: x.between(origin, node) };
+        segment.nodes().fold(point(segment.ends[0]), |sum, node| sum.around(&point(node)))
+    }
+
+    /// Middle of the box.
+    pub fn centre(&self) -> Vector2<f64> {
+        0.5 * (self.low + self.high)
+    }
+
+    /// Half its diagonal.
+    pub fn radius(&self) -> f64 {
+        0.5 * (self.high - self.low).norm()
+    }
+
+    /// The smallest box that holds another as well.
+    pub fn around(&self, other: &Self) -> Self {
+        Self { low: self.low.inf(&other.low), high: self.high.sup(&other.high) }
+    }
+
+    fn meets(&self, other: &Self) -> bool {
+        (0..2).all(|i| self.low[i] <= other.high[i] && other.low[i] <= self.high[i])
+    }
+
+    /// Squared distance of a point from the box.
+    fn distance(&self, point: Vector2<f64>) -> f64 {
+        (self.low - point).sup(&(point - self.high)).sup(&Vector2::zeros()).norm_squared()
+    }
+}
+
+impl Boxes {
+    pub(super) fn new(surface: &Surface, x: &Configuration) -> Self {
+        let origin = surface.origin();
+        let mut levels: Vec<Vec<Box2>> =
+            vec![surface.segments.iter().map(|segment| Box2::of(segment, origin, x)).collect()];
+        while let Some(last) = levels.last().filter(|last| last.len() > 1) {
+            let halved = last.chunks(2).map(|pair| pair.iter().skip(1).fold(pair[0], |sum, one| sum.around(one)));
+            let halved = halved.collect();
+            levels.push(halved);
+        }
+        Self { segments: surface.segments.len(), origin, levels }
+    }
+
+    /// The segments whose boxes meet another, in order along the surface.
+    pub(super) fn meeting(&self, other: &Box2) -> Vec<usize> {
+        let mut found = Vec::new();
+        let mut open = Vec::from_iter((self.segments > 0).then(|| (self.levels.len() - 1, 0)));
+        while let Some((level, number)) = open.pop() {
+            match self.levels[level][number].meets(other) {
+                true if level == 0 => found.push(number),
+                true => {
+                    let below = self.levels[level - 1].len();
+                    let halves = [2 * number + 1, 2 * number].into_iter().filter(|&number| number < below);
+                    open.extend(halves.map(|number| (level - 1, number)));
+                }
+                false => {}
+            }
+        }
+        found
+    }
+
+    /// The first of the segments by their distance from a point: what most points need, and found without a heap. Boxes
+    /// and segments (level 0) that do not count are passed over.
+    pub(super) fn nearest_one(
+        &self,
+        slave: &SlavePoint,
+        surface: &Surface,
+        x: &Configuration,
+        counts: impl Fn(usize, usize) -> bool,
+    ) -> Option<usize> {
+        let exact = |number: usize| distance_from_segment(slave, &surface.segments[number], x);
+        let point = slave.offset(self.origin, x);
+        let mut nearest = None;
+        if self.segments > 0 {
+            self.descend(point, &exact, &counts, (self.levels.len() - 1, 0), &mut nearest);
+        }
+        nearest.map(|(_, number)| number)
+    }
+
+    /// Look for a nearer segment in a box, in the nearer half first; `nearest` is the best so far and its distance.
+    fn descend(
+        &self,
+        point: Vector2<f64>,
+        exact: &impl Fn(usize) -> f64,
+        counts: &impl Fn(usize, usize) -> bool,
+        (level, number): (usize, usize),
+        nearest: &mut Option<(f64, usize)>,
+    ) {
+        if !counts(level, number) {
+            return;
+        }
+        if level == 0 {
+            let found = (exact(number), number);
+            if nearest.is_none_or(|nearest| found < nearest) {
+                *nearest = Some(found);
+            }
+            return;
+        }
+        let below = &self.levels[level - 1];
+        let first = (below[2 * number].distance(point), 2 * number);
+        let second = below.get(2 * number + 1).map_or(f64::INFINITY, |half| half.distance(point));
+        let second = (second, 2 * number + 1);
+        let halves = if second < first { [second, first] } else { [first, second] };
+        for (distance, half) in halves {
+            if half < below.len() && nearest.is_none_or(|(best, _)| distance <= best) {
+                self.descend(point, exact, counts, (level - 1, half), nearest);
+            }
+        }
+    }
+
+    /// The segments by their distance from a point, the nearest first; of equally near ones the first along the surface.
+    pub(super) fn nearest(
+        &self,
+        slave: &SlavePoint,
+        surface: &Surface,
+        x: &Configuration,
+    ) -> impl Iterator<Item = usize> {
+        let point = slave.offset(self.origin, x);
+        let mut open = BinaryHeap::new();
+        if self.segments > 0 {
+            open.push(Candidate { distance: 0.0, level: self.levels.len() - 1, number: 0, exact: false });
+        }
+        std::iter::from_fn(move || {
+            while let Some(Candidate { level, number, exact, .. }) = open.pop() {
+                if exact {
+                    return Some(number);
+                }
+                if level == 0 {
+                    let distance = distance_from_segment(slave, &surface.segments[number], x);
+                    open.push(Candidate { distance, level, number, exact: true });
+                    continue;
+                }
+                let below = &self.levels[level - 1];
+                for number in (2 * number..2 * number + 2).take_while(|&number| number < below.len()) {
+                    let distance = below[number].distance(point);
+                    open.push(Candidate { distance, level: level - 1, number, exact: false });
+                }
+            }
+            None
+        })
+    }
+}
+
+/// Squared distance of a point from a segment; of a parabola from the two chords on either side of its middle.
+fn distance_from_segment(slave: &SlavePoint, segment: &Segment, x: &Configuration) -> f64 {
+    let from_chord = |[a, b]: [usize; 2]| {
+        let (along, offset) = (x.between(a, b), slave.offset(a, x));
+        let xi = (offset.dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+        (offset - along * xi).norm_squared()
+    };
+    let [a, b] = segment.ends;
+    segment.middle.map_or_else(|| from_chord([a, b]), |m| from_chord([a, m]).min(from_chord([m, b])))
+}
+
+/// A box or segment that may be the nearest; the heap has the nearest on top.
+struct Candidate {
+    /// Squared distance of the box, or, if `exact`, of the segment itself
+    distance: f64,
+    level: usize,
+    number: usize,
+    exact: bool,
+}
+
+impl Ord for Candidate {
+    /// Boxes come before segments at the same distance: one of theirs may be the first along the surface.
+    fn cmp(&self, other: &Self) -> Ordering {
+        let by_distance = other.distance.total_cmp(&self.distance);
+        by_distance.then_with(|| other.exact.cmp(&self.exact)).then_with(|| other.number.cmp(&self.number))
+    }
+}
+
+impl PartialOrd for Candidate {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Candidate {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Candidate {}

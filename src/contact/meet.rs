@@ -1,0 +1,144 @@
+//! Where the points of a pair meet the master, and what follows from it: how a contact starts, how fast it slips, how deep the
+//! sides lie in each other.
+
+use std::collections::BTreeSet;
+
+use nalgebra::Vector2;
+
+use super::closed::nodal_forces;
+use super::kinematics::{Kinematics, Meeting, kinematics};
+use super::master::Master;
+use super::pair::{ContactPair, InitialTraction, Reverse};
+use super::search::Index;
+use super::state::ContactState;
+use super::surface::SlavePoint;
+use crate::laws::friction::FrictionState;
+use crate::mesh::configuration::Configuration;
+
+impl ContactPair {
+    /// Start closed: from now on every point's gap is counted so that its given pressure acts in the configuration `x`.
+    ///
+    /// ```text
+    /// p = p_init + α_n (g_x − g)        g_x: gap between the surfaces in the configuration x
+    /// ```
+    /// Under the augmented Lagrangian p_init is the first multiplier instead.
+    ///
+    /// # Errors
+    /// The number of the first point that no part of the master faces.
+    pub fn start_closed(&mut self, initial: Vec<InitialTraction>, x: &Configuration) -> Result<(), usize> {
+        let met = self.meetings(x);
+        for (k, (slave, met)) in self.points.iter_mut().zip(met).enumerate() {
+            let give = if self.penetration.is_some() { 0.0 } else { initial[k].pressure / self.alpha_n };
+            slave.touch = met.ok_or(k)?.gap + give;
+        }
+        self.initial = Some(initial);
+        Ok(())
+    }
+
+    /// Begin a shrink fit: what the surfaces overlap in the configuration `x` counts bit by bit.
+    ///
+    /// ```text
+    /// g(t) = g_surfaces + overlap × (1 − share of the first step that has passed)
+    /// ```
+    pub fn start_fitting(&mut self, x: &Configuration) {
+        let met = self.meetings(x);
+        for (slave, met) in self.points.iter_mut().zip(met) {
+            slave.overlap = met.map_or(0.0, |met| (slave.touch - met.gap).max(0.0));
+        }
+    }
+
+    /// States at the start of a run: each point projected in the configuration `x`, friction at rest or, in a contact
+    /// that starts closed, under its initial tractions.
+    pub fn initial_states(&self, x: &Configuration) -> Vec<ContactState> {
+        let state = |(k, (slave, met)): (usize, (&SlavePoint, Option<Meeting>))| {
+            let mut friction = self.law(slave).initial_state();
+            if let Some(InitialTraction { pressure, traction }) = self.initial.as_ref().map(|initial| initial[k]) {
+                friction = FrictionState { pressure, traction, ..friction };
+            }
+            let length = met.as_ref().map_or_else(|| slave.current_length(x), |met| met.kinematics.length);
+            let (gap, foot) = met.map(|met| (slave.gap(met.gap, 1.0), met.foot)).unzip();
+            let multiplier = if self.penetration.is_some() { friction.pressure } else { 0.0 };
+            ContactState { friction, foot, length, gap: gap.unwrap_or(0.0), slip: 0.0, multiplier }
+        };
+        self.points.iter().zip(self.meetings(x)).enumerate().map(state).collect()
+    }
+
+    /// What the initial tractions put on the nodes in the configuration `x` [F].
+    pub fn initial_forces(&self, x: &Configuration) -> Vec<(usize, Vector2<f64>)> {
+        let met = self.meetings(x).into_iter().zip(self.initial.iter().flatten());
+        let forces = |(met, initial): (Option<Meeting>, &InitialTraction)| {
+            let InitialTraction { pressure, traction } = *initial;
+            met.map_or_else(Vec::new, |met| nodal_forces(&met.kinematics, pressure, traction))
+        };
+        met.flat_map(forces).collect()
+    }
+
+    /// Where every point meets the master, if that faces it, the gap being that of the surfaces.
+    fn meetings(&self, x: &Configuration) -> Vec<Option<Meeting>> {
+        let index = Index::new(&self.master, x);
+        match (&self.mortar, &self.master) {
+            (Some(mortar), Master::Mesh(surface)) => {
+                let overlaps = mortar.overlaps(surface, &index, x);
+                (0..self.points.len()).map(|k| mortar.kinematics(k, surface, &overlaps, None, x)).collect()
+            }
+            (Some(mortar), Master::Rigid(body)) => {
+                (0..self.points.len()).map(|k| mortar.on_rigid(k, body, x, x)).collect()
+            }
+            _ => {
+                let meet = |slave: &SlavePoint| {
+                    let projection = index.project(slave, None, x)?;
+                    let kinematics = kinematics(slave, &self.master, &projection, None, x);
+                    Some(Meeting { kinematics, gap: projection.gap, foot: projection.foot })
+                };
+                self.points.iter().map(meet).collect()
+            }
+        }
+    }
+
+    /// The master node that lies deepest in slave edges with closed points: place, depth [L], and depth over the length of
+    /// that edge [-].
+    pub fn deepest_master_node(&self, states: &[ContactState], x: &Configuration) -> Option<(Vector2<f64>, f64, f64)> {
+        let Some(Reverse { nodes, slave: Master::Mesh(slave) }) = &self.reverse else { return None };
+        let closed = self.points.iter().zip(states).filter(|(_, state)| state.friction.pressure > 0.0);
+        let closed =
+            closed.flat_map(|(point, _)| &point.length).flat_map(|share| share.tangent.iter().map(|(node, _)| *node));
+        let closed: BTreeSet<usize> = closed.collect();
+        if closed.is_empty() {
+            return None;
+        }
+        let index = Index::new(&self.reverse.as_ref()?.slave, x);
+        let depth = |point: &SlavePoint| {
+            let met = index.project(point, None, x).filter(|met| met.gap < 0.0)?;
+            let [a, b] = slave.segments[met.foot.segment].ends;
+            let share = -met.gap / x.between(a, b).norm();
+            // What is farther in than an edge is long lies behind another part of the body.
+            (share < 1.0 && closed.contains(&a) && closed.contains(&b)).then(|| (point.at(x), -met.gap, share))
+        };
+        nodes.iter().filter_map(depth).max_by(|a, b| a.2.total_cmp(&b.2))
+    }
+
+    /// Rate at which each point slips along +s under nodal velocities, the variation of Δu_t; 0 where nothing faces it
+    /// [L/T].
+    pub fn slip_rates(&self, states: &[ContactState], x: &Configuration, velocity: &[f64]) -> Vec<f64> {
+        let index = Index::new(&self.master, x);
+        let rate = |k: Kinematics| {
+            let dofs = k.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
+            dofs.zip(&k.dslip).map(|(dof, dslip)| velocity[dof] * dslip).sum()
+        };
+        if let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) {
+            let overlaps = mortar.overlaps(surface, &index, x);
+            let met =
+                |k| mortar.kinematics(k, surface, &overlaps, mortar.weights(k, surface, &overlaps, x).as_ref(), x);
+            return (0..self.points.len()).map(|k| met(k).map_or(0.0, |met| rate(met.kinematics))).collect();
+        }
+        if let (Some(mortar), Master::Rigid(body)) = (&self.mortar, &self.master) {
+            let met = |k| mortar.on_rigid(k, body, x, x);
+            return (0..self.points.len()).map(|k| met(k).map_or(0.0, |met| rate(met.kinematics))).collect();
+        }
+        let slips = |(slave, state): (&SlavePoint, &ContactState)| {
+            let projection = index.project(slave, state.foot, x);
+            projection.map_or(0.0, |projection| rate(kinematics(slave, &self.master, &projection, state.foot, x)))
+        };
+        self.points.iter().zip(states).map(slips).collect()
+    }
+}
