@@ -37,7 +37,7 @@
 //! | q | `traction` | resists positive slip; the traction on the slave is p n − q s |
 //!
 //! Surfaces in the mesh have their body on the left; the segments of a master run along s, so its body is on the right.
-//! Thickness is 1, units are any consistent set.
+//! The plane is a slice of depth 1 ([`mesh::section`]), units are any consistent set.
 //!
 //! # Invariants
 //!

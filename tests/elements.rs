@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::f64::consts::PI;
 
 use fecontact::laws::bulk::{CauchyStress, ElasticConstants, InvertedElement, Material, MaterialParameters};
+use fecontact::mesh::section::Section;
 use fecontact::mesh::shape::{ElementKind, edge_values, gauss};
 use fecontact::model::element::{ElementError, SolidElement, consistent_mass, lumped_mass};
 use nalgebra::{DMatrix, DVector, Matrix2, Rotation2, Vector2};
@@ -80,7 +81,9 @@ impl Patch {
                 })
                 .collect();
             let positions: Vec<_> = connectivity.iter().map(|&a| patch.nodes[a]).collect();
-            patch.elements.push((SolidElement::new(kind, f_bar, &positions).unwrap(), connectivity));
+            patch
+                .elements
+                .push((SolidElement::new(kind, f_bar, Section::PlaneStrain, &positions).unwrap(), connectivity));
         }
         patch
     }
@@ -197,7 +200,7 @@ fn the_inside_of_a_patch_follows_its_boundary() {
 fn rigid_motion_causes_no_force() {
     for (kind, f_bar) in VARIANTS {
         let positions = distorted_element(kind);
-        let element = SolidElement::new(kind, f_bar, &positions).unwrap();
+        let element = SolidElement::new(kind, f_bar, Section::PlaneStrain, &positions).unwrap();
         for material in materials().skip(1) {
             for angle in [0.0, 1e-8, 0.3, PI / 2.0, 3.0, -2.2] {
                 let u: Vec<_> = positions.iter().map(|x| rotation(angle) * x - x + Vector2::new(5.0, -3.0)).collect();
@@ -214,7 +217,7 @@ fn rigid_motion_causes_no_force() {
 #[test]
 fn tangent_and_energy_agree_with_the_force_by_differences() {
     for (kind, f_bar) in VARIANTS {
-        let element = SolidElement::new(kind, f_bar, &distorted_element(kind)).unwrap();
+        let element = SolidElement::new(kind, f_bar, Section::PlaneStrain, &distorted_element(kind)).unwrap();
         let (nodes, h) = (kind.nodes(), 1e-6);
         let u = wild(nodes, 0.04);
         for material in materials() {
@@ -252,7 +255,7 @@ fn forces_balance_and_turn_with_the_element() {
     let q = rotation(1.1);
     for (kind, f_bar) in VARIANTS {
         let positions = distorted_element(kind);
-        let element = SolidElement::new(kind, f_bar, &positions).unwrap();
+        let element = SolidElement::new(kind, f_bar, Section::PlaneStrain, &positions).unwrap();
         let u = wild(kind.nodes(), 0.04);
         let turned: Vec<_> = u.iter().zip(&positions).map(|(u, x)| q * (x + u) - x).collect();
         for material in materials().skip(1) {
@@ -276,7 +279,7 @@ fn forces_balance_and_turn_with_the_element() {
 fn stresses_are_those_that_cause_the_forces() {
     for (kind, f_bar) in VARIANTS {
         let positions = distorted_element(kind);
-        let element = SolidElement::new(kind, f_bar, &positions).unwrap();
+        let element = SolidElement::new(kind, f_bar, Section::PlaneStrain, &positions).unwrap();
         let u = wild(kind.nodes(), 0.04);
         let x: Vec<_> = positions.iter().zip(&u).map(|(x, u)| x + u).collect();
         for material in materials().skip(1) {
@@ -301,7 +304,7 @@ fn stresses_are_those_that_cause_the_forces() {
 fn only_the_three_rigid_motions_are_free() {
     for (kind, f_bar) in VARIANTS {
         let nodes = kind.nodes();
-        let element = SolidElement::new(kind, f_bar, &distorted_element(kind)).unwrap();
+        let element = SolidElement::new(kind, f_bar, Section::PlaneStrain, &distorted_element(kind)).unwrap();
         let (mut force, mut tangent) = (vec![0.0; 2 * nodes], vec![0.0; 4 * nodes * nodes]);
         let at_rest = vec![Vector2::zeros(); nodes];
         element.force_and_tangent(&*neo_hookean(E, 0.3), &at_rest, &mut force, &mut tangent).unwrap();
@@ -338,15 +341,15 @@ fn mass_is_complete_and_carries_rigid_motion() {
     let density = 7.8;
     for kind in KINDS {
         let positions = distorted_element(kind);
-        let total = density * SolidElement::new(kind, false, &positions).unwrap().volume();
-        let consistent = consistent_mass(kind, &positions, density).unwrap();
-        let lumped = lumped_mass(kind, &positions, density).unwrap();
+        let total = density * SolidElement::new(kind, false, Section::PlaneStrain, &positions).unwrap().volume();
+        let consistent = consistent_mass(kind, Section::PlaneStrain, &positions, density).unwrap();
+        let lumped = lumped_mass(kind, Section::PlaneStrain, &positions, density).unwrap();
         assert!((consistent.sum() - total).abs() < 1e-14 * total, "{kind:?}");
         assert!((lumped.sum() - total).abs() < 1e-14 * total, "{kind:?}");
         assert!(lumped.min() > 0.0, "{kind:?}: {lumped}");
         assert!((&consistent - consistent.transpose()).amax() < 1e-16 * total);
         assert!(consistent.symmetric_eigenvalues().min() > 0.0, "{kind:?}");
-        assert_eq!(lumped_mass(kind, &positions, 0.0).unwrap().amax(), 0.0);
+        assert_eq!(lumped_mass(kind, Section::PlaneStrain, &positions, 0.0).unwrap().amax(), 0.0);
     }
 }
 
@@ -360,7 +363,7 @@ fn rotating_rectangle_has_its_kinetic_energy() {
         let mut energy = 0.0;
         for (_, connectivity) in &patch.elements {
             let positions: Vec<_> = connectivity.iter().map(|&a| patch.nodes[a]).collect();
-            let mass = consistent_mass(kind, &positions, density).unwrap();
+            let mass = consistent_mass(kind, Section::PlaneStrain, &positions, density).unwrap();
             for velocity in [0, 1].map(|i| DVector::from_iterator(kind.nodes(), positions.iter().map(|x| x[i]))) {
                 energy += 0.5 * velocity.dot(&(mass.clone() * &velocity));
             }
@@ -375,17 +378,17 @@ fn what_cannot_be_is_reported() {
     let mut clockwise = square;
     clockwise.reverse();
     for (positions, jacobian) in [(clockwise, -0.5), ([Vector2::zeros(); 4], 0.0)] {
-        let error = SolidElement::new(ElementKind::Q4, false, &positions).unwrap_err();
+        let error = SolidElement::new(ElementKind::Q4, false, Section::PlaneStrain, &positions).unwrap_err();
         assert_eq!(error, ElementError::Degenerate { jacobian });
-        assert!(consistent_mass(ElementKind::Q4, &positions, 1.0).is_err());
+        assert!(consistent_mass(ElementKind::Q4, Section::PlaneStrain, &positions, 1.0).is_err());
     }
     for kind in [ElementKind::T3, ElementKind::T6, ElementKind::Q8, ElementKind::Q9] {
-        let error = SolidElement::new(kind, true, &distorted_element(kind)).unwrap_err();
+        let error = SolidElement::new(kind, true, Section::PlaneStrain, &distorted_element(kind)).unwrap_err();
         assert_eq!(error, ElementError::FBarNeedsQ4 { kind });
     }
     let mirrored: Vec<_> = square.iter().map(|x| Vector2::new(-2.5 * x.x, 0.0)).collect();
     for f_bar in [false, true] {
-        let element = SolidElement::new(ElementKind::Q4, f_bar, &square).unwrap();
+        let element = SolidElement::new(ElementKind::Q4, f_bar, Section::PlaneStrain, &square).unwrap();
         let InvertedElement { jacobian } = element.force(&*neo_hookean(E, 0.3), &mirrored, &mut [0.0; 8]).unwrap_err();
         assert!((jacobian + 1.5).abs() < 1e-14, "{jacobian}");
         assert!(element.stresses(&*neo_hookean(E, 0.3), &mirrored).is_err());

@@ -3,6 +3,7 @@
 mod common;
 
 use common::{Blocks, Finished, Record, close, finish, model};
+use fecontact::mesh::section::Section;
 use fecontact::mesh::shape::ElementKind;
 use fecontact::model::element::{consistent_mass, redistributed};
 use fecontact::output::warnings::Warnings;
@@ -144,7 +145,7 @@ fn redistributed_mass_keeps_mass_and_leaves_nothing_behind() {
         (ElementKind::Q4, square.to_vec(), vec![2]),
         (ElementKind::Q8, eight, vec![0, 1, 4]),
     ] {
-        let mass = consistent_mass(kind, &positions, 2.0).expect("an element");
+        let mass = consistent_mass(kind, Section::PlaneStrain, &positions, 2.0).expect("an element");
         let moved = redistributed(mass.clone(), |node| massless.contains(&node));
         close("mass", moved.sum(), mass.sum(), 1e-14);
         close("symmetry", (&moved - moved.transpose()).amax(), 0.0, 1e-15);

@@ -19,7 +19,6 @@ use crate::contact::pair::{ContactPair, Reverse};
 use crate::contact::rigid::{Circle, Plane, Polyline, Rigid};
 use crate::contact::surface::{SlavePoint, Surface, gauss_points, in_order, lone_point, nodal_points};
 use crate::laws::bulk::Material;
-use crate::mesh::configuration::Configuration;
 use crate::mesh::shape;
 use crate::mesh::ties::Ties;
 use crate::mesh::{Edge, Group, Mesh, gmsh};
@@ -50,8 +49,15 @@ type Checked<T> = Result<T, Complaint>;
 /// # Errors
 /// [`CaseError`] names file, key, value and what to do.
 pub fn build(case: &Case, path: &Path) -> Result<Model, CaseError> {
-    let mesh = read_mesh(case, path)?;
-    build_on(case, mesh).map_err(|complaint| complaint.in_file(path))
+    build_on(case, read_mesh(case, path)?, path)
+}
+
+/// As [`build`], on a mesh at hand.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_on(case: &Case, mesh: Mesh, path: &Path) -> Result<Model, CaseError> {
+    checked(case, mesh).map_err(|complaint| complaint.in_file(path))
 }
 
 fn read_mesh(case: &Case, path: &Path) -> Result<Mesh, CaseError> {
@@ -64,7 +70,7 @@ fn read_mesh(case: &Case, path: &Path) -> Result<Mesh, CaseError> {
     }
 }
 
-fn build_on(case: &Case, mesh: Mesh) -> Checked<Model> {
+fn checked(case: &Case, mesh: Mesh) -> Checked<Model> {
     names::check(case)?;
     let (bodies, body_of_element) = bodies(case, &mesh)?;
     let solids = solids(case, &mesh, &bodies, &body_of_element)?;
@@ -237,8 +243,8 @@ fn solids(case: &Case, mesh: &Mesh, bodies: &[Body], body_of_element: &[usize]) 
         let f_bar = case.bodies[name].element == Formulation::FBar;
         let positions: Vec<Vector2<f64>> = element.nodes.iter().map(|&node| mesh.nodes[node]).collect();
         let complain = |error| Complaint::new(format!("bodies.{name}.element"), error);
-        solids.push(SolidElement::new(element.kind, f_bar, &positions).map_err(complain)?);
-        consistent_mass(element.kind, &positions, 1.0).map_err(complain)?;
+        solids.push(SolidElement::new(element.kind, f_bar, mesh.section, &positions).map_err(complain)?);
+        consistent_mass(element.kind, mesh.section, &positions, 1.0).map_err(complain)?;
     }
     Ok(solids)
 }
@@ -321,7 +327,7 @@ fn contact(name: &str, input: &ContactInput, model: &Model) -> Checked<ContactPa
             let message = "has no meaning together with `initial`, which closes every gap and overlap: leave one out";
             return Err(Complaint::new(format!("{place}.shrink_fit"), message));
         }
-        pair.start_fitting(&Configuration::undeformed(&model.mesh.nodes));
+        pair.start_fitting(&model.mesh.undeformed());
     }
     Ok(pair)
 }
@@ -862,7 +868,8 @@ fn edge_shares(mesh: &Mesh, edges: &[Edge]) -> Vec<(usize, f64, Vector2<f64>)> {
             let sum = |weights: &[f64]| {
                 nodes.iter().zip(weights).map(|(&node, w)| mesh.nodes[node] * *w).sum::<Vector2<f64>>()
             };
-            let (position, stretch) = (sum(&values), sum(&slopes).norm());
+            let position = sum(&values);
+            let stretch = sum(&slopes).norm() * mesh.section.weight(position);
             shares.extend(nodes.iter().zip(&values).map(|(&node, n)| (node, weight * n * stretch, position)));
         }
     }
@@ -880,12 +887,14 @@ fn absorbers(model: &Model, edges: &[Edge]) -> Vec<Absorber> {
             let values = shape::edge_values(nodes.len(), xi);
             let slopes = shape::edge_derivatives(nodes.len(), xi);
             let along: Vector2<f64> = nodes.iter().zip(&slopes).map(|(&node, w)| model.mesh.nodes[node] * *w).sum();
+            let place = nodes.iter().zip(&values).map(|(&node, n)| model.mesh.nodes[node] * *n).sum();
+            let depth = model.mesh.section.weight(place);
             let s = along.normalize();
             let n = Vector2::new(s.y, -s.x);
             let resistance = n * n.transpose() * impedance(material.stiffness())
                 + s * s.transpose() * impedance(material.shear_modulus());
             for (&node, value) in nodes.iter().zip(values) {
-                *total.entry(node).or_default() += resistance * (weight * value * along.norm());
+                *total.entry(node).or_default() += resistance * (weight * value * along.norm() * depth);
             }
         }
     }
@@ -950,7 +959,7 @@ fn stabilization(place: &str, input: &StepInput, scheme: Scheme, model: &Model) 
     for body in &model.bodies {
         let coefficient = share * body.material.stiffness() * input.duration / body.nodes.len() as f64;
         let dofs = body.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
-        dofs.for_each(|dof| coefficients[dof] = coefficient);
+        dofs.for_each(|dof| coefficients[dof] = coefficient * model.mesh.section.weight(model.mesh.nodes[dof / 2]));
     }
     Ok(coefficients)
 }

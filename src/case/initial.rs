@@ -4,7 +4,6 @@ use super::along::{defined, position, profile};
 use super::error::Complaint;
 use super::file::{Case, InitialInput};
 use crate::contact::pair::{ContactPair, InitialTraction};
-use crate::mesh::configuration::Configuration;
 use crate::model::Model;
 
 /// An initial traction may pass the strength μ p by this share: numbers are written with a few digits.
@@ -87,7 +86,7 @@ pub fn close(pair: &mut ContactPair, input: &InitialInput, model: &Model, place:
         }
         initial.push(InitialTraction { pressure, traction });
     }
-    let undeformed = Configuration::undeformed(&model.mesh.nodes);
+    let undeformed = model.mesh.undeformed();
     let closed = pair.start_closed(initial, &undeformed);
     closed.map_err(|point| {
         let at = pair.points[point].at(&undeformed);
@@ -102,7 +101,7 @@ pub fn close(pair: &mut ContactPair, input: &InitialInput, model: &Model, place:
 pub fn prestress(case: &Case, model: &Model) -> Vec<f64> {
     let balanced = |pair: &&ContactPair| case.contacts[&pair.name].initial.as_ref().is_some_and(|i| i.balanced);
     let mut forces = Vec::new();
-    let undeformed = Configuration::undeformed(&model.mesh.nodes);
+    let undeformed = model.mesh.undeformed();
     for pair in model.contacts.iter().filter(balanced) {
         forces.resize(model.dofs(), 0.0);
         for (node, force) in pair.initial_forces(&undeformed) {

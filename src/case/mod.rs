@@ -16,7 +16,7 @@ mod report;
 mod start;
 mod supported;
 
-pub use build::build;
+pub use build::{build, build_on};
 pub use error::CaseError;
 pub use method::choices;
 pub use report::report;

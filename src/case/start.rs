@@ -11,7 +11,6 @@ use crate::contact::pair::ContactPair;
 use crate::contact::rigid::Rigid;
 use crate::contact::surface::SlavePoint;
 use crate::mesh::Mesh;
-use crate::mesh::configuration::Configuration;
 use crate::model::Model;
 
 /// Round-off of a gap, as a share of the positions that it is the difference of.
@@ -92,7 +91,7 @@ struct Gaps {
 
 impl Gaps {
     fn of(model: &Model, pair: &ContactPair) -> Self {
-        let x = Configuration::undeformed(&model.mesh.nodes);
+        let x = model.mesh.undeformed();
         let reach = match &pair.master {
             Master::Rigid(Rigid::Circle(circle)) => circle.radius + circle.centre.norm(),
             _ => 0.0,

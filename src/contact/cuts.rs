@@ -36,6 +36,34 @@ pub struct Overlaps(pub(super) Vec<Vec<Overlap>>);
 
 /// Cut one slave edge where master nodes project on it; of several segments that face a part the nearest counts.
 pub(super) fn cut(edge: &[usize], surface: &Surface, index: &Index, x: &Configuration) -> Vec<Overlap> {
+    let candidates = facing(edge, surface, index, x);
+    let mut cuts: Vec<Cut> = candidates.iter().flat_map(|overlap| overlap.ends).collect();
+    if edge.len() == 3 {
+        cuts.push(Cut { xi: 0.0, node: None });
+    }
+    cuts.sort_by(|a, b| a.xi.total_cmp(&b.xi));
+    let distance = |overlap: &Overlap, xi: f64| {
+        let values = shape::edge_values(edge.len(), xi);
+        let [a, b] = surface.segments[overlap.segment].ends;
+        edge.iter()
+            .zip(values)
+            .map(|(&node, w)| w * x.between(a, node))
+            .sum::<Vector2<f64>>()
+            .dot(&normal_of(x.between(a, b).normalize()))
+            .abs()
+    };
+    let mut overlaps: Vec<Overlap> = Vec::new();
+    for pair in cuts.windows(2).filter(|pair| pair[0].xi < pair[1].xi) {
+        let middle = 0.5 * (pair[0].xi + pair[1].xi);
+        let facing = candidates.iter().filter(|overlap| overlap.ends[0].xi < middle && middle < overlap.ends[1].xi);
+        let nearest = facing.min_by(|a, b| distance(a, middle).total_cmp(&distance(b, middle)));
+        overlaps.extend(nearest.map(|overlap| Overlap { segment: overlap.segment, ends: [pair[0], pair[1]] }));
+    }
+    overlaps
+}
+
+/// The part of a slave edge that each segment around it faces, whatever lies in between.
+fn facing(edge: &[usize], surface: &Surface, index: &Index, x: &Configuration) -> Vec<Overlap> {
     let along = x.between(edge[0], edge[1]);
     let reach = REACH * along.norm();
     let normal = -normal_of(along.normalize());
@@ -63,27 +91,5 @@ pub(super) fn cut(edge: &[usize], surface: &Surface, index: &Index, x: &Configur
             candidates.push(Overlap { segment, ends: [first, last] });
         }
     }
-    let mut cuts: Vec<Cut> = candidates.iter().flat_map(|overlap| overlap.ends).collect();
-    if edge.len() == 3 {
-        cuts.push(Cut { xi: 0.0, node: None });
-    }
-    cuts.sort_by(|a, b| a.xi.total_cmp(&b.xi));
-    let distance = |overlap: &Overlap, xi: f64| {
-        let values = shape::edge_values(edge.len(), xi);
-        let [a, b] = surface.segments[overlap.segment].ends;
-        edge.iter()
-            .zip(values)
-            .map(|(&node, w)| w * x.between(a, node))
-            .sum::<Vector2<f64>>()
-            .dot(&normal_of(x.between(a, b).normalize()))
-            .abs()
-    };
-    let mut overlaps: Vec<Overlap> = Vec::new();
-    for pair in cuts.windows(2).filter(|pair| pair[0].xi < pair[1].xi) {
-        let middle = 0.5 * (pair[0].xi + pair[1].xi);
-        let facing = candidates.iter().filter(|overlap| overlap.ends[0].xi < middle && middle < overlap.ends[1].xi);
-        let nearest = facing.min_by(|a, b| distance(a, middle).total_cmp(&distance(b, middle)));
-        overlaps.extend(nearest.map(|overlap| Overlap { segment: overlap.segment, ends: [pair[0], pair[1]] }));
-    }
-    overlaps
+    candidates
 }

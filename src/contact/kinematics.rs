@@ -144,17 +144,7 @@ fn on_surface(
     if path.is_empty() {
         return k;
     }
-    for (j, start, end) in path {
-        let segment = &surface.segments[j];
-        let points = if segment.is_straight() { 1 } else { 4 };
-        for (at, weight) in shape::gauss(points) {
-            let slope = segment.slope(start + 0.5 * (1.0 + at) * (end - start));
-            let along = x.combine(&slope);
-            let share = 0.5 * weight * (end - start);
-            k.slip += share * along.norm();
-            k.vary(&slope, along.normalize() * share, |k| &mut k.dslip);
-        }
-    }
+    k.slide(surface, &path, x);
     k.dslip += dfoot * length;
     k
 }
@@ -170,6 +160,21 @@ fn slides(surface: &Surface, path: &Path, projection: &Projection, x: &Configura
 }
 
 impl Kinematics {
+    /// ∫ J dξ along a path, and ∫ s·δx′ dξ.
+    fn slide(&mut self, surface: &Surface, path: &Path, x: &Configuration) {
+        for &(j, start, end) in path {
+            let segment = &surface.segments[j];
+            let points = if segment.is_straight() { 1 } else { 4 };
+            for (at, weight) in shape::gauss(points) {
+                let slope = segment.slope(start + 0.5 * (1.0 + at) * (end - start));
+                let along = x.combine(&slope);
+                let share = 0.5 * weight * (end - start);
+                self.slip += share * along.norm();
+                self.vary(&slope, along.normalize() * share, |k| &mut k.dslip);
+            }
+        }
+    }
+
     /// Count the slip of a point that nothing faced in the configuration `before`.
     pub fn count_from(&mut self, before: &Configuration, x: &Configuration) {
         let motions: Vec<Vector2<f64>> = self.nodes.iter().map(|&node| x.since(before, node)).collect();
@@ -215,7 +220,11 @@ impl Kinematics {
         }
         for share in &slave.length {
             let along = x.combine(&share.tangent);
-            k.vary(&share.tangent, along * (share.factor / along.norm()), |k| &mut k.dlength);
+            let depth = x.weight(&share.at);
+            k.vary(&share.tangent, along * (depth * share.factor / along.norm()), |k| &mut k.dlength);
+            if let Some(slope) = x.weight_slope(&share.at) {
+                k.vary(&share.at, slope * (share.factor * along.norm()), |k| &mut k.dlength);
+            }
         }
         k
     }

@@ -5,6 +5,7 @@ use nalgebra::Vector2;
 use super::dual::{Dual, DualVector};
 use super::surface::Segment;
 use crate::mesh::configuration::Configuration;
+use crate::mesh::section::Section;
 use crate::mesh::shape;
 
 /// A slave edge, ξ from −1 to 1, or a master segment, ξ from 0 to 1.
@@ -81,6 +82,8 @@ pub(super) fn root(shapes: impl Fn(f64) -> [Vec<f64>; 3], levels: &[f64], start:
 /// Positions of some nodes relative to the first, as unknowns.
 pub(super) struct Frame {
     pub nodes: Vec<usize>,
+    /// x of the first, and the section
+    origin: (Vector2<f64>, Section),
     pub positions: Vec<DualVector>,
 }
 
@@ -91,7 +94,20 @@ impl Frame {
             let at = x.between(nodes[0], node);
             DualVector { x: Dual::unknown(at.x, 2 * k, n), y: Dual::unknown(at.y, 2 * k + 1, n) }
         };
-        Self { positions: nodes.iter().enumerate().map(position).collect(), nodes }
+        let origin = (x.at(nodes[0]), x.section());
+        Self { positions: nodes.iter().enumerate().map(position).collect(), origin, nodes }
+    }
+
+    /// w of the section at a position; `None` where it is 1 everywhere.
+    pub fn depth(&self, position: &DualVector) -> Option<Dual> {
+        let (origin, section) = self.origin;
+        let at = origin + Vector2::new(position.x.value, position.y.value);
+        let slope = section.slope(at)?;
+        let mut depth = Dual::constant(section.weight(at));
+        for (rate, moved) in [(slope.x, &position.x), (slope.y, &position.y)] {
+            depth.accumulate(rate, &Dual { value: 0.0, gradient: moved.gradient.clone() });
+        }
+        Some(depth)
     }
 
     pub fn local(&self, node: usize) -> usize {

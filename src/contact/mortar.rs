@@ -19,6 +19,8 @@
 //!
 //! Against a rigid body nothing is cut, see [`super::mortar_rigid`].
 
+use std::iter::repeat;
+
 use nalgebra::{DVector, Vector2};
 use rayon::prelude::*;
 
@@ -133,13 +135,8 @@ impl Mortar {
             }
             slip = s.dot(&moved.minus(&mean));
         }
-        let vector = |d: &Dual| {
-            if d.gradient.is_empty() {
-                DVector::zeros(2 * frame.nodes.len())
-            } else {
-                DVector::from_vec(d.gradient.clone())
-            }
-        };
+        let dofs = 2 * frame.nodes.len();
+        let vector = |d: &Dual| DVector::from_iterator(dofs, d.gradient.iter().copied().chain(repeat(0.0)).take(dofs));
         let (normal, tangent) = (Vector2::new(n.x.value, n.y.value), Vector2::new(s.x.value, s.y.value));
         let kinematics = Kinematics {
             relative: relative.iter().map(|w| w.value).collect(),
@@ -194,7 +191,7 @@ impl Mortar {
     /// s_j: mean direction ∫ φ_j dx of the edges at a point.
     fn along(&self, point: usize, frame: &Frame) -> DualVector {
         let mut sum = DualVector::default();
-        for LengthShare { factor, tangent } in self.around[point].iter().flat_map(|at| &at.length) {
+        for LengthShare { factor, tangent, .. } in self.around[point].iter().flat_map(|at| &at.length) {
             for &(node, slope) in tangent {
                 sum.add_scaled(&Dual::constant(factor * slope), frame.at(node));
             }
@@ -251,8 +248,12 @@ impl Averages {
             let values = slave.values(&xi);
             let slope = slave.slope(&xi, frame);
             let (value, rate) = hat(edge.len(), a, xi.value);
-            let share = &(&slope.dot(&slope).sqrt() * &half.scaled(weight)) * &xi.map(value, rate);
             let position = frame.position(edge.iter().copied(), &values);
+            let share = &(&slope.dot(&slope).sqrt() * &half.scaled(weight)) * &xi.map(value, rate);
+            let share = match frame.depth(&position) {
+                Some(depth) => &share * &depth,
+                None => share,
+            };
             let master = Line::Segment(segment);
             let eta = master.coordinate(&position, along, 0.5, frame);
             self.length.accumulate(1.0, &share);

@@ -1,11 +1,13 @@
 //! Mortar contact with a rigid body: nothing is cut. g_j and Δu_t,j are the means of what the points of Gauss's rule between
-//! two nodes have, each with its own foot, and n_j is the direction of the mean of their normals.
+//! two nodes have, each with its own foot, and n_j is the direction of the mean of their normals. One function sums them up:
+//! every value comes with its variation.
 
 use nalgebra::{DVector, Vector2};
 
 use super::kinematics::{Kinematics, Meeting, past_rigid};
 use super::mortar::Mortar;
-use super::projection::tangent_of;
+use super::point::SlavePoint;
+use super::projection::{Projection, tangent_of};
 use super::rigid::Rigid;
 use crate::mesh::configuration::Configuration;
 
@@ -13,16 +15,8 @@ impl Mortar {
     /// Where a point meets a rigid body; `None` where that faces none of its surroundings. `before` is the committed
     /// configuration.
     pub fn on_rigid(&self, point: usize, body: &Rigid, before: &Configuration, x: &Configuration) -> Option<Meeting> {
-        let met = self.around[point].iter().filter_map(|slave| {
-            let projection = body.project(slave, x)?;
-            let from = body.project(slave, before).map(|was| was.foot);
-            let mut kinematics = past_rigid(slave, body, &projection, from, x);
-            if from.is_none() {
-                kinematics.count_from(before, x);
-            }
-            Some((projection, kinematics))
-        });
-        let met: Vec<_> = met.collect();
+        let around = self.around[point].iter();
+        let met: Vec<_> = around.filter_map(|slave| meet(slave, body, before, x)).collect();
         let foot = met.first()?.0.foot;
         let mut nodes: Vec<usize> = Vec::new();
         for node in met.iter().flat_map(|(_, k)| &k.nodes) {
@@ -74,4 +68,20 @@ impl Mortar {
             Kinematics { nodes, relative, normal, tangent, slip, length, dgap, dslip, drotation, dlength, drelative };
         Some(Meeting { kinematics, gap, foot })
     }
+}
+
+/// Where one point of Gauss's rule meets the body.
+fn meet(
+    slave: &SlavePoint,
+    body: &Rigid,
+    before: &Configuration,
+    x: &Configuration,
+) -> Option<(Projection, Kinematics)> {
+    let projection = body.project(slave, x)?;
+    let from = body.project(slave, before).map(|was| was.foot);
+    let mut kinematics = past_rigid(slave, body, &projection, from, x);
+    if from.is_none() {
+        kinematics.count_from(before, x);
+    }
+    Some((projection, kinematics))
 }

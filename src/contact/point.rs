@@ -9,11 +9,13 @@ use crate::mesh::shape;
 /// A linear combination of nodal positions, Σ w_a x_a.
 pub type Weights = Vec<(usize, f64)>;
 
-/// One edge's share of the length that a slave point stands for: `factor` × |Σ w_a x_a|.
+/// One edge's share of the length that a slave point stands for: `factor` × |Σ w_a x_a| × w of the section there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LengthShare {
     /// Quadrature weight
     pub factor: f64,
+    /// Shape functions of the quadrature point
+    pub at: Weights,
     /// Weights of the tangent vector dx/dξ
     pub tangent: Weights,
 }
@@ -23,9 +25,9 @@ pub struct LengthShare {
 pub struct SlavePoint {
     /// Shape functions of the point
     pub position: Weights,
-    /// Its current length is the sum of these shares (thickness 1) and `area` [L]
+    /// Its current length is the sum of these shares and `area` [L]
     pub length: Vec<LengthShare>,
-    /// Area of a point that belongs to no edge, as a point mass has it; it does not change (thickness 1) [L]
+    /// Area of a point that belongs to no edge, as a point mass has it, given as a whole; it does not change [L]
     pub area: f64,
     /// Gap between the surfaces at which the point touches: 0, but for a contact that starts closed under a given
     /// pressure [L]
@@ -56,7 +58,8 @@ impl SlavePoint {
 
     /// Current length that the point stands for [L].
     pub fn current_length(&self, x: &Configuration) -> f64 {
-        self.area + self.length.iter().map(|share| share.factor * x.combine(&share.tangent).norm()).sum::<f64>()
+        let weighted = |share: &LengthShare| share.factor * x.combine(&share.tangent).norm() * x.weight(&share.at);
+        self.area + self.length.iter().map(weighted).sum::<f64>()
     }
 
     /// Current length of the longest edge the point belongs to, if it belongs to any [L].
@@ -108,10 +111,12 @@ pub fn lone_point(node: usize, area: f64) -> SlavePoint {
 
 /// The point of an edge at ξ, that stands for a share of the edge's length.
 pub fn edge_point(edge: &[usize], xi: f64, weight: f64) -> SlavePoint {
-    let with = |values: Vec<f64>| edge.iter().copied().zip(values).collect();
+    let with = |values: Vec<f64>| -> Weights { edge.iter().copied().zip(values).collect() };
+    let position = with(shape::edge_values(edge.len(), xi));
+    let tangent = with(shape::edge_derivatives(edge.len(), xi));
     SlavePoint {
-        position: with(shape::edge_values(edge.len(), xi)),
-        length: vec![LengthShare { factor: weight, tangent: with(shape::edge_derivatives(edge.len(), xi)) }],
+        length: vec![LengthShare { factor: weight, at: position.clone(), tangent }],
+        position,
         area: 0.0,
         touch: 0.0,
         law: 0,

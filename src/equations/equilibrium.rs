@@ -68,12 +68,13 @@ impl Equilibrium {
         let mut lone = vec![true; count];
         for (e, element) in model.mesh.elements.iter().enumerate() {
             let body = &model.bodies[model.body_of_element[e]];
-            let modulus = body.material.stiffness();
+            let [solid, depth] = [model.solids[e].volume(), model.solids[e].mean_weight()];
+            let modulus = body.material.stiffness() * depth;
             let viscous = body.damping.stiffness * modulus;
             for &node in &element.nodes {
                 lone[node] = false;
                 let node = model.ties.original(node);
-                stiffness[node][0] += modulus * modulus * model.solids[e].volume();
+                stiffness[node][0] += modulus * modulus * (solid / depth);
                 stiffness[node][1] += modulus * modulus;
                 stiffness[node][2] += viscous * viscous;
             }
@@ -98,11 +99,7 @@ impl Equilibrium {
         Self {
             parts: bodies.chain(surfaces).chain(lone).collect(),
             stiffness,
-            edges: model
-                .contacts
-                .iter()
-                .map(|pair| longest_edge(pair, &Configuration::undeformed(&model.mesh.nodes)))
-                .collect(),
+            edges: model.contacts.iter().map(|pair| longest_edge(pair, &model.mesh.undeformed())).collect(),
             diagonal: model.mesh.diagonal(),
             contact_forces: vec![0.0; model.contacts.len()],
             contact_stiffness: vec![[0.0; 2]; count],

@@ -2,6 +2,8 @@
 
 use nalgebra::Vector2;
 
+use super::section::Section;
+
 /// Current nodal positions, kept as X and u.
 ///
 /// Differences and combinations are taken of X and of u before the two are added. The round-off of x itself, ε|X|, would
@@ -10,17 +12,50 @@ use nalgebra::Vector2;
 pub struct Configuration<'a> {
     reference: &'a [Vector2<f64>],
     displacement: Vec<Vector2<f64>>,
+    section: Section,
 }
 
 impl<'a> Configuration<'a> {
-    /// Positions X displaced by u, two dofs a node.
+    /// Positions X displaced by u, two dofs a node, in plane strain.
     pub fn new(reference: &'a [Vector2<f64>], displacement: &[f64]) -> Self {
-        Self { reference, displacement: displacement.chunks_exact(2).map(|u| Vector2::new(u[0], u[1])).collect() }
+        let displacement = displacement.chunks_exact(2).map(|u| Vector2::new(u[0], u[1])).collect();
+        Self { reference, displacement, section: Section::PlaneStrain }
     }
 
-    /// The reference configuration, u = 0.
+    /// The reference configuration, u = 0, in plane strain.
     pub fn undeformed(reference: &'a [Vector2<f64>]) -> Self {
-        Self { reference, displacement: vec![Vector2::zeros(); reference.len()] }
+        Self { reference, displacement: vec![Vector2::zeros(); reference.len()], section: Section::PlaneStrain }
+    }
+
+    /// The same in another section.
+    pub fn within(self, section: Section) -> Self {
+        Self { section, ..self }
+    }
+
+    /// The section it is in.
+    pub fn section(&self) -> Section {
+        self.section
+    }
+
+    /// w at a point, whose weights sum to one.
+    pub fn weight(&self, point: &[(usize, f64)]) -> f64 {
+        match self.section {
+            Section::PlaneStrain => 1.0,
+            section => section.weight(self.place(point)),
+        }
+    }
+
+    /// ∂w/∂x at a point; `None` where w is the same everywhere [1/L].
+    pub fn weight_slope(&self, point: &[(usize, f64)]) -> Option<Vector2<f64>> {
+        match self.section {
+            Section::PlaneStrain => None,
+            section => section.slope(self.place(point)),
+        }
+    }
+
+    /// x of a point, whose weights sum to one.
+    fn place(&self, point: &[(usize, f64)]) -> Vector2<f64> {
+        point.iter().map(|&(node, w)| self.at(node) * w).sum()
     }
 
     /// x of a node.

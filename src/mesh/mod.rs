@@ -8,6 +8,7 @@ pub mod configuration;
 mod error;
 pub mod gmsh;
 mod inline;
+pub mod section;
 pub mod shape;
 pub mod ties;
 
@@ -15,6 +16,8 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector2;
 
+use crate::mesh::configuration::Configuration;
+use crate::mesh::section::Section;
 use crate::mesh::shape::ElementKind;
 
 pub use error::{MeshError, UnknownGroup};
@@ -62,9 +65,21 @@ pub struct Mesh {
     pub element_tags: Vec<u64>,
     /// Named groups
     pub groups: BTreeMap<String, Group>,
+    /// What the plane stands for in space
+    pub section: Section,
 }
 
 impl Mesh {
+    /// The configuration x = X + u.
+    pub fn displaced(&self, displacement: &[f64]) -> Configuration<'_> {
+        Configuration::new(&self.nodes, displacement).within(self.section)
+    }
+
+    /// The reference configuration.
+    pub fn undeformed(&self) -> Configuration<'_> {
+        Configuration::undeformed(&self.nodes).within(self.section)
+    }
+
     /// The group of this name.
     ///
     /// # Errors

@@ -64,8 +64,10 @@ impl Expression {
             "x" => position.x,
             _ => position.y,
         };
-        let variables: Vec<f64> = self.0.var_names().iter().map(of).collect();
-        self.0.eval(&variables).unwrap_or(f64::NAN)
+        let names = self.0.var_names();
+        let mut values = [0.0; 3];
+        values.iter_mut().zip(names).for_each(|(value, name)| *value = of(name));
+        self.0.eval(&values[..names.len()]).unwrap_or(f64::NAN)
     }
 }
 

@@ -175,7 +175,7 @@ impl Model {
 
     /// The configuration x = X + u.
     pub fn configuration(&self, displacement: &[f64]) -> Configuration<'_> {
-        Configuration::new(&self.mesh.nodes, displacement)
+        self.mesh.displaced(displacement)
     }
 
     /// Whether some body has the viscous stress of Kelvin and Voigt.
@@ -195,7 +195,8 @@ impl Model {
         let Element { kind, nodes } = &self.mesh.elements[element];
         let positions: Vec<Vector2<f64>> = nodes.iter().map(|&node| self.mesh.nodes[node]).collect();
         let density = self.bodies[self.body_of_element[element]].material.density();
-        let mass = consistent_mass(*kind, &positions, density).expect("elements are checked when the model is built");
+        let mass = consistent_mass(*kind, self.mesh.section, &positions, density)
+            .expect("elements are checked when the model is built");
         redistributed(mass, |local| self.massless[nodes[local]])
     }
 
@@ -204,7 +205,8 @@ impl Model {
         let Element { kind, nodes } = &self.mesh.elements[element];
         let positions: Vec<Vector2<f64>> = nodes.iter().map(|&node| self.mesh.nodes[node]).collect();
         let density = self.bodies[self.body_of_element[element]].material.density();
-        lumped_mass(*kind, &positions, density).expect("elements are checked when the model is built")
+        lumped_mass(*kind, self.mesh.section, &positions, density)
+            .expect("elements are checked when the model is built")
     }
 
     /// The state at rest before the first increment.
@@ -221,11 +223,7 @@ impl Model {
             external: zero.clone(),
             damping: zero.clone(),
             reaction: zero.clone(),
-            contacts: self
-                .contacts
-                .iter()
-                .map(|pair| pair.initial_states(&Configuration::undeformed(&self.mesh.nodes)))
-                .collect(),
+            contacts: self.contacts.iter().map(|pair| pair.initial_states(&self.mesh.undeformed())).collect(),
             last_increment: None,
             step_start: Arc::new(StepStart { displacement: zero.clone(), reaction: zero }),
             energy: Energy::default(),

@@ -178,7 +178,7 @@ struct Place<'a> {
 
 fn contact_frame(model: &Model, state: &State, grid: &mut Grid) {
     let points_of = |pair: &ContactPair, x: &Configuration| pair.points.iter().map(|p| p.at(x)).collect::<Vec<_>>();
-    let undeformed = Configuration::undeformed(&model.mesh.nodes);
+    let undeformed = model.mesh.undeformed();
     let reference: Vec<Vector2<f64>> = model.contacts.iter().flat_map(|pair| points_of(pair, &undeformed)).collect();
     let x = model.configuration(&state.displacement);
     let current: Vec<Vector2<f64>> = model.contacts.iter().flat_map(|pair| points_of(pair, &x)).collect();

@@ -20,7 +20,6 @@ use super::csv::Table;
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::laws::bulk::Material;
-use crate::mesh::configuration::Configuration;
 use crate::model::Model;
 use crate::model::state::State;
 use crate::run::error::Error;
@@ -275,7 +274,7 @@ fn given(state: &State) -> f64 {
 
 impl Interface {
     fn new(model: &Model, pair: &ContactPair) -> Self {
-        let x = Configuration::undeformed(&model.mesh.nodes);
+        let x = model.mesh.undeformed();
         let mut points: Vec<Point> = Vec::with_capacity(pair.points.len());
         for (line, range) in pair.lines().into_iter().enumerate() {
             let mut position = 0.0;

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector, Vector2};
 
 use super::{ElementError, gradients};
+use crate::mesh::section::Section;
 use crate::mesh::shape::ElementKind;
 
 /// Consistent mass, n × n.
@@ -15,6 +16,7 @@ use crate::mesh::shape::ElementKind;
 /// [`ElementError::Degenerate`] when the element has no positive area at a quadrature point.
 pub fn consistent_mass(
     kind: ElementKind,
+    section: Section,
     positions: &[Vector2<f64>],
     density: f64,
 ) -> Result<DMatrix<f64>, ElementError> {
@@ -22,7 +24,8 @@ pub fn consistent_mass(
     for point in kind.mass_quadrature() {
         let (_, jacobian) = gradients(kind, point.at, positions)?;
         let values = DVector::from_vec(kind.values(point.at));
-        mass.ger(density * point.weight * jacobian, &values, &values, 1.0);
+        let place = positions.iter().zip(values.iter()).map(|(x, n)| x * *n).sum();
+        mass.ger(density * point.weight * jacobian * section.weight(place), &values, &values, 1.0);
     }
     Ok(mass)
 }
@@ -40,8 +43,13 @@ pub fn consistent_mass(
 /// As [`consistent_mass`].
 ///
 /// Source: Hinton, Rock & Zienkiewicz (1976), Earthq. Engng Struct. Dyn. 4, 245, doi:10.1002/eqe.4290040305.
-pub fn lumped_mass(kind: ElementKind, positions: &[Vector2<f64>], density: f64) -> Result<DVector<f64>, ElementError> {
-    let mass = consistent_mass(kind, positions, 1.0)?;
+pub fn lumped_mass(
+    kind: ElementKind,
+    section: Section,
+    positions: &[Vector2<f64>],
+    density: f64,
+) -> Result<DVector<f64>, ElementError> {
+    let mass = consistent_mass(kind, section, positions, 1.0)?;
     let linear = kind.nodes() == kind.corners();
     let volumes = if linear { mass.column_sum() } else { mass.diagonal() * (mass.sum() / mass.trace()) };
     Ok(density * volumes)

@@ -1,6 +1,7 @@
 //! Solid elements: internal force, tangent, stress and mass of one element.
 //!
-//! Degrees of freedom of an element are ordered by node: component i of node a is 2a + i. The thickness is 1.
+//! Degrees of freedom of an element are ordered by node: component i of node a is 2a + i. Integrals are
+//! weighted as the [`Section`](crate::mesh::section::Section) says.
 
 use nalgebra::{Matrix2, Vector2};
 use thiserror::Error;

@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, Matrix2, Matrix4, Vector2};
 
 use super::{ElementError, gradients};
 use crate::laws::bulk::{CauchyStress, InvertedElement, Material, MaterialResponse, cofactor, positive_jacobian};
+use crate::mesh::section::Section;
 use crate::mesh::shape::ElementKind;
 
 /// A solid element: what its reference geometry says at the quadrature points.
@@ -36,8 +37,10 @@ pub struct SolidElement {
     kind: ElementKind,
     /// ∂N_a/∂X of all nodes at the first quadrature point, then at the second, … [1/L]
     gradients: Vec<Vector2<f64>>,
-    /// Reference volume of each quadrature point: weight × det(∂X/∂ξ) [L²]
+    /// Reference volume of each quadrature point: weight × det(∂X/∂ξ) × w of the section [L²]
     volumes: Vec<f64>,
+    /// Mean of w over the element
+    mean_weight: f64,
     /// ∂N_a/∂X at the centre, for F-bar [1/L]
     centre: Option<Vec<Vector2<f64>>>,
 }
@@ -51,22 +54,31 @@ struct Centre<'a> {
 }
 
 impl SolidElement {
-    /// The element of `kind` on the reference `positions` of its nodes.
+    /// The element of `kind` on the reference `positions` of its nodes, in a section.
     ///
     /// # Errors
     /// [`ElementError::Degenerate`] when det(∂X/∂ξ) is not positive at a quadrature point,
     /// [`ElementError::FBarNeedsQ4`] when F-bar is asked of another kind.
-    pub fn new(kind: ElementKind, f_bar: bool, positions: &[Vector2<f64>]) -> Result<Self, ElementError> {
+    pub fn new(
+        kind: ElementKind,
+        f_bar: bool,
+        section: Section,
+        positions: &[Vector2<f64>],
+    ) -> Result<Self, ElementError> {
         debug_assert_eq!(positions.len(), kind.nodes());
         if f_bar && kind != ElementKind::Q4 {
             return Err(ElementError::FBarNeedsQ4 { kind });
         }
-        let mut element = Self { kind, gradients: Vec::new(), volumes: Vec::new(), centre: None };
+        let mut element = Self { kind, gradients: Vec::new(), volumes: Vec::new(), mean_weight: 1.0, centre: None };
+        let mut area = 0.0;
         for point in kind.quadrature() {
             let (gradients, jacobian) = gradients(kind, point.at, positions)?;
             element.gradients.extend(gradients);
-            element.volumes.push(point.weight * jacobian);
+            let place = positions.iter().zip(kind.values(point.at)).map(|(x, n)| x * n).sum();
+            element.volumes.push(point.weight * jacobian * section.weight(place));
+            area += point.weight * jacobian;
         }
+        element.mean_weight = element.volume() / area;
         if f_bar {
             element.centre = Some(gradients(kind, kind.centre(), positions)?.0);
         }
@@ -83,7 +95,12 @@ impl SolidElement {
         self.kind
     }
 
-    /// Reference volume (area times thickness 1) [L²]
+    /// Mean depth of the section over the element [-]
+    pub fn mean_weight(&self) -> f64 {
+        self.mean_weight
+    }
+
+    /// Reference volume: area times the mean depth of the section [L²]
     pub fn volume(&self) -> f64 {
         self.volumes.iter().sum()
     }
