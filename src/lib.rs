@@ -35,6 +35,7 @@
 pub mod assembly;
 pub mod boundary;
 pub mod case;
+#[cfg(feature = "cli")]
 pub mod command;
 pub mod configuration;
 pub mod contact;

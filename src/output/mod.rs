@@ -8,6 +8,7 @@ pub mod history;
 pub mod law;
 pub mod newton_log;
 pub mod plot;
+#[cfg(feature = "cli")]
 pub mod progress;
 pub mod summary;
 pub mod vtu;

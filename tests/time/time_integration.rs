@@ -1,10 +1,8 @@
 //! Time integration: order, energy, damping, free motion, the start of dynamics, moving supports, and two bars that meet.
 
-mod common;
-
 use std::f64::consts::PI;
 
-use common::{Blocks, Finished, close, finish};
+use crate::common::{self, Blocks, Finished, close, finish};
 use nalgebra::{Matrix3, Vector3};
 use serde_json::{Value, json};
 

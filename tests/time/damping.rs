@@ -1,10 +1,8 @@
 //! Damping of bodies: decay of vibrations and waves by closed forms, the tangent by differences, the stable increment.
 
-mod common;
-
 use std::path::Path;
 
-use common::{Blocks, Finished, close, finish};
+use crate::common::{Blocks, Finished, close, finish};
 use fecontact::case;
 use fecontact::element::SolidElement;
 use fecontact::material::{Material, MaterialParameters};

@@ -1,8 +1,6 @@
 //! A state is all that the next increment needs: dropped attempts, restarts and threads leave no trace in it.
 
-mod common;
-
-use common::{Blocks, Finished, close, finish};
+use crate::common::{self, Blocks, Finished, close, finish};
 use fecontact::linear::SparseLu;
 use fecontact::model::Model;
 use fecontact::state::State;

@@ -1,10 +1,8 @@
 //! A step that goes on explicitly while a contact slips fast: stuck for a second, broken within milliseconds, and slow again.
 
-mod common;
-
 use std::path::Path;
 
-use common::{Blocks, Finished, close, finish};
+use crate::common::{Blocks, Finished, close, finish};
 use fecontact::case;
 use serde_json::{Value, json};
 

@@ -1,11 +1,9 @@
 //! Periodic sides: waves that come back, sliding without end, and sides that do not fit.
 
-mod common;
-
 use std::f64::consts::PI;
 use std::path::Path;
 
-use common::{Blocks, close, finish};
+use crate::common::{Blocks, close, finish};
 use fecontact::case;
 use fecontact::ties::Ties;
 use serde_json::{Value, json};

@@ -1,13 +1,11 @@
 //! Points as cases: masses, springs and dashpots against closed forms; a slave point with an area on planes and on
 //! meshes; contacts that start closed.
 
-mod common;
-
 use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
 
-use common::{Blocks, Finished, close, distance, finish, model, turned};
+use crate::common::{Blocks, Finished, close, distance, finish, model, turned};
 use fecontact::error::Error;
 use fecontact::friction::{FrictionParameters, FrictionState, Sliding};
 use fecontact::model::Model;

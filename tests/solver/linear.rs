@@ -1,13 +1,11 @@
 //! The linear solvers against each other and against known solutions.
 
-mod grids;
-
 use std::sync::Arc;
 
+use crate::grids::{Grids, add, noise};
 use fecontact::linear::{
     LinearFailure, LinearSolver, Multifrontal, Pattern, Solution, SparseLu, SparseMatrix, norm, solve, solve_again,
 };
-use grids::{Grids, add, noise};
 use proptest::prelude::*;
 
 fn solved(matrix: &SparseMatrix, b: &[f64]) -> Solution {

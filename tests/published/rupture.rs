@@ -1,11 +1,9 @@
 //! Spontaneous rupture of a planar fault: arrivals against published ones, and against each other.
 
-mod common;
-
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use common::Blocks;
+use crate::common::{self, Blocks};
 use fecontact::case;
 use fecontact::error::Error;
 use fecontact::model::Model;
@@ -304,6 +302,7 @@ fn a_balanced_fault_below_its_strength_stays_at_rest() {
 }
 
 /// From the command line: the files of a case that asks for fronts, and their figures.
+#[cfg(feature = "cli")]
 #[test]
 fn a_case_that_asks_for_fronts_has_its_files_and_figures() {
     let folder = tempfile::tempdir().expect("a folder");

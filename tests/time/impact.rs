@@ -1,8 +1,6 @@
 //! Impact: contact forces of implicit schemes neither ring nor create energy where the struck surface carries no mass.
 
-mod common;
-
-use common::{Blocks, Finished, Record, close, finish, model};
+use crate::common::{Blocks, Finished, Record, close, finish, model};
 use fecontact::element::{consistent_mass, redistributed};
 use fecontact::output::warnings::Warnings;
 use fecontact::run::run;

@@ -1,10 +1,8 @@
 //! Increments under error control: the estimate, what it makes of the global error, and events of contact.
 
-mod common;
-
 use std::f64::consts::PI;
 
-use common::{Blocks, Finished, close, finish, model};
+use crate::common::{self, Blocks, Finished, close, finish, model};
 use fecontact::error::Error;
 use fecontact::increments::{EVENT_LOCATION, judge};
 use fecontact::linear::SparseLu;

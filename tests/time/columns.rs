@@ -1,8 +1,6 @@
 //! Two half-columns in shear, joined by friction: the interface slips at τ = τ₀ − V/2, because the ends absorb the waves.
 
-mod common;
-
-use common::{Blocks, Finished, close, finish};
+use crate::common::{Blocks, Finished, close, finish};
 use fecontact::state::State;
 use serde_json::{Value, json};
 

@@ -1,17 +1,14 @@
 //! The friction laws alone: tangents, closed forms, limits, convergence, and a million random increments.
 
-#[path = "common/strokes.rs"]
-mod strokes;
-
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use crate::strokes::strokes;
 use fecontact::friction::{
     Approach, Coulomb, CoulombParameters, FrictionLaw, FrictionParameters, FrictionResponse, FrictionState,
     Frictionless, Integration, LawFailure, STEEPEST, Sliding, SuperSubloading, SuperSubloadingParameters,
 };
 use rayon::prelude::*;
-use strokes::strokes;
 
 /// Contact pressure of the paper's point-mass problems.
 const PRESSURE: f64 = 98.1;

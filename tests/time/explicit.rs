@@ -1,10 +1,8 @@
 //! Explicit increments: stability, order, energy, impact, and the same bits on any number of threads.
 
-mod common;
-
 use std::f64::consts::PI;
 
-use common::{Blocks, Finished, Record, close, finish, model};
+use crate::common::{Blocks, Finished, Record, close, finish, model};
 use fecontact::run::run;
 use nalgebra::DMatrix;
 use serde_json::{Value, json};

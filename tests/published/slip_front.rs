@@ -1,10 +1,8 @@
 //! Slip fronts of the super/subloading law: where they begin, how fast they run, where they stop, and what force it takes.
 
-mod common;
-
 use std::path::Path;
 
-use common::{Blocks, Record, close, model, model_at};
+use crate::common::{Blocks, Record, close, model, model_at};
 use fecontact::configuration::Configuration;
 use fecontact::error::Error;
 use fecontact::model::Model;

@@ -3,11 +3,9 @@
 //! Each problem gives rows: a quantity, its reference, ours, and the difference allowed. The tests check them;
 //! `cargo test --release --test published -- --ignored --nocapture table` prints them for the README.
 
-mod common;
-
 use std::path::Path;
 
-use common::{Finished, finish_at};
+use crate::common::{Finished, finish_at};
 use fecontact::configuration::Configuration;
 use fecontact::contact::force::Status;
 use fecontact::friction::FrictionState;

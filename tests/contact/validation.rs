@@ -1,11 +1,9 @@
 //! Whole problems against closed forms: contact patch test, objectivity, the law seen through the mesh, a sliding wedge,
 //! the energy balance, corners and edges.
 
-mod common;
-
 use std::f64::consts::FRAC_PI_2;
 
-use common::{Blocks, Finished, close, distance, finish, half_way, half_way_round, quadratic, turned};
+use crate::common::{self, Blocks, Finished, close, distance, finish, half_way, half_way_round, quadratic, turned};
 use fecontact::configuration::Configuration;
 use fecontact::contact::force::ContactState;
 use fecontact::contact::pair::{Moment, Presumption};

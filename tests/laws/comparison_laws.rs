@@ -1,13 +1,10 @@
 //! Slip weakening and rate-and-state friction alone: tangents, closed forms, differential equations.
 
-#[path = "common/strokes.rs"]
-mod strokes;
-
+use crate::strokes::strokes;
 use fecontact::friction::{
     FrictionLaw, FrictionResponse, FrictionState, RateAndState, RateAndStateParameters, STEEPEST, Sliding,
     SlipWeakening, SlipWeakeningParameters, StateEvolution,
 };
-use strokes::strokes;
 
 const WEAKENING: SlipWeakeningParameters =
     SlipWeakeningParameters { mu_s: 0.6, mu_d: 0.5, critical_slip: 1.0, cohesion: 0.0, alpha_t: Some(1000.0) };

@@ -1,12 +1,10 @@
 //! What a run writes for its reader: the columns of `history.csv`, the frames, and lines of progress.
 
-mod common;
-
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use common::{Blocks, close};
+use crate::common::{Blocks, close};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 use vtkio::model::{Attribute, CellType, DataSet, UnstructuredGridPiece};

@@ -1,8 +1,6 @@
 //! Newton's method by itself, on equations in one unknown; and what it accepts on whole models.
 
-mod common;
-
-use common::{Blocks, Finished, close, finish};
+use crate::common::{self, Blocks, Finished, close, finish};
 use fecontact::linear::{Multifrontal, Pattern, SparseMatrix};
 use fecontact::newton::{NewtonFailure, Outcome, Request, Settings, solve};
 use fecontact::system::System;

@@ -1,10 +1,8 @@
 //! Bodies that nothing holds until contact does: steered into contact by a stabilization that is gone at the end of the step.
 
-mod common;
-
 use std::path::Path;
 
-use common::{Blocks, Finished, Record, close, finish, model_at};
+use crate::common::{self, Blocks, Finished, Record, close, finish, model_at};
 use fecontact::run::run;
 use fecontact::state::State;
 use serde_json::{Value, json};

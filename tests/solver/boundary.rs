@@ -1,11 +1,9 @@
 //! Supports and loads: what they prescribe at every increment, what they hand on to the next step, and the forces that
 //! answer them.
 
-mod common;
-
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use common::{Blocks, Finished, close, distance, finish};
+use crate::common::{Blocks, Finished, close, distance, finish};
 use fecontact::boundary::{Expression, Profile};
 use fecontact::configuration::Configuration;
 use fecontact::element::pressure::follower_pressure;

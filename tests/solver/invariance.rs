@@ -5,11 +5,9 @@
 //! same block sheared until slip weakening tears it off, in explicit increments. No reference is needed: each run is compared
 //! with itself.
 
-mod common;
-
 use std::f64::consts::PI;
 
-use common::{Finished, finish};
+use crate::common::{self, Finished, finish};
 use serde_json::{Map, Value, json};
 
 /// A run, and how its model is given.

@@ -1,11 +1,9 @@
 //! A surface that touches itself: a slotted ring squeezed until its lips meet, a tube pressed flat.
 
-mod common;
-
 use std::f64::consts::PI;
 use std::path::Path;
 
-use common::{Blocks, Finished, close, distance, finish, finish_at};
+use crate::common::{Blocks, Finished, close, distance, finish, finish_at};
 use fecontact::configuration::Configuration;
 use fecontact::contact::force::Status;
 use fecontact::contact::pair::{Moment, Presumption};

@@ -3,11 +3,9 @@
 //! References. Case 2 and the slope: closed forms. Onsets without ringing: the quasi-static solution. Events with ringing:
 //! Runge–Kutta of fourth order on the rate form of the law (increments of 0.5 ms and 2 ms agree to 0.01 s at the first).
 
-mod common;
-
 use std::path::{Path, PathBuf};
 
-use common::{close, model_at};
+use crate::common::{close, model_at};
 use fecontact::error::Error;
 use fecontact::model::Model;
 use fecontact::output::summary::RunReport;

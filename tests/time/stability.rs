@@ -7,9 +7,7 @@
 //! ```
 //! whose characteristic polynomial is M(1 − a')s³ + (M b + c(1 − a'))s² + (K(1 − a') − a + c b)s + K b.
 
-mod common;
-
-use common::{Record, close, finish, model};
+use crate::common::{Record, close, finish, model};
 use fecontact::run::run;
 use fecontact::state::State;
 use nalgebra::{Matrix3, Vector3};
