@@ -1,7 +1,7 @@
 //! Against published numbers: validation problems, spring and mass, faults, slip fronts.
 //!
-//! The slow ones are ignored; `cargo test --release --test published -- --ignored --show-output` runs them all and prints
-//! the tables of the README that they recompute, each under its name.
+//! The slow ones are ignored and say by it which table of the documentation they recompute. They print it, one after the
+//! other, by `cargo test --release --test published -- --ignored --nocapture --test-threads 1`.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -525,8 +525,9 @@ fn give(run: &Finished) -> f64 {
 /// discretization and what the penalties give way. A row a case and change: answer, difference, difference allowed, Newton
 /// iterations as mean and most, cut-backs.
 #[test]
-#[ignore = "slow: minutes; prints the table of the README"]
+#[ignore = "README, Against published problems: numerical choices"]
 fn answers_do_not_depend_on_numerical_choices() {
+    println!("README, Against published problems: numerical choices\n");
     println!("| case | change | answer | difference | allowed | Newton iterations (most) | cut-backs |");
     println!("|---|---|---|---|---|---|---|");
     let mut wrong = Vec::new();
@@ -580,8 +581,9 @@ fn problem(name: &str) -> Static {
 
 /// With the augmented Lagrangian the penetration is no excuse: α_n times 0.01 and times 100.
 #[test]
-#[ignore = "slow: minutes"]
+#[ignore = "README, Against published problems: augmented Lagrangian"]
 fn answers_of_the_augmented_lagrangian_do_not_depend_on_the_penalty() {
+    println!("README, Against published problems: augmented Lagrangian\n");
     for problem in STATIC {
         let (base, _) = solve(problem.case, as_it_is);
         let answers = [0.01, 1.0, 100.0].map(|factor| augmented(&problem, &base.model, factor));
@@ -648,8 +650,9 @@ fn a_stiff_normal_penalty_alone_does_not_cycle() {
 /// all along, the two fine meshes are within 2 % of each other, and no force bends by more than 2.5 % from an increment to the
 /// next but one. No increment is hard, and few are cut.
 #[test]
-#[ignore = "slow: minutes"]
+#[ignore = "README, Against published problems: ironing"]
 fn ironing() {
+    println!("README, Against published problems: ironing\n");
     println!("| mesh | increments | cut-backs | Newton iterations (most) | processor s |");
     println!("|---|---|---|---|---|");
     let forces = |case: &str, mesh: &str| {
@@ -682,8 +685,9 @@ fn ironing() {
 
 /// The table of the README.
 #[test]
-#[ignore = "prints the README's table"]
+#[ignore = "README, Against published problems: the first table"]
 fn table() {
+    println!("README, Against published problems: the first table\n");
     println!(
         "| problem | quantity | reference | ours | difference | Newton iterations (most) | cut-backs | processor s |"
     );

@@ -153,8 +153,9 @@ fn quiet() -> Value {
 }
 
 #[test]
-#[ignore = "minutes: 43 000 elements, implicit"]
+#[ignore = "README, Rupture: implicit increments"]
 fn implicit_and_explicit_increments_agree_on_the_arrival() {
+    println!("README, Rupture: implicit increments\n");
     // Masses are lumped in one and consistent in the other, which tells in a length of the order of an element: at 400 m
     // the arrivals differ by 8 %, at 125 m by 3 %.
     let mut case = fault_in([14e3, 6e3], 62.5, true, 1.65, json!({"interval": 0.0125, "fields": false}));
@@ -175,14 +176,16 @@ fn a_coarse_fault_breaks_in_time() {
 }
 
 #[test]
-#[ignore = "minutes: 192 000 elements"]
+#[ignore = "README, Rupture: TPV205"]
 fn tpv205_breaks_as_published() {
+    println!("README, Rupture: TPV205\n");
     compare(&scec(100.0, true, 3.0, quiet()), &TPV205, 0.03);
 }
 
 #[test]
-#[ignore = "minutes: 192 000 elements"]
+#[ignore = "README, Rupture: TPV3"]
 fn tpv3_breaks_as_published() {
+    println!("README, Rupture: TPV3\n");
     compare(&scec(100.0, false, 12.0, quiet()), &TPV3, 0.03);
 }
 

@@ -352,8 +352,9 @@ fn precursors_stop_on_their_way() {
 }
 
 #[test]
-#[ignore = "minutes: 2900 elements"]
+#[ignore = "README, Slip fronts: crossing and stopping"]
 fn some_fronts_cross_and_others_stop() {
+    println!("README, Slip fronts: crossing and stopping\n");
     let (events, _) = slip_front([120.0, 5.0, 3.5], 96, 1, ERROR);
     let (peak, _) = peak_and_fall();
     let crossing = events.iter().filter(|event| event.reach > 0.95).count();
@@ -365,8 +366,9 @@ fn some_fronts_cross_and_others_stop() {
 /// get that pass all before them does not: it follows from the force at which they set out, for all meshes and increments
 /// alike.
 #[test]
-#[ignore = "minutes: up to 11 500 elements"]
+#[ignore = "README, Slip fronts: mesh and increments"]
 fn how_far_a_front_gets_is_neither_of_the_mesh_nor_of_the_increments() {
+    println!("README, Slip fronts: mesh and increments\n");
     let mut all: Vec<[f64; 2]> = Vec::new();
     for (fine, error) in [(1, ERROR), (1, 0.2 * ERROR), (2, ERROR)] {
         let (events, _) = slip_front([120.0, 5.0, 0.75], 96, fine, error);
@@ -390,8 +392,9 @@ fn how_far_a_front_gets_is_neither_of_the_mesh_nor_of_the_increments() {
 }
 
 #[test]
-#[ignore = "minutes: five runs; prints a table"]
+#[ignore = "README, Slip fronts: the force"]
 fn the_force_falls_with_length_and_pressure() {
+    println!("README, Slip fronts: the force\n");
     let mut table = Vec::new();
     for (length, columns, pressure, duration) in [
         (60.0, 48, 5.0, 0.6),
