@@ -1,5 +1,5 @@
 //! Small models for tests that drive the whole solver: meshes of blocks, cases as JSON, runs that keep every state.
-#![allow(dead_code, reason = "each test file uses a part")]
+#![allow(dead_code, reason = "each test program uses a part")]
 
 use std::path::Path;
 use std::sync::Arc;
