@@ -3,7 +3,7 @@
 use exmex::{Express, FlatEx, FloatOpsFactory, MatchLiteral, NumberMatcher};
 use nalgebra::{Matrix2, Vector2};
 
-/// How a prescribed quantity varies, as given in the case.
+/// How a prescribed quantity varies.
 #[derive(Clone, Debug)]
 pub enum Drive {
     /// A constant: reached at the end of the step, linearly from the value at its start
@@ -15,6 +15,9 @@ pub enum Drive {
     /// An expression in the reference position x, y and the run time t
     Expression(Expression),
 }
+
+/// Longest expression that is read; the parser recurses into its brackets [bytes].
+const LONGEST_EXPRESSION: usize = 1000;
 
 /// A parsed expression in x, y and t.
 #[derive(Clone, Debug)]
@@ -40,9 +43,13 @@ impl Expression {
     /// # Errors
     /// What the parser could not read, or the first variable that is none of x, y, t.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let parsed = FlatEx::parse(text).map_err(|error| error.to_string())?;
+        if text.len() > LONGEST_EXPRESSION {
+            return Err(format!("the expression is longer than {LONGEST_EXPRESSION} characters: use a table"));
+        }
+        let complain = |error: String| format!("\"{text}\" cannot be read: {error}");
+        let parsed = FlatEx::parse(text).map_err(|error| complain(error.to_string()))?;
         match parsed.var_names().iter().find(|name| !["t", "x", "y"].contains(&name.as_str())) {
-            Some(name) => Err(format!("`{name}` is not one of the variables x, y, t")),
+            Some(name) => Err(complain(format!("`{name}` is not one of the variables x, y, t"))),
             None => Ok(Self(Box::new(parsed))),
         }
     }
@@ -81,6 +88,12 @@ pub enum Profile {
     Table(usize, Vec<[f64; 2]>),
 }
 
+impl From<f64> for Profile {
+    fn from(value: f64) -> Self {
+        Self::Constant(value)
+    }
+}
+
 impl Profile {
     /// Value at a reference position; NaN where an expression is not defined.
     pub fn value(&self, position: Vector2<f64>) -> f64 {
@@ -108,7 +121,34 @@ impl Span {
     }
 }
 
+impl From<f64> for Drive {
+    fn from(value: f64) -> Self {
+        Self::Constant(value)
+    }
+}
+
 impl Drive {
+    /// Whether its numbers are finite and the times of its table ascend.
+    ///
+    /// # Errors
+    /// What is wrong, and what to do.
+    pub fn check(&self) -> Result<(), String> {
+        let numbers: &[f64] = match self {
+            Self::Constant(value) | Self::Rate(value) => &[*value],
+            Self::Table(table) if table.is_empty() => return Err("the table is empty: give pairs [time, value]".into()),
+            Self::Table(table) => table.as_flattened(),
+            Self::Expression(_) => &[],
+        };
+        if let Some(value) = numbers.iter().find(|value| !value.is_finite()) {
+            return Err(format!("is {value}: must be a finite number"));
+        }
+        let Self::Table(table) = self else { return Ok(()) };
+        match table.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
+            Some(pair) => Err(format!("the times of the table must ascend: {} follows {}", pair[1][0], pair[0][0])),
+            None => Ok(()),
+        }
+    }
+
     /// Value at a reference position and run time, `start` being the value at the start of the step.
     pub fn value(&self, position: Vector2<f64>, time: f64, span: Span, start: f64) -> f64 {
         match self {
