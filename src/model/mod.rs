@@ -3,6 +3,7 @@
 pub mod boundary;
 pub mod builder;
 pub mod element;
+mod expression;
 pub mod method;
 pub mod scheme;
 pub mod state;

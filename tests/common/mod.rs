@@ -207,7 +207,11 @@ pub fn finish(case: &Value) -> Finished {
 
 /// Run a case whose mesh is found from a path.
 pub fn finish_at(case: &Value, path: &Path) -> Finished {
-    let model = model_at(case, path);
+    finished(model_at(case, path))
+}
+
+/// Run a model to its end.
+pub fn finished(model: Model) -> Finished {
     let mut record = Record::default();
     let (report, result) = run(&model, &mut [&mut record]);
     result.unwrap_or_else(|error| panic!("{error}"));

@@ -32,6 +32,7 @@
 
 mod body;
 mod change;
+mod checks;
 mod contact;
 mod error;
 mod friction;
@@ -65,12 +66,8 @@ pub use load_step::{IncrementSettings, LoadStep, Rotation, RuptureSettings, Supp
 use crate::laws::bulk::Material;
 use crate::mesh::Mesh;
 use crate::mesh::ties::Ties;
-use crate::model::scheme::Scheme;
-use crate::model::{Damping, Model, NewtonSettings, Step, WatchedSet};
+use crate::model::{Damping, Model, NewtonSettings, WatchedSet};
 use body::{GivenBody, GivenMass};
-
-/// Largest number of Newton iterations that makes sense to allow.
-const MOST_ITERATIONS: usize = 1000;
 
 /// What a model is made of; [`Builder::build`] checks it and makes the model.
 pub struct Builder {
@@ -210,9 +207,9 @@ impl Builder {
             methods: Vec::new(),
             steps: Vec::new(),
             watch: Vec::new(),
-            newton: checked_newton(self.newton)?,
+            newton: checks::checked_newton(self.newton)?,
             prestress: Vec::new(),
-            interval: checked_interval(self.interval)?,
+            interval: checks::checked_interval(self.interval)?,
         };
         model.point_masses = body::point_masses(&self.point_masses, &model.mesh)?;
         model.ties = periodic::ties(&self.periodic, &model.mesh)?;
@@ -224,7 +221,7 @@ impl Builder {
         model.initial_velocity = initial::velocities(&self.velocities, &self.point_masses, &model)?;
         model.watch =
             self.watch.iter().enumerate().map(|(k, name)| watched(&model, k, name)).collect::<Checked<_>>()?;
-        check_schemes(&self.contacts, &model)?;
+        checks::check_schemes(&self.contacts, &model)?;
         supported::check(&self.steps, &model)?;
         Ok(model)
     }
@@ -262,62 +259,9 @@ impl Builder {
     }
 }
 
-fn checked_newton(newton: NewtonSettings) -> Checked<NewtonSettings> {
-    if !(newton.tolerance > 0.0 && newton.tolerance < 1.0) {
-        let message = format!("is {}: must be between 0 and 1 (1e-8 is the default)", newton.tolerance);
-        return Err(ModelError::new("newton.tolerance", message));
-    }
-    if !(1..=MOST_ITERATIONS).contains(&newton.max_iterations) {
-        let message = format!("is {}: must be 1 to {MOST_ITERATIONS}", newton.max_iterations);
-        return Err(ModelError::new("newton.max_iterations", message));
-    }
-    Ok(newton)
-}
-
-fn checked_interval(interval: Option<f64>) -> Checked<Option<f64>> {
-    match interval.filter(|interval| !(*interval > 0.0 && interval.is_finite())) {
-        Some(interval) => {
-            let message =
-                format!("is {interval}: must be positive (leave it out for a hundredth of each explicit step)");
-            Err(ModelError::new("output.interval", message))
-        }
-        None => Ok(interval),
-    }
-}
-
 /// The reactions of copies are with the nodes they move with.
 fn watched(model: &Model, k: usize, name: &str) -> Checked<WatchedSet> {
     let group = groups::group(&model.mesh, name, &format!("watch[{k}]"))?;
     let nodes: BTreeSet<usize> = model.mesh.nodes_of(group).into_iter().map(|node| model.ties.original(node)).collect();
     Ok(WatchedSet { name: name.into(), nodes: nodes.into_iter().collect() })
-}
-
-/// Explicit steps solve no equations, and so cannot raise pressures until penetrations are small, nor find where a node
-/// without mass is. Wilson's equilibrium lies beyond the increment, and so do the multipliers found there.
-fn check_schemes(contacts: &[Contact], model: &Model) -> Checked<()> {
-    let explicit = |step: &&Step| step.rupture.is_some() || matches!(step.scheme, Scheme::Explicit { .. });
-    let augmented = model.contacts.iter().find(|pair| pair.penetration.is_some());
-    let refused =
-        |name: &str, key: &str, message: String| Err(ModelError::new(format!("contacts.{name}.{key}"), message));
-    if let (Some(pair), Some(step)) = (augmented, model.steps.iter().find(|step| step.scheme.theta() > 1.0)) {
-        let message = format!(
-            "the step `{}` seeks equilibrium beyond its increments (Wilson-θ), where multipliers mean nothing: leave it out, \
-             or take another scheme",
-            step.name
-        );
-        return refused(&pair.name, "normal.penetration", message);
-    }
-    let Some(Step { name: step, .. }) = model.steps.iter().find(explicit) else { return Ok(()) };
-    if let Some(contact) = contacts.iter().find(|contact| contact.massless) {
-        let message = format!("the explicit step `{step}` needs the mass of every node: leave it out");
-        return refused(&contact.name, "massless", message);
-    }
-    match augmented {
-        Some(pair) => {
-            let message =
-                format!("the explicit step `{step}` takes the plain penalty: leave it out, and raise alpha_n");
-            refused(&pair.name, "normal.penetration", message)
-        }
-        None => Ok(()),
-    }
 }
