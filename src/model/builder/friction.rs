@@ -6,7 +6,10 @@ use nalgebra::Vector2;
 
 use super::error::{Checked, ModelError};
 use crate::contact::surface::SlavePoint;
-use crate::laws::friction::{FrictionLaw, FrictionParameters};
+use crate::laws::friction::{
+    CoulombParameters, FrictionLaw, FrictionParameters, RateAndStateParameters, SlipWeakeningParameters,
+    SuperSubloadingParameters,
+};
 use crate::mesh::Mesh;
 use crate::model::boundary::Profile;
 
@@ -30,7 +33,7 @@ impl Friction {
     ///
     /// let mu = Profile::Expression(Expression::parse("0.3 + 0.1*x")?);
     /// let friction = Friction::varying([("along.mu", mu)], |values, alpha_t| {
-    ///     Ok(Box::new(Coulomb::new(&CoulombParameters { mu: values[0], alpha_t: None }, alpha_t)?))
+    ///     Ok(Box::new(Coulomb::new(&CoulombParameters::new(values[0]), alpha_t)?))
     /// });
     /// # Ok::<(), String>(())
     /// ```
@@ -97,6 +100,30 @@ impl Friction {
 impl From<FrictionParameters> for Friction {
     fn from(parameters: FrictionParameters) -> Self {
         Self::varying::<String>([], move |_, alpha_t| Ok(parameters.build(alpha_t)?))
+    }
+}
+
+impl From<CoulombParameters> for Friction {
+    fn from(parameters: CoulombParameters) -> Self {
+        FrictionParameters::Coulomb(parameters).into()
+    }
+}
+
+impl From<SuperSubloadingParameters> for Friction {
+    fn from(parameters: SuperSubloadingParameters) -> Self {
+        FrictionParameters::SuperSubloading(parameters).into()
+    }
+}
+
+impl From<SlipWeakeningParameters> for Friction {
+    fn from(parameters: SlipWeakeningParameters) -> Self {
+        FrictionParameters::SlipWeakening(parameters).into()
+    }
+}
+
+impl From<RateAndStateParameters> for Friction {
+    fn from(parameters: RateAndStateParameters) -> Self {
+        FrictionParameters::RateAndState(parameters).into()
     }
 }
 

@@ -3,7 +3,6 @@
 //! ```
 //! use fecontact::laws::bulk::{ElasticConstants, NeoHookean};
 //! use fecontact::laws::friction::CoulombParameters;
-//! use fecontact::laws::friction::FrictionParameters::Coulomb;
 //! use fecontact::mesh::InlineMesh;
 //! use fecontact::model::Model;
 //! use fecontact::model::boundary::Drive;
@@ -14,11 +13,10 @@
 //!     .rectangle("block", [5, 3], [1.0, 0.0], [3.0, 1.0])
 //!     .build()?;
 //! let rubber = NeoHookean::new(&ElasticConstants { young: 1000.0, poisson: 0.3, density: 0.0 })?;
-//! let friction = Coulomb(CoulombParameters { mu: 0.3, alpha_t: None });
 //! let model = Model::builder(mesh)
 //!     .body("block", rubber)
 //!     .body("ground", rubber)
-//!     .contact(Contact::new("base", "block_bottom", "ground_top", friction))
+//!     .contact(Contact::new("base", "block_bottom", "ground_top", CoulombParameters::new(0.3)))
 //!     .step(LoadStep::new("press", 1.0).dt(0.1).fix("ground_bottom").support(Support::on("block_top").ux(0.0).uy(-0.01)))
 //!     .step(LoadStep::new("drag", 2.0).support(Support::on("block_top").ux(Drive::Rate(0.05))))
 //!     .watch("block_top")
