@@ -5,16 +5,23 @@
 //! same block sheared until slip weakening tears it off, in explicit increments. No reference is needed: each run is compared
 //! with itself.
 
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use crate::common::{self, Finished, finish};
-use serde_json::{Map, Value, json};
+use crate::common::{self, Finished, neo_hookean, run_through};
+use fecontact::laws::friction::{SlipWeakeningParameters, SuperSubloadingParameters};
+use fecontact::mesh::InlineMesh;
+use fecontact::model::boundary::Drive;
+use fecontact::model::builder::{Builder, Contact, Friction, LoadStep, Support};
+use fecontact::model::method::Method;
+use fecontact::model::scheme::Scheme;
+use fecontact::model::{Model, NewtonSettings};
 
 /// A run, and how its model is given.
 #[derive(Clone)]
 struct Given {
     explicit: bool,
-    method: &'static str,
+    method: Method,
     /// Elements along the block and along the ground, and their rows
     divisions: [[usize; 2]; 2],
     /// Whether the ground ends where the block does, and both go on periodically
@@ -34,7 +41,7 @@ struct Given {
 fn implicit() -> Given {
     Given {
         explicit: false,
-        method: "gauss_to_segment",
+        method: Method::GaussToSegment,
         divisions: [[8, 4], [16, 4]],
         layers: false,
         shift: [0.0, 0.0],
@@ -102,16 +109,14 @@ impl Mesh {
         self.edges.reverse();
     }
 
-    fn json(&self) -> Value {
-        fn grouped<const N: usize>(all: &[(String, [usize; N])]) -> Map<String, Value> {
-            let mut groups = Map::new();
-            for (name, nodes) in all {
-                let group = groups.entry(name.clone()).or_insert_with(|| json!([]));
-                group.as_array_mut().expect("made above").push(json!(nodes.as_slice()));
-            }
+    fn checked(&self) -> fecontact::mesh::Mesh {
+        fn grouped<const N: usize>(all: &[(String, [usize; N])]) -> BTreeMap<String, Vec<Vec<usize>>> {
+            let mut groups: BTreeMap<String, Vec<Vec<usize>>> = BTreeMap::new();
+            all.iter().for_each(|(name, nodes)| groups.entry(name.clone()).or_default().push(nodes.to_vec()));
             groups
         }
-        json!({"nodes": self.nodes, "elements": grouped(&self.elements), "edges": grouped(&self.edges)})
+        let (elements, edges) = (grouped(&self.elements), grouped(&self.edges));
+        InlineMesh { nodes: self.nodes.clone(), elements, edges, ..InlineMesh::default() }.build().expect("a mesh")
     }
 }
 
@@ -148,72 +153,76 @@ impl Given {
         mesh
     }
 
-    fn law(&self) -> Value {
+    fn law(&self) -> Friction {
         let [length, _, time] = self.units;
         match self.explicit {
-            true => json!({"law": "slip_weakening", "mu_s": 0.5, "mu_d": 0.2, "D_c": 2e-4 * length}),
-            false => json!({
-                "law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "r": 2000.0 / length, "kappa": 20.0 / length,
-                "xi": 0.05 / time, "structure": 1.5,
-            }),
+            true => SlipWeakeningParameters::new(0.5, 0.2, 2e-4 * length).into(),
+            false => SuperSubloadingParameters {
+                kappa: 20.0 / length,
+                xi: 0.05 / time,
+                structure: Some(1.5),
+                ..SuperSubloadingParameters::new(0.4, 0.2, 2000.0 / length)
+            }
+            .into(),
         }
     }
 
-    fn steps(&self) -> Value {
+    fn press(&self) -> LoadStep {
         let [length, _, time] = self.units;
-        let both = |[x, y]: [f64; 2]| json!({"ux": x, "uy": y});
-        let on = |group: &str, mut values: Value| {
-            values["on"] = json!(group);
-            values
-        };
-        let fixed = |group: &str| on(group, both([0.0, 0.0]));
-        let top = |way: [f64; 2]| on("block_top", both(self.vector(way, length)));
-        let mut first = vec![fixed("ground_bottom"), top([0.0, -2e-3])];
-        if self.bystander.is_some() {
-            first.extend([fixed("bystander_bottom"), on("bystander_top", both(self.vector([0.0, -0.01], length)))]);
+        let press = LoadStep::new("press", time).scheme(Scheme::Static).dt(0.5 * time).fix("ground_bottom");
+        let press = press.support(self.top([0.0, -2e-3]));
+        match self.bystander {
+            None => press,
+            Some(_) => {
+                let [x, y] = self.vector([0.0, -0.01], length);
+                press.fix("bystander_bottom").support(Support::on("bystander_top").ux(x).uy(y))
+            }
         }
-        let press = json!({"name": "press", "duration": time, "scheme": "static", "dt": {"initial": 0.5 * time},
-                           "supports": first});
+    }
+
+    /// The top of the block on its way to a place.
+    fn top(&self, way: [f64; 2]) -> Support {
+        let [x, y] = self.vector(way, self.units[0]);
+        Support::on("block_top").ux(x).uy(y)
+    }
+
+    fn steps(&self, model: Builder) -> Builder {
+        let [length, _, time] = self.units;
+        let model = model.step(self.press());
         if !self.explicit {
-            let drag = json!({"name": "drag", "duration": time, "scheme": {"hht": {"alpha": -0.1}},
-                              "dt": {"initial": 0.0625 * time}, "supports": [top([4e-3, -2e-3])]});
-            return json!([press, drag]);
+            let drag = LoadStep::new("drag", time).scheme(Scheme::Hht { alpha: -0.1 }).dt(0.0625 * time);
+            return model.step(drag.support(self.top([4e-3, -2e-3])));
         }
-        let shear = json!({"name": "shear", "duration": time, "scheme": "static", "dt": {"initial": 0.25 * time},
-                           "supports": [top([8e-4, -2e-3])]});
+        let shear = LoadStep::new("shear", time).scheme(Scheme::Static).dt(0.25 * time);
         // The top is pulled on ten times slower than shear waves run, and the bottom of the block tears off from one end.
         let [vx, vy] = self.vector([0.01, 0.0], length / time);
-        let tear = json!({"name": "tear", "duration": 0.5 * time, "scheme": {"explicit": {}}, "dt": {"initial": 0.5 * time},
-                          "supports": [on("block_top", json!({"ux": {"rate": vx}, "uy": {"rate": vy}}))]});
-        json!([press, shear, tear])
+        let tear = LoadStep::new("tear", 0.5 * time).scheme(Scheme::Explicit { safety: 0.9 }).dt(0.5 * time);
+        let pulled = Support::on("block_top").ux(Drive::Rate(vx)).uy(Drive::Rate(vy));
+        model.step(shear.support(self.top([8e-4, -2e-3]))).step(tear.support(pulled))
     }
 
-    fn case(&self) -> Value {
+    fn model(&self) -> Builder {
         let [length, force, time] = self.units;
-        let material = |e: f64| {
-            let density = e / 100.0 * force * time.powi(2) / length.powi(4);
-            json!({"material": {"model": "neo_hookean", "E": e * force / length.powi(2), "nu": 0.3, "density": density}})
-        };
-        let mut bodies = json!({"block": material(100.0), "ground": material(100.0)});
+        let material =
+            |e: f64| neo_hookean(e * force / length.powi(2), 0.3, e / 100.0 * force * time.powi(2) / length.powi(4));
+        let mut model = Model::builder(self.mesh().checked());
+        model = model.body("block", material(100.0));
         if let Some(stiffness) = self.bystander {
-            bodies["bystander"] = material(stiffness);
+            model = model.body("bystander", material(stiffness));
         }
+        model = model.body("ground", material(100.0));
         let (slave, master) =
             if self.swapped { ("ground_top", "block_bottom") } else { ("block_bottom", "ground_top") };
-        let sides = json!([["block_left", "block_right"], ["ground_left", "ground_right"]]);
-        json!({
-            "mesh": self.mesh().json(),
-            "periodic": if self.layers { sides } else { json!([]) },
-            "bodies": bodies,
-            "contacts": {"base": {"slave": slave, "master": master, "method": self.method, "friction": self.law()}},
-            "newton": {"tolerance": 1e-12},
-            "steps": self.steps(),
-            "output": {"interval": 0.0625 * time},
-        })
+        if self.layers {
+            model = model.periodic("block_left", "block_right").periodic("ground_left", "ground_right");
+        }
+        let model = model.contact(Contact::new("base", slave, master, self.law()).method(self.method));
+        let newton = NewtonSettings { tolerance: 1e-12, ..NewtonSettings::default() };
+        self.steps(model.newton(newton).interval(0.0625 * time))
     }
 
     fn run(&self) -> Answer {
-        let run = finish(&self.case());
+        let run = run_through(self.model());
         let [length, force, time] = self.units;
         let [normal, along] = [[0.0, 1.0], [1.0, 0.0]].map(|axis| self.vector(axis, 1.0));
         let component = |f: [f64; 2], axis: [f64; 2]| (f[0] * axis[0] + f[1] * axis[1]) / (force / length);
@@ -305,8 +314,8 @@ fn moved_far_from_the_origin() {
     for first in [
         implicit(),
         explicit(),
-        Given { method: "mortar", ..implicit() },
-        Given { method: "node_to_segment", ..implicit() },
+        Given { method: Method::Mortar, ..implicit() },
+        Given { method: Method::NodeToSegment, ..implicit() },
     ] {
         same(&first, &Given { shift, ..first.clone() }, 1e-9);
     }
@@ -321,7 +330,7 @@ fn turned() {
 
 #[test]
 fn mirrored() {
-    for first in [implicit(), explicit(), Given { method: "mortar", ..implicit() }] {
+    for first in [implicit(), explicit(), Given { method: Method::Mortar, ..implicit() }] {
         same(&first, &Given { mirrored: true, ..first.clone() }, 1e-9);
     }
 }
@@ -365,7 +374,8 @@ fn beside_a_body_that_touches_nothing() {
 #[test]
 fn slave_and_master_swapped_on_matching_layers() {
     for explicit in [false, true] {
-        let layers = Given { method: "mortar", layers: true, divisions: [[8, 4], [8, 8]], explicit, ..implicit() };
+        let layers =
+            Given { method: Method::Mortar, layers: true, divisions: [[8, 4], [8, 8]], explicit, ..implicit() };
         let [first, other] = [false, true].map(|swapped| Given { swapped, ..layers.clone() }.run());
         let apart = first.force_away_from(&other);
         assert!(apart < 1e-9, "explicit: {explicit}: the forces differ by {apart:e}");
@@ -380,7 +390,7 @@ fn slave_and_master_swapped_on_a_dragged_block() {
     let difference = |fine: usize| {
         let divisions = [[8 * fine, 4 * fine], [16 * fine, 8 * fine]];
         let [first, other] =
-            [false, true].map(|swapped| Given { method: "mortar", divisions, swapped, ..implicit() }.run());
+            [false, true].map(|swapped| Given { method: Method::Mortar, divisions, swapped, ..implicit() }.run());
         first.force_away_from(&other)
     };
     let [coarse, middle, fine] = [1, 2, 4].map(difference);

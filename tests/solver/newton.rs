@@ -1,12 +1,14 @@
 //! Newton's method by itself, on equations in one unknown; and what it accepts on whole models.
 
-use crate::common::{self, Blocks, Finished, close, finish};
+use crate::common::{self, Blocks, Finished, close, expression, floor, linear, neo_hookean, run_through};
+use fecontact::laws::friction::CoulombParameters;
 use fecontact::linear::system::Request;
 use fecontact::linear::system::System;
 use fecontact::linear::{Multifrontal, Pattern, SparseMatrix};
-use fecontact::model::NewtonSettings;
+use fecontact::model::builder::{Contact, IncrementSettings, Load, LoadStep, Support};
+use fecontact::model::method::Method;
+use fecontact::model::{Model, NewtonSettings};
 use fecontact::solve::newton::{NewtonFailure, Outcome, solve};
-use serde_json::{Value, json};
 
 /// Solve r(u) = 0 from a start value; `equation` gives r, r′ and the share of the next correction to take, or fails.
 fn root(start: f64, equation: impl Fn(f64) -> Result<[f64; 3], ()>) -> Outcome<()> {
@@ -48,21 +50,29 @@ fn a_share_of_the_correction_breaks_a_cycle() {
     assert_eq!((iterations.len(), result.expect("a root")[0]), (1, 0.0));
 }
 
-/// Blocks of foam pressed on a ground of foam and dragged over it by Coulomb's law. `scale` multiplies what is prescribed.
-fn foam(blocks: Blocks, tolerance: f64, scale: f64) -> Value {
-    let foam = json!({"material": {"model": "neo_hookean", "E": 0.05, "nu": 0.3}});
-    json!({
-        "mesh": blocks.rectangle("ground", [24, 4], [0.0, -0.6], [4.0, 0.0]).rectangle("foam", [9, 4], [1.0, 0.0], [2.0, 0.6]).json(),
-        "bodies": {"ground": foam, "foam": foam},
-        "contacts": {"base": {"slave": "foam_bottom", "master": "ground_top", "friction": {"law": "coulomb", "mu": 0.3}}},
-        "newton": {"tolerance": tolerance},
-        "steps": [
-            {"name": "press", "duration": 1, "dt": {"initial": 0.5},
-             "supports": [{"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "foam_top", "ux": 0, "uy": -1e-2 * scale}]},
-            {"name": "drag", "duration": 1, "dt": {"initial": 0.1, "max": 0.1},
-             "supports": [{"on": "foam_top", "ux": 2e-2 * scale}]},
-        ],
-    })
+/// Blocks of foam pressed on a ground of foam and dragged over it by Coulomb's law. `scale` multiplies what is prescribed; a
+/// body of steel beside it of this modulus, if there is one, is pressed by 1 %.
+fn foam(steel: Option<f64>, tolerance: f64, scale: f64) -> Finished {
+    let beside = |mesh: Blocks| mesh.rectangle("steel", [10, 10], [10.0, 0.0], [11.0, 1.0]);
+    let mesh = steel.map_or(Blocks::default(), |_| beside(Blocks::default()));
+    let mesh =
+        mesh.rectangle("ground", [24, 4], [0.0, -0.6], [4.0, 0.0]).rectangle("foam", [9, 4], [1.0, 0.0], [2.0, 0.6]);
+    let foam = neo_hookean(0.05, 0.3, 0.0);
+    let top = |y: f64| Support::on("foam_top").ux(0.0).uy(y);
+    let mut press = LoadStep::new("press", 1.0).dt(0.5).fix("ground_bottom").support(top(-1e-2 * scale));
+    let mut model = Model::builder(mesh.mesh()).body("ground", foam).body("foam", foam);
+    if let Some(young) = steel {
+        model = model.body("steel", neo_hookean(young, 0.3, 0.0));
+        press = press.fix("steel_bottom").support(Support::on("steel_top").ux(0.0).uy(-0.01));
+    }
+    let settings = IncrementSettings { max: Some(0.1), ..IncrementSettings::from(0.1) };
+    let drag = LoadStep::new("drag", 1.0).dt(settings).support(Support::on("foam_top").ux(2e-2 * scale));
+    let contact = Contact::new("base", "foam_bottom", "ground_top", CoulombParameters::new(0.3));
+    run_through(model.contact(contact).newton(solved_to(tolerance)).step(press).step(drag))
+}
+
+fn solved_to(tolerance: f64) -> NewtonSettings {
+    NewtonSettings { tolerance, ..NewtonSettings::default() }
 }
 
 /// Forces on the top of the foam after every increment, over `scale`.
@@ -80,14 +90,9 @@ fn difference(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
 /// The reference is the foam alone, solved to round-off.
 #[test]
 fn a_body_that_touches_nothing_hides_no_imbalance() {
-    let alone = forces(&finish(&foam(Blocks::default(), 1e-13, 1.0)), 1.0);
+    let alone = forces(&foam(None, 1e-13, 1.0), 1.0);
     for steel in [50.0, 2e5, 2e7] {
-        let mut case = foam(Blocks::default().rectangle("steel", [10, 10], [10.0, 0.0], [11.0, 1.0]), 1e-8, 1.0);
-        case["bodies"]["steel"] = json!({"material": {"model": "neo_hookean", "E": steel, "nu": 0.3}});
-        let supports = case["steps"][0]["supports"].as_array_mut().expect("a list");
-        supports.push(json!({"on": "steel_bottom", "ux": 0, "uy": 0}));
-        supports.push(json!({"on": "steel_top", "ux": 0, "uy": -0.01}));
-        close(&format!("E = {steel}"), difference(&alone, &forces(&finish(&case), 1.0)), 0.0, 1e-7);
+        close(&format!("E = {steel}"), difference(&alone, &forces(&foam(Some(steel), 1e-8, 1.0), 1.0)), 0.0, 1e-7);
     }
 }
 
@@ -96,26 +101,25 @@ fn a_body_that_touches_nothing_hides_no_imbalance() {
 #[test]
 fn a_stiff_body_in_a_stack_hides_no_imbalance() {
     let stack = |tolerance: f64| {
-        let material = |e: f64| json!({"material": {"model": "neo_hookean", "E": e, "nu": 0.3}});
-        let contact = |slave: &str, master: &str| json!({"slave": slave, "master": master, "friction": {"law": "coulomb", "mu": 0.3}});
         let mesh = Blocks::default()
             .rectangle("steel", [12, 3], [0.0, -0.5], [4.0, 0.0])
             .rectangle("rubber", [11, 3], [0.5, 0.0], [3.0, 0.5])
             .rectangle("foam", [9, 3], [1.0, 0.5], [2.0, 1.0]);
-        finish(&json!({
-            "mesh": mesh.json(),
-            "bodies": {"steel": material(2e5), "rubber": material(1.0), "foam": material(0.05)},
-            "contacts": {"lower": contact("rubber_bottom", "steel_top"), "upper": contact("foam_bottom", "rubber_top")},
-            "newton": {"tolerance": tolerance},
-            "steps": [
-                {"name": "press", "duration": 1, "dt": {"initial": 0.25},
-                 "supports": [{"on": "steel_bottom", "ux": 0, "uy": 0}, {"on": "foam_top", "ux": 0, "uy": -5e-2}]},
-                {"name": "stretch", "duration": 1, "dt": {"initial": 0.1},
-                 "supports": [{"on": "steel_bottom", "ux": "0.01*(x-1.5)*(t-1)"}]},
-                {"name": "drag", "duration": 1, "dt": {"initial": 0.1},
-                 "supports": [{"on": "steel_bottom", "ux": "0.01*(x-1.5)"}, {"on": "foam_top", "ux": 2e-2}]},
-            ],
-        }))
+        let press = LoadStep::new("press", 1.0).dt(0.25).fix("steel_bottom");
+        let stretched = |text: &str| Support::on("steel_bottom").ux(expression(text));
+        let stretch = LoadStep::new("stretch", 1.0).dt(0.1).support(stretched("0.01*(x-1.5)*(t-1)"));
+        let drag = LoadStep::new("drag", 1.0).dt(0.1).support(stretched("0.01*(x-1.5)"));
+        let model = Model::builder(mesh.mesh())
+            .body("steel", neo_hookean(2e5, 0.3, 0.0))
+            .body("rubber", neo_hookean(1.0, 0.3, 0.0))
+            .body("foam", neo_hookean(0.05, 0.3, 0.0))
+            .contact(Contact::new("lower", "rubber_bottom", "steel_top", CoulombParameters::new(0.3)))
+            .contact(Contact::new("upper", "foam_bottom", "rubber_top", CoulombParameters::new(0.3)))
+            .newton(solved_to(tolerance))
+            .step(press.support(Support::on("foam_top").ux(0.0).uy(-5e-2)))
+            .step(stretch)
+            .step(drag.support(Support::on("foam_top").ux(2e-2)));
+        run_through(model)
     };
     let [loose, tight] = [1e-8, 1e-13].map(|tolerance| forces(&stack(tolerance), 1.0));
     close("forces on the foam", difference(&tight, &loose), 0.0, 1e-7);
@@ -125,15 +129,15 @@ fn a_stiff_body_in_a_stack_hides_no_imbalance() {
 /// a thousand, as far as gaps of that size are known: to ε h in h times the motion.
 #[test]
 fn no_motion_is_too_small_to_be_solved_for() {
-    let reference = forces(&finish(&foam(Blocks::default(), 1e-8, 1e-4)), 1e-4);
+    let reference = forces(&foam(None, 1e-8, 1e-4), 1e-4);
     for (scale, allowed) in [(1e-6, 2e-4), (1e-8, 1e-4), (1e-10, 1e-2)] {
-        let run = finish(&foam(Blocks::default(), 1e-8, scale));
+        let run = foam(None, 1e-8, scale);
         close(&format!("{scale:e}"), difference(&reference, &forces(&run, scale)), 0.0, allowed);
         let top = run.nodes("foam_top")[0];
         close("prescribed", run.last().displacement[2 * top], 2e-2 * scale, 1e-12 * scale);
     }
     // Far below what gaps are known to, supports are still met, and no increment is accepted without a solve.
-    let run = finish(&foam(Blocks::default(), 1e-8, 1e-14));
+    let run = foam(None, 1e-8, 1e-14);
     let top = run.nodes("foam_top")[0];
     close("prescribed", run.last().displacement[2 * top], 2e-16, 1e-28);
     assert!(run.iterations.iter().all(|iterations| *iterations > 0));
@@ -145,14 +149,16 @@ fn no_motion_is_too_small_to_be_solved_for() {
 #[test]
 fn loads_far_from_the_origin_are_solved_for() {
     let tractions = |shift: f64| {
-        let run = finish(&json!({
-            "mesh": Blocks::default().rectangle("block", [16, 16], [shift, 0.0], [shift + 40.0, 40.0]).json(),
-            "bodies": {"block": {"material": {"model": "linear", "E": 130000, "nu": 0.2}}},
-            "contacts": {"base": {"slave": "block_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
-                                  "method": "node_to_segment", "friction": {"law": "coulomb", "mu": 1}}},
-            "steps": [{"name": "load", "duration": 1, "dt": {"initial": 0.1}, "supports": [{"on": "block_right", "ux": 0}],
-                       "loads": [{"on": "block_left", "pressure": 150}, {"on": "block_top", "pressure": 50}]}],
-        }));
+        let mesh = Blocks::default().rectangle("block", [16, 16], [shift, 0.0], [shift + 40.0, 40.0]);
+        let load = LoadStep::new("load", 1.0).dt(0.1).support(Support::on("block_right").ux(0.0));
+        let contact =
+            Contact::new("base", "block_bottom", floor(), CoulombParameters::new(1.0)).method(Method::NodeToSegment);
+        let run = run_through(
+            Model::builder(mesh.mesh())
+                .body("block", linear(130000.0, 0.2, 0.0))
+                .contact(contact)
+                .step(load.load(Load::pressure("block_left", 150.0)).load(Load::pressure("block_top", 50.0))),
+        );
         let friction = run.last().contacts[0].iter().map(|point| [point.friction.pressure, point.friction.traction]);
         friction.collect::<Vec<_>>()
     };

@@ -1,13 +1,17 @@
 //! Impact: contact forces of implicit schemes neither ring nor create energy where the struck surface carries no mass.
 
-use crate::common::{Blocks, Finished, Record, close, finish, model};
+use std::sync::Arc;
+
+use crate::common::{Blocks, Finished, Record, close, finished, neo_hookean};
+use fecontact::laws::friction::Frictionless;
 use fecontact::mesh::shape::ElementKind;
+use fecontact::model::Model;
+use fecontact::model::builder::{Contact, LoadStep, MasterSide, Support};
 use fecontact::model::element::{consistent_mass, redistributed};
+use fecontact::model::scheme::Scheme;
 use fecontact::output::warnings::Warnings;
 use fecontact::run::run;
 use nalgebra::Vector2;
-use serde_json::{Value, json};
-use std::sync::Arc;
 
 /// Elements along the bar
 const N: usize = 100;
@@ -15,17 +19,21 @@ const HEIGHT: f64 = 0.02;
 const SPEED: f64 = 1e-3;
 
 /// A bar of L = 1, ρ = 1, E = 1, ν = 0, so that c = 1, hits a rigid wall; increments of h/c.
-fn struck_bar(scheme: &Value, massless: bool, stiffness: f64) -> Value {
+fn struck_bar(scheme: Scheme, massless: bool, stiffness: f64) -> Model {
     let h = 1.0 / N as f64;
-    json!({
-        "mesh": Blocks::default().rectangle("bar", [N, 1], [0.0, 0.0], [1.0, HEIGHT]).json(),
-        "bodies": {"bar": {"material": {"model": "neo_hookean", "E": 1, "nu": 0, "density": 1}}},
-        "contacts": {"wall": {"slave": "bar_left", "master": {"plane": {"point": [0, 0], "normal": [1, 0]}},
-                              "massless": massless, "normal": {"alpha_n": stiffness / h}, "friction": {"law": "frictionless"}}},
-        "initial_velocity": {"bar": [-SPEED, 0]},
-        "steps": [{"name": "hit", "duration": 2.5, "dt": {"initial": h}, "scheme": scheme, "supports": [{"on": "bar", "uy": 0}]}],
-    })
+    let wall = MasterSide::Plane { point: [0.0, 0.0], normal: [1.0, 0.0] };
+    let contact = Contact::new("wall", "bar_left", wall, Frictionless).alpha_n(stiffness / h);
+    let hit = LoadStep::new("hit", 2.5).dt(h).scheme(scheme).support(Support::on("bar").uy(0.0));
+    Model::builder(Blocks::default().rectangle("bar", [N, 1], [0.0, 0.0], [1.0, HEIGHT]).mesh())
+        .body("bar", neo_hookean(1.0, 0.0, 1.0))
+        .contact(Contact { massless, ..contact })
+        .initial_velocity("bar", [-SPEED, 0.0])
+        .step(hit)
+        .build()
+        .expect("a good model")
 }
+
+const TRAPEZOIDAL: Scheme = Scheme::Newmark { beta: 0.25, gamma: 0.5 };
 
 /// What is seen of an impact.
 struct Impact {
@@ -75,17 +83,15 @@ fn seen(run: &Finished) -> Impact {
 /// | HHT −0.1 | 1000 | 0.87, 0.011 | 1.005, 0.9994 |
 #[test]
 fn a_bar_hits_a_wall_without_ringing() {
-    let schemes =
-        [json!({"newmark": {}}), json!({"hht": {"alpha": -0.1}}), json!({"generalized_alpha": {"rho_infinity": 0.8}})];
-    for scheme in &schemes {
+    for scheme in [TRAPEZOIDAL, Scheme::Hht { alpha: -0.1 }, Scheme::GeneralizedAlpha { rho_infinity: 0.8 }] {
         for stiffness in [10.0, 1000.0] {
-            let run = finish(&struck_bar(scheme, true, stiffness));
+            let run = finished(struck_bar(scheme, true, stiffness));
             let Impact { ringing, peak, mean, duration, changes, energy, impulse } = seen(&run);
             println!(
-                "{scheme}, {stiffness}: ringing {ringing:.4}, peak {peak:.3}, mean {mean:.4}, duration {duration:.3}, \
+                "{scheme:?}, {stiffness}: ringing {ringing:.4}, peak {peak:.3}, mean {mean:.4}, duration {duration:.3}, \
                  {changes} changes, energy {energy:.5}, impulse {impulse:.4}"
             );
-            assert!(ringing < 0.02 && peak < 1.4 && changes == 1, "{scheme}: {ringing}, {peak}, {changes}");
+            assert!(ringing < 0.02 && peak < 1.4 && changes == 1, "{scheme:?}: {ringing}, {peak}, {changes}");
             close("mean stress", mean, 1.0, 0.002);
             close("duration", duration, 2.0, 0.04);
             close("impulse", impulse, 1.0, 0.01);
@@ -98,7 +104,7 @@ fn a_bar_hits_a_wall_without_ringing() {
 /// With its mass the struck surface rings: the tests above see it.
 #[test]
 fn a_struck_surface_with_mass_rings_and_creates_energy() {
-    let Impact { ringing, energy, changes, .. } = seen(&finish(&struck_bar(&json!({"newmark": {}}), false, 10.0)));
+    let Impact { ringing, energy, changes, .. } = seen(&finished(struck_bar(TRAPEZOIDAL, false, 10.0)));
     println!("ringing {ringing:.2}, energy {energy:.2}, {changes} changes");
     assert!(ringing > 1.0 && energy > 2.0 && changes > 10);
 }
@@ -108,9 +114,9 @@ fn a_struck_surface_with_mass_rings_and_creates_energy() {
 #[test]
 fn energy_that_came_from_nowhere_is_told() {
     for (massless, stiffness, tells) in [(false, 10.0, true), (false, 1000.0, true), (true, 10.0, false)] {
-        let case = struck_bar(&json!({"newmark": {}}), massless, stiffness);
+        let model = struck_bar(TRAPEZOIDAL, massless, stiffness);
         let (mut warnings, mut record) = (Warnings::default(), Record::default());
-        run(&Arc::new(model(&case)), &mut [&mut warnings, &mut record]).1.expect("it is solved");
+        run(&Arc::new(model), &mut [&mut warnings, &mut record]).1.expect("it is solved");
         let told: Vec<&String> = warnings.list.iter().filter(|warning| warning.contains("energies")).collect();
         assert_eq!(told.len(), usize::from(tells), "{told:?}");
         let there_was = 0.5 * HEIGHT * SPEED * SPEED;

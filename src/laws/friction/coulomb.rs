@@ -15,6 +15,13 @@ pub struct CoulombParameters {
     pub alpha_t: Option<f64>,
 }
 
+impl CoulombParameters {
+    /// With the tangential stiffness left to the contact.
+    pub fn new(mu: f64) -> Self {
+        Self { mu, alpha_t: None }
+    }
+}
+
 /// Coulomb friction on an elastic contact: sticks below μ p, slides at μ p.
 ///
 /// ```text

@@ -23,6 +23,13 @@ pub struct SlipWeakeningParameters {
     pub alpha_t: Option<f64>,
 }
 
+impl SlipWeakeningParameters {
+    /// Without cohesion, the tangential stiffness left to the contact.
+    pub fn new(mu_s: f64, mu_d: f64, critical_slip: f64) -> Self {
+        Self { mu_s, mu_d, critical_slip, cohesion: 0.0, alpha_t: None }
+    }
+}
+
 /// Linear slip weakening on an elastic contact: the friction of most computed earthquakes.
 ///
 /// ```text

@@ -49,6 +49,27 @@ pub struct SuperSubloadingParameters {
     pub tolerance: Option<f64>,
 }
 
+impl SuperSubloadingParameters {
+    /// Neither weakening nor recovery, the tangential stiffness left to the contact, all else as in a case that says no more.
+    pub fn new(mu_s: f64, mu_k: f64, r: f64) -> Self {
+        Self {
+            mu_s,
+            mu_k,
+            alpha_t: None,
+            r,
+            kappa: 0.0,
+            xi: 0.0,
+            m: one(),
+            n: one(),
+            structure: None,
+            approach: Approach::default(),
+            elastic_core: 0.0,
+            integration: Integration::default(),
+            tolerance: None,
+        }
+    }
+}
+
 fn one() -> f64 {
     1.0
 }

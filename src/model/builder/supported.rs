@@ -5,16 +5,16 @@ use std::collections::BTreeSet;
 
 use nalgebra::{Matrix3, RowVector3, Vector2};
 
-use super::error::Complaint;
-use super::file::Case;
+use super::error::ModelError;
+use super::load_step::LoadStep;
 use crate::contact::surface::{Master, Surface};
 use crate::model::{Model, Step};
 
 /// Share of the stiffest rigid motion below which a motion counts as free.
-const FREE: f64 = 1e-10;
+const HELD_BY_NOTHING: f64 = 1e-10;
 
 /// Every motion must meet stiffness or, in a dynamic step, mass.
-pub fn check(case: &Case, model: &Model) -> Result<(), Complaint> {
+pub fn check(given: &[LoadStep], model: &Model) -> Result<(), ModelError> {
     for (k, step) in model.steps.iter().enumerate() {
         if step.scheme.is_dynamic() || step.rupture.is_some() {
             check_mass(k, step, model)?;
@@ -23,11 +23,11 @@ pub fn check(case: &Case, model: &Model) -> Result<(), Complaint> {
             check_lone_nodes(k, step, model)?;
         }
     }
-    check_floating(case, model)
+    check_floating(given, model)
 }
 
 /// A node of no body meets nothing but its supports, springs, dashpots and contact.
-fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Result<(), Complaint> {
+fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Result<(), ModelError> {
     let mut held = vec![false; model.dofs()];
     let nodes = model.bodies.iter().flat_map(|body| &body.nodes);
     nodes.for_each(|&node| held[2 * node..2 * node + 2].fill(true));
@@ -36,7 +36,7 @@ fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Result<(), Complain
     points.for_each(|&(node, _)| held[2 * node..2 * node + 2].fill(true));
     holding_dofs(step).for_each(|dof| held[dof] = true);
     match held.iter().position(|held| !held) {
-        Some(dof) => Err(Complaint::new(
+        Some(dof) => Err(ModelError::new(
             format!("steps[{k}].supports"),
             format!(
                 "node {} belongs to no element and is free along {}: hold it by a support, a spring or contact",
@@ -57,7 +57,7 @@ fn holding_dofs(step: &Step) -> impl Iterator<Item = usize> {
 }
 
 /// Accelerations follow from masses, so a node that may move needs one.
-fn check_mass(k: usize, step: &Step, model: &Model) -> Result<(), Complaint> {
+fn check_mass(k: usize, step: &Step, model: &Model) -> Result<(), ModelError> {
     let mut carried = vec![false; model.mesh.nodes.len()];
     let dense = model.bodies.iter().filter(|body| body.material.density() > 0.0).flat_map(|body| &body.nodes);
     let points = model.point_masses.iter().flat_map(|point| &point.nodes);
@@ -68,10 +68,10 @@ fn check_mass(k: usize, step: &Step, model: &Model) -> Result<(), Complaint> {
     let why = format!("the dynamic step `{}` (steps[{k}]) needs a mass", step.name);
     if let Some(body) = model.bodies.iter().find(|body| body.nodes.iter().any(massless)) {
         let message = format!("is 0, but {why}: give a density");
-        return Err(Complaint::new(format!("bodies.{}.material.density", body.name), message));
+        return Err(ModelError::new(format!("bodies.{}.material.density", body.name), message));
     }
     match (0..model.mesh.nodes.len()).find(massless) {
-        Some(node) => Err(Complaint::new(
+        Some(node) => Err(ModelError::new(
             "point_masses",
             format!("node {} belongs to no element, and {why}: give one to its group", model.mesh.node_tags[node]),
         )),
@@ -81,12 +81,12 @@ fn check_mass(k: usize, step: &Step, model: &Model) -> Result<(), Complaint> {
 
 /// Every group of bodies joined by contact must be held against x, y and rotation by supports, springs or dashpots
 /// in every static step. A group that touches a rigid plane is left to the solver.
-fn check_floating(case: &Case, model: &Model) -> Result<(), Complaint> {
+fn check_floating(given: &[LoadStep], model: &Model) -> Result<(), ModelError> {
     for (k, step) in model.steps.iter().enumerate().filter(|(_, step)| !step.scheme.is_dynamic()) {
         for group in joined_bodies(model) {
             let Some(motion) = free_motion(model, step, &group) else { continue };
             let names: Vec<String> = group.iter().map(|&body| format!("`{}`", model.bodies[body].name)).collect();
-            let held = if case.steps[k].supports.is_empty() && step.supports.is_empty() {
+            let held = if given[k].supports.is_empty() && step.supports.is_empty() {
                 "there is no support at all"
             } else {
                 "the supports do not hold it"
@@ -95,7 +95,7 @@ fn check_floating(case: &Case, model: &Model) -> Result<(), Complaint> {
                 "{} can move freely {motion}: {held}; a static step needs supports or springs against every rigid motion",
                 names.join(" with ")
             );
-            return Err(Complaint::new(format!("steps[{k}].supports"), message));
+            return Err(ModelError::new(format!("steps[{k}].supports"), message));
         }
     }
     Ok(())
@@ -148,7 +148,7 @@ fn free_motion(model: &Model, step: &Step, bodies: &[usize]) -> Option<String> {
     }
     let eigen = resistance.symmetric_eigen();
     let (weakest, value) = eigen.eigenvalues.argmin();
-    if value > FREE * eigen.eigenvalues.amax() {
+    if value > HELD_BY_NOTHING * eigen.eigenvalues.amax() {
         return None;
     }
     let motion = eigen.eigenvectors.column(weakest);

@@ -2,16 +2,14 @@
 
 use nalgebra::Vector2;
 
-use super::file::{Case, ContactInput};
-use super::initial::lost_velocity;
-use super::method::concerns;
-use super::report::{count, number};
+use super::told::{count, number};
 use crate::contact::pair::ContactPair;
 use crate::contact::rigid::Rigid;
 use crate::contact::surface::{Master, SlavePoint};
 use crate::mesh::Mesh;
 use crate::mesh::configuration::Configuration;
 use crate::model::Model;
+use crate::model::method::Chosen;
 
 /// Round-off of a gap, as a share of the positions that it is the difference of.
 const OF_POSITIONS: f64 = 8.0 * f64::EPSILON;
@@ -19,20 +17,45 @@ const OF_POSITIONS: f64 = 8.0 * f64::EPSILON;
 /// Overlap, as a share of the slave's edge, that presses with nothing: 10⁻¹¹ (λ + 2G) with the default penalty.
 const OF_EDGE: f64 = 1e-12;
 
-/// What a user should know before anything is solved.
-pub fn warnings(case: &Case, model: &Model) -> Vec<String> {
-    let of_contact = |pair: &ContactPair| {
-        let warnings = match case.contacts[&pair.name].initial {
-            Some(_) => Vec::new(),
-            // A surface commonly lies free of itself at the start.
-            None if is_its_own_master(pair) => Vec::new(),
-            None => Gaps::of(model, pair).warnings(),
+impl Model {
+    /// What a user should know before anything is solved.
+    pub fn warnings(&self) -> Vec<String> {
+        let of_contact = |pair: &ContactPair| {
+            // What starts closed has no gaps, and a surface commonly lies free of itself at the start.
+            let warnings = match pair.initial.is_some() || is_its_own_master(pair) {
+                true => Vec::new(),
+                false => Gaps::of(self, pair).warnings(),
+            };
+            warnings.into_iter().map(|warning| format!("contact `{}`: {warning}", pair.name)).collect::<Vec<_>>()
         };
-        warnings.into_iter().map(|warning| format!("contact `{}`: {warning}", pair.name)).collect::<Vec<_>>()
-    };
-    let of_model =
-        coarse_positions(&model.mesh).into_iter().chain(lost_velocity(model)).chain(concerns(case, &model.mesh));
-    of_model.chain(model.contacts.iter().flat_map(of_contact)).collect()
+        let of_model = coarse_positions(&self.mesh).into_iter().chain(lost_velocity(self));
+        let concerns = self.told_of_methods(|chosen| chosen.concern.map(String::from));
+        of_model.chain(concerns).chain(self.contacts.iter().flat_map(of_contact)).collect()
+    }
+
+    /// Where contacts are evaluated whose method was left open.
+    pub fn choices(&self) -> Vec<String> {
+        self.told_of_methods(|chosen| chosen.because.map(|because| format!("{}, {because}", chosen.method.name())))
+    }
+
+    fn told_of_methods(&self, told: impl Fn(&Chosen) -> Option<String>) -> Vec<String> {
+        let contacts = self.contacts.iter().zip(&self.methods);
+        contacts
+            .filter_map(|(pair, chosen)| Some(format!("contact `{}`: {}", pair.name, told(chosen.as_ref()?)?)))
+            .collect()
+    }
+}
+
+/// What is wrong with velocities that a static first step takes no notice of.
+fn lost_velocity(model: &Model) -> Option<String> {
+    let first = model.steps.first().filter(|step| !step.scheme.is_dynamic())?;
+    let moving = model.initial_velocity.iter().any(|v| *v != 0.0);
+    moving.then(|| {
+        format!(
+            "the initial velocities are lost: the first step, `{}`, is static; give it a dynamic scheme",
+            first.name
+        )
+    })
 }
 
 fn is_its_own_master(pair: &ContactPair) -> bool {
@@ -61,8 +84,8 @@ fn coarse_positions(mesh: &Mesh) -> Option<String> {
     })
 }
 
-/// What `check` says of the gaps of a contact that does not start closed.
-pub(super) fn gaps(model: &Model, pair: &ContactPair, input: &ContactInput) -> String {
+/// The gaps of a contact that does not start closed, as a reader is told of them.
+pub fn gaps(model: &Model, pair: &ContactPair, shrink_fit: bool) -> String {
     let gaps = Gaps::of(model, pair);
     let fit = gaps.fit.map(|(overlap, at)| {
         let place = format!("at ({}, {})", number(at.x), number(at.y));
@@ -71,7 +94,7 @@ pub(super) fn gaps(model: &Model, pair: &ContactPair, input: &ContactInput) -> S
             number(overlap)
         )
     });
-    let fit = match (fit, input.shrink_fit) {
+    let fit = match (fit, shrink_fit) {
         (None, true) => "; shrink fit: the surfaces overlap nowhere".into(),
         (fit, _) => fit.unwrap_or_default(),
     };

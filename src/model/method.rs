@@ -1,12 +1,37 @@
-//! Where contact is evaluated: as the case says, or as the surfaces ask for.
+//! Where contact is evaluated: as it is asked for, or as the surfaces need it.
 //!
 //! Pointwise contact passes the patch test of straight linear edges to about a percent. On quadratic edges two points leave
 //! the pressure to alternate, and between two faceted curves the gap itself alternates by the height of the facets, which
 //! the penalty turns into pressures far above those sought. There mortar averages.
 
-use super::file::{Case, ContactInput, MasterInput, Method};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
 use crate::contact::surface::{CORNER, in_order};
 use crate::mesh::{Group, Mesh};
+
+/// Where contact is evaluated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// At the slave's nodes, with tributary lengths
+    NodeToSegment,
+    /// At Gauss points of the slave's edges
+    GaussToSegment,
+    /// Averaged around the slave's nodes, integrated exactly over non-matching meshes
+    Mortar,
+}
+
+impl Method {
+    /// Its name in a case.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NodeToSegment => "node_to_segment",
+            Self::GaussToSegment => "gauss_to_segment",
+            Self::Mortar => "mortar",
+        }
+    }
+}
 
 /// The method in force, and what to tell about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,7 +40,7 @@ pub struct Chosen {
     pub method: Method,
     /// Gauss points an edge, for gauss_to_segment
     pub points: usize,
-    /// Why, if the case leaves it open
+    /// Why, if it was left open
     pub because: Option<&'static str>,
     /// What is known to suffer, and the remedy
     pub concern: Option<&'static str>,
@@ -36,15 +61,20 @@ const POINTS: usize = 2;
 /// round-off of coordinates does to a straight line, and below what facets do to the pressure [rad].
 const CURVED: f64 = 0.0175;
 
-/// The method of a contact.
-pub fn choose(input: &ContactInput, mesh: &Mesh) -> Chosen {
-    let slave = looks(mesh, &input.slave);
-    let master = match &input.master {
-        MasterInput::Group(group) => Some(looks(mesh, group)),
-        MasterInput::Rigid(_) => None,
-    };
-    let points = input.points.unwrap_or(POINTS);
-    if let Some(method) = input.method.or(input.points.map(|_| Method::GaussToSegment)) {
+/// The method of a contact of two groups of edges, the second none for a rigid master.
+pub fn choose(
+    slave: &str,
+    master: Option<&str>,
+    method: Option<Method>,
+    points: Option<usize>,
+    smooth: bool,
+    mesh: &Mesh,
+) -> Chosen {
+    let slave = looks(mesh, slave);
+    let master = master.map(|group| looks(mesh, group));
+    let given = method.or(points.map(|_| Method::GaussToSegment));
+    let points = points.unwrap_or(POINTS);
+    if let Some(method) = given {
         return Chosen { method, points, because: None, concern: concern(method, points, slave, master) };
     }
     let chosen = |method, because, concern| Chosen { method, points, because: Some(because), concern };
@@ -55,7 +85,7 @@ pub fn choose(input: &ContactInput, mesh: &Mesh) -> Chosen {
         (_, true) => "chosen because surfaces are curved",
         _ => return chosen(Method::GaussToSegment, "chosen because surfaces are straight and linear", None),
     };
-    if !input.smooth {
+    if !smooth {
         return chosen(Method::Mortar, because, None);
     }
     let concern = (slave != Looks::Straight).then_some(
@@ -64,7 +94,7 @@ pub fn choose(input: &ContactInput, mesh: &Mesh) -> Chosen {
     chosen(Method::GaussToSegment, "chosen because mortar takes no smooth master", concern)
 }
 
-/// What is known to suffer under a method that the case names.
+/// What is known to suffer under a method that was asked for.
 fn concern(method: Method, points: usize, slave: Looks, master: Option<Looks>) -> Option<&'static str> {
     let straight = slave == Looks::Straight && master.is_none_or(|master| master == Looks::Straight);
     match (method, master) {
@@ -81,25 +111,6 @@ fn concern(method: Method, points: usize, slave: Looks, master: Option<Looks>) -
              `points` out for mortar",
         ),
     }
-}
-
-/// What the user should know about the methods of all contacts.
-pub fn concerns(case: &Case, mesh: &Mesh) -> Vec<String> {
-    let concern = |(name, input): (&String, &ContactInput)| {
-        let concern = choose(input, mesh).concern.filter(|_| input.area.is_none())?;
-        Some(format!("contact `{name}`: {concern}"))
-    };
-    case.contacts.iter().filter_map(concern).collect()
-}
-
-/// What was chosen for the contacts whose method the case leaves open.
-pub fn choices(case: &Case, mesh: &Mesh) -> Vec<String> {
-    let choice = |(name, input): (&String, &ContactInput)| {
-        let Chosen { method, because, .. } = choose(input, mesh);
-        let because = because.filter(|_| input.area.is_none())?;
-        Some(format!("contact `{name}`: {}, {because}", method.name()))
-    };
-    case.contacts.iter().filter_map(choice).collect()
 }
 
 /// What the edges of a group look like; a group of anything else is told elsewhere.

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::error::Complaint;
+use super::error::ModelError;
 use crate::mesh::Mesh;
 use crate::mesh::ties::Ties;
 
@@ -10,7 +10,7 @@ use crate::mesh::ties::Ties;
 const ROUNDED: f64 = 1e-6;
 
 /// Ties between the nodes of pairs of sides.
-pub fn ties(periodic: &[[String; 2]], mesh: &Mesh) -> Result<Ties, Complaint> {
+pub fn ties(periodic: &[[String; 2]], mesh: &Mesh) -> Result<Ties, ModelError> {
     let mut joined = Vec::new();
     for (k, names) in periodic.iter().enumerate() {
         joined.extend(partners(names, mesh, &format!("periodic[{k}]"))?);
@@ -19,8 +19,8 @@ pub fn ties(periodic: &[[String; 2]], mesh: &Mesh) -> Result<Ties, Complaint> {
 }
 
 /// Each node of one side with the node of the other that lies as far from it as the sides' middles are apart.
-fn partners(names: &[String; 2], mesh: &Mesh, place: &str) -> Result<Vec<[usize; 2]>, Complaint> {
-    let complain = |message: String| Complaint::new(place, message);
+fn partners(names: &[String; 2], mesh: &Mesh, place: &str) -> Result<Vec<[usize; 2]>, ModelError> {
+    let complain = |message: String| ModelError::new(place, message);
     let side = |name: &String| mesh.group(name).map(|group| mesh.nodes_of(group));
     let [first, second] =
         [side(&names[0]).map_err(|e| complain(e.to_string()))?, side(&names[1]).map_err(|e| complain(e.to_string()))?];
