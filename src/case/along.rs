@@ -35,7 +35,7 @@ pub fn laws(
     }
     if let Some(structure) = input.initial.as_ref().and_then(|initial| initial.structure.as_ref()) {
         let place = format!("{place}.initial.structure");
-        if !matches!(input.friction, FrictionParameters::SuperSubloading(_)) {
+        if !input.friction.has_structure() {
             return Err(Complaint::new(place, "this friction law has no structure: leave it out"));
         }
         if input.along.contains_key("structure") {

@@ -4,6 +4,7 @@ use super::along::{defined, position, profile};
 use super::error::Complaint;
 use super::file::{Case, InitialInput};
 use crate::contact::pair::{ContactPair, InitialTraction};
+use crate::laws::friction::observables;
 use crate::mesh::configuration::Configuration;
 use crate::model::Model;
 
@@ -78,7 +79,8 @@ pub fn close(pair: &mut ContactPair, input: &InitialInput, model: &Model, place:
         }
         let limit = pair.law(point).starting_limit(pressure);
         if traction.abs() > limit * (1.0 + ROUNDED) {
-            let mu = pair.law(point).initial_state().mu;
+            let law = pair.law(point);
+            let mu = observables::value(law, "mu", &law.initial_state());
             let message = format!(
                 "is {traction}: the initial strength is exceeded already, which is mu p = {limit} with mu = {mu} and \
                  p = {pressure}"

@@ -20,12 +20,12 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, Vector2};
 use rayon::prelude::*;
 
-use crate::contact::force::{Closed, ContactState, Presume, SLIPPING, Status, Tractions};
+use crate::contact::force::{Closed, ContactState, Presume, Tractions};
 use crate::contact::pair::{ContactIncrement, ContactPair, PairResponse, Presumption};
 use crate::contact::surface::Master;
 use crate::equations::failure::TrialFailure;
 use crate::laws::bulk::InvertedElement;
-use crate::laws::friction::FrictionState;
+use crate::laws::friction::{FrictionState, Regime};
 use crate::linear::system::Request;
 use crate::linear::system::{Contribution, System};
 use crate::linear::{BlockPosition, Pattern, SparseMatrix};
@@ -130,10 +130,10 @@ impl ContactCounts {
     pub fn of(contacts: &[Vec<ContactState>]) -> Self {
         let mut counts = Self::default();
         for state in contacts.iter().flatten() {
-            match state.status() {
-                Status::Open => counts.open += 1,
-                Status::Stick => counts.stick += 1,
-                Status::Slip => counts.slip += 1,
+            match state.regime() {
+                Regime::Open => counts.open += 1,
+                Regime::Stick => counts.stick += 1,
+                Regime::Slip => counts.slip += 1,
             }
         }
         counts
@@ -174,11 +174,12 @@ impl Iterate {
     /// the narrow range of sticking only for its own error.
     fn watch_slip(&mut self, friction: &FrictionState) {
         let slip = friction.plastic_increment;
+        let slips = friction.regime == Regime::Slip;
         // A point that only a promise keeps closed has a negative pressure.
-        let slips = slip != 0.0 && friction.traction.abs() >= SLIPPING * friction.mu * friction.pressure.abs();
-        let strength = friction.mu * self.promised.pressure;
-        // A law that slips at R < 1 does so with these tractions as well, unless they are far lower or the slip abates.
-        let held = if slip.abs() < ABATES * self.slip.abs() { strength } else { SLIPPING * strength };
+        let strength = (friction.traction / friction.pressure).abs() * self.promised.pressure;
+        // A point that slips below its strength does so with these tractions as well, unless they are far lower or the slip
+        // abates.
+        let held = if slip.abs() < ABATES * self.slip.abs() { strength } else { FAR_LOWER * strength };
         let sticks = match self.stuck {
             true => slips && self.promised.traction.abs() < held,
             false => self.slip * slip < 0.0,
@@ -192,6 +193,9 @@ impl Iterate {
 
 /// Slip that is below this share of what it was at the last solve comes to rest.
 const ABATES: f64 = 0.5;
+
+/// Tractions below this share of the friction that a point slips with would hold it.
+const FAR_LOWER: f64 = 0.9;
 
 /// Seconds spent by phase.
 #[derive(Clone, Copy, Debug, Default)]
@@ -254,7 +258,7 @@ fn at_start(pair: &ContactPair, state: &ContactState, old: &ContactState) -> Tra
     let reach = old.friction.pressure * (pair.compliance + MOST_PULL / pair.alpha_n);
     match state.friction.pressure > 0.0 {
         true => Tractions::of(&state.friction).limited(MOST_GROWTH * old.friction.pressure),
-        false if state.gap <= reach => Tractions::of(&old.friction),
+        false if state.clearance() <= reach => Tractions::of(&old.friction),
         false => Tractions::default(),
     }
 }

@@ -1,8 +1,9 @@
 //! One increment: old state → new state.
 
-use crate::contact::force::{ContactState, Status};
+use crate::contact::force::ContactState;
 use crate::equations::energy::{contact_energy, friction_dissipation, work_of_drivers, work_of_fits};
 use crate::equations::{Assembler, ContactCounts, Trial};
+use crate::laws::friction::Regime;
 use crate::linear::system::Request;
 use crate::linear::system::System;
 use crate::linear::{self, LinearSolver};
@@ -295,8 +296,8 @@ fn solve(
 /// Watches the contact states go to and fro between iterations.
 #[derive(Default)]
 struct Flips {
-    /// Status of every point at the last two iterates
-    last: [Vec<Status>; 2],
+    /// Regime of every point at the last two iterates
+    last: [Vec<Regime>; 2],
     /// Iterations in a row in which each point came back
     returns: Vec<usize>,
 }
@@ -307,7 +308,7 @@ const CYCLE: usize = 3;
 impl Flips {
     /// Number of points that are as they were before the last iterate, and were not in it.
     fn count(&mut self, contacts: &[Vec<ContactState>]) -> usize {
-        let now: Vec<Status> = contacts.iter().flatten().map(ContactState::status).collect();
+        let now: Vec<Regime> = contacts.iter().flatten().map(ContactState::regime).collect();
         let [last, before] = std::mem::take(&mut self.last);
         self.returns.resize(now.len(), 0);
         for (returns, ((now, last), before)) in self.returns.iter_mut().zip(now.iter().zip(&last).zip(&before)) {
