@@ -10,7 +10,7 @@ use fecontact::time::increment::{Workspace, advance, begin};
 use serde_json::{Value, json};
 
 /// μ, the one variable of the super/subloading law.
-fn mu_of(state: &FrictionState) -> f64 {
+fn mu_of(state: &fecontact::laws::friction::FrictionState) -> f64 {
     state.variables[0]
 }
 

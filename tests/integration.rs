@@ -83,7 +83,7 @@ fn ageing_is_exact_in_any_number_of_increments() {
     let law = law(json!({"kappa": 10, "xi": 0.002}));
     for parts in [1, 10, 10_000] {
         let path = [[0.0, 0.0, PRESSURE], [300.0, 0.0, PRESSURE]];
-        let mu = follow(&*law, pressed(MU_K, 0.0), &path, parts)[0].mu;
+        let mu = mu_of(&follow(&*law, pressed(MU_K, 0.0), &path, parts)[0]);
         let exact = MU_S - (MU_S - MU_K) * (-0.002 * 300.0 / MU_S).exp();
         assert!((mu - exact).abs() * PRESSURE < MICRO, "{parts} increments: {mu}, expected {exact}");
     }

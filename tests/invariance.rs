@@ -9,7 +9,9 @@ mod common;
 
 use std::f64::consts::PI;
 
-use common::{Finished, finish};
+use common::{Blocks, Finished, close, finish};
+use fecontact::contact::force::ContactState;
+use fecontact::laws::friction::Regime;
 use serde_json::{Map, Value, json};
 
 /// A run, and how its model is given.

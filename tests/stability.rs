@@ -16,7 +16,7 @@ use nalgebra::{Matrix3, Vector3};
 use serde_json::{Value, json};
 
 /// μ, the one variable of the super/subloading law.
-fn mu_of(state: &FrictionState) -> f64 {
+fn mu_of(state: &fecontact::laws::friction::FrictionState) -> f64 {
     state.variables[0]
 }
 
