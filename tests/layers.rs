@@ -123,3 +123,14 @@ fn no_files_import_each_other_in_a_circle() {
         graph.into_iter().map(told).collect::<Vec<_>>().join("\n")
     );
 }
+
+/// Who needs a property of a friction law asks it: no other room knows the laws by name.
+#[test]
+fn only_the_laws_know_each_other_by_name() {
+    let laws = ["SuperSubloading", "SlipWeakening", "RateAndState", "Coulomb", "Frictionless"];
+    for (module, text) in modules().iter().filter(|(module, _)| module[0] != "laws") {
+        for law in laws {
+            assert!(!text.contains(law), "{} names {law}", module.join("::"));
+        }
+    }
+}

@@ -11,7 +11,7 @@ use super::error::{CaseError, Checked, Complaint};
 use super::file::DriveInput;
 use super::schema::schema_of;
 use super::translate::drive;
-use crate::laws::friction::{FrictionLaw, FrictionParameters, FrictionState};
+use crate::laws::friction::{FrictionLaw, FrictionParameters, FrictionState, observables};
 use crate::model::boundary::{Drive, Span};
 use crate::run::law::LawTest;
 use crate::run::law_path::{Course, Phase, Undefined};
@@ -131,11 +131,11 @@ fn start(input: &LawTestInput, law: &dyn FrictionLaw, pressure: f64) -> Checked<
         let message = format!(
             "is {traction}, beyond the strength mu p = {} · {pressure} = {strength} at the start: lower it, or raise the \
              pressure or the structure",
-            at_rest.mu
+            observables::value(law, "mu", &at_rest)
         );
         return Err(Complaint::new("initial.traction", message));
     }
-    Ok(FrictionState { traction, pressure, ..at_rest })
+    Ok(law.starting_state(pressure, traction))
 }
 
 fn phases_of(input: &LawTestInput, phases: &[PhaseInput]) -> Checked<Vec<Phase>> {

@@ -181,7 +181,7 @@ pub fn law(path: &Path, out: Option<PathBuf>) -> Result<(), Failure> {
     let folder = out.unwrap_or_else(|| default_folder(path));
     prepare(&folder)?;
 
-    let mut table = LawTable::create(&folder)?;
+    let mut table = LawTable::create(&folder, &*test.law)?;
     let (report, result) = test.run(|row| table.write(row));
     table.finish()?;
     let about = About {

@@ -21,11 +21,12 @@ use nalgebra::{DMatrix, Vector2};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::contact::force::{Closed, ContactState, Status};
+use crate::contact::force::{Closed, ContactState};
 use crate::contact::pair::{ContactIncrement, ContactPair, PairResponse, Presumption};
 use crate::contact::surface::Master;
 use crate::equations::failure::TrialFailure;
 use crate::laws::bulk::InvertedElement;
+use crate::laws::friction::Regime;
 use crate::linear::system::Request;
 use crate::linear::system::{Contribution, System};
 use crate::linear::{BlockPosition, Pattern, SparseMatrix};
@@ -130,10 +131,10 @@ impl ContactCounts {
     pub fn of(contacts: &[Vec<ContactState>]) -> Self {
         let mut counts = Self::default();
         for state in contacts.iter().flatten() {
-            match state.status() {
-                Status::Open => counts.open += 1,
-                Status::Stick => counts.stick += 1,
-                Status::Slip => counts.slip += 1,
+            match state.regime() {
+                Regime::Open => counts.open += 1,
+                Regime::Stick => counts.stick += 1,
+                Regime::Slip => counts.slip += 1,
             }
         }
         counts

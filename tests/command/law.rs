@@ -279,7 +279,7 @@ fn turning_points_of_expressions_are_stepped_onto() {
 /// the same sine in increments of 1e-5 that meet the turns.
 #[test]
 fn an_oscillation_by_expression_is_right_at_any_increment() {
-    let start = FrictionState { traction: 19.62, pressure: PRESSURE, mu: 0.2, ..FrictionState::default() };
+    let start = FrictionState { traction: 19.62, pressure: PRESSURE, ..FrictionState::default().with_variables([0.2]) };
     let law = serde_json::from_value::<FrictionParameters>(paper()).unwrap().build(f64::NAN).unwrap();
     let mut fine = vec![(0.0, start)];
     for turn in [0.5 * PI, 1.5 * PI, 5.0] {

@@ -2,6 +2,8 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../common/delayed.rs"]
+mod delayed;
 
 mod convergence;
 mod input;

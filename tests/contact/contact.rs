@@ -1,6 +1,6 @@
 //! Contact: exact tangents, feet at corners and past ends.
 
-use fecontact::contact::force::{Closed, ContactState, Increment, Status, Tractions, closes, press, respond};
+use fecontact::contact::force::{Closed, ContactState, Increment, Loading, Meeting, Place, Tractions, closes, place};
 use fecontact::contact::mortar::{Mortar, mortar_points};
 use fecontact::contact::pair::{ContactIncrement, ContactPair, InitialTraction, Presumption};
 use fecontact::contact::projection::{Bound, nearest};
@@ -9,7 +9,9 @@ use fecontact::contact::search::Index;
 use fecontact::contact::surface::{
     Master, MasterPoint, Segment, SlavePoint, Surface, gauss_points, lone_point, nodal_points,
 };
-use fecontact::laws::friction::{FrictionParameters, FrictionState};
+use fecontact::laws::friction::{
+    Answer, FrictionLaw, FrictionParameters, FrictionResponse, FrictionState, Regime, Sliding,
+};
 use fecontact::linear::system::Contribution;
 use fecontact::mesh::configuration::Configuration;
 use nalgebra::Vector2;
@@ -88,7 +90,21 @@ fn answer(
     let before = x;
     let index = Index::new(&pair.master, x);
     let projection = index.project(&pair.points[k], None, x);
-    respond(pair, &pair.points[k], projection, old, increment, [before, x]).expect("a finite increment")
+    let place = place(pair, &pair.points[k], projection, old, increment, [before, x]);
+    finish(pair, k, old, increment, place)
+}
+
+/// The answer of a point in its place.
+fn finish(
+    pair: &ContactPair,
+    k: usize,
+    old: &ContactState,
+    increment: Increment,
+    place: Place,
+) -> (ContactState, Option<Closed>) {
+    let loading = Loading::new(pair, &pair.points[k], old, increment, place);
+    let answer = pair.law(&pair.points[k]).respond(&old.friction, loading.sliding);
+    loading.finish(answer).expect("a finite increment")
 }
 
 /// Forces of one point on the given nodes.
@@ -147,7 +163,7 @@ fn tangent_equals_differences_in_stick_partial_and_full_slip_and_after_touch() {
             let mut closed = 0;
             for k in 0..pair.points.len() {
                 let (state, _) = evaluate(&pair, k, &pulled(&pair, k, &x, 0.0, pressed, -0.02), &x);
-                if state.status() == Status::Open {
+                if state.regime() == Regime::Open {
                     continue;
                 }
                 closed += 1;
@@ -480,7 +496,7 @@ fn tangent_equals_differences_on_quadratic_edges() {
             let mut closed = 0;
             for k in 0..pair.points.len() {
                 let open =
-                    evaluate(&pair, k, &pulled(&pair, k, &x, 0.0, pressed, -0.02), &x).0.status() == Status::Open;
+                    evaluate(&pair, k, &pulled(&pair, k, &x, 0.0, pressed, -0.02), &x).0.regime() == Regime::Open;
                 for back in [1e-4, 0.01, 0.2, -0.3] {
                     if !open {
                         check_tangent(&pair, k, &pulled(&pair, k, &x, back, pressed, -0.02), &x, law);
@@ -715,10 +731,9 @@ fn check_mortar_tangent(
         let meeting = mortar.kinematics(k, surface, &is, weights.as_ref(), &x).expect("the master faces the point");
         closes(pair, &pair.points[k], meeting.gap, &old, increment, &x)
             .then(|| {
-                press(pair, &pair.points[k], meeting, &old, increment)
-                    .expect("a finite increment")
-                    .1
-                    .expect("a closed point")
+                let Meeting { kinematics, gap, foot } = meeting;
+                let place = Place { gap, foot: Some(foot), kinematics: Some(kinematics) };
+                finish(pair, k, &old, increment, place).1.expect("a closed point")
             })
             .map(|closed| closed.contribution)
     };
@@ -775,6 +790,81 @@ fn open_points_add_nothing() {
     let states = pair.initial_states(&Configuration::undeformed(&x));
     for (k, old) in states.iter().enumerate() {
         let (state, contribution) = evaluate(&pair, k, old, &x);
-        assert!(contribution.is_none() && state.status() == Status::Open && state.gap > 0.5);
+        assert!(contribution.is_none() && state.regime() == Regime::Open && state.gap > 0.5);
     }
+}
+
+/// Friction by which the surfaces ride up, opening with slip and less so under pressure: every part of its tangent is at work.
+///
+/// ```text
+/// q = q₀ + α_t Δu (1 + p/P),   d = d₀ + s Δu²/(1 + p/P)
+/// ```
+#[derive(Debug)]
+struct RidesUp {
+    alpha_t: f64,
+    rise: f64,
+    pressure: f64,
+}
+
+impl FrictionLaw for RidesUp {
+    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
+        let Sliding { slip, pressure, .. } = sliding.checked()?;
+        if pressure <= 0.0 {
+            return FrictionResponse::elastic(old.parted(self.alpha_t), 0.0).checked(self.alpha_t);
+        }
+        let grip = 1.0 + pressure / self.pressure;
+        let state = old.stuck(old.traction + self.alpha_t * slip * grip, pressure);
+        FrictionResponse {
+            state: FrictionState { opening: old.opening + self.rise * slip.powi(2) / grip, ..state },
+            dtraction_dslip: self.alpha_t * grip,
+            dtraction_dpressure: self.alpha_t * slip / self.pressure,
+            dopening_dslip: 2.0 * self.rise * slip / grip,
+            dopening_dpressure: -self.rise * slip.powi(2) / grip.powi(2) / self.pressure,
+            evaluations: 0,
+        }
+        .checked(self.alpha_t)
+    }
+
+    fn stiffness(&self) -> f64 {
+        self.alpha_t
+    }
+}
+
+/// A law that opens the interface raises the pressure by α_n times the opening, under the pressure that it then has; the tangent
+/// of force and moment follows, point by point, after touch, and by mortar.
+#[test]
+fn a_law_that_dilates_presses_and_its_tangent_equals_differences() {
+    let rides_up =
+        || -> Vec<Box<dyn FrictionLaw>> { vec![Box::new(RidesUp { alpha_t: 700.0, rise: 0.4, pressure: 30.0 })] };
+    let (edges, x) = wavy();
+    let points = gauss_points(&[vec![6, 7], vec![7, 8]], 3);
+    let points = ContactPair { laws: rides_up(), ..pair(points, Master::Mesh(Surface::new(&edges)), COULOMB) };
+    let pressed = FrictionState { opening: 0.004, ..points.laws[0].initial_state().loaded(20.0, 2.0) };
+    let mut closed = 0;
+    for k in 0..points.points.len() {
+        for (back, gap) in [(0.01, -0.02), (0.2, -0.02), (-0.2, -0.02), (0.2, 0.03)] {
+            let friction = if gap > 0.0 { FrictionState { opening: 0.004, ..Default::default() } } else { pressed };
+            let old = pulled(&points, k, &x, back, friction, gap);
+            let (state, contribution) = evaluate(&points, k, &old, &x);
+            if contribution.is_none() {
+                continue;
+            }
+            closed += 1;
+            let FrictionState { pressure, opening, .. } = state.friction;
+            assert!((pressure - 1000.0 * (opening - state.gap)).abs() < 1e-11 * pressure, "{pressure}, {opening}");
+            assert!(gap > 0.0 || opening > 0.004, "{opening}");
+            check_tangent(&points, k, &old, &x, &format!("slip {back} from {gap}"));
+        }
+    }
+    assert!(closed > 8, "{closed} answers were tested");
+
+    let (points, mortar) = mortar_points(&[vec![6, 7], vec![7, 8]], &x);
+    let surface = Surface::new(&edges);
+    let averaged = ContactPair { laws: rides_up(), ..pair(points, Master::Mesh(surface.clone()), COULOMB) };
+    let before: Positions =
+        x.iter().enumerate().map(|(k, x)| Vector2::new(if k < 6 { x.x } else { x.x - 0.1 }, x.y)).collect();
+    let tested = (0..averaged.points.len())
+        .filter(|&k| check_mortar_tangent(&averaged, &mortar, &surface, k, &before, -0.02, &x))
+        .count();
+    assert!(tested > 0, "no node was closed");
 }

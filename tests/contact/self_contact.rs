@@ -4,10 +4,10 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use crate::common::{Blocks, Finished, close, distance, finish, finish_at};
-use fecontact::contact::force::Status;
 use fecontact::contact::pair::{ContactIncrement, Presumption};
 use fecontact::contact::search::Index;
 use fecontact::contact::surface::{Master, Surface, gauss_points};
+use fecontact::laws::friction::Regime;
 use fecontact::mesh::configuration::Configuration;
 use nalgebra::Vector2;
 use serde_json::{Value, json};
@@ -106,7 +106,7 @@ fn a_whole_surface_touches_itself_at_the_lips_only() {
         for (point, state) in all.model.contacts[0].points.iter().zip(&all.last().contacts[0]) {
             let at = point.at(&x);
             assert!(
-                state.status() == Status::Open || (at.x < -0.9 && at.y.abs() < 0.2),
+                state.regime() == Regime::Open || (at.x < -0.9 && at.y.abs() < 0.2),
                 "{method}: closed at {}, {}: {state:?}",
                 at.x,
                 at.y

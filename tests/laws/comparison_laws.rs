@@ -6,6 +6,21 @@ use fecontact::laws::friction::{
     SlipWeakening, SlipWeakeningParameters, StateEvolution,
 };
 
+/// μ, the one variable of slip weakening.
+fn mu_of(state: &FrictionState) -> f64 {
+    state.variables[0]
+}
+
+/// ψ of rate-and-state friction.
+fn psi_of(law: &RateAndState, state: &FrictionState) -> f64 {
+    law.observe("mu", state).expect("it is shown")
+}
+
+/// θ of [`RATE_AND_STATE`] for a ψ.
+fn with_psi(psi: f64) -> FrictionState {
+    FrictionState::default().with_variables([10.0 * ((psi - 0.6) / 0.015).exp()])
+}
+
 const WEAKENING: SlipWeakeningParameters =
     SlipWeakeningParameters { mu_s: 0.6, mu_d: 0.5, critical_slip: 1.0, cohesion: 0.0, alpha_t: Some(1000.0) };
 
@@ -98,7 +113,7 @@ fn slip_weakens_to_the_dynamic_coefficient_at_any_step_size() {
             let q = if slipped < 1.0 { 10.0 * (0.6 - 0.1 * slipped) } else { 5.0 };
             assert_close(state.plastic_slip, slipped, 1e-12, "slip");
             assert_close(state.traction, q, 1e-11, "traction");
-            assert_close(state.mu, 0.1 * q, 1e-12, "mu");
+            assert_close(mu_of(&state), 0.1 * q, 1e-12, "mu");
         }
     }
 }
@@ -112,11 +127,11 @@ fn weakening_counts_slip_to_and_fro_and_never_heals() {
     assert_close(state.traction, q, 1e-12, "rest");
     state = respond(&law, &state, -0.3, 10.0, 1.0).state;
     let back = slip - state.plastic_slip;
-    assert_close(state.mu, 0.6 - 0.1 * (slip + back), 1e-12, "mu after reversal");
-    assert_close(state.traction, -10.0 * state.mu, 1e-11, "traction after reversal");
+    assert_close(mu_of(&state), 0.6 - 0.1 * (slip + back), 1e-12, "mu after reversal");
+    assert_close(state.traction, -10.0 * mu_of(&state), 1e-11, "traction after reversal");
     state = respond(&law, &state, 0.0, 0.0, 1.0).state;
     assert_eq!(state.traction, 0.0, "parted");
-    assert_close(state.mu, 0.6 - 0.1 * (slip + back), 1e-12, "parted");
+    assert_close(mu_of(&state), 0.6 - 0.1 * (slip + back), 1e-12, "parted");
 }
 
 #[test]
@@ -136,9 +151,9 @@ fn weakening_that_outruns_the_contact_snaps_to_the_dynamic_coefficient() {
     let law = weakening(SlipWeakeningParameters { alpha_t: Some(0.9), ..WEAKENING });
     assert_close(law.uniqueness_limit().expect("a limit"), 9.0, 1e-12, "limit");
     let state = respond(&law, &law.initial_state(), 7.0, 10.0, 1.0).state;
-    assert_eq!((state.mu, state.traction), (0.5, 5.0));
+    assert_eq!((mu_of(&state), state.traction), (0.5, 5.0));
     let just_below = respond(&law, &law.initial_state(), 5.99 / 0.9, 10.0, 1.0).state;
-    assert_eq!((just_below.mu, just_below.plastic_slip), (0.6, 0.0));
+    assert_eq!((mu_of(&just_below), just_below.plastic_slip), (0.6, 0.0));
 }
 
 #[test]
@@ -153,7 +168,8 @@ fn weakening_tangents_are_exact() {
         });
         let pressure = random.between(0.1, 20.0);
         let mu = random.between(0.5, 0.6);
-        let old = FrictionState { traction: random.between(-8.0, 8.0), pressure, mu, ..law.initial_state() };
+        let old =
+            FrictionState { traction: random.between(-8.0, 8.0), pressure, ..law.initial_state().with_variables([mu]) };
         let slip = random.between(-20.0, 20.0) / law.stiffness();
         smooth += usize::from(check_tangents(&law, &old, slip, random.between(0.1, 20.0), 1.0));
     }
@@ -172,7 +188,7 @@ fn weakening_dissipates_what_the_work_leaves() {
         state = new;
     }
     let stored = state.traction.powi(2) / 2000.0;
-    assert!(state.plastic_slip.abs() > 0.1 && state.mu == 0.5);
+    assert!(state.plastic_slip.abs() > 0.1 && mu_of(&state) == 0.5);
     // The trapezoidal work of an increment in which slip sets in or turns round is not exact.
     assert_close(state.dissipation + stored, work, 2e-3 * work, "energy");
 }
@@ -201,7 +217,7 @@ fn weakening_dissipates_the_strength_over_the_slip() {
             at = turn;
         }
         assert_close(state.dissipation, work, 1e-12 * work, &format!("{parts} parts"));
-        assert!(state.mu == 0.5, "all strokes weaken");
+        assert!(mu_of(&state) == 0.5, "all strokes weaken");
     }
 }
 
@@ -324,11 +340,16 @@ fn rest_heals_with_the_logarithm_of_time_in_the_ageing_law_only() {
     {
         let law = rate_and_state(RateAndStateParameters { evolution, ..RATE_AND_STATE });
         let at_rest = respond(&law, &law.initial_state(), 0.0, 100.0, 1e4).state;
-        assert_close(at_rest.mu, 0.6 + healed, 1e-12, "pressed");
-        assert_close(respond(&law, &law.initial_state(), 0.0, 0.0, 1e4).state.mu, 0.6 + healed, 1e-12, "parted");
+        assert_close(psi_of(&law, &at_rest), 0.6 + healed, 1e-12, "pressed");
+        assert_close(
+            psi_of(&law, &respond(&law, &law.initial_state(), 0.0, 0.0, 1e4).state),
+            0.6 + healed,
+            1e-12,
+            "parted",
+        );
         let quick = FrictionState { traction: 30.0, pressure: 100.0, ..law.initial_state() };
         let now = respond(&law, &quick, 0.1, 100.0, 0.0).state;
-        assert_eq!((now.traction, now.mu, now.plastic_slip), (30.05, 0.6, 0.0), "no time, no slip");
+        assert_eq!((now.traction, psi_of(&law, &now), now.plastic_slip), (30.05, 0.6, 0.0), "no time, no slip");
     }
 }
 
@@ -380,7 +401,7 @@ fn increments_converge_to_the_differential_equations() {
                 state = respond(&law, &state, rate((f64::from(k) + 0.5) * dt) * dt, 100.0, dt).state;
             }
             let psi = p.f_0 + p.b * (p.reference_rate * y[1] / p.critical_slip).ln();
-            (state.traction - y[0]).abs() + 100.0 * (state.mu - psi).abs()
+            (state.traction - y[0]).abs() + 100.0 * (psi_of(&law, &state) - psi).abs()
         };
         let (coarse, fine) = (error(6000), error(12000));
         assert!(fine < 0.02, "{evolution:?}: {fine}");
@@ -398,8 +419,8 @@ fn rate_and_state_tangents_are_exact() {
         let alpha_t = Some(10f64.powf(random.between(-1.0, 2.0)));
         let law = rate_and_state(RateAndStateParameters { evolution, alpha_t, ..RATE_AND_STATE });
         let pressure = random.between(1.0, 150.0);
-        let mu = random.between(0.5, 0.7);
-        let old = FrictionState { traction: random.between(-80.0, 80.0), pressure, mu, ..law.initial_state() };
+        let psi = random.between(0.5, 0.7);
+        let old = with_psi(psi).loaded(pressure, random.between(-80.0, 80.0));
         let slip = random.between(-40.0, 40.0) / law.stiffness();
         let dt = 10f64.powf(random.between(-6.0, 3.0));
         smooth += usize::from(check_tangents(&law, &old, slip, random.between(1.0, 150.0), dt));
@@ -417,12 +438,13 @@ fn answers_meet_their_equations_and_are_the_first_root() {
         let p = RateAndStateParameters { evolution, alpha_t: Some(alpha_t), ..RATE_AND_STATE };
         let law = rate_and_state(p);
         let psi0 = random.between(0.3, 0.8);
-        let old = FrictionState { traction: 0.0, pressure: 100.0, mu: psi0, ..law.initial_state() };
+        let old = with_psi(psi0).loaded(100.0, 0.0);
         let dt = 10f64.powf(random.between(-8.0, 6.0));
         let trial = 10f64.powf(random.between(-3.0, 2.5));
         let response = respond(&law, &old, trial / alpha_t, 100.0, dt);
         most = most.max(response.evaluations);
-        let FrictionState { traction, mu, plastic_slip, .. } = response.state;
+        let FrictionState { traction, plastic_slip, .. } = response.state;
+        let mu = psi_of(&law, &response.state);
         assert!((0.0..=trial * (1.0 + 1e-12)).contains(&traction), "{traction} of {trial}");
         assert_close(traction, trial - alpha_t * plastic_slip, 1e-9 * trial, "slip");
         // Evaluated afresh, in logarithms: θ₁ of (4) or (5), q of (2).

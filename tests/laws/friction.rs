@@ -10,6 +10,11 @@ use fecontact::laws::friction::{
 };
 use rayon::prelude::*;
 
+/// μ, the one variable of the super/subloading law.
+fn mu_of(state: &FrictionState) -> f64 {
+    state.variables[0]
+}
+
 /// Contact pressure of the paper's point-mass problems.
 const PRESSURE: f64 = 98.1;
 
@@ -168,7 +173,7 @@ fn softening_converges_to_an_exponential_of_plastic_slip() {
     let law = law(&SuperSubloadingParameters { xi: 0.0, ..BACKWARD_EULER });
     let error = |steps| {
         let state = loaded(&law, 0.1, 0.0, steps);
-        (state.mu - (0.2 + 0.2 * (-10.0 * state.plastic_slip / 0.2).exp())).abs()
+        (mu_of(&state) - (0.2 + 0.2 * (-10.0 * state.plastic_slip / 0.2).exp())).abs()
     };
     assert_first_order(error(400), error(800), "softening");
     assert!(error(6400) < 1e-4);
@@ -181,7 +186,7 @@ fn the_attained_peak_converges_to_25_0175() {
         let path = drive(&law, law.initial_state(), 0.08, 0.0, steps);
         let (index, state) =
             path.iter().enumerate().max_by(|a, b| a.1.traction.total_cmp(&b.1.traction)).expect("a path");
-        (state.traction, state.ratio(), 0.08 * (index + 1) as f64 / steps as f64)
+        (state.traction, state.ratio(mu_of(&state)), 0.08 * (index + 1) as f64 / steps as f64)
     };
     let (traction, ratio, slip) = peak(200_000);
     assert_close(traction, 25.0175, 2e-3, "peak");
@@ -201,7 +206,7 @@ fn ageing_at_rest_converges_to_its_closed_forms() {
         } else {
             (0.5f64.powf(1.0 - n) - (1.0 - n) * time).powf(1.0 / (1.0 - n))
         };
-        let error = |steps| (loaded(&law, 0.0, time, steps).mu - 0.4 * (1.0 - deficit)).abs();
+        let error = |steps| (mu_of(&loaded(&law, 0.0, time, steps)) - 0.4 * (1.0 - deficit)).abs();
         assert_first_order(error(200), error(400), &format!("ageing, n = {n}"));
         assert!(error(20_000) < 1e-5);
         let aged = loaded(&law, 0.0, time, 200);
@@ -214,7 +219,7 @@ fn ageing_at_rest_converges_to_its_closed_forms() {
 fn recovery_with_a_small_exponent_ends_at_the_static_coefficient() {
     let law = law(&SuperSubloadingParameters { xi: 0.4, n: 0.5, structure: Some(1.0), ..PAPER });
     let rested = loaded(&law, 0.0, 1e6, 10);
-    assert_close(rested.mu, 0.4, 1e-9, "μ");
+    assert_close(mu_of(&rested), 0.4, 1e-9, "μ");
     assert!(respond(&law, &rested, 0.05, PRESSURE, 0.0).state.traction > 0.2 * PRESSURE);
 }
 
@@ -261,7 +266,7 @@ fn rate_form(
     };
     let steps = 400_000;
     let h = end / f64::from(steps);
-    let mut y = (start.traction, start.mu);
+    let mut y = (start.traction, mu_of(&start));
     for i in 0..steps {
         let t = f64::from(i) * h;
         let shift = |k: (f64, f64), s: f64| (y.0 + s * k.0, y.1 + s * k.1);
@@ -284,8 +289,8 @@ fn steady_sliding_reaches_its_coefficient_at_every_speed() {
         for direction in [1.0, -1.0] {
             let state = loaded(&law, 20.0 * direction, 20.0 / speed, 400);
             let expected = (10.0 * speed + 0.002) / (10.0 * speed / 0.2 + 0.002 / 0.4);
-            assert_close(state.ratio(), 1.0, 1e-12, "R");
-            assert_close(state.mu, expected, 1e-10, "μ");
+            assert_close(state.ratio(mu_of(&state)), 1.0, 1e-12, "R");
+            assert_close(mu_of(&state), expected, 1e-10, "μ");
             assert_close(state.traction, direction * expected * PRESSURE, 1e-8, "q");
         }
     }
@@ -297,10 +302,10 @@ fn steady_sliding_balances_loss_and_recovery_with_other_exponents() {
         let law = law(&SuperSubloadingParameters { m, n, ..PAPER });
         let speed = 1e-3;
         let state = loaded(&law, 20.0, 20.0 / speed, 4000);
-        let loss = 10.0 * (state.mu / 0.2 - 1.0).powf(m) * speed;
-        let gain = 0.002 * (1.0 - state.mu / 0.4).powf(n);
+        let loss = 10.0 * (mu_of(&state) / 0.2 - 1.0).powf(m) * speed;
+        let gain = 0.002 * (1.0 - mu_of(&state) / 0.4).powf(n);
         assert_close(loss, gain, 1e-9 * gain, "loss = gain");
-        assert_close(state.traction, state.mu * PRESSURE, 1e-9, "q");
+        assert_close(state.traction, mu_of(&state) * PRESSURE, 1e-9, "q");
     }
 }
 
@@ -382,7 +387,7 @@ fn friction_against_negative_slip_is_the_mirror_image() {
         let (plus, minus) = (respond(&law, &a, slip, pressure, dt), respond(&law, &b, -slip, pressure, dt));
         (a, b) = (plus.state, minus.state);
         assert_eq!((a.traction, a.plastic_slip), (-b.traction, -b.plastic_slip));
-        assert_eq!((a.mu, a.dissipation), (b.mu, b.dissipation));
+        assert_eq!((mu_of(&a), a.dissipation), (mu_of(&b), b.dissipation));
         assert_eq!(plus.dtraction_dslip, minus.dtraction_dslip);
         assert_eq!(plus.dtraction_dpressure, -minus.dtraction_dpressure);
     }
@@ -395,7 +400,8 @@ fn friction_against_negative_slip_is_the_mirror_image() {
 fn forced_oscillation_reverses_twice_a_period_at_every_step_size() {
     let law = law(&SuperSubloadingParameters { structure: Some(1.0), ..PAPER });
     for dt in [1e-4, 1e-3, 1e-2, 0.05, 0.1, 0.3] {
-        let mut state = FrictionState { traction: 19.62, pressure: PRESSURE, mu: 0.2, ..FrictionState::default() };
+        let mut state =
+            FrictionState { traction: 19.62, pressure: PRESSURE, ..FrictionState::default().with_variables([0.2]) };
         let periods = 5;
         let steps = (f64::from(periods) * 2.0 * PI / dt) as u32;
         let mut reversals = 0;
@@ -422,9 +428,9 @@ fn opening_releases_the_traction_and_touching_starts_anew() {
     assert_eq!(open.state.plastic_slip, slid.plastic_slip);
     let stored = slid.traction.powi(2) / 2000.0;
     assert_close(open.state.dissipation - slid.dissipation, stored, 1e-12, "released energy");
-    assert!(stored > 0.1 && open.state.mu > slid.mu, "μ ages while open");
+    assert!(stored > 0.1 && mu_of(&open.state) > mu_of(&slid), "μ ages while open");
     let again = respond(&law, &open.state, 0.01, PRESSURE, 0.1).state;
-    let fresh = FrictionState { mu: open.state.mu, ..law.initial_state() };
+    let fresh = law.initial_state().with_variables([mu_of(&open.state)]);
     assert_eq!(again.traction, respond(&law, &fresh, 0.01, PRESSURE, 0.1).state.traction);
     assert!(again.traction > 5.0);
 }
@@ -436,7 +442,7 @@ fn unloading_is_elastic() {
     let back = respond(&law, &slid, -0.01, PRESSURE, 0.1);
     assert_close(back.state.traction, slid.traction - 10.0, 1e-12, "q");
     assert_eq!((back.state.plastic_increment, back.dtraction_dslip), (0.0, 1000.0));
-    assert!(back.state.ratio() < 0.6);
+    assert!(back.state.ratio(mu_of(&back.state)) < 0.6);
 }
 
 // Work: ∮ q du = dissipation, in increments with a reversal inside as well
@@ -664,7 +670,11 @@ fn random_state(random: &mut Random, parameters: &SuperSubloadingParameters) -> 
         x if x < 0.6 => random.magnitude(-12.0, 0.0),
         _ => random.unit(),
     };
-    FrictionState { traction: random.sign() * ratio * mu * pressure, pressure, mu, ..FrictionState::default() }
+    FrictionState {
+        traction: random.sign() * ratio * mu * pressure,
+        pressure,
+        ..FrictionState::default().with_variables([mu])
+    }
 }
 
 fn random_sliding(random: &mut Random, parameters: &SuperSubloadingParameters, old: &FrictionState) -> Sliding {
@@ -683,8 +693,8 @@ fn check_answer(parameters: &SuperSubloadingParameters, old: &FrictionState, ans
     let new = &answer.state;
     assert!(new.traction.is_finite() && new.plastic_slip.is_finite());
     assert!(answer.dtraction_dslip.is_finite() && answer.dtraction_dpressure.is_finite());
-    assert!(new.ratio() <= 1.0 + 1e-12, "R = {}", new.ratio());
-    assert!(parameters.mu_k <= new.mu && new.mu <= parameters.mu_s, "μ = {}", new.mu);
+    assert!(new.ratio(mu_of(new)) <= 1.0 + 1e-12, "R = {}", new.ratio(mu_of(new)));
+    assert!(parameters.mu_k <= mu_of(new) && mu_of(new) <= parameters.mu_s, "μ = {}", mu_of(new));
     assert!(new.dissipation >= old.dissipation, "dissipation fell to {}", new.dissipation);
     assert!(new.traction * new.plastic_increment >= 0.0, "plastic slip against friction");
     assert!(answer.dtraction_dslip.abs() <= STEEPEST * parameters.alpha_t.expect("given"));
@@ -704,8 +714,8 @@ fn branch(
     let elastic = match parameters.integration {
         Integration::Controlled => !reversed && trial.abs() * old.pressure <= old.traction.abs() * at.pressure,
         Integration::BackwardEuler => {
-            let aged = respond(law, old, 0.0, -1.0, at.dt).state.mu;
-            let ratio = if reversed { 0.0 } else { old.ratio().min(1.0) };
+            let aged = mu_of(&respond(law, old, 0.0, -1.0, at.dt).state);
+            let ratio = if reversed { 0.0 } else { old.ratio(mu_of(old)).min(1.0) };
             trial.abs() <= ratio.max(parameters.elastic_core) * aged * at.pressure
         }
     };
@@ -737,7 +747,7 @@ impl Derivative {
         }
         let resolved = |(side, point): &(Option<f64>, FrictionResponse)| {
             let turn = (point.dtraction_dslip - answer.dtraction_dslip).abs() / alpha_t;
-            let tilt = (point.dtraction_dpressure - answer.dtraction_dpressure).abs() / answer.state.mu;
+            let tilt = (point.dtraction_dpressure - answer.dtraction_dpressure).abs() / mu_of(&answer.state);
             *side == branch && !sharp(point) && turn < 2e-3 && tilt < 2e-3
         };
         let mut agreement = [1e-2, 1e-1, 1e-3, 1.0, 1e-4, 1e-5]
@@ -792,7 +802,7 @@ fn answer_a_million_random_increments(integration: Integration, sample: usize) {
             let trial = (old.traction + alpha_t * slip).abs();
             let noise =
                 5e-14 * (trial / alpha_t + 1.0 / parameters.r) * dslip.abs() + 1e-15 * answer.state.traction.abs();
-            let length = (1.0 / parameters.r).min(answer.state.mu * pressure.abs() / alpha_t);
+            let length = (1.0 / parameters.r).min(mu_of(&answer.state) * pressure.abs() / alpha_t);
             let by_slip = Derivative {
                 value: dslip,
                 scale: dslip.abs().max(alpha_t),
@@ -802,7 +812,7 @@ fn answer_a_million_random_increments(integration: Integration, sample: usize) {
             };
             let by_pressure = Derivative {
                 value: dpressure,
-                scale: dpressure.abs().max(answer.state.mu),
+                scale: dpressure.abs().max(mu_of(&answer.state)),
                 largest: 1e-3 * pressure.abs(),
                 noise,
                 one_step: integration == Integration::BackwardEuler,
@@ -891,7 +901,7 @@ fn beyond_the_uniqueness_limit_the_first_root_is_taken() {
         let law = law(&parameters);
         let mu = parameters.mu_s * random.between(0.8, 1.0);
         let traction = random.between(0.1, 0.99) * mu * PRESSURE;
-        let old = FrictionState { traction, pressure: PRESSURE, mu, ..FrictionState::default() };
+        let old = FrictionState { traction, pressure: PRESSURE, ..FrictionState::default().with_variables([mu]) };
         let slip = (mu * PRESSURE - traction) * random.between(0.0, 1.1) / law.stiffness();
         let roots = scan(&parameters, &old, slip, 0.1);
         let found = respond(&law, &old, slip, PRESSURE, 0.1).state.plastic_increment;
@@ -908,9 +918,9 @@ fn scan(parameters: &SuperSubloadingParameters, old: &FrictionState, slip: f64, 
     let SuperSubloadingParameters { mu_s, mu_k, r, kappa, xi, approach, .. } = *parameters;
     let alpha_t = parameters.alpha_t.expect("given");
     let trial = old.traction + alpha_t * slip;
-    let (start, pressure) = (old.ratio(), old.pressure);
+    let (start, pressure) = (old.ratio(mu_of(old)), old.pressure);
     let residual = |slip: f64, ratio: f64| {
-        let mu = (old.mu + kappa * slip + xi * dt) / (1.0 + kappa * slip / mu_k + xi * dt / mu_s);
+        let mu = (mu_of(old) + kappa * slip + xi * dt) / (1.0 + kappa * slip / mu_k + xi * dt / mu_s);
         trial - alpha_t * slip - ratio * mu * pressure
     };
     // Along R = 1 − (1 − R₀) e^(−z) up to z = 25, then along the slip itself with R = 1.
@@ -967,12 +977,12 @@ fn the_case_file_names_a_law_and_its_parameters() {
     let read = |text: &str| serde_json::from_str::<FrictionParameters>(text);
     let short = read(r#"{"law": "super_subloading", "mu_s": 0.3, "mu_k": 0.1, "r": 100}"#).expect("defaults");
     let law = short.build(500.0).expect("valid parameters");
-    assert_eq!((law.stiffness(), law.initial_state().mu), (500.0, 0.3));
+    assert_eq!((law.stiffness(), mu_of(&law.initial_state())), (500.0, 0.3));
     let full = read(
         r#"{"law": "super_subloading", "mu_s": 0.3, "mu_k": 0.1, "alpha_t": 1e5, "r": 100, "kappa": 10, "xi": 0.002,
             "m": 1, "n": 1, "structure": 3.0, "approach": "cotangent", "elastic_core": 0.1}"#,
     );
-    assert_eq!(full.expect("all given").build(500.0).expect("valid parameters").initial_state().mu, 0.3);
+    assert_eq!(full.expect("all given").build(500.0).expect("valid parameters").initial_state().variables[0], 0.3);
     let coulomb = read(r#"{"law": "coulomb", "mu": 0.3}"#).expect("defaults").build(500.0).expect("valid parameters");
     assert!(respond(&*coulomb, &coulomb.initial_state(), 1.0, 1.0, 1.0).state.traction > 0.29);
     assert_eq!(read(r#"{"law": "frictionless"}"#).expect("no parameters").build(1.0).expect("valid").stiffness(), 0.0);

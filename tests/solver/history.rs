@@ -9,6 +9,11 @@ use fecontact::time::increment::{advance, begin};
 use serde_json::{Value, json};
 use std::sync::Arc;
 
+/// μ, the one variable of the super/subloading law.
+fn mu_of(state: &fecontact::laws::friction::FrictionState) -> f64 {
+    state.variables[0]
+}
+
 /// A block pressed on a ground, then dragged a third of its length; the friction law weakens and heals.
 fn dragged(method: &str, dt: f64, max_iterations: usize) -> Value {
     json!({
@@ -57,7 +62,7 @@ fn difference(a: &State, b: &State) -> f64 {
         |s| s.displacement.clone(),
         |s| s.contacts.concat().iter().map(|c| c.friction.traction).collect(),
         |s| s.contacts.concat().iter().map(|c| c.friction.pressure).collect(),
-        |s| s.contacts.concat().iter().map(|c| c.friction.mu).collect(),
+        |s| s.contacts.concat().iter().map(|c| mu_of(&c.friction)).collect(),
     ];
     kinds.iter().fold(0.0, |largest, values| {
         let (a, b) = (values(a), values(b));

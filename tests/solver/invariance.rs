@@ -8,14 +8,16 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use crate::common::{self, Finished, neo_hookean, run_through};
-use fecontact::laws::friction::{SlipWeakeningParameters, SuperSubloadingParameters};
+use crate::common::{self, Blocks, Finished, close, finish, neo_hookean, run_through};
+use fecontact::contact::force::ContactState;
+use fecontact::laws::friction::{Regime, SlipWeakeningParameters, SuperSubloadingParameters};
 use fecontact::mesh::InlineMesh;
 use fecontact::model::boundary::Drive;
 use fecontact::model::builder::{Builder, Contact, Friction, LoadStep, Support};
 use fecontact::model::method::Method;
 use fecontact::model::scheme::Scheme;
 use fecontact::model::{Model, NewtonSettings};
+use serde_json::json;
 
 /// A run, and how its model is given.
 #[derive(Clone)]
@@ -408,4 +410,43 @@ fn on_one_thread_or_more() {
         };
         assert!(on(1) == on(3));
     }
+}
+
+/// Rate-and-state friction that is measured at another rate V₀, f₀ + (a − b) ln(V₀'/V₀) with the same θ, is the same law: so
+/// are forces, and what slips. The block sticks at first, and slides as a whole at the end.
+#[test]
+fn what_slips_does_not_depend_on_the_reference_rate() {
+    let slides = |reference: f64| {
+        let (a, b) = (0.01, 0.005);
+        let f_0 = 0.6 + (a - b) * (reference / 1e-6f64).ln();
+        let run = finish(&json!({
+            "mesh": Blocks::default().rectangle("slab", [8, 4], [0.0, 0.0], [1.0, 0.5]).json(),
+            "bodies": {"slab": {"material": {"model": "linear", "E": 1000, "nu": 0.3}}},
+            "contacts": {"base": {
+                "slave": "slab_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+                "friction": {"law": "rate_and_state", "f_0": f_0, "V_0": reference, "a": a, "b": b, "D_c": 1e-4,
+                             "theta": 100},
+                "initial": {"pressure": 1},
+            }},
+            "steps": [{"name": "slide", "duration": 2000, "scheme": "static", "dt": {"initial": 50},
+                       "supports": [{"on": "slab_top", "ux": {"rate": 1e-6}, "uy": 0}]}],
+        }));
+        run.states.into_iter().map(|state| state.contacts[0].clone()).collect::<Vec<_>>()
+    };
+    let first = slides(1e-6);
+    let regimes = |states: &[ContactState]| states.iter().map(ContactState::regime).collect::<Vec<_>>();
+    for reference in [1e-9, 1e-3] {
+        let other = slides(reference);
+        assert_eq!(first.len(), other.len());
+        for (states, others) in first.iter().zip(&other) {
+            assert_eq!(regimes(states), regimes(others), "V₀ = {reference}");
+            for (state, other) in states.iter().zip(others) {
+                close("q", other.friction.traction, state.friction.traction, 1e-8);
+                close("p", other.friction.pressure, state.friction.pressure, 1e-8);
+            }
+        }
+    }
+    assert!(regimes(&first[0]).contains(&Regime::Stick), "{:?}", regimes(&first[0]));
+    let last = regimes(&first[first.len() - 1]);
+    assert!(!last.contains(&Regime::Stick) && last.contains(&Regime::Slip), "{last:?}");
 }

@@ -6,6 +6,7 @@ mod common;
 mod grids;
 
 mod boundary;
+mod builder;
 mod elements;
 mod history;
 mod invariance;

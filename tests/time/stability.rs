@@ -14,6 +14,11 @@ use nalgebra::{Matrix3, Vector3};
 use serde_json::{Value, json};
 use std::sync::Arc;
 
+/// μ, the one variable of the super/subloading law.
+fn mu_of(state: &fecontact::laws::friction::FrictionState) -> f64 {
+    state.variables[0]
+}
+
 const MU_S: f64 = 0.4;
 const MU_K: f64 = 0.2;
 const KAPPA: f64 = 10.0;
@@ -92,7 +97,7 @@ fn the_critical_stiffness_parts_stable_from_unstable_sliding() {
 
 /// μ/μ_ss − 1.
 fn deviation(state: &State) -> f64 {
-    state.contacts[0][0].friction.mu / steady_mu() - 1.0
+    mu_of(&state.contacts[0][0].friction) / steady_mu() - 1.0
 }
 
 /// The linear equations of motion above: d(x, w, y)/dt = A (x, w, y).
@@ -147,7 +152,7 @@ fn small_motions_about_steady_sliding_follow_the_linear_theory() {
         let found = Vector3::new(
             state.displacement[0] - V * time - shift,
             state.velocity[0] - V,
-            state.contacts[0][0].friction.mu - steady_mu(),
+            mu_of(&state.contacts[0][0].friction) - steady_mu(),
         );
         let scale = end[0].abs().max(end[1].abs() / fastest);
         close("position", found[0], end[0], 0.02 * scale);

@@ -5,7 +5,7 @@ use crate::case::file::{
     Case, CircleInput, ContactInput, InitialInput, MasterInput, PlaneInput, PolylineInput, RigidInput,
 };
 use crate::contact::pair::ContactPair;
-use crate::contact::surface::SlavePoint;
+use crate::laws::friction::observables;
 use crate::model::Model;
 use crate::model::method::{Chosen, Method};
 use crate::model::told::{count, number};
@@ -30,11 +30,11 @@ pub fn contacts(case: &Case, model: &Model) -> Vec<String> {
 fn initial_tractions(initial: &InitialInput, pair: &ContactPair) -> String {
     let tractions = pair.initial.iter().flatten();
     let points = || pair.points.iter();
-    let mu = |point: &SlavePoint| pair.law(point).initial_state().mu;
+    let observed =
+        |name| points().map(move |point| observables::value(pair.law(point), name, &pair.law(point).initial_state()));
     let p = range(tractions.clone().map(|initial| initial.pressure));
     let q = range(tractions.map(|initial| initial.traction));
-    let structure = range(points().map(|point| pair.law(point).structure(mu(point))));
-    let mu = range(points().map(mu));
+    let (structure, mu) = (range(observed("structure")), range(observed("mu")));
     let balanced = if initial.balanced { ", balanced by an initial stress of the bodies" } else { "" };
     format!("starts closed with the pressure {p} and the traction {q}{balanced}; mu {mu}, structure {structure}")
 }

@@ -60,7 +60,7 @@ fn friction(input: &ContactInput, place: &str) -> Checked<Friction> {
     }
     if let Some(structure) = input.initial.as_ref().and_then(|initial| initial.structure.as_ref()) {
         let place = format!("{place}.initial.structure");
-        if !matches!(parameters, FrictionParameters::SuperSubloading(_)) {
+        if !parameters.has_structure() {
             return Err(Complaint::new(place, "this friction law has no structure: leave it out"));
         }
         if input.along.contains_key("structure") {

@@ -6,6 +6,7 @@ use super::error::{Checked, ModelError};
 use super::friction::{check_profile, defined, position};
 use super::limits::check_finite;
 use crate::contact::pair::{ContactPair, InitialTraction};
+use crate::laws::friction::observables;
 use crate::mesh::configuration::Configuration;
 use crate::model::Model;
 
@@ -69,7 +70,8 @@ pub fn close(pair: &mut ContactPair, given: &InitialTractions, model: &Model, pl
         }
         let limit = pair.law(point).starting_limit(pressure);
         if traction.abs() > limit * (1.0 + ROUNDED) {
-            let mu = pair.law(point).initial_state().mu;
+            let law = pair.law(point);
+            let mu = observables::value(law, "mu", &law.initial_state());
             let message = format!(
                 "is {traction}: the initial strength is exceeded already, which is mu p = {limit} with mu = {mu} and \
                  p = {pressure}"

@@ -1,12 +1,13 @@
 //! Cycles: contact states that come back every other iterate. Half of a correction ends between them.
 
-use crate::contact::force::{ContactState, Status};
+use crate::contact::force::ContactState;
+use crate::laws::friction::Regime;
 
 /// Watches the contact states go to and fro between iterations.
 #[derive(Clone, Debug, Default)]
 pub struct Cycle {
     /// Status of every point at the last two iterates
-    last: [Vec<Status>; 2],
+    last: [Vec<Regime>; 2],
     /// Iterations in a row in which each point came back
     returns: Vec<usize>,
 }
@@ -17,7 +18,7 @@ const CYCLE: usize = 3;
 impl Cycle {
     /// Number of points that are as they were before the last iterate, and were not in it.
     pub fn count(&mut self, contacts: &[Vec<ContactState>]) -> usize {
-        let now: Vec<Status> = contacts.iter().flatten().map(ContactState::status).collect();
+        let now: Vec<Regime> = contacts.iter().flatten().map(ContactState::regime).collect();
         let [last, before] = std::mem::take(&mut self.last);
         self.returns.resize(now.len(), 0);
         for (returns, ((now, last), before)) in self.returns.iter_mut().zip(now.iter().zip(&last).zip(&before)) {

@@ -1,11 +1,11 @@
 //! A model from code: the same as that of a case file that says the same, in every part and to the last bit of a run; and
 //! told what is wrong with it.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 
-use common::{Blocks, elastic, expression, finish_at, finished, floor, linear, model, model_at, neo_hookean};
+use crate::common::{
+    self, Blocks, elastic, expression, finish_at, finished, floor, linear, model, model_at, neo_hookean,
+};
 use fecontact::laws::bulk::{Material, NeoHookean, SaintVenantKirchhoff};
 use fecontact::laws::friction::{
     Coulomb, CoulombParameters, Frictionless, SlipWeakening, SlipWeakeningParameters, SuperSubloadingParameters,
