@@ -31,7 +31,11 @@ fn law(m: f64, approach: Approach, integration: Integration) -> SuperSubloading 
 
 /// A point loaded to the ratio R of its strength.
 fn pressed(ratio: f64, mu: f64) -> FrictionState {
-    FrictionState { traction: ratio * mu * PRESSURE, pressure: PRESSURE, mu, ..FrictionState::default() }
+    FrictionState {
+        traction: ratio * mu * PRESSURE,
+        pressure: PRESSURE,
+        ..FrictionState::default().with_variables([mu])
+    }
 }
 
 fn update(criterion: &mut Criterion) {

@@ -51,6 +51,7 @@
 #![allow(rustdoc::broken_intra_doc_links, reason = "units stand in brackets: [L], [F]")]
 
 pub mod case;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod contact;
 pub mod equations;

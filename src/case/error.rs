@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use crate::model::builder::ModelError;
+
 /// Something in a case that cannot be run.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{}: {}{message}", file.display(), if place.is_empty() { String::new() } else { format!("{place}: ") })]
@@ -23,6 +25,16 @@ pub struct Complaint {
     pub place: String,
     /// what is wrong, and what to do
     pub message: String,
+}
+
+/// What is read, once it is found to be good.
+pub type Checked<T> = Result<T, Complaint>;
+
+/// The model speaks of its places in the words of a case.
+impl From<ModelError> for Complaint {
+    fn from(ModelError { place, message }: ModelError) -> Self {
+        Self { place, message }
+    }
 }
 
 impl Complaint {

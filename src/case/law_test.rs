@@ -7,11 +7,11 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::build::drive;
-use super::error::{CaseError, Complaint};
+use super::error::{CaseError, Checked, Complaint};
 use super::file::DriveInput;
-use super::schema_of;
-use crate::laws::friction::{FrictionLaw, FrictionParameters, FrictionState};
+use super::schema::schema_of;
+use super::translate::drive;
+use crate::laws::friction::{FrictionLaw, FrictionParameters, FrictionState, observables};
 use crate::model::boundary::{Drive, Span};
 use crate::run::law::LawTest;
 use crate::run::law_path::{Course, Phase, Undefined};
@@ -77,8 +77,6 @@ const SHORTEST_STEP: f64 = 16.0 * f64::EPSILON;
 /// Values that differ by less than this, relative, are the same.
 const SAME: f64 = 1e-9;
 
-type Checked<T> = Result<T, Complaint>;
-
 /// The JSON Schema of a test of a law.
 pub fn schema() -> Value {
     schema_of::<LawTestInput>()
@@ -133,11 +131,11 @@ fn start(input: &LawTestInput, law: &dyn FrictionLaw, pressure: f64) -> Checked<
         let message = format!(
             "is {traction}, beyond the strength mu p = {} · {pressure} = {strength} at the start: lower it, or raise the \
              pressure or the structure",
-            at_rest.mu
+            observables::value(law, "mu", &at_rest)
         );
         return Err(Complaint::new("initial.traction", message));
     }
-    Ok(FrictionState { traction, pressure, ..at_rest })
+    Ok(law.starting_state(pressure, traction))
 }
 
 fn phases_of(input: &LawTestInput, phases: &[PhaseInput]) -> Checked<Vec<Phase>> {
@@ -188,6 +186,7 @@ fn course(place: &str, given: Option<&DriveInput>, reached: Option<f64>) -> Chec
         };
     };
     let drive = drive(given, place)?;
+    drive.check().map_err(|message| Complaint::new(place, message))?;
     match (&drive, reached) {
         (Drive::Expression(expression), _) if expression.depends_on_position() => {
             complain("x and y have no meaning here: the only variable is the time t")

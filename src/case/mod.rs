@@ -1,33 +1,26 @@
-//! The case: JSON as written → checks → model.
+//! The case: JSON as written, translated to the builder of a model ([`crate::model::builder`]).
 
-mod along;
-mod build;
 mod choice;
 mod error;
 mod explain;
 pub mod file;
-mod initial;
 pub mod law_test;
-mod method;
-mod names;
-mod periodic;
 mod read;
 mod report;
-mod start;
-mod supported;
+mod schema;
+mod translate;
 
-pub use build::{build, build_on};
 pub use error::CaseError;
-pub use method::choices;
 pub use report::report;
-pub use start::warnings;
 
 use std::path::Path;
 
-use schemars::JsonSchema;
 use serde_json::Value;
 
-use file::Case;
+use crate::mesh::{Mesh, gmsh};
+use crate::model::Model;
+use error::{Checked, Complaint};
+use file::{Case, MeshSource};
 
 /// Read a case file.
 ///
@@ -37,28 +30,46 @@ pub fn read(path: &Path) -> Result<Case, CaseError> {
     read::read(path)
 }
 
+/// Read the mesh of a case, check everything, and build the model. `path` is the case file.
+///
+/// # Errors
+/// [`CaseError`] names file, key, value and what to do.
+pub fn build(case: &Case, path: &Path) -> Result<Model, CaseError> {
+    let mesh = mesh(case, path).map_err(|complaint| complaint.in_file(path))?;
+    build_on(case, mesh, path)
+}
+
+/// As [`build`], on a mesh at hand.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_on(case: &Case, mesh: Mesh, path: &Path) -> Result<Model, CaseError> {
+    built(case, mesh).map_err(|complaint| complaint.in_file(path))
+}
+
+fn built(case: &Case, mesh: Mesh) -> Checked<Model> {
+    let model = translate::model(case, mesh)?.build()?;
+    if case.output.every == 0 {
+        let message = "is 0: must be at least 1 (to write no fields, give \"fields\": false)";
+        return Err(Complaint::new("output.every", message));
+    }
+    match case.output.fronts.filter(|fronts| !(fronts.slip_rate > 0.0 && fronts.slip_rate.is_finite())) {
+        Some(fronts) => {
+            Err(Complaint::new("output.fronts.slip_rate", format!("is {}: must be positive", fronts.slip_rate)))
+        }
+        None => Ok(model),
+    }
+}
+
+fn mesh(case: &Case, path: &Path) -> Checked<Mesh> {
+    let mesh = match &case.mesh {
+        MeshSource::Inline(mesh) => mesh.build(),
+        MeshSource::File(file) => gmsh::read(&path.parent().unwrap_or(Path::new("")).join(file)),
+    };
+    mesh.map_err(|error| Complaint::new("mesh", error))
+}
+
 /// The JSON Schema of a case file.
 pub fn schema() -> Value {
-    schema_of::<Case>()
-}
-
-fn schema_of<T: JsonSchema>() -> Value {
-    let mut schema = schemars::schema_for!(T).to_value();
-    describe_choices(&mut schema);
-    schema
-}
-
-/// A key that only chooses between alternatives takes the description of its alternative.
-fn describe_choices(schema: &mut Value) {
-    if let Some(object) = schema.as_object_mut() {
-        let description = object.get("description").cloned();
-        let properties = object.get_mut("properties").and_then(Value::as_object_mut);
-        let mute = properties.into_iter().flatten().filter_map(|(_, property)| property.as_object_mut());
-        for property in mute.filter(|property| !property.contains_key("description")) {
-            property.extend(description.clone().map(|text| ("description".into(), text)));
-        }
-        object.values_mut().for_each(describe_choices);
-    } else if let Some(list) = schema.as_array_mut() {
-        list.iter_mut().for_each(describe_choices);
-    }
+    schema::schema_of::<Case>()
 }

@@ -85,11 +85,11 @@ pub fn run(path: &Path, out: Option<PathBuf>, threads: Option<usize>, quiet: boo
     let mut history = History::create(&folder, &model)?;
     let mut newton_log = NewtonLog::create(&folder)?;
     let mut warnings = Warnings::default();
-    warnings.list = case::warnings(&case, &model);
+    warnings.list = model.warnings();
     let told = warnings.list.len();
     if !quiet {
         warnings.list.iter().for_each(|warning| eprintln!("warning: {warning}"));
-        case::choices(&case, &model.mesh).iter().for_each(|choice| eprintln!("{choice}"));
+        model.choices().iter().for_each(|choice| eprintln!("{choice}"));
     }
     let mut fields = match case.output.fields {
         true => Some(Fields::create(&folder, model.clone(), &model.initial_state(), case.output.every)?),
@@ -181,7 +181,7 @@ pub fn law(path: &Path, out: Option<PathBuf>) -> Result<(), Failure> {
     let folder = out.unwrap_or_else(|| default_folder(path));
     prepare(&folder)?;
 
-    let mut table = LawTable::create(&folder)?;
+    let mut table = LawTable::create(&folder, &*test.law)?;
     let (report, result) = test.run(|row| table.write(row));
     table.finish()?;
     let about = About {

@@ -42,11 +42,15 @@ pub fn nodal_forces(k: &Kinematics, p: f64, q: f64) -> Vec<(usize, Vector2<f64>)
 }
 
 /// Nodal forces of the traction and their derivative: the exact one unless tractions are promised or a pressure carried.
-pub(super) fn closed(k: &Kinematics, response: &FrictionResponse, alpha_n: f64, promised: Option<Tractions>) -> Closed {
+pub(super) fn closed(
+    k: &Kinematics,
+    response: &FrictionResponse,
+    dpressure: DVector<f64>,
+    promised: Option<Tractions>,
+) -> Closed {
     let tractions = Tractions::of(&response.state);
     let turned = |Tractions { pressure: p, traction: q }: Tractions| k.normal * p - k.tangent * q;
     let traction = turned(tractions);
-    let dpressure = &k.dgap * -alpha_n;
     let dtraction = &k.dslip * response.dtraction_dslip + &dpressure * response.dtraction_dpressure;
     let promised = promised.unwrap_or(tractions);
     let turned = turned(promised);

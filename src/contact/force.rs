@@ -1,10 +1,11 @@
 //! Traction at one contact point, the forces it puts on the nodes, and their tangent.
 //!
 //! ```text
-//! p = ⟨p̄ − α_n g⟩,   q from the friction law,   t = p n − q s            p̄: multiplier, 0 for the plain penalty;
-//!                                                                        g: gap of the surfaces − gap at touch
+//! p = ⟨p̄ − α_n (g − d)⟩,   q and d from the friction law,   t = p n − q s
+//!                                      p̄: multiplier, 0 for the plain penalty; g: gap of the surfaces − gap at touch;
+//!                                      d: opening, 0 for laws that do not dilate
 //! f_a = −w_a t ℓ                                      ℓ: current length, x_s − x_foot = Σ w_a x_a
-//! δt = (δp − q δθ) n − (δq + p δθ) s,   δp = −α_n δg,   δq = ∂q/∂Δu_t δΔu_t + ∂q/∂p δp
+//! δt = (δp − q δθ) n − (δq + p δθ) s,   δp = −α_n (δg − δd),   δq = ∂q/∂Δu_t δΔu_t + ∂q/∂p δp,   δd likewise
 //! ```
 //!
 //! In an increment that starts open, at the gap g₀, only the slip after touch counts; all where nothing faced the point at
@@ -19,6 +20,7 @@
 //! would change with the share that counts. Without c a point that comes in with a high pressure would stick for its stiff
 //! penalty alone, and spring away by all it has missed in the increment after.
 
+use super::closed::closed;
 pub use super::closed::{Closed, nodal_forces};
 pub use super::kinematics::Meeting;
 use super::kinematics::{Kinematics, kinematics};
@@ -27,34 +29,44 @@ use super::point::{MasterPoint, SlavePoint};
 use super::presumption::Presumption;
 pub use super::presumption::{Increment, Presume, Tractions};
 use super::projection::Projection;
+pub use super::state::ContactState;
 use super::state::TOUCH;
-pub use super::state::{ContactState, SLIPPING, Status};
-use crate::laws::friction::{LawFailure, Sliding};
+use crate::laws::friction::{Answer, FrictionResponse, LawFailure, Sliding};
 use crate::mesh::configuration::Configuration;
 
 /// Trial state of one point and, if closed, what it adds to the equations.
 pub type PointResponse = Result<(ContactState, Option<Closed>), LawFailure>;
 
-/// The trial state of one point and, if closed, what it adds to the equations, in the committed configuration and that of
-/// the trial.
-pub fn respond(
+/// Where a point is at the end of an increment.
+#[derive(Clone, Debug, Default)]
+pub struct Place {
+    /// g; 0 where nothing faces it [L]
+    pub gap: f64,
+    /// The foot, if the master faces it
+    pub foot: Option<MasterPoint>,
+    /// Its kinematics, if it is closed
+    pub kinematics: Option<Kinematics>,
+}
+
+/// Where a point is whose projection is known, in the committed configuration and that of the trial.
+pub fn place(
     pair: &ContactPair,
     slave: &SlavePoint,
     projection: Option<Projection>,
     old: &ContactState,
     increment: Increment,
     [before, x]: [&Configuration; 2],
-) -> PointResponse {
-    let Some(projection) = projection else { return open(pair, slave, None, old, increment) };
-    let (gap, foot) = (slave.gap(projection.gap, increment.during.fading), projection.foot);
+) -> Place {
+    let Some(projection) = projection else { return Place::default() };
+    let (gap, foot) = (slave.gap(projection.gap, increment.during.fading), Some(projection.foot));
     if !closes(pair, slave, gap, old, increment, x) {
-        return open(pair, slave, Some((gap, foot)), old, increment);
+        return Place { gap, foot, kinematics: None };
     }
     let mut kinematics = kinematics(slave, &pair.master, &projection, old.foot, x);
     if old.foot.is_none() {
         kinematics.count_from(before, x);
     }
-    press(pair, slave, Meeting { kinematics, gap, foot }, old, increment)
+    Place { gap, foot, kinematics: Some(kinematics) }
 }
 
 /// Whether a point with this gap carries pressure, or is presumed to.
@@ -67,93 +79,163 @@ pub fn closes(
     x: &Configuration,
 ) -> bool {
     let promised = increment.presumption.promised.is_some_and(|promised| promised.pressure > 0.0);
-    let pressure = old.multiplier - pair.normal_stiffness(increment.during.stiffening) * gap;
-    promised || pressure > 0.0 || touches(gap, slave.current_length(x), old, increment)
+    let clearance = gap - old.friction.opening;
+    let pressure = old.multiplier - pair.normal_stiffness(increment.during.stiffening) * clearance;
+    promised || pressure > 0.0 || touches(clearance, slave.current_length(x), old, increment)
 }
 
 /// Whether a zero gap is presumed to be closed, and to stick.
-fn touches(gap: f64, length: f64, old: &ContactState, increment: Increment) -> bool {
-    let zero = TOUCH * length;
-    increment.presumption.presume == Presume::Touch && old.foot.is_some() && old.gap.abs() <= zero && gap.abs() <= zero
+fn touches(clearance: f64, length: f64, old: &ContactState, increment: Increment) -> bool {
+    let presumed = increment.presumption.presume == Presume::Touch && old.foot.is_some();
+    presumed && [old.clearance(), clearance].iter().all(|gap| gap.abs() <= TOUCH * length)
 }
 
-/// The state of a point without pressure.
-pub fn open(
-    pair: &ContactPair,
-    slave: &SlavePoint,
-    met: Option<(f64, MasterPoint)>,
-    old: &ContactState,
+/// A point on the way through its law: first what the law is asked for, then what follows from its answer.
+#[derive(Clone, Debug)]
+pub struct Loading<'a> {
+    pair: &'a ContactPair,
+    slave: &'a SlavePoint,
+    old: &'a ContactState,
     increment: Increment,
-) -> PointResponse {
-    let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.during.dt };
-    let friction = pair.law(slave).respond(&old.friction, sliding)?.state;
-    let (gap, foot) = met.unzip();
-    let state =
-        ContactState { friction, foot, length: old.length, gap: gap.unwrap_or(0.0), slip: 0.0, multiplier: 0.0 };
-    Ok((state, None))
+    place: Place,
+    alpha_n: f64,
+    /// p if the surfaces opened no further than they are [F/L²]
+    free: f64,
+    /// d/p of slip after touch; none where all slip counts [L³/F]
+    compliance: Option<f64>,
+    /// What the law is asked for
+    pub sliding: Sliding,
 }
 
-/// The state of a closed point and what it adds to the equations.
-pub fn press(
-    pair: &ContactPair,
-    slave: &SlavePoint,
-    meeting: Meeting,
-    old: &ContactState,
-    increment: Increment,
-) -> PointResponse {
-    let law = pair.law(slave);
-    let Meeting { mut kinematics, gap, foot } = meeting;
-    let (apart, whole) = (old.apart(kinematics.length), kinematics.slip);
-    let alpha_n = pair.normal_stiffness(increment.during.stiffening);
-    let pressure = old.multiplier - alpha_n * gap;
-    let carried = carried(pressure, increment.presumption);
-    let compliance = pair.compliance_after_touch(increment.during.settles);
-    let dslip_dpressure =
-        if apart { count_slip_after_touch(&mut kinematics, old.gap, compliance, carried, alpha_n) } else { 0.0 };
-    let sliding = Sliding { slip: kinematics.slip, pressure: carried, dt: increment.during.dt };
-    let mut response = law.respond(&old.friction, sliding)?;
-    let stiffness = law.stiffness();
-    if increment.presumption.presume == Presume::Stick {
-        response.state.traction = old.friction.traction + stiffness * sliding.slip;
-        response.dtraction_dslip = stiffness;
-        response.dtraction_dpressure = 0.0;
+impl<'a> Loading<'a> {
+    /// What the law is asked for at a point in its place.
+    pub fn new(
+        pair: &'a ContactPair,
+        slave: &'a SlavePoint,
+        old: &'a ContactState,
+        increment: Increment,
+        place: Place,
+    ) -> Self {
+        let alpha_n = pair.normal_stiffness(increment.during.stiffening);
+        let free = old.multiplier - alpha_n * (place.gap - old.friction.opening);
+        let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.during.dt };
+        let apart = place.kinematics.as_ref().is_some_and(|k| old.apart(k.length));
+        let compliance = apart.then(|| pair.compliance_after_touch(increment.during.settles));
+        let mut loading = Self { pair, slave, old, increment, place, alpha_n, free, compliance, sliding };
+        if let Some(whole) = loading.place.kinematics.as_ref().map(|kinematics| kinematics.slip) {
+            loading.load(carried(free, increment.presumption), whole);
+        }
+        loading
     }
-    if carried > 0.0 {
-        let along = response.dtraction_dpressure + response.dtraction_dslip * dslip_dpressure;
-        response.state.traction += along * (pressure - carried);
-        response.state.pressure = pressure;
+
+    /// Ask for a pressure, and the slip that counts under it.
+    fn load(&mut self, pressure: f64, whole: f64) {
+        self.sliding.slip = whole * self.counted(pressure, whole).0;
+        self.sliding.pressure = pressure;
     }
-    // At p = 0 the law has no answer to give, and near it round-off decides which.
-    if carried == 0.0 || touches(gap, kinematics.length, old, increment) {
-        response.dtraction_dslip = stiffness;
+
+    /// Share of the slip that counts under a pressure, d/(g₀ + d) in an increment that starts open and 1 else, and the
+    /// derivative of the slip by the pressure.
+    fn counted(&self, pressure: f64, whole: f64) -> (f64, f64) {
+        let Some(compliance) = self.compliance else { return (1.0, 0.0) };
+        let (way, old_gap) = (compliance * pressure, self.old.clearance());
+        (way / (old_gap + way), whole * compliance * old_gap / (old_gap + way).powi(2))
     }
-    let state = ContactState {
-        friction: response.state,
-        foot: Some(foot),
-        length: kinematics.length,
-        gap,
-        slip: whole,
-        // The next increment begins with the same pressure, but the stiffness given.
-        multiplier: old.multiplier - (alpha_n - pair.alpha_n) * gap,
-    };
-    Ok((state, Some(super::closed::closed(&kinematics, &response, alpha_n, increment.presumption.promised))))
+
+    /// The state of the point and, if closed, what it adds to the equations, from what its law answered.
+    ///
+    /// # Errors
+    /// [`LawFailure`] of the law, or where its opening and its pressure do not come to agree.
+    pub fn finish(mut self, answer: Answer) -> PointResponse {
+        let mut response = answer?;
+        let Place { gap, foot, kinematics } = std::mem::take(&mut self.place);
+        let Some(mut kinematics) = kinematics else {
+            let length = self.old.length;
+            let state = ContactState { friction: response.state, foot, length, gap, slip: 0.0, multiplier: 0.0 };
+            return Ok((state, None));
+        };
+        let whole = kinematics.slip;
+        let pressure = self.agree(&mut response, whole)?;
+        let Self { pair, slave, old, increment, alpha_n, sliding, compliance, .. } = self;
+        let carried = sliding.pressure;
+        let (share, dslip_dpressure) = self.counted(carried, whole);
+        let stiffness = pair.law(slave).stiffness();
+        if increment.presumption.presume == Presume::Stick {
+            response.state.traction = old.friction.traction + stiffness * sliding.slip;
+            response.dtraction_dslip = stiffness;
+            response.dtraction_dpressure = 0.0;
+        }
+        let opening_rate = response.dopening_dpressure + response.dopening_dslip * dslip_dpressure;
+        if carried > 0.0 {
+            let along = response.dtraction_dpressure + response.dtraction_dslip * dslip_dpressure;
+            response.state.traction += along * (pressure - carried);
+            response.state.opening += opening_rate * (pressure - carried);
+            response.state.pressure = pressure;
+        }
+        let clearance = gap - response.state.opening;
+        // At p = 0 the law has no answer to give, and near it round-off decides which.
+        if carried == 0.0 || touches(clearance, kinematics.length, old, increment) {
+            response.dtraction_dslip = stiffness;
+        }
+        // δp = −α δg + α ∂d/∂Δu_t (share δΔu_t), α = α_n/(1 − α_n dd/dp)
+        let alpha = alpha_n / (1.0 - alpha_n * opening_rate);
+        let lift = alpha * response.dopening_dslip;
+        kinematics.slip = sliding.slip;
+        if compliance.is_some() {
+            kinematics.dslip *= share;
+        }
+        let mut dpressure = &kinematics.dgap * -alpha;
+        if lift != 0.0 {
+            dpressure += &kinematics.dslip * lift;
+        }
+        if compliance.is_some() {
+            kinematics.dslip *= 1.0 + lift * dslip_dpressure;
+            kinematics.dslip -= &kinematics.dgap * (alpha * dslip_dpressure);
+        }
+        let state = ContactState {
+            friction: response.state,
+            foot,
+            length: kinematics.length,
+            gap,
+            slip: whole,
+            // The next increment begins with the same pressure, but the stiffness given.
+            multiplier: old.multiplier - (alpha_n - pair.alpha_n) * clearance,
+        };
+        Ok((state, Some(closed(&kinematics, &response, dpressure, increment.presumption.promised))))
+    }
+
+    /// The pressure that goes with the opening of the law, p = p̄ − α_n (g − d): asked for again until both agree, or by the
+    /// tangent of one answer where a presumption says under which pressure the law answers.
+    fn agree(&mut self, response: &mut FrictionResponse, whole: f64) -> Result<f64, LawFailure> {
+        let presumed = self.increment.presumption.carried.is_some() || self.free <= 0.0;
+        for _ in 0..MOST_ANSWERS {
+            let asked = self.sliding.pressure;
+            let dslip = self.counted(asked, whole).1;
+            let opened = response.state.opening - self.old.friction.opening;
+            let rate = response.dopening_dpressure + response.dopening_dslip * dslip;
+            let lifted = self.alpha_n * (opened + rate * (self.free - asked)) / (1.0 - self.alpha_n * rate);
+            let pressure = self.free + lifted;
+            let size = asked.abs() + self.alpha_n * opened.abs();
+            if presumed || (pressure - asked).abs() <= AGREE * size {
+                return Ok(pressure);
+            }
+            // The law must not be asked below touch for an opening that ends above.
+            self.load(pressure.max(0.5 * asked), whole);
+            *response = self.pair.law(self.slave).respond(&self.old.friction, self.sliding)?;
+        }
+        Err(LawFailure::Opening { opening: response.state.opening, pressure: self.sliding.pressure })
+    }
 }
+
+/// Answers of the law until its opening and the pressure must agree.
+const MOST_ANSWERS: usize = 60;
+
+/// Share of the pressure up to which they do.
+const AGREE: f64 = 1e-14;
 
 /// The pressure under which friction answers: that of a point which only a promise keeps closed is the promised one, from
 /// where its answer goes on in a straight line.
 fn carried(pressure: f64, presumption: Presumption) -> f64 {
     let promised = || presumption.promised.map_or(0.0, |promised| promised.pressure);
     presumption.carried.unwrap_or_else(|| if pressure > 0.0 { pressure } else { promised() })
-}
-
-/// Δu_t d/(g₀ + d) in an increment that starts open, at the gap g₀, with d the pressure times the compliance; returns its
-/// derivative by the pressure.
-fn count_slip_after_touch(k: &mut Kinematics, old_gap: f64, compliance: f64, pressure: f64, alpha_n: f64) -> f64 {
-    let way = compliance * pressure;
-    let share = way / (old_gap + way);
-    let dslip_dpressure = k.slip * compliance * old_gap / (old_gap + way).powi(2);
-    k.dslip *= share;
-    k.dslip -= &k.dgap * (alpha_n * dslip_dpressure);
-    k.slip *= share;
-    dslip_dpressure
 }

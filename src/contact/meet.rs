@@ -12,7 +12,6 @@ use super::pair::{ContactPair, InitialTraction, Reverse};
 use super::search::Index;
 use super::state::ContactState;
 use super::surface::SlavePoint;
-use crate::laws::friction::FrictionState;
 use crate::mesh::configuration::Configuration;
 
 impl ContactPair {
@@ -51,10 +50,11 @@ impl ContactPair {
     /// that starts closed, under its initial tractions.
     pub fn initial_states(&self, x: &Configuration) -> Vec<ContactState> {
         let state = |(k, (slave, met)): (usize, (&SlavePoint, Option<Meeting>))| {
-            let mut friction = self.law(slave).initial_state();
-            if let Some(InitialTraction { pressure, traction }) = self.initial.as_ref().map(|initial| initial[k]) {
-                friction = FrictionState { pressure, traction, ..friction };
-            }
+            let law = self.law(slave);
+            let friction = match self.initial.as_ref().map(|initial| initial[k]) {
+                Some(InitialTraction { pressure, traction }) => law.starting_state(pressure, traction),
+                None => law.initial_state(),
+            };
             let length = met.as_ref().map_or_else(|| slave.current_length(x), |met| met.kinematics.length);
             let (gap, foot) = met.map(|met| (slave.gap(met.gap, 1.0), met.foot)).unzip();
             let multiplier = if self.penetration.is_some() { friction.pressure } else { 0.0 };

@@ -73,7 +73,7 @@ impl ContactPair {
     pub fn excess(&self, trial: &[ContactState]) -> f64 {
         let Some(tolerance) = self.penetration else { return 0.0 };
         let closed = trial.iter().filter(|state| state.friction.pressure > 0.0);
-        closed.map(|state| state.gap.abs() / tolerance).fold(0.0, f64::max)
+        closed.map(|state| state.clearance().abs() / tolerance).fold(0.0, f64::max)
     }
 
     /// α_n, under the augmented Lagrangian this many times the one given.
@@ -105,8 +105,8 @@ impl ContactPair {
         if pressure <= 0.0 || !old.apart(now.length) {
             return Ok(None);
         }
-        let met = foreseen.friction.pressure > 0.0 && foreseen.gap < 0.0;
-        let at = if met { old.gap / (old.gap - foreseen.gap) } else { 0.0 };
+        let met = foreseen.friction.pressure > 0.0 && foreseen.clearance() < 0.0;
+        let at = if met { old.clearance() / (old.clearance() - foreseen.clearance()) } else { 0.0 };
         let free = foreseen.slip * at;
         let mut doubt = 0.0f64;
         for slip in [now.slip, now.slip - free] {

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::point::MasterPoint;
-use crate::laws::friction::FrictionState;
+use crate::laws::friction::{FrictionState, Regime};
 
 /// Contact closes at a zero gap when it is below this share of the length the point stands for.
 pub(super) const TOUCH: f64 = 1e-9;
@@ -25,36 +25,19 @@ pub struct ContactState {
     pub multiplier: f64,
 }
 
-/// Whether a point is open, sticks or slips.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Status {
-    /// No pressure
-    Open,
-    /// Pressed, and held by friction
-    Stick,
-    /// Plastic slip in this increment at R ≥ 0.9
-    Slip,
-}
-
-/// R from which on plastic slip counts as slipping.
-pub const SLIPPING: f64 = 0.9;
-
 impl ContactState {
-    /// Whether a point that stands for this length is open at a gap that counts.
-    pub fn apart(&self, length: f64) -> bool {
-        self.friction.pressure == 0.0 && self.gap > TOUCH * length
+    /// g − d: what parts the surfaces beyond the opening of the law, negative under the penalty [L]
+    pub fn clearance(&self) -> f64 {
+        self.gap - self.friction.opening
     }
 
-    /// Open, stick or slip. The super/subloading law slips plastically a little whenever it is loaded, so only plastic
-    /// slip near the peak surface counts as slipping.
-    pub fn status(&self) -> Status {
-        let friction = &self.friction;
-        if friction.pressure <= 0.0 {
-            Status::Open
-        } else if friction.plastic_increment != 0.0 && (friction.mu == 0.0 || friction.ratio() >= SLIPPING) {
-            Status::Slip
-        } else {
-            Status::Stick
-        }
+    /// Whether a point that stands for this length is open at a gap that counts.
+    pub fn apart(&self, length: f64) -> bool {
+        self.friction.pressure == 0.0 && self.clearance() > TOUCH * length
+    }
+
+    /// Open, stick or slip, as the law says; a point that only a promise keeps closed is open.
+    pub fn regime(&self) -> Regime {
+        if self.friction.pressure > 0.0 { self.friction.regime } else { Regime::Open }
     }
 }

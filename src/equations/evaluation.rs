@@ -1,6 +1,7 @@
 //! What an evaluation of the equations leaves for the accepted state.
 
-use crate::contact::force::{ContactState, Status};
+use crate::contact::force::ContactState;
+use crate::laws::friction::Regime;
 
 /// What was found at the last evaluated displacement, for the accepted state.
 #[derive(Clone, Debug, Default)]
@@ -41,10 +42,10 @@ impl ContactCounts {
     pub fn of(contacts: &[Vec<ContactState>]) -> Self {
         let mut counts = Self::default();
         for state in contacts.iter().flatten() {
-            match state.status() {
-                Status::Open => counts.open += 1,
-                Status::Stick => counts.stick += 1,
-                Status::Slip => counts.slip += 1,
+            match state.regime() {
+                Regime::Open => counts.open += 1,
+                Regime::Stick => counts.stick += 1,
+                Regime::Slip => counts.slip += 1,
             }
         }
         counts

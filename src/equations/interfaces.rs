@@ -41,12 +41,13 @@ pub(super) fn add(responses: &[PairResponse], sums: &mut Sums) {
     }
 }
 
-/// Stored: ∫ (α_n g²/2 + q²/(2 α_t)) ds of the closed points [F·L].
+/// Stored: ∫ (α_n (g − d)²/2 + q²/(2 α_t)) ds of the closed points [F·L].
 pub fn stored(model: &Model, contacts: &[Vec<ContactState>]) -> f64 {
     let mut energy = 0.0;
     for (pair, states) in model.contacts.iter().zip(contacts) {
-        for (point, ContactState { friction, length, gap, .. }) in pair.points.iter().zip(states) {
-            let normal = if friction.pressure > 0.0 { 0.5 * pair.alpha_n * gap.powi(2) } else { 0.0 };
+        for (point, state) in pair.points.iter().zip(states) {
+            let ContactState { friction, length, .. } = state;
+            let normal = if friction.pressure > 0.0 { 0.5 * pair.alpha_n * state.clearance().powi(2) } else { 0.0 };
             let stiffness = pair.law(point).stiffness();
             let tangential = if stiffness > 0.0 { 0.5 * friction.traction.powi(2) / stiffness } else { 0.0 };
             energy += length * (normal + tangential);

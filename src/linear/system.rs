@@ -7,8 +7,10 @@ use super::SparseMatrix;
 /// What is asked of the equations at a trial displacement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Request {
-    /// The residual is enough.
+    /// The residual at an iterate is enough.
     Residual,
+    /// The residual on the way to the next iterate, to see how far to go.
+    Between,
     /// The tangent as well.
     Tangent,
 }

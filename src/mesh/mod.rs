@@ -1,8 +1,9 @@
 //! Nodes, solid elements, and the named groups that a case refers to.
 //!
-//! A mesh comes from a gmsh file ([`gmsh::read`]) or from the case file ([`InlineMesh::build`]). Both readers only fill
+//! A mesh comes from a gmsh file ([`gmsh::read`]), from the case file or from code ([`InlineMesh::build`]). Both readers only fill
 //! in a raw mesh; one check turns it into a [`Mesh`], so that a mesh keeps its promises wherever it comes from.
 
+mod blocks;
 mod check;
 pub mod configuration;
 mod error;

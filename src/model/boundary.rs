@@ -1,9 +1,10 @@
 //! Supports and loads: what is prescribed or applied at a node, and how it varies in time and space.
 
-use exmex::{Express, FlatEx, FloatOpsFactory, MatchLiteral, NumberMatcher};
 use nalgebra::{Matrix2, Vector2};
 
-/// How a prescribed quantity varies, as given in the case.
+pub use super::expression::Expression;
+
+/// How a prescribed quantity varies.
 #[derive(Clone, Debug)]
 pub enum Drive {
     /// A constant: reached at the end of the step, linearly from the value at its start
@@ -16,61 +17,6 @@ pub enum Drive {
     Expression(Expression),
 }
 
-/// A parsed expression in x, y and t.
-#[derive(Clone, Debug)]
-pub struct Expression(Box<FlatEx<f64, FloatOpsFactory<f64>, Decimal>>);
-
-/// A number as Rust and JSON write it, with an exponent such as 2.5e-3, which the parser's own literals lack.
-#[derive(Clone, Debug)]
-struct Decimal;
-
-impl MatchLiteral for Decimal {
-    fn is_literal(text: &str) -> Option<&str> {
-        let mantissa = NumberMatcher::is_literal(text)?;
-        let exponent = text[mantissa.len()..].strip_prefix(['e', 'E']);
-        let unsigned = exponent.map_or("", |power| power.strip_prefix(['+', '-']).unwrap_or(power));
-        let digits = unsigned.bytes().take_while(u8::is_ascii_digit).count();
-        Some(if digits == 0 { mantissa } else { &text[..text.len() - unsigned.len() + digits] })
-    }
-}
-
-impl Expression {
-    /// Parse an expression.
-    ///
-    /// # Errors
-    /// What the parser could not read, or the first variable that is none of x, y, t.
-    pub fn parse(text: &str) -> Result<Self, String> {
-        let parsed = FlatEx::parse(text).map_err(|error| error.to_string())?;
-        match parsed.var_names().iter().find(|name| !["t", "x", "y"].contains(&name.as_str())) {
-            Some(name) => Err(format!("`{name}` is not one of the variables x, y, t")),
-            None => Ok(Self(Box::new(parsed))),
-        }
-    }
-
-    /// Whether t stands in it.
-    pub fn depends_on_time(&self) -> bool {
-        self.0.var_names().iter().any(|name| name == "t")
-    }
-
-    /// Whether x or y stands in it.
-    pub fn depends_on_position(&self) -> bool {
-        self.0.var_names().iter().any(|name| name != "t")
-    }
-
-    /// Value at a reference position and time; NaN where the expression is not defined.
-    fn value(&self, position: Vector2<f64>, time: f64) -> f64 {
-        let of = |name: &String| match name.as_str() {
-            "t" => time,
-            "x" => position.x,
-            _ => position.y,
-        };
-        let names = self.0.var_names();
-        let mut values = [0.0; 3];
-        values.iter_mut().zip(names).for_each(|(value, name)| *value = of(name));
-        self.0.eval(&values[..names.len()]).unwrap_or(f64::NAN)
-    }
-}
-
 /// How a quantity varies along a surface, by reference position.
 #[derive(Clone, Debug)]
 pub enum Profile {
@@ -81,6 +27,12 @@ pub enum Profile {
     /// (coordinate, value) pairs along x (0) or y (1), linear between, constant outside; of two pairs with the same
     /// coordinate the second holds there and beyond
     Table(usize, Vec<[f64; 2]>),
+}
+
+impl From<f64> for Profile {
+    fn from(value: f64) -> Self {
+        Self::Constant(value)
+    }
 }
 
 impl Profile {
@@ -110,7 +62,34 @@ impl Span {
     }
 }
 
+impl From<f64> for Drive {
+    fn from(value: f64) -> Self {
+        Self::Constant(value)
+    }
+}
+
 impl Drive {
+    /// Whether its numbers are finite and the times of its table ascend.
+    ///
+    /// # Errors
+    /// What is wrong, and what to do.
+    pub fn check(&self) -> Result<(), String> {
+        let numbers: &[f64] = match self {
+            Self::Constant(value) | Self::Rate(value) => &[*value],
+            Self::Table(table) if table.is_empty() => return Err("the table is empty: give pairs [time, value]".into()),
+            Self::Table(table) => table.as_flattened(),
+            Self::Expression(_) => &[],
+        };
+        if let Some(value) = numbers.iter().find(|value| !value.is_finite()) {
+            return Err(format!("is {value}: must be a finite number"));
+        }
+        let Self::Table(table) = self else { return Ok(()) };
+        match table.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
+            Some(pair) => Err(format!("the times of the table must ascend: {} follows {}", pair[1][0], pair[0][0])),
+            None => Ok(()),
+        }
+    }
+
     /// Value at a reference position and run time, `start` being the value at the start of the step.
     pub fn value(&self, position: Vector2<f64>, time: f64, span: Span, start: f64) -> f64 {
         match self {

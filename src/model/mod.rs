@@ -1,9 +1,14 @@
 //! The problem to solve: mesh, bodies, contact pairs, and the steps with their supports, loads and schemes.
 
 pub mod boundary;
+pub mod builder;
 pub mod element;
+mod expression;
+pub mod method;
 pub mod scheme;
 pub mod state;
+pub mod told;
+pub mod warnings;
 
 use std::sync::Arc;
 
@@ -16,6 +21,7 @@ use crate::mesh::ties::Ties;
 use crate::mesh::{Element, Mesh};
 use crate::model::boundary::{Loads, Prescribed, Span};
 use crate::model::element::{SolidElement, consistent_mass, lumped_mass, redistributed};
+use crate::model::method::Chosen;
 use crate::model::scheme::Scheme;
 use crate::model::state::{Energy, State, StepStart};
 
@@ -86,6 +92,12 @@ pub struct NewtonSettings {
     pub max_iterations: usize,
 }
 
+impl Default for NewtonSettings {
+    fn default() -> Self {
+        Self { tolerance: 1e-8, max_iterations: 25 }
+    }
+}
+
 /// A step: a time span with its supports, loads, scheme and increments.
 #[derive(Clone, Debug, Default)]
 pub struct Step {
@@ -134,7 +146,7 @@ pub struct WatchedSet {
 /// The model; it does not change while it is solved.
 #[derive(Debug)]
 pub struct Model {
-    /// title in the case file
+    /// title
     pub title: String,
     /// mesh
     pub mesh: Mesh,
@@ -152,6 +164,8 @@ pub struct Model {
     pub solids: Vec<SolidElement>,
     /// contact pairs
     pub contacts: Vec<ContactPair>,
+    /// where each contact is evaluated, and why; none for a slave group of points
+    pub methods: Vec<Option<Chosen>>,
     /// steps, in order
     pub steps: Vec<Step>,
     /// watched sets

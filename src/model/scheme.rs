@@ -116,7 +116,8 @@ fn four_fifths() -> f64 {
     0.8
 }
 
-fn nine_tenths() -> f64 {
+/// Share of the longest stable increment that explicit steps take unless told otherwise [-]
+pub fn nine_tenths() -> f64 {
     0.9
 }
 

@@ -7,10 +7,11 @@ use std::thread::JoinHandle;
 
 use super::csv::failed;
 use super::vtu::{CellType, Grid};
-use crate::contact::force::{ContactState, Status};
+use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
 use crate::laws::bulk::CauchyStress;
+use crate::laws::friction::{Regime, observables};
 use crate::mesh::configuration::Configuration;
 use crate::model::Model;
 use crate::model::state::State;
@@ -201,10 +202,10 @@ fn contact_frame(model: &Model, state: &State, grid: &mut Grid) {
     });
     let all: Vec<(Place, &ContactState)> = states.collect();
     let rate = if state.dt > 0.0 { 1.0 / state.dt } else { 0.0 };
-    let number = |status: Status| match status {
-        Status::Open => 0.0,
-        Status::Stick => 1.0,
-        Status::Slip => 2.0,
+    let number = |regime: Regime| match regime {
+        Regime::Open => 0.0,
+        Regime::Stick => 1.0,
+        Regime::Slip => 2.0,
     };
     grid.restart(&reference, lines.iter().map(|(kind, nodes)| (*kind, &nodes[..])));
     grid.vectors("displacement", &displacement);
@@ -217,10 +218,13 @@ fn contact_frame(model: &Model, state: &State, grid: &mut Grid) {
     scalar("slip", &|_, s| s.friction.plastic_slip);
     scalar("elastic_slip", &|at, s| at.pair.elastic_slip(at.slave, &s.friction));
     scalar("slip_rate", &|_, s| s.friction.plastic_increment * rate);
-    scalar("R", &|_, s| s.friction.ratio());
-    scalar("mu", &|_, s| s.friction.mu);
-    scalar("structure", &|at, s| at.pair.law(at.slave).structure(s.friction.mu));
-    scalar("state", &|_, s| number(s.status()));
+    let observed = |name: &'static str| {
+        move |at: &Place, s: &ContactState| observables::value(at.pair.law(at.slave), name, &s.friction)
+    };
+    observables::ALWAYS.iter().for_each(|(name, _)| scalar(name, &observed(name)));
+    scalar("state", &|_, s| number(s.regime()));
     scalar("dissipation", &|_, s| s.friction.dissipation);
+    let laws = model.contacts.iter().flat_map(|pair| &pair.laws).map(|law| &**law);
+    observables::further(laws).into_iter().for_each(|name| scalar(name, &observed(name)));
     grid.at_cells("contact", contact_id.into_iter());
 }

@@ -20,6 +20,7 @@ use super::csv::Table;
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::laws::bulk::Material;
+use crate::laws::friction::observables;
 use crate::model::Model;
 use crate::model::state::State;
 use crate::run::error::Error;
@@ -150,6 +151,8 @@ struct Interface {
 #[derive(Debug)]
 pub struct Fronts {
     map: Table,
+    /// Observables that have columns of their own at the end
+    observed: Vec<&'static str>,
     path: PathBuf,
     /// Slip rate of a front [L/T]
     threshold: f64,
@@ -164,8 +167,11 @@ impl Fronts {
     /// # Errors
     /// [`Error::Output`] when it cannot be written.
     pub fn create(folder: &Path, model: &Model, start: &State, threshold: f64) -> Result<Self, Error> {
+        let observed = observables::further(model.contacts.iter().flat_map(|pair| &pair.laws).map(|law| &**law));
+        let header: Vec<&str> = MAP.iter().chain(&observed).copied().collect();
         Ok(Self {
-            map: Table::create(&folder.join("slip_map.csv"), &MAP)?,
+            map: Table::create(&folder.join("slip_map.csv"), &header)?,
+            observed,
             path: folder.join("fronts.csv"),
             threshold,
             interfaces: model.contacts.iter().map(|pair| Interface::new(model, pair)).collect(),
@@ -200,22 +206,12 @@ impl Fronts {
                 self.map.number(state.time);
                 self.map.text(&interface.name);
                 self.map.count(number);
-                let structure = pair.law(slave).structure(friction.mu);
+                let observed = |name: &str| observables::value(pair.law(slave), name, friction);
                 let [x, y] = point.at;
-                for number in [
-                    point.position,
-                    x,
-                    y,
-                    point.slip,
-                    rate,
-                    friction.ratio(),
-                    friction.mu,
-                    structure,
-                    friction.traction,
-                    friction.pressure,
-                ] {
-                    self.map.number(number);
-                }
+                [point.position, x, y, point.slip, rate].into_iter().for_each(|number| self.map.number(number));
+                observables::ALWAYS.iter().for_each(|(name, _)| self.map.number(observed(name)));
+                [friction.traction, friction.pressure].into_iter().for_each(|number| self.map.number(number));
+                self.observed.iter().for_each(|name| self.map.number(observed(name)));
                 self.map.end_row()?;
             }
         }

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use super::csv::Table;
-use crate::contact::force::{ContactState, Status};
+use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
+use crate::laws::friction::{Regime, observables};
 use crate::model::state::{Energy, State};
 use crate::model::{Model, WatchedSet};
 use crate::run::error::Error;
@@ -12,7 +13,11 @@ use crate::run::observer::{Attempt, Observer};
 
 /// Writes `history.csv`.
 #[derive(Debug)]
-pub struct History(Table);
+pub struct History {
+    table: Table,
+    /// Observables of each contact whose means are written
+    observed: Vec<Vec<&'static str>>,
+}
 
 const INCREMENT: [&str; 4] = ["time", "dt", "step", "iterations"];
 const ENERGIES: [&str; 7] = [
@@ -46,14 +51,19 @@ impl History {
         let mut header: Vec<String> = INCREMENT.iter().chain(&ENERGIES).map(|c| (*c).into()).collect();
         header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &CONTACT)));
         header.extend(model.watch.iter().flat_map(|set| of(&set.name, &WATCHED)));
-        Ok(Self(Table::create(&folder.join("history.csv"), &header)?))
+        let further = |pair: &ContactPair| observables::further(pair.laws.iter().map(|law| &**law));
+        let observed: Vec<Vec<&str>> = model.contacts.iter().map(further).collect();
+        for (pair, names) in model.contacts.iter().zip(&observed) {
+            header.extend(names.iter().map(|name| format!("{}.mean_{name}", pair.name)));
+        }
+        Ok(Self { table: Table::create(&folder.join("history.csv"), &header)?, observed })
     }
 }
 
 impl Observer for History {
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
-        let Self(table) = self;
+        let Self { table, observed } = self;
         table.number(state.time);
         table.number(state.dt);
         table.text(&attempt.step.name);
@@ -65,12 +75,15 @@ impl Observer for History {
         for set in &model.watch {
             watched_row(set, state).into_iter().for_each(|number| table.number(number));
         }
+        for ((pair, states), names) in model.contacts.iter().zip(&state.contacts).zip(observed) {
+            names.iter().for_each(|name| table.number(mean(pair, states, name)));
+        }
         table.end_row()?;
         table.share()
     }
 
     fn finish(&mut self) -> Result<(), Error> {
-        self.0.flush()
+        self.table.flush()
     }
 }
 
@@ -92,20 +105,30 @@ fn contact_row(pair: &ContactPair, states: &[ContactState]) -> [f64; CONTACT.len
     let (mut penetration, mut largest_elastic, mut elastic) = (0.0f64, 0.0f64, 0.0);
     for (point, state) in pair.points.iter().zip(states) {
         let (friction, length) = (&state.friction, state.length);
-        if state.status() == Status::Open {
+        if state.regime() == Regime::Open {
             continue;
         }
         normal += length * friction.pressure;
         tangential += length * friction.traction;
         closed += length;
-        slipping += if state.status() == Status::Slip { length } else { 0.0 };
+        slipping += if state.regime() == Regime::Slip { length } else { 0.0 };
         slip += length * friction.plastic_slip;
-        penetration = penetration.max(-state.gap);
+        penetration = penetration.max(-state.clearance());
         largest_elastic = largest_elastic.max(pair.elastic_slip(point, friction).abs());
         elastic += length * pair.elastic_slip(point, friction);
     }
     let share = |part: f64| if closed > 0.0 { part / closed } else { 0.0 };
     [normal, tangential, closed, share(slipping), share(slip), penetration, largest_elastic, share(elastic)]
+}
+
+/// Mean of an observable over the closed length; 0 where nothing is closed.
+fn mean(pair: &ContactPair, states: &[ContactState], name: &str) -> f64 {
+    let (mut sum, mut closed) = (0.0, 0.0);
+    for (point, state) in pair.points.iter().zip(states).filter(|(_, state)| state.regime() != Regime::Open) {
+        sum += state.length * observables::value(pair.law(point), name, &state.friction);
+        closed += state.length;
+    }
+    if closed > 0.0 { sum / closed } else { 0.0 }
 }
 
 /// Mean displacement and total reaction of a watched set.

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use super::csv::Table;
-use crate::laws::friction::{FrictionResponse, FrictionState};
+use crate::laws::friction::{FrictionLaw, FrictionResponse, observables};
 use crate::run::error::Error;
 use crate::run::law_report::LawRow;
 
-/// The columns of `law.csv`.
-pub const COLUMNS: [&str; 12] = [
+/// The columns of `law.csv` that every law has.
+const COLUMNS: [&str; 12] = [
     "time",
     "slip",
     "pressure",
@@ -25,15 +25,19 @@ pub const COLUMNS: [&str; 12] = [
 
 /// Writes `law.csv`.
 #[derive(Debug)]
-pub struct LawTable(Table);
+pub struct LawTable<'a> {
+    table: Table,
+    law: &'a dyn FrictionLaw,
+}
 
-impl LawTable {
-    /// Create `law.csv` in `folder`.
+impl<'a> LawTable<'a> {
+    /// Create `law.csv` of a law in `folder`; what else it shows has columns at the end.
     ///
     /// # Errors
     /// [`Error::Output`] when it cannot be written.
-    pub fn create(folder: &Path) -> Result<Self, Error> {
-        Ok(Self(Table::create(&folder.join("law.csv"), &COLUMNS)?))
+    pub fn create(folder: &Path, law: &'a dyn FrictionLaw) -> Result<Self, Error> {
+        let header: Vec<&str> = COLUMNS.into_iter().chain(observables::further([law])).collect();
+        Ok(Self { table: Table::create(&folder.join("law.csv"), &header)?, law })
     }
 
     /// Write a row.
@@ -41,16 +45,16 @@ impl LawTable {
     /// # Errors
     /// [`Error::Output`] when it cannot be written.
     pub fn write(&mut self, row: &LawRow) -> Result<(), Error> {
-        let Self(table) = self;
-        let LawRow { time, slip, structure, response } = row;
-        let FrictionResponse { state, dtraction_dslip, dtraction_dpressure, evaluations } = response;
-        let FrictionState { traction, pressure, mu, plastic_slip, dissipation, .. } = *state;
-        for number in [*time, *slip, pressure, traction, state.ratio(), mu, *structure, plastic_slip, dissipation] {
-            table.number(number);
-        }
-        table.number(*dtraction_dslip);
-        table.number(*dtraction_dpressure);
+        let Self { table, law } = self;
+        let LawRow { time, slip, response, .. } = row;
+        let FrictionResponse { state, dtraction_dslip, dtraction_dpressure, evaluations, .. } = response;
+        let observed = |name: &str| observables::value(*law, name, state);
+        let mut write = |numbers: &[f64]| numbers.iter().for_each(|number| table.number(*number));
+        write(&[*time, *slip, state.pressure, state.traction]);
+        write(&observables::ALWAYS.map(|(name, _)| observed(name)));
+        write(&[state.plastic_slip, state.dissipation, *dtraction_dslip, *dtraction_dpressure]);
         table.count(*evaluations);
+        observables::further([*law]).into_iter().for_each(|name| table.number(observed(name)));
         table.end_row()
     }
 
@@ -59,6 +63,6 @@ impl LawTable {
     /// # Errors
     /// [`Error::Output`] when they cannot be written.
     pub fn finish(mut self) -> Result<(), Error> {
-        self.0.flush()
+        self.table.flush()
     }
 }

@@ -153,7 +153,7 @@ fn concerns(
     contact: &ContactState,
     x: &Configuration,
 ) -> impl Iterator<Item = (Kind, String)> {
-    let (gap, pressure) = (contact.gap, contact.friction.pressure);
+    let (gap, pressure) = (contact.clearance(), contact.friction.pressure);
     let share = point.edge_length(x).map(|edge| -gap / edge);
     let deep = share.filter(|share| *share > DEEP).map(|share| {
         let percent = 100.0 * share;

@@ -1,6 +1,6 @@
 //! A friction law alone, driven along a path of slip, pressure and time.
 
-use crate::laws::friction::{FrictionLaw, FrictionResponse, FrictionState, Sliding};
+use crate::laws::friction::{FrictionLaw, FrictionResponse, FrictionState, Sliding, observables};
 use crate::run::error::Error;
 use crate::run::law_path::Phase;
 use crate::run::law_report::{LawReport, LawRow};
@@ -49,7 +49,7 @@ impl LawTest {
     }
 
     fn row(&self, time: f64, slip: f64, response: FrictionResponse) -> LawRow {
-        LawRow { time, slip, response, structure: self.law.structure(response.state.mu) }
+        LawRow { time, slip, response, mu: observables::value(&*self.law, "mu", &response.state) }
     }
 
     /// Warn once of a pressure beyond which the law may have several answers.

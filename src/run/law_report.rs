@@ -13,8 +13,8 @@ pub struct LawRow {
     pub slip: f64,
     /// what the law answered
     pub response: FrictionResponse,
-    /// 1/R* [-]
-    pub structure: f64,
+    /// μ: what the interface could carry over p [-]
+    pub mu: f64,
 }
 
 /// A point of the path, as far as peaks and holds are concerned.
@@ -99,10 +99,10 @@ impl LawReport {
     /// Take note of the next row.
     pub fn note(&mut self, row: &LawRow) {
         let FrictionResponse { state, evaluations, .. } = row.response;
-        let FrictionState { pressure, traction, mu, dissipation, .. } = state;
+        let FrictionState { pressure, traction, dissipation, .. } = state;
         // The first row is the start.
         self.steps += usize::from(self.peaks.last.is_some());
-        self.peaks.note(PathPoint::new([row.time, row.slip, pressure, traction, mu]));
+        self.peaks.note(PathPoint::new([row.time, row.slip, pressure, traction, row.mu]));
         self.most_evaluations = self.most_evaluations.max(evaluations);
         self.dissipation = dissipation;
     }

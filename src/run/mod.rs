@@ -49,7 +49,7 @@ fn attempts(simulation: &mut Simulation, observers: &mut [&mut dyn Observer]) ->
         let told = simulation.told(&candidate);
         observers.iter_mut().try_for_each(|observer| observer.record(simulation.model(), &told))?;
         simulation.observed(clock.elapsed().as_secs_f64());
-        simulation.take(candidate)?;
+        simulation.follow(candidate)?;
     }
     Ok(())
 }

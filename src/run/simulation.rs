@@ -6,7 +6,7 @@
 //!         Implicit ⇄ Rupture                      where a contact slips too fast for implicit increments
 //! ```
 //!
-//! [`Simulation::attempt`] finds a [`Candidate`] and changes nothing; [`Simulation::take`] goes on as it says: to its new
+//! [`Simulation::attempt`] finds a [`Candidate`] and changes nothing; [`Simulation::follow`] goes on as it says: to its new
 //! state if it was accepted, else to another attempt. A candidate that is dropped has never been: the next attempt finds it
 //! again, to the same bits.
 
@@ -290,7 +290,7 @@ impl Simulation {
     ///
     /// # Errors
     /// [`Error`] when no other attempt can help.
-    pub fn take(&mut self, candidate: Candidate) -> Result<(), Error> {
+    pub fn follow(&mut self, candidate: Candidate) -> Result<(), Error> {
         let Candidate { iterations, accepted, increments, outcome, coupling, explicit, .. } = candidate;
         self.report.newton_iterations += iterations.len();
         self.report.factorizations += iterations.iter().filter(|iteration| iteration.newton.factorized).count();
@@ -327,7 +327,7 @@ impl Simulation {
         while let Some(candidate) = self.attempt()? {
             let (step, old) = (self.step.clone(), self.state.clone());
             let (state, iterations) = (candidate.accepted.clone(), candidate.iterations.clone());
-            self.take(candidate)?;
+            self.follow(candidate)?;
             if let Some(state) = state {
                 return Ok(Some(Increment { step, old, state, iterations }));
             }

@@ -1,6 +1,6 @@
 //! Equilibrium at the time of a trial, from the start value on.
 
-use super::contact_iteration::cycle::Cycle;
+use super::contact_iteration::flips::Flips;
 use super::failure::IncrementFailure;
 use super::floating::null_motion;
 use super::newton;
@@ -26,7 +26,7 @@ pub fn equilibrium(
     }
     let mut tangents = 0;
     let mut seen = Vec::new();
-    let mut cycle = Cycle::default();
+    let mut flips = Flips::default();
     let mut floating = None;
     let spent = assembler.seconds.assembly + assembler.seconds.contact;
     let clock = std::time::Instant::now();
@@ -46,12 +46,12 @@ pub fn equilibrium(
                 floating = null_motion(model, u, &system.tangent);
             }
             tangents += 1;
-        } else if tangents > 0 {
+        } else if tangents > 0 && request == Request::Residual {
             let evaluation = &assembler.evaluation;
             let share = evaluation.stabilization / system.forces.max(f64::MIN_POSITIVE);
-            seen.push((ContactCounts::of(&evaluation.contacts), cycle.count(&evaluation.contacts), share));
+            seen.push((ContactCounts::of(&evaluation.contacts), flips.count(&evaluation.contacts), share));
         }
-        Ok(cycle.share())
+        Ok(())
     });
     let assembled = assembler.seconds.assembly + assembler.seconds.contact - spent;
     *linear_seconds += clock.elapsed().as_secs_f64() - assembled;

@@ -7,6 +7,17 @@
 //! The tangent is consistent, so the residual falls quadratically near the solution. What the parts are, and which residuals
 //! round-off leaves, is for those to say who know the equations ([`System::imbalance`]). No start value is accepted without a
 //! linear solve: what it still lacks within the tolerance would add up from increment to increment.
+//!
+//! Where the equations have kinks, as friction has between sticking and slipping either way, the corrections of consistent
+//! tangents may go round in a cycle. If the residual does not fall any more, the next ones go only as far as they lead
+//! downhill:
+//!
+//! ```text
+//! u_{k+1} = u_k + α Δu,   s(α) = Δu·r(u_k + α Δu),   |s(α)| ≤ 0.1 |s(0)|
+//! ```
+//!
+//! With a potential, r = ∂Π/∂u, s is the slope of Π along Δu, and Π falls by every correction.
+//! Source: Matthies & Strang (1979), The solution of nonlinear finite element equations, doi:10.1002/nme.1620141104.
 
 use thiserror::Error;
 
@@ -77,21 +88,31 @@ const OLD_TANGENT_CORRECTIONS: f64 = 3.0;
 /// Smallest part of a correction that is tried where the whole of it leads to a state that cannot be evaluated.
 const LEAST_PART: f64 = 0.125;
 
-/// Solve r(u) = 0 from the start value `u`. `evaluate` fills the system at a displacement, and says which share of the
-/// next correction to take: 1, or less where it sees the iterations go to and fro.
+/// Corrections in a row that leave the residual above its least until then, before it is searched along them. One alone
+/// is often the price of a contact that finds its place.
+const STALLED: usize = 2;
+
+/// |s(α)|/|s(0)| at which a search along a correction ends.
+const LEVEL: f64 = 0.1;
+
+/// Most evaluations of a search along a correction.
+const LONGEST_SEARCH: usize = 12;
+
+/// Solve r(u) = 0 from the start value `u`; `evaluate` fills the system at a displacement.
 pub fn solve<E>(
     mut u: Vec<f64>,
     settings: NewtonSettings,
     solver: &mut dyn LinearSolver,
     system: &mut System,
-    mut evaluate: impl FnMut(&[f64], Request, &mut System) -> Result<f64, E>,
+    mut evaluate: impl FnMut(&[f64], Request, &mut System) -> Result<(), E>,
 ) -> Outcome<E> {
     let mut iterations: Vec<Iteration> = Vec::new();
     let result = (|| {
-        let mut share = evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
+        evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
         let (mut largest_start, mut before) = (0.0f64, [f64::INFINITY; 2]);
         // Near a kink of the equations it promises more than it keeps, every time.
         let mut old_tangent_serves = true;
+        let (mut least, mut stalled, mut searches) = (f64::INFINITY, 0, false);
         loop {
             let (size, residual) = (norm(&system.residual), system.imbalance);
             let done = iterations.len();
@@ -115,9 +136,13 @@ pub fn solve<E>(
             if done == settings.max_iterations {
                 return Err(NewtonFailure::TooManyIterations { residual, iterations: done });
             }
+            stalled = if size < least { 0 } else { stalled + 1 };
+            least = least.min(size);
+            searches |= stalled >= STALLED;
             let slower = if iterations.last().is_some_and(|last| last.factorized) { OLD_TANGENT } else { 1.0 };
             let corrections = corrections_left(residual, slower * gain(size, residual, before), settings.tolerance);
             let factorized = done == 0 || !(old_tangent_serves && corrections <= OLD_TANGENT_CORRECTIONS);
+            let here = if searches { system.residual.clone() } else { Vec::new() };
             let mut solution = if factorized {
                 evaluate(&u, Request::Tangent, system).map_err(NewtonFailure::Evaluation)?;
                 let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();
@@ -126,10 +151,15 @@ pub fn solve<E>(
                 let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();
                 linear::solve_again(solver, &system.tangent, &right)
             };
-            for (u, x) in u.iter_mut().zip(&mut solution.x) {
-                *x *= share;
-                *u += *x;
+            if searches && factorized {
+                let along = |residual: &[f64]| -> f64 { residual.iter().zip(&solution.x).map(|(r, x)| r * x).sum() };
+                let share = downhill(along(&here), |share| {
+                    let there: Vec<f64> = u.iter().zip(&solution.x).map(|(u, x)| u + share * x).collect();
+                    evaluate(&there, Request::Between, system).map_or(f64::NAN, |()| along(&system.residual))
+                });
+                solution.x.iter_mut().for_each(|x| *x *= share);
             }
+            u.iter_mut().zip(&solution.x).for_each(|(u, x)| *u += x);
             iterations.push(Iteration {
                 residual: f64::NAN,
                 correction: solution.x.iter().fold(0.0f64, |m, x| m.max(x.abs())),
@@ -140,9 +170,9 @@ pub fn solve<E>(
             });
             // A correction that turns an element inside out is far too long; a part of it may lead on.
             let mut part = 1.0;
-            share = loop {
+            loop {
                 match evaluate(&u, Request::Residual, system) {
-                    Ok(share) => break share,
+                    Ok(()) => break,
                     Err(failure) if part <= LEAST_PART && factorized => {
                         return Err(NewtonFailure::Evaluation(failure));
                     }
@@ -150,18 +180,50 @@ pub fn solve<E>(
                         // An old tangent led astray: the next correction starts from where this one did.
                         old_tangent_serves = false;
                         u.iter_mut().zip(&solution.x).for_each(|(u, x)| *u -= part * x);
-                        break evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
+                        evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
+                        break;
                     }
                     Err(_) => part *= 0.5,
                 }
                 for (u, x) in u.iter_mut().zip(&solution.x) {
                     *u -= part * x;
                 }
-            };
+            }
             before = [size, residual];
         }
     })();
     (iterations, result.map(|()| u))
+}
+
+/// How far a correction leads downhill, as a share of it: to where `slope` is near 0, or all of it if that is not beyond. It
+/// is not a number where the equations cannot be evaluated. By regula falsi (Illinois), halving where that fails: forces
+/// that stick in a narrow range make the slope steep there.
+fn downhill(start: f64, mut slope: impl FnMut(f64) -> f64) -> f64 {
+    let level = |s: f64| s.abs() <= LEVEL * start.abs();
+    let end = slope(1.0);
+    // A correction that does not start downhill was not made for this.
+    if start >= 0.0 || end <= 0.0 || level(end) {
+        return 1.0;
+    }
+    let (mut low, mut high) = ((0.0, start), (1.0, end));
+    let (mut share, mut side) = (1.0, 0.0);
+    for _ in 0..LONGEST_SEARCH {
+        let falsi = low.0 + (high.0 - low.0) * low.1 / (low.1 - high.1);
+        share = if falsi > low.0 && falsi < high.0 { falsi } else { 0.5 * (low.0 + high.0) };
+        let s = slope(share);
+        if level(s) {
+            break;
+        }
+        // The end that stays a second time counts half.
+        let stays = if s.signum() == side { 0.5 } else { 1.0 };
+        side = s.signum();
+        if s < 0.0 {
+            (low, high.1) = ((share, s), stays * high.1);
+        } else {
+            (high, low.1) = ((share, s), stays * low.1);
+        }
+    }
+    share
 }
 
 /// Share of the residual that a correction has left: of the whole, or of what the worst part lacks if that is more.

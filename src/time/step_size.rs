@@ -37,8 +37,9 @@
 //! [`crate::model::scheme`]), and a slip, an arrest or an impact changes the displacement by all it moves. Only what comes and
 //! goes within one increment, such as a short pulse of a load, needs a `max` that meets it.
 
-use crate::contact::force::{ContactState, Status};
+use crate::contact::force::ContactState;
 use crate::contact::pair::Arrival;
+use crate::laws::friction::Regime;
 use crate::model::state::State;
 use crate::model::{Model, Step};
 
@@ -295,7 +296,7 @@ fn slip_at_events(model: &Model, old: &State, new: &State) -> f64 {
 
 /// Plastic slip of the last increment where a point slips, else 0 [L].
 fn slip(state: &ContactState) -> f64 {
-    if state.status() == Status::Slip { state.friction.plastic_increment } else { 0.0 }
+    if state.regime() == Regime::Slip { state.friction.plastic_increment } else { 0.0 }
 }
 
 /// Which way a contact slips at the end of an increment: ±1 along ±s, 0 if it does not, or has just come to rest.
@@ -315,7 +316,7 @@ impl Directions {
         let going = |(state, rate): (&ContactState, &f64)| if slip(state) * rate > 0.0 { rate.signum() } else { 0.0 };
         let points: Vec<f64> = states.iter().zip(&rates).map(going).collect();
         let (mut closed, mut forward) = (0.0, 0.0);
-        for k in (0..states.len()).filter(|&k| states[k].status() != Status::Open) {
+        for k in (0..states.len()).filter(|&k| states[k].regime() != Regime::Open) {
             let length = pair.points[k].current_length(&x);
             closed += length;
             forward += length * points[k];

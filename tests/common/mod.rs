@@ -1,47 +1,52 @@
-//! Small models for tests that drive the whole solver: meshes of blocks, cases as JSON, runs that keep every state.
-#![allow(dead_code, reason = "each test file uses a part")]
+//! Small models for tests that drive the whole solver: meshes of blocks, models from code and from JSON, runs that keep
+//! every state.
+#![allow(dead_code, reason = "each test program uses a part")]
 
 use std::path::Path;
 use std::sync::Arc;
 
 use fecontact::case;
+use fecontact::laws::bulk::{ElasticConstants, Linear, NeoHookean};
+use fecontact::mesh::{InlineMesh, Mesh};
 use fecontact::model::Model;
+use fecontact::model::boundary::{Drive, Expression};
+use fecontact::model::builder::{Builder, MasterSide};
 use fecontact::model::state::State;
 use fecontact::run::error::Error;
 use fecontact::run::observer::{Attempt, Observer};
 use fecontact::run::report::RunReport;
 use fecontact::run::run;
 use nalgebra::{Rotation2, Vector2};
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
-/// A mesh of blocks of Q4 elements. A block named `b` brings the groups `b` (elements), `b_bottom`, `b_right`, `b_top`
-/// and `b_left` (edges).
+/// A mesh of blocks of Q4 elements, and of rings. A block named `b` brings the groups `b` (elements), `b_bottom`, `b_right`,
+/// `b_top` and `b_left` (edges).
 #[derive(Clone, Debug, Default)]
-pub struct Blocks {
-    pub nodes: Vec<[f64; 2]>,
-    elements: Map<String, Value>,
-    edges: Map<String, Value>,
+pub struct Blocks(pub InlineMesh);
+
+impl std::ops::Deref for Blocks {
+    type Target = InlineMesh;
+
+    fn deref(&self) -> &InlineMesh {
+        &self.0
+    }
+}
+
+impl std::ops::DerefMut for Blocks {
+    fn deref_mut(&mut self) -> &mut InlineMesh {
+        &mut self.0
+    }
 }
 
 impl Blocks {
     /// Add a block of n × m elements, `map` from the unit square to the plane.
-    pub fn block(mut self, name: &str, [n, m]: [usize; 2], map: impl Fn(f64, f64) -> [f64; 2]) -> Self {
-        let first = self.nodes.len();
-        let node = |i: usize, j: usize| first + j * (n + 1) + i;
-        for j in 0..=m {
-            self.nodes.extend((0..=n).map(|i| map(i as f64 / n as f64, j as f64 / m as f64)));
-        }
-        let elements: Vec<[usize; 4]> = (0..n * m)
-            .map(|e| (e % n, e / n))
-            .map(|(i, j)| [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)])
-            .collect();
-        let row = |j: usize| (0..n).map(|i| [node(i, j), node(i + 1, j)]).collect::<Vec<_>>();
-        let column = |i: usize| (0..m).map(|j| [node(i, j), node(i, j + 1)]).collect::<Vec<_>>();
-        self.elements.insert(name.into(), json!(elements));
-        for (side, edges) in [("bottom", row(0)), ("right", column(n)), ("top", row(m)), ("left", column(0))] {
-            self.edges.insert(format!("{name}_{side}"), json!(edges));
-        }
-        self
+    pub fn block(self, name: &str, divisions: [usize; 2], map: impl Fn(f64, f64) -> [f64; 2]) -> Self {
+        Self(self.0.block(name, divisions, map))
+    }
+
+    /// Add a rectangle from `low` to `high`.
+    pub fn rectangle(self, name: &str, divisions: [usize; 2], low: [f64; 2], high: [f64; 2]) -> Self {
+        Self(self.0.rectangle(name, divisions, low, high))
     }
 
     /// Add a whole ring of n × m elements with the groups `b`, `b_inside` and `b_outside`.
@@ -53,21 +58,16 @@ impl Blocks {
             let angle = |i: usize| std::f64::consts::TAU * i as f64 / n as f64;
             self.nodes.extend((0..n).map(|i| [radius * angle(i).cos(), radius * angle(i).sin()]));
         }
-        let elements: Vec<[usize; 4]> = (0..n * m)
+        let elements = (0..n * m)
             .map(|e| (e % n, e / n))
-            .map(|(i, j)| [node(i, j), node(i, j + 1), node(i + 1, j + 1), node(i + 1, j)])
+            .map(|(i, j)| vec![node(i, j), node(i, j + 1), node(i + 1, j + 1), node(i + 1, j)])
             .collect();
-        let inside: Vec<[usize; 2]> = (0..n).map(|i| [node(i + 1, 0), node(i, 0)]).collect();
-        let outside: Vec<[usize; 2]> = (0..n).map(|i| [node(i, m), node(i + 1, m)]).collect();
-        self.elements.insert(name.into(), json!(elements));
-        self.edges.insert(format!("{name}_inside"), json!(inside));
-        self.edges.insert(format!("{name}_outside"), json!(outside));
+        let inside = (0..n).map(|i| vec![node(i + 1, 0), node(i, 0)]).collect();
+        let outside = (0..n).map(|i| vec![node(i, m), node(i + 1, m)]).collect();
+        self.elements.insert(name.into(), elements);
+        self.edges.insert(format!("{name}_inside"), inside);
+        self.edges.insert(format!("{name}_outside"), outside);
         self
-    }
-
-    /// Add a rectangle from `low` to `high`.
-    pub fn rectangle(self, name: &str, divisions: [usize; 2], low: [f64; 2], high: [f64; 2]) -> Self {
-        self.block(name, divisions, |s, t| [low[0] + s * (high[0] - low[0]), low[1] + t * (high[1] - low[1])])
     }
 
     /// All turned about the origin, counter-clockwise.
@@ -82,6 +82,41 @@ impl Blocks {
     pub fn json(&self) -> Value {
         json!({"nodes": self.nodes, "elements": self.elements, "edges": self.edges})
     }
+
+    /// The mesh.
+    pub fn mesh(&self) -> Mesh {
+        self.build().expect("a mesh")
+    }
+}
+
+/// Constants of an elastic material.
+pub fn elastic(young: f64, poisson: f64, density: f64) -> ElasticConstants {
+    ElasticConstants { young, poisson, density }
+}
+
+/// A neo-Hookean material.
+pub fn neo_hookean(young: f64, poisson: f64, density: f64) -> NeoHookean {
+    NeoHookean::new(&elastic(young, poisson, density)).expect("good constants")
+}
+
+/// A linear material.
+pub fn linear(young: f64, poisson: f64, density: f64) -> Linear {
+    Linear::new(&elastic(young, poisson, density)).expect("good constants")
+}
+
+/// The half-space below the line y = 0.
+pub fn floor() -> MasterSide {
+    MasterSide::Plane { point: [0.0, 0.0], normal: [0.0, 1.0] }
+}
+
+/// A drive by an expression.
+pub fn expression(text: &str) -> Drive {
+    Drive::Expression(Expression::parse(text).expect("an expression"))
+}
+
+/// Build a model from code and run it to its end.
+pub fn run_through(builder: Builder) -> Finished {
+    finished(builder.build().unwrap_or_else(|error| panic!("{error}")))
 }
 
 /// The same mesh of quadratic elements; `middle` places a node between two corners.
@@ -208,7 +243,11 @@ pub fn finish(case: &Value) -> Finished {
 
 /// Run a case whose mesh is found from a path.
 pub fn finish_at(case: &Value, path: &Path) -> Finished {
-    let model = model_at(case, path);
+    finished(model_at(case, path))
+}
+
+/// Run a model to its end.
+pub fn finished(model: Model) -> Finished {
     let mut record = Record::default();
     let model = Arc::new(model);
     let (report, result) = run(&model, &mut [&mut record]);

@@ -177,3 +177,9 @@ pub trait Material: Debug + Send + Sync {
         Ok(CauchyStress { xx: sigma.m11, yy: sigma.m22, zz: response.stress_zz, xy: sigma.m12 })
     }
 }
+
+impl<M: Material + 'static> From<M> for Box<dyn Material> {
+    fn from(material: M) -> Self {
+        Box::new(material)
+    }
+}

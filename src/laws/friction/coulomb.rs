@@ -1,7 +1,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{FrictionLaw, FrictionResponse, FrictionState, LawFailure, Sliding, traction_at_yield};
+use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, Sliding, traction_at_yield};
 use crate::laws::parameter::{InvalidParameter, require_positive};
 
 /// Parameters of [`Coulomb`] as the case file writes them.
@@ -13,6 +13,13 @@ pub struct CoulombParameters {
     /// α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies [F/L³]
     #[serde(default)]
     pub alpha_t: Option<f64>,
+}
+
+impl CoulombParameters {
+    /// With the tangential stiffness left to the contact.
+    pub fn new(mu: f64) -> Self {
+        Self { mu, alpha_t: None }
+    }
 }
 
 /// Coulomb friction on an elastic contact: sticks below μ p, slides at μ p.
@@ -29,7 +36,7 @@ pub struct CoulombParameters {
 /// ```
 ///
 /// # Errors
-/// [`LawFailure`] when the increment or the answer is not finite, or time goes backwards.
+/// [`LawFailure`](super::LawFailure) when the increment or the answer is not finite, or time goes backwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coulomb {
     mu: f64,
@@ -50,40 +57,40 @@ impl Coulomb {
 }
 
 impl FrictionLaw for Coulomb {
-    fn initial_state(&self) -> FrictionState {
-        FrictionState { mu: self.mu, ..FrictionState::default() }
-    }
-
-    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Result<FrictionResponse, LawFailure> {
+    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
         let Self { mu, alpha_t } = *self;
         let Sliding { slip, pressure, .. } = sliding.checked()?;
         let trial = old.traction + alpha_t * slip;
         let (state, dtraction_dslip, dtraction_dpressure) = if pressure <= 0.0 {
-            (old.parted(mu, alpha_t), 0.0, 0.0)
+            (old.parted(alpha_t), 0.0, 0.0)
         } else if trial.abs() <= mu * pressure {
-            (old.stuck(trial, pressure, mu), alpha_t, 0.0)
+            (old.stuck(trial, pressure), alpha_t, 0.0)
         } else {
             let (sign, strength) = (trial.signum(), mu * pressure);
             let at_yield = traction_at_yield([sign * old.traction, trial.abs()], [mu * old.pressure, strength]);
             let mean = 0.5 * (at_yield + strength);
-            (old.slid(trial, sign * strength, mean, (pressure, mu), alpha_t), 0.0, sign * mu)
+            (old.slid(trial, sign * strength, mean, pressure, alpha_t), 0.0, sign * mu)
         };
-        FrictionResponse { state, dtraction_dslip, dtraction_dpressure, evaluations: 0 }.checked(alpha_t)
+        FrictionResponse { state, dtraction_dslip, dtraction_dpressure, ..Default::default() }.checked(alpha_t)
+    }
+
+    fn observables(&self) -> &'static [&'static str] {
+        &["R", "mu"]
+    }
+
+    fn observe(&self, name: &str, state: &FrictionState) -> Option<f64> {
+        match name {
+            "R" => Some(state.ratio(self.mu)),
+            "mu" => Some(self.mu),
+            _ => None,
+        }
     }
 
     fn stiffness(&self) -> f64 {
         self.alpha_t
     }
 
-    fn structure(&self, _mu: f64) -> f64 {
-        1.0
-    }
-
     fn starting_limit(&self, pressure: f64) -> f64 {
         self.mu * pressure
-    }
-
-    fn uniqueness_limit(&self) -> Option<f64> {
-        None
     }
 }

@@ -12,6 +12,7 @@ mod approach;
 mod coulomb;
 mod exponential_integral;
 mod frictionless;
+pub mod observables;
 mod parameters;
 mod path;
 mod peak;
@@ -19,11 +20,11 @@ mod rate_and_state;
 mod root;
 mod slip_equation;
 mod slip_weakening;
+pub mod state;
 mod super_subloading;
 
 use std::fmt::Debug;
 
-use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 pub use approach::Approach;
@@ -33,65 +34,8 @@ pub use parameters::FrictionParameters;
 pub use peak::Integration;
 pub use rate_and_state::{RateAndState, RateAndStateParameters, StateEvolution};
 pub use slip_weakening::{SlipWeakening, SlipWeakeningParameters};
+pub use state::{FrictionState, Regime};
 pub use super_subloading::{SuperSubloading, SuperSubloadingParameters};
-
-/// What friction remembers at one contact point between increments.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct FrictionState {
-    /// q: traction that resists the slip of the slave along +s [F/L²]
-    pub traction: f64,
-    /// p: contact pressure, positive in compression [F/L²]
-    pub pressure: f64,
-    /// μ: peak coefficient available now, μ_k ≤ μ ≤ μ_s for the super/subloading law; for rate-and-state friction the
-    /// coefficient at the reference slip rate [-]
-    pub mu: f64,
-    /// Total plastic slip, signed along +s [L]
-    pub plastic_slip: f64,
-    /// Plastic slip of the last increment, signed along +s [L]
-    pub plastic_increment: f64,
-    /// Work dissipated by friction so far per contact area [F/L]
-    pub dissipation: f64,
-}
-
-impl FrictionState {
-    /// R = |q|/(μ p): how far the traction is from the peak surface; 0 where nothing is pressed [-]
-    pub fn ratio(&self) -> f64 {
-        let strength = self.mu * self.pressure;
-        if strength > 0.0 { self.traction.abs() / strength } else { 0.0 }
-    }
-
-    /// The state after the surfaces have parted: the elastic energy q²/(2 α_t) of the contact spring is lost.
-    fn parted(self, mu: f64, stiffness: f64) -> Self {
-        let lost = self.traction * self.traction / (2.0 * stiffness);
-        let dissipation = self.dissipation + lost;
-        Self { traction: 0.0, pressure: 0.0, mu, plastic_increment: 0.0, dissipation, ..self }
-    }
-
-    /// The state after an increment whose slip was all elastic.
-    fn stuck(self, traction: f64, pressure: f64, mu: f64) -> Self {
-        Self { traction, pressure, mu, plastic_increment: 0.0, ..self }
-    }
-
-    /// The state after plastic slip along sgn q has brought the traction down from the elastic `trial` to `traction`.
-    ///
-    /// ```text
-    /// Δλ = (|q_tr| − |q|)/α_t       plastic slip
-    /// ΔW = ∫ |q| dλ = q̄ Δλ ≥ 0      work dissipated; q̄, the mean of |q| over the plastic slip, is the law's to know
-    /// ```
-    /// The work ∫ q du of the increment, along the path that the law takes inside it, is Δ(q²/2α_t) + ΔW.
-    fn slid(self, trial: f64, traction: f64, mean: f64, (pressure, mu): (f64, f64), stiffness: f64) -> Self {
-        let sign = traction.signum();
-        let slip = ((trial - traction) * sign / stiffness).max(0.0);
-        Self {
-            traction,
-            pressure,
-            mu,
-            plastic_slip: self.plastic_slip + sign * slip,
-            plastic_increment: sign * slip,
-            dissipation: self.dissipation + mean * slip,
-        }
-    }
-}
 
 /// |q| where plastic slip sets in, in an increment along which the elastic traction and the strength both go evenly from
 /// their first value to their second, and the traction ends above. One that is above from the start slips from there.
@@ -111,7 +55,7 @@ fn traction_at_yield(elastic: [f64; 2], strength: [f64; 2]) -> f64 {
 pub struct Sliding {
     /// Δu_t: slip increment of the slave relative to the master along +s [L]
     pub slip: f64,
-    /// p: pressure at the end of the increment, ≤ 0 where the point is open [F/L²]
+    /// p: effective pressure at the end of the increment, ≤ 0 where the point is open [F/L²]
     pub pressure: f64,
     /// Δt: length of the increment [T]
     pub dt: f64,
@@ -119,7 +63,10 @@ pub struct Sliding {
 
 impl Sliding {
     /// Refuses what no law can answer.
-    fn checked(self) -> Result<Self, LawFailure> {
+    ///
+    /// # Errors
+    /// [`LawFailure`] when a number is not finite, or time goes backwards.
+    pub fn checked(self) -> Result<Self, LawFailure> {
         let Self { slip, pressure, dt } = self;
         if !(slip.is_finite() && pressure.is_finite() && dt.is_finite()) {
             return Err(LawFailure::NotFinite { slip, pressure, dt });
@@ -139,36 +86,46 @@ pub const STEEPEST: f64 = 1e8;
 /// Least −∂G/∂Δλ over α_t of an equation of plastic slip that a tangent is computed with.
 const LEAST_SLOPE: f64 = 1.0 / STEEPEST;
 
-/// The answer of a law to one increment.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The answer of a law to one increment. Its tangent is that of exactly what was computed.
+///
+/// ```text
+/// δq = ∂q/∂Δu_t δΔu_t + ∂q/∂p δp,   δd = ∂d/∂Δu_t δΔu_t + ∂d/∂p δp        d: opening, 0 for most laws
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrictionResponse {
-    /// State at the end of the increment.
+    /// State at the end of the increment
     pub state: FrictionState,
     /// ∂q/∂Δu_t [F/L³]
     pub dtraction_dslip: f64,
     /// ∂q/∂p [-]
     pub dtraction_dpressure: f64,
+    /// ∂d/∂Δu_t [-]
+    pub dopening_dslip: f64,
+    /// ∂d/∂p, below 1/α_n: an opening that grew faster with the pressure than the contact gives way would have no end [L³/F]
+    pub dopening_dpressure: f64,
     /// Evaluations of the scalar equation of plastic slip that this answer took; 0 where it has a closed form
     pub evaluations: usize,
 }
 
 impl FrictionResponse {
     /// The answer that `state` follows without plastic slip, where q has the tangent `stiffness` by slip.
-    fn elastic(state: FrictionState, stiffness: f64) -> Self {
-        Self { state, dtraction_dslip: stiffness, dtraction_dpressure: 0.0, evaluations: 0 }
+    pub fn elastic(state: FrictionState, stiffness: f64) -> Self {
+        Self { state, dtraction_dslip: stiffness, ..Self::default() }
     }
 
     /// Bounds the tangent to what [`FrictionLaw::respond`] promises for the stiffness α_t, and refuses numbers that have
     /// overflowed, and those of a committed state that was not finite.
-    fn checked(mut self, stiffness: f64) -> Result<Self, LawFailure> {
+    ///
+    /// # Errors
+    /// [`LawFailure::Overflow`].
+    pub fn checked(mut self, stiffness: f64) -> Result<Self, LawFailure> {
         self.dtraction_dslip = self.dtraction_dslip.clamp(-STEEPEST * stiffness, STEEPEST * stiffness);
         self.dtraction_dpressure = self.dtraction_dpressure.clamp(-STEEPEST, STEEPEST);
-        let FrictionState { traction, pressure, mu, plastic_slip, plastic_increment, dissipation } = self.state;
-        let state = traction + pressure + mu + plastic_slip + plastic_increment + dissipation;
-        if (state + self.dtraction_dslip + self.dtraction_dpressure).is_finite() {
+        let tangent = self.dtraction_dslip + self.dtraction_dpressure + self.dopening_dslip + self.dopening_dpressure;
+        if self.state.is_finite() && tangent.is_finite() {
             Ok(self)
         } else {
-            Err(LawFailure::Overflow { traction })
+            Err(LawFailure::Overflow { traction: self.state.traction })
         }
     }
 }
@@ -204,6 +161,14 @@ pub enum LawFailure {
         /// |q_tr|: traction without plastic slip [F/L²]
         trial: f64,
     },
+    /// The opening of a law that dilates grows faster with the pressure than the contact gives way.
+    #[error("the opening {opening:.6e} of the friction law and the pressure {pressure:.6e} did not come to agree")]
+    Opening {
+        /// d [L]
+        opening: f64,
+        /// p [F/L²]
+        pressure: f64,
+    },
     /// The state was not finite, or the increment is so large that it no longer is.
     #[error("the friction state is not finite: the traction is {traction}")]
     Overflow {
@@ -212,29 +177,115 @@ pub enum LawFailure {
     },
 }
 
+/// What a law says of one point.
+pub type Answer = Result<FrictionResponse, LawFailure>;
+
 /// A friction law, integrated over one increment. Pure: the same `old` and `sliding` give the same answer.
+///
+/// ```text
+/// (q, variables, d)₁ = law((q, p, variables, d)₀; Δu_t, p₁, Δt)       q resists +Δu_t, p > 0 in compression
+/// p = p̄ − α_n (g − d)                                                d: how far the law holds the surfaces apart (dilatancy)
+/// W₁ − W₀ = ∫ q dλ − ∫ p dd ≥ 0                                     dissipation [F/L]; q²/(2 α_t) is stored
+/// ```
+/// Units: q, p [F/L²], Δu_t, d [L], α_t [F/L³], Δt [T]. A law is asked for the pressure it answers to, so that it never sees
+/// penalty or multiplier; the contact finds the pressure that goes with the opening.
+///
+/// Where Δt = 0 the law answers to slip and pressure that come up at once; with p ≤ 0 the surfaces have parted.
+///
+/// A law of one parameter, a film of oil, is written like this; [`ContactPair::laws`](crate::contact::pair::ContactPair)
+/// takes it boxed:
+///
+/// ```
+/// use fecontact::laws::friction::{FrictionLaw, FrictionResponse, FrictionState, LawFailure, Regime, Sliding};
+///
+/// /// Viscous friction, q = η v.
+/// #[derive(Debug)]
+/// struct Oil {
+///     /// η: viscosity over thickness of the film, η > 0 [F·T/L³]
+///     viscosity: f64,
+/// }
+///
+/// impl FrictionLaw for Oil {
+///     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Result<FrictionResponse, LawFailure> {
+///         let Sliding { slip, pressure, dt } = sliding.checked()?;
+///         if pressure <= 0.0 || dt == 0.0 {
+///             return FrictionResponse::elastic(old.stuck(0.0, pressure.max(0.0)), 0.0).checked(1.0);
+///         }
+///         let dtraction_dslip = self.viscosity / dt;
+///         let traction = dtraction_dslip * slip;
+///         let state = FrictionState {
+///             plastic_slip: old.plastic_slip + slip,
+///             plastic_increment: slip,
+///             dissipation: old.dissipation + traction * slip,
+///             regime: if slip == 0.0 { Regime::Stick } else { Regime::Slip },
+///             ..old.stuck(traction, pressure)
+///         };
+///         FrictionResponse { state, dtraction_dslip, ..Default::default() }.checked(dtraction_dslip)
+///     }
+///
+///     fn stiffness(&self) -> f64 {
+///         0.0
+///     }
+/// }
+///
+/// let oil = Oil { viscosity: 2.0 };
+/// let answer = oil.respond(&oil.initial_state(), Sliding { slip: 0.3, pressure: 5.0, dt: 0.1 })?;
+/// assert_eq!((answer.state.traction, answer.state.regime), (6.0, Regime::Slip));
+/// # Ok::<(), LawFailure>(())
+/// ```
 pub trait FrictionLaw: Debug + Send + Sync {
     /// State of a point that has just come into contact.
-    fn initial_state(&self) -> FrictionState;
+    fn initial_state(&self) -> FrictionState {
+        FrictionState::default()
+    }
 
-    /// q and the state variables at the end of the increment, with the consistent tangent ∂q/∂Δu_t, ∂q/∂p, limited to
-    /// ± [`STEEPEST`] times α_t, or 1.
+    /// State of a point that is closed from the start under these tractions, and has not slipped.
+    fn starting_state(&self, pressure: f64, traction: f64) -> FrictionState {
+        self.initial_state().loaded(pressure, traction)
+    }
+
+    /// q, the law's variables, its regime and the opening at the end of the increment, with the consistent tangent,
+    /// ∂q/∂Δu_t and ∂q/∂p being limited to ± [`STEEPEST`] times α_t, or 1.
     ///
     /// # Errors
     /// [`LawFailure`] when the increment or the answer is not finite, time goes backwards, or the law's equations are not
     /// solved to their tolerance.
-    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Result<FrictionResponse, LawFailure>;
+    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer;
 
-    /// α_t: tangential contact stiffness; the contact stores q²/(2 α_t). 0 without friction [F/L³]
+    /// The answers of many points, each the same as alone. A law that has a quicker way than one after the other takes it
+    /// here.
+    fn respond_many(&self, old: &[FrictionState], sliding: &[Sliding], answers: &mut [Answer]) {
+        for ((old, sliding), answer) in old.iter().zip(sliding).zip(answers) {
+            *answer = self.respond(old, *sliding);
+        }
+    }
+
+    /// Names of the [`FrictionState::variables`] that the law uses.
+    fn variables(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// Names of what outputs show of a state beside what all laws have: the variables, unless the law says otherwise.
+    fn observables(&self) -> &'static [&'static str] {
+        self.variables()
+    }
+
+    /// The value of an observable in a state; none if the law does not know it.
+    fn observe(&self, name: &str, state: &FrictionState) -> Option<f64> {
+        self.variables().iter().zip(state.variables).find_map(|(own, value)| (*own == name).then_some(value))
+    }
+
+    /// α_t: tangential contact stiffness; the contact stores q²/(2 α_t). 0 where it stores nothing [F/L³]
     fn stiffness(&self) -> f64;
-
-    /// 1/R* = μ/μ_k: degree of structure that belongs to a peak coefficient; 1 for a law without structure [-]
-    fn structure(&self, mu: f64) -> f64;
 
     /// Largest |q| that a point which has not slipped yet may start with under the pressure p; infinite for a law that
     /// lets an excess slip off [F/L²]
-    fn starting_limit(&self, pressure: f64) -> f64;
+    fn starting_limit(&self, _pressure: f64) -> f64 {
+        f64::INFINITY
+    }
 
     /// Pressure from which the rate problem may have several answers, if there is one [F/L²]
-    fn uniqueness_limit(&self) -> Option<f64>;
+    fn uniqueness_limit(&self) -> Option<f64> {
+        None
+    }
 }

@@ -40,4 +40,19 @@ impl FrictionParameters {
             Self::RateAndState(parameters) => Box::new(RateAndState::new(parameters, default_alpha_t)?),
         })
     }
+
+    /// Whether the law has a structure that may be given for the start.
+    pub fn has_structure(&self) -> bool {
+        matches!(self, Self::SuperSubloading(_))
+    }
+
+    /// Names and values of the coefficients that bound |q|/p, as far as there are any.
+    pub fn bounds(&self) -> Vec<(&'static str, f64)> {
+        match self {
+            Self::Coulomb(law) => vec![("μ", law.mu)],
+            Self::SuperSubloading(law) => vec![("μ_s", law.mu_s), ("μ_k", law.mu_k)],
+            Self::SlipWeakening(law) if law.cohesion == 0.0 => vec![("μ_s", law.mu_s), ("μ_d", law.mu_d)],
+            Self::Frictionless {} | Self::SlipWeakening(_) | Self::RateAndState(_) => Vec::new(),
+        }
+    }
 }

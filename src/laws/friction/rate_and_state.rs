@@ -2,7 +2,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::root::{Trial, bracketed_root};
-use super::{FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Sliding, traction_at_yield};
+use super::{
+    Answer, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Regime, Sliding, traction_at_yield,
+};
 use crate::laws::parameter::{InvalidParameter, require_not_negative, require_positive};
 
 /// Parameters of [`RateAndState`] as the case file writes them.
@@ -50,8 +52,12 @@ pub enum StateEvolution {
 /// |q| = a p arsinh(V/(2 V₀) exp(ψ/a)),   ψ = f₀ + b ln(V₀ θ/D_c)      ≈ p (ψ + a ln(V/V₀))                  (2)
 /// θ̇ = 1 − V θ/D_c   or   θ̇ = −(V θ/D_c) ln(V θ/D_c)                                                       (3)
 /// ```
-/// The committed coefficient μ is ψ, the coefficient of friction at V₀; so R = |q|/(ψ p) tells how fast a point slips,
-/// R = 1 at V₀, and there is plastic slip whenever there is traction.
+/// The law remembers θ. V₀ only says at which rate f₀ is measured: with f₀ + (a − b) ln(V₁/V₀) and V₁ in their place, and the
+/// same θ, friction is the same. The μ that is shown is ψ, the coefficient at V₀, and R = |q|/(ψ p) is 1 at V₀.
+///
+/// There is plastic slip whenever there is traction. A point *slips* where this outweighs ageing, V θ/D_c ≥ ½: in (3), where
+/// it takes from θ half of what time adds, or more. Steady sliding has V θ/D_c = 1 at every rate, a locked interface next
+/// to nothing, one that accelerates more than 1.
 ///
 /// An increment takes V = Δλ/Δt as constant, for which (3) is integrated exactly: with x = Δλ/D_c
 /// ```text
@@ -78,7 +84,7 @@ pub struct RateAndState {
     b: f64,
     critical_slip: f64,
     evolution: StateEvolution,
-    initial_mu: f64,
+    initial_theta: f64,
     alpha_t: f64,
 }
 
@@ -98,15 +104,33 @@ impl RateAndState {
         require_positive("alpha_t", alpha_t)?;
         let theta = parameters.theta.unwrap_or(critical_slip / reference_rate);
         require_positive("theta", theta)?;
-        let initial_mu = f_0 + b * (reference_rate * theta / critical_slip).ln();
-        Ok(Self { f_0, reference_rate, a, b, critical_slip, evolution, initial_mu, alpha_t })
+        Ok(Self { f_0, reference_rate, a, b, critical_slip, evolution, initial_theta: theta, alpha_t })
     }
 
-    /// ln(V₀ θ/D_c) of a committed ψ; without an effect of the state it does not matter.
-    fn log_state(&self, psi: f64) -> f64 {
-        if self.b > 0.0 { (psi - self.f_0) / self.b } else { 0.0 }
+    /// ln(V₀ θ/D_c) of a committed state.
+    fn log_state(&self, state: &FrictionState) -> f64 {
+        let [theta, ..] = state.variables;
+        (self.reference_rate * theta / self.critical_slip).ln()
+    }
+
+    /// θ of a ln(V₀ θ/D_c) [T]
+    fn theta(&self, log_state: f64) -> f64 {
+        log_state.exp() * self.critical_slip / self.reference_rate
+    }
+
+    /// ψ of a ln(V₀ θ/D_c) [-]
+    fn psi(&self, log_state: f64) -> f64 {
+        self.f_0 + self.b * log_state
+    }
+
+    /// Whether slip at the end of an increment outweighs ageing, V θ/D_c ≥ ½.
+    fn slips(&self, slip: f64, theta: f64, dt: f64) -> bool {
+        slip * theta >= OUTWEIGHS * self.critical_slip * dt
     }
 }
+
+/// V θ/D_c from which a point slips.
+const OUTWEIGHS: f64 = 0.5;
 
 /// G is right to this share of |q_tr|.
 const PRECISION: f64 = 1e-14;
@@ -145,16 +169,16 @@ struct Outcome {
     excess: f64,
     /// −∂G/∂Δλ [F/L³]
     slope: f64,
-    /// ψ at the end
-    psi: f64,
+    /// ln(V₀ θ/D_c) at the end
+    log_state: f64,
     /// |q| of (2) [F/L²]
     traction: f64,
 }
 
 impl Relaxation<'_> {
-    /// ψ at the end after Δλ, and ∂ψ/∂Δλ.
-    fn psi(&self, slip: f64) -> (f64, f64) {
-        let RateAndState { f_0, b, reference_rate, critical_slip, evolution, .. } = *self.law;
+    /// ln(V₀ θ/D_c) at the end after Δλ, and its derivative by Δλ.
+    fn log_state_after(&self, slip: f64) -> (f64, f64) {
+        let RateAndState { reference_rate, critical_slip, evolution, .. } = *self.law;
         let x = slip / critical_slip;
         let decay = (-x).exp();
         // (1 − e⁻ˣ)/x and its derivative
@@ -174,19 +198,21 @@ impl Relaxation<'_> {
                 (log, decay * (steady - self.log_state) - share)
             }
         };
-        (f_0 + b * log, b * dlog / critical_slip)
+        (log, dlog / critical_slip)
     }
 
     fn outcome(&self, slip: f64) -> Outcome {
-        let RateAndState { a, reference_rate, alpha_t, .. } = *self.law;
-        let (psi, dpsi) = self.psi(slip);
+        let RateAndState { a, b, reference_rate, alpha_t, .. } = *self.law;
+        let (log_state, dlog_state) = self.log_state_after(slip);
+        let (psi, dpsi) = (self.law.psi(log_state), b * dlog_state);
         let fastness = 0.5 / (reference_rate * self.dt);
         let w = slip.ln() + fastness.ln() + psi / a;
         let (arsinh, rate) = arsinh_of_exp(w);
         let traction = a * self.pressure * arsinh;
         let direct = if slip > 0.0 { rate / slip } else { fastness * (psi / a).exp() };
         let slope = alpha_t + self.pressure * (a * direct + rate * dpsi);
-        Outcome { slip, log: 0.0, log_sinh: w, excess: self.trial - alpha_t * slip - traction, slope, psi, traction }
+        let excess = self.trial - alpha_t * slip - traction;
+        Outcome { slip, log: 0.0, log_sinh: w, excess, slope, log_state, traction }
     }
 
     /// Bound of Δλ ∂ψ/∂Δλ for all slips up to this one: healing within the increment, of which the slip law knows some.
@@ -269,7 +295,7 @@ impl Relaxation<'_> {
         let half = 0.5 * self.trial;
         let level = half / (a * self.pressure);
         let log_sinh = if level > 20.0 { level - std::f64::consts::LN_2 } else { level.sinh().ln() };
-        let psi = self.psi(0.0).0;
+        let psi = self.law.psi(self.log_state_after(0.0).0);
         let reached = |healing: f64| {
             let log = (2.0 * reference_rate * self.dt).ln() - (psi + healing) / a + log_sinh;
             log.min((half / alpha_t).ln())
@@ -357,38 +383,43 @@ fn arsinh_of_exp(w: f64) -> (f64, f64) {
 
 impl FrictionLaw for RateAndState {
     fn initial_state(&self) -> FrictionState {
-        FrictionState { mu: self.initial_mu, ..FrictionState::default() }
+        FrictionState::default().with_variables([self.initial_theta])
     }
 
-    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Result<FrictionResponse, LawFailure> {
+    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
         let alpha_t = self.alpha_t;
         let Sliding { slip, pressure, dt } = sliding.checked()?;
         let trial = old.traction + alpha_t * slip;
-        let relaxation = Relaxation { law: self, trial: trial.abs(), pressure, dt, log_state: self.log_state(old.mu) };
+        let log_state = self.log_state(old);
+        let relaxation = Relaxation { law: self, trial: trial.abs(), pressure, dt, log_state };
         if dt == 0.0 || pressure <= 0.0 || trial == 0.0 {
             // No time to slip in, or nothing to slip for.
-            let mu = if dt == 0.0 { old.mu } else { relaxation.psi(0.0).0 };
+            let aged = |theta| if dt == 0.0 { theta } else { self.theta(relaxation.log_state_after(0.0).0) };
+            let old = old.with_variables([aged(old.variables[0])]);
             if pressure <= 0.0 {
-                return FrictionResponse::elastic(old.parted(mu, alpha_t), 0.0).checked(alpha_t);
+                return FrictionResponse::elastic(old.parted(alpha_t), 0.0).checked(alpha_t);
             }
             let softness =
                 if dt == 0.0 { 0.0 } else { alpha_t / relaxation.outcome(0.0).slope.max(LEAST_SLOPE * alpha_t) };
-            return FrictionResponse::elastic(old.stuck(trial, pressure, mu), alpha_t * (1.0 - softness))
-                .checked(alpha_t);
+            return FrictionResponse::elastic(old.stuck(trial, pressure), alpha_t * (1.0 - softness)).checked(alpha_t);
         }
         let (found, evaluations) = relaxation.solve()?;
         let traction = trial.signum() * found.traction.min(trial.abs());
         // What (2) asks at the start for the slip rate of the increment
         let rate_share = (trial.abs() - traction.abs()) / alpha_t / (2.0 * self.reference_rate * dt);
-        let before = self.a * old.pressure * arsinh_of_exp(rate_share.ln() + old.mu / self.a).0;
+        let before = self.a * old.pressure * arsinh_of_exp(rate_share.ln() + self.psi(log_state) / self.a).0;
         let elastic = [trial.signum() * old.traction, trial.abs()];
         let mean = 0.5 * (traction_at_yield(elastic, [before, traction.abs()]) + traction.abs());
         let softness = alpha_t / found.slope.max(LEAST_SLOPE * alpha_t);
+        let theta = self.theta(found.log_state);
+        let state = old.slid(trial, traction, mean, pressure, alpha_t).with_variables([theta]);
+        let slips = self.slips(state.plastic_increment.abs(), theta, dt);
         FrictionResponse {
-            state: old.slid(trial, traction, mean, (pressure, found.psi), alpha_t),
+            state: FrictionState { regime: if slips { Regime::Slip } else { Regime::Stick }, ..state },
             dtraction_dslip: alpha_t * (1.0 - softness),
             dtraction_dpressure: traction / pressure * softness,
             evaluations,
+            ..Default::default()
         }
         .checked(alpha_t)
     }
@@ -397,15 +428,21 @@ impl FrictionLaw for RateAndState {
         self.alpha_t
     }
 
-    fn structure(&self, _mu: f64) -> f64 {
-        1.0
+    fn variables(&self) -> &'static [&'static str] {
+        &["theta"]
     }
 
-    fn starting_limit(&self, _pressure: f64) -> f64 {
-        f64::INFINITY
+    fn observables(&self) -> &'static [&'static str] {
+        &["R", "mu", "theta"]
     }
 
-    fn uniqueness_limit(&self) -> Option<f64> {
-        None
+    fn observe(&self, name: &str, state: &FrictionState) -> Option<f64> {
+        let psi = || self.psi(self.log_state(state));
+        match name {
+            "R" => Some(state.ratio(psi())),
+            "mu" => Some(psi()),
+            "theta" => Some(state.variables[0]),
+            _ => None,
+        }
     }
 }

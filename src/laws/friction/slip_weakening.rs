@@ -1,7 +1,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Sliding, traction_at_yield};
+use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, Sliding, traction_at_yield};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 
 /// Parameters of [`SlipWeakening`] as the case file writes them.
@@ -23,6 +23,13 @@ pub struct SlipWeakeningParameters {
     pub alpha_t: Option<f64>,
 }
 
+impl SlipWeakeningParameters {
+    /// Without cohesion, the tangential stiffness left to the contact.
+    pub fn new(mu_s: f64, mu_d: f64, critical_slip: f64) -> Self {
+        Self { mu_s, mu_d, critical_slip, cohesion: 0.0, alpha_t: None }
+    }
+}
+
 /// Linear slip weakening on an elastic contact: the friction of most computed earthquakes.
 ///
 /// ```text
@@ -41,7 +48,7 @@ pub struct SlipWeakeningParameters {
 /// a run may start with, slips off in the first increment.
 ///
 /// # Errors
-/// [`LawFailure`] when the increment or the answer is not finite, or time goes backwards.
+/// [`LawFailure`](super::LawFailure) when the increment or the answer is not finite, or time goes backwards.
 ///
 /// Source: Ida (1972), J. Geophys. Res. 77, 3796; Harris et al. (2009), Seismol. Res. Lett. 80, 119 (its use in the
 /// community's test problems).
@@ -75,29 +82,30 @@ impl SlipWeakening {
 impl SlipWeakening {
     /// Mean of |q| over the plastic slip of an increment that ends with (p, μ).
     fn mean_traction(&self, old: &FrictionState, trial: f64, (pressure, mu): (f64, f64)) -> f64 {
+        let old_mu = mu_of(old);
         let Self { mu_d, weakening, cohesion, alpha_t, .. } = *self;
         let elastic = [trial.signum() * old.traction, trial.abs()];
         let strength = |mu: f64, pressure: f64| cohesion + mu * pressure;
-        let before = [strength(old.mu, old.pressure), strength(old.mu, pressure)];
+        let before = [strength(old_mu, old.pressure), strength(old_mu, pressure)];
         let (at_yield, at_end) = (traction_at_yield(elastic, before), strength(mu, pressure));
         let slip = (elastic[1] - at_end) / alpha_t;
-        if old.mu <= mu_d || elastic[0] > before[0] {
+        if old_mu <= mu_d || elastic[0] > before[0] {
             return 0.5 * (at_yield + at_end);
         }
         // Over the increment the elastic traction gains on the strength, at the first μ and at the second, and the share of
         // the increment that has passed is a quotient of linear functions of λ, whose denominator goes from one to the other.
         let gain = |mu: f64| elastic[1] - elastic[0] - mu * (pressure - old.pressure);
         let falling = |to: f64, slip: f64, mu: f64| {
-            let lag = end_share(gain(mu) / gain(old.mu) - 1.0) - 0.5;
+            let lag = end_share(gain(mu) / gain(old_mu) - 1.0) - 0.5;
             0.5 * (at_yield + to) + lag * (alpha_t * slip + to - at_yield)
         };
         if mu > mu_d {
             return falling(at_end, slip, mu);
         }
-        let pressure_at_yield = (at_yield - cohesion) / old.mu;
+        let pressure_at_yield = (at_yield - cohesion) / old_mu;
         // Slip until μ_d is reached, the traction then, and the mean of |q| so far
         let (fallen, level, mean) = if weakening * pressure_at_yield < alpha_t {
-            let fallen = (old.mu - mu_d) / weakening;
+            let fallen = (old_mu - mu_d) / weakening;
             let share = (strength(mu_d, old.pressure) + alpha_t * fallen - elastic[0]) / gain(mu_d);
             let level = strength(mu_d, old.pressure + share.clamp(0.0, 1.0) * (pressure - old.pressure));
             (fallen.min(slip), level, falling(level, fallen, mu_d))
@@ -126,35 +134,42 @@ fn end_share(z: f64) -> f64 {
     }
 }
 
+/// μ, the one variable of the law [-]
+fn mu_of(state: &FrictionState) -> f64 {
+    state.variables[0]
+}
+
 impl FrictionLaw for SlipWeakening {
     fn initial_state(&self) -> FrictionState {
-        FrictionState { mu: self.mu_s, ..FrictionState::default() }
+        FrictionState::default().with_variables([self.mu_s])
     }
 
-    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Result<FrictionResponse, LawFailure> {
+    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
         let Self { mu_d, weakening, cohesion, alpha_t, .. } = *self;
         let Sliding { slip, pressure, .. } = sliding.checked()?;
+        let old_mu = mu_of(old);
         if pressure <= 0.0 {
-            return FrictionResponse::elastic(old.parted(old.mu, alpha_t), 0.0).checked(alpha_t);
+            return FrictionResponse::elastic(old.parted(alpha_t), 0.0).checked(alpha_t);
         }
         let trial = old.traction + alpha_t * slip;
-        let excess = trial.abs() - cohesion - old.mu * pressure;
+        let excess = trial.abs() - cohesion - old_mu * pressure;
         if excess <= 0.0 {
-            return FrictionResponse::elastic(old.stuck(trial, pressure, old.mu), alpha_t).checked(alpha_t);
+            return FrictionResponse::elastic(old.stuck(trial, pressure), alpha_t).checked(alpha_t);
         }
         let net = alpha_t - weakening * pressure;
         let slid = excess / net;
-        let (mu, softness) = if net > 0.0 && old.mu - weakening * slid > mu_d {
-            (old.mu - weakening * slid, alpha_t / net.max(LEAST_SLOPE * alpha_t))
+        let (mu, softness) = if net > 0.0 && old_mu - weakening * slid > mu_d {
+            (old_mu - weakening * slid, alpha_t / net.max(LEAST_SLOPE * alpha_t))
         } else {
-            (old.mu.min(mu_d), 1.0)
+            (old_mu.min(mu_d), 1.0)
         };
         let traction = trial.signum() * (cohesion + mu * pressure);
+        let mean = self.mean_traction(old, trial, (pressure, mu));
         FrictionResponse {
-            state: old.slid(trial, traction, self.mean_traction(old, trial, (pressure, mu)), (pressure, mu), alpha_t),
+            state: old.slid(trial, traction, mean, pressure, alpha_t).with_variables([mu]),
             dtraction_dslip: alpha_t * (1.0 - softness),
             dtraction_dpressure: trial.signum() * mu * softness,
-            evaluations: 0,
+            ..Default::default()
         }
         .checked(alpha_t)
     }
@@ -163,12 +178,22 @@ impl FrictionLaw for SlipWeakening {
         self.alpha_t
     }
 
-    fn structure(&self, mu: f64) -> f64 {
-        mu / self.mu_d
+    fn variables(&self) -> &'static [&'static str] {
+        &["mu"]
     }
 
-    fn starting_limit(&self, _pressure: f64) -> f64 {
-        f64::INFINITY
+    fn observables(&self) -> &'static [&'static str] {
+        &["R", "mu", "structure"]
+    }
+
+    fn observe(&self, name: &str, state: &FrictionState) -> Option<f64> {
+        let mu = mu_of(state);
+        match name {
+            "R" => Some(state.ratio(mu)),
+            "mu" => Some(mu),
+            "structure" => Some(mu / self.mu_d),
+            _ => None,
+        }
     }
 
     fn uniqueness_limit(&self) -> Option<f64> {

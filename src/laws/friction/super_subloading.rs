@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use super::path::{LoadPath, mean_traction};
 use super::peak::{Evolution, Integration};
 use super::slip_equation::{ROUND_OFF, SlidingCurve, SlipEquation};
-use super::{Approach, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Sliding};
+use super::{Answer, Approach, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, Regime, Sliding};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 
 /// Parameters of [`SuperSubloading`] as the case file writes them.
@@ -49,6 +49,27 @@ pub struct SuperSubloadingParameters {
     pub tolerance: Option<f64>,
 }
 
+impl SuperSubloadingParameters {
+    /// Neither weakening nor recovery, the tangential stiffness left to the contact, all else as in a case that says no more.
+    pub fn new(mu_s: f64, mu_k: f64, r: f64) -> Self {
+        Self {
+            mu_s,
+            mu_k,
+            alpha_t: None,
+            r,
+            kappa: 0.0,
+            xi: 0.0,
+            m: one(),
+            n: one(),
+            structure: None,
+            approach: Approach::default(),
+            elastic_core: 0.0,
+            integration: Integration::default(),
+            tolerance: None,
+        }
+    }
+}
+
 fn one() -> f64 {
     1.0
 }
@@ -85,7 +106,7 @@ fn one() -> f64 {
 /// ```
 ///
 /// # Errors
-/// [`LawFailure`] when the increment or the answer is not finite, or time goes backwards.
+/// [`LawFailure`](super::LawFailure) when the increment or the answer is not finite, or time goes backwards.
 ///
 /// Source: Yasuike, Toyoda & Noda, eqs 10–20; Toyoda, Yasuike & Noda (2024), Tribology International 191:109080;
 /// Ozaki & Hashiguchi (2010), Tribology International 43:2120.
@@ -137,58 +158,71 @@ impl SuperSubloading {
     }
 }
 
+/// R from which on plastic slip counts as slipping: the law slips plastically a little whenever it is loaded.
+pub const SLIPPING: f64 = 0.9;
+
 /// A traction above the strength μ p by more than this, relative, has not come from this law.
 const EXCESS: f64 = 1e-12;
 
 impl SuperSubloading {
     /// The state with a traction above the strength μ p brought down to it, at once and by plastic slip alone.
     fn within_strength(&self, old: &FrictionState) -> FrictionState {
-        let old = FrictionState { mu: self.evolution.clamp(old.mu), plastic_increment: 0.0, ..*old };
-        let strength = old.mu * old.pressure.max(0.0);
+        let mu = self.evolution.clamp(mu_of(old));
+        let old = FrictionState { plastic_increment: 0.0, ..*old }.with_variables([mu]);
+        let strength = mu * old.pressure.max(0.0);
         if old.traction.abs() <= strength * (1.0 + EXCESS) {
             return old;
         }
         let mean = 0.5 * (old.traction.abs() + strength);
-        old.slid(old.traction, strength.copysign(old.traction), mean, (old.pressure, old.mu), self.alpha_t)
+        old.slid(old.traction, strength.copysign(old.traction), mean, old.pressure, self.alpha_t)
+    }
+
+    /// An increment that ends with the strength μ p, without plastic slip.
+    fn elastic(&self, old: &FrictionState, trial: f64, pressure: f64, mu: f64) -> FrictionResponse {
+        FrictionResponse::elastic(old.stuck(trial, pressure).with_variables([mu]), self.alpha_t)
     }
 
     /// One step of the slip equation over the whole increment.
-    fn step(&self, old: &FrictionState, trial: f64, sliding: Sliding) -> Result<FrictionResponse, LawFailure> {
+    fn step(&self, old: &FrictionState, trial: f64, sliding: Sliding) -> Answer {
         let Sliding { pressure, dt, .. } = sliding;
+        let old_mu = mu_of(old);
         let reversed = trial * old.traction.signum() < 0.0;
         let equation = SlipEquation {
             curve: &self.curve,
             evolution: &self.evolution,
             alpha_t: self.alpha_t,
-            start: self.curve.start(if reversed { 0.0 } else { old.ratio().min(1.0) }),
+            start: self.curve.start(if reversed { 0.0 } else { old.ratio(old_mu).min(1.0) }),
             trial: trial.abs(),
             pressure,
-            old_mu: old.mu,
+            old_mu,
             dt,
         };
         let (sticks, start) = equation.start();
         if sticks {
-            return Ok(FrictionResponse::elastic(old.stuck(trial, pressure, start.peak.mu), self.alpha_t));
+            return Ok(self.elastic(old, trial, pressure, start.peak.mu));
         }
         let (end, evaluations) = equation.solve(start)?;
         let strength = trial.signum() * end.reach.ratio * end.peak.mu;
         // Plastic slip starts from the old pressure, or from that where the traction passes 0.
         let passed = if reversed { old.traction / (old.traction - trial) } else { 0.0 };
         let start_pressure = old.pressure + passed * (pressure - old.pressure);
-        let strengths = [old.mu * start_pressure, end.peak.mu * pressure];
+        let strengths = [old_mu * start_pressure, end.peak.mu * pressure];
         let tractions = [if reversed { 0.0 } else { old.traction.abs() }, strength.abs() * pressure];
         let mean = mean_traction(&self.curve, [&equation.start, &end.reach], strengths, tractions);
         let softness = self.alpha_t / end.slope.max(LEAST_SLOPE * self.alpha_t);
         Ok(FrictionResponse {
-            state: old.slid(trial, strength * pressure, mean, (pressure, end.peak.mu), self.alpha_t),
+            state: ruled(
+                old.slid(trial, strength * pressure, mean, pressure, self.alpha_t).with_variables([end.peak.mu]),
+            ),
             dtraction_dslip: self.alpha_t * (1.0 - softness),
             dtraction_dpressure: strength * softness,
             evaluations,
+            ..Default::default()
         })
     }
 
     /// An increment in which slip may be plastic, in sub-steps: from the start, or from where the traction passes 0.
-    fn follow(&self, old: &FrictionState, trial: f64, sliding: Sliding) -> Result<FrictionResponse, LawFailure> {
+    fn follow(&self, old: &FrictionState, trial: f64, sliding: Sliding) -> Answer {
         let Sliding { slip, pressure, dt } = sliding;
         let reversed = old.traction != 0.0 && trial * old.traction.signum() < 0.0;
         let sign = if reversed || old.traction == 0.0 { trial.signum() } else { old.traction.signum() };
@@ -207,7 +241,7 @@ impl SuperSubloading {
         let start = if reversed {
             let share = old.traction / (old.traction - trial);
             let dshare = -share / path.slip;
-            let (mu, mu_rate) = self.evolution.rested(old.mu, dt * share);
+            let (mu, mu_rate) = self.evolution.rested(mu_of(old), dt * share);
             path.slip = trial.abs() / self.alpha_t;
             path.pressures[0] = path.pressure(share);
             path.dstart_pressure = [(pressure - old.pressure) * dshare, share];
@@ -215,44 +249,57 @@ impl SuperSubloading {
             path.dtime = [-dt * dshare, 0.0];
             path.start(0.0, 0.0, mu, [mu_rate * dt * dshare, 0.0])
         } else {
-            path.start(old.traction.abs(), old.ratio().min(1.0), old.mu, [0.0; 2])
+            path.start(old.traction.abs(), old.ratio(mu_of(old)).min(1.0), mu_of(old), [0.0; 2])
         };
         let end = path.end(&start)?;
         let plastic_slip = sign * end.plastic_slip;
         Ok(FrictionResponse {
-            state: FrictionState {
+            state: ruled(FrictionState {
                 traction: sign * end.traction,
                 pressure,
-                mu: end.mu,
                 plastic_slip: old.plastic_slip + plastic_slip,
                 plastic_increment: old.plastic_increment + plastic_slip,
                 dissipation: old.dissipation + end.work,
-            },
+                ..old.with_variables([end.mu])
+            }),
             dtraction_dslip: end.dtraction[0],
             dtraction_dpressure: sign * end.dtraction[1],
             evaluations: path.evaluations,
+            ..Default::default()
         })
     }
 }
 
+/// μ, the one variable of the law [-]
+fn mu_of(state: &FrictionState) -> f64 {
+    state.variables[0]
+}
+
+/// The state of a pressed point with its regime.
+fn ruled(state: FrictionState) -> FrictionState {
+    let slips = state.plastic_increment != 0.0 && state.ratio(mu_of(&state)) >= SLIPPING;
+    FrictionState { regime: if slips { Regime::Slip } else { Regime::Stick }, ..state }
+}
+
 impl FrictionLaw for SuperSubloading {
     fn initial_state(&self) -> FrictionState {
-        FrictionState { mu: self.initial_mu, ..FrictionState::default() }
+        FrictionState::default().with_variables([self.initial_mu])
     }
 
-    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Result<FrictionResponse, LawFailure> {
+    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
         let Sliding { slip, pressure, dt } = sliding.checked()?;
         if pressure <= 0.0 {
-            let (mu, _) = self.evolution.rested(self.evolution.clamp(old.mu), dt);
-            return FrictionResponse::elastic(old.parted(mu, self.alpha_t), 0.0).checked(self.alpha_t);
+            let (mu, _) = self.evolution.rested(self.evolution.clamp(mu_of(old)), dt);
+            let parted = old.parted(self.alpha_t).with_variables([mu]);
+            return FrictionResponse::elastic(parted, 0.0).checked(self.alpha_t);
         }
         let old = self.within_strength(old);
         let trial = old.traction + self.alpha_t * slip;
         let falls = trial * old.traction.signum() >= 0.0
             && trial.abs() * old.pressure <= old.traction.abs() * pressure * (1.0 + ROUND_OFF);
         if falls && old.pressure > 0.0 {
-            let (mu, _) = self.evolution.rested(old.mu, dt);
-            return FrictionResponse::elastic(old.stuck(trial, pressure, mu), self.alpha_t).checked(self.alpha_t);
+            let (mu, _) = self.evolution.rested(mu_of(&old), dt);
+            return self.elastic(&old, trial, pressure, mu).checked(self.alpha_t);
         }
         match self.integration {
             Integration::Controlled => self.follow(&old, trial, sliding),
@@ -265,8 +312,22 @@ impl FrictionLaw for SuperSubloading {
         self.alpha_t
     }
 
-    fn structure(&self, mu: f64) -> f64 {
-        mu / self.evolution.mu_k
+    fn variables(&self) -> &'static [&'static str] {
+        &["mu"]
+    }
+
+    fn observables(&self) -> &'static [&'static str] {
+        &["R", "mu", "structure"]
+    }
+
+    fn observe(&self, name: &str, state: &FrictionState) -> Option<f64> {
+        let mu = mu_of(state);
+        match name {
+            "R" => Some(state.ratio(mu)),
+            "mu" => Some(mu),
+            "structure" => Some(mu / self.evolution.mu_k),
+            _ => None,
+        }
     }
 
     fn starting_limit(&self, pressure: f64) -> f64 {

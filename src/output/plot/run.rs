@@ -179,14 +179,8 @@ impl Runs<'_> {
 
     /// Names and values of the coefficients that bound friction in a contact, as far as they are known.
     fn coefficients(&self, contact: &str) -> Vec<(&'static str, f64)> {
-        match self.list.iter().find_map(|run| run.source.about.friction.get(contact)) {
-            Some(FrictionParameters::SuperSubloading(law)) => vec![("μ_s", law.mu_s), ("μ_k", law.mu_k)],
-            Some(FrictionParameters::Coulomb(law)) => vec![("μ", law.mu)],
-            Some(FrictionParameters::SlipWeakening(law)) if law.cohesion == 0.0 => {
-                vec![("μ_s", law.mu_s), ("μ_d", law.mu_d)]
-            }
-            _ => Vec::new(),
-        }
+        let law = self.list.iter().find_map(|run| run.source.about.friction.get(contact));
+        law.map_or_else(Vec::new, FrictionParameters::bounds)
     }
 
     fn slips(&self) -> Result<Vec<Panel>, PlotError> {

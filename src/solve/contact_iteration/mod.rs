@@ -11,10 +11,9 @@
 //! | touch | a point whose gap is zero at the start of an increment is closed and sticks, in the first iterate |
 //! | [`stick`] | a point that slips to and fro sticks |
 //! | [`valley`] | a foot that goes to and fro between two segments lies between them |
-//! | [`cycle`] | half of a correction ends between the two states of a cycle |
 
 pub mod carried;
-pub mod cycle;
+pub mod flips;
 pub mod promise;
 pub mod stick;
 pub mod valley;
@@ -76,7 +75,7 @@ impl ContactIteration {
         request: Request,
         system: &mut System,
     ) -> Result<(), TrialFailure> {
-        if request == Request::Residual {
+        if request != Request::Tangent {
             return assembler.residual(trial, u, system);
         }
         self.presume(assembler.model(), &assembler.evaluation.contacts, trial, u);

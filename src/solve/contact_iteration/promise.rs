@@ -27,7 +27,7 @@ pub(super) fn at_start(pair: &ContactPair, state: &ContactState, old: &ContactSt
     let reach = old.friction.pressure * (pair.compliance + MOST_PULL / pair.alpha_n);
     match state.friction.pressure > 0.0 {
         true => Tractions::of(&state.friction).limited(MOST_GROWTH * old.friction.pressure),
-        false if state.gap <= reach => Tractions::of(&old.friction),
+        false if state.clearance() <= reach => Tractions::of(&old.friction),
         false => Tractions::default(),
     }
 }

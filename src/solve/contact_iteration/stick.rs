@@ -2,11 +2,14 @@
 //! between. The tangents on both sides are soft, and Newton's method would jump to and fro for ever; presumed to stick, it
 //! finds the range.
 
-use crate::contact::force::{SLIPPING, Tractions};
-use crate::laws::friction::FrictionState;
+use crate::contact::force::Tractions;
+use crate::laws::friction::{FrictionState, Regime};
 
 /// Slip that is below this share of what it was at the last solve comes to rest.
 const ABATES: f64 = 0.5;
+
+/// Tractions below this share of the friction that a point slips with would hold it.
+const FAR_LOWER: f64 = 0.9;
 
 /// How a point has slipped at the linear solves of the increment.
 #[derive(Clone, Copy, Debug, Default)]
@@ -23,11 +26,12 @@ impl Slipping {
     /// range of sticking only for its own error.
     pub(super) fn sticks(&mut self, friction: &FrictionState, promised: Tractions) -> bool {
         let slip = friction.plastic_increment;
+        let slips = friction.regime == Regime::Slip;
         // A point that only a promise keeps closed has a negative pressure.
-        let slips = slip != 0.0 && friction.traction.abs() >= SLIPPING * friction.mu * friction.pressure.abs();
-        let strength = friction.mu * promised.pressure;
-        // A law that slips at R < 1 does so with these tractions as well, unless they are far lower or the slip abates.
-        let held = if slip.abs() < ABATES * self.slip.abs() { strength } else { SLIPPING * strength };
+        let strength = (friction.traction / friction.pressure).abs() * promised.pressure;
+        // A point that slips below its strength does so with these tractions as well, unless they are far lower or the slip
+        // abates.
+        let held = if slip.abs() < ABATES * self.slip.abs() { strength } else { FAR_LOWER * strength };
         let sticks = match self.stuck {
             true => slips && promised.traction.abs() < held,
             false => self.slip * slip < 0.0,

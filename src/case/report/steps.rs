@@ -1,0 +1,168 @@
+//! Steps, as `check` understood them: what is in force in each, and what it ends.
+
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+
+use super::parameters::plain;
+use crate::case::file::{Case, Components, DashpotInput, DriveInput, LoadInput, SpringInput, StepInput, TimeInput};
+use crate::model::told::{count, number};
+use crate::model::{Model, Step};
+use crate::time::step_size::EVENT_LOCATION;
+
+/// Every step.
+pub fn steps(case: &Case, model: &Model) -> Vec<String> {
+    let mut lines = Vec::new();
+    let (mut supports, mut loads) = (InForce::new(), InForce::new());
+    for (step, input) in model.steps.iter().zip(&case.steps) {
+        lines.push(step.name.clone());
+        let mut told = step_lines(step);
+        let freed = if step.scheme.is_dynamic() { "at once" } else { "its reaction fades over the step" };
+        told.extend(supports.step(written_supports(input)).map(|(on, kind)| format!("freed {on}: {kind}, {freed}")));
+        told.extend(loads.step(input.loads.iter().map(written_load)).map(|(on, kind)| {
+            let ended = if ENDS_AT_ONCE.contains(&kind) { "at once" } else { "it fades over the step" };
+            format!("ended {on}: {kind}, {ended}")
+        }));
+        told.extend(supports.lines("held").into_iter().chain(loads.lines("loaded")));
+        lines.extend(told.into_iter().map(|line| format!("  {line}")));
+        lines.push(format!("  {} prescribed", count(step.supports.len(), "dof")));
+    }
+    lines
+}
+
+fn step_lines(step: &Step) -> Vec<String> {
+    let increments = &step.increments;
+    let scheme = match serde_json::to_value(step.scheme) {
+        Ok(Value::Object(scheme)) => scheme.iter().map(|(name, numbers)| format!("{name} {numbers}")).collect(),
+        scheme => scheme.map(|name| plain(&name)).unwrap_or_default(),
+    };
+    let [initial, min, max] = [increments.initial, increments.min, increments.max].map(number);
+    let mut lines = vec![
+        format!("time {} to {}, {scheme}", number(step.span.start), number(step.span.end)),
+        format!("increments start at {initial}, at least {min}, at most {max}"),
+    ];
+    if !step.stabilization.is_empty() {
+        lines.push("stabilized: dashpots that fade away hold bodies until contact does".into());
+    }
+    let dynamic = step.scheme.is_dynamic();
+    lines.extend(
+        increments
+            .error
+            .filter(|_| !dynamic)
+            .map(|error| format!("each in error by at most {} in the slip of a contact point", number(error))),
+    );
+    lines.extend(increments.error.filter(|_| dynamic).map(|error| {
+        let located = number(EVENT_LOCATION * error);
+        format!("each in error by at most {} in a displacement, events of contact located to {located}", number(error))
+    }));
+    lines.extend(step.rupture.as_ref().map(|rupture| {
+        let [rate, calm] = [rupture.slip_rate, rupture.calm].map(number);
+        format!("explicit while a contact slips faster than {rate}, on the mean of {calm} when it returns")
+    }));
+    lines
+}
+
+/// What is in force in a step, by place and kind, as it was last written; `null` ends it.
+struct InForce(BTreeMap<(String, &'static str), Written>);
+
+struct Written {
+    text: String,
+    kept: bool,
+}
+
+/// Loads without a value that could fade.
+const ENDS_AT_ONCE: [&str; 3] = ["spring", "dashpot", "absorbing side"];
+
+/// Place, kind and value of one entry of a step.
+type Entry = (String, &'static str, Option<String>);
+
+impl InForce {
+    fn new() -> Self {
+        Self(BTreeMap::new())
+    }
+
+    /// Take over what is written; returns what is ended.
+    fn step(&mut self, entries: impl IntoIterator<Item = Entry>) -> impl Iterator<Item = (String, &'static str)> {
+        self.0.values_mut().for_each(|written| written.kept = true);
+        let mut ended = Vec::new();
+        for (on, kind, text) in entries {
+            match text {
+                Some(text) => drop(self.0.insert((on, kind), Written { text, kept: false })),
+                None => {
+                    self.0.remove(&(on.clone(), kind));
+                    ended.push((on, kind));
+                }
+            }
+        }
+        ended.into_iter()
+    }
+
+    fn lines(&self, verb: &str) -> Vec<String> {
+        let kept = |written: &Written| if written.kept { " (kept)" } else { "" };
+        let line = |((on, kind), written): (&(String, &str), &Written)| {
+            format!("{verb} {on}: {kind} {}{}", written.text, kept(written))
+        };
+        self.0.iter().map(line).collect()
+    }
+}
+
+fn written_supports(step: &StepInput) -> Vec<Entry> {
+    let mut entries: Vec<Entry> = Vec::new();
+    for support in &step.supports {
+        let mut add = |kind, text| entries.push((support.on.to_string(), kind, text));
+        for (kind, given) in [("ux", &support.ux), ("uy", &support.uy)] {
+            if let Some(given) = given {
+                add(kind, given.as_ref().map(drive));
+            }
+        }
+        if let Some(given) = &support.rotation {
+            let turning = |about: [f64; 2], angle| format!("{angle} about ({})", about.map(number).join(", "));
+            add("rotation", given.as_ref().map(|given| turning(given.about, drive(&given.angle))));
+        }
+    }
+    entries
+}
+
+fn written_load(load: &LoadInput) -> Entry {
+    let LoadInput { on, pressure, traction, gravity, force, spring, dashpot, absorbing } = load;
+    let (kind, text) = if let Some(pressure) = pressure {
+        ("pressure", pressure.as_ref().map(drive))
+    } else if let Some(absorbing) = absorbing {
+        ("absorbing side", absorbing.then(|| "rho c_p and rho c_s of its body".into()))
+    } else if let Some(spring) = spring {
+        let stiffness = |SpringInput { kx, ky, driver }: &SpringInput| {
+            format!("kx {}, ky {}{}", number(*kx), number(*ky), driven("moved by", driver))
+        };
+        ("spring", spring.as_ref().map(stiffness))
+    } else if let Some(dashpot) = dashpot {
+        let coefficients = |DashpotInput { cx, cy, driver }: &DashpotInput| {
+            format!("cx {}, cy {}{}", number(*cx), number(*cy), driven("moving with", driver))
+        };
+        ("dashpot", dashpot.as_ref().map(coefficients))
+    } else if let Some(traction) = traction {
+        ("traction", traction.as_ref().map(components))
+    } else if let Some(gravity) = gravity {
+        ("gravity", gravity.as_ref().map(components))
+    } else {
+        ("force", force.as_ref().and_then(Option::as_ref).map(components))
+    };
+    (on.to_string(), kind, text)
+}
+
+fn driven(how: &str, driver: &Option<Components>) -> String {
+    driver.as_ref().map_or(String::new(), |driver| format!(", its far end {how} {}", components(driver)))
+}
+
+fn components(of: &Components) -> String {
+    let part = |part: &Option<DriveInput>| part.as_ref().map_or("0".into(), drive);
+    format!("({}, {})", part(&of.x), part(&of.y))
+}
+
+fn drive(drive: &DriveInput) -> String {
+    match drive {
+        DriveInput::Constant(value) => number(*value),
+        DriveInput::Expression(text) => format!("\"{text}\""),
+        DriveInput::InTime(TimeInput::Rate(rate)) => format!("at the rate {}", number(*rate)),
+        DriveInput::InTime(TimeInput::Table(table)) => format!("by a table of {}", count(table.len(), "time")),
+    }
+}

@@ -1,0 +1,100 @@
+//! What friction remembers at one contact point.
+
+use serde::{Deserialize, Serialize};
+
+/// Most variables that a law may have of its own.
+pub const MOST_VARIABLES: usize = 4;
+
+/// What friction remembers at one contact point between increments.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FrictionState {
+    /// q: traction that resists the slip of the slave along +s [F/L²]
+    pub traction: f64,
+    /// p: contact pressure, positive in compression [F/L²]
+    pub pressure: f64,
+    /// Total plastic slip, signed along +s [L]
+    pub plastic_slip: f64,
+    /// Plastic slip of the last increment, signed along +s [L]
+    pub plastic_increment: f64,
+    /// Work dissipated by friction so far per contact area [F/L]
+    pub dissipation: f64,
+    /// d: how far the law holds the surfaces apart; 0 for laws that do not dilate [L]
+    pub opening: f64,
+    /// Open, stick or slip, as the law sees its last increment
+    pub regime: Regime,
+    /// What else the law remembers, by the names of its [`variables`](super::FrictionLaw::variables); the rest is 0
+    pub variables: [f64; MOST_VARIABLES],
+}
+
+/// Whether a point is open, sticks or slips.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Regime {
+    /// No pressure
+    #[default]
+    Open,
+    /// Pressed, and held by friction
+    Stick,
+    /// Pressed, and sliding
+    Slip,
+}
+
+impl FrictionState {
+    /// The state with these variables of the law.
+    pub fn with_variables<const N: usize>(mut self, values: [f64; N]) -> Self {
+        const { assert!(N <= MOST_VARIABLES) };
+        self.variables[..N].copy_from_slice(&values);
+        self
+    }
+
+    /// The state under tractions that are there from the start: nothing has slipped.
+    pub fn loaded(self, pressure: f64, traction: f64) -> Self {
+        let regime = if pressure > 0.0 { Regime::Stick } else { Regime::Open };
+        Self { pressure, traction, regime, ..self }
+    }
+
+    /// |q|/(μ p): how far the traction is from a strength μ p; 0 where there is none [-]
+    pub fn ratio(&self, mu: f64) -> f64 {
+        let strength = mu * self.pressure;
+        if strength > 0.0 { self.traction.abs() / strength } else { 0.0 }
+    }
+
+    /// The state after the surfaces have parted: the elastic energy q²/(2 α_t) of the contact spring is lost.
+    pub fn parted(self, stiffness: f64) -> Self {
+        let lost = self.traction * self.traction / (2.0 * stiffness);
+        let dissipation = self.dissipation + lost;
+        Self { traction: 0.0, pressure: 0.0, plastic_increment: 0.0, dissipation, regime: Regime::Open, ..self }
+    }
+
+    /// The state after an increment whose slip was all elastic.
+    pub fn stuck(self, traction: f64, pressure: f64) -> Self {
+        Self { plastic_increment: 0.0, ..self.loaded(pressure, traction) }
+    }
+
+    /// The state after plastic slip along sgn q has brought the traction down from the elastic `trial` to `traction`.
+    ///
+    /// ```text
+    /// Δλ = (|q_tr| − |q|)/α_t       plastic slip
+    /// ΔW = ∫ |q| dλ = q̄ Δλ ≥ 0      work dissipated; q̄, the mean of |q| over the plastic slip, is the law's to know
+    /// ```
+    /// The work ∫ q du of the increment, along the path that the law takes inside it, is Δ(q²/2α_t) + ΔW.
+    pub fn slid(self, trial: f64, traction: f64, mean: f64, pressure: f64, stiffness: f64) -> Self {
+        let sign = traction.signum();
+        let slip = ((trial - traction) * sign / stiffness).max(0.0);
+        Self {
+            traction,
+            pressure,
+            plastic_slip: self.plastic_slip + sign * slip,
+            plastic_increment: sign * slip,
+            dissipation: self.dissipation + mean * slip,
+            regime: if slip > 0.0 { Regime::Slip } else { Regime::Stick },
+            ..self
+        }
+    }
+
+    /// Whether all of it are numbers.
+    pub(super) fn is_finite(&self) -> bool {
+        let Self { traction, pressure, plastic_slip, plastic_increment, dissipation, opening, variables, .. } = self;
+        let common = traction + pressure + plastic_slip + plastic_increment + dissipation + opening;
+        (common + variables.iter().sum::<f64>()).is_finite()
+    }
+}

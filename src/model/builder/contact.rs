@@ -1,0 +1,134 @@
+//! A contact as it is given.
+
+use super::friction::Friction;
+use crate::model::boundary::Profile;
+use crate::model::method::Method;
+
+/// A slave surface, what it may touch, and the friction between them.
+pub struct Contact {
+    /// Name in messages and results
+    pub name: String,
+    /// Edge group whose points are kept out of the master, the finer or softer side; or a group of points, each with the `area`
+    pub slave: String,
+    /// Area that each point of a slave group of points stands for [L, the thickness being 1]
+    pub area: Option<f64>,
+    /// What the slave may touch
+    pub master: MasterSide,
+    /// Where contact is evaluated; chosen by the surfaces unless given (see [`crate::model::method`])
+    pub method: Option<Method>,
+    /// Gauss points a slave edge, 2 to 4; 2 unless given
+    pub points: Option<usize>,
+    /// Whether the master's straight edges are taken for a smooth curve
+    pub smooth: bool,
+    /// α_n: pressure per penetration; 10 (λ + 2G)/h unless given [F/L³]
+    pub alpha_n: Option<f64>,
+    /// Largest penetration left by the augmented Lagrangian; plain penalty unless given [L]
+    pub penetration: Option<f64>,
+    /// Whether an initial overlap is brought in over the first step
+    pub shrink_fit: bool,
+    /// Whether the mass of the slave's nodes is moved to the other nodes of their elements
+    pub massless: bool,
+    /// Friction
+    pub friction: Friction,
+    /// Tractions of a contact that starts closed
+    pub initial: Option<InitialTractions>,
+}
+
+/// What a slave may touch.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MasterSide {
+    /// Edge group; the slave's own is contact of the surface with itself
+    Group(String),
+    /// Rigid half-space: a point of its surface, and the direction out of it, of any length
+    Plane {
+        /// point of the surface [L]
+        point: [f64; 2],
+        /// direction out of the solid
+        normal: [f64; 2],
+    },
+    /// Rigid disk, or the rim of a hole
+    Circle {
+        /// centre [L]
+        centre: [f64; 2],
+        /// radius [L]
+        radius: f64,
+        /// whether the solid is outside
+        hole: bool,
+    },
+    /// Rigid body bounded by straight lines: its corners, the solid on the right of the way; the first again closes it [L]
+    Polyline(Vec<[f64; 2]>),
+}
+
+impl From<&str> for MasterSide {
+    fn from(group: &str) -> Self {
+        Self::Group(group.into())
+    }
+}
+
+/// Tractions along the slave of a contact that starts closed; its gap is counted from where they act.
+#[derive(Clone, Debug)]
+pub struct InitialTractions {
+    /// p [F/L²]
+    pub pressure: Profile,
+    /// q [F/L²]
+    pub traction: Profile,
+    /// Whether an initial stress of the bodies is in equilibrium with them
+    pub balanced: bool,
+}
+
+impl Contact {
+    /// A contact by penalty, of an edge group with another or with a rigid body.
+    pub fn new(
+        name: impl Into<String>,
+        slave: impl Into<String>,
+        master: impl Into<MasterSide>,
+        friction: impl Into<Friction>,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            slave: slave.into(),
+            area: None,
+            master: master.into(),
+            method: None,
+            points: None,
+            smooth: false,
+            alpha_n: None,
+            penetration: None,
+            shrink_fit: false,
+            massless: false,
+            friction: friction.into(),
+            initial: None,
+        }
+    }
+
+    /// With this normal penalty α_n [F/L³].
+    pub fn alpha_n(self, alpha_n: f64) -> Self {
+        Self { alpha_n: Some(alpha_n), ..self }
+    }
+
+    /// Evaluated by this method.
+    pub fn method(self, method: Method) -> Self {
+        Self { method: Some(method), ..self }
+    }
+
+    /// With the pressure raised until no closed gap is larger (augmented Lagrangian) [L].
+    pub fn penetration(self, largest: f64) -> Self {
+        Self { penetration: Some(largest), ..self }
+    }
+
+    /// Of a group of points, each of which stands for an area [L].
+    pub fn area(self, area: f64) -> Self {
+        Self { area: Some(area), ..self }
+    }
+
+    /// Closed from the start under a pressure and a traction.
+    pub fn initial(self, pressure: impl Into<Profile>, traction: impl Into<Profile>) -> Self {
+        let initial = InitialTractions { pressure: pressure.into(), traction: traction.into(), balanced: false };
+        Self { initial: Some(initial), ..self }
+    }
+
+    /// Whether the slave is its own master.
+    pub(super) fn is_own(&self) -> bool {
+        matches!(&self.master, MasterSide::Group(group) if *group == self.slave)
+    }
+}

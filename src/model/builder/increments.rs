@@ -1,0 +1,99 @@
+//! Increments of a step, its stabilization, and when it goes on explicitly.
+
+use super::error::{Checked, ModelError};
+use super::load_step::{IncrementSettings, LoadStep, RuptureSettings};
+use crate::model::boundary::Span;
+use crate::model::scheme::Scheme;
+use crate::model::{Body, Increments, Model, Rupture, Step};
+
+/// Shortest increment as a share of the run time at its end: below it, round-off would swallow the increment.
+const SHORTEST_INCREMENT: f64 = 16.0 * f64::EPSILON;
+
+/// The increments of a step, what is not given chosen by its first.
+pub fn increments(place: &str, given: Option<IncrementSettings>, span: Span, scheme: Scheme) -> Checked<Increments> {
+    let duration = span.end - span.start;
+    let given = given.unwrap_or(IncrementSettings::from(0.1 * duration));
+    let least = SHORTEST_INCREMENT * span.end;
+    let (default_min, default_max) = match given.error {
+        None => (1e-3 * given.initial, given.initial),
+        Some(_) => ((1e-6 * given.initial).max(least), given.initial.max(0.1 * duration)),
+    };
+    let (min, max) = (given.min.unwrap_or(default_min), given.max.unwrap_or(default_max));
+    let increments = Increments { initial: given.initial, min, max, error: given.error };
+    check_lengths(place, increments, span.end, least)?;
+    if given.error.is_some() && scheme != Scheme::Static && scheme.error_constant().is_none() {
+        let message = match scheme {
+            Scheme::Explicit { .. } => "explicit takes increments as long as they are stable: leave error out",
+            Scheme::Wilson { .. } => "wilson has no estimate of its error: take newmark, hht or generalized_alpha",
+            _ => "newmark with beta near 1/6 has no estimate of its error: take another beta",
+        };
+        return Err(ModelError::new(format!("{place}.error"), message));
+    }
+    Ok(increments)
+}
+
+/// Lengths of increments must be positive, leave room between them, and not be lost in the round-off of the time.
+fn check_lengths(place: &str, increments: Increments, end: f64, least: f64) -> Checked<()> {
+    let Increments { initial, min, max, error } = increments;
+    let positive = [("initial", Some(initial)), ("min", Some(min)), ("max", Some(max)), ("error", error)];
+    for (name, value) in positive.into_iter().filter_map(|(name, value)| Some((name, value?))) {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(ModelError::new(format!("{place}.{name}"), format!("is {value}: must be positive")));
+        }
+    }
+    if min > max {
+        let message = format!("min = {min} is above max = {max}: increments must have room between them");
+        return Err(ModelError::new(place, message));
+    }
+    if initial > max || initial < min {
+        let message = format!("initial = {initial} must lie between min = {min} and max = {max}");
+        return Err(ModelError::new(place, message));
+    }
+    if min < least {
+        let message = format!("is {min:e}: at the time {end:e} increments below {least:.1e} are lost in round-off");
+        return Err(ModelError::new(format!("{place}.min"), message));
+    }
+    Ok(())
+}
+
+/// c₀ of every dof: the nodes of a body share `stabilize` × (λ + 2G) × duration.
+pub fn stabilization(place: &str, given: &LoadStep, scheme: Scheme, model: &Model) -> Checked<Vec<f64>> {
+    let Some(share) = given.stabilize else { return Ok(Vec::new()) };
+    if !(share > 0.0 && share <= 1.0) {
+        let message =
+            format!("is {share}: must be a share of the stiffness, above 0 and at most 1 (1e-3 is a good start)");
+        return Err(ModelError::new(place, message));
+    }
+    if scheme != Scheme::Static {
+        return Err(ModelError::new(place, "is for static steps: in a dynamic one inertia holds the bodies"));
+    }
+    let mut coefficients = vec![0.0; model.dofs()];
+    for body in &model.bodies {
+        let coefficient = share * body.material.stiffness() * given.duration / body.nodes.len() as f64;
+        let dofs = body.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
+        dofs.for_each(|dof| coefficients[dof] = coefficient * model.mesh.section.weight(model.mesh.nodes[dof / 2]));
+    }
+    Ok(coefficients)
+}
+
+/// When a step goes on explicitly, and how.
+pub fn rupture(place: &str, given: Option<RuptureSettings>, step: &Step, model: &Model) -> Checked<Option<Rupture>> {
+    let Some(RuptureSettings { slip_rate, safety }) = given else { return Ok(None) };
+    if !(slip_rate > 0.0 && slip_rate.is_finite()) {
+        return Err(ModelError::new(format!("{place}.slip_rate"), format!("is {slip_rate}: must be positive")));
+    }
+    if matches!(step.scheme, Scheme::Explicit { .. }) {
+        return Err(ModelError::new(place, "is for static and implicit steps: this one is explicit throughout"));
+    }
+    if model.contacts.is_empty() {
+        return Err(ModelError::new(place, "needs a contact that may slip: leave it out"));
+    }
+    let scheme = Scheme::Explicit { safety };
+    scheme.check().map_err(|error| ModelError::new(place, error))?;
+    let slowest = |body: &Body| (body.material.shear_modulus() / body.material.density()).sqrt();
+    let slowest = model.bodies.iter().map(slowest).fold(f64::INFINITY, f64::min);
+    let calm = (model.mesh.diagonal() / slowest).max(step.increments.min);
+    let increments = Increments { error: None, ..step.increments };
+    let explicit = Step { scheme, increments, stabilization: Vec::new(), ..step.clone() };
+    Ok(Some(Rupture { slip_rate, calm, explicit }))
+}

@@ -1,0 +1,154 @@
+//! A load step as it is given: what is not given is as in the step before.
+
+use super::change::Change;
+use super::groups::Place;
+use super::load::Load;
+use crate::model::boundary::Drive;
+use crate::model::scheme::{Scheme, nine_tenths};
+
+/// A load step: a time span with its scheme and increments, supports and loads.
+#[derive(Clone, Debug)]
+pub struct LoadStep {
+    /// Name in messages and results
+    pub name: String,
+    /// Length of the step [T]
+    pub duration: f64,
+    /// Time scheme; that of the step before unless given, static in the first step
+    pub scheme: Option<Scheme>,
+    /// Increments; those of the step before unless given, a tenth of the first step
+    pub increments: Option<IncrementSettings>,
+    /// Share of the bodies' stiffness with which dashpots that fade away hold them in a static step [-]
+    pub stabilize: Option<f64>,
+    /// When the step goes on explicitly
+    pub rupture: Option<RuptureSettings>,
+    /// Supports that are new in this step or change; all others stay
+    pub supports: Vec<Support>,
+    /// Loads that are new in this step or change; all others stay
+    pub loads: Vec<Load>,
+}
+
+/// How increments are chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IncrementSettings {
+    /// First increment [T]
+    pub initial: f64,
+    /// Increments are not cut below this [T]; initial/1000 unless given, with `error` initial/10⁶
+    pub min: Option<f64>,
+    /// Increments do not grow beyond this [T]; initial unless given, with `error` a tenth of the step
+    pub max: Option<f64>,
+    /// Increments are as long as the estimated error of each stays below this [L]
+    pub error: Option<f64>,
+}
+
+impl From<f64> for IncrementSettings {
+    fn from(initial: f64) -> Self {
+        Self { initial, min: None, max: None, error: None }
+    }
+}
+
+/// When a static or implicit step goes on explicitly.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RuptureSettings {
+    /// Slip rate of a contact point above which increments are explicit [L/T]
+    pub slip_rate: f64,
+    /// Explicit increments as a share of the longest that is stable [-]
+    pub safety: f64,
+}
+
+/// Supports of the nodes at a place.
+#[derive(Clone, Debug)]
+pub struct Support {
+    /// Where
+    pub on: Place,
+    /// Displacement in x [L]
+    pub ux: Option<Change<Drive>>,
+    /// Displacement in y [L]
+    pub uy: Option<Change<Drive>>,
+    /// Rigid rotation, instead of both
+    pub rotation: Option<Change<Rotation>>,
+}
+
+/// A rigid rotation about a fixed point.
+#[derive(Clone, Debug)]
+pub struct Rotation {
+    /// Centre [L]
+    pub about: [f64; 2],
+    /// Angle, counter-clockwise [rad]
+    pub angle: Drive,
+}
+
+impl Support {
+    /// Supports at a place, which prescribe nothing yet.
+    pub fn on(place: impl Into<Place>) -> Self {
+        Self { on: place.into(), ux: None, uy: None, rotation: None }
+    }
+
+    /// With a displacement in x: a value is reached at the end of the step, [`Change::End`] frees it [L].
+    pub fn ux(self, ux: impl Into<Change<Drive>>) -> Self {
+        Self { ux: Some(ux.into()), ..self }
+    }
+
+    /// With a displacement in y [L].
+    pub fn uy(self, uy: impl Into<Change<Drive>>) -> Self {
+        Self { uy: Some(uy.into()), ..self }
+    }
+
+    /// With a rotation about a point, counter-clockwise [rad].
+    pub fn rotation(self, about: [f64; 2], angle: impl Into<Drive>) -> Self {
+        Self { rotation: Some(Change::To(Rotation { about, angle: angle.into() })), ..self }
+    }
+}
+
+impl LoadStep {
+    /// A step that changes nothing yet.
+    pub fn new(name: impl Into<String>, duration: f64) -> Self {
+        Self {
+            name: name.into(),
+            duration,
+            scheme: None,
+            increments: None,
+            stabilize: None,
+            rupture: None,
+            supports: Vec::new(),
+            loads: Vec::new(),
+        }
+    }
+
+    /// With another time scheme.
+    pub fn scheme(self, scheme: Scheme) -> Self {
+        Self { scheme: Some(scheme), ..self }
+    }
+
+    /// With other increments: a first Δt, or all settings [T].
+    pub fn dt(self, increments: impl Into<IncrementSettings>) -> Self {
+        Self { increments: Some(increments.into()), ..self }
+    }
+
+    /// Held until contact holds: by dashpots that fade over this static step, at its start as if this share of the bodies'
+    /// stiffness moved them in the time of the step; 1e-3 is a good start [-].
+    pub fn stabilize(self, share: f64) -> Self {
+        Self { stabilize: Some(share), ..self }
+    }
+
+    /// Going on explicitly while a contact slips faster than this [L/T].
+    pub fn rupture(self, slip_rate: f64) -> Self {
+        Self { rupture: Some(RuptureSettings { slip_rate, safety: nine_tenths() }), ..self }
+    }
+
+    /// With a support.
+    pub fn support(mut self, support: Support) -> Self {
+        self.supports.push(support);
+        self
+    }
+
+    /// With a place that does not move.
+    pub fn fix(self, place: impl Into<Place>) -> Self {
+        self.support(Support::on(place).ux(0.0).uy(0.0))
+    }
+
+    /// With a load.
+    pub fn load(mut self, load: Load) -> Self {
+        self.loads.push(load);
+        self
+    }
+}

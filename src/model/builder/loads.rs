@@ -1,0 +1,194 @@
+//! Loads in force: those of the step before, unless they are given anew or ended.
+
+use std::collections::BTreeMap;
+
+use super::error::{Checked, ModelError};
+use super::groups::{edges, group_at, node_lists, nodes_at};
+use super::limits::check_not_negative;
+use super::load::{Action, Components, Link, Load};
+use super::shares::{Share, absorbers, edge_shares, mass_shares};
+use super::supports::frees_nothing;
+use crate::model::Model;
+use crate::model::boundary::{Amplitude, Dashpot, DeadLoad, Drive, FollowerPressure, Loads, Span, Spring};
+
+/// Loads by place and kind, with the amplitudes that the next step takes over from.
+#[derive(Default)]
+pub struct LoadsInForce(BTreeMap<(String, Kind), Loads>);
+
+/// A load replaces that of its own kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    Pressure,
+    Traction,
+    Gravity,
+    Force,
+    Spring,
+    Dashpot,
+    Absorbing,
+}
+
+/// The kind of an action, and whether it ends the load.
+fn kind(action: &Action) -> (Kind, bool) {
+    match action {
+        Action::Pressure(change) => (Kind::Pressure, change.given().is_none()),
+        Action::Traction(change) => (Kind::Traction, change.given().is_none()),
+        Action::Gravity(change) => (Kind::Gravity, change.given().is_none()),
+        Action::Force(change) => (Kind::Force, change.given().is_none()),
+        Action::Spring(change) => (Kind::Spring, change.given().is_none()),
+        Action::Dashpot(change) => (Kind::Dashpot, change.given().is_none()),
+        Action::Absorbing(change) => (Kind::Absorbing, change.given().is_none()),
+    }
+}
+
+impl LoadsInForce {
+    /// Everything that acts.
+    pub fn all(&self) -> Loads {
+        let mut all = Loads::default();
+        for load in self.0.values() {
+            all.dead.extend(load.dead.iter().cloned());
+            all.pressures.extend(load.pressures.iter().cloned());
+            all.springs.extend(load.springs.iter().cloned());
+            all.dashpots.extend(load.dashpots.iter().cloned());
+            all.absorbers.extend(load.absorbers.iter().cloned());
+        }
+        all
+    }
+
+    /// Give a load anew, or end it.
+    pub fn change(&mut self, load: &Load, place: &str, span: Span, model: &Model) -> Checked<()> {
+        let (kind, ends) = kind(&load.action);
+        let key = (load.on.to_string(), kind);
+        if ends && !self.0.contains_key(&key) {
+            return Err(frees_nothing(place, &load.on));
+        }
+        let before = self.0.remove(&key).unwrap_or_default();
+        let made = Changing { load, place, span, model, before }.made()?;
+        // What fades stays until something replaces it.
+        if !(ends && matches!(kind, Kind::Spring | Kind::Dashpot | Kind::Absorbing)) {
+            self.0.insert(key, made);
+        }
+        Ok(())
+    }
+}
+
+/// A load that changes in a step.
+struct Changing<'m> {
+    load: &'m Load,
+    place: &'m str,
+    span: Span,
+    model: &'m Model,
+    before: Loads,
+}
+
+impl Changing<'_> {
+    fn made(self) -> Checked<Loads> {
+        let Self { load: Load { on, action }, place, model, .. } = self;
+        let at = format!("{place}.on");
+        match action {
+            Action::Pressure(change) => self.pressure(change.given()),
+            Action::Traction(change) => {
+                let edges = edges(&model.mesh, group_at(on, place)?, &at)?;
+                self.dead("traction", change.given(), edge_shares(&model.mesh, edges))
+            }
+            Action::Gravity(change) => {
+                let shares = mass_shares(model, group_at(on, place)?, &at)?;
+                self.dead("gravity", change.given(), shares)
+            }
+            Action::Force(change) => {
+                let nodes = nodes_at(&model.mesh, on, &at)?;
+                let shares = nodes.into_iter().map(|node| (node, 1.0, model.mesh.nodes[node])).collect();
+                self.dead("force", change.given(), shares)
+            }
+            Action::Spring(change) => self.springs(change.given()),
+            Action::Dashpot(change) => self.dashpots(change.given()),
+            Action::Absorbing(change) => {
+                let edges = edges(&model.mesh, group_at(on, place)?, &at)?;
+                let absorbers = change.given().map_or(Vec::new(), |()| absorbers(model, edges));
+                Ok(Loads { absorbers, ..Loads::default() })
+            }
+        }
+    }
+
+    fn pressure(self, given: Option<&Drive>) -> Checked<Loads> {
+        let Self { load, place, span, model, before } = self;
+        let edges = node_lists(edges(&model.mesh, group_at(&load.on, place)?, &format!("{place}.on"))?);
+        let before = before.pressures.into_iter().next().map(|load| load.amplitude);
+        let amplitude = amplitude(given, before, &format!("{place}.pressure"), span)?;
+        let pressures = amplitude.map(|amplitude| FollowerPressure { amplitude, edges }).into_iter().collect();
+        Ok(Loads { pressures, ..Loads::default() })
+    }
+
+    fn dead(self, key: &str, given: Option<&Components>, shares: Vec<Share>) -> Checked<Loads> {
+        let Self { place, span, before, .. } = self;
+        let mut dead = Vec::new();
+        for (component, name) in ["x", "y"].into_iter().enumerate() {
+            let given = given.and_then(|given| given.along(component));
+            let before = before.dead.iter().find(|load| load.component == component).map(|load| load.amplitude.clone());
+            let amplitude = amplitude(given, before, &format!("{place}.{key}.{name}"), span)?;
+            dead.extend(amplitude.map(|amplitude| DeadLoad { component, amplitude, shares: shares.clone() }));
+        }
+        Ok(Loads { dead, ..Loads::default() })
+    }
+
+    fn springs(self, given: Option<&Link>) -> Checked<Loads> {
+        let before = |component: usize| {
+            let spring = self.before.springs.iter().find(|spring| spring.dof % 2 == component);
+            spring.and_then(|spring| spring.driver.clone())
+        };
+        let mut springs = Vec::new();
+        for (dof, stiffness, driver) in self.links(given, "spring", ["kx", "ky"], before)? {
+            springs.push(Spring { dof, stiffness, driver });
+        }
+        Ok(Loads { springs, ..Loads::default() })
+    }
+
+    fn dashpots(self, given: Option<&Link>) -> Checked<Loads> {
+        let before = |component: usize| {
+            let dashpot = self.before.dashpots.iter().find(|dashpot| dashpot.dof % 2 == component);
+            dashpot.and_then(|dashpot| dashpot.driver.clone())
+        };
+        let mut dashpots = Vec::new();
+        for (dof, coefficient, driver) in self.links(given, "dashpot", ["cx", "cy"], before)? {
+            dashpots.push(Dashpot { dof, coefficient, driver });
+        }
+        Ok(Loads { dashpots, ..Loads::default() })
+    }
+
+    /// Dof, coefficient and driver of every spring or dashpot; what has the coefficient zero is none.
+    fn links(
+        &self,
+        given: Option<&Link>,
+        key: &str,
+        names: [&str; 2],
+        before: impl Fn(usize) -> Option<Amplitude>,
+    ) -> Checked<Vec<(usize, f64, Option<Amplitude>)>> {
+        let nodes = nodes_at(&self.model.mesh, &self.load.on, &format!("{}.on", self.place))?;
+        let Some(Link { coefficients, driver }) = given else { return Ok(Vec::new()) };
+        let mut links = Vec::new();
+        for (component, (&coefficient, name)) in coefficients.iter().zip(names).enumerate() {
+            check_not_negative(&format!("{}.{key}.{name}", self.place), coefficient)?;
+            if coefficient == 0.0 {
+                continue;
+            }
+            let drive = driver.as_ref().and_then(|driver| driver.along(component));
+            let place = format!("{}.{key}.driver", self.place);
+            let driver = amplitude(drive, before(component), &place, self.span)?;
+            links.extend(nodes.iter().map(|node| (2 * node + component, coefficient, driver.clone())));
+        }
+        Ok(links)
+    }
+}
+
+/// The drive of this step on top of what was in force before; nothing if there is neither.
+fn amplitude(given: Option<&Drive>, before: Option<Amplitude>, place: &str, span: Span) -> Checked<Option<Amplitude>> {
+    let drive = match (given, &before) {
+        (Some(given), _) => {
+            given.check().map_err(|message| ModelError::new(place, message))?;
+            given.clone()
+        }
+        // Freed: ramped to zero over the step.
+        (None, Some(_)) => Drive::Constant(0.0),
+        (None, None) => return Ok(None),
+    };
+    Ok(Some(Amplitude { drive, span, before: before.map(Box::new) }))
+}

@@ -1,0 +1,139 @@
+//! Where contact is evaluated: as it is asked for, or as the surfaces need it.
+//!
+//! Pointwise contact passes the patch test of straight linear edges to about a percent. On quadratic edges two points leave
+//! the pressure to alternate, and between two faceted curves the gap itself alternates by the height of the facets, which
+//! the penalty turns into pressures far above those sought. There mortar averages.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use crate::contact::surface::{CORNER, in_order};
+use crate::mesh::{Group, Mesh};
+
+/// Where contact is evaluated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// At the slave's nodes, with tributary lengths
+    NodeToSegment,
+    /// At Gauss points of the slave's edges
+    GaussToSegment,
+    /// Averaged around the slave's nodes, integrated exactly over non-matching meshes
+    Mortar,
+}
+
+impl Method {
+    /// Its name in a case.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::NodeToSegment => "node_to_segment",
+            Self::GaussToSegment => "gauss_to_segment",
+            Self::Mortar => "mortar",
+        }
+    }
+}
+
+/// The method in force, and what to tell about it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chosen {
+    /// method
+    pub method: Method,
+    /// Gauss points an edge, for gauss_to_segment
+    pub points: usize,
+    /// Why, if it was left open
+    pub because: Option<&'static str>,
+    /// What is known to suffer, and the remedy
+    pub concern: Option<&'static str>,
+}
+
+/// What a surface looks like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Looks {
+    Straight,
+    Curved,
+    Quadratic,
+}
+
+/// Gauss points an edge unless given.
+const POINTS: usize = 2;
+
+/// A surface of linear edges is curved where its direction turns by more than this between two corners; far above what
+/// round-off of coordinates does to a straight line, and below what facets do to the pressure [rad].
+const CURVED: f64 = 0.0175;
+
+/// The method of a contact of two groups of edges, the second none for a rigid master.
+pub fn choose(
+    slave: &str,
+    master: Option<&str>,
+    method: Option<Method>,
+    points: Option<usize>,
+    smooth: bool,
+    mesh: &Mesh,
+) -> Chosen {
+    let slave = looks(mesh, slave);
+    let master = master.map(|group| looks(mesh, group));
+    let given = method.or(points.map(|_| Method::GaussToSegment));
+    let points = points.unwrap_or(POINTS);
+    if let Some(method) = given {
+        return Chosen { method, points, because: None, concern: concern(method, points, slave, master) };
+    }
+    let chosen = |method, because, concern| Chosen { method, points, because: Some(because), concern };
+    let all = [Some(slave), master];
+    let has = |looks: Looks| all.contains(&Some(looks));
+    let because = match (has(Looks::Quadratic), has(Looks::Curved)) {
+        (true, _) => "chosen because edges are quadratic",
+        (_, true) => "chosen because surfaces are curved",
+        _ => return chosen(Method::GaussToSegment, "chosen because surfaces are straight and linear", None),
+    };
+    if !smooth {
+        return chosen(Method::Mortar, because, None);
+    }
+    let concern = (slave != Looks::Straight).then_some(
+        "`smooth` takes pointwise contact, and on a curved or quadratic slave pressures scatter: leave `smooth` out for mortar",
+    );
+    chosen(Method::GaussToSegment, "chosen because mortar takes no smooth master", concern)
+}
+
+/// What is known to suffer under a method that was asked for.
+fn concern(method: Method, points: usize, slave: Looks, master: Option<Looks>) -> Option<&'static str> {
+    let straight = slave == Looks::Straight && master.is_none_or(|master| master == Looks::Straight);
+    match (method, master) {
+        (Method::Mortar, _) => None,
+        _ if straight => None,
+        (Method::NodeToSegment, None) => None,
+        (Method::NodeToSegment, Some(_)) => Some(
+            "node_to_segment on curved or quadratic surfaces: pressures scatter, and where nodes meet nodes even a \
+             frictionless contact carries shear; leave `method` out for mortar",
+        ),
+        (Method::GaussToSegment, None) if slave == Looks::Curved || points > POINTS => None,
+        (Method::GaussToSegment, _) => Some(
+            "gauss_to_segment on curved or quadratic surfaces: pressures scatter and points may open; leave `method` and \
+             `points` out for mortar",
+        ),
+    }
+}
+
+/// What the edges of a group look like; a group of anything else is told elsewhere.
+fn looks(mesh: &Mesh, group: &str) -> Looks {
+    let Ok(Group::Edges(edges)) = mesh.group(group) else { return Looks::Straight };
+    if edges.iter().any(|edge| edge.nodes.len() > 2) {
+        return Looks::Quadratic;
+    }
+    let edges = in_order(&edges.iter().map(|edge| edge.nodes.clone()).collect::<Vec<_>>());
+    // Angles counted on from one edge to the next, from corner to corner.
+    let (mut angle, mut range) = (0.0f64, [0.0f64; 2]);
+    for pair in edges.windows(2) {
+        let [before, after] = [&pair[0], &pair[1]].map(|edge| mesh.nodes[edge[1]] - mesh.nodes[edge[0]]);
+        let joined = pair[0][1] == pair[1][0] && before.dot(&after) > CORNER * before.norm() * after.norm();
+        if !joined {
+            (angle, range) = (0.0, [0.0; 2]);
+            continue;
+        }
+        angle += before.perp(&after).atan2(before.dot(&after));
+        range = [range[0].min(angle), range[1].max(angle)];
+        if range[1] - range[0] > CURVED {
+            return Looks::Curved;
+        }
+    }
+    Looks::Straight
+}

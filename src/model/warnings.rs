@@ -1,0 +1,183 @@
+//! What to know of a model before it is solved: how the surfaces of its contacts lie, and how well that is known.
+
+use nalgebra::Vector2;
+
+use super::told::{count, number};
+use crate::contact::master::Master;
+use crate::contact::pair::ContactPair;
+use crate::contact::rigid::Rigid;
+use crate::contact::surface::SlavePoint;
+use crate::mesh::Mesh;
+use crate::model::Model;
+use crate::model::method::Chosen;
+
+/// Round-off of a gap, as a share of the positions that it is the difference of.
+const OF_POSITIONS: f64 = 8.0 * f64::EPSILON;
+
+/// Overlap, as a share of the slave's edge, that presses with nothing: 10⁻¹¹ (λ + 2G) with the default penalty.
+const OF_EDGE: f64 = 1e-12;
+
+impl Model {
+    /// What a user should know before anything is solved.
+    pub fn warnings(&self) -> Vec<String> {
+        let of_contact = |pair: &ContactPair| {
+            // What starts closed has no gaps, and a surface commonly lies free of itself at the start.
+            let warnings = match pair.initial.is_some() || is_its_own_master(pair) {
+                true => Vec::new(),
+                false => Gaps::of(self, pair).warnings(),
+            };
+            warnings.into_iter().map(|warning| format!("contact `{}`: {warning}", pair.name)).collect::<Vec<_>>()
+        };
+        let of_model = coarse_positions(&self.mesh).into_iter().chain(lost_velocity(self));
+        let concerns = self.told_of_methods(|chosen| chosen.concern.map(String::from));
+        of_model.chain(concerns).chain(self.contacts.iter().flat_map(of_contact)).collect()
+    }
+
+    /// Where contacts are evaluated whose method was left open.
+    pub fn choices(&self) -> Vec<String> {
+        self.told_of_methods(|chosen| chosen.because.map(|because| format!("{}, {because}", chosen.method.name())))
+    }
+
+    fn told_of_methods(&self, told: impl Fn(&Chosen) -> Option<String>) -> Vec<String> {
+        let contacts = self.contacts.iter().zip(&self.methods);
+        contacts
+            .filter_map(|(pair, chosen)| Some(format!("contact `{}`: {}", pair.name, told(chosen.as_ref()?)?)))
+            .collect()
+    }
+}
+
+/// What is wrong with velocities that a static first step takes no notice of.
+fn lost_velocity(model: &Model) -> Option<String> {
+    let first = model.steps.first().filter(|step| !step.scheme.is_dynamic())?;
+    let moving = model.initial_velocity.iter().any(|v| *v != 0.0);
+    moving.then(|| {
+        format!(
+            "the initial velocities are lost: the first step, `{}`, is static; give it a dynamic scheme",
+            first.name
+        )
+    })
+}
+
+fn is_its_own_master(pair: &ContactPair) -> bool {
+    matches!(&pair.master, Master::Mesh(surface) if surface.own_depth.is_some())
+}
+
+/// A share of the shortest edge to which positions should be known: displacements of interest are thousands of times larger.
+const KNOWN: f64 = 1e-8;
+
+/// Positions are known to ε |X|. What that is beside an element is an error of its shape, and of gaps and overlaps.
+fn coarse_positions(mesh: &Mesh) -> Option<String> {
+    let farthest = mesh.nodes.iter().fold(0.0, |most: f64, node| most.max(node.amax()));
+    let edges = mesh.elements.iter().flat_map(|element| {
+        let corners = &element.nodes[..element.kind.corners()];
+        corners.iter().zip(corners.iter().cycle().skip(1)).map(|(&a, &b)| (mesh.nodes[b] - mesh.nodes[a]).norm())
+    });
+    let shortest = edges.fold(f64::INFINITY, f64::min);
+    let known = f64::EPSILON * farthest;
+    (known > KNOWN * shortest).then(|| {
+        format!(
+            "nodes lie up to {} from the origin, and down to {} from each other: their positions have {known:.0e} of round-off, \
+             and so have initial gaps and overlaps; move the model to the origin before its mesh is written",
+            number(farthest),
+            number(shortest)
+        )
+    })
+}
+
+/// The gaps of a contact that does not start closed, as a reader is told of them.
+pub fn gaps(model: &Model, pair: &ContactPair, shrink_fit: bool) -> String {
+    let gaps = Gaps::of(model, pair);
+    let fit = gaps.fit.map(|(overlap, at)| {
+        let place = format!("at ({}, {})", number(at.x), number(at.y));
+        format!(
+            "; shrink fit: the surfaces overlap by up to {}, {place}, brought in over the first step",
+            number(overlap)
+        )
+    });
+    let fit = match (fit, shrink_fit) {
+        (None, true) => "; shrink fit: the surfaces overlap nowhere".into(),
+        (fit, _) => fit.unwrap_or_default(),
+    };
+    gaps.told() + &fit
+}
+
+/// Initial gaps of a contact; what is round-off of the positions is no gap and no overlap.
+struct Gaps {
+    points: usize,
+    facing: usize,
+    /// The smallest, and where [L]
+    low: (f64, Vector2<f64>),
+    high: f64,
+    /// The largest overlap of a shrink fit, and where [L]
+    fit: Option<(f64, Vector2<f64>)>,
+}
+
+impl Gaps {
+    fn of(model: &Model, pair: &ContactPair) -> Self {
+        let x = model.mesh.undeformed();
+        let reach = match &pair.master {
+            Master::Rigid(Rigid::Circle(circle)) => circle.radius + circle.centre.norm(),
+            _ => 0.0,
+        };
+        let size = model.mesh.nodes.iter().fold(reach, |size, node| size.max(node.amax()));
+        let rounded = |point: &SlavePoint, length: f64| {
+            let noise = (OF_POSITIONS * size).max(OF_EDGE * point.edge_length(&x).unwrap_or(0.0));
+            if length.abs() <= noise { 0.0 } else { length }
+        };
+        let states = pair.initial_states(&x);
+        let mut gaps = Self {
+            points: states.len(),
+            facing: 0,
+            low: (f64::INFINITY, Vector2::zeros()),
+            high: f64::NEG_INFINITY,
+            fit: None,
+        };
+        for (point, state) in pair.points.iter().zip(&states).filter(|(_, state)| state.foot.is_some()) {
+            let (gap, overlap) = (rounded(point, state.gap), rounded(point, point.overlap));
+            gaps.facing += 1;
+            gaps.high = gaps.high.max(gap);
+            if gap < gaps.low.0 {
+                gaps.low = (gap, point.at(&x));
+            }
+            if overlap > gaps.fit.map_or(0.0, |(largest, _)| largest) {
+                gaps.fit = Some((overlap, point.at(&x)));
+            }
+        }
+        gaps
+    }
+
+    fn beside(&self) -> String {
+        count(self.points - self.facing, "contact point")
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        let Self { points, facing, low: (low, at), .. } = *self;
+        if facing == 0 {
+            let none = "no point of the slave faces the master; check which groups are named, and where they lie";
+            return vec![none.into()];
+        }
+        let mut warnings = Vec::new();
+        if facing < points {
+            warnings.push(format!("{} of the slave face no part of the master", self.beside()));
+        }
+        if low < 0.0 {
+            warnings.push(format!(
+                "surfaces overlap by up to {} at the start, at ({}, {}), and press from the first increment on; move them \
+                 apart, or bring the overlap in over the first step (shrink_fit)",
+                number(-low),
+                number(at.x),
+                number(at.y)
+            ));
+        }
+        warnings
+    }
+
+    fn told(&self) -> String {
+        let Self { facing, low: (low, _), high, .. } = *self;
+        match facing {
+            0 => format!("initial gap: {}, and none faces the master", self.beside()),
+            _ if low == high => format!("initial gap {} everywhere", number(low)),
+            _ => format!("initial gap from {} to {}", number(low), number(high)),
+        }
+    }
+}

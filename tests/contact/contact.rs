@@ -1,0 +1,869 @@
+//! Contact: exact tangents, feet at corners and past ends.
+
+use fecontact::contact::force::{Closed, ContactState, Increment, Loading, Meeting, Place, Tractions, closes, place};
+use fecontact::contact::master::Master;
+use fecontact::contact::mortar::{Mortar, mortar_points};
+use fecontact::contact::pair::{ContactIncrement, ContactPair, InitialTraction, Presumption};
+use fecontact::contact::projection::{Bound, nearest};
+use fecontact::contact::rigid::{Circle, Plane, Polyline, Rigid};
+use fecontact::contact::search::Index;
+use fecontact::contact::surface::{MasterPoint, Segment, SlavePoint, Surface, gauss_points, lone_point, nodal_points};
+use fecontact::laws::friction::{
+    Answer, FrictionLaw, FrictionParameters, FrictionResponse, FrictionState, Regime, Sliding,
+};
+use fecontact::linear::system::Contribution;
+use fecontact::mesh::configuration::Configuration;
+use nalgebra::Vector2;
+
+type Positions = Vec<Vector2<f64>>;
+
+/// In one step an increment: under error control the answer jumps, by less than the tolerance, where the number of sub-steps
+/// changes, and so does a difference quotient taken there (`the_controlled_answer_jumps_only_where_sub_steps_change`).
+const SUPER: &str = r#"{"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "r": 100, "kappa": 10, "xi": 0.02, "structure": 1.8,
+        "integration": "backward_euler"}"#;
+const COULOMB: &str = r#"{"law": "coulomb", "mu": 0.3}"#;
+const FRICTIONLESS: &str = r#"{"law": "frictionless"}"#;
+const MOMENT: ContactIncrement = ContactIncrement { dt: 0.3, fading: 0.0, stiffening: 1.0, settles: true };
+
+/// A wavy master of five segments, nodes 0 to 5 from left to right, and slave nodes 6, 7, 8 below it.
+///
+/// Bodies are on the left of their edges: a top edge runs right to left, a bottom edge left to right.
+fn wavy() -> (Vec<Vec<usize>>, Positions) {
+    let master = [(0.0, 0.0), (1.0, 0.06), (2.0, -0.05), (3.0, 0.03), (4.0, 0.0), (5.0, 0.05)];
+    let slave = [(1.3, -0.03), (2.1, -0.07), (2.9, -0.02)];
+    let x = master.iter().chain(&slave).map(|&(x, y)| Vector2::new(x, y)).collect();
+    ((0..5).map(|k| vec![k + 1, k]).collect(), x)
+}
+
+/// The points at the given places. They got there from the origin by displacements: a foot on a rigid body is counted from
+/// that of the reference position.
+fn displaced(x: &Positions) -> Configuration<'static> {
+    static ORIGIN: [Vector2<f64>; 16] = [Vector2::new(0.0, 0.0); 16];
+    Configuration::new(&ORIGIN[..x.len()], &x.iter().flat_map(|x| [x.x, x.y]).collect::<Vec<_>>())
+}
+
+/// A pair with α_n = 1000, c = 0.002 and, unless given, α_t = 700.
+fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
+    let law =
+        serde_json::from_str::<FrictionParameters>(law).expect("a law").build(700.0).expect("parameters in range");
+    ContactPair {
+        name: "test".into(),
+        points,
+        master,
+        mortar: None,
+        alpha_n: 1000.0,
+        compliance: 2e-3,
+        penetration: None,
+        laws: vec![law],
+        initial: None,
+        reverse: None,
+    }
+}
+
+fn evaluate(pair: &ContactPair, k: usize, old: &ContactState, x: &Positions) -> (ContactState, Option<Contribution>) {
+    let (state, closed) = promised(pair, k, old, x, None);
+    (state, closed.map(|closed| closed.contribution))
+}
+
+/// The answer of a point whose last linear solve promised something.
+fn promised(
+    pair: &ContactPair,
+    k: usize,
+    old: &ContactState,
+    x: &Positions,
+    promised: Option<Tractions>,
+) -> (ContactState, Option<Closed>) {
+    let increment = Increment { during: MOMENT, presumption: Presumption { promised, ..Presumption::default() } };
+    answer(pair, k, old, x, increment)
+}
+
+fn answer(
+    pair: &ContactPair,
+    k: usize,
+    old: &ContactState,
+    x: &Positions,
+    increment: Increment,
+) -> (ContactState, Option<Closed>) {
+    let x = &displaced(x);
+    // Every point had a foot before.
+    let before = x;
+    let index = Index::new(&pair.master, x);
+    let projection = index.project(&pair.points[k], None, x);
+    let place = place(pair, &pair.points[k], projection, old, increment, [before, x]);
+    finish(pair, k, old, increment, place)
+}
+
+/// The answer of a point in its place.
+fn finish(
+    pair: &ContactPair,
+    k: usize,
+    old: &ContactState,
+    increment: Increment,
+    place: Place,
+) -> (ContactState, Option<Closed>) {
+    let loading = Loading::new(pair, &pair.points[k], old, increment, place);
+    let answer = pair.law(&pair.points[k]).respond(&old.friction, loading.sliding);
+    loading.finish(answer).expect("a finite increment")
+}
+
+/// Forces of one point on the given nodes.
+fn forces(pair: &ContactPair, k: usize, old: &ContactState, x: &Positions, nodes: &[usize]) -> Vec<f64> {
+    let (_, contribution) = evaluate(pair, k, old, x);
+    let moved = contribution.expect("a tiny motion does not open the point");
+    let at = |node: &usize| moved.nodes.iter().position(|n| n == node);
+    nodes.iter().flat_map(|node| at(node).map_or([0.0; 2], |a| [moved.force[2 * a], moved.force[2 * a + 1]])).collect()
+}
+
+/// Compare the tangent of one point with central differences of its forces, relative to the largest entry.
+fn check_tangent(pair: &ContactPair, k: usize, old: &ContactState, x: &Positions, what: &str) {
+    let contribution = evaluate(pair, k, old, x).1.unwrap_or_else(|| panic!("{what}: point {k} is open"));
+    let nodes = &contribution.nodes;
+    let (scale, h) = (contribution.tangent.amax(), 1e-6);
+    for column in 0..2 * nodes.len() {
+        let moved = |step: f64| {
+            let mut x = x.clone();
+            x[nodes[column / 2]][column % 2] += step;
+            forces(pair, k, old, &x, nodes)
+        };
+        for (row, (up, down)) in moved(h).iter().zip(moved(-h)).enumerate() {
+            let difference = (up - down) / (2.0 * h);
+            let tangent = contribution.tangent[(row, column)];
+            assert!(
+                (difference - tangent).abs() < 1e-6 * scale,
+                "{what}: point {k}, ({row}, {column}): {tangent}, by differences {difference} (scale {scale})"
+            );
+        }
+    }
+}
+
+/// A committed state whose foot lies `back` before the present one.
+fn pulled(pair: &ContactPair, k: usize, x: &Positions, back: f64, friction: FrictionState, gap: f64) -> ContactState {
+    let x = &displaced(x);
+    let foot = Index::new(&pair.master, x).project(&pair.points[k], None, x).expect("the point faces the master").foot;
+    let at = foot.segment as f64 + foot.xi - back;
+    let foot = match &pair.master {
+        Master::Mesh(_) => MasterPoint { segment: at.floor() as usize, xi: at - at.floor() },
+        Master::Rigid(_) => MasterPoint { xi: foot.xi - back, ..foot },
+    };
+    ContactState { friction, foot: Some(foot), length: 1.0, gap, slip: 0.0, multiplier: 0.0 }
+}
+
+#[test]
+fn tangent_equals_differences_in_stick_partial_and_full_slip_and_after_touch() {
+    let (edges, x) = wavy();
+    let (linear, quadratic) = ([vec![6, 7], vec![7, 8]], [vec![6, 8, 7]]);
+    let all = [gauss_points(&linear, 3), nodal_points(&linear), gauss_points(&quadratic, 4), nodal_points(&quadratic)];
+    let surfaces = [Surface::new(&edges), Surface::new(&edges).smoothed(&x)];
+    let all = all.iter().flat_map(|points| surfaces.iter().map(move |surface| (points, surface)));
+    for (points, surface) in all {
+        for law in [SUPER, COULOMB, FRICTIONLESS] {
+            let pair = pair(points.clone(), Master::Mesh(surface.clone()), law);
+            let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.laws[0].initial_state() };
+            let mut closed = 0;
+            for k in 0..pair.points.len() {
+                let (state, _) = evaluate(&pair, k, &pulled(&pair, k, &x, 0.0, pressed, -0.02), &x);
+                if state.regime() == Regime::Open {
+                    continue;
+                }
+                closed += 1;
+                for (back, gap, what) in [
+                    (1e-4, -0.02, "stick"),
+                    (0.01, -0.02, "partial slip"),
+                    (0.3, -0.02, "full slip"),
+                    (-0.3, -0.02, "backward slip"),
+                    (1.4, -0.02, "slip over two segments"),
+                    (-1.4, -0.02, "backward slip over two segments"),
+                    (0.02, 0.03, "touch within the increment"),
+                ] {
+                    let friction = if gap > 0.0 { pair.laws[0].initial_state() } else { pressed };
+                    let old = pulled(&pair, k, &x, back, friction, gap);
+                    check_tangent(&pair, k, &old, &x, &format!("{law}, {what}"));
+                }
+            }
+            assert!(closed > 1, "{closed} points were tested");
+        }
+    }
+}
+
+/// A point slides over the nodes of a wavy surface, 0.02 deep. From one to the next of 500 places its foot, gap and normal
+/// move on by no more than curvature explains if the surface is smooth; on its straight edges the normal jumps by up to
+/// 0.17, the angle between them.
+#[test]
+fn nothing_jumps_on_a_smooth_surface() {
+    let (edges, x) = wavy();
+    let largest_turn = |surface: Surface| {
+        let pair = pair(vec![lone_point(6, 1.0)], Master::Mesh(surface), COULOMB);
+        let place = |k: usize| {
+            let mut x = x.clone();
+            let at = 0.5 + 4.0 * k as f64 / 500.0;
+            x[6] = Vector2::new(at, -0.02 + 0.03 * (2.0 * at).sin());
+            let x = Configuration::undeformed(&x);
+            Index::new(&pair.master, &x).project(&pair.points[0], None, &x).expect("a foot")
+        };
+        let mut largest = 0.0f64;
+        for k in 0..500 {
+            let (a, b) = (place(k), place(k + 1));
+            let along = |p: &fecontact::contact::projection::Projection| p.foot.segment as f64 + p.foot.xi;
+            assert!((along(&b) - along(&a) - 0.008).abs() < 0.012, "the foot jumps from {a:?} to {b:?}");
+            assert!((b.gap - a.gap).abs() < 0.003, "the gap jumps from {a:?} to {b:?}");
+            largest = largest.max((b.normal - a.normal).norm());
+        }
+        largest
+    };
+    let (straight, smooth) = (largest_turn(Surface::new(&edges)), largest_turn(Surface::new(&edges).smoothed(&x)));
+    println!("largest turn of the normal: {straight:.4} on straight edges, {smooth:.4} on the smooth curve");
+    assert!(smooth < 0.006 && straight > 0.1, "{smooth}, {straight}");
+}
+
+/// The promise of a point is its tractions at the end of a correction but for terms of second order: it is off by a quarter
+/// when the correction is half as long. It changes the geometric part of the tangent, and no force.
+#[test]
+fn a_promise_is_of_second_order_and_changes_no_force() {
+    let (edges, x) = wavy();
+    let pair = pair(nodal_points(&[vec![6, 7], vec![7, 8]]), Master::Mesh(Surface::new(&edges)), COULOMB);
+    let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.laws[0].initial_state() };
+    let old = pulled(&pair, 1, &x, 0.3, pressed, -0.02);
+    let (state, closed) = promised(&pair, 1, &old, &x, None);
+    let closed = closed.expect("a closed point");
+    let error = |size: f64| {
+        let correction = |dof: usize| size * [0.3, 1.0, -0.7, 0.4, -0.2, 0.9][dof % 6];
+        let moved: Positions =
+            (0..x.len()).map(|node| x[node] + Vector2::new(correction(2 * node), correction(2 * node + 1))).collect();
+        let now = promised(&pair, 1, &old, &moved, None).0.friction;
+        let promise = closed.promise(correction);
+        (promise.pressure - now.pressure).abs() + (promise.traction - now.traction).abs()
+    };
+    let ratio = error(2e-3) / error(1e-3);
+    assert!((3.7..4.3).contains(&ratio), "{ratio}");
+    let other = Some(Tractions { pressure: 3.0, traction: -1.0 });
+    let (same, changed) = promised(&pair, 1, &old, &x, other);
+    let changed = changed.expect("a closed point");
+    assert_eq!((same, &changed.contribution.force), (state, &closed.contribution.force));
+    assert_ne!(changed.contribution.tangent, closed.contribution.tangent);
+    // Lifted a little, the point opens; with a promise it is held back by what its spring would pull.
+    let mut lifted = x.clone();
+    lifted[7].y += 0.06;
+    assert!(promised(&pair, 1, &old, &lifted, None).1.is_none());
+    let (held, _) = promised(&pair, 1, &old, &lifted, other);
+    assert_eq!(held.friction.pressure, -pair.alpha_n * held.gap);
+    assert!(held.gap > 0.0 && held.friction.pressure < 0.0);
+}
+
+/// A point above the plane y = 0 by 0.03 at the start of an increment and pressed by p = 10 at its end, having moved by 0.005
+/// along it: it sticks with q = α_t 0.005 d/(0.03 + d). With the plain penalty d = c p + p/α_n, where bodies do not settle
+/// p/α_n; with the augmented Lagrangian d = c p, whatever α_n.
+#[test]
+fn slip_counts_from_touch() {
+    let plane = Rigid::Plane(Plane { point: Vector2::zeros(), normal: Vector2::new(0.0, 1.0) });
+    let plain = pair(gauss_points(&[vec![0, 1]], 2), Master::Rigid(plane), COULOMB);
+    let check = |pair: &ContactPair, deep: f64, moment: ContactIncrement, d: f64| {
+        let x = vec![Vector2::new(0.2, -deep), Vector2::new(0.9, -deep)];
+        let old = pulled(pair, 0, &x, 0.005, pair.laws[0].initial_state(), 0.03);
+        check_tangent(pair, 0, &old, &x, "after touch");
+        let friction = answer(pair, 0, &old, &x, Increment { during, presumption: Presumption::default() }).0.friction;
+        assert!((friction.pressure - 10.0).abs() < 1e-12);
+        let expected = 700.0 * 0.005 * d / (0.03 + d);
+        assert!((friction.traction - expected).abs() < 1e-12, "{}, not {expected}", friction.traction);
+    };
+    check(&plain, 0.01, MOMENT, 0.02 + 0.01);
+    check(&plain, 0.01, ContactIncrement { settles: false, ..MOMENT }, 0.01);
+    let augmented = ContactPair { penetration: Some(1e-6), ..plain };
+    check(&augmented, 0.01, MOMENT, 0.02);
+    check(&augmented, 0.0001, ContactIncrement { stiffening: 100.0, ..MOMENT }, 0.02);
+}
+
+/// Friction of a point that has just closed far too deep answers under the pressure carried, and goes on from there in a
+/// straight line: a correction that leaves this pressure finds the answer of the law, in stick and in slip, from a gap and from
+/// touch.
+#[test]
+fn a_carried_pressure_is_where_the_answer_is_exact() {
+    let plane = Rigid::Plane(Plane { point: Vector2::zeros(), normal: Vector2::new(0.0, 1.0) });
+    let pair = pair(gauss_points(&[vec![0, 1]], 2), Master::Rigid(plane), COULOMB);
+    let at = |y: f64| vec![Vector2::new(0.2, y), Vector2::new(0.9, y)];
+    for (back, gap) in [(0.002, 0.03), (0.2, 0.03), (0.002, 0.0), (0.2, 0.0)] {
+        let old = pulled(&pair, 0, &at(-0.04), back, pair.laws[0].initial_state(), gap);
+        let increment =
+            |carried| Increment { during: MOMENT, presumption: Presumption { carried, ..Presumption::default() } };
+        let (deep, closed) = answer(&pair, 0, &old, &at(-0.04), increment(Some(5.0)));
+        assert!((deep.friction.pressure - 40.0).abs() < 1e-12);
+        let promise = closed.expect("a closed point").promise(|dof| if dof % 2 == 1 { 0.035 } else { 0.0 });
+        let there = answer(&pair, 0, &old, &at(-0.005), increment(None)).0.friction;
+        let off = (promise.pressure - there.pressure).abs().max((promise.traction - there.traction).abs());
+        assert!(off < 1e-12 && there.traction > 0.0, "{promise:?}, {there:?}");
+    }
+}
+
+/// Plane, disk, hole, and a polyline with a ridge that the first point has gone through and a line for the second.
+#[test]
+fn tangent_equals_differences_on_rigid_bodies() {
+    let x: Positions = vec![Vector2::new(0.2, -0.01), Vector2::new(0.9, -0.03)];
+    let at = |points: &[(f64, f64)]| points.iter().map(|&(x, y)| Vector2::new(x, y)).collect::<Vec<_>>();
+    for body in [
+        Rigid::Plane(Plane { point: Vector2::new(0.0, 0.0), normal: Vector2::new(-0.06, 1.0).normalize() }),
+        Rigid::Circle(Circle { centre: Vector2::new(0.5, -3.0), radius: 3.0, hole: false }),
+        Rigid::Circle(Circle { centre: Vector2::new(0.5, 2.0), radius: 1.9, hole: true }),
+        Rigid::Polyline(Polyline::new(at(&[(-1.0, 0.5), (0.35, 0.01), (2.0, 0.6)]))),
+        Rigid::Polyline(Polyline::new(at(&[(-1.0, 0.0), (2.0, 0.03)]))),
+    ] {
+        let pair = pair(gauss_points(&[vec![0, 1]], 2), Master::Rigid(body), SUPER);
+        let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.laws[0].initial_state() };
+        for k in 0..2 {
+            for back in [1e-4, 0.01, -0.2] {
+                check_tangent(&pair, k, &pulled(&pair, k, &x, back, pressed, -0.02), &x, &format!("{:?}", pair.master));
+            }
+        }
+    }
+}
+
+/// Feet on a disk and in a hole of radius 2, and the way round through ±π, by polar coordinates.
+#[test]
+fn feet_on_a_rigid_circle() {
+    for (hole, side) in [(false, 1.0), (true, -1.0)] {
+        let body = Rigid::Circle(Circle { centre: Vector2::new(1.0, 1.0), radius: 2.0, hole });
+        let at = |angle: f64| Vector2::new(1.0, 1.0) + Vector2::new(angle.cos(), angle.sin()) * 2.1;
+        let (point, here) = (&lone_point(0, 1.0), vec![at(3.1)]);
+        let moved = at(-3.1) - at(3.1);
+        let ways = [vec![0.0, 0.0], vec![moved.x, moved.y]].map(|u| Configuration::new(&here, &u));
+        let [from, to] = [&ways[0], &ways[1]].map(|x| body.project(point, x).expect("a foot"));
+        assert!((from.gap - 0.1 * side).abs() < 1e-14);
+        // From 3.1 to 2π − 3.1 counter-clockwise, which is against s on a disk.
+        let way = body.way(point, from.foot, to.foot, &ways[1]);
+        assert!((way + side * 2.0 * (2.0 * std::f64::consts::PI - 6.2)).abs() < 1e-14, "{way}");
+    }
+}
+
+/// Feet on a parabola y = x²/4 over [−1, 1]: a point h off along the normal at x = ½ has its foot there, and the way from
+/// the vertex is the arc length ∫ √(1 + x²/4) dx = [x √(4 + x²)/4 + asinh(x/2)].
+#[test]
+fn feet_on_a_quadratic_edge_lie_on_the_parabola() {
+    let normal = Vector2::new(-0.25, 1.0).normalize();
+    for (h, tolerance) in [(0.1, 1e-14), (-0.1, 1e-14), (0.0, 1e-14)] {
+        let point = Vector2::new(0.5, 0.0625) + normal * h;
+        let x = vec![
+            Vector2::new(-1.0, 0.25),
+            Vector2::new(1.0, 0.25),
+            Vector2::new(0.0, 0.0),
+            point,
+            point + Vector2::x(),
+        ];
+        let master = Master::Mesh(Surface::new(&[vec![1, 0, 2]]));
+        let pair = pair(nodal_points(&[vec![3, 4]]), master, COULOMB);
+        let at = Configuration::undeformed(&x);
+        let found = Index::new(&pair.master, &at).project(&pair.points[0], None, &at).expect("a foot");
+        assert!((found.gap - h).abs() < tolerance && (found.foot.xi - 0.75).abs() < tolerance, "{found:?}");
+        let from = Some(MasterPoint { segment: 0, xi: 0.5 });
+        let slip = fecontact::contact::kinematics::kinematics(&pair.points[0], &pair.master, &found, from, &at).slip;
+        let arc = 0.5 * (4.0f64 + 0.25).sqrt() / 4.0 + 0.25f64.asinh();
+        assert!((slip - arc).abs() < 1e-9, "{slip}, exactly {arc}");
+    }
+}
+
+/// The foot on a spline or a parabola is found in a few steps wherever the point lies: before, beside and behind the curve
+/// and past its ends, where the search stops at once; but for points near the centre of curvature of a parabola.
+#[test]
+fn a_foot_on_a_curve_takes_few_steps() {
+    let (edges, x) = wavy();
+    let mut bent = x.clone();
+    bent.remove(4);
+    let curves = [
+        (Surface::new(&edges).smoothed(&x), x.clone(), 10, 6),
+        (Surface::new(&[vec![2, 0, 1], vec![4, 2, 3]]), bent, 6, 8),
+    ];
+    let point = lone_point(0, 1.0);
+    for (surface, nodes, rows, allowed) in curves {
+        let mut most = 0;
+        for (i, j) in (-40..=40).flat_map(|i| (-rows..=rows).map(move |j| (i, j))) {
+            for segment in &surface.segments {
+                let at = Vector2::new(2.5 + 0.1 * f64::from(i), 0.03 * f64::from(j));
+                // The point takes the place of a node that the surface does not have.
+                let mut x = vec![at];
+                x.extend(&nodes);
+                let moved = |node: usize| node + 1;
+                let segment = Segment {
+                    ends: segment.ends.map(moved),
+                    middle: segment.middle.map(moved),
+                    beyond: segment.beyond.map(|node| node.map(moved)),
+                };
+                let found = nearest(&point, &segment, &Configuration::undeformed(&x));
+                if (0.0..=1.0).contains(&found.xi) {
+                    let cosine = found.offset.dot(&found.slope.normalize());
+                    assert!(cosine.abs() < 1e-14, "{at:?}: {found:?}");
+                }
+                most = most.max(found.steps);
+            }
+        }
+        println!("at most {most} steps");
+        assert!(most <= allowed, "{most} steps");
+    }
+}
+
+/// A roof: behind its ridge, where a point lies behind both sides, it belongs to the side it comes from, up to where its foot
+/// reaches the ridge; elsewhere to the nearest.
+#[test]
+fn behind_a_ridge_a_point_belongs_to_the_side_it_comes_from() {
+    let (slope, depth) = (0.5f64, 0.1);
+    let (angle, reach) = (slope.atan(), depth * slope);
+    // Top edges run right to left: segment 0 is the left side, which comes first along s.
+    let master = Master::Mesh(Surface::new(&[vec![1, 0], vec![2, 1]]));
+    let side = |along: f64, from: Option<usize>| {
+        // From the ridge by `along` to the right, `depth` below it.
+        let at = Vector2::new(along, -depth);
+        let x = vec![Vector2::new(-1.0, -slope), Vector2::zeros(), Vector2::new(1.0, -slope), at];
+        let x = Configuration::undeformed(&x);
+        let from = from.map(|segment| MasterPoint { segment, xi: 0.5 });
+        let found = Index::new(&master, &x).project(&lone_point(3, 1.0), from, &x).expect("a foot");
+        let right = if found.foot.segment == 1 { along } else { -along };
+        assert!((found.gap - (right * angle.sin() - depth * angle.cos())).abs() < 1e-14, "{found:?}");
+        found.foot.segment
+    };
+    for along in [0.5, 0.9, 0.99].map(|share| share * reach) {
+        assert_eq!([Some(0), None, Some(1)].map(|from| side(along, from)), [0, 1, 1], "{along}");
+        assert_eq!([Some(0), None, Some(1)].map(|from| side(-along, from)), [0, 0, 1], "{along}");
+    }
+    for along in [1.01, 3.0].map(|share| share * reach) {
+        assert_eq!([Some(0), None, Some(1)].map(|from| side(along, from)), [1; 3], "{along}");
+        assert_eq!([Some(0), None, Some(1)].map(|from| side(-along, from)), [0; 3], "{along}");
+    }
+}
+
+/// Mortar on rigid bodies: the tangent of every closed point equals differences, on straight and on curved edges, from a
+/// place in which the slave lay elsewhere.
+#[test]
+fn mortar_tangent_on_rigid_bodies_equals_differences() {
+    let x: Positions = [(0.2, -0.01), (0.6, -0.05), (0.9, -0.03)].map(|(x, y)| Vector2::new(x, y)).to_vec();
+    for body in [
+        Rigid::Plane(Plane { point: Vector2::new(0.0, 0.0), normal: Vector2::new(-0.06, 1.0).normalize() }),
+        Rigid::Circle(Circle { centre: Vector2::new(0.5, -3.0), radius: 3.0, hole: false }),
+        Rigid::Circle(Circle { centre: Vector2::new(0.5, 2.0), radius: 1.9, hole: true }),
+        Rigid::Polyline(Polyline::new([(-1.0, 0.0), (2.0, 0.03)].map(|(x, y)| Vector2::new(x, y)).to_vec())),
+    ] {
+        for slave in [vec![vec![0, 1], vec![1, 2]], vec![vec![0, 2, 1]]] {
+            let (points, mortar) = mortar_points(&slave, &x);
+            let pair = ContactPair { mortar: Some(mortar), ..pair(points, Master::Rigid(body.clone()), SUPER) };
+            let mut closed = 0;
+            for (way, gap) in [(1e-5, -0.02), (0.02, -0.02), (-0.3, -0.02), (0.02, 0.03)] {
+                let before: Positions = x.iter().map(|x| x - Vector2::new(way, 0.0)).collect();
+                let friction = pair.laws[0].initial_state();
+                let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..friction };
+                let friction = if gap > 0.0 { friction } else { pressed };
+                let foot = Some(MasterPoint { segment: 0, xi: 0.0 });
+                let old = vec![
+                    ContactState { friction, foot, length: 1.0, gap, slip: 0.0, multiplier: 0.0 };
+                    pair.points.len()
+                ];
+                let answer = |x: &Positions| {
+                    let (before, x) = (displaced(&before), displaced(x));
+                    pair.respond(&old, &before, MOMENT, |_| Presumption::default(), &x).expect("an answer")
+                };
+                for (k, (_, found)) in answer(&x).into_iter().enumerate() {
+                    let Some(Closed { contribution, .. }) = found else { continue };
+                    closed += 1;
+                    let scale = contribution.tangent.amax();
+                    for column in 0..2 * contribution.nodes.len() {
+                        let moved = |step: f64| {
+                            let mut x = x.clone();
+                            x[contribution.nodes[column / 2]][column % 2] += step;
+                            answer(&x)[k].1.clone().expect("a tiny motion does not open the point").contribution.force
+                        };
+                        let difference = (moved(1e-6) - moved(-1e-6)) / 2e-6;
+                        for (row, difference) in difference.iter().enumerate() {
+                            let tangent = contribution.tangent[(row, column)];
+                            assert!(
+                                (difference - tangent).abs() < 1e-6 * scale,
+                                "{body:?}: point {k}, ({row}, {column}): {tangent}, by differences {difference}"
+                            );
+                        }
+                    }
+                }
+            }
+            assert!(closed >= 8, "{closed} points were tested");
+        }
+    }
+}
+
+#[test]
+fn tangent_equals_differences_on_quadratic_edges() {
+    let (_, mut x) = wavy();
+    // Two parabolas: nodes 0, 1, 2 and 2, 3, 5, whose middle is not in the middle.
+    x.remove(4);
+    let edges = [vec![2, 0, 1], vec![4, 2, 3]];
+    let slave = [vec![5, 7, 6]];
+    for points in [gauss_points(&slave, 4), nodal_points(&slave)] {
+        for law in [SUPER, COULOMB] {
+            let pair = pair(points.clone(), Master::Mesh(Surface::new(&edges)), law);
+            let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.laws[0].initial_state() };
+            let mut closed = 0;
+            for k in 0..pair.points.len() {
+                let open =
+                    evaluate(&pair, k, &pulled(&pair, k, &x, 0.0, pressed, -0.02), &x).0.regime() == Regime::Open;
+                for back in [1e-4, 0.01, 0.2, -0.3] {
+                    if !open {
+                        check_tangent(&pair, k, &pulled(&pair, k, &x, back, pressed, -0.02), &x, law);
+                        closed += 1;
+                    }
+                }
+            }
+            assert!(closed > 4, "{closed} points were tested");
+        }
+    }
+}
+
+/// A contact that starts closed across a gap, its slave edges or points of no edge: the traction is that of the pressure
+/// it starts with, and its tangent turns about a foot that lies apart.
+#[test]
+fn tangent_equals_differences_where_contact_starts_closed_across_a_gap() {
+    let (edges, mut x) = wavy();
+    x[6..].iter_mut().for_each(|slave| slave.y += 0.2);
+    let lone = [6, 7, 8].map(|node| lone_point(node, 0.7)).to_vec();
+    let plane = Plane { point: Vector2::new(0.0, -0.5), normal: Vector2::new(-0.2, 1.0).normalize() };
+    for points in [lone, gauss_points(&[vec![6, 7], vec![7, 8]], 2)] {
+        for master in [Master::Mesh(Surface::new(&edges)), Master::Rigid(Rigid::Plane(plane))] {
+            let mut pair = pair(points.clone(), master, SUPER);
+            let at = displaced(&x);
+            pair.start_closed(vec![InitialTraction { pressure: 20.0, traction: 2.0 }; pair.points.len()], &at)
+                .expect("a foot for each");
+            for k in 0..pair.points.len() {
+                let (state, contribution) = evaluate(&pair, k, &pair.initial_states(&at)[k], &x);
+                let FrictionState { pressure, traction, .. } = state.friction;
+                assert!((pressure - 20.0).abs() < 1e-12 && (traction - 2.0).abs() < 1e-12, "{state:?}");
+                assert!((state.gap + 0.02).abs() < 1e-15, "{state:?}");
+                let force = contribution.expect("a closed point").force;
+                let size = pair.points[k].current_length(&at) * 20.0f64.hypot(2.0);
+                let slave = pair.points[k].position.len();
+                let total =
+                    force.as_slice()[..2 * slave].chunks(2).map(|f| Vector2::new(f[0], f[1])).sum::<Vector2<f64>>();
+                assert!((total.norm() - size).abs() < 1e-12 * size, "{total}");
+                for (back, what) in [(1e-4, "stick"), (0.3, "full slip"), (-1.4, "backward slip over two segments")] {
+                    let old = pulled(&pair, k, &x, back, state.friction, state.gap);
+                    check_tangent(&pair, k, &old, &x, &format!("closed across a gap, {what}"));
+                }
+            }
+        }
+    }
+}
+
+/// Under the augmented Lagrangian a contact that starts closed has its pressure as multiplier, and no penetration that passes
+/// would take away.
+#[test]
+fn initial_pressure_is_the_first_multiplier_of_the_augmented_lagrangian() {
+    let (edges, x) = wavy();
+    let master = Master::Mesh(Surface::new(&edges));
+    let mut pair =
+        ContactPair { penetration: Some(1e-6), ..pair(gauss_points(&[vec![6, 7], vec![7, 8]], 2), master, COULOMB) };
+    let at = Configuration::undeformed(&x);
+    pair.start_closed(vec![InitialTraction { pressure: 20.0, traction: 2.0 }; pair.points.len()], &at).expect("feet");
+    let old = pair.initial_states(&at);
+    for stiffening in [1.0, 100.0] {
+        let moment = ContactIncrement { stiffening, ..MOMENT };
+        let answer = pair.respond(&old, &at, moment, |_| Presumption::default(), &at).expect("an answer");
+        let states: Vec<ContactState> = answer.into_iter().map(|(state, _)| state).collect();
+        for state in &states {
+            let FrictionState { pressure, traction, .. } = state.friction;
+            assert!((pressure - 20.0).abs() < 1e-12 && (traction - 2.0).abs() < 1e-12, "{state:?}");
+            assert!(state.gap.abs() < 1e-15 && (state.multiplier - 20.0).abs() < 1e-12, "{state:?}");
+        }
+        assert!(pair.excess(&states) < 1e-6);
+    }
+}
+
+/// A point that nothing faced when the increment began has slipped past the material that it meets: q = α_t s·Σ w_a Δx_a while
+/// it sticks, and the tangent is that of differences. At nodes, at Gauss points, on a rigid plane, and by mortar, where the
+/// slave must come from beyond the master's end.
+#[test]
+fn points_that_nothing_faced_slip_past_what_they_meet() {
+    let (straight, x) = wavy();
+    let slave = [vec![6, 7], vec![7, 8]];
+    let surface = Master::Mesh(Surface::new(&straight));
+    let plane = Master::Rigid(Rigid::Plane(Plane {
+        point: Vector2::new(0.0, 0.05),
+        normal: Vector2::new(-0.02, 1.0).normalize(),
+    }));
+    let rough = r#"{"law": "coulomb", "mu": 1e6}"#;
+    let by_mortar = |law: &str| {
+        let (points, mortar) = mortar_points(&slave, &x);
+        ContactPair { mortar: Some(mortar), ..pair(points, surface.clone(), law) }
+    };
+    for (number, (pair, way)) in [
+        (pair(nodal_points(&slave), surface.clone(), COULOMB), 1e-5),
+        (pair(nodal_points(&slave), surface.clone(), COULOMB), 0.05),
+        (pair(gauss_points(&slave, 2), surface.clone(), SUPER), 0.001),
+        (pair(gauss_points(&slave, 2), plane, COULOMB), 1e-5),
+        (by_mortar(COULOMB), 20.0),
+        (by_mortar(rough), 20.0),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let motion = Vector2::new(-way, 0.2 * way);
+        let here = vec![0.0; 2 * x.len()];
+        let mut aside = here.clone();
+        aside[12..].chunks_mut(2).for_each(|u| u.copy_from_slice(&[-motion.x, -motion.y]));
+        let before = Configuration::new(&x, &aside);
+        let friction = pair.laws[0].initial_state();
+        let old = ContactState { friction, foot: None, length: 1.0, gap: 0.0, slip: 0.0, multiplier: 0.0 };
+        let old = vec![old; pair.points.len()];
+        let answer = |u: &[f64]| {
+            let x = Configuration::new(&x, u);
+            pair.respond(&old, &before, MOMENT, |_| Presumption::default(), &x).expect("an answer")
+        };
+        let mut closed = 0;
+        for (k, (state, found)) in answer(&here).into_iter().enumerate() {
+            let Some(found) = found else { continue };
+            closed += 1;
+            if number == 3 {
+                let slip = motion.dot(&Vector2::new(1.0, 0.02).normalize());
+                assert!((state.friction.traction.abs() - 700.0 * slip.abs()).abs() < 1e-12);
+            }
+            let (contribution, scale) = (&found.contribution, found.contribution.tangent.amax());
+            for column in 0..2 * contribution.nodes.len() {
+                let moved = |step: f64| {
+                    let mut u = here.clone();
+                    u[2 * contribution.nodes[column / 2] + column % 2] += step;
+                    answer(&u)[k].1.clone().expect("a tiny motion does not open the point").contribution.force
+                };
+                let difference = (moved(1e-6) - moved(-1e-6)) / 2e-6;
+                for (row, difference) in difference.iter().enumerate() {
+                    let tangent = contribution.tangent[(row, column)];
+                    assert!(
+                        (difference - tangent).abs() < 1e-6 * scale,
+                        "{number}: point {k}, ({row}, {column}): {tangent}, by differences {difference} (scale {scale})"
+                    );
+                }
+            }
+        }
+        assert!(closed > 0, "pair {number} is open");
+    }
+}
+
+/// Mortar: the tangent of every closed point on straight and curved, smooth and cornered edges, sticking and slipping, from
+/// a committed configuration in which the slave lay elsewhere.
+#[test]
+fn mortar_tangent_equals_differences() {
+    let (straight, x) = wavy();
+    let quadratic = [vec![2, 0, 1], vec![5, 2, 3]];
+    for (master, slave) in [
+        (&straight[..], vec![vec![6, 7], vec![7, 8]]),
+        (&straight[..], vec![vec![6, 8, 7]]),
+        (&quadratic[..], vec![vec![6, 7], vec![7, 8]]),
+        (&quadratic[..], vec![vec![6, 8, 7]]),
+    ] {
+        let surface = Surface::new(master);
+        let (points, mortar) = mortar_points(&slave, &x);
+        for law in [SUPER, COULOMB] {
+            let pair = pair(points.clone(), Master::Mesh(surface.clone()), law);
+            let mut closed = 0;
+            for (way, gap) in [(1e-5, -0.02), (0.02, -0.02), (-0.3, -0.02), (0.02, 0.03)] {
+                let mut before = x.clone();
+                before[6..].iter_mut().for_each(|x| x.x -= way);
+                for k in 0..points.len() {
+                    closed += usize::from(check_mortar_tangent(&pair, &mortar, &surface, k, &before, gap, &x));
+                }
+            }
+            assert!(closed >= 8, "{closed} points were tested");
+        }
+    }
+}
+
+/// The direction of a slave node is the mean of its edges' under its multiplier, ∫ φ_j dx: on two parabolas of unequal length,
+/// by sums of little chords.
+#[test]
+fn mortar_normal_is_the_mean_under_the_multiplier() {
+    let on_circle = |angle: f64| Vector2::new(angle.sin(), 1.0 - angle.cos());
+    let nodes = [-0.6, -0.3, 0.0, 0.15, 0.3].map(on_circle);
+    let x: Positions = [Vector2::new(-3.0, 0.01), Vector2::new(3.0, 0.01)].into_iter().chain(nodes).collect();
+    let (master, slave) = (Surface::new(&[vec![1, 0]]), [vec![2, 4, 3], vec![4, 6, 5]]);
+    let (points, mortar) = mortar_points(&slave, &x);
+    let place = |edge: &[usize], xi: f64| {
+        let [start, end, middle] = [0.5 * xi * (xi - 1.0), 0.5 * xi * (xi + 1.0), 1.0 - xi * xi];
+        start * x[edge[0]] + end * x[edge[1]] + middle * x[edge[2]]
+    };
+    let mean = |edge: &[usize], phi: fn(f64) -> f64| -> Vector2<f64> {
+        let chord = |k: i32| place(edge, f64::from(k + 1) * 1e-3) - place(edge, f64::from(k) * 1e-3);
+        (-1000..1000).map(|k| phi((f64::from(k) + 0.5) * 1e-3) * chord(k)).sum()
+    };
+    let (start, middle, end) = (|xi: f64| (-xi).max(0.0), |xi: f64| 1.0 - xi.abs(), |xi: f64| xi.max(0.0));
+    let [first, second] = &slave;
+    let expected = [
+        mean(first, start),
+        mean(first, middle),
+        mean(first, end) + mean(second, start),
+        mean(second, middle),
+        mean(second, end),
+    ];
+    let configuration = Configuration::undeformed(&x);
+    let pair = pair(points, Master::Mesh(master.clone()), FRICTIONLESS);
+    let overlaps = mortar.overlaps(&master, &Index::new(&pair.master, &configuration), &configuration);
+    for (k, expected) in expected.into_iter().enumerate() {
+        let met = mortar.kinematics(k, &master, &overlaps, None, &configuration).expect("the master faces the point");
+        let away = (met.kinematics.tangent - expected.normalize()).norm();
+        assert!(away < 1e-6, "point {k}: {:?}, not {:?}", met.kinematics.tangent, expected.normalize());
+    }
+}
+
+/// Compare the tangent of one mortar point with central differences; whether it was closed.
+fn check_mortar_tangent(
+    pair: &ContactPair,
+    mortar: &Mortar,
+    surface: &Surface,
+    k: usize,
+    before: &Positions,
+    gap: f64,
+    x: &Positions,
+) -> bool {
+    let before = Configuration::undeformed(before);
+    let was = mortar.overlaps(surface, &Index::new(&pair.master, &before), &before);
+    let weights = mortar.weights(k, surface, &was, &before);
+    let open = pair.laws[0].initial_state();
+    let friction = if gap > 0.0 { open } else { FrictionState { traction: 2.0, pressure: 20.0, ..open } };
+    let old = ContactState {
+        friction,
+        foot: Some(MasterPoint { segment: 0, xi: 0.0 }),
+        length: 1.0,
+        gap,
+        slip: 0.0,
+        multiplier: 0.0,
+    };
+    let increment = Increment { during: MOMENT, presumption: Presumption::default() };
+    let evaluate = |x: &Positions| {
+        let x = Configuration::undeformed(x);
+        let is = mortar.overlaps(surface, &Index::new(&pair.master, &x), &x);
+        let meeting = mortar.kinematics(k, surface, &is, weights.as_ref(), &x).expect("the master faces the point");
+        closes(pair, &pair.points[k], meeting.gap, &old, increment, &x)
+            .then(|| {
+                let Meeting { kinematics, gap, foot } = meeting;
+                let place = Place { gap, foot: Some(foot), kinematics: Some(kinematics) };
+                finish(pair, k, &old, increment, place).1.expect("a closed point")
+            })
+            .map(|closed| closed.contribution)
+    };
+    let Some(contribution) = evaluate(x) else { return false };
+    let (scale, h) = (contribution.tangent.amax(), 1e-6);
+    for column in 0..2 * contribution.nodes.len() {
+        let moved = |step: f64| {
+            let mut x = x.clone();
+            x[contribution.nodes[column / 2]][column % 2] += step;
+            let moved = evaluate(&x).expect("a tiny motion does not open the point");
+            assert_eq!(moved.nodes, contribution.nodes);
+            moved.force
+        };
+        let differences = (moved(h) - moved(-h)) / (2.0 * h);
+        for (row, difference) in differences.iter().enumerate() {
+            let tangent = contribution.tangent[(row, column)];
+            assert!(
+                (difference - tangent).abs() < 1e-6 * scale,
+                "point {k}, ({row}, {column}): {tangent}, by differences {difference} (scale {scale})"
+            );
+        }
+    }
+    true
+}
+
+/// A valley: a point has gone through its bottom, and the closest point is the node there.
+#[test]
+fn tangent_equals_differences_at_a_concave_corner() {
+    let x =
+        [(-1.0, 0.5), (0.0, 0.0), (1.0, 0.5), (-0.3, -0.101), (0.3, -0.1)].map(|(x, y)| Vector2::new(x, y)).to_vec();
+    let pair = pair(gauss_points(&[vec![3, 4]], 3), Master::Mesh(Surface::new(&[vec![1, 0], vec![2, 1]])), SUPER);
+    let at = &Configuration::undeformed(&x);
+    let foot = Index::new(&pair.master, at).project(&pair.points[1], None, at).expect("a foot");
+    assert!(foot.gap < 0.0 && foot.bound == Bound::Node(1));
+    let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.laws[0].initial_state() };
+    let old = ContactState {
+        friction: pressed,
+        foot: Some(MasterPoint { segment: 0, xi: 0.9 }),
+        length: 1.0,
+        gap: -0.05,
+        slip: 0.0,
+        multiplier: 0.0,
+    };
+    check_tangent(&pair, 1, &old, &x, "concave corner");
+}
+
+#[test]
+fn open_points_add_nothing() {
+    let (edges, mut x) = wavy();
+    for slave in &mut x[6..] {
+        slave.y += 1.0;
+    }
+    let pair = pair(gauss_points(&[vec![6, 7], vec![7, 8]], 2), Master::Mesh(Surface::new(&edges)), SUPER);
+    let states = pair.initial_states(&Configuration::undeformed(&x));
+    for (k, old) in states.iter().enumerate() {
+        let (state, contribution) = evaluate(&pair, k, old, &x);
+        assert!(contribution.is_none() && state.regime() == Regime::Open && state.gap > 0.5);
+    }
+}
+
+/// Friction by which the surfaces ride up, opening with slip and less so under pressure: every part of its tangent is at work.
+///
+/// ```text
+/// q = q₀ + α_t Δu (1 + p/P),   d = d₀ + s Δu²/(1 + p/P)
+/// ```
+#[derive(Debug)]
+struct RidesUp {
+    alpha_t: f64,
+    rise: f64,
+    pressure: f64,
+}
+
+impl FrictionLaw for RidesUp {
+    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
+        let Sliding { slip, pressure, .. } = sliding.checked()?;
+        if pressure <= 0.0 {
+            return FrictionResponse::elastic(old.parted(self.alpha_t), 0.0).checked(self.alpha_t);
+        }
+        let grip = 1.0 + pressure / self.pressure;
+        let state = old.stuck(old.traction + self.alpha_t * slip * grip, pressure);
+        FrictionResponse {
+            state: FrictionState { opening: old.opening + self.rise * slip.powi(2) / grip, ..state },
+            dtraction_dslip: self.alpha_t * grip,
+            dtraction_dpressure: self.alpha_t * slip / self.pressure,
+            dopening_dslip: 2.0 * self.rise * slip / grip,
+            dopening_dpressure: -self.rise * slip.powi(2) / grip.powi(2) / self.pressure,
+            evaluations: 0,
+        }
+        .checked(self.alpha_t)
+    }
+
+    fn stiffness(&self) -> f64 {
+        self.alpha_t
+    }
+}
+
+/// A law that opens the interface raises the pressure by α_n times the opening, under the pressure that it then has; the tangent
+/// of force and moment follows, point by point, after touch, and by mortar.
+#[test]
+fn a_law_that_dilates_presses_and_its_tangent_equals_differences() {
+    let rides_up =
+        || -> Vec<Box<dyn FrictionLaw>> { vec![Box::new(RidesUp { alpha_t: 700.0, rise: 0.4, pressure: 30.0 })] };
+    let (edges, x) = wavy();
+    let points = gauss_points(&[vec![6, 7], vec![7, 8]], 3);
+    let points = ContactPair { laws: rides_up(), ..pair(points, Master::Mesh(Surface::new(&edges)), COULOMB) };
+    let pressed = FrictionState { opening: 0.004, ..points.laws[0].initial_state().loaded(20.0, 2.0) };
+    let mut closed = 0;
+    for k in 0..points.points.len() {
+        for (back, gap) in [(0.01, -0.02), (0.2, -0.02), (-0.2, -0.02), (0.2, 0.03)] {
+            let friction = if gap > 0.0 { FrictionState { opening: 0.004, ..Default::default() } } else { pressed };
+            let old = pulled(&points, k, &x, back, friction, gap);
+            let (state, contribution) = evaluate(&points, k, &old, &x);
+            if contribution.is_none() {
+                continue;
+            }
+            closed += 1;
+            let FrictionState { pressure, opening, .. } = state.friction;
+            assert!((pressure - 1000.0 * (opening - state.gap)).abs() < 1e-11 * pressure, "{pressure}, {opening}");
+            assert!(gap > 0.0 || opening > 0.004, "{opening}");
+            check_tangent(&points, k, &old, &x, &format!("slip {back} from {gap}"));
+        }
+    }
+    assert!(closed > 8, "{closed} answers were tested");
+
+    let (points, mortar) = mortar_points(&[vec![6, 7], vec![7, 8]], &x);
+    let surface = Surface::new(&edges);
+    let averaged = ContactPair { laws: rides_up(), ..pair(points, Master::Mesh(surface.clone()), COULOMB) };
+    let before: Positions =
+        x.iter().enumerate().map(|(k, x)| Vector2::new(if k < 6 { x.x } else { x.x - 0.1 }, x.y)).collect();
+    let tested = (0..averaged.points.len())
+        .filter(|&k| check_mortar_tangent(&averaged, &mortar, &surface, k, &before, -0.02, &x))
+        .count();
+    assert!(tested > 0, "no node was closed");
+}

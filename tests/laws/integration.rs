@@ -1,0 +1,221 @@
+//! The super/subloading law under error control: right whatever the increment, with the tangent of what was computed.
+
+use fecontact::laws::friction::{FrictionLaw, FrictionParameters, FrictionState, Sliding};
+use serde_json::{Value, json};
+
+/// μ, the one variable of the super/subloading law.
+fn mu_of(state: &FrictionState) -> f64 {
+    state.variables[0]
+}
+
+const MU_S: f64 = 0.4;
+const MU_K: f64 = 0.2;
+const ALPHA_T: f64 = 1000.0;
+const R: f64 = 100.0;
+const PRESSURE: f64 = 98.1;
+/// Global error allowed, 1e-6 of μ_s p.
+const MICRO: f64 = 1e-6 * MU_S * PRESSURE;
+
+/// The paper's data with other values put in.
+fn law(other: Value) -> Box<dyn FrictionLaw> {
+    let mut given = json!({"law": "super_subloading", "mu_s": MU_S, "mu_k": MU_K, "alpha_t": ALPHA_T, "r": R});
+    given.as_object_mut().unwrap().extend(other.as_object().unwrap().clone());
+    serde_json::from_value::<FrictionParameters>(given).unwrap().build(1.0).unwrap()
+}
+
+fn pressed(mu: f64, traction: f64) -> FrictionState {
+    FrictionState { traction, pressure: PRESSURE, ..FrictionState::default().with_variables([mu]) }
+}
+
+/// Follow a polyline of (time, slip, pressure), each stretch in `parts` increments; the states at its corners.
+fn follow(law: &dyn FrictionLaw, start: FrictionState, corners: &[[f64; 3]], parts: usize) -> Vec<FrictionState> {
+    let mut state = start;
+    let mut states = Vec::new();
+    for pair in corners.windows(2) {
+        let [[t0, u0, p0], [t1, u1, p1]] = [pair[0], pair[1]];
+        for k in 1..=parts {
+            let share = 1.0 / parts as f64;
+            let pressure = p0 + (p1 - p0) * k as f64 * share;
+            let sliding = Sliding { slip: (u1 - u0) * share, pressure, dt: (t1 - t0) * share };
+            state = law.respond(&state, sliding).unwrap().state;
+        }
+        states.push(state);
+    }
+    states
+}
+
+/// −li(R) by Simpson's rule of ∫ dR/(−ln R) from 0, with R = exp(−exp(−y)): no special function needed.
+fn minus_li(ratio: f64) -> f64 {
+    let (low, high) = (-7.0, -(-ratio.ln()).ln());
+    let n = 20_000;
+    let h = (high - low) / f64::from(n);
+    let f = |y: f64| (-(-y).exp()).exp();
+    let sum: f64 = (1..n).map(|k| f(low + h * f64::from(k)) * if k % 2 == 1 { 4.0 } else { 2.0 }).sum();
+    h / 3.0 * (f(low) + sum + f(high))
+}
+
+/// u(R) = R μ p/α_t − li(R)/r without weakening; with it (ξ = 0, m = 1) μ = μ_k + (μ_s − μ_k) exp(−κ s/μ_k) at the
+/// plastic slip s = −li(R)/r.
+#[test]
+fn closed_forms_hold_for_any_number_of_increments() {
+    for kappa in [0.0, 10.0] {
+        for ratio in [0.1, 0.5, 0.8711, 0.99, 0.9999] {
+            let slip = minus_li(ratio) / R;
+            let mu = MU_K + (MU_S - MU_K) * (-kappa * slip / MU_K).exp();
+            let traction = ratio * mu * PRESSURE;
+            let end = traction / ALPHA_T + slip;
+            let law = law(json!({"kappa": kappa}));
+            for parts in [1, 2, 3, 10, 100, 1000, 10_000] {
+                let path = [[0.0, 0.0, PRESSURE], [1.0, end, PRESSURE]];
+                let state = follow(&*law, pressed(MU_S, 0.0), &path, parts)[0];
+                let error = (state.traction - traction).abs();
+                assert!(error < MICRO, "κ = {kappa}, R = {ratio}, {parts} increments: off by {error:e}");
+                let error = (mu_of(&state) - mu).abs() * PRESSURE;
+                assert!(error < MICRO, "κ = {kappa}, R = {ratio}, {parts} increments: μ p off by {error:e}");
+            }
+        }
+    }
+}
+
+/// Ageing at rest, n = 1: μ = μ_s − (μ_s − μ₀) exp(−ξ t/μ_s).
+#[test]
+fn ageing_is_exact_in_any_number_of_increments() {
+    let law = law(json!({"kappa": 10, "xi": 0.002}));
+    for parts in [1, 10, 10_000] {
+        let path = [[0.0, 0.0, PRESSURE], [300.0, 0.0, PRESSURE]];
+        let mu = mu_of(&follow(&*law, pressed(MU_K, 0.0), &path, parts)[0]);
+        let exact = MU_S - (MU_S - MU_K) * (-0.002 * 300.0 / MU_S).exp();
+        assert!((mu - exact).abs() * PRESSURE < MICRO, "{parts} increments: {mu}, expected {exact}");
+    }
+}
+
+/// u = sin t from sliding, on the polyline through its values every Δt: the answer at the corners is that of the same
+/// polyline in increments of 1e-5.
+#[test]
+fn forced_oscillation_is_right_on_its_polyline_at_any_increment() {
+    let law = law(json!({"kappa": 10, "xi": 0.002}));
+    for dt in [1e-3, 1e-2, 0.1, 0.3] {
+        let corners: Vec<_> =
+            (0..=(10.0 / dt) as usize).map(|k| k as f64 * dt).map(|t| [t, t.sin(), PRESSURE]).collect();
+        let start = pressed(MU_K, MU_K * PRESSURE);
+        let coarse = follow(&*law, start, &corners, 1);
+        let fine = follow(&*law, start, &corners, (dt / 1e-5).round() as usize);
+        for (k, (coarse, fine)) in coarse.iter().zip(&fine).enumerate() {
+            let error = (coarse.traction - fine.traction).abs();
+            assert!(error < 1e-3 * MU_K * PRESSURE, "Δt = {dt}, corner {k}: {} {}", coarse.traction, fine.traction);
+            assert!(coarse.dissipation >= 0.0 && fine.dissipation >= 0.0);
+        }
+    }
+}
+
+/// One increment of backward Euler takes at most twelve evaluations of its equation, whatever its length.
+#[test]
+fn backward_euler_needs_few_evaluations() {
+    let law = law(json!({"kappa": 10, "xi": 0.002, "integration": "backward_euler"}));
+    for dt in [1e-5, 1e-3, 1e-2, 0.1, 0.3] {
+        let mut state = pressed(MU_K, MU_K * PRESSURE);
+        let mut most = 0;
+        for k in 0..(7.0 / dt) as usize {
+            let [a, b] = [k, k + 1].map(|k| (k as f64 * dt).sin());
+            let answer = law.respond(&state, Sliding { slip: b - a, pressure: PRESSURE, dt }).unwrap();
+            most = most.max(answer.evaluations);
+            state = answer.state;
+        }
+        assert!((1..=12).contains(&most), "Δt = {dt}: {most} evaluations");
+    }
+}
+
+/// q, μ and ∫ |q| dλ by Runge–Kutta of fourth order on the rate form: λ = ⟨α_t s v − ξ R (1 − μ/μ_s)^n p − R μ ṗ⟩/den,
+/// s = sgn q, den = α_t + p (r (−ln R) μ − κ R (μ/μ_k − 1)^m).
+fn rate_form(
+    [kappa, xi, m, n]: [f64; 4],
+    start: FrictionState,
+    from: [f64; 3],
+    to: [f64; 3],
+    steps: usize,
+) -> [f64; 3] {
+    let time = to[0] - from[0];
+    let (v, dp) = ((to[1] - from[1]) / time, (to[2] - from[2]) / time);
+    let rate = |t: f64, [q, mu, _]: [f64; 3]| {
+        let p = from[2] + dp * t;
+        let s = if q == 0.0 { v.signum() } else { q.signum() };
+        let ratio = (q.abs() / (mu * p)).clamp(1e-300, 1.0);
+        let loss = kappa * (mu / MU_K - 1.0).max(0.0).powf(m);
+        let gain = xi * (1.0 - mu / MU_S).max(0.0).powf(n);
+        let den = ALPHA_T + p * (-R * ratio.ln() * mu - ratio * loss);
+        let slip = ((ALPHA_T * s * v - gain * ratio * p - ratio * mu * dp) / den).max(0.0);
+        [ALPHA_T * (v - slip * s), gain - loss * slip, q.abs() * slip]
+    };
+    let h = time / steps as f64;
+    let mut y = [start.traction, mu_of(&start), 0.0];
+    for k in 0..steps {
+        let t = k as f64 * h;
+        let shifted = |slope: [f64; 3], share: f64| [0, 1, 2].map(|i| y[i] + share * h * slope[i]);
+        let k1 = rate(t, y);
+        let k2 = rate(t + 0.5 * h, shifted(k1, 0.5));
+        let k3 = rate(t + 0.5 * h, shifted(k2, 0.5));
+        let k4 = rate(t + h, shifted(k3, 1.0));
+        y = [0, 1, 2].map(|i| y[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]));
+    }
+    y
+}
+
+/// Weakening and ageing together, pressure that rises and falls, loading that turns into unloading within an increment,
+/// exponents other than 1: one increment each, against the rate equations in two hundred thousand steps.
+#[test]
+fn one_increment_is_right_to_the_tolerance() {
+    for (numbers, start, to) in [
+        ([10.0, 0.002, 1.0, 1.0], pressed(0.3, 5.0), [10.0, 0.05, PRESSURE]),
+        ([10.0, 0.02, 1.0, 1.0], pressed(0.25, 15.0), [100.0, 0.2, 150.0]),
+        ([10.0, 0.02, 1.0, 1.0], pressed(0.25, 15.0), [10.0, 0.02, 60.0]),
+        ([5.0, 0.01, 1.5, 2.0], pressed(0.35, 20.0), [20.0, 0.1, 90.0]),
+        ([5.0, 0.01, 0.7, 0.8], pressed(0.3, -10.0), [20.0, 0.1, 98.1]),
+        ([10.0, 0.05, 1.0, 1.0], pressed(0.22, 21.0), [50.0, 0.003, 98.1]),
+        ([0.0, 0.0, 1.0, 1.0], pressed(0.3, 20.0), [1.0, 0.01, 160.0]),
+    ] {
+        let [kappa, xi, m, n] = numbers;
+        let law = law(json!({"kappa": kappa, "xi": xi, "m": m, "n": n}));
+        let sliding = Sliding { slip: to[1], pressure: to[2], dt: to[0] };
+        let state = law.respond(&start, sliding).unwrap().state;
+        let [q, mu, work] = rate_form(numbers, start, [0.0, 0.0, PRESSURE], to, 200_000);
+        let allowed = 5.0 * 1e-6 * MU_S * to[2].max(PRESSURE);
+        assert!((state.traction - q).abs() < allowed, "{numbers:?}: q = {}, expected {q}", state.traction);
+        assert!((mu_of(&state) - mu).abs() * PRESSURE < allowed, "{numbers:?}: μ = {}, expected {mu}", mu_of(&state));
+        assert!((state.dissipation - work).abs() < 1e-4 * work.max(1e-3), "{numbers:?}: {} {work}", state.dissipation);
+    }
+}
+
+/// Tangents of whole increments, sub-steps and all, against differences.
+#[test]
+fn tangents_belong_to_the_answers() {
+    for integration in ["controlled", "backward_euler"] {
+        let law = law(json!({"kappa": 10, "xi": 0.02, "integration": integration}));
+        for (start, [slip, pressure, dt]) in [
+            (pressed(0.3, 5.0), [0.05, 98.1, 10.0]),
+            (pressed(0.3, 5.0), [-0.05, 98.1, 10.0]),
+            (pressed(0.25, 15.0), [0.2, 150.0, 100.0]),
+            (pressed(0.25, 15.0), [0.02, 60.0, 10.0]),
+            (pressed(0.25, 15.0), [-0.001, 98.1, 1.0]),
+            (pressed(0.4, 0.0), [0.01, 98.1, 1.0]),
+        ] {
+            let at = |slip: f64, pressure: f64| law.respond(&start, Sliding { slip, pressure, dt }).unwrap();
+            let answer = at(slip, pressure);
+            let (du, dp) = (1e-7 * slip.abs(), 1e-6 * pressure);
+            let by_slip =
+                (at(slip + du, pressure).state.traction - at(slip - du, pressure).state.traction) / (2.0 * du);
+            let by_pressure =
+                (at(slip, pressure + dp).state.traction - at(slip, pressure - dp).state.traction) / (2.0 * dp);
+            let what = format!("{integration} from {} over {slip}", start.traction);
+            assert!(
+                (answer.dtraction_dslip - by_slip).abs() < 1e-4 * ALPHA_T,
+                "{what}: {} {by_slip}",
+                answer.dtraction_dslip
+            );
+            assert!(
+                (answer.dtraction_dpressure - by_pressure).abs() < 1e-4,
+                "{what}: {} {by_pressure}",
+                answer.dtraction_dpressure
+            );
+        }
+    }
+}
