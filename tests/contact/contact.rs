@@ -256,7 +256,7 @@ fn a_promise_is_of_second_order_and_changes_no_force() {
 fn slip_counts_from_touch() {
     let plane = Rigid::Plane(Plane { point: Vector2::zeros(), normal: Vector2::new(0.0, 1.0) });
     let plain = pair(gauss_points(&[vec![0, 1]], 2), Master::Rigid(plane), COULOMB);
-    let check = |pair: &ContactPair, deep: f64, moment: ContactIncrement, d: f64| {
+    let check = |pair: &ContactPair, deep: f64, during: ContactIncrement, d: f64| {
         let x = vec![Vector2::new(0.2, -deep), Vector2::new(0.9, -deep)];
         let old = pulled(pair, 0, &x, 0.005, pair.laws[0].initial_state(), 0.03);
         check_tangent(pair, 0, &old, &x, "after touch");
@@ -554,8 +554,8 @@ fn initial_pressure_is_the_first_multiplier_of_the_augmented_lagrangian() {
     pair.start_closed(vec![InitialTraction { pressure: 20.0, traction: 2.0 }; pair.points.len()], &at).expect("feet");
     let old = pair.initial_states(&at);
     for stiffening in [1.0, 100.0] {
-        let moment = ContactIncrement { stiffening, ..MOMENT };
-        let answer = pair.respond(&old, &at, moment, |_| Presumption::default(), &at).expect("an answer");
+        let during = ContactIncrement { stiffening, ..MOMENT };
+        let answer = pair.respond(&old, &at, during, |_| Presumption::default(), &at).expect("an answer");
         let states: Vec<ContactState> = answer.into_iter().map(|(state, _)| state).collect();
         for state in &states {
             let FrictionState { pressure, traction, .. } = state.friction;
