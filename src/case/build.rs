@@ -181,7 +181,7 @@ fn bodies(case: &Case, mesh: &Mesh) -> Checked<(Vec<Body>, Vec<usize>)> {
             ));
         };
         let material = input.material.build().map_err(|error| Complaint::new(format!("{place}.material"), error))?;
-        check_stiffness(&format!("{place}.material"), "the stiffness lambda + 2 G", material.stiffness())?;
+        check_stiffness(&format!("{place}.material"), "the stiffness lambda + 2 G", material.p_wave_modulus())?;
         let damping = damping(&input.damping, &*material, &format!("{place}.damping"))?;
         for &element in elements {
             body_of_element[element] = bodies.len();
@@ -212,7 +212,7 @@ fn damping(input: &DampingInput, material: &dyn Material, place: &str) -> Checke
         let message = "has no effect on a body without mass: give material.density, or damp by stiffness";
         return Err(Complaint::new(format!("{place}.mass"), message));
     }
-    Ok(Damping { mass, stiffness })
+    Ok(Damping { mass, retardation: stiffness })
 }
 
 fn point_masses(case: &Case, mesh: &Mesh) -> Checked<Vec<PointMass>> {
@@ -451,7 +451,7 @@ fn elastic_stiffness(place: &str, input: &ContactInput, model: &Model) -> Checke
         return Ok(None);
     }
     let slave = edges(&model.mesh, name, &format!("{place}.slave"))?;
-    let modulus = |edge: &Edge| model.bodies[model.body_of_element[edge.element]].material.stiffness();
+    let modulus = |edge: &Edge| model.bodies[model.body_of_element[edge.element]].material.p_wave_modulus();
     let master = match &input.master {
         MasterInput::Group(group) => edges(&model.mesh, group, &format!("{place}.master"))?,
         MasterInput::Rigid(_) => &[],
@@ -881,7 +881,7 @@ fn absorbers(model: &Model, edges: &[Edge]) -> Vec<Absorber> {
             let along: Vector2<f64> = nodes.iter().zip(&slopes).map(|(&node, w)| model.mesh.nodes[node] * *w).sum();
             let s = along.normalize();
             let n = Vector2::new(s.y, -s.x);
-            let resistance = n * n.transpose() * impedance(material.stiffness())
+            let resistance = n * n.transpose() * impedance(material.p_wave_modulus())
                 + s * s.transpose() * impedance(material.shear_modulus());
             for (&node, value) in nodes.iter().zip(values) {
                 *total.entry(node).or_default() += resistance * (weight * value * along.norm());
@@ -947,7 +947,7 @@ fn stabilization(place: &str, input: &StepInput, scheme: Scheme, model: &Model) 
     }
     let mut coefficients = vec![0.0; model.dofs()];
     for body in &model.bodies {
-        let coefficient = share * body.material.stiffness() * input.duration / body.nodes.len() as f64;
+        let coefficient = share * body.material.p_wave_modulus() * input.duration / body.nodes.len() as f64;
         let dofs = body.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
         dofs.for_each(|dof| coefficients[dof] = coefficient);
     }

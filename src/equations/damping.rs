@@ -91,14 +91,14 @@ impl Assembler<'_> {
 
 /// τ of the body that an element belongs to [T].
 pub(super) fn damping_time(model: &Model, e: usize) -> f64 {
-    model.bodies[model.body_of_element[e]].damping.stiffness
+    model.bodies[model.body_of_element[e]].damping.retardation
 }
 
 /// Viscous forces of an element at displacements and velocities, and their tangent if ∂v/∂u is given.
 fn viscous(model: &Model, e: usize, motion: [&[f64]; 2], dvelocity: Option<&[f64]>) -> Contribution {
     let nodes = &model.mesh.elements[e].nodes;
     let body = &model.bodies[model.body_of_element[e]];
-    let law = (&*body.material, body.damping.stiffness);
+    let law = (&*body.material, body.damping.retardation);
     let [u, v] = motion.map(|all| -> Vec<Vector2<f64>> {
         nodes.iter().map(|&node| Vector2::new(all[2 * node], all[2 * node + 1])).collect()
     });

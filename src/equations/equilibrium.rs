@@ -68,8 +68,8 @@ impl Equilibrium {
         let mut lone = vec![true; count];
         for (e, element) in model.mesh.elements.iter().enumerate() {
             let body = &model.bodies[model.body_of_element[e]];
-            let modulus = body.material.stiffness();
-            let viscous = body.damping.stiffness * modulus;
+            let modulus = body.material.p_wave_modulus();
+            let viscous = body.damping.retardation * modulus;
             for &node in &element.nodes {
                 lone[node] = false;
                 let node = model.ties.original(node);

@@ -69,7 +69,8 @@ impl Assembler<'_> {
         let clock = std::time::Instant::now();
         let mut force = std::mem::take(&mut self.evaluation.force);
         force.resize(u.len(), 0.0);
-        let strain_energy = self.gather_solids(u, &mut force)?;
+        let elastic = self.gather_solids(u, &mut force)?;
+        let strain_energy = elastic + self.add_evolving(trial, u, &mut force, None)?;
         for closed in responses.iter().flatten().filter_map(|(_, closed)| closed.as_ref()) {
             let contribution = &closed.contribution;
             for (a, &node) in contribution.nodes.iter().enumerate() {
@@ -100,7 +101,12 @@ impl Assembler<'_> {
     /// Write the internal forces of the solids over `force`; returns the stored energy.
     pub fn gather_solids(&mut self, u: &[f64], force: &mut [f64]) -> Result<f64, TrialFailure> {
         let model = self.model;
+        let evolving = self.evolving.clone();
         let one = |e: usize, forces: &mut [Vector2<f64>]| {
+            if evolving.has(e) {
+                forces.fill(Vector2::zeros());
+                return Ok(0.0);
+            }
             let local = nodal(model, e, u);
             let material = &*model.bodies[model.body_of_element[e]].material;
             model.solids[e].nodal_forces(material, &local[..forces.len()], forces)
@@ -116,12 +122,12 @@ impl Assembler<'_> {
         let model = self.model;
         let one = |e: usize, forces: &mut [Vector2<f64>]| {
             let body = &model.bodies[model.body_of_element[e]];
-            match body.damping.stiffness > 0.0 {
+            match body.damping.retardation > 0.0 {
                 true => {
                     let [u, v] = [u, v].map(|all| nodal(model, e, all));
                     let n = forces.len();
                     model.solids[e].viscous_forces(
-                        (&*body.material, body.damping.stiffness),
+                        (&*body.material, body.damping.retardation),
                         [&u[..n], &v[..n]],
                         forces,
                     );

@@ -12,6 +12,7 @@
 mod damping;
 pub mod energy;
 mod equilibrium;
+mod evolving;
 pub mod failure;
 mod forces;
 
@@ -36,6 +37,7 @@ use crate::model::scheme::{Coefficients, supported_rates};
 use crate::model::state::State;
 use crate::model::{Model, Step};
 use equilibrium::Equilibrium;
+use evolving::Evolving;
 
 /// One increment to be solved: from where, to when, under which step.
 #[derive(Clone, Copy, Debug)]
@@ -110,8 +112,12 @@ pub struct Evaluation {
     pub acceleration: Vec<f64>,
     /// trial states of all contact points
     pub contacts: Vec<Vec<ContactState>>,
+    /// What the materials remember at the end of the trial
+    pub memory: Vec<f64>,
     /// ∫ W dV [F·L]
     pub strain_energy: f64,
+    /// What the materials dissipated in the increment [F·L]
+    pub dissipated: f64,
 }
 
 /// Numbers of contact points by status.
@@ -222,6 +228,7 @@ pub struct Assembler<'m> {
     /// Sum of the forces' magnitudes at each dof [F]
     magnitudes: Vec<f64>,
     equilibrium: Equilibrium,
+    evolving: Evolving,
     /// One entry a contact point, empty before the first linear solve of an increment
     iterates: Vec<Vec<Iterate>>,
     /// u of the last linear solve [L]
@@ -291,6 +298,7 @@ impl<'m> Assembler<'m> {
             weight: weight(model),
             magnitudes: vec![0.0; model.dofs()],
             equilibrium: Equilibrium::new(model),
+            evolving: Evolving::new(model),
             iterates: Vec::new(),
             linearized_at: Vec::new(),
             evaluation: Evaluation::default(),
@@ -397,7 +405,8 @@ impl<'m> Assembler<'m> {
         let mut values = tangent.then_some(&mut system.tangent);
         self.magnitudes.fill(0.0);
         let mut force = vec![0.0; u.len()];
-        let strain_energy = self.add_solids(u, &mut force, values.as_deref_mut())?;
+        let elastic = self.add_solids(u, &mut force, values.as_deref_mut())?;
+        let strain_energy = elastic + self.add_evolving(trial, u, &mut force, values.as_deref_mut())?;
         self.equilibrium.note_contacts(self.model, trial, &responses);
         for (_, closed) in responses.iter().flatten() {
             if let Some(Closed { contribution, .. }) = closed {
@@ -559,6 +568,7 @@ impl<'m> Assembler<'m> {
         tangents.resize(tangents.len().max(batch * stride), 0.0);
         energies.clear();
         let mut energy = 0.0;
+        let evolving = &self.evolving;
         for first in (0..model.mesh.elements.len()).step_by(BATCH) {
             let elements = first..(first + BATCH).min(model.mesh.elements.len());
             let one = |(e, (force, tangent)): (usize, (&mut [f64], &mut [f64]))| {
@@ -569,6 +579,11 @@ impl<'m> Assembler<'m> {
                 }
                 let n = 2 * nodes.len();
                 let (solid, material) = (&model.solids[e], &*model.bodies[model.body_of_element[e]].material);
+                if evolving.has(e) {
+                    force[..n].fill(0.0);
+                    tangent[..if wants_tangent { n * n } else { 0 }].fill(0.0);
+                    return Ok(0.0);
+                }
                 if wants_tangent {
                     solid.force_and_tangent(material, &local[..nodes.len()], &mut force[..n], &mut tangent[..n * n])
                 } else {
@@ -867,7 +882,7 @@ impl<'m> Assembler<'m> {
 
 /// w: the largest stiffness of the materials and springs; a model of points alone has that of its contacts.
 fn weight(model: &Model) -> f64 {
-    let materials = model.bodies.iter().map(|body| body.material.stiffness());
+    let materials = model.bodies.iter().map(|body| body.material.p_wave_modulus());
     let springs = model.steps.iter().flat_map(|step| step.loads.springs.iter().map(|spring| spring.stiffness));
     let contacts = model.contacts.iter().flat_map(|pair| pair.points.iter().map(|point| pair.alpha_n * point.area));
     let largest = |stiffness: &mut dyn Iterator<Item = f64>| stiffness.reduce(f64::max).filter(|w| *w > 0.0);

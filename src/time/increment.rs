@@ -396,12 +396,13 @@ fn accept(model: &Model, trial: Trial, u: Vec<f64>, work: &mut Workspace) -> Sta
         damping: evaluation.damping,
         reaction,
         contacts: evaluation.contacts,
+        memory: evaluation.memory,
         last_increment: Some(LastIncrement { dt, displacement: increment, ends_in_touch: false }),
         step_start: old.step_start.clone(),
         energy: old.energy,
     };
     state.energy.external_work += work_done + driven + fitted;
-    state.energy.damping_dissipation += driven - damped + relaxed;
+    state.energy.damping_dissipation += driven - damped + relaxed + evaluation.dissipated;
     state.energy.stabilization += trial.stabilization_left() * stabilized / dt;
     state.energy.strain = evaluation.strain_energy;
     state.energy.contact_elastic = contact_elastic;

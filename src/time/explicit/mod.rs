@@ -342,9 +342,10 @@ impl<'m> Explicit<'m> {
 
         work += work_of_fits(model, [&state.contacts, &evaluation.contacts], [state.time, time]);
         state.energy.external_work += work;
-        state.energy.damping_dissipation += dissipated;
+        state.energy.damping_dissipation += dissipated + evaluation.dissipated;
         state.energy.strain = evaluation.strain_energy;
         state.contacts = std::mem::take(&mut evaluation.contacts);
+        std::mem::swap(&mut state.memory, &mut evaluation.memory);
         self.displacement = std::mem::replace(&mut state.displacement, u);
         state.time = time;
         state.dt = dt;
