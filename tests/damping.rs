@@ -406,13 +406,14 @@ fn a_swinging_viscoelastic_bar_loses_what_its_arm_dissipates() {
         }))
     };
     let implicit = swing(json!({"newmark": {}}), json!({"initial": 0.002}));
-    let explicit = swing(json!({"explicit": {}}), json!({"initial": 0.1}));
-    for run in [&implicit, &explicit] {
+    let explicit = swing(json!({"explicit": {"safety": 0.1}}), json!({"initial": 0.1}));
+    for (run, share) in [(&implicit, 1e-5), (&explicit, 1e-4)] {
         let energy = &run.last().energy;
-        assert!(energy.damping_dissipation > 0.01 * energy.external_work, "{energy:?}");
-        assert!(energy.error().abs() < 1e-4 * energy.external_work, "{energy:?}");
+        assert!(energy.damping_dissipation > 0.3 * energy.external_work, "{energy:?}");
+        assert!(energy.error().abs() < share * energy.external_work, "{energy:?}");
     }
     let (a, b) = (implicit.last(), explicit.last());
     let size = a.displacement.iter().fold(0.0f64, |most, u| most.max(u.abs()));
-    close("displacement", distance(&a.displacement, &b.displacement) / size, 0.0, 0.02);
+    // One has consistent masses and one lumped ones, on four elements.
+    close("displacement", distance(&a.displacement, &b.displacement) / size, 0.0, 0.05);
 }
