@@ -256,7 +256,7 @@ fn a_promise_is_of_second_order_and_changes_no_force() {
 fn slip_counts_from_touch() {
     let plane = Rigid::Plane(Plane { point: Vector2::zeros(), normal: Vector2::new(0.0, 1.0) });
     let plain = pair(gauss_points(&[vec![0, 1]], 2), Master::Rigid(plane), COULOMB);
-    let check = |pair: &ContactPair, deep: f64, moment: ContactIncrement, d: f64| {
+    let check = |pair: &ContactPair, deep: f64, during: ContactIncrement, d: f64| {
         let x = vec![Vector2::new(0.2, -deep), Vector2::new(0.9, -deep)];
         let old = pulled(pair, 0, &x, 0.005, pair.laws[0].initial_state(), 0.03);
         check_tangent(pair, 0, &old, &x, "after touch");

@@ -117,7 +117,7 @@ fn a_committed_rupture_from_code_is_the_same_model() {
     });
     let contact = Contact::new("fault", "upper_bottom", "lower_top", friction).alpha_n(3203.8);
     let initial = InitialTractions { pressure: 120.0.into(), traction, balanced: true };
-    let damping = Damping { mass: 0.0, stiffness: 0.003 };
+    let damping = Damping { mass: 0.0, retardation: 0.003 };
     let step = LoadStep::new("rupture", 12.0).scheme(Scheme::Explicit { safety: 0.9 }).dt(1.0);
     let sides = ["lower_left", "lower_right", "lower_bottom", "upper_left", "upper_right", "upper_top"];
     let code = on_mesh_of(&given)
@@ -195,7 +195,7 @@ fn everything() -> (Builder, Value) {
         .title("everything")
         .body("block", neo_hookean(100.0, 0.3, 1e-3))
         .f_bar("block")
-        .damping("block", Damping { mass: 0.1, stiffness: 1e-4 })
+        .damping("block", Damping { mass: 0.1, retardation: 1e-4 })
         .body("ground", linear(50.0, 0.2, 1e-3))
         .body("ring", linear(70.0, 0.1, 1e-3))
         .point_mass("corner", 1e-3)
@@ -309,8 +309,8 @@ impl Material for Doubled {
         0.0
     }
 
-    fn stiffness(&self) -> f64 {
-        2.0 * self.0.stiffness()
+    fn p_wave_modulus(&self) -> f64 {
+        2.0 * self.0.p_wave_modulus()
     }
 
     fn shear_modulus(&self) -> f64 {
