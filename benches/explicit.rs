@@ -3,6 +3,7 @@
 //! reading and writing long arrays can do on this machine stands beside it, for the shares of its arithmetic and of its
 //! memory that an update takes.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use fecontact::case;
@@ -76,10 +77,11 @@ fn updates(threads: usize) -> f64 {
     let model = case::build(&case, std::path::Path::new("bench.json")).expect("a good case");
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
     pool.install(|| {
+        let model = Arc::new(model);
+        let step = Arc::new(model.steps[0].clone());
         let mut assembler = Assembler::new(&model);
         let mut state = model.initial_state();
-        let mut explicit =
-            Explicit::begin(&model, &model.steps[0], &mut state, &mut assembler).expect("the step begins");
+        let mut explicit = Explicit::begin(&model, &step, &mut state, &mut assembler).expect("the step begins");
         let stretch = |k: i32| {
             let clock = Clock::start();
             let count = explicit.go_to(2e-3 * f64::from(k), &mut state, &mut assembler).expect("a finite motion");

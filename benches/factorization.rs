@@ -1,6 +1,6 @@
 //! Factorization and solution of two grids in contact: multifrontal against supernodal LU.
 
-#[path = "../tests/grids/mod.rs"]
+#[path = "../tests/common/grids.rs"]
 mod grids;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};

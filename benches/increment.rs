@@ -1,13 +1,15 @@
 //! One whole increment of the 5k drag problem, all Newton iterations included: pressing, and full sliding.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use fecontact::case;
 use fecontact::linear::Multifrontal;
 use fecontact::model::Model;
 use fecontact::model::state::State;
-use fecontact::time::increment::{Workspace, advance, begin};
+use fecontact::solve::Workspace;
+use fecontact::time::increment::{advance, begin};
 
 fn model() -> Model {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/coulomb_drag_5k.json");
@@ -29,6 +31,7 @@ fn reach(model: &Model, work: &mut Workspace, counts: &[usize]) -> State {
 
 fn increments(criterion: &mut Criterion) {
     let model = model();
+    let model = Arc::new(model);
     let mut work = Workspace::new(&model, Box::<Multifrontal>::default());
     for (name, counts) in
         [("press, first increment", &[0][..]), ("drag, first increment", &[5, 0]), ("drag, sliding", &[5, 9])]

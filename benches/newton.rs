@@ -1,6 +1,7 @@
 //! Newton's method over a whole run of the 5k drag problem; the label has the linear solves and factorizations it takes.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use fecontact::case;
@@ -10,6 +11,7 @@ fn convergence(criterion: &mut Criterion) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/coulomb_drag_5k.json");
     let case = case::read(&path).expect("a committed case");
     let model = case::build(&case, &path).expect("a committed case");
+    let model = Arc::new(model);
     let (report, _) = run(&model, &mut []);
     let label = format!(
         "{} increments, {} solves, {} factorizations",

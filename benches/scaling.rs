@@ -14,6 +14,7 @@ use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Arc;
 use std::time::Instant;
 
 use fecontact::case;
@@ -91,6 +92,7 @@ fn row(path: &Path, threads: usize) -> Result<(), Box<dyn Error>> {
     let model = case::build(&case, path)?;
     let start = clock.elapsed().as_secs_f64();
     let mut forces = Forces::default();
+    let model = Arc::new(model);
     let (report, result) = run(&model, &mut [&mut forces]);
     result?;
     let Forces(forces) = forces;

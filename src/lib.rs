@@ -19,10 +19,10 @@
 //! | [`mesh`] | nodes, elements, groups, shapes |
 //! | [`laws`] | friction of interfaces, stress of bodies |
 //!
-//! Reading order: `main` → [`cli`] → [`case`] (JSON) → [`model::builder`] (defaults, checks) → [`model`] → [`run`] (steps, increments, cut-back;
-//! [`time::step_size`] says how long) → [`time::increment`] (one increment: old state → new state) → [`solve::newton`] →
-//! [`equations`] → {[`model::element`] → [`laws::bulk`]} and {[`contact`] → [`laws::friction`]}; then up again: accepted
-//! [`model::state`] → [`output`].
+//! Reading order: `main` → [`cli`] → [`case`] (JSON) → [`model::builder`] (defaults, checks) → [`model`] → [`run`] (steps,
+//! increments, cut-back; [`time::step_size`] says how long) → [`time::increment`] (one increment: old state → new state) →
+//! [`solve::newton`] → [`equations`] → {[`model::element`] → [`laws::bulk`]} and {[`contact`] → [`laws::friction`]}; then up
+//! again: accepted [`model::state`] → [`output`].
 //!
 //! A law alone: [`cli`] → [`case`] → [`run::law`] along a [`run::law_path`] → [`laws::friction`] → [`output`].
 //!
@@ -51,6 +51,7 @@
 #![allow(rustdoc::broken_intra_doc_links, reason = "units stand in brackets: [L], [F]")]
 
 pub mod case;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod contact;
 pub mod equations;

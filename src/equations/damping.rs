@@ -12,7 +12,7 @@ use crate::linear::SparseMatrix;
 use crate::linear::system::Contribution;
 use crate::model::Model;
 
-impl Assembler<'_> {
+impl Assembler {
     /// Add the damping of bodies to the forces, and take it from the `damping` that acts on the nodes. Statics know none.
     pub(super) fn add_damping(
         &mut self,
@@ -63,7 +63,7 @@ impl Assembler<'_> {
         force: &mut [f64],
         mut tangent: Option<&mut SparseMatrix>,
     ) {
-        let model = self.model;
+        let model = &*self.model.clone();
         let damped: Vec<usize> = (0..model.mesh.elements.len()).filter(|&e| damping_time(model, e) > 0.0).collect();
         for batch in damped.chunks(BATCH) {
             let wanted = tangent.is_some();

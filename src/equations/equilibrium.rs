@@ -141,7 +141,7 @@ impl Equilibrium {
     }
 }
 
-impl Assembler<'_> {
+impl Assembler {
     /// Norm of the forces at work, and how far the worst part is from equilibrium, (1) and (2).
     pub(super) fn measure(&mut self, trial: Trial, u: &[f64], system: &mut System) {
         if trial.step.scheme.coefficients().is_some() {
@@ -174,7 +174,7 @@ impl Assembler<'_> {
     fn missed(&self, trial: Trial, u: &[f64]) -> f64 {
         let (mut missed, mut motion, mut place) = (0.0f64, 0.0f64, 0.0f64);
         for support in &trial.step.supports {
-            let target = trial.prescribed(support, self.model);
+            let target = trial.prescribed(support, &self.model);
             missed = missed.max((u[support.dof] - target).abs());
             motion = motion.max((target - trial.old.displacement[support.dof]).abs());
             place = place.max(target.abs());
@@ -191,7 +191,7 @@ impl Assembler<'_> {
     /// ρ² at every node [F²].
     fn round_off(&self, trial: Trial, u: &[f64]) -> Vec<f64> {
         let Trial { old, step, dt, .. } = trial;
-        let model = self.model;
+        let model = &*self.model.clone();
         let Equilibrium { stiffness, contact_stiffness, diagonal, .. } = &self.equilibrium;
         let farthest = LOST * (diagonal + old.displacement.iter().fold(0.0, |most: f64, u| most.max(u.abs())));
         let nodes = 0..model.mesh.nodes.len();

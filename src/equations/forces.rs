@@ -4,9 +4,9 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use super::{Assembler, FEW, Trial};
+use crate::contact::pair::Presumption;
 use crate::equations::failure::TrialFailure;
 use crate::laws::bulk::InvertedElement;
-use crate::mesh::configuration::Configuration;
 use crate::model::Model;
 
 /// The forces of all elements on their nodes, and where each node finds its own.
@@ -54,18 +54,14 @@ fn nodal(model: &Model, e: usize, all: &[f64]) -> [Vector2<f64>; 9] {
     local
 }
 
-impl Assembler<'_> {
+impl Assembler {
     /// Internal, contact and external forces at the displacement `u`, without those of dashpots, and everything else that
     /// an accepted state takes over from the evaluation but rates and reactions.
     ///
     /// # Errors
     /// [`TrialFailure`] when an element inverts, a friction law fails, or a load has no value.
     pub fn forces(&mut self, trial: Trial, u: &[f64]) -> Result<(), TrialFailure> {
-        let clock = std::time::Instant::now();
-        let x: Configuration = self.model.configuration(u);
-        let responses = self.contacts(trial, false, &x)?;
-        self.seconds.contact += clock.elapsed().as_secs_f64();
-
+        let responses = self.interfaces(trial, u, |_, _| Presumption::default())?;
         let clock = std::time::Instant::now();
         let mut force = std::mem::take(&mut self.evaluation.force);
         force.resize(u.len(), 0.0);
@@ -80,7 +76,8 @@ impl Assembler<'_> {
         let mut loads = std::mem::take(&mut self.evaluation.loads);
         loads.clear();
         loads.resize(u.len(), 0.0);
-        self.subtract_loads(trial, u, &x, &mut loads, None);
+        let model = self.model.clone();
+        self.subtract_loads(trial, u, &model.configuration(u), &mut loads, None);
         for (dof, (load, force)) in loads.iter_mut().zip(&mut force).enumerate() {
             *force += *load;
             *load = -*load;
@@ -99,7 +96,7 @@ impl Assembler<'_> {
 
     /// Write the internal forces of the solids over `force`; returns the stored energy.
     pub fn gather_solids(&mut self, u: &[f64], force: &mut [f64]) -> Result<f64, TrialFailure> {
-        let model = self.model;
+        let model = &*self.model.clone();
         let one = |e: usize, forces: &mut [Vector2<f64>]| {
             let local = nodal(model, e, u);
             let material = &*model.bodies[model.body_of_element[e]].material;
@@ -113,7 +110,7 @@ impl Assembler<'_> {
     /// # Errors
     /// None: a viscous stress needs no volume.
     pub fn gather_viscous(&mut self, u: &[f64], v: &[f64], force: &mut [f64]) -> Result<(), TrialFailure> {
-        let model = self.model;
+        let model = &*self.model.clone();
         let one = |e: usize, forces: &mut [Vector2<f64>]| {
             let body = &model.bodies[model.body_of_element[e]];
             match body.damping.stiffness > 0.0 {
@@ -139,7 +136,7 @@ impl Assembler<'_> {
         element: impl Fn(usize, &mut [Vector2<f64>]) -> Result<f64, InvertedElement> + Sync,
         force: &mut [f64],
     ) -> Result<f64, TrialFailure> {
-        let model = self.model;
+        let model = &*self.model.clone();
         let Gather { stride, starts, places, forces, energies } = self.gather.get_or_insert_with(|| Gather::new(model));
         let one =
             |(e, forces): (usize, &mut [Vector2<f64>])| element(e, &mut forces[..model.mesh.elements[e].nodes.len()]);

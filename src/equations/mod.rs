@@ -19,13 +19,13 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, Vector2};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
-use crate::contact::force::{Closed, ContactState, Presume, SLIPPING, Status, Tractions};
+use crate::contact::force::{Closed, ContactState, Status};
 use crate::contact::pair::{ContactIncrement, ContactPair, PairResponse, Presumption};
 use crate::contact::surface::Master;
 use crate::equations::failure::TrialFailure;
 use crate::laws::bulk::InvertedElement;
-use crate::laws::friction::FrictionState;
 use crate::linear::system::Request;
 use crate::linear::system::{Contribution, System};
 use crate::linear::{BlockPosition, Pattern, SparseMatrix};
@@ -140,59 +140,6 @@ impl ContactCounts {
     }
 }
 
-/// What the linear solves of an increment started from at one contact point, and what is concluded.
-#[derive(Clone, Debug, Default)]
-struct Iterate {
-    /// plastic slip of the increment at the last solve [L]
-    slip: f64,
-    /// Segments of its feet at the last two solves
-    segments: [Option<usize>; 2],
-    /// The two segments between which the foot went to and fro
-    astride: Option<[usize; 2]>,
-    presumed: Presume,
-    /// Whether the last solve presumed it to stick
-    stuck: bool,
-    /// The point as the last solve saw it, if it was closed
-    closed: Option<Closed>,
-    promised: Tractions,
-    /// Pressure that friction answers to at a point that has just closed
-    carried: Option<f64>,
-}
-
-impl Iterate {
-    /// Take note of the segment on which the next linear solve starts.
-    fn note_segment(&mut self, state: &ContactState) {
-        let segment = state.foot.map(|foot| foot.segment);
-        let [last, before] = self.segments;
-        self.astride =
-            segment.zip(last).filter(|(segment, last)| segment != last && Some(*segment) == before).map(Into::into);
-        self.segments = [segment, last];
-    }
-
-    /// Watch the slip that the next linear solve starts from. Presumes sticking where the point slips the other way than
-    /// at the last solve, or was presumed to stick and slips, but would not with the tractions that this promised: it missed
-    /// the narrow range of sticking only for its own error.
-    fn watch_slip(&mut self, friction: &FrictionState) {
-        let slip = friction.plastic_increment;
-        // A point that only a promise keeps closed has a negative pressure.
-        let slips = slip != 0.0 && friction.traction.abs() >= SLIPPING * friction.mu * friction.pressure.abs();
-        let strength = friction.mu * self.promised.pressure;
-        // A law that slips at R < 1 does so with these tractions as well, unless they are far lower or the slip abates.
-        let held = if slip.abs() < ABATES * self.slip.abs() { strength } else { SLIPPING * strength };
-        let sticks = match self.stuck {
-            true => slips && self.promised.traction.abs() < held,
-            false => self.slip * slip < 0.0,
-        };
-        if sticks {
-            self.presumed = Presume::Stick;
-        }
-        self.slip = slip;
-    }
-}
-
-/// Slip that is below this share of what it was at the last solve comes to rest.
-const ABATES: f64 = 0.5;
-
 /// Seconds spent by phase.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Seconds {
@@ -202,9 +149,19 @@ pub struct Seconds {
     pub contact: f64,
 }
 
+/// Nodes that the equations couple besides those of elements and loads. The order of elimination depends on it, and so the
+/// last bits of what is solved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Coupling {
+    /// Nodes of each contact point, and of those it may slide to
+    groups: Vec<Vec<usize>>,
+    /// Segments ahead of each foot that there will be room for, when this turns out too small
+    ahead: usize,
+}
+
 /// Assembles a model; owns the pattern and the buffers that are used again.
-pub struct Assembler<'m> {
-    model: &'m Model,
+pub struct Assembler {
+    model: Arc<Model>,
     pattern: Arc<Pattern>,
     /// Position of the block of every node pair of every element, in the current pattern
     blocks: Vec<BlockPosition>,
@@ -218,17 +175,12 @@ pub struct Assembler<'m> {
     /// Sum of the forces' magnitudes at each dof [F]
     magnitudes: Vec<f64>,
     equilibrium: Equilibrium,
-    /// One entry a contact point, empty before the first linear solve of an increment
-    iterates: Vec<Vec<Iterate>>,
-    /// u of the last linear solve [L]
-    linearized_at: Vec<f64>,
     /// What was found at the last evaluated displacement
     pub evaluation: Evaluation,
     buffers: Buffers,
     /// For explicit increments, once they begin
     gather: Option<forces::Gather>,
-    /// Segments that the pattern has room for ahead of each foot, when it is set next
-    ahead: usize,
+    coupling: Arc<Coupling>,
     /// Time spent
     pub seconds: Seconds,
 }
@@ -241,24 +193,6 @@ struct Buffers {
     energies: Vec<Result<f64, InvertedElement>>,
 }
 
-/// The first linear solve of an increment takes no pressure for promised that is more than this many times the committed
-/// one: a start value extrapolated past the edge of a contact penetrates far too deep.
-const MOST_GROWTH: f64 = 2.0;
-
-/// The penalty may have drawn a point that was closed back by this many p/α_n.
-const MOST_PULL: f64 = 10.0;
-
-/// What the start of an increment promises: a point that was closed still is, unless it is farther away than the bodies
-/// would follow if its pressure went, and the penalty would reach.
-fn at_start(pair: &ContactPair, state: &ContactState, old: &ContactState) -> Tractions {
-    let reach = old.friction.pressure * (pair.compliance + MOST_PULL / pair.alpha_n);
-    match state.friction.pressure > 0.0 {
-        true => Tractions::of(&state.friction).limited(MOST_GROWTH * old.friction.pressure),
-        false if state.gap <= reach => Tractions::of(&old.friction),
-        false => Tractions::default(),
-    }
-}
-
 /// Most segments ahead of a foot that the pattern gets room for.
 const FARTHEST: usize = 8;
 
@@ -268,9 +202,9 @@ const BATCH: usize = 1024;
 /// Elements that are done sooner than another thread wakes up.
 const FEW: usize = 64;
 
-impl<'m> Assembler<'m> {
+impl Assembler {
     /// An assembler of a model.
-    pub fn new(model: &'m Model) -> Self {
+    pub fn new(model: &Arc<Model>) -> Self {
         let block_starts = std::iter::once(0)
             .chain(model.mesh.elements.iter().scan(0, |sum, element| {
                 *sum += element.nodes.len().pow(2);
@@ -278,7 +212,7 @@ impl<'m> Assembler<'m> {
             }))
             .collect();
         let mut assembler = Self {
-            model,
+            model: model.clone(),
             pattern: Arc::new(Pattern::new(model.mesh.nodes.len(), std::iter::empty())),
             blocks: Vec::new(),
             block_starts,
@@ -287,16 +221,32 @@ impl<'m> Assembler<'m> {
             weight: weight(model),
             magnitudes: vec![0.0; model.dofs()],
             equilibrium: Equilibrium::new(model),
-            iterates: Vec::new(),
-            linearized_at: Vec::new(),
             evaluation: Evaluation::default(),
             buffers: Buffers::default(),
             gather: None,
-            ahead: 1,
+            coupling: Arc::new(Coupling { groups: Vec::new(), ahead: 1 }),
             seconds: Seconds::default(),
         };
-        assembler.set_pattern(&[]);
+        assembler.set_pattern();
         assembler
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Which nodes are coupled at present.
+    pub fn coupling(&self) -> Arc<Coupling> {
+        self.coupling.clone()
+    }
+
+    /// Couple the nodes as they were coupled before.
+    pub fn couple(&mut self, coupling: &Arc<Coupling>) {
+        if !Arc::ptr_eq(coupling, &self.coupling) {
+            self.coupling = coupling.clone();
+            self.set_pattern();
+        }
     }
 
     /// A system on the current pattern.
@@ -310,8 +260,9 @@ impl<'m> Assembler<'m> {
     }
 
     /// Couple the nodes of all elements, loads and the given groups; find every element's blocks in the new pattern.
-    fn set_pattern(&mut self, groups: &[Vec<usize>]) {
-        let model = self.model;
+    fn set_pattern(&mut self) {
+        let groups = &self.coupling.clone().groups;
+        let model = &*self.model.clone();
         let elements = model.mesh.elements.iter().map(|element| &element.nodes[..]);
         let edges = model.steps.iter().flat_map(|step| step.loads.pressures.iter().flat_map(|load| &load.edges));
         let all = elements.chain(edges.map(|edge| &edge[..])).chain(groups.iter().map(|group| &group[..]));
@@ -359,32 +310,62 @@ impl<'m> Assembler<'m> {
         }
     }
 
-    /// Residual, and tangent on request, at the displacement `u`.
+    /// Residual at the displacement `u`, no presumption made.
     ///
     /// # Errors
     /// [`TrialFailure`] when an element inverts, a friction law fails, or a load has no value.
-    pub fn evaluate(
+    pub fn residual(&mut self, trial: Trial, u: &[f64], system: &mut System) -> Result<(), TrialFailure> {
+        let responses = self.interfaces(trial, u, |_, _| Presumption::default())?;
+        self.assemble(trial, u, &responses, Request::Residual, system)
+    }
+
+    /// Responses of all contact points at the displacement `u`, with what is presumed about a point of a pair: for a tangent
+    /// alone, a residual that may be accepted knows no presumptions.
+    ///
+    /// # Errors
+    /// [`TrialFailure`] when a friction law fails.
+    pub fn interfaces(
         &mut self,
         trial: Trial,
         u: &[f64],
+        presumed: impl Fn(usize, usize) -> Presumption + Sync,
+    ) -> Result<Vec<PairResponse>, TrialFailure> {
+        if self.model.contacts.is_empty() {
+            return Ok(Vec::new());
+        }
+        let clock = std::time::Instant::now();
+        let [before, x] = [&trial.old.displacement, u].map(|u| self.model.configuration(u));
+        let fading = 1.0 - self.model.steps[0].span.share(trial.time);
+        let during = ContactIncrement { dt: trial.dt, fading, stiffening: trial.stiffening, settles: trial.settles };
+        let pairs = self.model.contacts.iter().zip(&trial.old.contacts).enumerate();
+        let respond = |(number, (pair, old)): (usize, (&ContactPair, &Vec<ContactState>))| {
+            let responses = pair.respond(old, &before, during, |point| presumed(number, point), &x);
+            let contact = || pair.name.clone();
+            responses.map_err(|(point, cause)| TrialFailure::Friction { contact: contact(), point, cause })
+        };
+        let responses = pairs.map(respond).collect();
+        self.seconds.contact += clock.elapsed().as_secs_f64();
+        responses
+    }
+
+    /// Residual, and tangent on request, at the displacement `u` with the given responses of the contact points.
+    ///
+    /// # Errors
+    /// [`TrialFailure`] when an element inverts, or a load has no value.
+    pub fn assemble(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        responses: &[PairResponse],
         request: Request,
         system: &mut System,
     ) -> Result<(), TrialFailure> {
-        let x = self.model.configuration(u);
         let clock = std::time::Instant::now();
+        let model = self.model.clone();
+        let x = model.configuration(u);
         let tangent = request == Request::Tangent;
         if tangent {
-            self.presume(trial, u);
-        }
-        let mut responses = self.contacts(trial, tangent, &x)?;
-        if tangent && self.presume_sticking(&responses) {
-            responses = self.contacts(trial, tangent, &x)?;
-        }
-        self.seconds.contact += clock.elapsed().as_secs_f64();
-
-        let clock = std::time::Instant::now();
-        if tangent {
-            self.cover(&responses, trial.old);
+            self.cover(responses, trial.old);
             if !Arc::ptr_eq(&system.tangent.pattern, &self.pattern) {
                 system.tangent = SparseMatrix::zero(self.pattern.clone());
             }
@@ -394,7 +375,7 @@ impl<'m> Assembler<'m> {
         self.magnitudes.fill(0.0);
         let mut force = vec![0.0; u.len()];
         let strain_energy = self.add_solids(u, &mut force, values.as_deref_mut())?;
-        self.equilibrium.note_contacts(self.model, trial, &responses);
+        self.equilibrium.note_contacts(&self.model, trial, responses);
         for (_, closed) in responses.iter().flatten() {
             if let Some(Closed { contribution, .. }) = closed {
                 self.add(contribution, &mut force, values.as_deref_mut());
@@ -407,9 +388,6 @@ impl<'m> Assembler<'m> {
         }
         self.evaluation.contacts =
             responses.iter().map(|pair| pair.iter().map(|(state, _)| *state).collect()).collect();
-        if tangent {
-            self.linearized(u, responses);
-        }
         self.evaluation.strain_energy = strain_energy;
         self.evaluation.loads = loads;
         self.evaluation.force = force;
@@ -418,88 +396,6 @@ impl<'m> Assembler<'m> {
         self.measure(trial, u, system);
         self.seconds.assembly += clock.elapsed().as_secs_f64();
         Ok(())
-    }
-
-    /// Forget the iterates of the increment before: the next tangent is the first of an increment.
-    pub fn start_increment(&mut self) {
-        self.iterates.clear();
-    }
-
-    /// What the next linear solve presumes about each point, from its last two iterates, but for sticking.
-    fn presume(&mut self, Trial { old, stiffening, .. }: Trial, u: &[f64]) {
-        let first = self.iterates.is_empty();
-        self.iterates.resize_with(self.model.contacts.len(), Vec::new);
-        let at = &self.linearized_at;
-        let pairs = self.model.contacts.iter().zip(&self.evaluation.contacts).zip(&old.contacts);
-        for (iterates, ((pair, states), old)) in self.iterates.iter_mut().zip(pairs) {
-            iterates.resize_with(states.len(), Iterate::default);
-            for ((iterate, state), old) in iterates.iter_mut().zip(states).zip(old) {
-                let was_closed = if first { old.friction.pressure > 0.0 } else { iterate.closed.is_some() };
-                let closes = !was_closed && state.friction.pressure > 0.0;
-                iterate.carried = closes.then(|| pair.shared(state.friction.pressure, stiffening));
-                iterate.promised = match &iterate.closed {
-                    Some(closed) => closed.promise(|dof| u[dof] - at[dof]),
-                    None if first => at_start(pair, state, old),
-                    None => Tractions::default(),
-                };
-                iterate.note_segment(state);
-                iterate.stuck = iterate.presumed == Presume::Stick;
-                iterate.presumed = if first { Presume::Touch } else { Presume::Nothing };
-            }
-        }
-    }
-
-    /// Presume sticking where points slip to and fro between the linear solves; whether there are any.
-    fn presume_sticking(&mut self, responses: &[PairResponse]) -> bool {
-        let mut any = false;
-        for (iterates, (pair, responses)) in self.iterates.iter_mut().zip(self.model.contacts.iter().zip(responses)) {
-            let rough = pair.points.iter().map(|slave| pair.law(slave).stiffness() > 0.0);
-            for ((iterate, (state, _)), rough) in iterates.iter_mut().zip(responses).zip(rough) {
-                if rough {
-                    iterate.watch_slip(&state.friction);
-                    any |= iterate.presumed == Presume::Stick;
-                }
-            }
-        }
-        any
-    }
-
-    /// Keep the points as the next linear solve sees them.
-    fn linearized(&mut self, u: &[f64], responses: Vec<PairResponse>) {
-        self.linearized_at.clear();
-        self.linearized_at.extend_from_slice(u);
-        for (iterates, responses) in self.iterates.iter_mut().zip(responses) {
-            for (iterate, (_, closed)) in iterates.iter_mut().zip(responses) {
-                iterate.closed = closed;
-            }
-        }
-    }
-
-    /// Trial states of all pairs; a tangent is taken with the presumptions, a residual that may be accepted without.
-    fn contacts(&self, trial: Trial, presuming: bool, x: &Configuration) -> Result<Vec<PairResponse>, TrialFailure> {
-        if self.model.contacts.is_empty() {
-            return Ok(Vec::new());
-        }
-        let before = self.model.configuration(&trial.old.displacement);
-        let fading = 1.0 - self.model.steps[0].span.share(trial.time);
-        let moment = ContactIncrement { dt: trial.dt, fading, stiffening: trial.stiffening, settles: trial.settles };
-        let pairs = self.model.contacts.iter().zip(&trial.old.contacts).enumerate();
-        pairs
-            .map(|(number, (pair, old))| {
-                let presumed = |k: usize| {
-                    let Some(iterates) = self.iterates.get(number).filter(|_| presuming) else {
-                        return Presumption::default();
-                    };
-                    let &Iterate { presumed, promised, carried, astride, .. } = &iterates[k];
-                    Presumption { presume: presumed, promised: Some(promised), carried, astride }
-                };
-                pair.respond(old, &before, moment, presumed, x).map_err(|(point, cause)| TrialFailure::Friction {
-                    contact: pair.name.clone(),
-                    point,
-                    cause,
-                })
-            })
-            .collect()
     }
 
     /// Make sure the pattern has room for all contact points. If it has not, it gets room for one segment more behind
@@ -514,6 +410,7 @@ impl<'m> Assembler<'m> {
         if responses.iter().flatten().filter_map(|(_, closed)| closed.as_ref()).all(coupled) {
             return;
         }
+        let ahead = self.coupling.ahead;
         let mut groups = Vec::new();
         for ((pair, responses), old) in self.model.contacts.iter().zip(responses).zip(&old.contacts) {
             for ((slave, (state, closed)), old) in pair.points.iter().zip(responses).zip(old) {
@@ -523,7 +420,7 @@ impl<'m> Assembler<'m> {
                 if let Master::Mesh(surface) = &pair.master {
                     let way = old.foot.and_then(|from| surface.path(from, foot)).unwrap_or_default();
                     let slip: f64 = way.iter().map(|(_, from, to)| to - from).sum();
-                    let [behind, ahead] = if slip < 0.0 { [self.ahead, 1] } else { [1, self.ahead] };
+                    let [behind, ahead] = if slip < 0.0 { [ahead, 1] } else { [1, ahead] };
                     let back = std::iter::successors(Some(foot.segment), |&segment| surface.previous(segment));
                     let forth = std::iter::successors(Some(foot.segment), |&segment| surface.next(segment));
                     let around = back.take(1 + behind).chain(forth.take(1 + ahead));
@@ -534,8 +431,8 @@ impl<'m> Assembler<'m> {
                 groups.push(nodes);
             }
         }
-        self.ahead = FARTHEST.min(2 * self.ahead);
-        self.set_pattern(&groups);
+        self.coupling = Arc::new(Coupling { groups, ahead: FARTHEST.min(2 * ahead) });
+        self.set_pattern();
     }
 
     /// Add internal forces and tangents of the solids; returns the stored energy.
@@ -545,7 +442,7 @@ impl<'m> Assembler<'m> {
         force: &mut [f64],
         mut tangent: Option<&mut SparseMatrix>,
     ) -> Result<f64, TrialFailure> {
-        let model = self.model;
+        let model = &*self.model.clone();
         let wants_tangent = tangent.is_some();
         let widest = model.mesh.elements.iter().map(|element| element.nodes.len()).max().unwrap_or(0);
         let (dofs, stride) = (2 * widest, if wants_tangent { 4 * widest * widest } else { 1 });
@@ -700,7 +597,7 @@ impl<'m> Assembler<'m> {
         for dashpot in &trial.step.loads.dashpots {
             let dof = dashpot.dof;
             let driver = dashpot.driver_velocity(self.model.mesh.nodes[dof / 2], trial.time);
-            let (velocity, dvelocity) = velocity(self.model, trial, u, dof);
+            let (velocity, dvelocity) = velocity(&self.model, trial, u, dof);
             let pull = dashpot.coefficient * (driver - velocity);
             if !pull.is_finite() {
                 return Err(TrialFailure::Undefined { node: self.model.mesh.node_tags[dof / 2], time: trial.time });
@@ -713,7 +610,7 @@ impl<'m> Assembler<'m> {
             }
         }
         for Absorber { node, coefficients } in &trial.step.loads.absorbers {
-            let rates = [0, 1].map(|i| velocity(self.model, trial, u, 2 * node + i));
+            let rates = [0, 1].map(|i| velocity(&self.model, trial, u, 2 * node + i));
             for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 let (velocity, dvelocity) = rates[j];
                 let pull = -coefficients[(i, j)] * velocity;
@@ -808,7 +705,7 @@ impl<'m> Assembler<'m> {
         let (mut velocity, mut acceleration): (Vec<f64>, Vec<f64>) = (0..u.len()).map(free).unzip();
         for support in &step.supports {
             let dof = support.dof;
-            let places = trial.thirds(support, self.model);
+            let places = trial.thirds(support, &self.model);
             (velocity[dof], acceleration[dof]) = supported_rates(places, old.velocity[dof], dt);
         }
         self.model.ties.spread(2, &mut velocity);
@@ -820,7 +717,7 @@ impl<'m> Assembler<'m> {
     fn prescribe(&self, trial: Trial, u: &[f64], tangent: bool, system: &mut System) -> Result<(), TrialFailure> {
         for support in &trial.step.supports {
             let dof = support.dof;
-            let target = trial.prescribed(support, self.model);
+            let target = trial.prescribed(support, &self.model);
             if !target.is_finite() {
                 return Err(TrialFailure::Undefined { node: self.model.mesh.node_tags[dof / 2], time: trial.time });
             }
@@ -842,7 +739,7 @@ impl<'m> Assembler<'m> {
 
     /// The mass matrix on the current pattern: consistent in the elements, and the point masses on the diagonal.
     pub fn mass(&mut self) -> &SparseMatrix {
-        let model = self.model;
+        let model = &*self.model.clone();
         let (blocks, starts, pattern) = (&self.blocks, &self.block_starts, &self.pattern);
         self.mass.get_or_insert_with(|| {
             let mut mass = SparseMatrix::zero(pattern.clone());

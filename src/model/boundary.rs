@@ -47,7 +47,7 @@ impl Profile {
 }
 
 /// The time span of a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Span {
     /// start [T]
     pub start: f64,

@@ -62,7 +62,7 @@ pub struct PointMass {
 }
 
 /// How increments are chosen.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Increments {
     /// first Δt [T]
     pub initial: f64,
@@ -99,7 +99,7 @@ impl Default for NewtonSettings {
 }
 
 /// A step: a time span with its supports, loads, scheme and increments.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Step {
     /// name, for messages and output
     pub name: String,

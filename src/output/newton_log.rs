@@ -6,7 +6,7 @@ use super::csv::Table;
 use crate::model::Model;
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};
-use crate::time::increment::IterationRecord;
+use crate::solve::IterationRecord;
 
 /// Writes `newton.csv`.
 #[derive(Debug)]

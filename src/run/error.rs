@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use crate::laws::friction::LawFailure;
 use crate::model::scheme::told;
-use crate::time::failure::IncrementFailure;
+use crate::solve::failure::IncrementFailure;
 
 /// Why a run stopped.
 #[derive(Debug, Error)]

@@ -3,7 +3,7 @@
 use crate::model::state::State;
 use crate::model::{Model, Step};
 use crate::run::error::Error;
-use crate::time::increment::IterationRecord;
+use crate::solve::IterationRecord;
 
 /// An attempt at one increment, accepted or not.
 #[derive(Clone, Copy, Debug)]

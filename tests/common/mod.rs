@@ -1,8 +1,9 @@
 //! Small models for tests that drive the whole solver: meshes of blocks, models from code and from JSON, runs that keep
 //! every state.
-#![allow(dead_code, reason = "each test file uses a part")]
+#![allow(dead_code, reason = "each test program uses a part")]
 
 use std::path::Path;
+use std::sync::Arc;
 
 use fecontact::case;
 use fecontact::laws::bulk::{ElasticConstants, Linear, NeoHookean};
@@ -197,7 +198,7 @@ impl Observer for Record {
 
 /// What a run left behind.
 pub struct Finished {
-    pub model: Model,
+    pub model: Arc<Model>,
     pub states: Vec<State>,
     /// Newton iterations of each increment
     pub iterations: Vec<usize>,
@@ -248,6 +249,7 @@ pub fn finish_at(case: &Value, path: &Path) -> Finished {
 /// Run a model to its end.
 pub fn finished(model: Model) -> Finished {
     let mut record = Record::default();
+    let model = Arc::new(model);
     let (report, result) = run(&model, &mut [&mut record]);
     result.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(record.failed, report.cutbacks + report.rejected);

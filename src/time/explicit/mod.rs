@@ -30,6 +30,8 @@ use std::collections::BTreeMap;
 use nalgebra::{Matrix2, Vector2};
 use rayon::prelude::*;
 
+use std::sync::Arc;
+
 use crate::equations::energy::{contact_energy, friction_dissipation, work_of_drivers, work_of_fits};
 use crate::equations::failure::TrialFailure;
 use crate::equations::{Assembler, Trial};
@@ -37,7 +39,7 @@ use crate::model::boundary::Prescribed;
 use crate::model::scheme::{start_acceleration, supported_rates};
 use crate::model::state::State;
 use crate::model::{Model, Step};
-use crate::time::failure::IncrementFailure;
+use crate::solve::failure::IncrementFailure;
 use stability::Stability;
 
 /// Share of its size that no element changes by more than in an increment: what strikes it is stopped by its stiffness
@@ -54,9 +56,10 @@ const MOST_CAREFUL: f64 = 0.125;
 const ROUND_OFF: f64 = 1e-9;
 
 /// What explicit increments of one step need besides the state.
-pub struct Explicit<'m> {
-    model: &'m Model,
-    step: &'m Step,
+#[derive(Clone)]
+pub struct Explicit {
+    model: Arc<Model>,
+    step: Arc<Step>,
     /// Mass of every node, that of copies with the nodes they move with and with the copies as well [M]
     mass: Vec<f64>,
     /// Dashpots, absorbing sides and damping by the masses, one entry a node
@@ -65,7 +68,7 @@ pub struct Explicit<'m> {
     pulls: Vec<Vector2<f64>>,
     /// Viscous forces of the bodies at the last two times, which resist; empty if there are none [F]
     viscous: [Vec<f64>; 2],
-    stability: Stability<'m>,
+    stability: Stability,
     /// Share of the safe increment that is taken: less after a collapse
     care: f64,
     /// The longest increment to take, when last looked at [T]
@@ -86,28 +89,15 @@ struct Damper {
 /// Degrees of freedom that one thread moves at a time.
 const CHUNK: usize = 8192;
 
-impl<'m> Explicit<'m> {
-    /// Begin a step: lump the masses, and find the accelerations that its loads begin with.
+impl Explicit {
+    /// Begin explicit increments, at the start of a step or within it: lump the masses, and find the accelerations that the
+    /// loads begin with.
     ///
     /// # Errors
-    /// [`IncrementFailure`] when the initial state cannot be evaluated.
+    /// [`IncrementFailure`] when the state cannot be evaluated.
     pub fn begin(
-        model: &'m Model,
-        step: &'m Step,
-        state: &mut State,
-        assembler: &mut Assembler,
-    ) -> Result<Self, IncrementFailure> {
-        state.begin_step();
-        Self::go_on(model, step, state, assembler)
-    }
-
-    /// As [`Explicit::begin`], at any time within a step.
-    ///
-    /// # Errors
-    /// As [`Explicit::begin`].
-    pub fn go_on(
-        model: &'m Model,
-        step: &'m Step,
+        model: &Arc<Model>,
+        step: &Arc<Step>,
         state: &mut State,
         assembler: &mut Assembler,
     ) -> Result<Self, IncrementFailure> {
@@ -123,20 +113,20 @@ impl<'m> Explicit<'m> {
         if self.care <= MOST_CAREFUL {
             return Ok(false);
         }
-        *self = Self::with_care(CUT * self.care, self.model, self.step, state, assembler)?;
+        *self = Self::with_care(CUT * self.care, &self.model.clone(), &self.step.clone(), state, assembler)?;
         Ok(true)
     }
 
     fn with_care(
         care: f64,
-        model: &'m Model,
-        step: &'m Step,
+        model: &Arc<Model>,
+        step: &Arc<Step>,
         state: &mut State,
         assembler: &mut Assembler,
     ) -> Result<Self, IncrementFailure> {
         let mut explicit = Self {
-            model,
-            step,
+            model: model.clone(),
+            step: step.clone(),
             mass: masses(model),
             dampers: dampers(model, step),
             pulls: Vec::new(),
@@ -154,7 +144,7 @@ impl<'m> Explicit<'m> {
 
     /// The forces and accelerations at the start of the step.
     fn start(&mut self, state: &mut State, assembler: &mut Assembler) -> Result<(), IncrementFailure> {
-        let (model, step) = (self.model, self.step);
+        let (model, step) = (&*self.model.clone(), &*self.step.clone());
         let still = Trial::new(state, step, state.time, 0.0);
         assembler.forces(still, &state.displacement).map_err(IncrementFailure::Start)?;
         if model.is_viscous() {
@@ -199,7 +189,7 @@ impl<'m> Explicit<'m> {
 
     /// The safe share of (1), but no more than the step allows [T].
     fn stable_increment(&mut self, state: &State) -> f64 {
-        let longest = self.stability.longest_increment(self.step, &self.mass, state);
+        let longest = self.stability.longest_increment(&self.step, &self.mass, state);
         self.safe(longest)
     }
 
@@ -226,7 +216,7 @@ impl<'m> Explicit<'m> {
         }
         state.damping = self.damping();
         state.energy.kinetic = self.kinetic_energy(state, state.dt);
-        state.energy.contact_elastic = contact_energy(self.model, &state.contacts);
+        state.energy.contact_elastic = contact_energy(&self.model, &state.contacts);
         match state.energy.kinetic.is_finite() {
             true => Ok(increments),
             false => Err(IncrementFailure::Unbounded),
@@ -260,7 +250,7 @@ impl<'m> Explicit<'m> {
 
     /// (7), and where the supports go; returns how far two nodes move against each other at most [L].
     fn predict(&mut self, time: f64, state: &State) -> Result<f64, IncrementFailure> {
-        let (model, step, dt) = (self.model, self.step, time - state.time);
+        let (model, step, dt) = (&*self.model.clone(), &*self.step.clone(), time - state.time);
         let old = (&state.displacement, &state.velocity, &state.acceleration);
         let ways = self.displacement.par_chunks_mut(CHUNK).enumerate().map(|(chunk, u)| {
             let (u0, v, a) = (&old.0[CHUNK * chunk..], &old.1[CHUNK * chunk..], &old.2[CHUNK * chunk..]);
@@ -297,7 +287,7 @@ impl<'m> Explicit<'m> {
 
     /// One increment in place, to the displacements predicted.
     fn advance(&mut self, time: f64, state: &mut State, assembler: &mut Assembler) -> Result<(), TrialFailure> {
-        let (model, step) = (self.model, self.step);
+        let (model, step) = (&*self.model.clone(), &*self.step.clone());
         let dt = time - state.time;
         let u = std::mem::take(&mut self.displacement);
         let trial = Trial { settles: false, ..Trial::new(state, step, time, dt) };

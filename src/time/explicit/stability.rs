@@ -8,11 +8,13 @@
 use nalgebra::{DMatrix, DVector, Vector2};
 use rayon::prelude::*;
 
+use std::sync::Arc;
+
 use crate::contact::surface::Master;
 use crate::equations::failure::TrialFailure;
 use crate::model::state::State;
 use crate::model::{Model, Step};
-use crate::time::failure::IncrementFailure;
+use crate::solve::failure::IncrementFailure;
 
 /// Share of its size by which an element may change before it is looked at again: its bound is exact to about as much.
 const CHANGED: f64 = 0.04;
@@ -30,8 +32,9 @@ const LOOK_AGAIN: usize = 200;
 const FEW: usize = 2048;
 
 /// What bounds the increment, as last looked at.
-pub(super) struct Stability<'m> {
-    model: &'m Model,
+#[derive(Clone)]
+pub(super) struct Stability {
+    model: Arc<Model>,
     elements: Vec<Element>,
     /// Nodes of the elements, `stride` places an element, filled up with the first one
     nodes: Vec<usize>,
@@ -57,13 +60,13 @@ struct Element {
     size: f64,
 }
 
-impl<'m> Stability<'m> {
+impl Stability {
     /// Look at all elements.
-    pub(super) fn new(model: &'m Model, state: &State) -> Result<Self, IncrementFailure> {
+    pub(super) fn new(model: &Arc<Model>, state: &State) -> Result<Self, IncrementFailure> {
         let count = model.mesh.elements.len();
         let stride = model.mesh.elements.iter().map(|element| element.nodes.len()).max().unwrap_or(0);
         let mut stability = Self {
-            model,
+            model: model.clone(),
             elements: vec![Element { bounds: [0.0; 2], size: 0.0 }; count],
             nodes: model.mesh.elements.iter().flat_map(|element| filled(&element.nodes, stride)).collect(),
             seen: vec![Vector2::zeros(); stride * count],
@@ -134,7 +137,7 @@ impl<'m> Stability<'m> {
 
     /// Look at some elements again.
     pub(super) fn look(&mut self, elements: &[usize], state: &State) -> Result<(), IncrementFailure> {
-        let (model, u) = (self.model, &state.displacement);
+        let (model, u) = (&self.model, &state.displacement);
         let found: Vec<Result<Element, TrialFailure>> =
             elements.par_iter().with_min_len(64).map(|&e| Element::at(model, e, u)).collect();
         for (&e, element) in elements.iter().zip(found) {
@@ -173,7 +176,7 @@ impl<'m> Stability<'m> {
 
     /// k of (3) at every node [F/L].
     fn added_stiffness(&self, step: &Step, state: &State) -> Vec<f64> {
-        let model = self.model;
+        let model = &*self.model.clone();
         let x = model.configuration(&state.displacement);
         let mut added = vec![0.0; model.mesh.nodes.len()];
         for (pair, states) in model.contacts.iter().zip(&state.contacts) {

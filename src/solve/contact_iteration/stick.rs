@@ -1,0 +1,38 @@
+//! Sticking: a point that slips one way and then the other has passed the narrow and stiff range of sticking that lies
+//! between. The tangents on both sides are soft, and Newton's method would jump to and fro for ever; presumed to stick, it
+//! finds the range.
+
+use crate::contact::force::{SLIPPING, Tractions};
+use crate::laws::friction::FrictionState;
+
+/// Slip that is below this share of what it was at the last solve comes to rest.
+const ABATES: f64 = 0.5;
+
+/// How a point has slipped at the linear solves of the increment.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Slipping {
+    /// Plastic slip of the increment at the last solve [L]
+    slip: f64,
+    /// Whether the last solve presumed it to stick
+    pub(super) stuck: bool,
+}
+
+impl Slipping {
+    /// Watch the slip that the next linear solve starts from. A point sticks where it slips the other way than at the last
+    /// solve, or was presumed to stick and slips, but would not with the tractions that this promised: it missed the narrow
+    /// range of sticking only for its own error.
+    pub(super) fn sticks(&mut self, friction: &FrictionState, promised: Tractions) -> bool {
+        let slip = friction.plastic_increment;
+        // A point that only a promise keeps closed has a negative pressure.
+        let slips = slip != 0.0 && friction.traction.abs() >= SLIPPING * friction.mu * friction.pressure.abs();
+        let strength = friction.mu * promised.pressure;
+        // A law that slips at R < 1 does so with these tractions as well, unless they are far lower or the slip abates.
+        let held = if slip.abs() < ABATES * self.slip.abs() { strength } else { SLIPPING * strength };
+        let sticks = match self.stuck {
+            true => slips && promised.traction.abs() < held,
+            false => self.slip * slip < 0.0,
+        };
+        self.slip = slip;
+        sticks
+    }
+}

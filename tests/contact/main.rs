@@ -1,0 +1,11 @@
+//! Contact: tangents and search of a pair, then whole models of bodies, points and surfaces that touch.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod contact;
+mod periodic;
+mod points;
+mod self_contact;
+mod stabilization;
+mod validation;

@@ -1,0 +1,521 @@
+//! Slip weakening and rate-and-state friction alone: tangents, closed forms, differential equations.
+
+use crate::strokes::strokes;
+use fecontact::laws::friction::{
+    FrictionLaw, FrictionResponse, FrictionState, RateAndState, RateAndStateParameters, STEEPEST, Sliding,
+    SlipWeakening, SlipWeakeningParameters, StateEvolution,
+};
+
+const WEAKENING: SlipWeakeningParameters =
+    SlipWeakeningParameters { mu_s: 0.6, mu_d: 0.5, critical_slip: 1.0, cohesion: 0.0, alpha_t: Some(1000.0) };
+
+/// Laboratory values, in micrometres, seconds and megapascals.
+const RATE_AND_STATE: RateAndStateParameters = RateAndStateParameters {
+    f_0: 0.6,
+    reference_rate: 1.0,
+    a: 0.010,
+    b: 0.015,
+    critical_slip: 10.0,
+    evolution: StateEvolution::Ageing,
+    theta: None,
+    alpha_t: Some(0.5),
+};
+
+fn weakening(parameters: SlipWeakeningParameters) -> SlipWeakening {
+    SlipWeakening::new(&parameters, f64::NAN).expect("valid parameters")
+}
+
+fn rate_and_state(parameters: RateAndStateParameters) -> RateAndState {
+    RateAndState::new(&parameters, f64::NAN).expect("valid parameters")
+}
+
+fn respond(law: &dyn FrictionLaw, old: &FrictionState, slip: f64, pressure: f64, dt: f64) -> FrictionResponse {
+    law.respond(old, Sliding { slip, pressure, dt }).expect("a finite increment is answered")
+}
+
+fn assert_close(actual: f64, expected: f64, tolerance: f64, what: &str) {
+    assert!((actual - expected).abs() <= tolerance, "{what}: {actual} instead of {expected} ± {tolerance:e}");
+}
+
+/// Pseudo-random numbers in [0, 1) (splitmix64).
+struct Random(u64);
+
+impl Random {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+}
+
+/// Compare both tangents with central differences, where the answer is smooth: both one-sided differences agree.
+fn check_tangents(law: &dyn FrictionLaw, old: &FrictionState, slip: f64, pressure: f64, dt: f64) -> bool {
+    let at = |slip: f64, pressure: f64| respond(law, old, slip, pressure, dt).state.traction;
+    let response = respond(law, old, slip, pressure, dt);
+    let here = response.state.traction;
+    // A tenth of the slip that the contact spring needs for the traction, or as much as there is.
+    let h = 1e-5 * (here.abs() / law.stiffness() + slip.abs());
+    let mut smooth = true;
+    for (tangent, scale, up, down, h) in [
+        (response.dtraction_dslip, law.stiffness(), at(slip + h, pressure), at(slip - h, pressure), h),
+        (
+            response.dtraction_dpressure,
+            1.0,
+            at(slip, pressure * (1.0 + 1e-6)),
+            at(slip, pressure * (1.0 - 1e-6)),
+            1e-6 * pressure,
+        ),
+    ] {
+        let scale = scale.max(tangent.abs());
+        if ((up - here) - (here - down)).abs() > 2e-4 * scale * h {
+            smooth = false;
+            continue;
+        }
+        let difference = (up - down) / (2.0 * h);
+        assert_close(tangent, difference, 1e-4 * scale, &format!("{old:?} {slip} {pressure} {dt} {law:?}: tangent"));
+    }
+    smooth
+}
+
+// Slip weakening
+
+#[test]
+fn slip_weakens_to_the_dynamic_coefficient_at_any_step_size() {
+    let law = weakening(WEAKENING);
+    for steps in [1, 2, 3, 50, 1000] {
+        // α_t (u − D) = p μ(D), with μ = 0.6 − 0.1 D down to 0.5.
+        for (total, slipped) in [(0.406, 400.0 / 999.0), (1.5, 1.495)] {
+            let mut state = law.initial_state();
+            for _ in 0..steps {
+                state = respond(&law, &state, total / f64::from(steps), 10.0, 0.1).state;
+            }
+            let q = if slipped < 1.0 { 10.0 * (0.6 - 0.1 * slipped) } else { 5.0 };
+            assert_close(state.plastic_slip, slipped, 1e-12, "slip");
+            assert_close(state.traction, q, 1e-11, "traction");
+            assert_close(state.mu, 0.1 * q, 1e-12, "mu");
+        }
+    }
+}
+
+#[test]
+fn weakening_counts_slip_to_and_fro_and_never_heals() {
+    let law = weakening(WEAKENING);
+    let mut state = respond(&law, &law.initial_state(), 0.406, 10.0, 1.0).state;
+    let (q, slip) = (state.traction, state.plastic_slip);
+    state = respond(&law, &state, 0.0, 10.0, 1e9).state;
+    assert_close(state.traction, q, 1e-12, "rest");
+    state = respond(&law, &state, -0.3, 10.0, 1.0).state;
+    let back = slip - state.plastic_slip;
+    assert_close(state.mu, 0.6 - 0.1 * (slip + back), 1e-12, "mu after reversal");
+    assert_close(state.traction, -10.0 * state.mu, 1e-11, "traction after reversal");
+    state = respond(&law, &state, 0.0, 0.0, 1.0).state;
+    assert_eq!(state.traction, 0.0, "parted");
+    assert_close(state.mu, 0.6 - 0.1 * (slip + back), 1e-12, "parted");
+}
+
+#[test]
+fn weakening_with_cohesion_and_an_initial_excess() {
+    let law = weakening(SlipWeakeningParameters { cohesion: 2.0, ..WEAKENING });
+    let state = respond(&law, &law.initial_state(), 0.01, 10.0, 1.0).state;
+    // 10 is above c + μ_s p = 8: Δλ = 2/(α_t − W p).
+    assert_close(state.plastic_slip, 2.0 / 999.0, 1e-15, "slip");
+    assert_close(state.traction, 8.0 - 2.0 / 999.0, 1e-12, "traction");
+    let over = FrictionState { traction: 8.5, pressure: 10.0, ..law.initial_state() };
+    assert_close(respond(&law, &over, 0.0, 10.0, 0.0).state.plastic_slip, 0.5 / 999.0, 1e-15, "excess slips off");
+    assert_eq!(law.starting_limit(10.0), f64::INFINITY);
+}
+
+#[test]
+fn weakening_that_outruns_the_contact_snaps_to_the_dynamic_coefficient() {
+    let law = weakening(SlipWeakeningParameters { alpha_t: Some(0.9), ..WEAKENING });
+    assert_close(law.uniqueness_limit().expect("a limit"), 9.0, 1e-12, "limit");
+    let state = respond(&law, &law.initial_state(), 7.0, 10.0, 1.0).state;
+    assert_eq!((state.mu, state.traction), (0.5, 5.0));
+    let just_below = respond(&law, &law.initial_state(), 5.99 / 0.9, 10.0, 1.0).state;
+    assert_eq!((just_below.mu, just_below.plastic_slip), (0.6, 0.0));
+}
+
+#[test]
+fn weakening_tangents_are_exact() {
+    let mut random = Random(1);
+    let mut smooth = 0;
+    for k in 0..3000 {
+        let law = weakening(SlipWeakeningParameters {
+            alpha_t: Some(10f64.powf(random.between(-0.3, 3.0))),
+            cohesion: if k % 2 == 0 { 0.0 } else { random.between(0.0, 3.0) },
+            ..WEAKENING
+        });
+        let pressure = random.between(0.1, 20.0);
+        let mu = random.between(0.5, 0.6);
+        let old = FrictionState { traction: random.between(-8.0, 8.0), pressure, mu, ..law.initial_state() };
+        let slip = random.between(-20.0, 20.0) / law.stiffness();
+        smooth += usize::from(check_tangents(&law, &old, slip, random.between(0.1, 20.0), 1.0));
+    }
+    assert!(smooth > 2800, "{smooth}");
+}
+
+#[test]
+fn weakening_dissipates_what_the_work_leaves() {
+    let law = weakening(WEAKENING);
+    let (mut state, mut work) = (law.initial_state(), 0.0);
+    for k in 0..400 {
+        let slip = 0.02 * (0.02 * f64::from(k)).cos();
+        let new = respond(&law, &state, slip, 10.0, 1.0).state;
+        assert!(new.dissipation >= state.dissipation);
+        work += 0.5 * (state.traction + new.traction) * slip;
+        state = new;
+    }
+    let stored = state.traction.powi(2) / 2000.0;
+    assert!(state.plastic_slip.abs() > 0.1 && state.mu == 0.5);
+    // The trapezoidal work of an increment in which slip sets in or turns round is not exact.
+    assert_close(state.dissipation + stored, work, 2e-3 * work, "energy");
+}
+
+/// ∫ (c + μ(D) p) dD at constant pressure: the dissipation of slip to and fro depends on the slip alone, and one increment
+/// with a reversal inside books the same as a thousand.
+#[test]
+fn weakening_dissipates_the_strength_over_the_slip() {
+    let law = weakening(SlipWeakeningParameters { cohesion: 1.5, ..WEAKENING });
+    let turns = [0.3, -0.2, 0.4, -0.6, 0.5, 0.0];
+    let points: Vec<[f64; 2]> = [0.0].iter().chain(&turns).map(|u| [*u, 10.0]).collect();
+    for parts in [1, 2, 3, 7, 1000] {
+        let state = strokes(&law, &points, parts, 1.0);
+        // After the first slip to the strength, α_t Δλ = α_t |Δu| − (the strengths before and after), stroke by stroke.
+        let (mut slipped, mut strength, mut at) = (0.0, 0.0, 0.0);
+        let mut work = 0.0;
+        for turn in turns {
+            let elastic = 1000.0 * f64::abs(turn - at) - strength;
+            let before = 1.5 + 10.0 * (0.6 - 0.1 * slipped);
+            let weak = (elastic - before) / 999.0;
+            let slip = if slipped + weak < 1.0 { weak } else { (elastic - 6.5) / 1000.0 };
+            let weak = slip.min(1.0 - slipped);
+            work += weak * (before - 0.5 * weak) + (slip - weak) * 6.5;
+            slipped = (slipped + slip).min(1.0);
+            strength = 1.5 + 10.0 * (0.6 - 0.1 * slipped);
+            at = turn;
+        }
+        assert_close(state.dissipation, work, 1e-12 * work, &format!("{parts} parts"));
+        assert!(state.mu == 0.5, "all strokes weaken");
+    }
+}
+
+/// Along straight lines of slip and pressure the answer is exact, and so is the dissipation: many increments book the same
+/// as one, and the trapezoidal rule tends to it.
+#[test]
+fn weakening_dissipates_the_same_in_one_increment_as_in_many() {
+    let law = weakening(SlipWeakeningParameters { cohesion: 0.5, critical_slip: 0.05, ..WEAKENING });
+    let cases = [
+        [[0.0, 10.0], [0.02, 14.0]],
+        [[0.0, 10.0], [0.04, 4.0]],
+        [[0.0, 10.0], [0.3, 25.0]],
+        [[0.0, 0.0], [0.03, 12.0]],
+        [[0.0, 0.0], [0.3, 12.0]],
+    ];
+    for line in cases {
+        let one = strokes(&law, &line, 1, 1.0);
+        for parts in [2, 5, 1000] {
+            let many = strokes(&law, &line, parts, 1.0);
+            assert_close(many.traction, one.traction, 1e-11, "traction");
+            let what = format!("{line:?} in {parts}");
+            assert_close(many.dissipation, one.dissipation, 1e-12 * one.dissipation, &what);
+        }
+        let (parts, mut old, mut work) = (200_000, FrictionState { pressure: line[0][1], ..law.initial_state() }, 0.0);
+        for k in 1..=parts {
+            let share = f64::from(k) / f64::from(parts);
+            let slip = line[1][0] / f64::from(parts);
+            let new = respond(&law, &old, slip, line[0][1] + share * (line[1][1] - line[0][1]), 1.0).state;
+            work += 0.5 * (old.traction + new.traction) * slip;
+            old = new;
+        }
+        let stored = one.traction.powi(2) / 2000.0;
+        assert_close(one.dissipation + stored, work, 1e-8 * work, &format!("{line:?}: work"));
+    }
+}
+
+/// A snap releases what the contact had stored: nothing is lost from the account.
+#[test]
+fn a_snap_dissipates_what_it_releases() {
+    let law = weakening(SlipWeakeningParameters { alpha_t: Some(0.9), ..WEAKENING });
+    // Elastic up to 6, down to 5 at once, and on at 5.
+    let work = 0.5 * 6.0 * 6.0 / 0.9 + 5.0 * (7.0 - 6.0 / 0.9);
+    for parts in [1, 2, 1000] {
+        let state = strokes(&law, &[[0.0, 10.0], [7.0, 10.0]], parts, 1.0);
+        assert_close(state.dissipation + 0.5 * 25.0 / 0.9, work, 1e-12 * work, "work");
+    }
+}
+
+// Rate and state
+
+/// The work of slip to and fro, in increments that hold the reversals, against that of many small ones: what is dissipated
+/// tends to ∮ q du at the first order of the method, and is right to a hundredth where a stroke has twenty increments.
+#[test]
+fn rate_and_state_dissipates_the_work_of_slip_to_and_fro() {
+    for evolution in [StateEvolution::Ageing, StateEvolution::Slip] {
+        let law = rate_and_state(RateAndStateParameters { evolution, alpha_t: Some(5.0), ..RATE_AND_STATE });
+        let loops = |parts: u32| {
+            let (mut old, mut work) = (FrictionState { pressure: 100.0, ..law.initial_state() }, 0.0);
+            for k in 0..8 * parts {
+                let slip = if (k / parts).is_multiple_of(2) { 1.0 } else { -1.0 } * 100.0 / f64::from(parts);
+                let new = respond(&law, &old, slip, 100.0, slip.abs()).state;
+                assert!(new.dissipation >= old.dissipation);
+                work += 0.5 * (old.traction + new.traction) * slip;
+                old = new;
+            }
+            [old.dissipation + 0.1 * old.traction.powi(2), work]
+        };
+        let [fine, work] = loops(20_000);
+        println!("{evolution:?} {fine} {work} {:?}", [1, 2, 5, 10, 20, 40, 80].map(|n| loops(n)[0] / work - 1.0));
+        assert_close(fine, work, 2e-4 * work, "energy");
+        assert_close(loops(20)[0], work, 1e-2 * work, "energy in 20 increments a stroke");
+    }
+}
+
+#[test]
+fn steady_sliding_has_the_coefficient_of_its_rate() {
+    for evolution in [StateEvolution::Ageing, StateEvolution::Slip] {
+        for rate in [1e-6, 1e-2, 1.0, 50.0, 1e4] {
+            let law = rate_and_state(RateAndStateParameters { evolution, ..RATE_AND_STATE });
+            let mut state = law.initial_state();
+            for _ in 0..3000 {
+                state = respond(&law, &state, 0.5, 100.0, 0.5 / rate).state;
+            }
+            // a arsinh(V/(2V₀) e^{ψ/a}) = ψ + a ln(V/V₀) to 1e-50, with ψ = f₀ − b ln(V/V₀).
+            let steady = 100.0 * (0.6 + (0.010 - 0.015) * f64::ln(rate));
+            assert_close(state.traction, steady, 1e-6 * steady, &format!("{evolution:?} at {rate}"));
+        }
+    }
+}
+
+#[test]
+fn a_jump_of_the_rate_acts_directly_and_then_by_the_state() {
+    // A stiff contact, so that the plastic slip follows the total: the jump is a ln 10, then −b ln 10 decays over D_c.
+    let law = rate_and_state(RateAndStateParameters {
+        alpha_t: Some(1e6),
+        evolution: StateEvolution::Slip,
+        ..RATE_AND_STATE
+    });
+    let mut state = law.initial_state();
+    for _ in 0..10 {
+        state = respond(&law, &state, 1.0, 100.0, 1.0).state;
+    }
+    assert_close(state.traction, 60.0, 1e-5, "steady at V₀");
+    let mut slipped = 0.0;
+    for _ in 0..3000 {
+        state = respond(&law, &state, 0.01, 100.0, 0.001).state;
+        slipped += 0.01;
+        // Slip law at constant V: ψ + b ln(V/V₀) − f₀ decays as exp(−D/D_c).
+        let expected = 60.0 + 100.0 * 10f64.ln() * (0.010 - 0.015 * (1.0 - f64::exp(-slipped / 10.0)));
+        if slipped > 0.05 {
+            assert_close(state.traction, expected, 2e-4, &format!("after {slipped}"));
+        }
+    }
+}
+
+#[test]
+fn rest_heals_with_the_logarithm_of_time_in_the_ageing_law_only() {
+    for (evolution, healed) in
+        [(StateEvolution::Ageing, 0.015 * (1e4 / 10.0 + 1.0f64).ln()), (StateEvolution::Slip, 0.0)]
+    {
+        let law = rate_and_state(RateAndStateParameters { evolution, ..RATE_AND_STATE });
+        let at_rest = respond(&law, &law.initial_state(), 0.0, 100.0, 1e4).state;
+        assert_close(at_rest.mu, 0.6 + healed, 1e-12, "pressed");
+        assert_close(respond(&law, &law.initial_state(), 0.0, 0.0, 1e4).state.mu, 0.6 + healed, 1e-12, "parted");
+        let quick = FrictionState { traction: 30.0, pressure: 100.0, ..law.initial_state() };
+        let now = respond(&law, &quick, 0.1, 100.0, 0.0).state;
+        assert_eq!((now.traction, now.mu, now.plastic_slip), (30.05, 0.6, 0.0), "no time, no slip");
+    }
+}
+
+/// Rates of (q, θ) of the law's equations at the slip rate v of the whole.
+fn rates(p: &RateAndStateParameters, pressure: f64, v: f64, [q, theta]: [f64; 2]) -> [f64; 2] {
+    let psi = p.f_0 + p.b * (p.reference_rate * theta / p.critical_slip).ln();
+    let slip_rate = 2.0 * p.reference_rate * (q / (p.a * pressure)).sinh() * (-psi / p.a).exp();
+    let y = slip_rate.abs() * theta / p.critical_slip;
+    let dtheta = match p.evolution {
+        StateEvolution::Ageing => 1.0 - y,
+        StateEvolution::Slip => -y * y.ln(),
+    };
+    [p.alpha_t.expect("given") * (v - slip_rate), dtheta]
+}
+
+#[test]
+fn increments_converge_to_the_differential_equations() {
+    for evolution in [StateEvolution::Ageing, StateEvolution::Slip] {
+        let p = RateAndStateParameters { evolution, ..RATE_AND_STATE };
+        let law = rate_and_state(p);
+        // Slip at V₀, then ten times as fast, then back at a third: 60 s by the method of Runge and Kutta.
+        let rate = |t: f64| {
+            if t < 20.0 {
+                1.0
+            } else if t < 30.0 {
+                10.0
+            } else {
+                -3.0
+            }
+        };
+        let mut y = [59.0, 10.0];
+        let h = 1e-4;
+        for k in 0..600_000u32 {
+            let v = rate((f64::from(k) + 0.5) * h);
+            let f = |y: [f64; 2]| rates(&p, 100.0, v, y);
+            let step = |y: [f64; 2], k: [f64; 2], s: f64| [y[0] + s * k[0], y[1] + s * k[1]];
+            let k1 = f(y);
+            let k2 = f(step(y, k1, 0.5 * h));
+            let k3 = f(step(y, k2, 0.5 * h));
+            let k4 = f(step(y, k3, h));
+            for i in 0..2 {
+                y[i] += h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
+            }
+        }
+        let error = |steps: u32| {
+            let dt = 60.0 / f64::from(steps);
+            let mut state = FrictionState { traction: 59.0, pressure: 100.0, ..law.initial_state() };
+            for k in 0..steps {
+                state = respond(&law, &state, rate((f64::from(k) + 0.5) * dt) * dt, 100.0, dt).state;
+            }
+            let psi = p.f_0 + p.b * (p.reference_rate * y[1] / p.critical_slip).ln();
+            (state.traction - y[0]).abs() + 100.0 * (state.mu - psi).abs()
+        };
+        let (coarse, fine) = (error(6000), error(12000));
+        assert!(fine < 0.02, "{evolution:?}: {fine}");
+        assert!((1.8..2.2).contains(&(coarse / fine)), "{evolution:?}: {coarse:e} became {fine:e}");
+    }
+}
+
+#[test]
+fn rate_and_state_tangents_are_exact() {
+    let mut random = Random(2);
+    let mut smooth = 0;
+    for k in 0..4000 {
+        let evolution = if k % 2 == 0 { StateEvolution::Ageing } else { StateEvolution::Slip };
+        // The weakening b p/D_c is 0.15 at the usual pressure: some contacts are softer than that.
+        let alpha_t = Some(10f64.powf(random.between(-1.0, 2.0)));
+        let law = rate_and_state(RateAndStateParameters { evolution, alpha_t, ..RATE_AND_STATE });
+        let pressure = random.between(1.0, 150.0);
+        let mu = random.between(0.5, 0.7);
+        let old = FrictionState { traction: random.between(-80.0, 80.0), pressure, mu, ..law.initial_state() };
+        let slip = random.between(-40.0, 40.0) / law.stiffness();
+        let dt = 10f64.powf(random.between(-6.0, 3.0));
+        smooth += usize::from(check_tangents(&law, &old, slip, random.between(1.0, 150.0), dt));
+    }
+    assert!(smooth > 3700, "{smooth}");
+}
+
+#[test]
+fn answers_meet_their_equations_and_are_the_first_root() {
+    let mut random = Random(3);
+    let mut most = 0;
+    for k in 0..20000 {
+        let evolution = if k % 2 == 0 { StateEvolution::Ageing } else { StateEvolution::Slip };
+        let alpha_t = 10f64.powf(random.between(-2.0, 3.0));
+        let p = RateAndStateParameters { evolution, alpha_t: Some(alpha_t), ..RATE_AND_STATE };
+        let law = rate_and_state(p);
+        let psi0 = random.between(0.3, 0.8);
+        let old = FrictionState { traction: 0.0, pressure: 100.0, mu: psi0, ..law.initial_state() };
+        let dt = 10f64.powf(random.between(-8.0, 6.0));
+        let trial = 10f64.powf(random.between(-3.0, 2.5));
+        let response = respond(&law, &old, trial / alpha_t, 100.0, dt);
+        most = most.max(response.evaluations);
+        let FrictionState { traction, mu, plastic_slip, .. } = response.state;
+        assert!((0.0..=trial * (1.0 + 1e-12)).contains(&traction), "{traction} of {trial}");
+        assert_close(traction, trial - alpha_t * plastic_slip, 1e-9 * trial, "slip");
+        // Evaluated afresh, in logarithms: θ₁ of (4) or (5), q of (2).
+        let excess = |slip: f64| {
+            let (x, v) = (slip / 10.0, slip / dt);
+            let log0 = (psi0 - 0.6) / 0.015;
+            let log = match evolution {
+                StateEvolution::Ageing => (log0.exp() * (-x).exp() + dt / 10.0 * (1.0 - (-x).exp()) / x).ln(),
+                StateEvolution::Slip => log0 * (-x).exp() - v.ln() * (1.0 - (-x).exp()),
+            };
+            let psi = 0.6 + 0.015 * log;
+            let w = (0.5 * v).ln() + psi / 0.01;
+            let arsinh = if w > 30.0 { w + 2f64.ln() } else { w.exp().asinh() };
+            (trial - alpha_t * slip - 0.01 * 100.0 * arsinh, psi)
+        };
+        if plastic_slip > 1e-9 * trial / alpha_t && plastic_slip > 1e-6 {
+            let (rest, psi) = excess(plastic_slip);
+            assert_close(
+                rest,
+                0.0,
+                1e-6 * trial,
+                &format!("{evolution:?}, {trial}, {alpha_t}, {dt}, {psi0}: residual"),
+            );
+            assert_close(mu, psi, 1e-7, "state");
+            for part in 1..60 {
+                let earlier = plastic_slip * (1.0 - f64::from(part) / 60.0);
+                if earlier > 1e-7 {
+                    assert!(excess(earlier).0 > -1e-6 * trial, "a root before the answer: {earlier} of {plastic_slip}");
+                }
+            }
+        }
+    }
+    assert!(most < 100, "{most} evaluations");
+}
+
+#[test]
+fn parameters_out_of_range_are_named() {
+    for (parameters, name) in [
+        (RateAndStateParameters { f_0: 0.0, ..RATE_AND_STATE }, "f_0"),
+        (RateAndStateParameters { reference_rate: 0.0, ..RATE_AND_STATE }, "V_0"),
+        (RateAndStateParameters { a: 0.0, ..RATE_AND_STATE }, "a"),
+        (RateAndStateParameters { b: -1.0, ..RATE_AND_STATE }, "b"),
+        (RateAndStateParameters { critical_slip: f64::NAN, ..RATE_AND_STATE }, "D_c"),
+        (RateAndStateParameters { theta: Some(0.0), ..RATE_AND_STATE }, "theta"),
+        (RateAndStateParameters { alpha_t: Some(-1.0), ..RATE_AND_STATE }, "alpha_t"),
+    ] {
+        assert_eq!(RateAndState::new(&parameters, 1.0).expect_err("refused").name, name);
+    }
+    for (parameters, name) in [
+        (SlipWeakeningParameters { mu_d: 0.0, ..WEAKENING }, "mu_d"),
+        (SlipWeakeningParameters { mu_s: 0.4, ..WEAKENING }, "mu_s"),
+        (SlipWeakeningParameters { critical_slip: 0.0, ..WEAKENING }, "D_c"),
+        (SlipWeakeningParameters { cohesion: -1.0, ..WEAKENING }, "cohesion"),
+        (SlipWeakeningParameters { alpha_t: Some(0.0), ..WEAKENING }, "alpha_t"),
+    ] {
+        assert_eq!(SlipWeakening::new(&parameters, 1.0).expect_err("refused").name, name);
+    }
+}
+
+#[test]
+fn no_increment_panics_or_is_not_a_number() {
+    let mut random = Random(4);
+    let magnitude = |random: &mut Random, low, high| 10f64.powf(random.between(low, high));
+    for k in 0..100_000 {
+        let law: Box<dyn FrictionLaw> = match k % 3 {
+            0 => Box::new(weakening(SlipWeakeningParameters {
+                critical_slip: magnitude(&mut random, -9.0, 3.0),
+                alpha_t: Some(magnitude(&mut random, -3.0, 12.0)),
+                ..WEAKENING
+            })),
+            _ => Box::new(rate_and_state(RateAndStateParameters {
+                a: magnitude(&mut random, -6.0, 0.0),
+                b: if k % 7 == 0 { 0.0 } else { magnitude(&mut random, -6.0, 0.0) },
+                critical_slip: magnitude(&mut random, -9.0, 3.0),
+                reference_rate: magnitude(&mut random, -9.0, 3.0),
+                evolution: if k % 3 == 1 { StateEvolution::Ageing } else { StateEvolution::Slip },
+                alpha_t: Some(magnitude(&mut random, -3.0, 12.0)),
+                ..RATE_AND_STATE
+            })),
+        };
+        let mut state = law.initial_state();
+        for _ in 0..4 {
+            let sign = if random.unit() < 0.5 { -1.0 } else { 1.0 };
+            let slip = sign * magnitude(&mut random, -12.0, 3.0);
+            let pressure = if random.unit() < 0.1 { 0.0 } else { magnitude(&mut random, -6.0, 9.0) };
+            let dt = if random.unit() < 0.1 { 0.0 } else { magnitude(&mut random, -12.0, 12.0) };
+            let answer = respond(&*law, &state, slip, pressure, dt);
+            let new = answer.state;
+            assert!(new.dissipation >= state.dissipation && new.traction * slip.signum() * 0.0 == 0.0);
+            assert!(answer.dtraction_dslip.abs() <= STEEPEST * law.stiffness());
+            assert!(answer.dtraction_dpressure.abs() <= STEEPEST);
+            assert!(answer.evaluations < 200, "{} evaluations", answer.evaluations);
+            state = new;
+        }
+    }
+}

@@ -1,0 +1,12 @@
+//! Against published numbers: validation problems, spring and mass, faults, slip fronts.
+//!
+//! The slow ones are ignored and say by it which table of the documentation they recompute. They print it, one after the
+//! other, by `cargo test --release --test published -- --ignored --nocapture --test-threads 1`.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod paper;
+mod published;
+mod rupture;
+mod slip_front;

@@ -1,0 +1,169 @@
+//! Newton's method by itself, on equations in one unknown; and what it accepts on whole models.
+
+use crate::common::{self, Blocks, Finished, close, expression, floor, linear, neo_hookean, run_through};
+use fecontact::laws::friction::CoulombParameters;
+use fecontact::linear::system::Request;
+use fecontact::linear::system::System;
+use fecontact::linear::{Multifrontal, Pattern, SparseMatrix};
+use fecontact::model::builder::{Contact, IncrementSettings, Load, LoadStep, Support};
+use fecontact::model::method::Method;
+use fecontact::model::{Model, NewtonSettings};
+use fecontact::solve::newton::{NewtonFailure, Outcome, solve};
+
+/// Solve r(u) = 0 from a start value; `equation` gives r, r′ and the share of the next correction to take, or fails.
+fn root(start: f64, equation: impl Fn(f64) -> Result<[f64; 3], ()>) -> Outcome<()> {
+    let pattern = std::sync::Arc::new(Pattern::new(1, std::iter::once(&[0usize][..])));
+    let tangent = SparseMatrix::zero(pattern);
+    let mut system = System { residual: vec![0.0; 2], tangent, forces: 1.0, imbalance: 1.0 };
+    let settings = NewtonSettings { tolerance: 1e-12, max_iterations: 30 };
+    solve(vec![start, 0.0], settings, &mut Multifrontal::default(), &mut system, |u, request, system| {
+        let [r, slope, share] = equation(u[0])?;
+        system.residual = vec![r, 0.0];
+        system.imbalance = r.abs();
+        if request == Request::Tangent {
+            system.tangent.clear();
+            system.tangent.add_diagonal(0, slope);
+            system.tangent.add_diagonal(1, 1.0);
+        }
+        Ok(share)
+    })
+}
+
+/// The correction of atan(u) = 0 from u = 1.6 leads to −2.5, which is out of bounds here; half of it leads to the root.
+#[test]
+fn a_part_of_a_correction_out_of_bounds_is_taken() {
+    let bounded = |u: f64| if u.abs() < 2.0 { Ok([u.atan(), 1.0 / (1.0 + u * u), 1.0]) } else { Err(()) };
+    let (iterations, result) = root(1.6, bounded);
+    assert!(result.expect("a root")[0].abs() < 1e-12 && iterations.len() < 8, "{iterations:?}");
+    // Where no part of it leads anywhere, the failure is told.
+    let alone = |u: f64| if u == 1.6 { Ok([u.atan(), 1.0 / (1.0 + u * u), 1.0]) } else { Err(()) };
+    assert_eq!(root(1.6, alone).1, Err(NewtonFailure::Evaluation(())));
+}
+
+/// The corrections of sgn(u) √|u| = 0 lead from u to −u for ever; half of one leads to the root.
+#[test]
+fn a_share_of_the_correction_breaks_a_cycle() {
+    let equation =
+        |share: f64| move |u: f64| Ok([u.signum() * u.abs().sqrt(), 0.5 / u.abs().max(1e-300).sqrt(), share]);
+    assert!(matches!(root(1.0, equation(1.0)).1, Err(NewtonFailure::TooManyIterations { .. })));
+    let (iterations, result) = root(1.0, equation(0.5));
+    assert_eq!((iterations.len(), result.expect("a root")[0]), (1, 0.0));
+}
+
+/// Blocks of foam pressed on a ground of foam and dragged over it by Coulomb's law. `scale` multiplies what is prescribed; a
+/// body of steel beside it of this modulus, if there is one, is pressed by 1 %.
+fn foam(steel: Option<f64>, tolerance: f64, scale: f64) -> Finished {
+    let beside = |mesh: Blocks| mesh.rectangle("steel", [10, 10], [10.0, 0.0], [11.0, 1.0]);
+    let mesh = steel.map_or(Blocks::default(), |_| beside(Blocks::default()));
+    let mesh =
+        mesh.rectangle("ground", [24, 4], [0.0, -0.6], [4.0, 0.0]).rectangle("foam", [9, 4], [1.0, 0.0], [2.0, 0.6]);
+    let foam = neo_hookean(0.05, 0.3, 0.0);
+    let top = |y: f64| Support::on("foam_top").ux(0.0).uy(y);
+    let mut press = LoadStep::new("press", 1.0).dt(0.5).fix("ground_bottom").support(top(-1e-2 * scale));
+    let mut model = Model::builder(mesh.mesh()).body("ground", foam).body("foam", foam);
+    if let Some(young) = steel {
+        model = model.body("steel", neo_hookean(young, 0.3, 0.0));
+        press = press.fix("steel_bottom").support(Support::on("steel_top").ux(0.0).uy(-0.01));
+    }
+    let settings = IncrementSettings { max: Some(0.1), ..IncrementSettings::from(0.1) };
+    let drag = LoadStep::new("drag", 1.0).dt(settings).support(Support::on("foam_top").ux(2e-2 * scale));
+    let contact = Contact::new("base", "foam_bottom", "ground_top", CoulombParameters::new(0.3));
+    run_through(model.contact(contact).newton(solved_to(tolerance)).step(press).step(drag))
+}
+
+fn solved_to(tolerance: f64) -> NewtonSettings {
+    NewtonSettings { tolerance, ..NewtonSettings::default() }
+}
+
+/// Forces on the top of the foam after every increment, over `scale`.
+fn forces(run: &Finished, scale: f64) -> Vec<[f64; 2]> {
+    run.states.iter().map(|state| run.reaction("foam_top", state).map(|f| f / scale)).collect()
+}
+
+/// Largest difference, relative to the largest force.
+fn difference(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    common::distance(a.as_flattened(), b.as_flattened()) / a.as_flattened().iter().fold(0.0, |m: f64, f| m.max(f.abs()))
+}
+
+/// Steel strained by 1 % beside the foam touches nothing. Its forces, 10⁴ to 10⁹ times larger, are no measure of the foam's.
+/// The reference is the foam alone, solved to round-off.
+#[test]
+fn a_body_that_touches_nothing_hides_no_imbalance() {
+    let alone = forces(&foam(None, 1e-13, 1.0), 1.0);
+    for steel in [50.0, 2e5, 2e7] {
+        close(&format!("E = {steel}"), difference(&alone, &forces(&foam(Some(steel), 1e-8, 1.0), 1.0)), 0.0, 1e-7);
+    }
+}
+
+/// Foam on rubber on a steel plate that is stretched by 1 %: in one stack as well every body and every contact is in
+/// equilibrium by itself. The reference is the same solved to round-off.
+#[test]
+fn a_stiff_body_in_a_stack_hides_no_imbalance() {
+    let stack = |tolerance: f64| {
+        let mesh = Blocks::default()
+            .rectangle("steel", [12, 3], [0.0, -0.5], [4.0, 0.0])
+            .rectangle("rubber", [11, 3], [0.5, 0.0], [3.0, 0.5])
+            .rectangle("foam", [9, 3], [1.0, 0.5], [2.0, 1.0]);
+        let press = LoadStep::new("press", 1.0).dt(0.25).fix("steel_bottom");
+        let stretched = |text: &str| Support::on("steel_bottom").ux(expression(text));
+        let stretch = LoadStep::new("stretch", 1.0).dt(0.1).support(stretched("0.01*(x-1.5)*(t-1)"));
+        let drag = LoadStep::new("drag", 1.0).dt(0.1).support(stretched("0.01*(x-1.5)"));
+        let model = Model::builder(mesh.mesh())
+            .body("steel", neo_hookean(2e5, 0.3, 0.0))
+            .body("rubber", neo_hookean(1.0, 0.3, 0.0))
+            .body("foam", neo_hookean(0.05, 0.3, 0.0))
+            .contact(Contact::new("lower", "rubber_bottom", "steel_top", CoulombParameters::new(0.3)))
+            .contact(Contact::new("upper", "foam_bottom", "rubber_top", CoulombParameters::new(0.3)))
+            .newton(solved_to(tolerance))
+            .step(press.support(Support::on("foam_top").ux(0.0).uy(-5e-2)))
+            .step(stretch)
+            .step(drag.support(Support::on("foam_top").ux(2e-2)));
+        run_through(model)
+    };
+    let [loose, tight] = [1e-8, 1e-13].map(|tolerance| forces(&stack(tolerance), 1.0));
+    close("forces on the foam", difference(&tight, &loose), 0.0, 1e-7);
+}
+
+/// Supports that move by 10⁻⁷ to 10⁻¹² of an element: the forces are those of a motion a thousand times larger, over
+/// a thousand, as far as gaps of that size are known: to ε h in h times the motion.
+#[test]
+fn no_motion_is_too_small_to_be_solved_for() {
+    let reference = forces(&foam(None, 1e-8, 1e-4), 1e-4);
+    for (scale, allowed) in [(1e-6, 2e-4), (1e-8, 1e-4), (1e-10, 1e-2)] {
+        let run = foam(None, 1e-8, scale);
+        close(&format!("{scale:e}"), difference(&reference, &forces(&run, scale)), 0.0, allowed);
+        let top = run.nodes("foam_top")[0];
+        close("prescribed", run.last().displacement[2 * top], 2e-2 * scale, 1e-12 * scale);
+    }
+    // Far below what gaps are known to, supports are still met, and no increment is accepted without a solve.
+    let run = foam(None, 1e-8, 1e-14);
+    let top = run.nodes("foam_top")[0];
+    close("prescribed", run.last().displacement[2 * top], 2e-16, 1e-28);
+    assert!(run.iterations.iter().all(|iterations| *iterations > 0));
+}
+
+/// A block on a rigid plane pressed by 150 MPa from its left and 50 MPa from above (after the GRECO block of
+/// `cases/validation`), 2³⁸ from the origin: all nodes are multiples of 2.5, and so exact. The pressures must not be taken for
+/// round-off of the positions.
+#[test]
+fn loads_far_from_the_origin_are_solved_for() {
+    let tractions = |shift: f64| {
+        let mesh = Blocks::default().rectangle("block", [16, 16], [shift, 0.0], [shift + 40.0, 40.0]);
+        let load = LoadStep::new("load", 1.0).dt(0.1).support(Support::on("block_right").ux(0.0));
+        let contact =
+            Contact::new("base", "block_bottom", floor(), CoulombParameters::new(1.0)).method(Method::NodeToSegment);
+        let run = run_through(
+            Model::builder(mesh.mesh())
+                .body("block", linear(130000.0, 0.2, 0.0))
+                .contact(contact)
+                .step(load.load(Load::pressure("block_left", 150.0)).load(Load::pressure("block_top", 50.0))),
+        );
+        let friction = run.last().contacts[0].iter().map(|point| [point.friction.pressure, point.friction.traction]);
+        friction.collect::<Vec<_>>()
+    };
+    let near = tractions(0.0);
+    let pressure = near.iter().map(|[p, _]| 2.5 * p).sum::<f64>();
+    assert!((pressure / 2000.0 - 1.0).abs() < 0.1, "the bottom carries most of 40 × 50: {pressure}");
+    close("tractions", difference(&near, &tractions(2f64.powi(38))), 0.0, 1e-9);
+}

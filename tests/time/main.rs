@@ -1,0 +1,13 @@
+//! Time: schemes, increments under error control, damping, impact, waves and the stability of sliding.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod adaptive;
+mod columns;
+mod damping;
+mod explicit;
+mod impact;
+mod stability;
+mod switching;
+mod time_integration;
