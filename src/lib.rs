@@ -7,22 +7,22 @@
 //! | room | what is in it |
 //! |---|---|
 //! | [`cli`] | commands, arguments, progress |
-//! | [`case`] | the JSON of a case: read, checked, translated to a model |
+//! | [`case`] | the JSON of a case: read, and translated to the builder of a model |
 //! | [`output`] | observers of a run and the files they write; figures |
 //! | [`run`] | steps, increments accepted and cut, observers |
 //! | [`time`] | one increment, implicit or explicit: old state → new state; how long the next one is |
 //! | [`solve`] | Newton's method; bodies that float |
 //! | [`equations`] | residual and tangent of a model at a trial displacement; energies |
-//! | [`model`] | bodies, contacts, steps, supports and loads; the state |
+//! | [`model`] | bodies, contacts, steps, supports and loads; the state; [`model::builder`]: a model from code |
 //! | [`contact`] | surfaces, search, projection, mortar, forces of contact pairs |
 //! | [`linear`] | sparse matrices and their factors |
 //! | [`mesh`] | nodes, elements, groups, shapes |
 //! | [`laws`] | friction of interfaces, stress of bodies |
 //!
-//! Reading order: `main` → [`cli`] → [`case`] (JSON → checks → model) → [`model`] → [`run`] (steps, increments, cut-back;
-//! [`time::step_size`] says how long) → [`time::increment`] (one increment: old state → new state) → [`solve::newton`] →
-//! [`equations`] → {[`model::element`] → [`laws::bulk`]} and {[`contact`] → [`laws::friction`]}; then up again: accepted
-//! [`model::state`] → [`output`].
+//! Reading order: `main` → [`cli`] → [`case`] (JSON) → [`model::builder`] (defaults, checks) → [`model`] → [`run`] (steps,
+//! increments, cut-back; [`time::step_size`] says how long) → [`time::increment`] (one increment: old state → new state) →
+//! [`solve::newton`] → [`equations`] → {[`model::element`] → [`laws::bulk`]} and {[`contact`] → [`laws::friction`]}; then up
+//! again: accepted [`model::state`] → [`output`].
 //!
 //! A law alone: [`cli`] → [`case`] → [`run::law`] along a [`run::law_path`] → [`laws::friction`] → [`output`].
 //!

@@ -6,6 +6,7 @@ use std::time::Instant;
 use super::coupling::{Coupling, Layout};
 use super::equilibrium::Equilibrium;
 use super::evaluation::{Evaluation, Seconds};
+use super::evolving::Evolving;
 use super::failure::TrialFailure;
 use super::inertia::Inertia;
 use super::solids::Solids;
@@ -23,6 +24,7 @@ pub struct Assembler {
     model: Arc<Model>,
     layout: Layout,
     solids: Solids,
+    evolving: Evolving,
     mass: Option<SparseMatrix>,
     /// η M of the bodies' damping
     damping_mass: Option<SparseMatrix>,
@@ -51,6 +53,7 @@ impl Assembler {
             model: model.clone(),
             layout: Layout::new(model),
             solids: Solids::new(model),
+            evolving: Evolving::new(model),
             mass: None,
             damping_mass: None,
             weight: supports::weight(model),
@@ -193,14 +196,18 @@ impl Assembler {
         scaled: bool,
         tangent: Option<&mut SparseMatrix>,
     ) -> Result<(), TrialFailure> {
-        let Self { model, layout, solids, damping_mass, magnitudes, evaluation, .. } = self;
-        let Evaluation { force, loads, damping, stabilization, strain_energy, .. } = evaluation;
+        let Self { model, layout, solids, evolving, damping_mass, magnitudes, evaluation, .. } = self;
+        let Evaluation { force, loads, damping, stabilization, memory, strain_energy, dissipated, .. } = evaluation;
         [&mut *force, &mut *damping].into_iter().for_each(|values| values.resize(u.len(), 0.0));
         let magnitudes = scaled.then_some(&mut magnitudes[..]);
         let mut sums = Sums { force, magnitudes, tangent, layout };
         for term in terms {
             match term {
-                Term::Solids => *strain_energy = solids.add(u, &mut sums)?,
+                Term::Solids => {
+                    let elastic = solids.add(u, &mut sums)?;
+                    *strain_energy =
+                        elastic + evolving.add(model, (trial, u), (&mut *memory, &mut *dissipated), &mut sums)?;
+                }
                 Term::Interfaces => interfaces::add(responses, &mut sums),
                 Term::Loads => loads::add(model, trial, u, loads, &mut sums)?,
                 Term::Dampers => dampers::add(model, trial, u, damping, &mut sums)?,

@@ -16,7 +16,11 @@ use crate::model::Model;
 pub(super) fn dependence(model: &Model) -> Dependence {
     let damped = |viscous: bool| {
         move |body: &&crate::model::Body| {
-            if viscous { body.damping.stiffness > 0.0 } else { body.damping.mass > 0.0 || body.damping.stiffness > 0.0 }
+            if viscous {
+                body.damping.retardation > 0.0
+            } else {
+                body.damping.mass > 0.0 || body.damping.retardation > 0.0
+            }
         }
     };
     match model.bodies.iter().find(damped(false)) {

@@ -69,8 +69,8 @@ impl Equilibrium {
         for (e, element) in model.mesh.elements.iter().enumerate() {
             let body = &model.bodies[model.body_of_element[e]];
             let [solid, depth] = [model.solids[e].volume(), model.solids[e].mean_weight()];
-            let modulus = body.material.stiffness() * depth;
-            let viscous = body.damping.stiffness * modulus;
+            let modulus = body.material.p_wave_modulus() * depth;
+            let viscous = body.damping.retardation * modulus;
             for &node in &element.nodes {
                 lone[node] = false;
                 let node = model.ties.original(node);

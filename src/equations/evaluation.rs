@@ -22,8 +22,12 @@ pub struct Evaluation {
     pub acceleration: Vec<f64>,
     /// trial states of all contact points
     pub contacts: Vec<Vec<ContactState>>,
+    /// What the materials remember at the end of the trial
+    pub memory: Vec<f64>,
     /// ∫ W dV [F·L]
     pub strain_energy: f64,
+    /// What the materials dissipated in the increment [F·L]
+    pub dissipated: f64,
 }
 
 /// Numbers of contact points by status.

@@ -2,7 +2,9 @@
 
 use thiserror::Error;
 
+use crate::laws::bulk::InvertedElement;
 use crate::laws::friction::LawFailure;
+use crate::model::Model;
 use crate::model::scheme::told;
 
 /// Why the equations could not be evaluated at a trial state.
@@ -46,4 +48,12 @@ pub enum TrialFailure {
         /// run time
         time: f64,
     },
+}
+
+impl TrialFailure {
+    /// The failure of an element, with the names of its file.
+    pub fn inverted(model: &Model, element: usize, InvertedElement { jacobian }: InvertedElement) -> Self {
+        let body = model.bodies[model.body_of_element[element]].name.clone();
+        Self::Inverted { element: model.mesh.element_tags[element], body, jacobian }
+    }
 }

@@ -30,6 +30,7 @@ pub mod dampers;
 mod damping;
 mod equilibrium;
 pub mod evaluation;
+mod evolving;
 pub mod failure;
 pub mod inertia;
 pub mod interfaces;

@@ -10,6 +10,7 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use super::coupling::Layout;
+use super::evolving::evolves;
 use super::sums::{Sums, add_blocks};
 use super::term::Dependence;
 use crate::equations::failure::TrialFailure;
@@ -58,6 +59,8 @@ struct Run {
     nodes: usize,
     /// Place of the first node of the first element
     first: usize,
+    /// Whether [`Evolving`] adds them
+    evolves: bool,
 }
 
 impl Run {
@@ -76,7 +79,13 @@ impl Solids {
             let (body, kind) = (model.body_of_element[e], element.kind);
             match runs.last_mut() {
                 Some(run) if run.body == body && elements[run.elements.start].kind == kind => run.elements.end += 1,
-                _ => runs.push(Run { elements: e..e + 1, body, nodes: element.nodes.len(), first: count }),
+                _ => runs.push(Run {
+                    elements: e..e + 1,
+                    body,
+                    nodes: element.nodes.len(),
+                    first: count,
+                    evolves: evolves(model, body),
+                }),
             }
             count += element.nodes.len();
             element.nodes.iter().for_each(|&node| starts[node + 1] += 1);
@@ -107,7 +116,7 @@ impl Solids {
     /// Forces of all elements.
     fn evaluate(&mut self, u: &[f64]) {
         let model = &*self.model;
-        for run in &self.runs {
+        for run in self.runs.iter().filter(|run| !run.evolves) {
             let material = &*model.bodies[run.body].material;
             let forces = self.forces[run.places()].par_chunks_exact_mut(run.nodes);
             let elements = run.elements.clone().into_par_iter().zip(forces);
@@ -121,7 +130,7 @@ impl Solids {
     /// Forces and tangents of all elements, the tangents batch by batch.
     fn evaluate_with_tangents(&mut self, u: &[f64], layout: &Layout, total: &mut SparseMatrix) {
         let model = &*self.model;
-        for run in &self.runs {
+        for run in self.runs.iter().filter(|run| !run.evolves) {
             let material = &*model.bodies[run.body].material;
             let (n, size) = (run.nodes, 4 * run.nodes * run.nodes);
             self.tangents.resize(self.tangents.len().max(size * BATCH.min(run.elements.len())), 0.0);
@@ -152,11 +161,7 @@ impl Solids {
     fn stored(&self) -> Result<f64, TrialFailure> {
         let mut energy = 0.0;
         for (e, stored) in self.energies.iter().enumerate() {
-            energy += stored.map_err(|InvertedElement { jacobian }| TrialFailure::Inverted {
-                element: self.model.mesh.element_tags[e],
-                body: self.model.bodies[self.model.body_of_element[e]].name.clone(),
-                jacobian,
-            })?;
+            energy += stored.map_err(|failure| TrialFailure::inverted(&self.model, e, failure))?;
         }
         Ok(energy)
     }
@@ -182,13 +187,13 @@ impl Solids {
         let model = &*self.model;
         for run in &self.runs {
             let body = &model.bodies[run.body];
-            let law = (&*body.material, body.damping.stiffness);
+            let law = (&*body.material, body.damping.retardation);
             let one = |(e, forces): (usize, &mut [Vector2<f64>])| {
                 let [u, v] = [u, v].map(|all| nodal(model, e, all));
                 model.solids[e].viscous_forces(law, [&u[..run.nodes], &v[..run.nodes]], forces);
             };
             let places = &mut self.forces[run.places()];
-            match body.damping.stiffness > 0.0 {
+            match body.damping.retardation > 0.0 {
                 true => run
                     .elements
                     .clone()
@@ -212,9 +217,9 @@ impl Solids {
         total: &mut SparseMatrix,
     ) {
         let model = &*self.model;
-        for run in self.runs.iter().filter(|run| model.bodies[run.body].damping.stiffness > 0.0) {
+        for run in self.runs.iter().filter(|run| model.bodies[run.body].damping.retardation > 0.0) {
             let body = &model.bodies[run.body];
-            let law = (&*body.material, body.damping.stiffness);
+            let law = (&*body.material, body.damping.retardation);
             let (n, size) = (run.nodes, 4 * run.nodes * run.nodes);
             self.tangents.resize(self.tangents.len().max(size * BATCH.min(run.elements.len())), 0.0);
             for first in run.elements.clone().step_by(BATCH) {

@@ -12,7 +12,7 @@ use crate::model::Model;
 
 /// w: the largest stiffness of the materials and springs; a model of points alone has that of its contacts [F/L].
 pub(super) fn weight(model: &Model) -> f64 {
-    let materials = model.bodies.iter().map(|body| body.material.stiffness());
+    let materials = model.bodies.iter().map(|body| body.material.p_wave_modulus());
     let springs = model.steps.iter().flat_map(|step| step.loads.springs.iter().map(|spring| spring.stiffness));
     let contacts = model.contacts.iter().flat_map(|pair| pair.points.iter().map(|point| pair.alpha_n * point.area));
     let largest = |stiffness: &mut dyn Iterator<Item = f64>| stiffness.reduce(f64::max).filter(|w| *w > 0.0);

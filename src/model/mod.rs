@@ -32,7 +32,7 @@ pub struct Damping {
     /// η: share of the masses [1/T]
     pub mass: f64,
     /// τ: share of the stiffness, Kelvin–Voigt's time of retardation [T]
-    pub stiffness: f64,
+    pub retardation: f64,
 }
 
 /// A body: a material on a group of elements.
@@ -194,7 +194,18 @@ impl Model {
 
     /// Whether some body has the viscous stress of Kelvin and Voigt.
     pub fn is_viscous(&self) -> bool {
-        self.bodies.iter().any(|body| body.damping.stiffness > 0.0)
+        self.bodies.iter().any(|body| body.damping.retardation > 0.0)
+    }
+
+    /// Where each element finds what its material remembers, in [`State::memory`].
+    pub fn memories(&self) -> Vec<std::ops::Range<usize>> {
+        let mut end = 0;
+        let own = |(solid, &body): (&SolidElement, &usize)| {
+            let start = end;
+            end += solid.quadrature_points() * self.bodies[body].material.variables().len();
+            start..end
+        };
+        self.solids.iter().zip(&self.body_of_element).map(own).collect()
     }
 
     /// Whether dashpots, absorbing sides or viscous bodies act in a step.
@@ -238,6 +249,7 @@ impl Model {
             damping: zero.clone(),
             reaction: zero.clone(),
             contacts: self.contacts.iter().map(|pair| pair.initial_states(&self.mesh.undeformed())).collect(),
+            memory: vec![0.0; self.memories().last().map_or(0, |last| last.end)],
             last_increment: None,
             step_start: Arc::new(StepStart { displacement: zero.clone(), reaction: zero }),
             energy: Energy::default(),

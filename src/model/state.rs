@@ -32,6 +32,8 @@ pub struct State {
     pub reaction: Vec<f64>,
     /// One list a contact pair, one entry a slave point
     pub contacts: Vec<Vec<ContactState>>,
+    /// What the materials remember, element by element ([`crate::model::Model::memories`])
+    pub memory: Vec<f64>,
     /// Displacement increment of the last increment of this step; `None` at its start
     pub last_increment: Option<LastIncrement>,
     /// Values at the start of the current step, the same for all its states
@@ -87,7 +89,7 @@ pub struct Energy {
     pub contact_elastic: f64,
     /// ∫ q v^p ds dt
     pub friction_dissipation: f64,
-    /// ∫ c (v_driver − v)² dt of the dashpots
+    /// ∫ c (v_driver − v)² dt of the dashpots, and what bodies turned into heat
     pub damping_dissipation: f64,
     /// ∫ c v² dt of the dashpots that stabilize floating bodies, a part of the damping dissipation
     pub stabilization: f64,

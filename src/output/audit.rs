@@ -72,7 +72,7 @@ impl Audit {
 /// Round-off of the forces on a model [F].
 fn round_off(model: &Model, state: &State) -> f64 {
     let reach = state.displacement.iter().fold(model.mesh.diagonal(), |most, u| most.max(u.abs()));
-    let solids = model.bodies.iter().map(|body| body.material.stiffness()).fold(0.0, f64::max);
+    let solids = model.bodies.iter().map(|body| body.material.p_wave_modulus()).fold(0.0, f64::max);
     let contacts = model
         .contacts
         .iter()

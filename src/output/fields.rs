@@ -145,14 +145,14 @@ fn solid_frame(model: &Model, state: &State, grid: &mut Grid) {
 /// Cauchy stress at the nodes, averaged over the elements that meet there. An element that the
 /// material law cannot answer leaves no trace: it never occurs in an accepted state.
 fn nodal_stresses(model: &Model, state: &State) -> Vec<CauchyStress> {
-    let elements = &model.mesh.elements;
+    let (elements, memories) = (&model.mesh.elements, model.memories());
     let stresses_of = |e: usize| {
         let mut u = [Vector2::zeros(); 9];
         for (u, &node) in u.iter_mut().zip(&elements[e].nodes) {
             *u = Vector2::new(state.displacement[2 * node], state.displacement[2 * node + 1]);
         }
         let material = &*model.bodies[model.body_of_element[e]].material;
-        model.solids[e].nodal_stresses(material, &u[..elements[e].nodes.len()])
+        model.solids[e].nodal_stresses(material, &state.memory[memories[e].clone()], &u[..elements[e].nodes.len()])
     };
     let mut sums = vec![([0.0; 4], 0.0); model.mesh.nodes.len()];
     for (element, stresses) in elements.iter().zip((0..elements.len()).map(stresses_of)) {

@@ -87,8 +87,8 @@ impl WaveSpeeds {
     /// ```
     pub fn of(material: &dyn Material) -> Self {
         let speed = |modulus: f64| (modulus / material.density()).sqrt();
-        let (shear, pressure) = (speed(material.shear_modulus()), speed(material.stiffness()));
-        let ratio = material.shear_modulus() / material.stiffness();
+        let (shear, pressure) = (speed(material.shear_modulus()), speed(material.p_wave_modulus()));
+        let ratio = material.shear_modulus() / material.p_wave_modulus();
         // Negative below the root but for the trivial one at 0, positive above.
         let excess = |square: f64| (2.0 - square).powi(2) - 4.0 * ((1.0 - square) * (1.0 - square * ratio)).sqrt();
         let (mut low, mut high) = (0.1, 1.0);

@@ -7,7 +7,7 @@ use crate::equations::interfaces;
 use crate::model::state::State;
 use crate::model::{Model, Step};
 
-/// Make `state` that at `time` and the displacement `u`, with forces, reactions, damping and contacts as `found` there. The
+/// Make `state` that at `time` and the displacement `u`, with forces, reactions, damping, contacts and memory as `found` there. The
 /// state's velocities and accelerations are the caller's, who knows the scheme; what they store, see [`take_stock`]. The
 /// buffers are exchanged: `u` and `found` are left with the values of before.
 pub fn accept(model: &Model, step: &Step, time: f64, u: &mut Vec<f64>, found: &mut Evaluation, state: &mut State) {
@@ -17,7 +17,7 @@ pub fn accept(model: &Model, step: &Step, time: f64, u: &mut Vec<f64>, found: &m
     }
     let flows = Flows::between(model, step, (state, time), u, found);
     state.energy.external_work += flows.work;
-    state.energy.damping_dissipation += flows.damping;
+    state.energy.damping_dissipation += flows.damping + found.dissipated;
     state.energy.stabilization += flows.stabilization;
     state.energy.friction_dissipation += flows.friction;
     state.energy.strain = found.strain_energy;
@@ -26,6 +26,7 @@ pub fn accept(model: &Model, step: &Step, time: f64, u: &mut Vec<f64>, found: &m
     std::mem::swap(&mut state.external, &mut found.loads);
     std::mem::swap(&mut state.damping, &mut found.damping);
     std::mem::swap(&mut state.contacts, &mut found.contacts);
+    std::mem::swap(&mut state.memory, &mut found.memory);
     (state.dt, state.time) = (time - state.time, time);
     state.increment += 1;
 }

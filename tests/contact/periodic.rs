@@ -17,7 +17,7 @@ const EXPLICIT: Scheme = Scheme::Explicit { safety: 0.9 };
 fn ring(angle: f64, damping: f64) -> Builder {
     Model::builder(Blocks::default().rectangle("bar", [60, 1], [0.0, 0.0], [1.0, 0.05]).turned(angle).mesh())
         .body("bar", linear(4.0, 0.0, 1.0))
-        .damping("bar", Damping { mass: damping, stiffness: 0.0 })
+        .damping("bar", Damping { mass: damping, retardation: 0.0 })
         .periodic("bar_left", "bar_right")
 }
 

@@ -363,7 +363,7 @@ fn a_stick_slip_run_turns_with_its_plane() {
             close("displacement", distance(u, &v), 0.0, 1e-10);
             close("pressure", one.pressure, other.pressure, 1e-8);
             close("traction", one.traction, other.traction, 1e-8);
-            close("mu", mu_of(&one), mu_of(&other), 1e-10);
+            close("mu", mu_of(one), mu_of(&other), 1e-10);
         }
     }
 }

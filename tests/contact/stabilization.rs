@@ -1,48 +1,49 @@
 //! Bodies that nothing holds until contact does: steered into contact by a stabilization that is gone at the end of the step.
 
-use std::path::Path;
 use std::sync::Arc;
 
-use crate::common::{self, Blocks, Finished, Record, close, finish, model_at};
+use crate::common::{self, Blocks, Finished, close, floor, linear, neo_hookean, run_through};
+use fecontact::laws::friction::{CoulombParameters, Frictionless};
+use fecontact::mesh::InlineMesh;
+use fecontact::model::Model;
+use fecontact::model::builder::{Builder, Change, Components, Contact, IncrementSettings, Load, LoadStep, MasterSide};
 use fecontact::model::state::State;
 use fecontact::run::run;
-use serde_json::{Value, json};
 
 const PRESSURE: f64 = 2.0;
 
+/// The names of a body's bottom and top.
+fn sides(body: &str) -> [String; 2] {
+    ["bottom", "top"].map(|side| format!("{body}_{side}"))
+}
+
 /// A column of blocks 1 × 0.5, E = 1000, ν = 0, with gaps between them, over ground that is held; pressure on the last one
 /// and nothing else. Each block is turned about its lower left corner.
-fn column(blocks: usize, gap: f64, turn: f64, friction: Value) -> Value {
+fn column(blocks: usize, turn: f64, fall: LoadStep) -> Builder {
+    let names: Vec<String> = (0..blocks).map(|k| format!("block{k}")).collect();
     let mut mesh = Blocks::default().rectangle("ground", [5, 2], [-0.2, -0.5], [1.2, 0.0]);
-    let material = json!({"material": {"model": "neo_hookean", "E": 1000, "nu": 0}});
-    let (mut bodies, mut contacts) = (json!({"ground": material}), json!({}));
-    let mut below = "ground".to_owned();
-    for k in 0..blocks {
-        let (name, divisions) = (format!("block{k}"), [3 + k, 2]);
-        let bottom = (k + 1) as f64 * gap + k as f64 * 0.5;
-        mesh = mesh.block(&name, divisions, |s, t| {
+    for (k, name) in names.iter().enumerate() {
+        let bottom = (k + 1) as f64 * 0.02 + k as f64 * 0.5;
+        mesh = mesh.block(name, [3 + k, 2], |s, t| {
             let [x, y] = common::turned([s, 0.5 * t], turn);
             [x, bottom + y]
         });
-        bodies[&name] = material.clone();
-        contacts[format!("under{k}")] =
-            json!({"slave": format!("{name}_bottom"), "master": format!("{below}_top"), "friction": friction});
+    }
+    let material = neo_hookean(1000.0, 0.0, 0.0);
+    let mut model = Model::builder(mesh.mesh()).body("ground", material);
+    let mut below = "ground";
+    for (k, name) in names.iter().enumerate() {
+        let ([bottom, _], [_, top]) = (sides(name), sides(below));
+        let contact = Contact::new(format!("under{k}"), bottom, MasterSide::Group(top), CoulombParameters::new(0.5));
+        model = model.body(name, material).contact(contact);
         below = name;
     }
-    json!({
-        "mesh": mesh.json(),
-        "bodies": bodies,
-        "contacts": contacts,
-        "steps": [{
-            "name": "fall", "duration": 2, "dt": {"initial": 0.1}, "stabilize": 1e-3,
-            "supports": [{"on": "ground_bottom", "ux": 0, "uy": 0}],
-            "loads": [{"on": format!("{below}_top"), "pressure": PRESSURE}]
-        }]
-    })
+    model.step(fall.fix("ground_bottom").load(Load::pressure(sides(below)[1].as_str(), PRESSURE)))
 }
 
-fn coulomb() -> Value {
-    json!({"law": "coulomb", "mu": 0.5})
+/// A step that falls in increments of this length.
+fn fall(dt: impl Into<IncrementSettings>) -> LoadStep {
+    LoadStep::new("fall", 2.0).dt(dt)
 }
 
 /// Normal force of every contact.
@@ -62,7 +63,7 @@ fn normal_forces(run: &Finished, state: &State) -> Vec<f64> {
 #[test]
 fn free_blocks_settle_on_each_other() {
     for (blocks, turn) in [(1, 0.0), (3, 0.0), (1, 0.0175)] {
-        let run = finish(&column(blocks, 0.02, turn, coulomb()));
+        let run = run_through(column(blocks, turn, fall(0.1).stabilize(1e-3)));
         let last = run.last();
         for force in normal_forces(&run, last) {
             close(&format!("{blocks} blocks turned by {turn}: force"), force, PRESSURE, 1e-3 * PRESSURE);
@@ -80,73 +81,65 @@ fn free_blocks_settle_on_each_other() {
 /// block is still free along x when the stabilization has gone: that is told, not taken for an answer.
 #[test]
 fn what_contact_does_not_hold_is_named() {
-    let message = |case: &Value| {
-        let model = model_at(case, Path::new("test.json"));
-        let model = Arc::new(model);
-        let result = run(&model, &mut [&mut Record::default()]).1;
-        result.err().map(|error| error.to_string()).expect("a body floats")
-    };
-    let mut unaided = column(1, 0.02, 0.0, coulomb());
-    unaided["steps"][0]["stabilize"] = Value::Null;
-    let text = message(&unaided);
+    let text = why(column(1, 0.0, fall(0.1)));
     assert!(text.contains("nothing resists the motion of body `block0`") && text.contains("`stabilize`"), "{text}");
-    let mut smooth = column(1, 0.02, 0.0, json!({"law": "frictionless"}));
-    smooth["contacts"]["under0"]["master"] = json!({"plane": {"point": [0, 0], "normal": [0, 1]}});
-    smooth["steps"][0]["loads"] = json!([{"on": "block0_top", "traction": {"y": -PRESSURE}}]);
-    let text = message(&smooth);
+    let pressed = Load::traction("block0_top", Change::To(Components { x: None, y: Some((-PRESSURE).into()) }));
+    let smooth = Model::builder(Blocks::default().rectangle("block0", [3, 2], [0.0, 0.02], [1.0, 0.52]).mesh())
+        .body("block0", neo_hookean(1000.0, 0.0, 0.0))
+        .contact(Contact::new("under0", "block0_bottom", floor(), Frictionless))
+        .step(fall(0.1).stabilize(1e-3).load(pressed));
+    let text = why(smooth);
     assert!(text.contains("nothing resists the motion of body `block0` along x"), "{text}");
+}
+
+/// Why a run stops.
+fn why(model: Builder) -> String {
+    let model = Arc::new(model.build().expect("a good model"));
+    run(&model, &mut []).1.err().map(|error| error.to_string()).expect("a body floats")
 }
 
 /// A step that asks for one increment has two: the dashpots fade over the first, and nothing but contact holds the block
 /// in the second. A shortest increment longer than half of the step gives way as well.
 #[test]
 fn a_single_increment_is_stabilized_too() {
-    for dt in [json!({"initial": 2}), json!({"initial": 1.5, "max": 2}), json!({"initial": 2, "min": 2})] {
+    let two = IncrementSettings::from(2.0);
+    let cut = IncrementSettings { max: Some(2.0), ..IncrementSettings::from(1.5) };
+    for dt in [two, cut, IncrementSettings { min: Some(2.0), ..two }] {
         // A tilted block falls past the ground in its first iterate: it needs increments that may be cut.
-        let tilted = dt.get("min").is_none().then_some((1, 0.0175));
+        let tilted = dt.min.is_none().then_some((1, 0.0175));
         for (blocks, turn) in [(1, 0.0), (2, 0.0)].into_iter().chain(tilted) {
-            let mut case = column(blocks, 0.02, turn, coulomb());
-            case["steps"][0]["dt"] = dt.clone();
-            let run = finish(&case);
+            let run = run_through(column(blocks, turn, fall(dt).stabilize(1e-3)));
             for force in normal_forces(&run, run.last()) {
-                close(&format!("{blocks} blocks turned by {turn}, {dt}"), force, PRESSURE, 1e-3 * PRESSURE);
+                close(&format!("{blocks} blocks turned by {turn}, {dt:?}"), force, PRESSURE, 1e-3 * PRESSURE);
             }
             let shares = &run.stabilization;
-            assert!(shares[0] > 0.0 && shares.last() == Some(&0.0), "{dt}: {shares:?}");
+            assert!(shares[0] > 0.0 && shares.last() == Some(&0.0), "{dt:?}: {shares:?}");
         }
     }
 }
 
 /// `count` blocks of one element in a row on ground of one element that is held. They stick to it, but for two: one has no
 /// friction, or is lifted off the ground.
-fn row(count: usize, smooth: Option<usize>, lifted: Option<usize>) -> Value {
-    let mut mesh = Blocks::default().rectangle("ground", [1, 1], [-1.0, -1.0], [2.0 * count as f64, 0.0]);
-    let material = json!({"material": {"model": "linear", "E": 1000, "nu": 0.3}});
-    let mut bodies = json!({"ground": material});
-    let (mut rough, mut free) = (Vec::new(), Vec::new());
+fn row(count: usize, smooth: Option<usize>, lifted: Option<usize>) -> Builder {
+    let mut mesh = InlineMesh::default().rectangle("ground", [1, 1], [-1.0, -1.0], [2.0 * count as f64, 0.0]);
     for k in 0..count {
-        let name = format!("b{k}");
         let (left, bottom) = (2.0 * k as f64, if lifted == Some(k) { 0.1 } else { 0.0 });
-        mesh = mesh.rectangle(&name, [1, 1], [left, bottom], [left + 1.0, bottom + 1.0]);
-        bodies[&name] = material.clone();
-        let edge = json!([4 + 4 * k, 5 + 4 * k]);
-        if smooth == Some(k) { &mut free } else { &mut rough }.push(edge);
+        mesh = mesh.rectangle(&format!("b{k}"), [1, 1], [left, bottom], [left + 1.0, bottom + 1.0]);
+        let group = if smooth == Some(k) { "smooth" } else { "rough" };
+        mesh.edges.entry(group.into()).or_default().push(vec![4 + 4 * k, 5 + 4 * k]);
     }
-    let mut mesh = mesh.json();
-    mesh["edges"]["rough"] = json!(rough);
-    let mut contacts = json!({"rough": {"slave": "rough", "master": "ground_top", "friction": coulomb()}});
+    let material = linear(1000.0, 0.3, 0.0);
+    let mut model = Model::builder(mesh.build().expect("a mesh")).body("ground", material);
+    model = model.contact(Contact::new("rough", "rough", "ground_top", CoulombParameters::new(0.5)));
     if smooth.is_some() {
-        mesh["edges"]["smooth"] = json!(free);
-        contacts["smooth"] = json!({"slave": "smooth", "master": "ground_top", "friction": {"law": "frictionless"}});
+        model = model.contact(Contact::new("smooth", "smooth", "ground_top", Frictionless));
     }
-    let loads: Vec<Value> = (0..count).map(|k| json!({"on": format!("b{k}_top"), "traction": {"y": -1e-3}})).collect();
-    json!({
-        "mesh": mesh, "bodies": bodies, "contacts": contacts,
-        "steps": [{
-            "name": "press", "duration": 1, "dt": {"initial": 1},
-            "supports": [{"on": "ground", "ux": 0, "uy": 0}], "loads": loads,
-        }]
-    })
+    let mut press = LoadStep::new("press", 1.0).dt(1.0).fix("ground");
+    for k in 0..count {
+        model = model.body(format!("b{k}"), material);
+        press = press.load(Load::traction(format!("b{k}_top").as_str(), [0.0, -1e-3]));
+    }
+    model.step(press)
 }
 
 /// One body of a thousand that floats is found, beside the group that all others form through the ground, and within it.
@@ -157,8 +150,7 @@ fn one_of_a_thousand_bodies_floats() {
         (Some(637), None, "nothing resists the motion of body `b637` along x;"),
         (None, Some(637), "nothing resists the motion of body `b637` "),
     ] {
-        let model = model_at(&row(1000, smooth, lifted), Path::new("test.json"));
-        let text = run(&Arc::new(model), &mut []).1.err().map(|error| error.to_string()).expect("a body floats");
+        let text = why(row(1000, smooth, lifted));
         assert!(text.contains(expected), "{text}");
         assert_eq!(
             text.matches("body `").count(),
@@ -171,21 +163,18 @@ fn one_of_a_thousand_bodies_floats() {
 /// Two materials with nodes in common are one part: it floats as a whole, and is named so.
 #[test]
 fn bodies_that_share_nodes_float_together() {
-    let material = json!({"material": {"model": "linear", "E": 1000, "nu": 0.3}});
-    let case = json!({
-        "mesh": {
-            "nodes": [[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [2, 1]],
-            "elements": {"left": [[0, 1, 4, 3]], "right": [[1, 2, 5, 4]]},
-            "edges": {"bottom": [[0, 1], [1, 2]], "top": [[3, 4], [4, 5]]}
-        },
-        "bodies": {"left": material, "right": material},
-        "contacts": {"base": {
-            "slave": "bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
-            "friction": {"law": "frictionless"}
-        }},
-        "steps": [{"name": "press", "duration": 1, "loads": [{"on": "top", "traction": {"y": -1}}]}]
-    });
-    let model = model_at(&case, Path::new("test.json"));
-    let text = run(&Arc::new(model), &mut []).1.err().map(|error| error.to_string()).expect("it floats");
+    let mesh = InlineMesh {
+        nodes: vec![[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0]],
+        elements: [("left".into(), vec![vec![0, 1, 4, 3]]), ("right".into(), vec![vec![1, 2, 5, 4]])].into(),
+        edges: [("bottom".into(), vec![vec![0, 1], vec![1, 2]]), ("top".into(), vec![vec![3, 4], vec![4, 5]])].into(),
+        ..InlineMesh::default()
+    };
+    let material = linear(1000.0, 0.3, 0.0);
+    let model = Model::builder(mesh.build().expect("a mesh"))
+        .body("left", material)
+        .body("right", material)
+        .contact(Contact::new("base", "bottom", floor(), Frictionless))
+        .step(LoadStep::new("press", 1.0).load(Load::traction("top", [0.0, -1.0])));
+    let text = why(model);
     assert!(text.contains("nothing resists the motion of bodies `left` and `right` along x;"), "{text}");
 }

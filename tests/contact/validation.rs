@@ -24,7 +24,7 @@ fn vertical_stress(run: &Finished, state: &State) -> Vec<f64> {
         .flat_map(|((element, solid), &body)| {
             let u =
                 element.nodes.iter().map(|&n| Vector2::new(state.displacement[2 * n], state.displacement[2 * n + 1]));
-            solid.stresses(&*run.model.bodies[body].material, &u.collect::<Vec<_>>()).unwrap()
+            solid.stresses(&*run.model.bodies[body].material, &[], &u.collect::<Vec<_>>()).unwrap()
         })
         .map(|stress| stress.yy)
         .collect()

@@ -186,7 +186,7 @@ fn the_attained_peak_converges_to_25_0175() {
         let path = drive(&law, law.initial_state(), 0.08, 0.0, steps);
         let (index, state) =
             path.iter().enumerate().max_by(|a, b| a.1.traction.total_cmp(&b.1.traction)).expect("a path");
-        (state.traction, state.ratio(mu_of(&state)), 0.08 * (index + 1) as f64 / steps as f64)
+        (state.traction, state.ratio(mu_of(state)), 0.08 * (index + 1) as f64 / steps as f64)
     };
     let (traction, ratio, slip) = peak(200_000);
     assert_close(traction, 25.0175, 2e-3, "peak");

@@ -260,8 +260,8 @@ fn a_slip_annulus_weakens_as_it_grows_and_heals_in_a_hold() {
     assert_eq!(start.len(), end.len());
     let healing = (-xi * 10.0 / mu_s).exp();
     for ((_, start), (at, end)) in start.iter().zip(&end) {
-        let expected = mu_s - (mu_s - mu_of(&start)) * healing;
-        assert!((mu_of(&end) - expected).abs() < 1e-9, "μ({at}) = {}, not {expected}", mu_of(&end));
+        let expected = mu_s - (mu_s - mu_of(start)) * healing;
+        assert!((mu_of(end) - expected).abs() < 1e-9, "μ({at}) = {}, not {expected}", mu_of(end));
         assert_eq!(end.plastic_slip, start.plastic_slip);
         assert!(
             (end.traction - start.traction).abs() < 1e-6 * 857.0,

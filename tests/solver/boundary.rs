@@ -111,7 +111,7 @@ fn stresses(run: &Finished, state: &State) -> Vec<[f64; 4]> {
         .flat_map(|(element, solid)| {
             let u: Vec<_> = element.nodes.iter().map(|&n| &state.displacement[2 * n..][..2]).collect();
             let u: Vec<_> = u.iter().map(|u| Vector2::new(u[0], u[1])).collect();
-            solid.stresses(&*run.model.bodies[0].material, &u).unwrap()
+            solid.stresses(&*run.model.bodies[0].material, &[], &u).unwrap()
         })
         .map(|s| [s.xx, s.yy, s.zz, s.xy])
         .collect()

@@ -3,10 +3,13 @@
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
-use fecontact::laws::bulk::{CauchyStress, ElasticConstants, InvertedElement, Material, MaterialParameters};
+use fecontact::laws::bulk::{
+    CauchyStress, ElasticConstants, InvertedElement, Material, MaterialParameters, MaterialResponse, Viscoelastic,
+    ViscoelasticConstants,
+};
 use fecontact::mesh::section::Section;
 use fecontact::mesh::shape::{ElementKind, edge_values, gauss};
-use fecontact::model::element::{ElementError, SolidElement, consistent_mass, lumped_mass};
+use fecontact::model::element::{ElementError, Memory, SolidElement, consistent_mass, lumped_mass};
 use nalgebra::{DMatrix, DVector, Matrix2, Rotation2, Vector2};
 
 const KINDS: [ElementKind; 5] = [ElementKind::T3, ElementKind::T6, ElementKind::Q4, ElementKind::Q8, ElementKind::Q9];
@@ -166,11 +169,11 @@ fn homogeneous_deformation_passes_the_patch_test() {
                         "{kind:?} f_bar {f_bar} {material:?}: {residual}"
                     );
                 }
-                let expected = material.cauchy_stress(f).unwrap();
+                let expected = material.cauchy_stress(f, &[]).unwrap();
                 for (element, connectivity) in &patch.elements {
                     let u: Vec<_> = connectivity.iter().map(|&a| u[a]).collect();
-                    let at_points = element.stresses(&*material, &u).unwrap();
-                    let at_nodes = element.nodal_stresses(&*material, &u).unwrap();
+                    let at_points = element.stresses(&*material, &[], &u).unwrap();
+                    let at_nodes = element.nodal_stresses(&*material, &[], &u).unwrap();
                     assert_eq!((at_points.len(), at_nodes.len()), (kind.quadrature().len(), kind.nodes()));
                     for stress in at_points.iter().chain(&at_nodes) {
                         assert!(differs(stress, &expected) < 1e-13 * E, "{kind:?} {f_bar} {material:?} {stress:?}");
@@ -287,7 +290,7 @@ fn stresses_are_those_that_cause_the_forces() {
             element.force(&*material, &u, &mut force).unwrap();
             let virial: Matrix2<f64> =
                 force.chunks(2).zip(&x).map(|(f, x)| Vector2::new(f[0], f[1]) * x.transpose()).sum();
-            let stresses = element.stresses(&*material, &u).unwrap();
+            let stresses = element.stresses(&*material, &[], &u).unwrap();
             let mut integral = Matrix2::zeros();
             for (point, stress) in kind.quadrature().iter().zip(stresses) {
                 let derivatives = kind.derivatives(point.at).into_iter().map(Vector2::from);
@@ -328,7 +331,7 @@ fn nodal_stresses_continue_a_linear_field() {
         for (element, connectivity) in &patch.elements {
             let positions = connectivity.iter().map(|&a| patch.nodes[a]);
             let u: Vec<_> = positions.clone().map(|x| Vector2::new(0.01 * x.x * x.x, 0.02 * x.x * x.y)).collect();
-            for (x, stress) in positions.zip(element.nodal_stresses(&*material, &u).unwrap()) {
+            for (x, stress) in positions.zip(element.nodal_stresses(&*material, &[], &u).unwrap()) {
                 let exact = CauchyStress { xx: E * 0.02 * x.x, yy: E * 0.02 * x.x, zz: 0.0, xy: E * 0.01 * x.y };
                 assert!(differs(&stress, &exact) < 1e-14 * E, "{kind:?} at {x}: {stress:?}");
             }
@@ -391,7 +394,7 @@ fn what_cannot_be_is_reported() {
         let element = SolidElement::new(ElementKind::Q4, f_bar, Section::PlaneStrain, &square).unwrap();
         let InvertedElement { jacobian } = element.force(&*neo_hookean(E, 0.3), &mirrored, &mut [0.0; 8]).unwrap_err();
         assert!((jacobian + 1.5).abs() < 1e-14, "{jacobian}");
-        assert!(element.stresses(&*neo_hookean(E, 0.3), &mirrored).is_err());
+        assert!(element.stresses(&*neo_hookean(E, 0.3), &[], &mirrored).is_err());
     }
 }
 
@@ -413,7 +416,7 @@ fn solve(
             tangent.column_mut(dof).fill(0.0);
             tangent[(dof, dof)] = 1.0;
         }
-        if residual.amax() < 1e-14 * material.stiffness() * size {
+        if residual.amax() < 1e-14 * material.p_wave_modulus() * size {
             return iteration;
         }
         let correction = tangent.lu().solve(&residual).unwrap();
@@ -475,5 +478,99 @@ fn all_kinds_converge_to_the_same_compressible_solution() {
         let (coarse, fine) = (error(4), error(8));
         println!("{kind:?} {f_bar}: {coarse} {fine}");
         assert!(fine < 0.6 * coarse, "{kind:?} f_bar {f_bar}: {coarse} {fine}");
+    }
+}
+
+/// A law without a potential: its stress is turned against the strain, P = C·(F − 1) R with R a quarter turn of the rows.
+#[derive(Debug)]
+struct Turning;
+
+impl Material for Turning {
+    fn density(&self) -> f64 {
+        0.0
+    }
+
+    fn p_wave_modulus(&self) -> f64 {
+        E
+    }
+
+    fn shear_modulus(&self) -> f64 {
+        E
+    }
+
+    fn is_symmetric(&self) -> bool {
+        false
+    }
+
+    fn respond(&self, f: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
+        let strain = f - Matrix2::identity();
+        let tangent = nalgebra::Matrix4::from_fn(|i, j| E * if i == j { 1.0 } else { 0.3 * i as f64 - 0.1 * j as f64 });
+        let stress = tangent * nalgebra::Vector4::from_column_slice(strain.as_slice());
+        let stress = Matrix2::from_column_slice(stress.as_slice());
+        Ok(MaterialResponse { stress, tangent, energy: 0.0, stress_zz: 0.0 })
+    }
+}
+
+/// Forces of an element of a law that remembers, or has no symmetric tangent, and their differences: every kind, F-bar too.
+#[test]
+fn the_tangent_of_memory_and_of_laws_without_a_potential_equals_differences() {
+    let constants = ViscoelasticConstants { young: E, poisson: 0.3, relaxing: 2.0 * E, tau: 0.7, density: 0.0 };
+    let laws: [Box<dyn Material>; 2] = [Box::new(Viscoelastic::new(&constants).unwrap()), Box::new(Turning)];
+    for (kind, f_bar) in VARIANTS {
+        let patch = Patch::distorted(kind, f_bar);
+        for (material, (element, nodes)) in laws.iter().zip([&patch.elements[0], &patch.elements[0]]) {
+            let count = element.quadrature_points() * material.variables().len();
+            let motion = |share: f64| -> Vec<Vector2<f64>> {
+                let bend = |x: Vector2<f64>| Vector2::new(0.2 * x.y * x.y + 0.1 * x.x, -0.15 * x.x * x.y + 0.2 * x.x);
+                nodes.iter().map(|&a| share * bend(patch.nodes[a])).collect()
+            };
+            let mut old = vec![0.0; count];
+            let (zero, n) = (vec![0.0; count], 2 * nodes.len());
+            let mut force = vec![0.0; n];
+            let first = Memory { dt: 0.5, old: &zero, new: &mut old };
+            element.evolve(&**material, first, &motion(0.4), &mut force, None).unwrap();
+            let answer = |u: &[Vector2<f64>]| {
+                let (mut force, mut tangent, mut new) = (vec![0.0; n], vec![0.0; n * n], vec![0.0; count]);
+                let memory = Memory { dt: 0.3, old: &old, new: &mut new };
+                element.evolve(&**material, memory, u, &mut force, Some(&mut tangent)).unwrap();
+                (DVector::from_vec(force), DMatrix::from_vec(n, n, tangent))
+            };
+            let u = motion(1.0);
+            let (_, tangent) = answer(&u);
+            let h = 1e-6;
+            for column in 0..n {
+                let moved = |step: f64| {
+                    let mut u = u.clone();
+                    u[column / 2][column % 2] += step;
+                    answer(&u).0
+                };
+                let error = ((moved(h) - moved(-h)) / (2.0 * h) - tangent.column(column)).amax();
+                assert!(error < 1e-7 * tangent.amax(), "{kind:?} f_bar {f_bar} {material:?}: {error}");
+            }
+            let skew = (&tangent - tangent.transpose()).amax() / tangent.amax();
+            assert_eq!(skew < 1e-12, material.is_symmetric() && !f_bar, "{kind:?} {material:?}: {skew}");
+        }
+    }
+}
+
+/// A body of a law without memory is answered the same on the way of those with memory.
+#[test]
+fn both_ways_through_an_element_agree() {
+    for (kind, f_bar) in VARIANTS {
+        let patch = Patch::distorted(kind, f_bar);
+        let (element, nodes) = &patch.elements[0];
+        let n = 2 * nodes.len();
+        let u: Vec<_> = nodes.iter().map(|&a| 0.1 * patch.nodes[a].map(|x| x * x)).collect();
+        for material in materials() {
+            let [mut force, mut other] = [vec![0.0; n], vec![0.0; n]];
+            let [mut tangent, mut by_memory] = [vec![0.0; n * n], vec![0.0; n * n]];
+            let energy = element.force_and_tangent(&*material, &u, &mut force, &mut tangent).unwrap();
+            let memory = Memory { dt: 1.0, old: &[], new: &mut [] };
+            let [stored, dissipated] =
+                element.evolve(&*material, memory, &u, &mut other, Some(&mut by_memory)).unwrap();
+            assert!((stored - energy).abs() < 1e-14 * E && dissipated == 0.0);
+            let differ = |a: &[f64], b: &[f64]| a.iter().zip(b).fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
+            assert!(differ(&force, &other) < 1e-14 * E && differ(&tangent, &by_memory) < 1e-13 * E, "{kind:?}");
+        }
     }
 }

@@ -426,8 +426,9 @@ fn what_slips_does_not_depend_on_the_reference_rate() {
                 "slave": "slab_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
                 "friction": {"law": "rate_and_state", "f_0": f_0, "V_0": reference, "a": a, "b": b, "D_c": 1e-4,
                              "theta": 100},
-                "initial": {"pressure": 1},
+                "initial": {"pressure": 1, "balanced": true},
             }},
+            "newton": {"tolerance": 1e-11},
             "steps": [{"name": "slide", "duration": 2000, "scheme": "static", "dt": {"initial": 50},
                        "supports": [{"on": "slab_top", "ux": {"rate": 1e-6}, "uy": 0}]}],
         }));

@@ -1,4 +1,5 @@
-//! What is below and around contact: meshes, elements, supports and loads, linear solvers, Newton's method, the state.
+//! What is below and around contact: models from code, meshes, elements, supports and loads, linear solvers, Newton's method,
+//! the state.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -20,7 +20,7 @@ pub fn model(case: &Case, mesh: Mesh) -> Checked<Builder> {
         let complain = |error| Complaint::new(format!("bodies.{name}.material"), error);
         let DampingInput { mass, stiffness } = body.damping;
         builder = builder.body(name, body.material.build().map_err(complain)?);
-        builder = builder.damping(name, Damping { mass, stiffness });
+        builder = builder.damping(name, Damping { mass, retardation: stiffness });
         if body.element == Formulation::FBar {
             builder = builder.f_bar(name);
         }

@@ -45,7 +45,7 @@ impl Material for Hencky {
         self.density
     }
 
-    fn stiffness(&self) -> f64 {
+    fn p_wave_modulus(&self) -> f64 {
         self.lame.constrained_modulus()
     }
 

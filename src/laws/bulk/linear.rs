@@ -34,7 +34,7 @@ impl Material for Linear {
         self.density
     }
 
-    fn stiffness(&self) -> f64 {
+    fn p_wave_modulus(&self) -> f64 {
         self.lame.constrained_modulus()
     }
 
@@ -56,7 +56,7 @@ impl Material for Linear {
         let strain = 0.5 * (displacement_gradient + displacement_gradient.transpose());
         let stress_zz = lambda * strain.trace();
         let stress = Matrix2::from_diagonal_element(stress_zz) + 2.0 * shear * strain;
-        let m = self.stiffness();
+        let m = self.p_wave_modulus();
         #[rustfmt::skip]
         let tangent = Matrix4::new(
             m,      0.0,   0.0,   lambda,
@@ -75,7 +75,7 @@ impl Material for Linear {
         self.hooke(varied_rate)
     }
 
-    fn cauchy_stress(&self, deformation: &Matrix2<f64>) -> Result<CauchyStress, InvertedElement> {
+    fn cauchy_stress(&self, deformation: &Matrix2<f64>, _: &[f64]) -> Result<CauchyStress, InvertedElement> {
         let MaterialResponse { stress, stress_zz, .. } = self.respond(deformation)?;
         Ok(CauchyStress { xx: stress.m11, yy: stress.m22, zz: stress_zz, xy: stress.m12 })
     }

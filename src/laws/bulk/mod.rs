@@ -1,4 +1,4 @@
-//! The bulk-law contract: stress and tangent of a hyperelastic material in plane strain.
+//! The bulk-law contract: stress and tangent of a material, and what it remembers.
 //!
 //! | law | stored energy W per reference volume |
 //! |---|---|
@@ -7,7 +7,11 @@
 //! | [`NeoHookean`] | G/2 (I₁ − 3 − 2 ln J) + λ/2 (ln J)² |
 //! | [`Hencky`] | G ‖ln V‖² + λ/2 (ln J)² |
 //!
-//! All have the same two constants, λ and G, and the same response to small strains.
+//! All have the same two constants, λ and G, and the same response to small strains. [`Viscoelastic`] has a neo-Hookean body
+//! beside a Maxwell arm that relaxes.
+//!
+//! A law may remember some numbers of its own at every quadrature point. They are handled like the state of friction: the
+//! answer to an increment is a pure function of what was committed, and what it leaves is a second value.
 //!
 //! Damping of the Kelvin–Voigt kind adds a stress proportional to the rate of strain, τ being a time:
 //!
@@ -29,12 +33,14 @@ mod linear;
 mod neo_hookean;
 mod parameters;
 mod saint_venant_kirchhoff;
+mod viscoelastic;
 
 pub use hencky::Hencky;
 pub use linear::Linear;
 pub use neo_hookean::NeoHookean;
 pub use parameters::{ElasticConstants, Lame, MaterialParameters};
 pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
+pub use viscoelastic::{Viscoelastic, ViscoelasticConstants};
 
 /// Stress, tangent and stored energy at one deformation gradient (plane strain: F₃₃ = 1).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,6 +53,28 @@ pub struct MaterialResponse {
     pub energy: f64,
     /// σ_zz: out-of-plane Cauchy stress [F/L²]
     pub stress_zz: f64,
+}
+
+/// What a law is asked for at one quadrature point: where an increment ends, and what the law remembers from its start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Straining<'a> {
+    /// F at the end, in plane [-]
+    pub deformation: Matrix2<f64>,
+    /// F₃₃ at the end: stretch out of plane, 1 in plane strain [-]
+    pub stretch: f64,
+    /// Δt: length of the increment [T]
+    pub dt: f64,
+    /// The committed [`variables`](Material::variables)
+    pub old: &'a [f64],
+}
+
+/// What a law with memory answers; it writes its new variables itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Evolution {
+    /// Stress, tangent and stored energy at the end
+    pub response: MaterialResponse,
+    /// Energy dissipated in the increment per reference volume [F/L²]
+    pub dissipation: f64,
 }
 
 /// σ: Cauchy stress, tension positive [F/L²]
@@ -95,13 +123,14 @@ pub(crate) fn cofactor(deformation: &Matrix2<f64>) -> Matrix2<f64> {
     Matrix2::new(f.m22, -f.m21, -f.m12, f.m11)
 }
 
-/// A bulk law without memory: P and ∂P/∂F at F (plane strain).
+/// A bulk law: P and ∂P/∂F at F. One without memory answers by [`respond`](Material::respond), in plane strain; one that
+/// remembers names its variables, and answers an increment by [`evolve`](Material::evolve).
 pub trait Material: Debug + Send + Sync {
     /// ρ₀: mass per reference volume [M/L³]
     fn density(&self) -> f64;
 
-    /// Constrained modulus λ + 2G of the undeformed material: the stiffness scale [F/L²]
-    fn stiffness(&self) -> f64;
+    /// λ + 2G: P-wave modulus of the undeformed material at once, the scale of its stiffness [F/L²]
+    fn p_wave_modulus(&self) -> f64;
 
     /// G: shear modulus of the undeformed material [F/L²]
     fn shear_modulus(&self) -> f64;
@@ -116,6 +145,26 @@ pub trait Material: Debug + Send + Sync {
     /// # Errors
     /// [`InvertedElement`] when det F is not positive.
     fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement>;
+
+    /// Names of what the law remembers at every quadrature point, zero before the first increment; none for elastic laws.
+    fn variables(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// Whether ∂P/∂F is symmetric, as it is where P has a potential: half of the tangent is the mirror image of the other.
+    fn is_symmetric(&self) -> bool {
+        true
+    }
+
+    /// The answer to an increment, whose variables at the end are written over `new`. Pure: the same increment from the same
+    /// variables gives the same answer. An increment of no length leaves no time to relax.
+    ///
+    /// # Errors
+    /// As [`Material::respond`].
+    fn evolve(&self, straining: &Straining, _new: &mut [f64]) -> Result<Evolution, InvertedElement> {
+        let response = self.respond(&straining.deformation)?;
+        Ok(Evolution { response, dissipation: 0.0 })
+    }
 
     /// P and W alone. Compiled for each law, so that the tangent that is not asked for costs nothing.
     ///
@@ -163,16 +212,17 @@ pub trait Material: Debug + Send + Sync {
     /// C:sym(e) = λ tr(e) 1 + G (e + eᵀ)
     fn hooke(&self, strain: &Matrix2<f64>) -> Matrix2<f64> {
         let shear = self.shear_modulus();
-        let lambda = self.stiffness() - 2.0 * shear;
+        let lambda = self.p_wave_modulus() - 2.0 * shear;
         Matrix2::from_diagonal_element(lambda * strain.trace()) + shear * (strain + strain.transpose())
     }
 
-    /// σ = P Fᵀ / J
+    /// σ = P Fᵀ / J at F in plane strain, with the variables that the law remembers there.
     ///
     /// # Errors
     /// As [`Material::respond`].
-    fn cauchy_stress(&self, deformation: &Matrix2<f64>) -> Result<CauchyStress, InvertedElement> {
-        let response = self.respond(deformation)?;
+    fn cauchy_stress(&self, deformation: &Matrix2<f64>, old: &[f64]) -> Result<CauchyStress, InvertedElement> {
+        let now = Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old };
+        let Evolution { response, .. } = self.evolve(&now, &mut old.to_vec())?;
         let sigma = response.stress * deformation.transpose() / deformation.determinant();
         Ok(CauchyStress { xx: sigma.m11, yy: sigma.m22, zz: response.stress_zz, xy: sigma.m12 })
     }

@@ -30,6 +30,28 @@ impl NeoHookean {
     pub fn new(constants: &ElasticConstants) -> Result<Self, InvalidParameter> {
         Ok(Self { lame: constants.lame()?, density: constants.density })
     }
+
+    /// The answer with a stretch h out of plane, J being that in plane and σ_zz = (G (h − 1/h) + λ/h ln(J h))/J.
+    ///
+    /// ```text
+    /// W = G/2 m + G (J − 1 + (h² − 1)/2 − ln J h) + λ/2 (ln J h)²
+    /// ```
+    #[inline(always)]
+    pub(super) fn stretched(&self, deformation: &Matrix2<f64>, h: f64) -> Result<MaterialResponse, InvertedElement> {
+        let invariants = Invariants::of(deformation)?;
+        let Lame { lambda, shear } = self.lame;
+        let (jacobian, j, ln_j) = (invariants.jacobian, invariants.volume_strain, invariants.ln_jacobian() + h.ln());
+        let out_of_plane = 0.5 * (h - 1.0) * (h + 1.0);
+        let energy = Energy {
+            w: 0.5 * shear * invariants.distortion + shear * (j + out_of_plane - ln_j) + 0.5 * lambda * ln_j * ln_j,
+            w_m: 0.5 * shear,
+            w_j: (shear * j + lambda * ln_j) / jacobian,
+            w_mm: 0.0,
+            w_mj: 0.0,
+            w_jj: (shear + lambda * (1.0 - ln_j)) / (jacobian * jacobian),
+        };
+        Ok(invariants.response(&energy, (shear * (h - 1.0 / h) + lambda * ln_j / h) / jacobian))
+    }
 }
 
 impl Material for NeoHookean {
@@ -37,7 +59,7 @@ impl Material for NeoHookean {
         self.density
     }
 
-    fn stiffness(&self) -> f64 {
+    fn p_wave_modulus(&self) -> f64 {
         self.lame.constrained_modulus()
     }
 
@@ -47,17 +69,6 @@ impl Material for NeoHookean {
 
     #[inline(always)]
     fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
-        let invariants = Invariants::of(deformation)?;
-        let Lame { lambda, shear } = self.lame;
-        let (jacobian, j, ln_j) = (invariants.jacobian, invariants.volume_strain, invariants.ln_jacobian());
-        let energy = Energy {
-            w: 0.5 * shear * invariants.distortion + shear * (j - ln_j) + 0.5 * lambda * ln_j * ln_j,
-            w_m: 0.5 * shear,
-            w_j: (shear * j + lambda * ln_j) / jacobian,
-            w_mm: 0.0,
-            w_mj: 0.0,
-            w_jj: (shear + lambda * (1.0 - ln_j)) / (jacobian * jacobian),
-        };
-        Ok(invariants.response(&energy, lambda * ln_j / jacobian))
+        self.stretched(deformation, 1.0)
     }
 }

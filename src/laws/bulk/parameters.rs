@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Hencky, Linear, Material, NeoHookean, SaintVenantKirchhoff};
+use super::{Hencky, Linear, Material, NeoHookean, SaintVenantKirchhoff, Viscoelastic, ViscoelasticConstants};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 
 /// A bulk material: its law and its constants.
@@ -18,6 +18,8 @@ pub enum MaterialParameters {
     NeoHookean(ElasticConstants),
     /// Hencky: linear in the logarithmic strain; large rotations, moderate strains
     Hencky(ElasticConstants),
+    /// Neo-Hookean beside a Maxwell arm: relaxes from E + E_1 to E within some tau
+    Viscoelastic(ViscoelasticConstants),
 }
 
 /// Constants of an isotropic elastic material.
@@ -55,6 +57,7 @@ impl MaterialParameters {
             Self::SaintVenantKirchhoff(constants) => Box::new(SaintVenantKirchhoff::new(constants)?),
             Self::NeoHookean(constants) => Box::new(NeoHookean::new(constants)?),
             Self::Hencky(constants) => Box::new(Hencky::new(constants)?),
+            Self::Viscoelastic(constants) => Box::new(Viscoelastic::new(constants)?),
         })
     }
 }

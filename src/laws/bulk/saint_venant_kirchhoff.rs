@@ -37,7 +37,7 @@ impl Material for SaintVenantKirchhoff {
         self.density
     }
 
-    fn stiffness(&self) -> f64 {
+    fn p_wave_modulus(&self) -> f64 {
         self.lame.constrained_modulus()
     }
 
@@ -48,7 +48,7 @@ impl Material for SaintVenantKirchhoff {
     #[inline(always)]
     fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
         let invariants = Invariants::of(deformation)?;
-        let (lambda, shear, constrained) = (self.lame.lambda, self.lame.shear, self.stiffness());
+        let (lambda, shear, constrained) = (self.lame.lambda, self.lame.shear, self.p_wave_modulus());
         let (m, j) = (invariants.distortion, invariants.volume_strain);
         let trace = 0.5 * m + j;
         let energy = Energy {

@@ -43,7 +43,7 @@ pub fn bodies(given: Vec<GivenBody>, mesh: &Mesh) -> Checked<(Vec<Body>, Vec<usi
             let message = format!("`{name}` is a group of {}, not of solid elements", kind(group));
             return Err(ModelError::new(place, message));
         };
-        check_size(&format!("{place}.material"), "the stiffness lambda + 2 G", material.stiffness())?;
+        check_size(&format!("{place}.material"), "the stiffness lambda + 2 G", material.p_wave_modulus())?;
         check_damping(damping, &*material, &format!("{place}.damping"))?;
         elements.iter().for_each(|&element| body_of_element[element] = bodies.len());
         let (elements, nodes) = (elements.clone(), mesh.nodes_of(group));
@@ -62,7 +62,7 @@ pub fn bodies(given: Vec<GivenBody>, mesh: &Mesh) -> Checked<(Vec<Body>, Vec<usi
 }
 
 fn check_damping(damping: Damping, material: &dyn Material, place: &str) -> Checked<()> {
-    let Damping { mass, stiffness } = damping;
+    let Damping { mass, retardation: stiffness } = damping;
     check_not_negative(&format!("{place}.mass"), mass)?;
     check_not_negative(&format!("{place}.stiffness"), stiffness)?;
     if mass > 0.0 && material.density() == 0.0 {

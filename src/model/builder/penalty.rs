@@ -57,7 +57,7 @@ fn elastic_stiffness(place: &str, contact: &Contact, model: &Model) -> Checked<O
         return Ok(None);
     }
     let slave = edges(&model.mesh, &contact.slave, &format!("{place}.slave"))?;
-    let modulus = |edge: &Edge| model.bodies[model.body_of_element[edge.element]].material.stiffness();
+    let modulus = |edge: &Edge| model.bodies[model.body_of_element[edge.element]].material.p_wave_modulus();
     let master = match &contact.master {
         MasterSide::Group(group) => edges(&model.mesh, group, &format!("{place}.master"))?,
         _ => &[],

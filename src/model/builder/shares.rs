@@ -76,7 +76,7 @@ pub fn absorbers(model: &Model, edges: &[Edge]) -> Vec<Absorber> {
             let depth = model.mesh.section.weight(place);
             let s = along.normalize();
             let n = Vector2::new(s.y, -s.x);
-            let resistance = n * n.transpose() * impedance(material.stiffness())
+            let resistance = n * n.transpose() * impedance(material.p_wave_modulus())
                 + s * s.transpose() * impedance(material.shear_modulus());
             for (&node, value) in nodes.iter().zip(values) {
                 *total.entry(node).or_default() += resistance * (weight * value * along.norm() * depth);

@@ -13,7 +13,7 @@ pub mod pressure;
 mod solid;
 
 pub use mass::{consistent_mass, lumped_mass, redistributed};
-pub use solid::SolidElement;
+pub use solid::{Memory, SolidElement};
 
 /// An element that cannot be built on its nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]

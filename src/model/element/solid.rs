@@ -5,7 +5,9 @@ use std::sync::OnceLock;
 use nalgebra::{DMatrix, Matrix2, Matrix4, Vector2};
 
 use super::{ElementError, gradients};
-use crate::laws::bulk::{CauchyStress, InvertedElement, Material, MaterialResponse, cofactor, positive_jacobian};
+use crate::laws::bulk::{
+    CauchyStress, Evolution, InvertedElement, Material, MaterialResponse, Straining, cofactor, positive_jacobian,
+};
 use crate::mesh::section::Section;
 use crate::mesh::shape::ElementKind;
 
@@ -44,6 +46,20 @@ pub struct SolidElement {
     /// ∂N_a/∂X at the centre, for F-bar [1/L]
     centre: Option<Vec<Vector2<f64>>>,
 }
+
+/// What an element's material remembers over an increment: its variables at the first quadrature point, then at the second, …
+#[derive(Debug)]
+pub struct Memory<'a> {
+    /// Δt [T]
+    pub dt: f64,
+    /// Committed
+    pub old: &'a [f64],
+    /// Of the trial, written over
+    pub new: &'a mut [f64],
+}
+
+/// F₃₃ in plane strain
+const PLANE_STRAIN: f64 = 1.0;
 
 /// The centre of an F-bar element at the current displacements.
 struct Centre<'a> {
@@ -199,6 +215,53 @@ impl SolidElement {
         }
     }
 
+    /// Number of quadrature points.
+    pub fn quadrature_points(&self) -> usize {
+        self.volumes.len()
+    }
+
+    /// Force (2) and, on request, tangent (3) of a material with memory, or whose tangent is not symmetric; returns the stored
+    /// energy, and what the increment dissipated.
+    ///
+    /// # Errors
+    /// [`InvertedElement`] when the material is turned inside out at a quadrature point.
+    pub fn evolve(
+        &self,
+        material: &dyn Material,
+        Memory { dt, old, new }: Memory,
+        u: &[Vector2<f64>],
+        force: &mut [f64],
+        mut tangent: Option<&mut [f64]>,
+    ) -> Result<[f64; 2], InvertedElement> {
+        force.fill(0.0);
+        if let Some(tangent) = tangent.as_deref_mut() {
+            tangent.fill(0.0);
+        }
+        let (centre, count) = (self.centre(u)?, material.variables().len());
+        let [mut energy, mut dissipated] = [0.0; 2];
+        for (k, (gradients, volume)) in self.points().enumerate() {
+            let deformation = deformation_gradient(gradients, u);
+            let r = centre.as_ref().map_or(Ok(1.0), |centre| centre.stretch(&deformation))?;
+            let own = k * count..(k + 1) * count;
+            let straining =
+                Straining { deformation: r * deformation, stretch: PLANE_STRAIN, dt, old: &old[own.clone()] };
+            let Evolution { mut response, dissipation } = material.evolve(&straining, &mut new[own])?;
+            response.stress /= r;
+            energy += volume * response.energy;
+            dissipated += volume * dissipation;
+            add_force(gradients, &(volume * response.stress), force);
+            let Some(tangent) = tangent.as_deref_mut() else { continue };
+            for (dof, column) in tangent.chunks_exact_mut(2 * u.len()).enumerate() {
+                let varied = Vector2::ith(dof % 2, 1.0) * gradients[dof / 2].transpose();
+                add_force(gradients, &(volume * contract(&response.tangent, &varied)), column);
+            }
+            if let Some(centre) = &centre {
+                centre.add_tangent(gradients, &deformation, volume, &response, tangent);
+            }
+        }
+        Ok([energy, dissipated])
+    }
+
     /// Forces on the nodes at displacements `u` and velocities `v` of a viscous stress of the time τ (Kelvin–Voigt), by
     /// the element's own gradients, F-bar or not.
     pub fn viscous_forces(
@@ -236,20 +299,26 @@ impl SolidElement {
         }
     }
 
-    /// Cauchy stress at each quadrature point.
+    /// Cauchy stress at each quadrature point, with what the material remembers there; nothing if it has no memory.
     ///
     /// # Errors
     /// [`InvertedElement`] when the material is turned inside out at a quadrature point.
-    pub fn stresses(&self, material: &dyn Material, u: &[Vector2<f64>]) -> Result<Vec<CauchyStress>, InvertedElement> {
-        let centre = self.centre(u)?;
+    pub fn stresses(
+        &self,
+        material: &dyn Material,
+        memory: &[f64],
+        u: &[Vector2<f64>],
+    ) -> Result<Vec<CauchyStress>, InvertedElement> {
+        let (centre, count) = (self.centre(u)?, material.variables().len());
         self.points()
-            .map(|(gradients, _)| {
+            .enumerate()
+            .map(|(k, (gradients, _))| {
                 let deformation = deformation_gradient(gradients, u);
                 let seen = match &centre {
                     Some(centre) => centre.stretch(&deformation)? * deformation,
                     None => deformation,
                 };
-                material.cauchy_stress(&seen)
+                material.cauchy_stress(&seen, &memory[k * count..(k + 1) * count])
             })
             .collect()
     }
@@ -261,9 +330,10 @@ impl SolidElement {
     pub fn nodal_stresses(
         &self,
         material: &dyn Material,
+        memory: &[f64],
         u: &[Vector2<f64>],
     ) -> Result<Vec<CauchyStress>, InvertedElement> {
-        let stresses = self.stresses(material, u)?;
+        let stresses = self.stresses(material, memory, u)?;
         let fit = corner_fit(self.kind);
         let mut corners = [[0.0; 4]; 4];
         for (a, corner) in corners.iter_mut().enumerate().take(fit.nrows()) {

@@ -269,11 +269,11 @@ fn bounds(model: &Model, e: usize, local: &[Vector2<f64>]) -> Result<[f64; 2], T
     })?;
     let mass = model.element_lumped_mass(e);
     let elastic = largest_eigenvalue(&tangent, &mass);
-    if body.damping.stiffness == 0.0 {
+    if body.damping.retardation == 0.0 {
         return Ok([elastic, 0.0]);
     }
     // What remains of the viscous tangent at rest is its derivative with respect to the velocities.
-    let (law, still) = ((&*body.material, body.damping.stiffness), vec![Vector2::zeros(); local.len()]);
+    let (law, still) = ((&*body.material, body.damping.retardation), vec![Vector2::zeros(); local.len()]);
     model.solids[e].viscous_tangent(law, [local, &still], &vec![1.0; n], tangent.as_mut_slice());
     Ok([elastic, largest_eigenvalue(&tangent, &mass)])
 }

@@ -1,0 +1,90 @@
+//! Bodies that remember, or whose tangent is not symmetric: what they remember is committed and trial state.
+
+use std::ops::Range;
+
+use nalgebra::Vector2;
+use rayon::prelude::*;
+
+use super::failure::TrialFailure;
+use super::sums::Sums;
+use super::trial::Trial;
+use crate::laws::bulk::InvertedElement;
+use crate::linear::system::Contribution;
+use crate::model::Model;
+use crate::model::element::Memory;
+
+/// Elements whose contributions are held at once before they are added.
+const BATCH: usize = 1024;
+
+/// The elements of such bodies, and where each finds what it remembers.
+#[derive(Clone, Debug)]
+pub(super) struct Evolving(Vec<(usize, Range<usize>)>);
+
+/// Whether a body is one of them.
+pub(super) fn evolves(model: &Model, body: usize) -> bool {
+    let material = &model.bodies[body].material;
+    !material.variables().is_empty() || !material.is_symmetric()
+}
+
+impl Evolving {
+    pub fn new(model: &Model) -> Self {
+        let own = |(e, _): &(usize, Range<usize>)| evolves(model, model.body_of_element[*e]);
+        Self(model.memories().into_iter().enumerate().filter(own).collect())
+    }
+
+    /// Add the forces of these elements and what they store; their variables at the end of the trial and what they dissipate
+    /// are written over those `found`.
+    pub fn add(
+        &self,
+        model: &Model,
+        (trial, u): (Trial, &[f64]),
+        found: (&mut Vec<f64>, &mut f64),
+        sums: &mut Sums,
+    ) -> Result<f64, TrialFailure> {
+        let (memory, heat) = found;
+        let old = &trial.old.memory;
+        memory.resize(old.len(), 0.0);
+        let mut rest = &mut memory[..];
+        let mut energy = 0.0;
+        *heat = 0.0;
+        for batch in self.0.chunks(BATCH) {
+            let mut trials: Vec<&mut [f64]> = Vec::with_capacity(batch.len());
+            for (_, range) in batch {
+                let (own, after) = std::mem::take(&mut rest).split_at_mut(range.len());
+                trials.push(own);
+                rest = after;
+            }
+            let wanted = sums.tangent.is_some();
+            let one = |((e, range), new): (&(usize, Range<usize>), &mut [f64])| {
+                evolve(model, *e, Memory { dt: trial.dt, old: &old[range.clone()], new }, u, wanted)
+            };
+            let answers: Vec<_> = batch.par_iter().zip(trials).map(one).collect();
+            for ((e, _), answer) in batch.iter().zip(answers) {
+                let ([stored, dissipated], contribution) =
+                    answer.map_err(|failure| TrialFailure::inverted(model, *e, failure))?;
+                energy += stored;
+                *heat += dissipated;
+                sums.contribute(&contribution);
+            }
+        }
+        Ok(energy)
+    }
+}
+
+/// What one element adds, with its stored energy and what it dissipates.
+fn evolve(
+    model: &Model,
+    e: usize,
+    memory: Memory,
+    u: &[f64],
+    tangent: bool,
+) -> Result<([f64; 2], Contribution), InvertedElement> {
+    let nodes = &model.mesh.elements[e].nodes;
+    let local: Vec<Vector2<f64>> = nodes.iter().map(|&node| Vector2::new(u[2 * node], u[2 * node + 1])).collect();
+    let mut contribution = Contribution::zero(nodes.clone());
+    let Contribution { force, tangent: matrix, .. } = &mut contribution;
+    let matrix = tangent.then_some(matrix.as_mut_slice());
+    let material = &*model.bodies[model.body_of_element[e]].material;
+    let energies = model.solids[e].evolve(material, memory, &local, force.as_mut_slice(), matrix)?;
+    Ok((energies, contribution))
+}
