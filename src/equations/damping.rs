@@ -10,10 +10,13 @@ use super::sums::Sums;
 use super::term::Dependence;
 use super::trial::Trial;
 use crate::linear::SparseMatrix;
-use crate::model::Model;
+use crate::model::{Model, Step};
 
-/// Of a linear material the viscous stress knows the velocity alone.
-pub(super) fn dependence(model: &Model) -> Dependence {
+/// Of a linear material the viscous stress knows the velocity alone. Statics know none.
+pub(super) fn dependence(model: &Model, step: &Step) -> Dependence {
+    if step.scheme.coefficients().is_none() {
+        return Dependence::Nothing;
+    }
     let damped = |viscous: bool| {
         move |body: &&crate::model::Body| {
             if viscous {

@@ -8,11 +8,11 @@ use super::sums::add_blocks;
 use super::term::Dependence;
 use super::trial::Trial;
 use crate::linear::SparseMatrix;
-use crate::model::Model;
+use crate::model::{Model, Step};
 
 /// M ∂a/∂u: the mass over Δt².
-pub(super) fn dependence() -> Dependence {
-    Dependence::StepSize
+pub(super) fn dependence(step: &Step) -> Dependence {
+    if step.scheme.coefficients().is_some() { Dependence::StepSize } else { Dependence::Nothing }
 }
 
 /// The mass matrix on the current pattern: consistent in the elements, and the point masses on the diagonal.

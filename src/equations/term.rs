@@ -48,8 +48,8 @@ impl Term {
             Self::Loads => loads::dependence(step),
             Self::Dampers => dampers::dependence(step),
             Self::Stabilization => stabilization::dependence(step),
-            Self::Damping => damping::dependence(model),
-            Self::Inertia => inertia::dependence(),
+            Self::Damping => damping::dependence(model, step),
+            Self::Inertia => inertia::dependence(step),
         }
     }
 }

@@ -262,7 +262,7 @@ fn loads_masses_and_stress_are_weighted_by_the_section() {
     let total: f64 = model.steps[0].loads.absorbers.iter().map(|absorber| absorber.coefficients[(0, 0)]).sum();
     close("absorbing side", total, 1.2 * c, 1e-13);
     for law in ["linear", "neo_hookean", "hencky"] {
-        let model = model_in(GRADED, &block(json!([]), json!({"model": law, "E": 100, "nu": 0.3})));
+        let model = model_in(GRADED, &block(json!([]), json!({"model": law, "E": 100, "nu": 0.3, "density": 3})));
         let gradient = [[0.01, 0.02], [-0.015, 0.005]];
         let of = |dof: usize| {
             let x = model.mesh.nodes[dof / 2];
@@ -297,14 +297,14 @@ fn contact_forces_are_weighted_by_the_section() {
                 [-1.0, -1.0],
                 [3.0, 0.0],
             );
-            let body = json!({"material": {"model": "linear", "E": 100, "nu": 0.3}});
+            let body = json!({"material": {"model": "linear", "E": 100, "nu": 0.3, "density": 1}});
             let case = json!({
                 "mesh": mesh.json(), "bodies": {"block": body, "ground": body},
                 "contacts": {"base": {
                     "slave": "block_bottom", "master": master, "method": method,
                     "normal": {"alpha_n": alpha_n}, "friction": {"law": "frictionless"}
                 }},
-                "steps": [{"name": "step", "duration": 1, "dt": {"initial": 1}}]
+                "steps": [{"name": "step", "duration": 1, "scheme": {"newmark": {}}, "dt": {"initial": 1}}]
             });
             let model = model_in(GRADED, &case);
             let mut u = vec![0.0; model.dofs()];

@@ -1,13 +1,16 @@
 //! A solid element at large displacements: total Lagrangian, fully integrated, with F-bar for Q4.
 
-use std::sync::OnceLock;
+mod f_bar;
+mod memory;
+mod stress;
+mod viscous;
 
-use nalgebra::{DMatrix, Matrix2, Matrix4, Vector2};
+use nalgebra::{Matrix2, Matrix4, Vector2};
+
+pub use memory::Memory;
 
 use super::{ElementError, gradients};
-use crate::laws::bulk::{
-    CauchyStress, Evolution, InvertedElement, Material, MaterialResponse, Straining, cofactor, positive_jacobian,
-};
+use crate::laws::bulk::{InvertedElement, Material};
 use crate::mesh::section::Section;
 use crate::mesh::shape::ElementKind;
 
@@ -43,30 +46,10 @@ pub struct SolidElement {
     volumes: Vec<f64>,
     /// Mean of w over the element
     mean_weight: f64,
+    /// F₃₃ of the section
+    stretch: f64,
     /// ∂N_a/∂X at the centre, for F-bar [1/L]
     centre: Option<Vec<Vector2<f64>>>,
-}
-
-/// What an element's material remembers over an increment: its variables at the first quadrature point, then at the second, …
-#[derive(Debug)]
-pub struct Memory<'a> {
-    /// Δt [T]
-    pub dt: f64,
-    /// Committed
-    pub old: &'a [f64],
-    /// Of the trial, written over
-    pub new: &'a mut [f64],
-}
-
-/// F₃₃ in plane strain
-const PLANE_STRAIN: f64 = 1.0;
-
-/// The centre of an F-bar element at the current displacements.
-struct Centre<'a> {
-    gradients: &'a [Vector2<f64>],
-    jacobian: f64,
-    /// F₀⁻ᵀ
-    inverse_transpose: Matrix2<f64>,
 }
 
 impl SolidElement {
@@ -85,7 +68,14 @@ impl SolidElement {
         if f_bar && kind != ElementKind::Q4 {
             return Err(ElementError::FBarNeedsQ4 { kind });
         }
-        let mut element = Self { kind, gradients: Vec::new(), volumes: Vec::new(), mean_weight: 1.0, centre: None };
+        let mut element = Self {
+            kind,
+            gradients: Vec::new(),
+            volumes: Vec::new(),
+            mean_weight: 1.0,
+            stretch: section.stretch(),
+            centre: None,
+        };
         let mut area = 0.0;
         for point in kind.quadrature() {
             let (gradients, jacobian) = gradients(kind, point.at, positions)?;
@@ -220,144 +210,6 @@ impl SolidElement {
         self.volumes.len()
     }
 
-    /// Force (2) and, on request, tangent (3) of a material with memory, or whose tangent is not symmetric; returns the stored
-    /// energy, and what the increment dissipated.
-    ///
-    /// # Errors
-    /// [`InvertedElement`] when the material is turned inside out at a quadrature point.
-    pub fn evolve(
-        &self,
-        material: &dyn Material,
-        Memory { dt, old, new }: Memory,
-        u: &[Vector2<f64>],
-        force: &mut [f64],
-        mut tangent: Option<&mut [f64]>,
-    ) -> Result<[f64; 2], InvertedElement> {
-        force.fill(0.0);
-        if let Some(tangent) = tangent.as_deref_mut() {
-            tangent.fill(0.0);
-        }
-        let (centre, count) = (self.centre(u)?, material.variables().len());
-        let [mut energy, mut dissipated] = [0.0; 2];
-        for (k, (gradients, volume)) in self.points().enumerate() {
-            let deformation = deformation_gradient(gradients, u);
-            let r = centre.as_ref().map_or(Ok(1.0), |centre| centre.stretch(&deformation))?;
-            let own = k * count..(k + 1) * count;
-            let straining =
-                Straining { deformation: r * deformation, stretch: PLANE_STRAIN, dt, old: &old[own.clone()] };
-            let Evolution { mut response, dissipation } = material.evolve(&straining, &mut new[own])?;
-            response.stress /= r;
-            energy += volume * response.energy;
-            dissipated += volume * dissipation;
-            add_force(gradients, &(volume * response.stress), force);
-            let Some(tangent) = tangent.as_deref_mut() else { continue };
-            for (dof, column) in tangent.chunks_exact_mut(2 * u.len()).enumerate() {
-                let varied = Vector2::ith(dof % 2, 1.0) * gradients[dof / 2].transpose();
-                add_force(gradients, &(volume * contract(&response.tangent, &varied)), column);
-            }
-            if let Some(centre) = &centre {
-                centre.add_tangent(gradients, &deformation, volume, &response, tangent);
-            }
-        }
-        Ok([energy, dissipated])
-    }
-
-    /// Forces on the nodes at displacements `u` and velocities `v` of a viscous stress of the time τ (Kelvin–Voigt), by
-    /// the element's own gradients, F-bar or not.
-    pub fn viscous_forces(
-        &self,
-        (material, tau): (&dyn Material, f64),
-        [u, v]: [&[Vector2<f64>]; 2],
-        forces: &mut [Vector2<f64>],
-    ) {
-        forces.fill(Vector2::zeros());
-        for (gradients, volume) in self.points() {
-            let (deformation, rate) = (deformation_gradient(gradients, u), rate_gradient(gradients, v));
-            let stress = tau * volume * material.viscous_stress([&deformation, &rate]);
-            forces.iter_mut().zip(gradients).for_each(|(force, gradient)| *force += stress * gradient);
-        }
-    }
-
-    /// Derivative of the viscous forces with respect to `u`, column by column, where the velocity of each dof varies
-    /// `dvelocity` times as much as its displacement.
-    pub fn viscous_tangent(
-        &self,
-        (material, tau): (&dyn Material, f64),
-        [u, v]: [&[Vector2<f64>]; 2],
-        dvelocity: &[f64],
-        tangent: &mut [f64],
-    ) {
-        tangent.fill(0.0);
-        let n = 2 * u.len();
-        for (gradients, volume) in self.points() {
-            let (deformation, rate) = (deformation_gradient(gradients, u), rate_gradient(gradients, v));
-            for (dof, (column, dvelocity)) in tangent.chunks_exact_mut(n).zip(dvelocity).enumerate() {
-                let varied = Vector2::ith(dof % 2, 1.0) * gradients[dof / 2].transpose();
-                let stress = material.viscous_variation([&deformation, &rate], [&varied, &(*dvelocity * varied)]);
-                add_force(gradients, &(tau * volume * stress), column);
-            }
-        }
-    }
-
-    /// Cauchy stress at each quadrature point, with what the material remembers there; nothing if it has no memory.
-    ///
-    /// # Errors
-    /// [`InvertedElement`] when the material is turned inside out at a quadrature point.
-    pub fn stresses(
-        &self,
-        material: &dyn Material,
-        memory: &[f64],
-        u: &[Vector2<f64>],
-    ) -> Result<Vec<CauchyStress>, InvertedElement> {
-        let (centre, count) = (self.centre(u)?, material.variables().len());
-        self.points()
-            .enumerate()
-            .map(|(k, (gradients, _))| {
-                let deformation = deformation_gradient(gradients, u);
-                let seen = match &centre {
-                    Some(centre) => centre.stretch(&deformation)? * deformation,
-                    None => deformation,
-                };
-                material.cauchy_stress(&seen, &memory[k * count..(k + 1) * count])
-            })
-            .collect()
-    }
-
-    /// Cauchy stress at each node: the (bi)linear function nearest to the stresses at the quadrature points.
-    ///
-    /// # Errors
-    /// [`InvertedElement`] when the material is turned inside out at a quadrature point.
-    pub fn nodal_stresses(
-        &self,
-        material: &dyn Material,
-        memory: &[f64],
-        u: &[Vector2<f64>],
-    ) -> Result<Vec<CauchyStress>, InvertedElement> {
-        let stresses = self.stresses(material, memory, u)?;
-        let fit = corner_fit(self.kind);
-        let mut corners = [[0.0; 4]; 4];
-        for (a, corner) in corners.iter_mut().enumerate().take(fit.nrows()) {
-            for (point, &CauchyStress { xx, yy, zz, xy }) in stresses.iter().enumerate() {
-                let weight = fit[(a, point)];
-                corner.iter_mut().zip([xx, yy, zz, xy]).for_each(|(sum, stress)| *sum += weight * stress);
-            }
-        }
-        let at = |values: &[usize]| {
-            let mean =
-                |component: usize| values.iter().map(|&a| corners[a][component]).sum::<f64>() / values.len() as f64;
-            CauchyStress { xx: mean(0), yy: mean(1), zz: mean(2), xy: mean(3) }
-        };
-        let n = self.kind.corners();
-        let mut nodal: Vec<_> = (0..n).map(|a| at(&[a])).collect();
-        if self.kind.nodes() > n {
-            nodal.extend((0..n).map(|edge| at(&self.kind.edge(edge).0)));
-        }
-        if self.kind == ElementKind::Q9 {
-            nodal.push(at(&[0, 1, 2, 3]));
-        }
-        Ok(nodal)
-    }
-
     /// Force (2) and tangent (3). The number of nodes is known when this is compiled, so that the loops over them are
     /// unrolled.
     fn evaluate<const N: usize>(
@@ -393,62 +245,11 @@ impl SolidElement {
     fn points(&self) -> impl Iterator<Item = (&[Vector2<f64>], f64)> {
         self.gradients.chunks_exact(self.kind.nodes()).zip(self.volumes.iter().copied())
     }
-
-    fn centre(&self, u: &[Vector2<f64>]) -> Result<Option<Centre<'_>>, InvertedElement> {
-        let Some(gradients) = &self.centre else { return Ok(None) };
-        let deformation = deformation_gradient(gradients, u);
-        let jacobian = positive_jacobian(&deformation)?;
-        Ok(Some(Centre { gradients, jacobian, inverse_transpose: cofactor(&deformation) / jacobian }))
-    }
-}
-
-impl Centre<'_> {
-    /// r = √(J₀/J) of (4)
-    fn stretch(&self, deformation: &Matrix2<f64>) -> Result<f64, InvertedElement> {
-        Ok((self.jacobian / positive_jacobian(deformation)?).sqrt())
-    }
-
-    /// The law at F̄, with the stress (5).
-    fn respond(
-        &self,
-        material: &dyn Material,
-        deformation: &Matrix2<f64>,
-    ) -> Result<MaterialResponse, InvertedElement> {
-        let stretch = self.stretch(deformation)?;
-        let mut response = material.respond(&(stretch * deformation))?;
-        response.stress /= stretch;
-        Ok(response)
-    }
-
-    /// Adds the second term of (6), a dyad of a nodal force and a nodal volume change.
-    fn add_tangent(
-        &self,
-        gradients: &[Vector2<f64>],
-        deformation: &Matrix2<f64>,
-        volume: f64,
-        response: &MaterialResponse,
-        tangent: &mut [f64],
-    ) {
-        let inverse_transpose = cofactor(deformation) / deformation.determinant();
-        let stress = 0.5 * volume * (contract(&response.tangent, deformation) - response.stress);
-        let columns = tangent.chunks_exact_mut(4 * gradients.len());
-        for ((columns, at_centre), here) in columns.zip(self.gradients).zip(gradients) {
-            let volume_change = self.inverse_transpose * at_centre - inverse_transpose * here;
-            for (column, change) in columns.chunks_exact_mut(2 * gradients.len()).zip(&volume_change) {
-                add_force(gradients, &(*change * stress), column);
-            }
-        }
-    }
 }
 
 /// F of (1)
 fn deformation_gradient(gradients: &[Vector2<f64>], u: &[Vector2<f64>]) -> Matrix2<f64> {
     u.iter().zip(gradients).fold(Matrix2::identity(), |sum, (u, gradient)| sum + u * gradient.transpose())
-}
-
-/// Ḟ = Σ_a v_a ⊗ ∂N_a/∂X
-fn rate_gradient(gradients: &[Vector2<f64>], v: &[Vector2<f64>]) -> Matrix2<f64> {
-    v.iter().zip(gradients).fold(Matrix2::zeros(), |sum, (v, gradient)| sum + v * gradient.transpose())
 }
 
 /// f_ai += P_iJ N_a,J
@@ -493,23 +294,4 @@ fn add_blocks<const N: usize>(blocks: &[[[[f64; 2]; 2]; N]; N], tangent: &mut [f
             }
         }
     }
-}
-
-/// A_iJkL F_kL
-fn contract(tangent: &Matrix4<f64>, f: &Matrix2<f64>) -> Matrix2<f64> {
-    let stress =
-        tangent.column(0) * f.m11 + tangent.column(1) * f.m21 + tangent.column(2) * f.m12 + tangent.column(3) * f.m22;
-    Matrix2::new(stress[0], stress[2], stress[1], stress[3])
-}
-
-/// Corner values of the (bi)linear function that fits values at the quadrature points best: corners × points.
-fn corner_fit(kind: ElementKind) -> &'static DMatrix<f64> {
-    static FITS: [OnceLock<DMatrix<f64>>; 5] = [const { OnceLock::new() }; 5];
-    FITS[kind as usize].get_or_init(|| {
-        let linear = if kind.corners() == 3 { ElementKind::T3 } else { ElementKind::Q4 };
-        let points = kind.quadrature();
-        let values = points.iter().flat_map(|point| linear.values(point.at));
-        let interpolation = DMatrix::from_row_iterator(points.len(), kind.corners(), values);
-        interpolation.pseudo_inverse(1e-9).expect("1e-9 is not negative")
-    })
 }
