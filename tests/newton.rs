@@ -1,12 +1,13 @@
 //! Newton's method by itself, on equations in one unknown; and what it accepts on whole models.
 
+mod aids;
 mod common;
 
 use common::{Blocks, Finished, close, finish};
 use fecontact::linear::system::Request;
 use fecontact::linear::system::System;
 use fecontact::linear::{Multifrontal, Pattern, SparseMatrix};
-use fecontact::model::NewtonSettings;
+use fecontact::solve::newton::Settings;
 use fecontact::solve::newton::{NewtonFailure, Outcome, solve};
 use serde_json::{Value, json};
 
@@ -15,7 +16,7 @@ fn root(start: f64, equation: impl Fn(f64) -> Result<[f64; 3], ()>) -> Outcome<(
     let pattern = std::sync::Arc::new(Pattern::new(1, std::iter::once(&[0usize][..])));
     let tangent = SparseMatrix::zero(pattern);
     let mut system = System { residual: vec![0.0; 2], tangent, forces: 1.0, imbalance: 1.0 };
-    let settings = NewtonSettings { tolerance: 1e-12, max_iterations: 30 };
+    let settings = Settings { tolerance: 1e-12, max_iterations: 30, old_tangents: true, parts: true };
     solve(vec![start, 0.0], settings, &mut Multifrontal::default(), &mut system, |u, request, system| {
         let [r, slope, share] = equation(u[0])?;
         system.residual = vec![r, 0.0];

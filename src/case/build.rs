@@ -22,6 +22,7 @@ use crate::mesh::configuration::Configuration;
 use crate::mesh::shape;
 use crate::mesh::ties::Ties;
 use crate::mesh::{Edge, Group, Mesh, gmsh};
+use crate::model::aids::Aids;
 use crate::model::boundary::{
     Absorber, Amplitude, Dashpot, DeadLoad, Drive, Expression, FollowerPressure, Loads, Motion, Prescribed, Span,
     Spring,
@@ -81,6 +82,7 @@ fn build_on(case: &Case, mesh: Mesh) -> Checked<Model> {
         steps: Vec::new(),
         watch: Vec::new(),
         newton: newton_settings(case)?,
+        aids: Aids::default(),
         prestress: Vec::new(),
         interval: case.output.interval,
     };

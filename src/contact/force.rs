@@ -204,15 +204,15 @@ pub fn closes(
     increment: Increment,
     x: &Configuration,
 ) -> bool {
-    let promised = increment.presumption.promised.is_some_and(|promised| promised.pressure > 0.0);
+    let kept = increment.presumption.kept > 0.0;
     let pressure = old.multiplier - pair.normal_stiffness(increment.moment.stiffening) * gap;
-    promised || pressure > 0.0 || touches(gap, slave.current_length(x), old, increment)
+    kept || pressure > 0.0 || touches(gap, slave.current_length(x), old, increment.presumption.presume)
 }
 
 /// Whether a zero gap is presumed to be closed, and to stick.
-fn touches(gap: f64, length: f64, old: &ContactState, increment: Increment) -> bool {
+pub fn touches(gap: f64, length: f64, old: &ContactState, presume: Presume) -> bool {
     let zero = TOUCH * length;
-    increment.presumption.presume == Presume::Touch && old.foot.is_some() && old.gap.abs() <= zero && gap.abs() <= zero
+    presume == Presume::Touch && old.foot.is_some() && old.gap.abs() <= zero && gap.abs() <= zero
 }
 
 /// The state of a point without pressure.
@@ -262,7 +262,7 @@ pub fn press(
         response.state.pressure = pressure;
     }
     // At p = 0 the law has no answer to give, and near it round-off decides which.
-    if carried == 0.0 || touches(gap, kinematics.length, old, increment) {
+    if touches(gap, kinematics.length, old, increment.presumption.presume) {
         response.dtraction_dslip = stiffness;
     }
     let state = ContactState {
@@ -277,11 +277,10 @@ pub fn press(
     Ok((state, Some(closed(&kinematics, &response, alpha_n, increment.presumption.promised))))
 }
 
-/// The pressure under which friction answers: that of a point which only a promise keeps closed is the promised one, from
+/// The pressure under which friction answers: that of a point which is only kept closed is the one it is kept by, from
 /// where its answer goes on in a straight line.
-fn carried(pressure: f64, presumption: Presumption) -> f64 {
-    let promised = || presumption.promised.map_or(0.0, |promised| promised.pressure);
-    presumption.carried.unwrap_or_else(|| if pressure > 0.0 { pressure } else { promised() })
+fn carried(pressure: f64, Presumption { carried, kept, .. }: Presumption) -> f64 {
+    carried.unwrap_or(if pressure > 0.0 { pressure } else { kept })
 }
 
 /// Δu_t d/(g₀ + d) in an increment that starts open, at the gap g₀, with d the pressure times the compliance; returns its

@@ -12,7 +12,19 @@ use thiserror::Error;
 
 use crate::linear::system::{Request, System};
 use crate::linear::{self, LinearFailure, LinearSolver, norm};
-use crate::model::NewtonSettings;
+
+/// When Newton's method stops, and what it may do on its way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// ‖r‖/‖f‖ of every part of a solution [-]
+    pub tolerance: f64,
+    /// Linear solves before giving up
+    pub max_iterations: usize,
+    /// Whether corrections with the factors of an earlier tangent are made
+    pub old_tangents: bool,
+    /// Whether parts of a correction are tried where the whole of it leads to a state that cannot be evaluated
+    pub parts: bool,
+}
 
 /// One linear solve, and where it led.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +37,8 @@ pub struct Iteration {
     pub linear_residual: f64,
     /// Whether K is new; if not, it is that of an earlier iterate
     pub factorized: bool,
+    /// Times that the correction was halved until its end could be evaluated
+    pub halvings: usize,
     /// Pivots of K that vanished and were replaced
     pub perturbed_pivots: usize,
     /// Whether the fronts of K were not exact enough, and another solver took over
@@ -81,7 +95,7 @@ const LEAST_PART: f64 = 0.125;
 /// next correction to take: 1, or less where it sees the iterations go to and fro.
 pub fn solve<E>(
     mut u: Vec<f64>,
-    settings: NewtonSettings,
+    settings: Settings,
     solver: &mut dyn LinearSolver,
     system: &mut System,
     mut evaluate: impl FnMut(&[f64], Request, &mut System) -> Result<f64, E>,
@@ -117,7 +131,7 @@ pub fn solve<E>(
             }
             let slower = if iterations.last().is_some_and(|last| last.factorized) { OLD_TANGENT } else { 1.0 };
             let corrections = corrections_left(residual, slower * gain(size, residual, before), settings.tolerance);
-            let factorized = done == 0 || !(old_tangent_serves && corrections <= OLD_TANGENT_CORRECTIONS);
+            let factorized = done == 0 || !(settings.old_tangents && old_tangent_serves && corrections <= OLD_TANGENT_CORRECTIONS);
             let mut solution = if factorized {
                 evaluate(&u, Request::Tangent, system).map_err(NewtonFailure::Evaluation)?;
                 let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();
@@ -135,18 +149,21 @@ pub fn solve<E>(
                 correction: solution.x.iter().fold(0.0f64, |m, x| m.max(x.abs())),
                 linear_residual: solution.residual,
                 factorized,
+                halvings: 0,
                 perturbed_pivots: solution.perturbed_pivots,
                 fallback: solution.fallback,
             });
             // A correction that turns an element inside out is far too long; a part of it may lead on.
+            let least_part = if settings.parts { LEAST_PART } else { 1.0 };
             let mut part = 1.0;
+            let mut halvings = 0;
             share = loop {
                 match evaluate(&u, Request::Residual, system) {
                     Ok(share) => break share,
-                    Err(failure) if part <= LEAST_PART && factorized => {
+                    Err(failure) if part <= least_part && factorized => {
                         return Err(NewtonFailure::Evaluation(failure));
                     }
-                    Err(_) if part <= LEAST_PART => {
+                    Err(_) if part <= least_part => {
                         // An old tangent led astray: the next correction starts from where this one did.
                         old_tangent_serves = false;
                         u.iter_mut().zip(&solution.x).for_each(|(u, x)| *u -= part * x);
@@ -157,7 +174,11 @@ pub fn solve<E>(
                 for (u, x) in u.iter_mut().zip(&solution.x) {
                     *u -= part * x;
                 }
+                halvings += 1;
             };
+            if let Some(last) = iterations.last_mut() {
+                last.halvings = halvings;
+            }
             before = [size, residual];
         }
     })();
