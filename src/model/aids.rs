@@ -26,12 +26,8 @@ pub struct Aids {
     pub stick_again: bool,
     /// A foot that goes to and fro between two segments lies between them: [`crate::solve::contact_iteration::valley`]
     pub valley: bool,
-    /// Half of a correction ends between the states of a cycle: [`crate::solve::contact_iteration::cycle`]
-    pub cycle: bool,
     /// Corrections with the factors of an earlier tangent: [`crate::solve::newton`]
     pub old_tangents: bool,
-    /// Parts of a correction that leads to a state which cannot be evaluated: [`crate::solve::newton`]
-    pub parts: bool,
     /// The augmented Lagrangian stiffens where it is slow: [`crate::solve::augmented`]
     pub stiffening: bool,
 }
@@ -49,9 +45,7 @@ impl Default for Aids {
             stick: true,
             stick_again: true,
             valley: true,
-            cycle: true,
             old_tangents: true,
-            parts: true,
             stiffening: true,
         }
     }

@@ -24,17 +24,13 @@ pub struct Acted {
     pub stick_again: usize,
     /// its foot is the node between two segments
     pub valley: usize,
-    /// half of the correction was taken
-    pub cycle: usize,
-    /// times that the correction was halved until its end could be evaluated
-    pub parts: usize,
     /// the augmented Lagrangian is stiffened
     pub stiffening: usize,
 }
 
 impl Acted {
     /// Columns of `newton.csv`.
-    pub const COLUMNS: [&str; 13] = [
+    pub const COLUMNS: [&str; 11] = [
         "aid_start",
         "aid_promise",
         "aid_limit",
@@ -45,15 +41,13 @@ impl Acted {
         "aid_stick",
         "aid_stick_again",
         "aid_valley",
-        "aid_cycle",
-        "aid_parts",
         "aid_stiffening",
     ];
 
     /// The counts, in the order of the columns.
     pub fn counts(self) -> [usize; Self::COLUMNS.len()] {
         let Self { start, promise, limit, keep, pull, carried, touch, .. } = self;
-        let Self { stick, stick_again, valley, cycle, parts, stiffening, .. } = self;
-        [start, promise, limit, keep, pull, carried, touch, stick, stick_again, valley, cycle, parts, stiffening]
+        let Self { stick, stick_again, valley, stiffening, .. } = self;
+        [start, promise, limit, keep, pull, carried, touch, stick, stick_again, valley, stiffening]
     }
 }

@@ -1,10 +1,10 @@
 //! Equilibrium at the time of a trial, from the start value on.
 
-use super::contact_iteration::cycle::Cycle;
-use super::failure::IncrementFailure;
 use super::acted::Acted;
+use super::contact_iteration::flips::Flips;
+use super::failure::IncrementFailure;
 use super::floating::null_motion;
-use super::newton::{self, Iteration};
+use super::newton;
 use super::start::start_value;
 use super::{IterationRecord, Workspace};
 use crate::equations::{ContactCounts, Trial};
@@ -27,7 +27,7 @@ pub fn equilibrium(
     }
     let mut tangents = 0;
     let mut seen = Vec::new();
-    let mut cycle = Cycle::default();
+    let mut flips = Flips::default();
     let mut floating = None;
     let spent = assembler.seconds.assembly + assembler.seconds.contact;
     let clock = std::time::Instant::now();
@@ -36,7 +36,6 @@ pub fn equilibrium(
         tolerance: model.newton.tolerance,
         max_iterations: model.newton.max_iterations,
         old_tangents: model.aids.old_tangents,
-        parts: model.aids.parts,
     };
     // What acted in the tangent since the last correction
     let mut acted = Acted::default();
@@ -62,21 +61,21 @@ pub fn equilibrium(
             let evaluation = &assembler.evaluation;
             let share = evaluation.stabilization / system.forces.max(f64::MIN_POSITIVE);
             let counts = ContactCounts::of(&evaluation.contacts);
-            seen.push((counts, cycle.count(&evaluation.contacts), share, std::mem::take(&mut acted)));
+            seen.push((counts, flips.count(&evaluation.contacts), share, std::mem::take(&mut acted)));
         }
-        Ok(if model.aids.cycle { cycle.share() } else { 1.0 })
+        Ok(())
     });
     let assembled = assembler.seconds.assembly + assembler.seconds.contact - spent;
     *linear_seconds += clock.elapsed().as_secs_f64() - assembled;
     // The last state may not have been evaluated.
     seen.resize(iterations.len(), (ContactCounts::default(), 0, 0.0, Acted::default()));
-    let record = |(newton, (contacts, flips, stabilization, acted)): (Iteration, (_, _, _, Acted))| IterationRecord {
+    let record = |(newton, (contacts, flips, stabilization, acted))| IterationRecord {
         newton,
         contacts,
         flips,
         pass: 1,
         stabilization,
-        acted: Acted { parts: newton.halvings, ..acted },
+        acted,
     };
     let iterations = iterations.into_iter().zip(seen).map(record).collect();
     let result = match (floating, result) {

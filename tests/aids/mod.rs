@@ -1,27 +1,36 @@
-//! The aids of the contact iteration.
+//! What each aid of the iterations saves, over a fixed list of cases; and that no accepted state leans on one.
+//!
+//! `RAYON_NUM_THREADS=1 cargo test --release --test newton -- --ignored --nocapture ablation` prints the table of
+//! `docs/aids.md`, `CASES=greco,tube` in the environment the columns of these alone.
 
 use std::path::Path;
 
-use fecontact::case;
+use fecontact::contact::force::ContactState;
+use fecontact::equations::{Assembler, Trial};
 use fecontact::model::Model;
 use fecontact::model::aids::Aids;
+use fecontact::model::state::State;
+use fecontact::run::error::Error;
+use fecontact::run::observer::{Attempt, Observer};
 use fecontact::run::run;
+use fecontact::solve::acted::Acted;
 use serde_json::{Value, json};
 
-use crate::common::{Blocks, Record};
+use crate::common::{Blocks, model, model_at};
 
-type Case = (&'static str, fn() -> Model);
-
-fn build(case: &Value, path: &Path) -> Model {
-    let parsed = serde_json::from_value(case.clone()).unwrap_or_else(|error| panic!("{error}"));
-    case::build(&parsed, path).unwrap_or_else(|error| panic!("{error}"))
+/// A case of the list.
+struct Case {
+    name: &'static str,
+    model: fn() -> Model,
+    /// Whether it takes a second or less
+    quick: bool,
 }
 
 fn committed(name: &str, change: impl Fn(&mut Value)) -> Model {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/{name}.json"));
     let mut case: Value = serde_json::from_str(&std::fs::read_to_string(&path).expect("a case")).expect("JSON");
     change(&mut case);
-    build(&case, &path)
+    model_at(&case, &path)
 }
 
 fn as_it_is(_: &mut Value) {}
@@ -57,10 +66,6 @@ fn first_tenth(case: &mut Value) {
     shorten(case, 1, 0.1);
 }
 
-fn augmented(case: &mut Value, penetration: f64) {
-    case["contacts"]["base"]["normal"]["penetration"] = json!(penetration);
-}
-
 fn slotted_ring() -> Model {
     use std::f64::consts::PI;
     let [across, around] = [4, 48];
@@ -76,32 +81,32 @@ fn slotted_ring() -> Model {
     mesh["edges"]["lips"] = joined(&["bottom", "top"]);
     let outside = |quarter: usize| quarter * around / 4 * (across + 1) + across;
     mesh["points"] = json!({"south": [outside(1)], "north": [outside(3)]});
-    build(&json!({
+    model(&json!({
         "mesh": mesh,
         "bodies": {"ring": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}}},
         "contacts": {"lips": {"slave": "lips", "master": "lips", "friction": {"law": "coulomb", "mu": 0.2}}},
         "steps": [{"name": "squeeze", "duration": 1, "dt": {"initial": 0.1}, "supports": [
             {"on": "north", "ux": 0, "uy": -0.042}, {"on": "south", "ux": 0, "uy": 0.042}]}],
-    }), Path::new("ring.json"))
+    }))
 }
 
 /// A slab, pressed and sheared at once from a gap.
 fn slab(gap: f64, dt: f64, m: usize, alpha: f64, mu: f64) -> Model {
-    build(&json!({
+    model(&json!({
         "mesh": Blocks::default().rectangle("slab", [2 * m, m], [0.0, gap], [1.0, gap + 0.5]).json(),
         "bodies": {"slab": {"material": {"model": "linear", "E": 1000.0, "nu": 0.3}}},
         "contacts": {"base": {"slave": "slab_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
                               "normal": {"alpha_n": alpha}, "friction": {"law": "coulomb", "mu": mu, "alpha_t": alpha}}},
         "steps": [{"name": "in", "duration": 1, "dt": {"initial": dt, "max": dt},
                    "supports": [{"on": "slab_top", "ux": 0.01, "uy": -0.005 - gap}]}],
-    }), Path::new("slab.json"))
+    }))
 }
 
 /// Slabs of many kinds, pressed and sheared from touch: all their counts together.
 fn ridge(slope: f64, mu: f64) -> Model {
     let top = |x: f64| slope * x.abs();
     let block = |s: f64| -0.75 + 0.3 * s;
-    build(&json!({
+    model(&json!({
         "mesh": Blocks::default()
             .block("ground", [20, 3], |s, t| [2.0 * s - 1.0, -0.5 + t * (0.5 + top(2.0 * s - 1.0))])
             .block("block", [5, 3], |s, t| [block(s), top(block(s)) + 0.2 * t]).json(),
@@ -116,14 +121,14 @@ fn ridge(slope: f64, mu: f64) -> Model {
              "loads": [{"on": "block_top", "traction": {"y": -5}}]},
             {"name": "push", "duration": 1, "dt": {"initial": 0.02, "min": 1e-7}, "supports": [{"on": "block_top", "ux": 1.2}]},
         ],
-    }), Path::new("ridge.json"))
+    }))
 }
 
 /// A softer block pushed by its top over a faceted ridge.
 fn faceted(height: f64, method: &str, mu: f64) -> Model {
     let top = |x: f64| -height * x.abs();
     let block = |s: f64| -0.75 + 0.5 * s;
-    build(&json!({
+    model(&json!({
         "mesh": Blocks::default()
             .block("ground", [20, 3], |s, t| [2.0 * s - 1.0, -0.5 + t * (0.5 + top(2.0 * s - 1.0))])
             .block("block", [7, 4], |s, t| [block(s), top(block(s)) * (1.0 - t) + 0.4 * t]).json(),
@@ -137,131 +142,261 @@ fn faceted(height: f64, method: &str, mu: f64) -> Model {
              "supports": [{"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0, "uy": -0.04}]},
             {"name": "push", "duration": 1, "dt": {"initial": 0.05, "min": 1e-5}, "supports": [{"on": "block_top", "ux": 1}]},
         ],
-    }), Path::new("faceted.json"))
+    }))
 }
 
-fn struck_bar(massless: bool, error: Option<f64>) -> Model {
+fn struck_bar(error: Option<f64>) -> Model {
     let h = 0.01;
     let mut dt = json!({"initial": h});
     if let Some(error) = error {
         dt["error"] = json!(error);
         dt["min"] = json!(1e-6);
     }
-    build(&json!({
+    model(&json!({
         "mesh": Blocks::default().rectangle("bar", [100, 1], [0.0, 0.0], [1.0, 0.02]).json(),
         "bodies": {"bar": {"material": {"model": "neo_hookean", "E": 1, "nu": 0, "density": 1}}},
         "contacts": {"wall": {"slave": "bar_left", "master": {"plane": {"point": [0, 0], "normal": [1, 0]}},
-                              "massless": massless, "normal": {"alpha_n": 10.0 / h}, "friction": {"law": "frictionless"}}},
+                              "massless": true, "normal": {"alpha_n": 10.0 / h}, "friction": {"law": "frictionless"}}},
         "initial_velocity": {"bar": [-1e-3, 0]},
         "steps": [{"name": "hit", "duration": 2.5, "dt": dt, "scheme": {"newmark": {}}, "supports": [{"on": "bar", "uy": 0}]}],
-    }), Path::new("bar.json"))
+    }))
 }
 
 /// A slab thrown obliquely on a rough rigid plane.
 fn thrown(alpha: f64) -> Model {
-    build(&json!({
+    model(&json!({
         "mesh": Blocks::default().rectangle("slab", [16, 8], [0.0, 0.001], [1.0, 0.501]).json(),
         "bodies": {"slab": {"material": {"model": "neo_hookean", "E": 1, "nu": 0.3, "density": 1}}},
         "contacts": {"floor": {"slave": "slab_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
                               "massless": true, "normal": {"alpha_n": alpha}, "friction": {"law": "coulomb", "mu": 0.3}}},
         "initial_velocity": {"slab": [0.05, -0.05]},
         "steps": [{"name": "hit", "duration": 3, "dt": {"initial": 0.02}, "scheme": {"hht": {"alpha": -0.1}}}],
-    }), Path::new("thrown.json"))
+    }))
 }
 
-fn shrink_fit() -> Model {
-    build(&json!({
-        "mesh": Blocks::default().ring("inner", [80, 4], [0.5, 1.001]).ring("outer", [94, 4], [1.0, 1.5]).json(),
-        "bodies": {"inner": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}}, "outer": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}}},
-        "contacts": {"fit": {"slave": "inner_outside", "master": "outer_inside", "shrink_fit": true, "friction": {"law": "coulomb", "mu": 0.2}}},
-        "steps": [{"name": "fit", "duration": 1, "dt": {"initial": 0.25}, "supports": [{"on": "outer_outside", "ux": 0, "uy": 0}]}],
-    }), Path::new("fit.json"))
+const fn quick(name: &'static str, model: fn() -> Model) -> Case {
+    Case { name, model, quick: true }
 }
 
-const CASES: &[Case] = &[
-    ("coulomb_drag_5k", || committed("coulomb_drag_5k", as_it_is)),
-    ("coulomb_drag_20k", || committed("coulomb_drag_20k", as_it_is)),
-    ("block_on_ground", || committed("block_on_ground", |case| shorten(case, 1, 0.4))),
-    ("hertz_q4", || committed("validation/hertz_q4", as_it_is)),
-    ("hertz_q8_friction", || committed("validation/hertz_q8_friction", as_it_is)),
-    ("mindlin", || committed("validation/mindlin", as_it_is)),
-    ("mindlin_healing", || committed("validation/mindlin_healing", as_it_is)),
-    ("greco", || committed("validation/greco", as_it_is)),
-    ("wedge", || committed("validation/wedge", as_it_is)),
-    ("ironing_q4", || committed("validation/ironing_q4", first_tenth)),
-    ("ironing_q8", || committed("validation/ironing_q8", first_tenth)),
-    ("slotted_ring", slotted_ring),
-    ("tube", || committed("tube", as_it_is)),
-    ("struck_bar", || struck_bar(true, None)),
-    ("struck_bar_mass", || struck_bar(false, None)),
-    ("struck_bar_error", || struck_bar(true, Some(1e-6))),
-    ("thrown", || thrown(1e3)),
-    ("thrown_stiff", || thrown(1e5)),
-    ("slab_touch_1", || slab(0.0, 1.0, 4, 1e6, 5.0)),
-    ("slab_touch_.1", || slab(0.0, 0.1, 8, 1e6, 0.5)),
-    ("slab_touch_.25", || slab(0.0, 0.25, 8, 1e5, 0.3)),
-    ("slab_gap_1", || slab(0.001, 1.0, 8, 1e6, 5.0)),
-    ("slab_gap_.1", || slab(0.001, 0.1, 8, 1e6, 0.5)),
-    ("ridge", || ridge(-0.1, 0.2)),
-    ("valley", || ridge(0.1, 0.2)),
-    ("valley_rough", || ridge(0.1, 0.5)),
-    ("valley_smooth", || ridge(0.2, 0.0)),
-    ("faceted_g2s", || faceted(0.1, "gauss_to_segment", 0.3)),
-    ("faceted_n2s", || faceted(0.1, "node_to_segment", 0.3)),
-    ("faceted_n2s_.2", || faceted(0.2, "node_to_segment", 0.3)),
-    ("hollow_g2s", || faceted(-0.1, "gauss_to_segment", 0.3)),
-    ("hollow_n2s", || faceted(-0.2, "node_to_segment", 0.1)),
-    ("shrink_fit", shrink_fit),
-    ("stiff greco", || stiff("validation/greco", as_it_is)),
-    ("stiff hertz_q8_friction", || stiff("validation/hertz_q8_friction", as_it_is)),
-    ("stiff mindlin", || stiff("validation/mindlin", as_it_is)),
-    ("stiff ironing_q4", || stiff("validation/ironing_q4", first_tenth)),
-    ("stiff drag_5k", || stiff("coulomb_drag_5k", as_it_is)),
-    ("augmented greco", || committed("validation/greco", |case| augmented(case, 1e-7))),
-    ("augmented soft greco", || committed("validation/greco", |case| {
-        case["contacts"]["base"]["normal"]["alpha_n"] = json!(1e5);
-        augmented(case, 1e-7);
-    })),
-    ("augmented ironing_q4", || committed("validation/ironing_q4", |case| { shorten(case, 1, 0.03); augmented(case, 1e-5) })),
+const fn slow(name: &'static str, model: fn() -> Model) -> Case {
+    Case { name, model, quick: false }
+}
+
+const CASES: [Case; 24] = [
+    slow("coulomb_drag_5k", || committed("coulomb_drag_5k", as_it_is)),
+    slow("coulomb_drag_20k", || committed("coulomb_drag_20k", as_it_is)),
+    slow("block_on_ground", || committed("block_on_ground", |case| shorten(case, 1, 0.4))),
+    quick("hertz_q4", || committed("validation/hertz_q4", as_it_is)),
+    slow("hertz_q8_friction", || committed("validation/hertz_q8_friction", as_it_is)),
+    slow("mindlin", || committed("validation/mindlin", |case| shorten(case, 1, 0.25))),
+    slow("mindlin_healing", || committed("validation/mindlin_healing", |case| shorten(case, 1, 0.25))),
+    quick("greco", || committed("validation/greco", as_it_is)),
+    quick("wedge", || committed("validation/wedge", as_it_is)),
+    slow("ironing_q4", || committed("validation/ironing_q4", first_tenth)),
+    slow("ironing_q8", || committed("validation/ironing_q8", first_tenth)),
+    quick("self_contact", slotted_ring),
+    slow("tube", || committed("tube", as_it_is)),
+    quick("impact", || struck_bar(None)),
+    quick("impact_error", || struck_bar(Some(1e-6))),
+    quick("thrown", || thrown(1e5)),
+    quick("ridge", || faceted(0.2, "node_to_segment", 0.3)),
+    quick("valley", || ridge(0.1, 0.5)),
+    quick("slab_touch", || slab(0.0, 0.1, 8, 1e6, 0.5)),
+    quick("slab_touch_once", || slab(0.0, 1.0, 4, 1e6, 5.0)),
+    quick("slab_gap", || slab(0.001, 1.0, 8, 1e6, 5.0)),
+    slow("hertz_q8_friction × 100", || stiff("validation/hertz_q8_friction", as_it_is)),
+    slow("ironing_q4 × 100", || stiff("validation/ironing_q4", first_tenth)),
+    quick("greco augmented", || {
+        committed("validation/greco", |case| {
+            case["contacts"]["base"]["normal"] = json!({"alpha_n": 1e5, "penetration": 1e-7});
+        })
+    }),
 ];
 
+fn case(name: &str) -> &'static Case {
+    CASES.iter().find(|case| case.name == name).unwrap_or_else(|| panic!("no case {name}"))
+}
+
+/// An aid, and how to switch it off.
 type Switch = (&'static str, fn(&mut Aids));
 
-const SWITCHES: &[Switch] = &[
-    ("stiffness", |aids| aids.stiffness = false),
-    ("closure", |aids| aids.closure = false),
+const SWITCHES: [Switch; 12] = [
+    ("start", |aids| aids.start = false),
+    ("promise", |aids| aids.promise = false),
+    ("limit", |aids| aids.limit = false),
+    ("keep", |aids| aids.keep = false),
     ("pull", |aids| aids.pull = false),
-    ("growth", |aids| aids.growth = false),
     ("carried", |aids| aids.carried = false),
     ("touch", |aids| aids.touch = false),
     ("stick", |aids| aids.stick = false),
-    ("again", |aids| aids.again = false),
+    ("stick_again", |aids| aids.stick_again = false),
     ("valley", |aids| aids.valley = false),
-    ("cycle", |aids| aids.cycle = false),
     ("old_tangents", |aids| aids.old_tangents = false),
-    ("parts", |aids| aids.parts = false),
-    ("start", |aids| aids.start = false),
     ("stiffening", |aids| aids.stiffening = false),
 ];
 
-fn counts(model: &Model) -> String {
-    let mut record = Record::default();
-    let (report, result) = run(model, &mut [&mut record]);
-    let stop = result.map_or_else(|e| format!(" STOP {e}"), |_| String::new());
-    format!("{} {} {} {} {}{stop}", report.newton_iterations, report.factorizations, report.increments, report.cutbacks, report.rejected)
+/// What a run cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Cost {
+    solves: usize,
+    factorizations: usize,
+    increments: usize,
+    cutbacks: usize,
+    stopped: bool,
+    /// Sum of the counts of [`Acted`]
+    acted: [usize; Acted::COLUMNS.len()],
+}
+
+/// Sums what the aids did.
+#[derive(Default)]
+struct Watch([usize; Acted::COLUMNS.len()]);
+
+impl Observer for Watch {
+    fn record(&mut self, _: &Model, attempt: &Attempt) -> Result<(), Error> {
+        for iteration in attempt.iterations {
+            self.0.iter_mut().zip(iteration.acted.counts()).for_each(|(sum, count)| *sum += count);
+        }
+        Ok(())
+    }
+}
+
+fn cost(model: &Model) -> Cost {
+    let mut watch = Watch::default();
+    let (report, result) = run(model, &mut [&mut watch]);
+    Cost {
+        solves: report.newton_iterations,
+        factorizations: report.factorizations,
+        increments: report.increments,
+        cutbacks: report.cutbacks,
+        stopped: result.is_err(),
+        acted: watch.0,
+    }
+}
+
+/// The cost of a case without one aid.
+fn cost_without(case: &Case, off: fn(&mut Aids)) -> Cost {
+    let mut model = (case.model)();
+    off(&mut model.aids);
+    cost(&model)
+}
+
+impl Cost {
+    /// Whether an aid saves a twentieth of the solves (or factorizations, if they are what it saves), a cut-back or the run,
+    /// `without` being the cost without it.
+    fn is_saved(&self, without: &Self, factorizations: bool) -> bool {
+        let of = |cost: &Self| if factorizations { cost.factorizations } else { cost.solves };
+        20 * of(without) >= 21 * of(self) || without.cutbacks > self.cutbacks || without.stopped && !self.stopped
+    }
+
+    fn print(&self) -> String {
+        let Self { solves, factorizations, increments, cutbacks, stopped, .. } = self;
+        let cut = if *cutbacks > 0 { format!(", {cutbacks} cut") } else { String::new() };
+        format!("{solves} ({factorizations}) / {increments}{cut}{}", if *stopped { ", stopped" } else { "" })
+    }
+}
+
+/// Evaluates every accepted state afresh.
+#[derive(Default)]
+struct Afresh {
+    states: usize,
+    /// Largest imbalance of a body or a contact over what is tolerated
+    imbalance: f64,
+}
+
+impl Observer for Afresh {
+    /// From the committed state and the accepted displacement alone, by an assembler that has seen nothing before, nothing
+    /// presumed.
+    fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
+        let Some(new) = attempt.accepted else { return Ok(()) };
+        // The multipliers of the last pass, as they are at the stiffness given; 0 for the plain penalty.
+        let multiplied =
+            |(old, new): (&ContactState, &ContactState)| ContactState { multiplier: new.multiplier, ..*old };
+        let contacts = attempt.old.contacts.iter().zip(&new.contacts);
+        let contacts = contacts.map(|(old, new)| old.iter().zip(new).map(multiplied).collect()).collect();
+        let old = State { contacts, ..attempt.old.clone() };
+        let mut assembler = Assembler::new(model);
+        let mut system = assembler.system();
+        let trial = Trial::new(&old, attempt.step, new.time, new.time - old.time);
+        assembler.residual(trial, &new.displacement, &mut system).expect("an accepted state can be evaluated");
+        self.states += 1;
+        self.imbalance = self.imbalance.max(system.imbalance / model.newton.tolerance);
+        if model.contacts.iter().all(|pair| pair.penetration.is_none()) {
+            assert_eq!(assembler.evaluation.contacts, new.contacts, "t = {}", new.time);
+            assert_eq!(assembler.evaluation.force, new.force, "t = {}", new.time);
+        }
+        Ok(())
+    }
+}
+
+/// Every accepted state of a case balances, body by body and contact by contact, whatever aids found it; contact states and
+/// forces are the same to the bit.
+fn check_afresh(case: &Case) {
+    let mut afresh = Afresh::default();
+    let (report, result) = run(&(case.model)(), &mut [&mut afresh]);
+    let Afresh { states, imbalance } = afresh;
+    println!("{}: {states} states, worst imbalance {imbalance:.2} of the tolerance", case.name);
+    result.unwrap_or_else(|error| panic!("{}: {error}", case.name));
+    assert!(states > 0 && states == report.increments);
+    // Under the augmented Lagrangian the same pressure is the sum of two other numbers.
+    assert!(imbalance <= 1.0 + 1e-6, "{}: {imbalance}", case.name);
 }
 
 #[test]
-#[ignore = "minutes"]
+fn accepted_states_lean_on_no_aid() {
+    CASES.iter().filter(|case| case.quick).for_each(check_afresh);
+}
+
+#[test]
+#[ignore = "slow: minutes"]
+fn accepted_states_of_long_cases_lean_on_no_aid() {
+    CASES.iter().filter(|case| !case.quick).for_each(check_afresh);
+}
+
+/// One case an aid in which it saves solves or a failure; there it acts, and not if it is off.
+#[test]
+fn every_aid_saves_solves_or_a_failure() {
+    for (aid, name) in [
+        ("start", "greco"),
+        ("promise", "ridge"),
+        ("limit", "hertz_q8_friction × 100"),
+        ("keep", "ridge"),
+        ("pull", "ridge"),
+        ("carried", "hertz_q8_friction × 100"),
+        ("touch", "slab_touch_once"),
+        ("stick", "slab_touch"),
+        ("stick_again", "slab_gap"),
+        ("valley", "ridge"),
+        ("old_tangents", "valley"),
+        ("stiffening", "greco augmented"),
+    ] {
+        let (_, off) = SWITCHES.iter().find(|(name, _)| *name == aid).expect("an aid");
+        let (with, without) = (cost(&(case(name).model)()), cost_without(case(name), *off));
+        println!("{aid}: {name} {} with, {} without", with.print(), without.print());
+        assert!(with.is_saved(&without, aid == "old_tangents"), "{aid}: {with:?}, without {without:?}");
+        let column = Acted::COLUMNS.iter().position(|column| *column == format!("aid_{aid}"));
+        let acted = |cost: &Cost| column.map_or(cost.solves - cost.factorizations, |column| cost.acted[column]);
+        assert!(acted(&with) > 0 && acted(&without) == 0, "{aid}: {with:?}, without {without:?}");
+    }
+}
+
+/// The table of `docs/aids.md`: rows in which an aid changes the cost by a twentieth or more, or what fails.
+#[test]
+#[ignore = "slow: minutes; prints the table of docs/aids.md"]
 fn ablation() {
     let wanted = std::env::var("CASES").unwrap_or_default();
-    for (name, case) in CASES.iter().filter(|(name, _)| wanted.is_empty() || wanted.split(',').any(|w| *name == w)) {
-        let mut model = case();
-        println!("{name}: {}", counts(&model));
-        for (aid, off) in SWITCHES {
-            model.aids = Aids::default();
-            off(&mut model.aids);
-            println!("{name}\t{aid}\t{}", counts(&model));
+    let wanted: Vec<&str> = wanted.split(',').filter(|name| !name.is_empty()).collect();
+    let cases: Vec<&Case> = CASES.iter().filter(|case| wanted.is_empty() || wanted.contains(&case.name)).collect();
+    let all: Vec<Cost> = cases.iter().map(|case| cost(&(case.model)())).collect();
+    println!("| without | case | with it | without it |\n|---|---|---|---|");
+    for (aid, off) in SWITCHES {
+        for (case, with) in cases.iter().zip(&all) {
+            let without = cost_without(case, off);
+            let factorizations = aid == "old_tangents";
+            if with.is_saved(&without, factorizations) {
+                println!("| {aid} | {} | {} | {} |", case.name, with.print(), without.print());
+            } else if without.is_saved(with, factorizations) {
+                println!("| {aid} | {} (worse with it) | {} | {} |", case.name, with.print(), without.print());
+            }
         }
     }
 }

@@ -12,13 +12,12 @@
 //! | [`touch`] | a point whose gap is zero at the start of an increment is closed and sticks, in the first iterate |
 //! | [`stick`] | a point that slips to and fro sticks |
 //! | [`valley`] | a foot that goes to and fro between two segments is the node between them |
-//! | [`cycle`] | half of a correction ends between the two states of a cycle |
 //!
 //! Aids that know no contact are elsewhere: [`super::start`], [`super::newton`], [`super::augmented`]. Each has a switch in
 //! [`crate::model::aids::Aids`] and a column `aid_…` in `newton.csv`; what each saves is a table in `docs/aids.md`.
 
 pub mod carried;
-pub mod cycle;
+pub mod flips;
 pub mod keep;
 pub mod promise;
 pub mod stick;
