@@ -182,7 +182,7 @@ const fn slow(name: &'static str, model: fn() -> Model) -> Case {
     Case { name, model, quick: false }
 }
 
-const CASES: [Case; 24] = [
+const CASES: [Case; 25] = [
     slow("coulomb_drag_5k", || committed("coulomb_drag_5k", as_it_is)),
     slow("coulomb_drag_20k", || committed("coulomb_drag_20k", as_it_is)),
     slow("block_on_ground", || committed("block_on_ground", |case| shorten(case, 1, 0.4))),
@@ -198,6 +198,7 @@ const CASES: [Case; 24] = [
     slow("tube", || committed("tube", as_it_is)),
     quick("impact", || struck_bar(None)),
     quick("impact_error", || struck_bar(Some(1e-6))),
+    quick("slope", || committed("paper/slope", |case| case["steps"][0]["duration"] = json!(5))),
     quick("thrown", || thrown(1e5)),
     quick("ridge", || faceted(0.2, "node_to_segment", 0.3)),
     quick("valley", || ridge(0.1, 0.5)),
