@@ -75,10 +75,9 @@ fn slotted_ring() -> Model {
         [radius * angle.cos(), radius * angle.sin()]
     };
     let mut mesh = Blocks::default().block("ring", [across, around], map).json();
-    let joined = |sides: &[&str]| -> Value {
-        sides.iter().flat_map(|side| mesh["edges"][format!("ring_{side}")].as_array().expect("edges").clone()).collect()
-    };
-    mesh["edges"]["lips"] = joined(&["bottom", "top"]);
+    let edges = |side: &str| mesh["edges"][format!("ring_{side}")].as_array().expect("edges").clone();
+    let lips = [edges("bottom"), edges("top")].concat();
+    mesh["edges"]["lips"] = json!(lips);
     let outside = |quarter: usize| quarter * around / 4 * (across + 1) + across;
     mesh["points"] = json!({"south": [outside(1)], "north": [outside(3)]});
     model(&json!({
