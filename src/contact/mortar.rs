@@ -17,7 +17,7 @@
 //! count once a side.
 //! All variations come with [`Dual`] numbers.
 //!
-//! Against a rigid body nothing is cut, see [`super::mortar_rigid`].
+//! Against a rigid body nothing is cut, see `mortar_rigid.rs`.
 
 use std::iter::repeat;
 

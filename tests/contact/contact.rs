@@ -556,8 +556,8 @@ fn initial_pressure_is_the_first_multiplier_of_the_augmented_lagrangian() {
     pair.start_closed(vec![InitialTraction { pressure: 20.0, traction: 2.0 }; pair.points.len()], &at).expect("feet");
     let old = pair.initial_states(&at);
     for stiffening in [1.0, 100.0] {
-        let moment = ContactIncrement { stiffening, ..MOMENT };
-        let answer = pair.respond(&old, &at, moment, |_| Presumption::default(), &at).expect("an answer");
+        let during = ContactIncrement { stiffening, ..MOMENT };
+        let answer = pair.respond(&old, &at, during, |_| Presumption::default(), &at).expect("an answer");
         let states: Vec<ContactState> = answer.into_iter().map(|(state, _)| state).collect();
         for state in &states {
             let FrictionState { pressure, traction, .. } = state.friction;

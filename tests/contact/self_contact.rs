@@ -128,9 +128,9 @@ fn tangent_of_self_contact_equals_differences() {
         let [old, new] = [&run.states[run.states.len() - 2], run.last()];
         let before = run.model.configuration(&old.displacement);
         let respond = |u: &[f64]| {
-            let moment = ContactIncrement { dt: 0.1, fading: 0.0, stiffening: 1.0, settles: true };
+            let during = ContactIncrement { dt: 0.1, fading: 0.0, stiffening: 1.0, settles: true };
             let presumed = |_| Presumption::default();
-            pair.respond(&old.contacts[0], &before, moment, presumed, &run.model.configuration(u)).expect("an answer")
+            pair.respond(&old.contacts[0], &before, during, presumed, &run.model.configuration(u)).expect("an answer")
         };
         let forces = |u: &[f64]| {
             let mut sum = vec![0.0; u.len()];
@@ -197,9 +197,9 @@ fn a_tube_pressed_flat_touches_itself() {
     let number = run.model.contacts.iter().position(|pair| pair.name == "bar").expect("a contact of the case");
     let [old, new] = [&run.states[run.states.len() - 2], run.last()];
     let [before, x] = [old, new].map(|state| run.model.configuration(&state.displacement));
-    let moment = ContactIncrement { dt: new.dt, fading: 0.0, stiffening: 1.0, settles: true };
+    let during = ContactIncrement { dt: new.dt, fading: 0.0, stiffening: 1.0, settles: true };
     let nothing = |_| Presumption::default();
-    let answer = run.model.contacts[number].respond(&old.contacts[number], &before, moment, nothing, &x);
+    let answer = run.model.contacts[number].respond(&old.contacts[number], &before, during, nothing, &x);
     let closed = answer.expect("an answer").into_iter().filter_map(|(_, closed)| closed);
     let bar: f64 = closed.map(|closed| closed.contribution.force.iter().skip(1).step_by(2).sum::<f64>()).sum();
     close("the bar presses", bar, plate, 1e-6 * plate);

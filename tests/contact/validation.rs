@@ -359,9 +359,9 @@ fn accepted_contact_states_follow_from_the_committed_ones() {
         let pair = &run.model.contacts[0];
         for states in run.states.windows(2) {
             let [before, x] = [&states[0], &states[1]].map(|state| run.model.configuration(&state.displacement));
-            let moment = ContactIncrement { dt: states[1].dt, fading: 0.0, stiffening: 1.0, settles: true };
+            let during = ContactIncrement { dt: states[1].dt, fading: 0.0, stiffening: 1.0, settles: true };
             let nothing = |_| Presumption::default();
-            let found = pair.respond(&states[0].contacts[0], &before, moment, nothing, &x).expect("an answer");
+            let found = pair.respond(&states[0].contacts[0], &before, during, nothing, &x).expect("an answer");
             for ((found, _), accepted) in found.iter().zip(&states[1].contacts[0]) {
                 assert_eq!(found, accepted, "{method}, height {height}, t = {}", states[1].time);
             }
