@@ -78,15 +78,15 @@ pub fn closes(
     increment: Increment,
     x: &Configuration,
 ) -> bool {
-    let promised = increment.presumption.promised.is_some_and(|promised| promised.pressure > 0.0);
+    let kept = increment.presumption.kept > 0.0;
     let clearance = gap - old.friction.opening;
     let pressure = old.multiplier - pair.normal_stiffness(increment.during.stiffening) * clearance;
-    promised || pressure > 0.0 || touches(clearance, slave.current_length(x), old, increment)
+    kept || pressure > 0.0 || touches(clearance, slave.current_length(x), old, increment.presumption.presume)
 }
 
 /// Whether a zero gap is presumed to be closed, and to stick.
-fn touches(clearance: f64, length: f64, old: &ContactState, increment: Increment) -> bool {
-    let presumed = increment.presumption.presume == Presume::Touch && old.foot.is_some();
+pub fn touches(clearance: f64, length: f64, old: &ContactState, presume: Presume) -> bool {
+    let presumed = presume == Presume::Touch && old.foot.is_some();
     presumed && [old.clearance(), clearance].iter().all(|gap| gap.abs() <= TOUCH * length)
 }
 
@@ -174,7 +174,7 @@ impl<'a> Loading<'a> {
         }
         let clearance = gap - response.state.opening;
         // At p = 0 the law has no answer to give, and near it round-off decides which.
-        if carried == 0.0 || touches(clearance, kinematics.length, old, increment) {
+        if touches(clearance, kinematics.length, old, increment.presumption.presume) {
             response.dtraction_dslip = stiffness;
         }
         // δp = −α δg + α ∂d/∂Δu_t (share δΔu_t), α = α_n/(1 − α_n dd/dp)
@@ -233,9 +233,8 @@ const MOST_ANSWERS: usize = 60;
 /// Share of the pressure up to which they do.
 const AGREE: f64 = 1e-14;
 
-/// The pressure under which friction answers: that of a point which only a promise keeps closed is the promised one, from
+/// The pressure under which friction answers: that of a point which is only kept closed is the one it is kept by, from
 /// where its answer goes on in a straight line.
-fn carried(pressure: f64, presumption: Presumption) -> f64 {
-    let promised = || presumption.promised.map_or(0.0, |promised| promised.pressure);
-    presumption.carried.unwrap_or_else(|| if pressure > 0.0 { pressure } else { promised() })
+fn carried(pressure: f64, Presumption { carried, kept, .. }: Presumption) -> f64 {
+    carried.unwrap_or(if pressure > 0.0 { pressure } else { kept })
 }

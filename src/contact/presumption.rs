@@ -29,9 +29,11 @@ pub struct Increment {
 pub struct Presumption {
     /// Presumption about its state
     pub presume: Presume,
-    /// Tractions that the tangent turns and stretches with the surface; those of the trial state unless given. A point
-    /// with a promised pressure is closed, whatever its gap
+    /// Tractions that the tangent turns and stretches with the surface; those of the trial state unless given
     pub promised: Option<Tractions>,
+    /// Pressure of a point that is closed whatever its gap, and under which friction answers unless its own is positive;
+    /// none if it is 0
+    pub kept: f64,
     /// Pressure under which friction answers, and from where its answer goes on in a straight line, at a point that has just
     /// closed: a stiff penalty presses a point far too hard that goes too deep in one iterate, and would make it stick
     /// where it is to slip.

@@ -1,5 +1,6 @@
 //! The problem to solve: mesh, bodies, contact pairs, and the steps with their supports, loads and schemes.
 
+pub mod aids;
 pub mod boundary;
 pub mod builder;
 pub mod element;
@@ -19,6 +20,7 @@ use crate::laws::bulk::Material;
 use crate::mesh::configuration::Configuration;
 use crate::mesh::ties::Ties;
 use crate::mesh::{Element, Mesh};
+use crate::model::aids::Aids;
 use crate::model::boundary::{Loads, Prescribed, Span};
 use crate::model::element::{SolidElement, consistent_mass, lumped_mass, redistributed};
 use crate::model::method::Chosen;
@@ -179,6 +181,8 @@ pub struct Model {
     pub interval: Option<f64>,
     /// when Newton's method stops
     pub newton: NewtonSettings,
+    /// what makes iterations converge, all of it unless switched off for an experiment
+    pub aids: Aids,
 }
 
 impl Model {

@@ -1,4 +1,5 @@
-//! `newton.csv`: a row per linear solve, those of failed attempts included.
+//! `newton.csv`: a row per linear solve, those of failed attempts included. On how many contact points each
+//! aid acted in its tangent ([`Acted`]) stands at the end.
 
 use std::path::Path;
 
@@ -7,6 +8,7 @@ use crate::model::Model;
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};
 use crate::solve::IterationRecord;
+use crate::solve::acted::Acted;
 
 /// Writes `newton.csv`.
 #[derive(Debug)]
@@ -36,7 +38,7 @@ impl NewtonLog {
     /// # Errors
     /// [`Error::Output`] when it cannot be written.
     pub fn create(folder: &Path) -> Result<Self, Error> {
-        Ok(Self(Table::create(&folder.join("newton.csv"), &COLUMNS)?))
+        Ok(Self(Table::create(&folder.join("newton.csv"), &[&COLUMNS[..], &Acted::COLUMNS].concat())?))
     }
 }
 
@@ -45,7 +47,7 @@ impl Observer for NewtonLog {
         let Self(table) = self;
         let time = attempt.old.time + attempt.dt;
         for (k, iteration) in attempt.iterations.iter().enumerate() {
-            let IterationRecord { newton, contacts, flips, pass, stabilization } = iteration;
+            let IterationRecord { newton, contacts, flips, pass, stabilization, acted } = iteration;
             table.text(&attempt.step.name);
             [attempt.old.increment + 1, attempt.number, k + 1].into_iter().for_each(|count| table.count(count));
             [time, newton.residual, newton.correction].into_iter().for_each(|number| table.number(number));
@@ -55,6 +57,7 @@ impl Observer for NewtonLog {
             table.number(*stabilization);
             table.count(*flips);
             table.count(*pass);
+            acted.counts().into_iter().for_each(|count| table.count(count));
             table.end_row()?;
         }
         table.share()

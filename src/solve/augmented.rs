@@ -20,7 +20,9 @@ const STIFFER: f64 = 10.0;
 const STIFFEST: f64 = 1e4;
 
 /// Equilibrium at the time of a trial; where a contact asks for the augmented Lagrangian, with multipliers that leave no
-/// more penetration than allowed: Uzawa's method, with a penalty that is raised for the increment while passes gain little.
+/// more penetration than allowed: Uzawa's method, with a penalty that is raised for the increment while passes gain little: without that a soft
+/// penalty takes passes by the dozen, each of which leaves nearly all of the penetration (switch `stiffening`;
+/// `aid_stiffening` is 1 in iterations of a raised one).
 ///
 /// Source of the rule and its factors: Bertsekas (1982), Constrained Optimization and Lagrange Multiplier Methods, 2.2.
 pub fn augment(
@@ -41,7 +43,7 @@ pub fn augment(
             result = Err(IncrementFailure::Penetration { passes: pass });
             break;
         }
-        if excess > SLOW * before {
+        if model.aids.stiffening && excess > SLOW * before {
             stiffening = (STIFFER * stiffening).min(STIFFEST);
         }
         before = excess;

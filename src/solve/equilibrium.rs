@@ -1,14 +1,15 @@
 //! Equilibrium at the time of a trial, from the start value on.
 
+use super::acted::Acted;
 use super::contact_iteration::flips::Flips;
 use super::failure::IncrementFailure;
 use super::floating::null_motion;
 use super::newton;
+use super::start::start_value;
 use super::{IterationRecord, Workspace};
 use crate::equations::{ContactCounts, Trial};
 use crate::linear::system::Request;
 use crate::model::Model;
-use crate::model::state::{LastIncrement, State};
 
 /// Equilibrium at the time of a trial, wherever the scheme asks for it; from the start value of a new increment unless
 /// another is given.
@@ -30,11 +31,19 @@ pub fn equilibrium(
     let mut floating = None;
     let spent = assembler.seconds.assembly + assembler.seconds.contact;
     let clock = std::time::Instant::now();
-    let start = start.unwrap_or_else(|| start_value(trial));
-    let (iterations, result) = newton::solve(start, model.newton, &mut **solver, system, |u, request, system| {
+    let (start, extrapolated) = start.map_or_else(|| start_value(model, trial), |start| (start, false));
+    let settings = newton::Settings {
+        tolerance: model.newton.tolerance,
+        max_iterations: model.newton.max_iterations,
+        old_tangents: model.aids.old_tangents,
+        downhill: model.aids.downhill,
+    };
+    // What acted in the tangent since the last correction
+    let mut acted = Acted::default();
+    let (iterations, result) = newton::solve(start, settings, &mut **solver, system, |u, request, system| {
         iteration.evaluate(assembler, trial, u, request, system)?;
         // The start value goes on with the last increment; where there is none, the first linear solve tells.
-        let foresight = if goes_on(old).is_some() { 0 } else { 1 };
+        let foresight = if extrapolated { 0 } else { 1 };
         if begins && request == Request::Residual && tangents == foresight {
             foreseen.clone_from(&assembler.evaluation.contacts);
         }
@@ -45,24 +54,29 @@ pub fn equilibrium(
             if begins && tangents == 0 && unaided {
                 floating = null_motion(model, u, &system.tangent);
             }
+            acted = iteration.acted;
+            acted.start = usize::from(extrapolated && tangents == 0);
+            acted.stiffening = usize::from(trial.stiffening > 1.0);
             tangents += 1;
         } else if tangents > 0 && request == Request::Residual {
             let evaluation = &assembler.evaluation;
             let share = evaluation.stabilization / system.forces.max(f64::MIN_POSITIVE);
-            seen.push((ContactCounts::of(&evaluation.contacts), flips.count(&evaluation.contacts), share));
+            let counts = ContactCounts::of(&evaluation.contacts);
+            seen.push((counts, flips.count(&evaluation.contacts), share, std::mem::take(&mut acted)));
         }
         Ok(())
     });
     let assembled = assembler.seconds.assembly + assembler.seconds.contact - spent;
     *linear_seconds += clock.elapsed().as_secs_f64() - assembled;
     // The last state may not have been evaluated.
-    seen.resize(iterations.len(), (ContactCounts::default(), 0, 0.0));
-    let record = |(newton, (contacts, flips, stabilization))| IterationRecord {
+    seen.resize(iterations.len(), (ContactCounts::default(), 0, 0.0, Acted::default()));
+    let record = |(newton, (contacts, flips, stabilization, acted))| IterationRecord {
         newton,
         contacts,
         flips,
         pass: 1,
         stabilization,
+        acted: Acted { downhill: usize::from(newton.searched), ..acted },
     };
     let iterations = iterations.into_iter().zip(seen).map(record).collect();
     let result = match (floating, result) {
@@ -76,23 +90,4 @@ pub fn equilibrium(
         (None, Ok(u)) => Ok(u),
     };
     (iterations, result)
-}
-
-/// Where Newton's method starts: the last increment of the step goes on at its pace. In dynamics under error control it is
-/// u₀ + Δt v₀ + ½ Δt² a₀, which no accepted increment leaves by much more than the allowed error; where increments do not
-/// resolve the motion it would be far off.
-fn start_value(Trial { old, step, dt, .. }: Trial) -> Vec<f64> {
-    let State { displacement, velocity, acceleration, .. } = old;
-    if step.scheme.is_dynamic() && step.increments.error.is_some() {
-        let rates = velocity.iter().zip(acceleration);
-        return displacement.iter().zip(rates).map(|(u, (v, a))| u + dt * (v + 0.5 * dt * a)).collect();
-    }
-    let Some(last) = goes_on(old) else { return displacement.clone() };
-    let share = dt / last.dt;
-    displacement.iter().zip(&last.displacement).map(|(u, du)| u + share * du).collect()
-}
-
-/// The last increment of the step, if the next one is expected to be like it.
-fn goes_on(old: &State) -> Option<&LastIncrement> {
-    old.last_increment.as_ref().filter(|last| !last.ends_in_touch)
 }

@@ -1,12 +1,14 @@
 //! Solving the equations of one increment: Newton's method, the contact iteration, the augmented Lagrangian, and what
 //! holds bodies that float.
 
+pub mod acted;
 pub mod augmented;
 pub mod contact_iteration;
 pub mod equilibrium;
 pub mod failure;
 pub mod floating;
 pub mod newton;
+pub mod start;
 
 use std::sync::Arc;
 
@@ -15,6 +17,7 @@ use crate::equations::{Assembler, ContactCounts};
 use crate::linear::LinearSolver;
 use crate::linear::system::System;
 use crate::model::Model;
+use acted::Acted;
 use contact_iteration::ContactIteration;
 use newton::Iteration;
 
@@ -62,4 +65,6 @@ pub struct IterationRecord {
     pub pass: usize,
     /// ‖forces that stabilize‖/‖forces at work‖ after the correction [-]
     pub stabilization: f64,
+    /// what the aids did in its tangent
+    pub acted: Acted,
 }

@@ -16,14 +16,32 @@
 //! u_{k+1} = u_k + α Δu,   s(α) = Δu·r(u_k + α Δu),   |s(α)| ≤ 0.1 |s(0)|
 //! ```
 //!
-//! With a potential, r = ∂Π/∂u, s is the slope of Π along Δu, and Π falls by every correction.
+//! With a potential, r = ∂Π/∂u, s is the slope of Π along Δu, and Π falls by every correction. Switch `downhill`; `aid_downhill`
+//! is 1 where a correction was searched.
 //! Source: Matthies & Strang (1979), The solution of nonlinear finite element equations, doi:10.1002/nme.1620141104.
+//!
+//! Near the solution the tangent of the iterate before is nearly as good as a new one, and its factors are there. A correction
+//! with them is made where the last gains promise the solution in three of them; it counts as a linear solve (`factorized` is
+//! 0 in `newton.csv`) and saves a tangent and its factors. Switch `old_tangents`. Source: the modified Newton's method, chosen
+//! by the gain foreseen as in Hairer & Wanner (1996), Solving Ordinary Differential Equations II, IV.8.
 
 use thiserror::Error;
 
 use crate::linear::system::{Request, System};
 use crate::linear::{self, LinearFailure, LinearSolver, norm};
-use crate::model::NewtonSettings;
+
+/// When Newton's method stops, and what it may do on its way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// ‖r‖/‖f‖ of every part of a solution [-]
+    pub tolerance: f64,
+    /// Linear solves before giving up
+    pub max_iterations: usize,
+    /// Whether corrections with the factors of an earlier tangent are made
+    pub old_tangents: bool,
+    /// Whether corrections go only downhill where the residual stalls
+    pub downhill: bool,
+}
 
 /// One linear solve, and where it led.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,6 +58,8 @@ pub struct Iteration {
     pub perturbed_pivots: usize,
     /// Whether the fronts of K were not exact enough, and another solver took over
     pub fallback: bool,
+    /// Whether the correction was searched for how far it leads downhill
+    pub searched: bool,
 }
 
 /// Why no solution was found; `E` is why the equations could not be evaluated.
@@ -85,9 +105,6 @@ const OLD_TANGENT: f64 = 10.0;
 /// machine: what a run computes must not depend on what its factors cost.
 const OLD_TANGENT_CORRECTIONS: f64 = 3.0;
 
-/// Smallest part of a correction that is tried where the whole of it leads to a state that cannot be evaluated.
-const LEAST_PART: f64 = 0.125;
-
 /// Corrections in a row that leave the residual above its least until then, before it is searched along them. One alone
 /// is often the price of a contact that finds its place.
 const STALLED: usize = 2;
@@ -101,7 +118,7 @@ const LONGEST_SEARCH: usize = 12;
 /// Solve r(u) = 0 from the start value `u`; `evaluate` fills the system at a displacement.
 pub fn solve<E>(
     mut u: Vec<f64>,
-    settings: NewtonSettings,
+    settings: Settings,
     solver: &mut dyn LinearSolver,
     system: &mut System,
     mut evaluate: impl FnMut(&[f64], Request, &mut System) -> Result<(), E>,
@@ -138,10 +155,11 @@ pub fn solve<E>(
             }
             stalled = if size < least { 0 } else { stalled + 1 };
             least = least.min(size);
-            searches |= stalled >= STALLED;
+            searches |= settings.downhill && stalled >= STALLED;
             let slower = if iterations.last().is_some_and(|last| last.factorized) { OLD_TANGENT } else { 1.0 };
             let corrections = corrections_left(residual, slower * gain(size, residual, before), settings.tolerance);
-            let factorized = done == 0 || !(old_tangent_serves && corrections <= OLD_TANGENT_CORRECTIONS);
+            let factorized =
+                done == 0 || !(settings.old_tangents && old_tangent_serves && corrections <= OLD_TANGENT_CORRECTIONS);
             let here = if searches { system.residual.clone() } else { Vec::new() };
             let mut solution = if factorized {
                 evaluate(&u, Request::Tangent, system).map_err(NewtonFailure::Evaluation)?;
@@ -167,26 +185,16 @@ pub fn solve<E>(
                 factorized,
                 perturbed_pivots: solution.perturbed_pivots,
                 fallback: solution.fallback,
+                searched: searches && factorized,
             });
-            // A correction that turns an element inside out is far too long; a part of it may lead on.
-            let mut part = 1.0;
-            loop {
-                match evaluate(&u, Request::Residual, system) {
-                    Ok(()) => break,
-                    Err(failure) if part <= LEAST_PART && factorized => {
-                        return Err(NewtonFailure::Evaluation(failure));
-                    }
-                    Err(_) if part <= LEAST_PART => {
-                        // An old tangent led astray: the next correction starts from where this one did.
-                        old_tangent_serves = false;
-                        u.iter_mut().zip(&solution.x).for_each(|(u, x)| *u -= part * x);
-                        evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
-                        break;
-                    }
-                    Err(_) => part *= 0.5,
-                }
-                for (u, x) in u.iter_mut().zip(&solution.x) {
-                    *u -= part * x;
+            match evaluate(&u, Request::Residual, system) {
+                Ok(()) => {}
+                Err(failure) if factorized => return Err(NewtonFailure::Evaluation(failure)),
+                Err(_) => {
+                    // An old tangent led astray: the next correction starts from where this one did.
+                    old_tangent_serves = false;
+                    u.iter_mut().zip(&solution.x).for_each(|(u, x)| *u -= x);
+                    evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
                 }
             }
             before = [size, residual];

@@ -103,6 +103,13 @@ fn block_on_ground_slips_from_the_edge_and_converges_quadratically() {
     for row in table(&out.join("newton.csv")) {
         increments.entry(row["increment"].clone()).or_default().push(row);
     }
+    // The last columns count what the aids did: increments start as the last one went on, but for the first of each step.
+    let starts = |solves: &Vec<BTreeMap<String, String>>| solves.iter().map(|row| row["aid_start"] == "1").collect();
+    let starts: Vec<Vec<bool>> = increments.values().map(starts).collect();
+    assert!(starts.iter().all(|solves| !solves[1..].contains(&true)));
+    assert!(starts.iter().filter(|solves| solves[0]).count() + 3 >= increments.len());
+    let promised: f64 = increments.values().flatten().map(|row| number(row, "aid_promise")).sum();
+    assert!(promised > 0.0 && increments.values().flatten().all(|row| number(row, "aid_stiffening") == 0.0));
     let (mut checked, mut slow) = (0, 0);
     for (increment, solves) in &increments {
         let [.., before, last] = &solves[..] else { continue };

@@ -73,7 +73,9 @@ fn promised(
     x: &Positions,
     promised: Option<Tractions>,
 ) -> (ContactState, Option<Closed>) {
-    let increment = Increment { during: MOMENT, presumption: Presumption { promised, ..Presumption::default() } };
+    let kept = promised.map_or(0.0, |promised| promised.pressure);
+    let presumption = Presumption { promised, kept, ..Presumption::default() };
+    let increment = Increment { during: MOMENT, presumption };
     answer(pair, k, old, x, increment)
 }
 

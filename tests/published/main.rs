@@ -6,6 +6,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod aids;
 mod paper;
 mod published;
 mod rupture;

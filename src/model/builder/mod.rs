@@ -64,6 +64,7 @@ pub use load_step::{IncrementSettings, LoadStep, Rotation, RuptureSettings, Supp
 use crate::laws::bulk::Material;
 use crate::mesh::Mesh;
 use crate::mesh::ties::Ties;
+use crate::model::aids::Aids;
 use crate::model::{Damping, Model, NewtonSettings, WatchedSet};
 use body::{GivenBody, GivenMass};
 
@@ -205,6 +206,7 @@ impl Builder {
             methods: Vec::new(),
             steps: Vec::new(),
             watch: Vec::new(),
+            aids: Aids::default(),
             newton: checks::checked_newton(self.newton)?,
             prestress: Vec::new(),
             interval: checks::checked_interval(self.interval)?,

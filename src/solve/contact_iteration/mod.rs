@@ -6,16 +6,22 @@
 //!
 //! | aid | presumes |
 //! |---|---|
-//! | [`promise`] | the tractions that the last linear solve promised, or at first those of the committed state |
+//! | [`promise`] | the tractions that the last linear solve promised turn and stretch with the surface |
+//! | [`keep`] | points to which it promised a pressure are closed |
 //! | [`carried`] | friction of a point that has just closed answers to what the bodies leave of its pressure |
-//! | touch | a point whose gap is zero at the start of an increment is closed and sticks, in the first iterate |
+//! | [`touch`] | a point whose gap is zero at the start of an increment is closed and sticks, in the first iterate |
 //! | [`stick`] | a point that slips to and fro sticks |
-//! | [`valley`] | a foot that goes to and fro between two segments lies between them |
+//! | [`valley`] | a foot that goes to and fro between two segments is the node between them |
+//!
+//! Aids that know no contact are elsewhere: [`super::start`], [`super::newton`], [`super::augmented`]. Each has a switch in
+//! [`crate::model::aids::Aids`] and a column `aid_…` in `newton.csv`; what each saves is a table in `docs/aids.md`.
 
 pub mod carried;
 pub mod flips;
+pub mod keep;
 pub mod promise;
 pub mod stick;
+pub mod touch;
 pub mod valley;
 
 use crate::contact::force::{Closed, ContactState, Presume, Tractions};
@@ -24,6 +30,9 @@ use crate::equations::failure::TrialFailure;
 use crate::equations::{Assembler, Trial};
 use crate::linear::system::{Request, System};
 use crate::model::Model;
+use crate::model::aids::Aids;
+use crate::model::state::State;
+use crate::solve::acted::Acted;
 use stick::Slipping;
 use valley::Feet;
 
@@ -36,14 +45,39 @@ struct Point {
     /// The point as the last linear solve saw it, if it was closed
     closed: Option<Closed>,
     promised: Tractions,
+    /// Whether it was limited at the start of the increment
+    limited: bool,
+    /// Whether it is that of the committed state
+    pulled: bool,
     /// Pressure that friction answers to at a point that has just closed
     carried: Option<f64>,
 }
 
 impl Point {
-    fn presumption(&self) -> Presumption {
-        let &Self { presume, promised, carried, .. } = self;
-        Presumption { presume, promised: Some(promised), carried, astride: self.feet.astride }
+    fn presumption(&self, aids: Aids) -> Presumption {
+        Presumption {
+            presume: self.presume,
+            promised: aids.promise.then_some(self.promised),
+            kept: if aids.keep { self.promised.pressure } else { 0.0 },
+            carried: self.carried.filter(|_| aids.carried),
+            astride: self.feet.astride.filter(|_| aids.valley),
+        }
+    }
+
+    /// Count the aids that act on the point in a linear solve.
+    fn count(&self, aids: Aids, state: &ContactState, old: &ContactState, acted: &mut Acted) {
+        let Some(closed) = &self.closed else { return };
+        let presumption = self.presumption(aids);
+        let sticks = self.presume == Presume::Stick;
+        acted.promise += usize::from(promise::acts(&presumption, closed));
+        acted.limit += usize::from(self.limited);
+        acted.keep += usize::from(keep::acts(&presumption, closed));
+        acted.pull += usize::from(self.pulled && keep::acts(&presumption, closed));
+        acted.carried += usize::from(presumption.carried.is_some());
+        acted.touch += usize::from(touch::acts(&presumption, state, old));
+        acted.stick += usize::from(sticks && !self.slipping.stuck);
+        acted.stick_again += usize::from(sticks && self.slipping.stuck);
+        acted.valley += usize::from(valley::acts(&presumption, state));
     }
 }
 
@@ -54,6 +88,8 @@ pub struct ContactIteration {
     points: Vec<Vec<Point>>,
     /// u of the last linear solve [L]
     linearized_at: Vec<f64>,
+    /// On how many points each aid acted in the last linear solve
+    pub acted: Acted,
 }
 
 impl ContactIteration {
@@ -78,20 +114,21 @@ impl ContactIteration {
         if request != Request::Tangent {
             return assembler.residual(trial, u, system);
         }
+        let aids = assembler.model().aids;
         self.presume(assembler.model(), &assembler.evaluation.contacts, trial, u);
-        let mut responses = assembler.interfaces(trial, u, |pair, point| self.points[pair][point].presumption())?;
-        if self.presume_sticking(assembler.model(), &responses) {
-            responses = assembler.interfaces(trial, u, |pair, point| self.points[pair][point].presumption())?;
+        let mut responses = assembler.interfaces(trial, u, |pair, point| self.points[pair][point].presumption(aids))?;
+        if aids.stick && self.presume_sticking(assembler.model(), &responses) {
+            responses = assembler.interfaces(trial, u, |pair, point| self.points[pair][point].presumption(aids))?;
         }
         assembler.assemble(trial, u, &responses, request, system)?;
-        self.linearized(u, responses);
+        self.linearized(u, trial.old, responses, aids);
         Ok(())
     }
 
     /// What the next linear solve presumes about each point, from its last two iterates, but for sticking. `states` are
     /// those of the residual at `u`.
     fn presume(&mut self, model: &Model, states: &[Vec<ContactState>], trial: Trial, u: &[f64]) {
-        let first = self.points.is_empty();
+        let (first, aids) = (self.points.is_empty(), model.aids);
         self.points.resize_with(model.contacts.len(), Vec::new);
         let at = &self.linearized_at;
         let pairs = model.contacts.iter().zip(states).zip(&trial.old.contacts);
@@ -102,12 +139,16 @@ impl ContactIteration {
                 point.carried = carried::carried(pair, was_closed, state, trial.stiffening);
                 point.promised = match &point.closed {
                     Some(closed) => closed.promise(|dof| u[dof] - at[dof]),
-                    None if first => promise::at_start(pair, state, old),
+                    None if first && state.friction.pressure > 0.0 => promise::at_start(state, old, aids.limit),
+                    None if first && aids.pull => keep::at_start(pair, state, old),
                     None => Tractions::default(),
                 };
+                let closed = state.friction.pressure > 0.0;
+                point.limited = first && closed && point.promised.pressure < state.friction.pressure;
+                point.pulled = first && !closed && point.promised.pressure > 0.0;
                 point.feet.note(state);
-                point.slipping.stuck = point.presume == Presume::Stick;
-                point.presume = if first { Presume::Touch } else { Presume::Nothing };
+                point.slipping.stuck = aids.stick_again && point.presume == Presume::Stick;
+                point.presume = if first && aids.touch { Presume::Touch } else { Presume::Nothing };
             }
         }
     }
@@ -127,13 +168,15 @@ impl ContactIteration {
         any
     }
 
-    /// Keep the points as the next linear solve sees them.
-    fn linearized(&mut self, u: &[f64], responses: Vec<PairResponse>) {
+    /// Keep the points as the next linear solve sees them, and count those on which an aid acts.
+    fn linearized(&mut self, u: &[f64], old: &State, responses: Vec<PairResponse>, aids: Aids) {
         self.linearized_at.clear();
         self.linearized_at.extend_from_slice(u);
-        for (points, responses) in self.points.iter_mut().zip(responses) {
-            for (point, (_, closed)) in points.iter_mut().zip(responses) {
+        self.acted = Acted::default();
+        for (points, (responses, old)) in self.points.iter_mut().zip(responses.into_iter().zip(&old.contacts)) {
+            for (point, ((state, closed), old)) in points.iter_mut().zip(responses.into_iter().zip(old)) {
                 point.closed = closed;
+                point.count(aids, &state, old, &mut self.acted);
             }
         }
     }

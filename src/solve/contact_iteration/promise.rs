@@ -1,33 +1,29 @@
 //! Promised tractions: a stiff penalty turns every error of a displacement into a pressure far too high, and that into a
-//! geometric stiffness which leads the next iterate astray, or opens a point that should be closed. What the last linear
-//! solve promised, p + δp, is off by the square of its correction only ([`Closed::promise`]).
+//! geometric stiffness p δn ℓ that leads the next iterate astray. What the last linear solve promised, p + δp, is off by the
+//! square of its correction only ([`Closed::promise`]), and takes the place of p and q in the geometric part of the tangent.
+//! Switch `promise`; `aid_promise` counts the closed points whose own tractions are others.
 //!
-//! The first linear solve of an increment has none before it. It goes by the start value, within limits:
+//! The first linear solve of an increment has none before it and goes by the start value. Extrapolated past the edge of
+//! a contact that penetrates far too deep, so that no pressure is taken for promised which is more than twice the
+//! committed one (switch `limit`; `aid_limit` counts the points to which this happens).
 //!
-//! ```text
-//! closed by the start value    its tractions, p ≤ 2 p₀
-//! g ≤ p₀ (c + 10/α_n)          p₀, q₀: a point that was closed still is, unless it is farther away than the bodies would
-//!                              follow if its pressure went (c: compliance of the bodies), and the penalty would reach
-//! ```
+//! Source: what p + δp leaves out is the second term of the expansion of the traction in the correction; that it is of
+//! second order is tested (`tests/contact.rs`). The limit is a rule of thumb.
 //!
-//! [`Closed::promise`]: crate::contact::force::Closed::promise
 
-use crate::contact::force::{ContactState, Tractions};
-use crate::contact::pair::ContactPair;
+use crate::contact::force::{Closed, ContactState, Tractions};
+use crate::contact::pair::Presumption;
 
-/// The first linear solve of an increment takes no pressure for promised that is more than this many times the committed
-/// one: a start value extrapolated past the edge of a contact penetrates far too deep.
+/// Most growth of a pressure from the committed state to the start value that is believed.
 const MOST_GROWTH: f64 = 2.0;
 
-/// The penalty may have drawn a point that was closed back by this many p/α_n.
-const MOST_PULL: f64 = 10.0;
+/// What the start value promises a point that it closes.
+pub(super) fn at_start(state: &ContactState, old: &ContactState, limit: bool) -> Tractions {
+    let tractions = Tractions::of(&state.friction);
+    if limit { tractions.limited(MOST_GROWTH * old.friction.pressure) } else { tractions }
+}
 
-/// What the start of an increment promises, from the state at the start value and the committed one.
-pub(super) fn at_start(pair: &ContactPair, state: &ContactState, old: &ContactState) -> Tractions {
-    let reach = old.friction.pressure * (pair.compliance + MOST_PULL / pair.alpha_n);
-    match state.friction.pressure > 0.0 {
-        true => Tractions::of(&state.friction).limited(MOST_GROWTH * old.friction.pressure),
-        false if state.clearance() <= reach => Tractions::of(&old.friction),
-        false => Tractions::default(),
-    }
+/// Whether the tangent of a point is made with other tractions than its own.
+pub(super) fn acts(presumption: &Presumption, closed: &Closed) -> bool {
+    presumption.promised.is_some_and(|promised| promised != closed.tractions)
 }

@@ -1,6 +1,13 @@
 //! Sticking: a point that slips one way and then the other has passed the narrow and stiff range of sticking that lies
 //! between. The tangents on both sides are soft, and Newton's method would jump to and fro for ever; presumed to stick, it
-//! finds the range.
+//! finds the range. Switch `stick`; `aid_stick` counts the points.
+//!
+//! A point that was presumed to stick and slips all the same may have missed the range for the error of its neighbours only.
+//! It sticks once more if the tractions that its linear solve promised would have held it. Switch `stick_again`, and needs
+//! `stick`; `aid_stick_again` counts them.
+//!
+//! Source: sticking is linear, so that one solve of it tells whether the range is where the point ends: the predictor of
+//! return mapping (Simo & Hughes 1998, Computational Inelasticity, ch. 3), taken between iterates instead of within one.
 
 use crate::contact::force::Tractions;
 use crate::laws::friction::{FrictionState, Regime};

@@ -1,0 +1,55 @@
+//! Switches of what makes iterations converge.
+
+/// Aids of the iterations of an increment, all on unless an experiment asks what one is good for. Where they lead does not
+/// depend on them, only how soon: a residual that is accepted knows none of them.
+///
+/// What goes wrong without an aid, and where it comes from, is told in its file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Aids {
+    /// An increment starts as the last one went on: [`crate::solve::start`]
+    pub start: bool,
+    /// Promised tractions turn and stretch with the surface: [`crate::solve::contact_iteration::promise`]
+    pub promise: bool,
+    /// At the start of an increment they are limited: [`crate::solve::contact_iteration::promise`]
+    pub limit: bool,
+    /// Points with a promised pressure are closed: [`crate::solve::contact_iteration::keep`]
+    pub keep: bool,
+    /// At the start of an increment, points that were closed are: [`crate::solve::contact_iteration::keep`]
+    pub pull: bool,
+    /// Friction answers to a carried pressure: [`crate::solve::contact_iteration::carried`]
+    pub carried: bool,
+    /// A point that touches is closed and sticks: [`crate::solve::contact_iteration::touch`]
+    pub touch: bool,
+    /// A point that slips to and fro sticks: [`crate::solve::contact_iteration::stick`]
+    pub stick: bool,
+    /// It does so again if it slips for its own error: [`crate::solve::contact_iteration::stick`]
+    pub stick_again: bool,
+    /// A foot that goes to and fro between two segments lies between them: [`crate::solve::contact_iteration::valley`]
+    pub valley: bool,
+    /// Corrections with the factors of an earlier tangent: [`crate::solve::newton`]
+    pub old_tangents: bool,
+    /// Corrections go only downhill where the residual stalls: [`crate::solve::newton`]
+    pub downhill: bool,
+    /// The augmented Lagrangian stiffens where it is slow: [`crate::solve::augmented`]
+    pub stiffening: bool,
+}
+
+impl Default for Aids {
+    fn default() -> Self {
+        Self {
+            start: true,
+            promise: true,
+            limit: true,
+            keep: true,
+            pull: true,
+            carried: true,
+            touch: true,
+            stick: true,
+            stick_again: true,
+            valley: true,
+            old_tangents: true,
+            downhill: true,
+            stiffening: true,
+        }
+    }
+}

@@ -1,0 +1,405 @@
+//! What each aid of the iterations saves, over a fixed list of cases; and that no accepted state leans on one.
+//!
+//! `RAYON_NUM_THREADS=1 cargo test --release --test published -- --ignored --nocapture ablation` prints the table of
+//! `docs/aids.md`, `CASES=greco,tube` in the environment the columns of these alone.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use fecontact::contact::force::ContactState;
+use fecontact::equations::{Assembler, Trial};
+use fecontact::model::Model;
+use fecontact::model::aids::Aids;
+use fecontact::model::state::State;
+use fecontact::run::error::Error;
+use fecontact::run::observer::{Attempt, Observer};
+use fecontact::run::run;
+use fecontact::solve::acted::Acted;
+use serde_json::{Value, json};
+
+use crate::common::{Blocks, model, model_at};
+
+/// A case of the list.
+struct Case {
+    name: &'static str,
+    model: fn() -> Model,
+    /// Whether it takes a second or less
+    quick: bool,
+}
+
+fn committed(name: &str, change: impl Fn(&mut Value)) -> Model {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/{name}.json"));
+    let mut case: Value = serde_json::from_str(&std::fs::read_to_string(&path).expect("a case")).expect("JSON");
+    change(&mut case);
+    model_at(&case, &path)
+}
+
+fn as_it_is(_: &mut Value) {}
+
+/// Shorten step `k` to a share.
+fn shorten(case: &mut Value, k: usize, share: f64) {
+    let duration = case["steps"][k]["duration"].as_f64().expect("a duration");
+    case["steps"][k]["duration"] = json!(share * duration);
+    for support in case["steps"][k]["supports"].as_array_mut().expect("supports") {
+        for u in ["ux", "uy"] {
+            if let Some(value) = support[u].as_f64() {
+                support[u] = json!(share * value);
+            }
+        }
+    }
+}
+
+fn stiff(name: &str, change: impl Fn(&mut Value)) -> Model {
+    let base = committed(name, &change);
+    let pair = &base.contacts[0];
+    let (normal, tangential) = (100.0 * pair.alpha_n, 100.0 * pair.laws[0].stiffness());
+    committed(name, |case| {
+        change(case);
+        let contact = &mut case["contacts"]["base"];
+        contact["normal"]["alpha_n"] = json!(normal);
+        if tangential > 0.0 {
+            contact["friction"]["alpha_t"] = json!(tangential);
+        }
+    })
+}
+
+fn first_tenth(case: &mut Value) {
+    shorten(case, 1, 0.1);
+}
+
+fn slotted_ring() -> Model {
+    use std::f64::consts::PI;
+    let [across, around] = [4, 48];
+    let map = |s: f64, t: f64| {
+        let radius = 1.0 + 0.3 * s.powf(1.0 + 0.3 * t);
+        let angle = (2.0 * t - 1.0) * (PI - (0.05 / radius).asin());
+        [radius * angle.cos(), radius * angle.sin()]
+    };
+    let mut mesh = Blocks::default().block("ring", [across, around], map).json();
+    let edges = |side: &str| mesh["edges"][format!("ring_{side}")].as_array().expect("edges").clone();
+    let lips = [edges("bottom"), edges("top")].concat();
+    mesh["edges"]["lips"] = json!(lips);
+    let outside = |quarter: usize| quarter * around / 4 * (across + 1) + across;
+    mesh["points"] = json!({"south": [outside(1)], "north": [outside(3)]});
+    model(&json!({
+        "mesh": mesh,
+        "bodies": {"ring": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}}},
+        "contacts": {"lips": {"slave": "lips", "master": "lips", "friction": {"law": "coulomb", "mu": 0.2}}},
+        "steps": [{"name": "squeeze", "duration": 1, "dt": {"initial": 0.1}, "supports": [
+            {"on": "north", "ux": 0, "uy": -0.042}, {"on": "south", "ux": 0, "uy": 0.042}]}],
+    }))
+}
+
+/// A slab, pressed and sheared at once from a gap.
+fn slab(gap: f64, dt: f64, m: usize, alpha: f64, mu: f64) -> Model {
+    model(&json!({
+        "mesh": Blocks::default().rectangle("slab", [2 * m, m], [0.0, gap], [1.0, gap + 0.5]).json(),
+        "bodies": {"slab": {"material": {"model": "linear", "E": 1000.0, "nu": 0.3}}},
+        "contacts": {"base": {"slave": "slab_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+                              "normal": {"alpha_n": alpha}, "friction": {"law": "coulomb", "mu": mu, "alpha_t": alpha}}},
+        "steps": [{"name": "in", "duration": 1, "dt": {"initial": dt, "max": dt},
+                   "supports": [{"on": "slab_top", "ux": 0.01, "uy": -0.005 - gap}]}],
+    }))
+}
+
+/// Slabs of many kinds, pressed and sheared from touch: all their counts together.
+fn ridge(slope: f64, mu: f64) -> Model {
+    let top = |x: f64| slope * x.abs();
+    let block = |s: f64| -0.75 + 0.3 * s;
+    model(&json!({
+        "mesh": Blocks::default()
+            .block("ground", [20, 3], |s, t| [2.0 * s - 1.0, -0.5 + t * (0.5 + top(2.0 * s - 1.0))])
+            .block("block", [5, 3], |s, t| [block(s), top(block(s)) + 0.2 * t]).json(),
+        "bodies": {
+            "ground": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
+            "block": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
+        },
+        "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "friction": {"law": "coulomb", "mu": mu}}},
+        "steps": [
+            {"name": "press", "duration": 1, "dt": {"initial": 0.25},
+             "supports": [{"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0}],
+             "loads": [{"on": "block_top", "traction": {"y": -5}}]},
+            {"name": "push", "duration": 1, "dt": {"initial": 0.02, "min": 1e-7}, "supports": [{"on": "block_top", "ux": 1.2}]},
+        ],
+    }))
+}
+
+/// A softer block pushed by its top over a faceted ridge.
+fn faceted(height: f64, method: &str, mu: f64) -> Model {
+    let top = |x: f64| -height * x.abs();
+    let block = |s: f64| -0.75 + 0.5 * s;
+    model(&json!({
+        "mesh": Blocks::default()
+            .block("ground", [20, 3], |s, t| [2.0 * s - 1.0, -0.5 + t * (0.5 + top(2.0 * s - 1.0))])
+            .block("block", [7, 4], |s, t| [block(s), top(block(s)) * (1.0 - t) + 0.4 * t]).json(),
+        "bodies": {
+            "ground": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
+            "block": {"material": {"model": "neo_hookean", "E": 100, "nu": 0.3}},
+        },
+        "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "method": method, "friction": {"law": "coulomb", "mu": mu}}},
+        "steps": [
+            {"name": "press", "duration": 1, "dt": {"initial": 0.25},
+             "supports": [{"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0, "uy": -0.04}]},
+            {"name": "push", "duration": 1, "dt": {"initial": 0.05, "min": 1e-5}, "supports": [{"on": "block_top", "ux": 1}]},
+        ],
+    }))
+}
+
+fn struck_bar(error: Option<f64>) -> Model {
+    let h = 0.01;
+    let mut dt = json!({"initial": h});
+    if let Some(error) = error {
+        dt["error"] = json!(error);
+        dt["min"] = json!(1e-6);
+    }
+    model(&json!({
+        "mesh": Blocks::default().rectangle("bar", [100, 1], [0.0, 0.0], [1.0, 0.02]).json(),
+        "bodies": {"bar": {"material": {"model": "neo_hookean", "E": 1, "nu": 0, "density": 1}}},
+        "contacts": {"wall": {"slave": "bar_left", "master": {"plane": {"point": [0, 0], "normal": [1, 0]}},
+                              "massless": true, "normal": {"alpha_n": 10.0 / h}, "friction": {"law": "frictionless"}}},
+        "initial_velocity": {"bar": [-1e-3, 0]},
+        "steps": [{"name": "hit", "duration": 2.5, "dt": dt, "scheme": {"newmark": {}}, "supports": [{"on": "bar", "uy": 0}]}],
+    }))
+}
+
+/// A slab thrown obliquely on a rough rigid plane.
+fn thrown(alpha: f64) -> Model {
+    model(&json!({
+        "mesh": Blocks::default().rectangle("slab", [16, 8], [0.0, 0.001], [1.0, 0.501]).json(),
+        "bodies": {"slab": {"material": {"model": "neo_hookean", "E": 1, "nu": 0.3, "density": 1}}},
+        "contacts": {"floor": {"slave": "slab_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+                              "massless": true, "normal": {"alpha_n": alpha}, "friction": {"law": "coulomb", "mu": 0.3}}},
+        "initial_velocity": {"slab": [0.05, -0.05]},
+        "steps": [{"name": "hit", "duration": 3, "dt": {"initial": 0.02}, "scheme": {"hht": {"alpha": -0.1}}}],
+    }))
+}
+
+const fn quick(name: &'static str, model: fn() -> Model) -> Case {
+    Case { name, model, quick: true }
+}
+
+const fn slow(name: &'static str, model: fn() -> Model) -> Case {
+    Case { name, model, quick: false }
+}
+
+const CASES: [Case; 25] = [
+    slow("coulomb_drag_5k", || committed("coulomb_drag_5k", as_it_is)),
+    slow("coulomb_drag_20k", || committed("coulomb_drag_20k", as_it_is)),
+    slow("block_on_ground", || committed("block_on_ground", |case| shorten(case, 1, 0.4))),
+    quick("hertz_q4", || committed("validation/hertz_q4", as_it_is)),
+    slow("hertz_q8_friction", || committed("validation/hertz_q8_friction", as_it_is)),
+    slow("mindlin", || committed("validation/mindlin", |case| shorten(case, 1, 0.25))),
+    slow("mindlin_healing", || committed("validation/mindlin_healing", |case| shorten(case, 1, 0.25))),
+    quick("greco", || committed("validation/greco", as_it_is)),
+    quick("wedge", || committed("validation/wedge", as_it_is)),
+    slow("ironing_q4", || committed("validation/ironing_q4", first_tenth)),
+    slow("ironing_q8", || committed("validation/ironing_q8", first_tenth)),
+    quick("self_contact", slotted_ring),
+    slow("tube", || committed("tube", as_it_is)),
+    quick("impact", || struck_bar(None)),
+    quick("impact_error", || struck_bar(Some(1e-6))),
+    quick("slope", || committed("paper/slope", |case| case["steps"][0]["duration"] = json!(5))),
+    quick("thrown", || thrown(1e5)),
+    quick("ridge", || faceted(0.2, "node_to_segment", 0.3)),
+    quick("valley", || ridge(0.1, 0.5)),
+    quick("slab_touch", || slab(0.0, 0.1, 8, 1e6, 0.5)),
+    quick("slab_touch_once", || slab(0.0, 1.0, 4, 1e6, 5.0)),
+    quick("slab_gap", || slab(0.001, 1.0, 8, 1e6, 5.0)),
+    slow("hertz_q8_friction × 100", || stiff("validation/hertz_q8_friction", as_it_is)),
+    slow("ironing_q4 × 100", || stiff("validation/ironing_q4", first_tenth)),
+    quick("greco augmented", || {
+        committed("validation/greco", |case| {
+            case["contacts"]["base"]["normal"] = json!({"alpha_n": 1e5, "penetration": 1e-7});
+        })
+    }),
+];
+
+fn case(name: &str) -> &'static Case {
+    CASES.iter().find(|case| case.name == name).unwrap_or_else(|| panic!("no case {name}"))
+}
+
+/// An aid, and how to switch it off.
+type Switch = (&'static str, fn(&mut Aids));
+
+const SWITCHES: [Switch; 13] = [
+    ("start", |aids| aids.start = false),
+    ("promise", |aids| aids.promise = false),
+    ("limit", |aids| aids.limit = false),
+    ("keep", |aids| aids.keep = false),
+    ("pull", |aids| aids.pull = false),
+    ("carried", |aids| aids.carried = false),
+    ("touch", |aids| aids.touch = false),
+    ("stick", |aids| aids.stick = false),
+    ("stick_again", |aids| aids.stick_again = false),
+    ("valley", |aids| aids.valley = false),
+    ("old_tangents", |aids| aids.old_tangents = false),
+    ("downhill", |aids| aids.downhill = false),
+    ("stiffening", |aids| aids.stiffening = false),
+];
+
+/// What a run cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Cost {
+    solves: usize,
+    factorizations: usize,
+    increments: usize,
+    cutbacks: usize,
+    stopped: bool,
+    /// Sum of the counts of [`Acted`]
+    acted: [usize; Acted::COLUMNS.len()],
+}
+
+/// Sums what the aids did.
+#[derive(Default)]
+struct Watch([usize; Acted::COLUMNS.len()]);
+
+impl Observer for Watch {
+    fn record(&mut self, _: &Model, attempt: &Attempt) -> Result<(), Error> {
+        for iteration in attempt.iterations {
+            self.0.iter_mut().zip(iteration.acted.counts()).for_each(|(sum, count)| *sum += count);
+        }
+        Ok(())
+    }
+}
+
+fn cost(model: Model) -> Cost {
+    let mut watch = Watch::default();
+    let (report, result) = run(&Arc::new(model), &mut [&mut watch]);
+    Cost {
+        solves: report.newton_iterations,
+        factorizations: report.factorizations,
+        increments: report.increments,
+        cutbacks: report.cutbacks,
+        stopped: result.is_err(),
+        acted: watch.0,
+    }
+}
+
+/// The cost of a case without one aid.
+fn cost_without(case: &Case, off: fn(&mut Aids)) -> Cost {
+    let mut model = (case.model)();
+    off(&mut model.aids);
+    cost(model)
+}
+
+impl Cost {
+    /// Whether an aid saves a twentieth of the solves (or factorizations, if they are what it saves), a cut-back or the run,
+    /// `without` being the cost without it.
+    fn is_saved(&self, without: &Self, factorizations: bool) -> bool {
+        let of = |cost: &Self| if factorizations { cost.factorizations } else { cost.solves };
+        20 * of(without) >= 21 * of(self) || without.cutbacks > self.cutbacks || without.stopped && !self.stopped
+    }
+
+    fn print(&self) -> String {
+        let Self { solves, factorizations, increments, cutbacks, stopped, .. } = self;
+        let cut = if *cutbacks > 0 { format!(", {cutbacks} cut") } else { String::new() };
+        format!("{solves} ({factorizations}) / {increments}{cut}{}", if *stopped { ", stopped" } else { "" })
+    }
+}
+
+/// Evaluates every accepted state afresh.
+struct Afresh {
+    model: Arc<Model>,
+    states: usize,
+    /// Largest imbalance of a body or a contact over what is tolerated
+    imbalance: f64,
+}
+
+impl Observer for Afresh {
+    /// From the committed state and the accepted displacement alone, by an assembler that has seen nothing before, nothing
+    /// presumed.
+    fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
+        let Some(new) = attempt.accepted else { return Ok(()) };
+        // The multipliers of the last pass, as they are at the stiffness given; 0 for the plain penalty.
+        let multiplied =
+            |(old, new): (&ContactState, &ContactState)| ContactState { multiplier: new.multiplier, ..*old };
+        let contacts = attempt.old.contacts.iter().zip(&new.contacts);
+        let contacts = contacts.map(|(old, new)| old.iter().zip(new).map(multiplied).collect()).collect();
+        let old = State { contacts, ..attempt.old.clone() };
+        let mut assembler = Assembler::new(&self.model);
+        let mut system = assembler.system();
+        let trial = Trial::new(&old, attempt.step, new.time, new.time - old.time);
+        assembler.residual(trial, &new.displacement, &mut system).expect("an accepted state can be evaluated");
+        self.states += 1;
+        self.imbalance = self.imbalance.max(system.imbalance / model.newton.tolerance);
+        if model.contacts.iter().all(|pair| pair.penetration.is_none()) {
+            assert_eq!(assembler.evaluation.contacts, new.contacts, "t = {}", new.time);
+            assert_eq!(assembler.evaluation.force, new.force, "t = {}", new.time);
+        }
+        Ok(())
+    }
+}
+
+/// Every accepted state of a case balances, body by body and contact by contact, whatever aids found it; contact states and
+/// forces are the same to the bit.
+fn check_afresh(case: &Case) {
+    let model = Arc::new((case.model)());
+    let mut afresh = Afresh { model: model.clone(), states: 0, imbalance: 0.0 };
+    let (report, result) = run(&model, &mut [&mut afresh]);
+    let Afresh { states, imbalance, .. } = afresh;
+    println!("{}: {states} states, worst imbalance {imbalance:.2} of the tolerance", case.name);
+    result.unwrap_or_else(|error| panic!("{}: {error}", case.name));
+    assert!(states > 0 && states == report.increments);
+    // Under the augmented Lagrangian the same pressure is the sum of two other numbers.
+    assert!(imbalance <= 1.0 + 1e-6, "{}: {imbalance}", case.name);
+}
+
+#[test]
+fn accepted_states_lean_on_no_aid() {
+    CASES.iter().filter(|case| case.quick).for_each(check_afresh);
+}
+
+#[test]
+#[ignore = "slow: minutes"]
+fn accepted_states_of_long_cases_lean_on_no_aid() {
+    CASES.iter().filter(|case| !case.quick).for_each(check_afresh);
+}
+
+/// One case an aid in which it saves solves or a failure; there it acts, and not if it is off.
+#[test]
+fn every_aid_saves_solves_or_a_failure() {
+    for (aid, name) in [
+        ("start", "greco"),
+        ("promise", "ridge"),
+        ("limit", "hertz_q8_friction × 100"),
+        ("keep", "ridge"),
+        ("pull", "ridge"),
+        ("carried", "hertz_q8_friction × 100"),
+        ("touch", "slab_touch_once"),
+        ("stick", "slab_touch"),
+        ("stick_again", "slab_gap"),
+        ("valley", "ridge"),
+        ("old_tangents", "valley"),
+        ("stiffening", "greco augmented"),
+    ] {
+        let (_, off) = SWITCHES.iter().find(|(name, _)| *name == aid).expect("an aid");
+        let (with, without) = (cost((case(name).model)()), cost_without(case(name), *off));
+        println!("{aid}: {name} {} with, {} without", with.print(), without.print());
+        assert!(with.is_saved(&without, aid == "old_tangents"), "{aid}: {with:?}, without {without:?}");
+        let column = Acted::COLUMNS.iter().position(|column| *column == format!("aid_{aid}"));
+        let acted = |cost: &Cost| column.map_or(cost.solves - cost.factorizations, |column| cost.acted[column]);
+        assert!(acted(&with) > 0 && acted(&without) == 0, "{aid}: {with:?}, without {without:?}");
+    }
+}
+
+/// The table of `docs/aids.md`: rows in which an aid changes the cost by a twentieth or more, or what fails.
+#[test]
+#[ignore = "slow: minutes; prints the table of docs/aids.md"]
+fn ablation() {
+    let wanted = std::env::var("CASES").unwrap_or_default();
+    let wanted: Vec<&str> = wanted.split(',').filter(|name| !name.is_empty()).collect();
+    let cases: Vec<&Case> = CASES.iter().filter(|case| wanted.is_empty() || wanted.contains(&case.name)).collect();
+    let all: Vec<Cost> = cases.iter().map(|case| cost((case.model)())).collect();
+    println!("| without | case | with it | without it |\n|---|---|---|---|");
+    for (aid, off) in SWITCHES {
+        for (case, with) in cases.iter().zip(&all) {
+            let without = cost_without(case, off);
+            let factorizations = aid == "old_tangents";
+            if with.is_saved(&without, factorizations) {
+                println!("| {aid} | {} | {} | {} |", case.name, with.print(), without.print());
+            } else if without.is_saved(with, factorizations) {
+                println!("| {aid} | {} (worse with it) | {} | {} |", case.name, with.print(), without.print());
+            }
+        }
+    }
+}
