@@ -129,8 +129,7 @@ fn no_files_import_each_other_in_a_circle() {
 fn only_the_laws_know_each_other_by_name() {
     let laws = ["SuperSubloading", "SlipWeakening", "RateAndState", "Coulomb", "Frictionless"];
     for (module, text) in modules().iter().filter(|(module, _)| module[0] != "laws") {
-        for law in laws {
-            assert!(!text.contains(law), "{} names {law}", module.join("::"));
-        }
+        let named = text.split(|c: char| !c.is_alphanumeric()).find(|word| laws.contains(word));
+        assert_eq!(named, None, "in {}", module.join("::"));
     }
 }

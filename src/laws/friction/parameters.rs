@@ -56,3 +56,27 @@ impl FrictionParameters {
         }
     }
 }
+
+impl From<CoulombParameters> for FrictionParameters {
+    fn from(parameters: CoulombParameters) -> Self {
+        Self::Coulomb(parameters)
+    }
+}
+
+impl From<SuperSubloadingParameters> for FrictionParameters {
+    fn from(parameters: SuperSubloadingParameters) -> Self {
+        Self::SuperSubloading(parameters)
+    }
+}
+
+impl From<SlipWeakeningParameters> for FrictionParameters {
+    fn from(parameters: SlipWeakeningParameters) -> Self {
+        Self::SlipWeakening(parameters)
+    }
+}
+
+impl From<RateAndStateParameters> for FrictionParameters {
+    fn from(parameters: RateAndStateParameters) -> Self {
+        Self::RateAndState(parameters)
+    }
+}

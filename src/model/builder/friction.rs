@@ -103,29 +103,18 @@ impl From<FrictionParameters> for Friction {
     }
 }
 
-impl From<CoulombParameters> for Friction {
-    fn from(parameters: CoulombParameters) -> Self {
-        FrictionParameters::Coulomb(parameters).into()
-    }
+/// What FrictionParameters are made from is friction too.
+macro_rules! friction_from {
+    ($($parameters:ty),*) => {$(
+        impl From<$parameters> for Friction {
+            fn from(parameters: $parameters) -> Self {
+                FrictionParameters::from(parameters).into()
+            }
+        }
+    )*};
 }
 
-impl From<SuperSubloadingParameters> for Friction {
-    fn from(parameters: SuperSubloadingParameters) -> Self {
-        FrictionParameters::SuperSubloading(parameters).into()
-    }
-}
-
-impl From<SlipWeakeningParameters> for Friction {
-    fn from(parameters: SlipWeakeningParameters) -> Self {
-        FrictionParameters::SlipWeakening(parameters).into()
-    }
-}
-
-impl From<RateAndStateParameters> for Friction {
-    fn from(parameters: RateAndStateParameters) -> Self {
-        FrictionParameters::RateAndState(parameters).into()
-    }
-}
+friction_from!(CoulombParameters, SuperSubloadingParameters, SlipWeakeningParameters, RateAndStateParameters);
 
 impl<L: FrictionLaw + Clone + 'static> From<L> for Friction {
     fn from(law: L) -> Self {
