@@ -14,6 +14,7 @@ pub mod boxes;
 pub mod closed;
 mod cuts;
 pub mod dual;
+pub mod fields;
 pub mod force;
 pub mod kinematics;
 mod lines;

@@ -7,11 +7,11 @@ use std::thread::JoinHandle;
 
 use super::csv::failed;
 use super::vtu::{CellType, Grid};
+use crate::contact::fields;
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
 use crate::laws::bulk::CauchyStress;
-use crate::laws::friction::{Regime, observables};
 use crate::mesh::configuration::Configuration;
 use crate::model::Model;
 use crate::model::state::State;
@@ -201,30 +201,11 @@ fn contact_frame(model: &Model, state: &State, grid: &mut Grid) {
         points.map(move |(slave, state)| (Place { pair, slave }, state))
     });
     let all: Vec<(Place, &ContactState)> = states.collect();
-    let rate = if state.dt > 0.0 { 1.0 / state.dt } else { 0.0 };
-    let number = |regime: Regime| match regime {
-        Regime::Open => 0.0,
-        Regime::Stick => 1.0,
-        Regime::Slip => 2.0,
-    };
     grid.restart(&reference, lines.iter().map(|(kind, nodes)| (*kind, &nodes[..])));
     grid.vectors("displacement", &displacement);
-    let mut scalar = |name: &str, value: &dyn Fn(&Place, &ContactState) -> f64| {
-        grid.at_points(name, 1, all.iter().map(|(place, state)| value(place, state)));
-    };
-    scalar("gap", &|_, s| s.gap);
-    scalar("pressure", &|_, s| s.friction.pressure);
-    scalar("traction", &|_, s| s.friction.traction);
-    scalar("slip", &|_, s| s.friction.plastic_slip);
-    scalar("elastic_slip", &|at, s| at.pair.elastic_slip(at.slave, &s.friction));
-    scalar("slip_rate", &|_, s| s.friction.plastic_increment * rate);
-    let observed = |name: &'static str| {
-        move |at: &Place, s: &ContactState| observables::value(at.pair.law(at.slave), name, &s.friction)
-    };
-    observables::ALWAYS.iter().for_each(|(name, _)| scalar(name, &observed(name)));
-    scalar("state", &|_, s| number(s.regime()));
-    scalar("dissipation", &|_, s| s.friction.dissipation);
-    let laws = model.contacts.iter().flat_map(|pair| &pair.laws).map(|law| &**law);
-    observables::further(laws).into_iter().for_each(|name| scalar(name, &observed(name)));
+    for name in fields::names(&model.contacts) {
+        let value = |(place, s): &(Place, &ContactState)| fields::value(place.pair, place.slave, s, state.dt, name);
+        grid.at_points(name, 1, all.iter().map(value));
+    }
     grid.at_cells("contact", contact_id.into_iter());
 }

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+use super::control::{Candidate, Outcome, Outputs, Phase, RESULTS};
 use super::error::Error;
-use super::simulation::{Candidate, Outcome, Outputs, Phase, RESULTS, Simulation};
+use super::simulation::Simulation;
 use crate::model::state::State;
 use crate::solve::IterationRecord;
 use crate::time::increment::advance;

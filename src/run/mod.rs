@@ -1,6 +1,9 @@
 //! The run: step after step, increment after increment, with cut-back, and observers that see every attempt.
 
+pub mod access;
 mod attempt;
+mod begin;
+pub mod control;
 pub mod error;
 pub mod law;
 pub mod law_path;
@@ -17,7 +20,9 @@ use crate::model::state::State;
 use crate::run::error::Error;
 use crate::run::observer::Observer;
 use crate::run::report::RunReport;
-pub use simulation::Simulation;
+pub use access::{Axis, Unknown};
+pub use control::{Candidate, Increment};
+pub use simulation::{Saved, Simulation};
 
 /// Run all steps of a model. The report comes back from a stopped run as well.
 ///

@@ -13,27 +13,16 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::control::{Candidate, Control, Increment, Outcome, Phase};
 use super::error::Error;
 use super::observer::Attempt;
 use super::report::{RunReport, WallSeconds};
-use crate::equations::Coupling;
 use crate::linear::Multifrontal;
-use crate::model::boundary::Span;
-use crate::model::scheme::Scheme;
 use crate::model::state::State;
 use crate::model::{Model, Step};
+use crate::solve::Workspace;
 use crate::solve::failure::IncrementFailure;
-use crate::solve::{IterationRecord, Workspace};
 use crate::time::explicit::Explicit;
-use crate::time::increment::{begin, go_on};
-use crate::time::step_size::Touching;
-
-/// Results of an explicit step if the case does not say how many, and of the time that a shear wave takes across the model
-/// where a step is explicit while a contact slips fast.
-pub(super) const RESULTS: f64 = 100.0;
-
-/// Share of the time between two outputs within which an output falls on the end of a step.
-const NEAR_END: f64 = 1e-6;
 
 /// A run under way.
 pub struct Simulation {
@@ -41,7 +30,7 @@ pub struct Simulation {
     /// The step under way, as its caller may have changed it
     pub(super) step: Arc<Step>,
     pub(super) state: Arc<State>,
-    control: Control,
+    pub(super) control: Control,
     /// What explicit increments need besides the state, while there are any
     pub(super) explicit: Option<Explicit>,
     pub(super) work: Workspace,
@@ -51,139 +40,15 @@ pub struct Simulation {
     earlier: WallSeconds,
 }
 
-/// Where a run is: with the state, all that decides the next increment.
-#[derive(Clone, Debug)]
-struct Control {
-    /// number of the step
-    step: usize,
-    phase: Phase,
-    /// which nodes the equations couple, and so the order of their elimination
-    coupling: Arc<Coupling>,
-}
-
-#[derive(Clone, Debug)]
-pub(super) enum Phase {
-    /// Before the first increment of a step
-    Begin,
-    /// Implicit or static increments
-    Implicit {
-        /// Δt of the next attempt, before the bounds of the step [T]
-        dt: f64,
-        /// number of the next attempt at the increment
-        attempt: usize,
-        touching: Touching,
-    },
-    /// Explicit increments to the next time of output
-    Explicit(Outputs),
-    /// The same within an implicit step, while a contact slips fast
-    Rupture {
-        outputs: Outputs,
-        /// the state since which slip is watched
-        before: Arc<State>,
-    },
-    /// After them, before the next implicit increment
-    Resume,
-    /// After the last step
-    Complete,
-}
-
-/// Times of output: start + k × interval.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Outputs {
-    start: f64,
-    interval: f64,
-    next: u32,
-    /// number of the next attempt to get there
-    pub(super) attempt: usize,
-}
-
-impl Outputs {
-    pub(super) fn new(start: f64, interval: f64) -> Self {
-        Self { start, interval, next: 1, attempt: 1 }
-    }
-
-    pub(super) fn time(&self, span: Span) -> f64 {
-        let time = self.start + f64::from(self.next) * self.interval;
-        if time > span.end - NEAR_END * self.interval { span.end } else { time }
-    }
-
-    pub(super) fn following(self) -> Self {
-        Self { next: self.next + 1, attempt: 1, ..self }
-    }
-}
-
-/// An attempt at one increment, or at explicit ones up to the next output. Nothing has changed yet.
-pub struct Candidate {
-    pub(super) number: usize,
-    pub(super) dt: f64,
-    pub(super) iterations: Vec<IterationRecord>,
-    pub(super) accepted: Option<Arc<State>>,
-    pub(super) local_error: Option<f64>,
-    pub(super) doubt: Option<f64>,
-    /// Accepted increments in it
-    pub(super) increments: usize,
-    pub(super) outcome: Outcome,
-    pub(super) coupling: Arc<Coupling>,
-    pub(super) explicit: Option<Explicit>,
-}
-
-/// What became of an attempt.
-pub(super) enum Outcome {
-    /// A new state, and how it goes on
-    Accepted(Phase),
-    /// Solved, and repeated for its error or an event
-    Rejected(Phase),
-    /// Not solved; a shorter one may be
-    Cut(Phase),
-    /// Explicit increments collapsed at this state; shorter ones may not
-    Collapsed(Arc<State>, IncrementFailure),
-    /// No other attempt can help
-    Stopped(Error),
-}
-
-/// An accepted increment, or the explicit ones up to an output.
-pub struct Increment {
-    /// its step
-    pub step: Arc<Step>,
-    /// the state it started from
-    pub old: Arc<State>,
-    /// the state it led to
-    pub state: Arc<State>,
-    /// its linear solves
-    pub iterations: Vec<IterationRecord>,
-}
-
 /// A run as it was: state, control and counts. What is computed after [`Simulation::resume`] has the same bits as if the run
 /// had never stopped.
 #[derive(Clone)]
 pub struct Saved {
     step: Arc<Step>,
     state: Arc<State>,
-    control: Control,
+    pub(super) control: Control,
     explicit: Option<Explicit>,
     report: RunReport,
-}
-
-impl Candidate {
-    /// Whether it leads to a new state.
-    pub fn is_accepted(&self) -> bool {
-        self.accepted.is_some()
-    }
-
-    /// The state it leads to, if it does.
-    pub fn state(&self) -> Option<&State> {
-        self.accepted.as_deref()
-    }
-
-    /// Its length [T].
-    pub fn dt(&self) -> f64 {
-        self.dt
-    }
-
-    /// Its linear solves.
-    pub fn iterations(&self) -> &[IterationRecord] {
-        &self.iterations
-    }
 }
 
 impl Simulation {
@@ -360,60 +225,8 @@ impl Simulation {
         Error::Unsolvable { step: self.step.name.clone(), time: self.state.time, cause }
     }
 
-    /// Begin what the next attempt needs: a step, explicit increments, or implicit ones again after them.
-    fn begin(&mut self) -> Result<(), Error> {
-        let is_explicit = matches!(self.step.scheme, Scheme::Explicit { .. });
-        let begun = match self.control.phase {
-            Phase::Begin if is_explicit => self.begin_explicit(true),
-            Phase::Explicit(_) | Phase::Rupture { .. } if self.explicit.is_none() => self.begin_explicit(false),
-            Phase::Begin | Phase::Resume => self.begin_implicit(),
-            _ => Ok(()),
-        };
-        begun.map_err(|cause| self.unsolvable(cause))
-    }
-
-    fn begin_explicit(&mut self, step_begins: bool) -> Result<(), IncrementFailure> {
-        let step = Arc::new(self.step_now().clone());
-        let mut state = State::clone(&self.state);
-        if step_begins {
-            state.begin_step();
-            let interval = self.model.interval.unwrap_or((step.span.end - step.span.start) / RESULTS);
-            self.control.phase = Phase::Explicit(Outputs::new(step.span.start, interval));
-        }
-        self.explicit = Some(Explicit::begin(&self.model, &step, &mut state, &mut self.work.assembler)?);
-        self.state = Arc::new(state);
-        Ok(())
-    }
-
-    fn begin_implicit(&mut self) -> Result<(), IncrementFailure> {
-        let state = match self.control.phase {
-            Phase::Begin => begin(&self.model, &self.step, &self.state, &mut self.work)?,
-            _ => go_on(&self.model, &self.step, &self.state, &mut self.work)?,
-        };
-        self.state = Arc::new(state);
-        let dt = self.step.increments.initial;
-        self.control.phase = Phase::Implicit { dt, attempt: 1, touching: Touching::default() };
-        Ok(())
-    }
-
-    /// Shorter explicit increments from the accepted state, after others collapsed.
-    fn more_carefully(&mut self, collapsed: Arc<State>, cause: IncrementFailure) -> Result<(), Error> {
-        let mut state = State::clone(&self.state);
-        let Some(explicit) = &mut self.explicit else { return Err(self.unsolvable(cause)) };
-        let again = explicit.more_carefully(&mut state, &mut self.work.assembler);
-        if again.map_err(|cause| self.unsolvable(cause))? {
-            self.state = Arc::new(state);
-            if let Phase::Explicit(outputs) | Phase::Rupture { outputs, .. } = &mut self.control.phase {
-                outputs.attempt += 1;
-            }
-            return Ok(());
-        }
-        self.state = collapsed;
-        Err(self.unsolvable(cause.after_all()))
-    }
-
     /// The step as it goes on at present: explicitly while a contact slips fast.
-    fn step_now(&self) -> &Step {
+    pub(super) fn step_now(&self) -> &Step {
         match (&self.control.phase, &self.step.rupture) {
             (Phase::Rupture { .. }, Some(rupture)) => &rupture.explicit,
             _ => &self.step,

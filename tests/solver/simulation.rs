@@ -3,10 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::common::{Blocks, finish_at};
+use crate::common::{self, Blocks, close, finish_at, linear};
 use fecontact::model::Model;
+use fecontact::model::builder::{Builder, LoadStep, Place, Support};
 use fecontact::model::state::State;
-use fecontact::run::Simulation;
+use fecontact::run::{Axis, Simulation};
 use serde_json::{Value, json};
 
 fn repository(file: &str) -> (Value, std::path::PathBuf) {
@@ -97,4 +98,88 @@ fn every_increment_of_committed_cases_can_be_redone_and_resumed() {
     let (mut case, path) = repository("cases/block_on_ground.json");
     case["steps"][1]["duration"] = json!(2);
     check(&case, &path);
+}
+
+/// A square of 4 × 4 elements on rollers, pulled by its top: u_y = F L (1 − ν²)/(E W) in plane strain with free sides.
+fn pulled_square() -> Builder {
+    let step = LoadStep::new("pull", 10.0).dt(1.0);
+    let rollers = Support::on("square_bottom").uy(0.0);
+    Model::builder(Blocks::default().rectangle("square", [4, 4], [0.0, 0.0], [1.0, 1.0]).mesh())
+        .body("square", linear(E, NU, 0.0))
+        .step(
+            step.support(rollers)
+                .support(Support::on(Place::Node(0)).ux(0.0))
+                .support(Support::on("square_top").uy(0.0)),
+        )
+}
+
+const E: f64 = 250.0;
+const NU: f64 = 0.3;
+
+/// A testing machine: the caller leads the top so that its force becomes the one wanted, from what it measures.
+#[test]
+fn a_caller_controls_the_force_by_leading_a_support() {
+    let (force, compliance) = (2.0, (1.0 - NU * NU) / E);
+    let mut machine = Simulation::new(pulled_square().build().expect("a good model"));
+    machine.lead("square_top", Axis::Y, 0.001, 1.0).expect("a support");
+    while let Some(increment) = machine.next_increment().expect("it is solved") {
+        let now = increment.state.time;
+        let [measured, place] =
+            [machine.reaction("square_top"), machine.displacement("square_top")].map(|v| v.unwrap().y);
+        // Only half as stiff as it is: the error halves with every increment.
+        machine
+            .lead("square_top", Axis::Y, place + 0.5 * compliance * (force - measured), now + 1.0)
+            .expect("a support");
+    }
+    let first = force - 0.001 / compliance;
+    let left = force - machine.reaction("square_top").expect("a group").y;
+    close("what is left of the error", left, first * 0.5f64.powi(9), 1e-6 * first);
+    close("displacement", machine.displacement("square_top").unwrap().y, (force - left) * compliance, 1e-9);
+}
+
+#[test]
+fn an_increment_is_rejected_by_its_caller_and_a_run_stopped() {
+    let mut simulation = Simulation::new(pulled_square().build().expect("a good model"));
+    simulation.lead("square_top", Axis::Y, 0.01, 10.0).expect("a support");
+    let candidate = simulation.attempt().expect("it begins").expect("an increment");
+    assert!(
+        candidate.is_accepted() && candidate.state().is_some_and(|state| state.displacement.iter().any(|u| *u != 0.0))
+    );
+    drop(candidate);
+    assert_eq!((simulation.state().time, simulation.report().increments), (0.0, 0));
+    // Led elsewhere, the same increment ends elsewhere.
+    simulation.lead("square_top", Axis::Y, 0.002, 1.0).expect("a support");
+    let taken = simulation.by_ref().take(3).map(|increment| increment.expect("it is solved").state.time);
+    assert_eq!(taken.collect::<Vec<_>>(), [1.0, 2.0, 3.0]);
+    close("held", simulation.displacement("square_top").unwrap().y, 0.002, 1e-12);
+    simulation.stop();
+    assert!(simulation.next().is_none() && simulation.is_complete());
+}
+
+#[test]
+fn names_that_a_run_does_not_know_are_told() {
+    let mut simulation = Simulation::new(pulled_square().build().expect("a good model"));
+    let told = [
+        simulation.reaction("square_tip").unwrap_err().to_string(),
+        simulation.contact_field("base", "pressure").unwrap_err().to_string(),
+        simulation.lead("square_left", Axis::X, 0.0, 1.0).unwrap_err().to_string(),
+    ];
+    assert!(told[0].contains("square_tip") && told[0].contains("square_top"), "{told:?}");
+    assert!(told[1].contains("no contact `base`"), "{told:?}");
+    assert!(told[2].contains("`square_left` has no support along x in step `pull`"), "{told:?}");
+}
+
+/// Contact fields by name are those of the state.
+#[test]
+fn contact_fields_are_there_by_name() {
+    let case = dragged(json!({}), json!("static"));
+    let mut simulation = Simulation::new(common::model(&case));
+    while simulation.next_increment().expect("it is solved").is_some() {}
+    let field = |name: &str| simulation.contact_field("base", name).expect("a field");
+    let points = &simulation.state().contacts[0];
+    assert_eq!(field("pressure"), points.iter().map(|point| point.friction.pressure).collect::<Vec<_>>());
+    let mu = field("mu");
+    assert!(field("state").contains(&2.0) && mu.iter().all(|mu| (0.2..=0.4).contains(mu)), "{mu:?}");
+    let told = simulation.contact_field("base", "theta").unwrap_err().to_string();
+    assert!(told.contains("no field `theta`") && told.contains("structure"), "{told}");
 }

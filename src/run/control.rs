@@ -1,0 +1,144 @@
+//! Where a run is between two increments, and what an attempt at the next one found.
+
+use std::sync::Arc;
+
+use super::error::Error;
+use crate::equations::Coupling;
+use crate::model::Step;
+use crate::model::boundary::Span;
+use crate::model::state::State;
+use crate::solve::IterationRecord;
+use crate::solve::failure::IncrementFailure;
+use crate::time::explicit::Explicit;
+use crate::time::step_size::Touching;
+
+/// Results of an explicit step if the case does not say how many, and of the time that a shear wave takes across the model
+/// where a step is explicit while a contact slips fast.
+pub(super) const RESULTS: f64 = 100.0;
+
+/// Share of the time between two outputs within which an output falls on the end of a step.
+const NEAR_END: f64 = 1e-6;
+
+/// Where a run is: with the state, all that decides the next increment.
+#[derive(Clone, Debug)]
+pub(super) struct Control {
+    /// number of the step
+    pub step: usize,
+    pub phase: Phase,
+    /// which nodes the equations couple, and so the order of their elimination
+    pub coupling: Arc<Coupling>,
+}
+
+#[derive(Clone, Debug)]
+pub(super) enum Phase {
+    /// Before the first increment of a step
+    Begin,
+    /// Implicit or static increments
+    Implicit {
+        /// Δt of the next attempt, before the bounds of the step [T]
+        dt: f64,
+        /// number of the next attempt at the increment
+        attempt: usize,
+        touching: Touching,
+    },
+    /// Explicit increments to the next time of output
+    Explicit(Outputs),
+    /// The same within an implicit step, while a contact slips fast
+    Rupture {
+        outputs: Outputs,
+        /// the state since which slip is watched
+        before: Arc<State>,
+    },
+    /// After them, before the next implicit increment
+    Resume,
+    /// After the last step
+    Complete,
+}
+
+/// Times of output: start + k × interval.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Outputs {
+    start: f64,
+    interval: f64,
+    next: u32,
+    /// number of the next attempt to get there
+    pub(super) attempt: usize,
+}
+
+impl Outputs {
+    pub(super) fn new(start: f64, interval: f64) -> Self {
+        Self { start, interval, next: 1, attempt: 1 }
+    }
+
+    pub(super) fn time(&self, span: Span) -> f64 {
+        let time = self.start + f64::from(self.next) * self.interval;
+        if time > span.end - NEAR_END * self.interval { span.end } else { time }
+    }
+
+    pub(super) fn following(self) -> Self {
+        Self { next: self.next + 1, attempt: 1, ..self }
+    }
+}
+
+/// An attempt at one increment, or at explicit ones up to the next output. Nothing has changed yet.
+pub struct Candidate {
+    pub(super) number: usize,
+    pub(super) dt: f64,
+    pub(super) iterations: Vec<IterationRecord>,
+    pub(super) accepted: Option<Arc<State>>,
+    pub(super) local_error: Option<f64>,
+    pub(super) doubt: Option<f64>,
+    /// Accepted increments in it
+    pub(super) increments: usize,
+    pub(super) outcome: Outcome,
+    pub(super) coupling: Arc<Coupling>,
+    pub(super) explicit: Option<Explicit>,
+}
+
+/// What became of an attempt.
+pub(super) enum Outcome {
+    /// A new state, and how it goes on
+    Accepted(Phase),
+    /// Solved, and repeated for its error or an event
+    Rejected(Phase),
+    /// Not solved; a shorter one may be
+    Cut(Phase),
+    /// Explicit increments collapsed at this state; shorter ones may not
+    Collapsed(Arc<State>, IncrementFailure),
+    /// No other attempt can help
+    Stopped(Error),
+}
+
+/// An accepted increment, or the explicit ones up to an output.
+pub struct Increment {
+    /// its step
+    pub step: Arc<Step>,
+    /// the state it started from
+    pub old: Arc<State>,
+    /// the state it led to
+    pub state: Arc<State>,
+    /// its linear solves
+    pub iterations: Vec<IterationRecord>,
+}
+
+impl Candidate {
+    /// Whether it leads to a new state.
+    pub fn is_accepted(&self) -> bool {
+        self.accepted.is_some()
+    }
+
+    /// The state it leads to, if it does.
+    pub fn state(&self) -> Option<&State> {
+        self.accepted.as_deref()
+    }
+
+    /// Its length [T].
+    pub fn dt(&self) -> f64 {
+        self.dt
+    }
+
+    /// Its linear solves.
+    pub fn iterations(&self) -> &[IterationRecord] {
+        &self.iterations
+    }
+}
