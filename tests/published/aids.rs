@@ -364,7 +364,7 @@ fn every_aid_saves_solves_or_a_failure() {
         ("limit", "hertz_q8_friction × 100"),
         ("keep", "ridge"),
         ("pull", "ridge"),
-        ("carried", "hertz_q8_friction × 100"),
+        ("carried", "tube"),
         ("touch", "slab_touch_once"),
         ("stick", "slab_touch"),
         ("stick_again", "slab_gap"),
