@@ -9,6 +9,7 @@
 use crate::model::scheme::{Scheme, told};
 use crate::model::state::State;
 use crate::model::{Model, Step};
+use serde::{Deserialize, Serialize};
 
 /// Share of the energy there was that is worth a warning.
 const WORTH_TELLING: f64 = 0.01;
@@ -17,7 +18,7 @@ const WORTH_TELLING: f64 = 0.01;
 const ROUND_OFF: f64 = 100.0;
 
 /// The balance of energies so far.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Audit {
     /// The most that there was to be stored or dissipated [F·L]
     pub supplied: f64,
@@ -26,7 +27,7 @@ pub struct Audit {
     /// Its largest value, and when [F·L, T]
     worst: (f64, f64),
     /// What every step added to it, and what may help
-    steps: Vec<(String, f64, &'static str)>,
+    steps: Vec<(String, f64, String)>,
     /// What round-off of the forces may have worked [F·L]
     noise: f64,
 }
@@ -37,7 +38,7 @@ impl Audit {
         let error = new.energy.error();
         self.supplied = self.supplied.max(new.energy.supplied());
         if self.steps.last().is_none_or(|(name, ..)| *name != step.name) {
-            self.steps.push((step.name.clone(), 0.0, remedy(model, step)));
+            self.steps.push((step.name.clone(), 0.0, remedy(model, step).into()));
         }
         let increments = self.steps.last_mut().map(|(_, sum, _)| sum);
         increments.into_iter().for_each(|sum| *sum += error - self.error);

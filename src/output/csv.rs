@@ -1,7 +1,7 @@
 //! A table on disk: comma, dot, header row, full double precision. Every row reaches the file within a blink.
 
 use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -62,6 +62,21 @@ impl Table {
     /// Hand the rows so far to the system, so that a killed run loses nothing, unless that was done a blink ago.
     pub fn share(&mut self) -> Result<(), Error> {
         if self.flushed.elapsed() < BLINK { Ok(()) } else { self.flush() }
+    }
+
+    /// How long the file is [bytes].
+    pub fn length(&mut self) -> Result<u64, Error> {
+        self.flush()?;
+        let length = self.file.get_ref().metadata().map(|file| file.len());
+        length.map_err(|cause| failed(&self.path, &cause))
+    }
+
+    /// Take back what was written after the file was this long.
+    pub fn cut(&mut self, length: u64) -> Result<(), Error> {
+        self.flush()?;
+        let file = self.file.get_mut();
+        let cut = file.set_len(length).and_then(|()| file.seek(SeekFrom::End(0)));
+        cut.map(drop).map_err(|cause| failed(&self.path, &cause))
     }
 
     /// Hand the rows so far to the system.

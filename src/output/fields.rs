@@ -6,6 +6,7 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 
 use super::csv::failed;
+use super::memory;
 use super::vtu::{CellType, Grid};
 use crate::contact::fields;
 use crate::contact::force::ContactState;
@@ -25,10 +26,20 @@ pub struct Fields {
     every: usize,
     /// Rows of the history so far
     rows: usize,
-    /// States to be written; `None` when there are no more
-    frames: Option<SyncSender<State>>,
+    /// Frames so far
+    shown: usize,
+    /// What the writer is to do; `None` when there is no more
+    frames: Option<SyncSender<Task>>,
     /// `None` when it has ended
     writer: Option<JoinHandle<Result<(), Error>>>,
+}
+
+/// What the writer of frames is asked for.
+enum Task {
+    /// Write this state
+    Show(Box<State>),
+    /// Take back all frames but the first so many
+    Keep(usize),
 }
 
 /// Frames that may wait for the writer; a run that is faster waits, so that memory stays bounded.
@@ -51,10 +62,17 @@ impl Fields {
     pub fn create(folder: &Path, model: Arc<Model>, start: &State, every: usize) -> Result<Self, Error> {
         let mut solid = Collection::create(folder, "solid")?;
         let mut contact = (!model.contacts.is_empty()).then(|| Collection::create(folder, "contact")).transpose()?;
-        let (frames, arriving): (_, Receiver<State>) = sync_channel(WAITING);
+        let (frames, arriving): (_, Receiver<Task>) = sync_channel(WAITING);
         let writer = std::thread::spawn(move || {
             let mut grid = Grid::default();
-            for state in arriving {
+            for task in arriving {
+                let state = match task {
+                    Task::Show(state) => state,
+                    Task::Keep(count) => {
+                        [Some(&mut solid), contact.as_mut()].into_iter().flatten().try_for_each(|of| of.keep(count))?;
+                        continue;
+                    }
+                };
                 solid_frame(&model, &state, &mut grid);
                 solid.write(state.time, &grid)?;
                 if let Some(contact) = &mut contact {
@@ -64,14 +82,19 @@ impl Fields {
             }
             Ok(())
         });
-        let mut fields = Self { every, rows: 0, frames: Some(frames), writer: Some(writer) };
+        let mut fields = Self { every, rows: 0, shown: 0, frames: Some(frames), writer: Some(writer) };
         fields.write(start)?;
         Ok(fields)
     }
 
     /// Hand a state to the writer. One that has ended has failed, and says why.
     fn write(&mut self, state: &State) -> Result<(), Error> {
-        let taken = self.frames.as_ref().is_some_and(|frames| frames.send(state.clone()).is_ok());
+        self.shown += 1;
+        self.ask(Task::Show(Box::new(state.clone())))
+    }
+
+    fn ask(&mut self, task: Task) -> Result<(), Error> {
+        let taken = self.frames.as_ref().is_some_and(|frames| frames.send(task).is_ok());
         if taken { Ok(()) } else { self.finish() }
     }
 }
@@ -85,6 +108,15 @@ impl Observer for Fields {
         } else {
             Ok(())
         }
+    }
+
+    fn save(&mut self) -> Result<Vec<u8>, Error> {
+        memory::written(&(self.rows, self.shown))
+    }
+
+    fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
+        (self.rows, self.shown) = memory::read(memory)?;
+        self.ask(Task::Keep(self.shown))
     }
 
     fn finish(&mut self) -> Result<(), Error> {
@@ -110,6 +142,16 @@ impl Collection {
         let path = self.folder.join(&file);
         grid.write(&path).map_err(|cause| failed(&path, &cause))?;
         self.frames.push((time, file));
+        self.list()
+    }
+
+    /// Take back all frames but the first so many.
+    fn keep(&mut self, count: usize) -> Result<(), Error> {
+        let count = count.min(self.frames.len());
+        for (_, file) in self.frames.drain(count..) {
+            let path = self.folder.join(file);
+            std::fs::remove_file(&path).map_err(|cause| failed(&path, &cause))?;
+        }
         self.list()
     }
 

@@ -14,9 +14,11 @@
 //!
 //! A contact without friction has a slip map, but no fronts.
 
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 use super::csv::Table;
+use super::memory;
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::laws::bulk::Material;
@@ -62,7 +64,7 @@ const FRONTS: [&str; 14] = [
 ];
 
 /// c_R, c_s and c_p of an elastic body [L/T].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WaveSpeeds {
     /// c_R: Rayleigh waves along a free surface
     pub rayleigh: f64,
@@ -108,7 +110,7 @@ pub fn wave_speeds(model: &Model) -> [f64; 3] {
 }
 
 /// A point of the slave surface: where it is, and what it did so far.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Point {
     /// Number of its unbroken line
     line: usize,
@@ -125,7 +127,7 @@ struct Point {
 }
 
 /// When a front passed a point.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Arrival {
     /// [T]
     time: f64,
@@ -136,7 +138,7 @@ struct Arrival {
 }
 
 /// The points of one contact.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Interface {
     name: String,
     speeds: Option<WaveSpeeds>,
@@ -334,6 +336,16 @@ impl Interface {
 }
 
 impl Observer for Fronts {
+    fn save(&mut self) -> Result<Vec<u8>, Error> {
+        memory::written(&(self.map.length()?, &self.interfaces, self.last))
+    }
+
+    fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
+        let length;
+        (length, self.interfaces, self.last) = memory::read(memory)?;
+        self.map.cut(length)
+    }
+
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         attempt.accepted.map_or(Ok(()), |state| self.row(model, state))
     }

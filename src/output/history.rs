@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::csv::Table;
+use super::memory;
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::laws::friction::{Regime, observables};
@@ -80,6 +81,14 @@ impl Observer for History {
         }
         table.end_row()?;
         table.share()
+    }
+
+    fn save(&mut self) -> Result<Vec<u8>, Error> {
+        memory::of_table(&mut self.table)
+    }
+
+    fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
+        memory::cut_table(&mut self.table, memory)
     }
 
     fn finish(&mut self) -> Result<(), Error> {

@@ -6,6 +6,7 @@ pub mod fields;
 pub mod fronts;
 pub mod history;
 pub mod law;
+mod memory;
 pub mod newton_log;
 pub mod plot;
 pub mod summary;

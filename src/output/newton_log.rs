@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use super::csv::Table;
+use super::memory;
 use crate::model::Model;
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};
@@ -61,6 +62,14 @@ impl Observer for NewtonLog {
             table.end_row()?;
         }
         table.share()
+    }
+
+    fn save(&mut self) -> Result<Vec<u8>, Error> {
+        memory::of_table(&mut self.0)
+    }
+
+    fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
+        memory::cut_table(&mut self.0, memory)
     }
 
     fn finish(&mut self) -> Result<(), Error> {

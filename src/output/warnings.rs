@@ -3,7 +3,10 @@
 
 use std::collections::BTreeSet;
 
+use serde::{Deserialize, Serialize};
+
 use super::audit::Audit;
+use super::memory;
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
@@ -19,7 +22,7 @@ use crate::time::step_size::DOUBT;
 const DEEP: f64 = 0.01;
 
 /// Collects warnings; each kind once a contact or step, where it is met first.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Warnings {
     /// the warnings so far
     pub list: Vec<String>,
@@ -34,7 +37,7 @@ pub struct Warnings {
     pub audit: Audit,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 enum Kind {
     DeepPenetration,
     DeepMasterNode,
@@ -42,6 +45,15 @@ enum Kind {
 }
 
 impl Observer for Warnings {
+    fn save(&mut self) -> Result<Vec<u8>, Error> {
+        memory::written(self)
+    }
+
+    fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
+        *self = memory::read(memory)?;
+        Ok(())
+    }
+
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
         self.error_in_time(attempt);

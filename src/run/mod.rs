@@ -48,6 +48,33 @@ pub fn watch(simulation: &mut Simulation, observers: &mut [&mut dyn Observer]) -
     result
 }
 
+/// A run and its observers as they were.
+#[derive(Clone)]
+pub struct SavedRun {
+    simulation: Saved,
+    observers: Vec<Vec<u8>>,
+}
+
+impl SavedRun {
+    /// A run and its observers as they are.
+    ///
+    /// # Errors
+    /// [`Error::Output`] when an observer cannot tell what it has written.
+    pub fn new(simulation: &Simulation, observers: &mut [&mut dyn Observer]) -> Result<Self, Error> {
+        let observers = observers.iter_mut().map(|observer| observer.save()).collect::<Result<_, _>>()?;
+        Ok(Self { simulation: simulation.save(), observers })
+    }
+
+    /// The run as it was; the observers, the same in the same order, take back what they have written since.
+    ///
+    /// # Errors
+    /// [`Error::Output`] when an observer cannot.
+    pub fn resume(self, model: &Arc<Model>, observers: &mut [&mut dyn Observer]) -> Result<Simulation, Error> {
+        observers.iter_mut().zip(&self.observers).try_for_each(|(observer, memory)| observer.restore(memory))?;
+        Ok(Simulation::resume(model.clone(), self.simulation))
+    }
+}
+
 fn attempts(simulation: &mut Simulation, observers: &mut [&mut dyn Observer]) -> Result<(), Error> {
     while let Some(candidate) = simulation.attempt()? {
         let clock = Instant::now();

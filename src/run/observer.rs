@@ -35,6 +35,22 @@ pub trait Observer {
     /// [`Error::Output`] when a file cannot be written; it ends the run.
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error>;
 
+    /// What it remembers, and how far it has written: for [`restore`](Self::restore). Nothing unless it says so.
+    ///
+    /// # Errors
+    /// As [`record`](Self::record).
+    fn save(&mut self) -> Result<Vec<u8>, Error> {
+        Ok(Vec::new())
+    }
+
+    /// Go on from what was saved; what has been written since is taken back.
+    ///
+    /// # Errors
+    /// As [`record`](Self::record).
+    fn restore(&mut self, _memory: &[u8]) -> Result<(), Error> {
+        Ok(())
+    }
+
     /// Called once after the last attempt: what is still under way comes to its end.
     ///
     /// # Errors

@@ -1,13 +1,20 @@
 //! A run as an iterator: every increment tried twice, dropped, stopped and resumed, to the same bits; loads changed on the way.
 
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::common::{self, Blocks, close, finish_at, linear};
 use fecontact::model::Model;
 use fecontact::model::builder::{Builder, LoadStep, Place, Support};
 use fecontact::model::state::State;
-use fecontact::run::{Axis, Simulation};
+use fecontact::output::fields::Fields;
+use fecontact::output::fronts::Fronts;
+use fecontact::output::history::History;
+use fecontact::output::newton_log::NewtonLog;
+use fecontact::output::warnings::Warnings;
+use fecontact::run::observer::Observer;
+use fecontact::run::{Axis, SavedRun, Simulation, watch};
 use serde_json::{Value, json};
 
 fn repository(file: &str) -> (Value, std::path::PathBuf) {
@@ -182,4 +189,75 @@ fn contact_fields_are_there_by_name() {
     assert!(field("state").contains(&2.0) && mu.iter().all(|mu| (0.2..=0.4).contains(mu)), "{mu:?}");
     let told = simulation.contact_field("base", "theta").unwrap_err().to_string();
     assert!(told.contains("no field `theta`") && told.contains("structure"), "{told}");
+}
+
+/// All files of a run, but the times it took.
+fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for entry in std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()) {
+        match entry.is_dir() {
+            true => found.extend(files(&entry)),
+            false => drop(found.insert(entry.clone(), std::fs::read(&entry).expect("a file"))),
+        }
+    }
+    found
+}
+
+/// Saved with its observers in the middle of a step, run to the end, resumed and run to the end again: tables, frames, fronts
+/// and warnings are the same files to the last byte.
+#[test]
+fn observers_go_back_with_the_run() {
+    let mut case = dragged(json!({}), json!({"newmark": {}}));
+    case["steps"][1]["supports"][0]["ux"] = json!({"rate": 0.3});
+    let model = Arc::new(common::model(&case));
+    let folder = tempfile::tempdir().expect("a folder");
+    let start = model.initial_state();
+    let mut history = History::create(folder.path(), &model).expect("a table");
+    let mut log = NewtonLog::create(folder.path()).expect("a table");
+    let mut fields = Fields::create(folder.path(), model.clone(), &start, 2).expect("frames");
+    let mut fronts = Fronts::create(folder.path(), &model, &start, 1e-3).expect("a table");
+    let mut warnings = Warnings::default();
+    let mut simulation = Simulation::new(model.clone());
+    let mut observers: [&mut dyn Observer; 5] = [&mut history, &mut log, &mut fields, &mut fronts, &mut warnings];
+    for _ in 0..4 {
+        let candidate = simulation.attempt().expect("it begins").expect("an increment");
+        let told = simulation.told(&candidate);
+        observers.iter_mut().for_each(|observer| observer.record(&model, &told).expect("it writes"));
+        simulation.follow(candidate).expect("it goes on");
+    }
+    let saved = SavedRun::new(&simulation, &mut observers).expect("it is saved");
+    let step = |simulation: &mut Simulation, observers: &mut [&mut dyn Observer]| {
+        while let Some(candidate) = simulation.attempt().expect("it begins") {
+            let told = simulation.told(&candidate);
+            observers.iter_mut().for_each(|observer| observer.record(&model, &told).expect("it writes"));
+            simulation.follow(candidate).expect("it goes on");
+        }
+    };
+    step(&mut simulation, &mut observers);
+    // What is told so far reaches the disk with the memories.
+    SavedRun::new(&simulation, &mut observers).expect("it is saved");
+    let tables = |folder: &Path| {
+        ["history.csv", "newton.csv", "slip_map.csv"].map(|file| std::fs::read(folder.join(file)).unwrap())
+    };
+    let first = tables(folder.path());
+    let mut again = saved.resume(&model, &mut observers).expect("it goes back");
+    assert!(
+        tables(folder.path()).iter().zip(&first).all(|(cut, whole)| cut.len() < whole.len() && whole.starts_with(cut))
+    );
+    watch(&mut again, &mut observers).expect("it ends");
+    assert!(tables(folder.path()) == first);
+    // The same as a run that never stopped.
+    let straight = tempfile::tempdir().expect("a folder");
+    let mut others: [Box<dyn Observer>; 5] = [
+        Box::new(History::create(straight.path(), &model).expect("a table")),
+        Box::new(NewtonLog::create(straight.path()).expect("a table")),
+        Box::new(Fields::create(straight.path(), model.clone(), &start, 2).expect("frames")),
+        Box::new(Fronts::create(straight.path(), &model, &start, 1e-3).expect("a table")),
+        Box::new(Warnings::default()),
+    ];
+    let mut others: Vec<&mut dyn Observer> =
+        others.iter_mut().map(|observer| &mut **observer as &mut dyn Observer).collect();
+    watch(&mut Simulation::new(model.clone()), &mut others).expect("it ends");
+    let [one, other] = [folder.path(), straight.path()].map(files);
+    assert!(one.len() > 8 && one.values().eq(other.values()), "{:?} and {:?}", one.keys(), other.keys());
 }

@@ -1,0 +1,29 @@
+//! What observers remember, as bytes.
+
+use std::path::Path;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::csv::{Table, failed};
+use crate::run::error::Error;
+
+/// The bytes of what an observer remembers.
+pub fn written(memory: &impl Serialize) -> Result<Vec<u8>, Error> {
+    postcard::to_allocvec(memory).map_err(|cause| failed(Path::new("memory of an observer"), &cause))
+}
+
+/// What the bytes say.
+pub fn read<M: DeserializeOwned>(bytes: &[u8]) -> Result<M, Error> {
+    postcard::from_bytes(bytes).map_err(|cause| failed(Path::new("memory of an observer"), &cause))
+}
+
+/// A table remembers how long it is.
+pub fn of_table(table: &mut Table) -> Result<Vec<u8>, Error> {
+    written(&table.length()?)
+}
+
+/// Cut a table back to its length.
+pub fn cut_table(table: &mut Table, bytes: &[u8]) -> Result<(), Error> {
+    table.cut(read(bytes)?)
+}
