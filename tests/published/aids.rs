@@ -364,12 +364,13 @@ fn every_aid_saves_solves_or_a_failure() {
         ("limit", "hertz_q8_friction × 100"),
         ("keep", "ridge"),
         ("pull", "ridge"),
-        ("carried", "tube"),
+        ("carried", "ridge"),
         ("touch", "slab_touch_once"),
-        ("stick", "slab_touch"),
-        ("stick_again", "slab_gap"),
+        ("stick", "hertz_q8_friction × 100"),
+        ("stick_again", "ironing_q4 × 100"),
         ("valley", "ridge"),
         ("old_tangents", "valley"),
+        ("downhill", "ridge"),
         ("stiffening", "greco augmented"),
     ] {
         let (_, off) = SWITCHES.iter().find(|(name, _)| *name == aid).expect("an aid");

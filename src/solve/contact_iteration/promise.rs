@@ -8,7 +8,7 @@
 //! committed one (switch `limit`; `aid_limit` counts the points to which this happens).
 //!
 //! Source: what p + δp leaves out is the second term of the expansion of the traction in the correction; that it is of
-//! second order is tested (`tests/contact.rs`). The limit is a rule of thumb.
+//! second order is tested (`tests/contact/contact.rs`). The limit is a rule of thumb.
 //!
 
 use crate::contact::force::{Closed, ContactState, Tractions};
