@@ -1,5 +1,44 @@
 //! A 2D finite-element contact solver whose interfaces obey the time-dependent super/subloading-surface friction law.
 //!
+//! A block pressed on another one and dragged, from code; the run is an iterator, the caller looks at every increment:
+//!
+//! ```
+//! use fecontact::laws::bulk::{ElasticConstants, NeoHookean};
+//! use fecontact::laws::friction::CoulombParameters;
+//! use fecontact::mesh::InlineMesh;
+//! use fecontact::model::Model;
+//! use fecontact::model::boundary::Drive;
+//! use fecontact::model::builder::{Contact, LoadStep, Support};
+//! use fecontact::run::Simulation;
+//!
+//! let mesh = InlineMesh::default()
+//!     .rectangle("ground", [8, 2], [0.0, -1.0], [4.0, 0.0])
+//!     .rectangle("block", [5, 3], [1.0, 0.0], [3.0, 1.0])
+//!     .build()?;
+//! let rubber = NeoHookean::new(&ElasticConstants { young: 1000.0, poisson: 0.3, density: 0.0 })?;
+//! let press = LoadStep::new("press", 1.0).dt(0.5).fix("ground_bottom").support(Support::on("block_top").ux(0.0).uy(-0.01));
+//! let drag = LoadStep::new("drag", 2.0).dt(0.5).support(Support::on("block_top").ux(Drive::Rate(0.05)));
+//! let model = Model::builder(mesh)
+//!     .body("block", rubber)
+//!     .body("ground", rubber)
+//!     .contact(Contact::new("base", "block_bottom", "ground_top", CoulombParameters::new(0.3)))
+//!     .step(press)
+//!     .step(drag)
+//!     .build()?;
+//! let mut run = Simulation::new(model);
+//! while let Some(increment) = run.next_increment()? {
+//!     let force = run.reaction("block_top")?;
+//!     println!("t = {}: F_x/F_y = {}", increment.state.time, force.x / -force.y);
+//! }
+//! let force = run.reaction("block_top")?;
+//! assert!((force.x / -force.y - 0.3).abs() < 0.01); // it slides as a whole
+//! assert!(run.contact_field("base", "state")?.iter().all(|state| *state == 2.0));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Between two increments supports can be led ([`run::Simulation::lead`]) and loads changed, a candidate can be dropped
+//! ([`run::Simulation::attempt`]), and a run saved and resumed to the same bits ([`run::SavedRun`]).
+//!
 //! # The way through the house
 //!
 //! A room imports only from the rooms below it:
@@ -25,6 +64,22 @@
 //! again: accepted [`model::state`] → [`output`].
 //!
 //! A law alone: [`cli`] → [`case`] → [`run::law`] along a [`run::law_path`] → [`laws::friction`] → [`output`].
+//!
+//! # The way of one number
+//!
+//! The slip increment Δu_t of a contact point, from the case file to the law and back to `history.csv`:
+//!
+//! 1. `case/file` reads what moves the block, `"ux": {"rate": 0.05}`; `case/translate` makes it a
+//!    [`model::builder::Support`], and the builder a [`model::boundary::Prescribed`] dof of the [`model::Step`].
+//! 2. [`run`] asks for an increment, [`time::increment`] sets a [`equations::Trial`] for it, and [`solve::equilibrium`] finds
+//!    the displacement u at its end, iterate by iterate.
+//! 3. At every iterate `equations/interfaces.rs` asks each [`contact::pair`] for its points' answers. `contact/search.rs` and
+//!    `contact/projection.rs` find the foot, and [`contact::kinematics`] the arc on the master from the committed foot to this
+//!    one: that is Δu_t. [`contact::force`] hands it to the law as [`laws::friction::Sliding::slip`], with p and Δt.
+//! 4. The law returns q, its tangents and a new [`laws::friction::FrictionState`], whose `plastic_increment` is what of Δu_t
+//!    is slip; [`contact::force`] turns q into nodal forces, and the terms of [`equations`] add up.
+//! 5. The accepted [`model::state::State`] keeps it (`time/accept.rs`), and `output/history.rs` writes the mean over the
+//!    contact, `base.mean_slip`.
 //!
 //! # Signs
 //!
