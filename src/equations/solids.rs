@@ -10,9 +10,9 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use super::coupling::Layout;
+use super::dependence::Dependence;
 use super::evolving::evolves;
 use super::sums::{Sums, add_blocks};
-use super::term::Dependence;
 use crate::equations::failure::TrialFailure;
 use crate::laws::bulk::InvertedElement;
 use crate::linear::SparseMatrix;

@@ -4,8 +4,9 @@ use std::ops::Range;
 
 use super::axis::Axis;
 use super::chart::{Curve, Figure, Look, Panel};
+use super::error::PlotError;
 use super::read::Columns;
-use super::{PlotError, Source, Units, subtitle};
+use super::source::{Source, Units, subtitle};
 use crate::laws::friction::FrictionParameters;
 
 /// Columns of `history.csv` that are drawn: these, ...

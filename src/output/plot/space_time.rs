@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use super::axis::{Axis, Range};
 use super::interface::Interface;
+use super::source::{Source, Units};
 use super::svg::{Anchor, Drawing, Label, Stroke};
-use super::{Source, Units};
 
 /// Cells along each axis at most; each shows the highest slip rate within it.
 const CELLS: [usize; 2] = [240, 200];
