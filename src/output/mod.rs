@@ -11,3 +11,4 @@ pub mod plot;
 pub mod summary;
 pub mod vtu;
 pub mod warnings;
+pub mod wave_speeds;

@@ -93,7 +93,7 @@ pub enum NewtonFailure<E> {
 }
 
 /// The iterations made, and the solution or why there is none.
-pub type Outcome<E> = (Vec<Iteration>, Result<Vec<f64>, NewtonFailure<E>>);
+pub type Iterated<E> = (Vec<Iteration>, Result<Vec<f64>, NewtonFailure<E>>);
 
 /// Growth of the residual over its largest start value that counts as divergence.
 const DIVERGENCE: f64 = 1e4;
@@ -122,7 +122,7 @@ pub fn solve<E>(
     solver: &mut dyn LinearSolver,
     system: &mut System,
     mut evaluate: impl FnMut(&[f64], Request, &mut System) -> Result<(), E>,
-) -> Outcome<E> {
+) -> Iterated<E> {
     let mut iterations: Vec<Iteration> = Vec::new();
     let result = (|| {
         evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;

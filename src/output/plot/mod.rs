@@ -4,6 +4,8 @@
 
 mod axis;
 mod chart;
+mod colours;
+mod convergence;
 pub mod error;
 mod interface;
 mod law;
