@@ -20,6 +20,8 @@
 //! would change with the share that counts. Without c a point that comes in with a high pressure would stick for its stiff
 //! penalty alone, and spring away by all it has missed in the increment after.
 
+use nalgebra::DVector;
+
 use super::closed::closed;
 pub use super::closed::{Closed, nodal_forces};
 pub use super::kinematics::Meeting;
@@ -177,21 +179,10 @@ impl<'a> Loading<'a> {
         if touches(clearance, kinematics.length, old, increment.presumption.presume) {
             response.dtraction_dslip = stiffness;
         }
-        // δp = −α δg + α ∂d/∂Δu_t (share δΔu_t), α = α_n/(1 − α_n dd/dp)
-        let alpha = alpha_n / (1.0 - alpha_n * opening_rate);
-        let lift = alpha * response.dopening_dslip;
         kinematics.slip = sliding.slip;
-        if compliance.is_some() {
-            kinematics.dslip *= share;
-        }
-        let mut dpressure = &kinematics.dgap * -alpha;
-        if lift != 0.0 {
-            dpressure += &kinematics.dslip * lift;
-        }
-        if compliance.is_some() {
-            kinematics.dslip *= 1.0 + lift * dslip_dpressure;
-            kinematics.dslip -= &kinematics.dgap * (alpha * dslip_dpressure);
-        }
+        let alpha = alpha_n / (1.0 - alpha_n * opening_rate);
+        let counted = compliance.map(|_| (share, dslip_dpressure));
+        let dpressure = vary(&mut kinematics, alpha, alpha * response.dopening_dslip, counted);
         let state = ContactState {
             friction: response.state,
             foot,
@@ -225,6 +216,23 @@ impl<'a> Loading<'a> {
         }
         Err(LawFailure::Opening { opening: response.state.opening, pressure: self.sliding.pressure })
     }
+}
+
+/// δp = −α δg + lift (share δΔu_t), with α = α_n/(1 − α_n dd/dp) and lift = α ∂d/∂Δu_t; where slip is `counted` by a share
+/// that depends on the pressure, its variation becomes that of what counts.
+fn vary(kinematics: &mut Kinematics, alpha: f64, lift: f64, counted: Option<(f64, f64)>) -> DVector<f64> {
+    if let Some((share, _)) = counted {
+        kinematics.dslip *= share;
+    }
+    let mut dpressure = &kinematics.dgap * -alpha;
+    if lift != 0.0 {
+        dpressure += &kinematics.dslip * lift;
+    }
+    if let Some((_, dslip_dpressure)) = counted {
+        kinematics.dslip *= 1.0 + lift * dslip_dpressure;
+        kinematics.dslip -= &kinematics.dgap * (alpha * dslip_dpressure);
+    }
+    dpressure
 }
 
 /// Answers of the law until its opening and the pressure must agree.

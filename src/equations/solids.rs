@@ -63,6 +63,9 @@ struct Run {
     evolves: bool,
 }
 
+/// An element, and where its forces and its tangent go.
+type Slot<'a> = ((usize, &'a mut [Vector2<f64>]), &'a mut [f64]);
+
 impl Run {
     fn places(&self) -> Range<usize> {
         self.first..self.first + self.nodes * self.elements.len()
@@ -138,7 +141,7 @@ impl Solids {
                 let elements = first..(first + BATCH).min(run.elements.end);
                 let place = run.first + n * (first - run.elements.start);
                 let forces = &mut self.forces[place..place + n * elements.len()];
-                let one = |(((e, forces), tangent), energy): (((usize, &mut [Vector2<f64>]), &mut [f64]), &mut _)| {
+                let one = |(((e, forces), tangent), energy): (Slot, &mut _)| {
                     let mut force = [0.0; 18];
                     let (u, own) = (&nodal(model, e, u)[..n], &mut force[..2 * n]);
                     *energy = model.solids[e].force_and_tangent(material, u, own, tangent);

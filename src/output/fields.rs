@@ -177,6 +177,15 @@ struct Place<'a> {
     slave: &'a SlavePoint,
 }
 
+/// How a regime is written.
+fn number(regime: Regime) -> f64 {
+    match regime {
+        Regime::Open => 0.0,
+        Regime::Stick => 1.0,
+        Regime::Slip => 2.0,
+    }
+}
+
 fn contact_frame(model: &Model, state: &State, grid: &mut Grid) {
     let points_of = |pair: &ContactPair, x: &Configuration| pair.points.iter().map(|p| p.at(x)).collect::<Vec<_>>();
     let undeformed = model.mesh.undeformed();
@@ -202,11 +211,6 @@ fn contact_frame(model: &Model, state: &State, grid: &mut Grid) {
     });
     let all: Vec<(Place, &ContactState)> = states.collect();
     let rate = if state.dt > 0.0 { 1.0 / state.dt } else { 0.0 };
-    let number = |regime: Regime| match regime {
-        Regime::Open => 0.0,
-        Regime::Stick => 1.0,
-        Regime::Slip => 2.0,
-    };
     grid.restart(&reference, lines.iter().map(|(kind, nodes)| (*kind, &nodes[..])));
     grid.vectors("displacement", &displacement);
     let mut scalar = |name: &str, value: &dyn Fn(&Place, &ContactState) -> f64| {

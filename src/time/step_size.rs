@@ -114,7 +114,8 @@ fn judge_motion(model: &Model, step: &Step, [old, new]: [&State; 2], allowed: f6
     if can_shorten && slip_at_events(model, old, new) > EVENT_LOCATION * allowed {
         return judged(false, (0.5 * dt).max(shortest));
     }
-    judged(true, if may_grow && share > WORTHWHILE { share } else { 1.0 } * dt)
+    let grows = may_grow && share > WORTHWHILE;
+    judged(true, if grows { share * dt } else { dt })
 }
 
 /// Highest slip rate of a contact point with friction from one state to a later one [L/T].

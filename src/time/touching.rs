@@ -48,27 +48,7 @@ impl Touching {
         foreseen: &[Vec<ContactState>],
         judged: Judgement,
     ) -> (Judgement, f64) {
-        self.forces.resize(model.contacts.len(), 0.0);
-        let mut doubt = 0.0f64;
-        let (mut share, mut meets) = (1.0f64, false);
-        for (k, pair) in model.contacts.iter().enumerate() {
-            let states = old.contacts[k].iter().zip(&foreseen[k]).zip(&new.contacts[k]).zip(&pair.points);
-            let arrival = |(((old, foreseen), now), slave)| pair.arrival(slave, [old, foreseen, now], new.dt);
-            let unknown = Some(Arrival { at: 0.0, doubt: f64::INFINITY });
-            let arrivals: Vec<Arrival> = states.filter_map(|states| arrival(states).unwrap_or(unknown)).collect();
-            let force = |state: &ContactState| state.friction.pressure.hypot(state.friction.traction) * state.length;
-            self.forces[k] = self.forces[k].max(new.contacts[k].iter().map(force).sum());
-            let all: f64 = arrivals.iter().map(|arrival| arrival.doubt).sum();
-            if all > 0.0 {
-                doubt = doubt.max(all / self.forces[k]);
-                let first = arrivals.iter().fold(1.0, |first: f64, arrival| first.min(arrival.at));
-                let meets_first = first > 0.0 && old.contacts[k].iter().all(|state| state.friction.pressure <= 0.0);
-                let most = if meets_first { first } else { longest(&arrivals, AIM * DOUBT * self.forces[k]) };
-                if most < share {
-                    (share, meets) = (most, meets_first);
-                }
-            }
-        }
+        let (doubt, share, meets) = self.doubt(model, [old, new], foreseen);
         if doubt > DOUBT && can_shorten(step, old, new) {
             self.whole.get_or_insert((new.time, new.dt));
             // What was foreseen has been wrong before.
@@ -97,6 +77,33 @@ impl Touching {
         }
         self.give_up();
         (Judgement { next: dt, ..judged }, doubt)
+    }
+
+    /// The largest share of a contact's force that is in doubt; how far the increment may go for little enough of it, as a share
+    /// of it, and whether it ends there in the first touch of a contact.
+    fn doubt(&mut self, model: &Model, [old, new]: [&State; 2], foreseen: &[Vec<ContactState>]) -> (f64, f64, bool) {
+        self.forces.resize(model.contacts.len(), 0.0);
+        let mut doubt = 0.0f64;
+        let (mut share, mut meets) = (1.0f64, false);
+        for (k, pair) in model.contacts.iter().enumerate() {
+            let states = old.contacts[k].iter().zip(&foreseen[k]).zip(&new.contacts[k]).zip(&pair.points);
+            let arrival = |(((old, foreseen), now), slave)| pair.arrival(slave, [old, foreseen, now], new.dt);
+            let unknown = Some(Arrival { at: 0.0, doubt: f64::INFINITY });
+            let arrivals: Vec<Arrival> = states.filter_map(|states| arrival(states).unwrap_or(unknown)).collect();
+            let force = |state: &ContactState| state.friction.pressure.hypot(state.friction.traction) * state.length;
+            self.forces[k] = self.forces[k].max(new.contacts[k].iter().map(force).sum());
+            let all: f64 = arrivals.iter().map(|arrival| arrival.doubt).sum();
+            if all > 0.0 {
+                doubt = doubt.max(all / self.forces[k]);
+                let first = arrivals.iter().fold(1.0, |first: f64, arrival| first.min(arrival.at));
+                let meets_first = first > 0.0 && old.contacts[k].iter().all(|state| state.friction.pressure <= 0.0);
+                let most = if meets_first { first } else { longest(&arrivals, AIM * DOUBT * self.forces[k]) };
+                if most < share {
+                    (share, meets) = (most, meets_first);
+                }
+            }
+        }
+        (doubt, share, meets)
     }
 
     /// The attempt could not be solved, and is made shorter.

@@ -86,12 +86,7 @@ fn fronts(pattern: &Pattern, elimination: &Elimination, supernodes: &[Supernode]
             fronts[child as usize].rows.iter().for_each(|&row| add(row as usize));
         }
         rows.sort_unstable();
-        for &child in &children {
-            let child = &mut fronts[child as usize];
-            child.to_parent = places(&child.rows, first, end, &rows);
-            let inner = child.rows.partition_point(|&row| (row as usize) < end);
-            (child.runs, child.inner_runs) = runs(&child.to_parent, inner);
-        }
+        children.iter().for_each(|&child| place_in_parent(&mut fronts[child as usize], first, end, &rows));
         if let Some(&row) = rows.first() {
             families[owner[row as usize]].push(s as u32);
         }
@@ -115,6 +110,13 @@ fn fronts(pattern: &Pattern, elimination: &Elimination, supernodes: &[Supernode]
     }
     mark_odd(&mut fronts);
     fronts
+}
+
+/// Where the rows of a child lie in its parent, a front of the positions `first..end` and then `rows`.
+fn place_in_parent(child: &mut Front, first: usize, end: usize, rows: &[u32]) {
+    child.to_parent = places(&child.rows, first, end, rows);
+    let inner = child.rows.partition_point(|&row| (row as usize) < end);
+    (child.runs, child.inner_runs) = runs(&child.to_parent, inner);
 }
 
 /// Mark the fronts whose depth in the tree is odd.
