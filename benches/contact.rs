@@ -66,9 +66,9 @@ fn measure(criterion: &mut Criterion, name: &str, sizes: [usize; 3], surfaces: f
             bench.iter(|| pair.points.iter().filter(|slave| index.project(slave, None, &x).is_some()).count());
         });
         let old = pair.initial_states(&x);
-        let moment = ContactIncrement { dt: 1.0, fading: 0.0, stiffening: 1.0, settles: true };
+        let increment = ContactIncrement { dt: 1.0, fading: 0.0, stiffening: 1.0, settles: true };
         group.bench_function(BenchmarkId::new("update", n), |bench| {
-            bench.iter(|| pair.respond(&old, &x, moment, |_| Presumption::default(), &x).is_ok());
+            bench.iter(|| pair.respond(&old, &x, increment, |_| Presumption::default(), &x).is_ok());
         });
     }
     group.finish();

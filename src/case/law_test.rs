@@ -30,7 +30,7 @@ pub struct LawTestInput {
     pub friction: FrictionParameters,
     /// State at the start
     #[serde(default)]
-    pub initial: InitialInput,
+    pub initial: StartInput,
     /// Longest step [T]; a hundredth of each phase, or the rows of the table, unless given
     pub dt: Option<f64>,
     /// Phases, one after the other; either this or a table
@@ -42,7 +42,7 @@ pub struct LawTestInput {
 /// State at the start; the structure is the law's.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct InitialInput {
+pub struct StartInput {
     /// q: traction, within ±μ p [F/L²]
     #[serde(default)]
     pub traction: f64,

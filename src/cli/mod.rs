@@ -13,13 +13,14 @@ use crate::cli::progress::Progress;
 use crate::model::Model;
 use crate::model::state::Energy;
 use crate::output::fields::Fields;
-use crate::output::fronts::{self, Fronts};
+use crate::output::fronts::Fronts;
 use crate::output::history::History;
 use crate::output::law::LawTable;
 use crate::output::newton_log::NewtonLog;
 use crate::output::plot::{self, PlotError};
 use crate::output::summary::{self, About, Ending, LawSummary, Summary};
 use crate::output::warnings::Warnings;
+use crate::output::wave_speeds;
 use crate::run;
 use crate::run::error::Error;
 use crate::run::law_report::{Hold, LawReport, PathPoint};
@@ -112,7 +113,7 @@ pub fn run(path: &Path, out: Option<PathBuf>, threads: Option<usize>, quiet: boo
         title: case.title.clone(),
         units: case.units.clone(),
         friction: case.contacts.iter().map(|(name, contact)| (name.clone(), contact.friction)).collect(),
-        wave_speeds: fronts::wave_speeds(&model),
+        wave_speeds: wave_speeds::wave_speeds(&model),
         front_slip_rate: case.output.fronts.map(|fronts| fronts.slip_rate),
     };
     let supplied = warnings.audit.supplied;

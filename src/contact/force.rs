@@ -20,6 +20,8 @@
 //! would change with the share that counts. Without c a point that comes in with a high pressure would stick for its stiff
 //! penalty alone, and spring away by all it has missed in the increment after.
 
+use nalgebra::DVector;
+
 use super::closed::closed;
 pub use super::closed::{Closed, nodal_forces};
 pub use super::kinematics::Meeting;
@@ -27,7 +29,7 @@ use super::kinematics::{Kinematics, kinematics};
 use super::pair::ContactPair;
 use super::point::{MasterPoint, SlavePoint};
 use super::presumption::Presumption;
-pub use super::presumption::{Increment, Presume, Tractions};
+pub use super::presumption::{PointIncrement, Presume, Tractions};
 use super::projection::Projection;
 pub use super::state::ContactState;
 use super::state::TOUCH;
@@ -39,7 +41,7 @@ pub type PointResponse = Result<(ContactState, Option<Closed>), LawFailure>;
 
 /// Where a point is at the end of an increment.
 #[derive(Clone, Debug, Default)]
-pub struct Place {
+pub struct PointPlace {
     /// g; 0 where nothing faces it [L]
     pub gap: f64,
     /// The foot, if the master faces it
@@ -54,19 +56,19 @@ pub fn place(
     slave: &SlavePoint,
     projection: Option<Projection>,
     old: &ContactState,
-    increment: Increment,
+    increment: PointIncrement,
     [before, x]: [&Configuration; 2],
-) -> Place {
-    let Some(projection) = projection else { return Place::default() };
+) -> PointPlace {
+    let Some(projection) = projection else { return PointPlace::default() };
     let (gap, foot) = (slave.gap(projection.gap, increment.during.fading), Some(projection.foot));
     if !closes(pair, slave, gap, old, increment, x) {
-        return Place { gap, foot, kinematics: None };
+        return PointPlace { gap, foot, kinematics: None };
     }
     let mut kinematics = kinematics(slave, &pair.master, &projection, old.foot, x);
     if old.foot.is_none() {
         kinematics.count_from(before, x);
     }
-    Place { gap, foot, kinematics: Some(kinematics) }
+    PointPlace { gap, foot, kinematics: Some(kinematics) }
 }
 
 /// Whether a point with this gap carries pressure, or is presumed to.
@@ -75,7 +77,7 @@ pub fn closes(
     slave: &SlavePoint,
     gap: f64,
     old: &ContactState,
-    increment: Increment,
+    increment: PointIncrement,
     x: &Configuration,
 ) -> bool {
     let kept = increment.presumption.kept > 0.0;
@@ -96,8 +98,8 @@ pub struct Loading<'a> {
     pair: &'a ContactPair,
     slave: &'a SlavePoint,
     old: &'a ContactState,
-    increment: Increment,
-    place: Place,
+    increment: PointIncrement,
+    place: PointPlace,
     alpha_n: f64,
     /// p if the surfaces opened no further than they are [F/L²]
     free: f64,
@@ -113,8 +115,8 @@ impl<'a> Loading<'a> {
         pair: &'a ContactPair,
         slave: &'a SlavePoint,
         old: &'a ContactState,
-        increment: Increment,
-        place: Place,
+        increment: PointIncrement,
+        place: PointPlace,
     ) -> Self {
         let alpha_n = pair.normal_stiffness(increment.during.stiffening);
         let free = old.multiplier - alpha_n * (place.gap - old.friction.opening);
@@ -148,7 +150,7 @@ impl<'a> Loading<'a> {
     /// [`LawFailure`] of the law, or where its opening and its pressure do not come to agree.
     pub fn finish(mut self, answer: Answer) -> PointResponse {
         let mut response = answer?;
-        let Place { gap, foot, kinematics } = std::mem::take(&mut self.place);
+        let PointPlace { gap, foot, kinematics } = std::mem::take(&mut self.place);
         let Some(mut kinematics) = kinematics else {
             let length = self.old.length;
             let state = ContactState { friction: response.state, foot, length, gap, slip: 0.0, multiplier: 0.0 };
@@ -177,21 +179,10 @@ impl<'a> Loading<'a> {
         if touches(clearance, kinematics.length, old, increment.presumption.presume) {
             response.dtraction_dslip = stiffness;
         }
-        // δp = −α δg + α ∂d/∂Δu_t (share δΔu_t), α = α_n/(1 − α_n dd/dp)
-        let alpha = alpha_n / (1.0 - alpha_n * opening_rate);
-        let lift = alpha * response.dopening_dslip;
         kinematics.slip = sliding.slip;
-        if compliance.is_some() {
-            kinematics.dslip *= share;
-        }
-        let mut dpressure = &kinematics.dgap * -alpha;
-        if lift != 0.0 {
-            dpressure += &kinematics.dslip * lift;
-        }
-        if compliance.is_some() {
-            kinematics.dslip *= 1.0 + lift * dslip_dpressure;
-            kinematics.dslip -= &kinematics.dgap * (alpha * dslip_dpressure);
-        }
+        let alpha = alpha_n / (1.0 - alpha_n * opening_rate);
+        let counted = compliance.map(|_| (share, dslip_dpressure));
+        let dpressure = vary(&mut kinematics, alpha, alpha * response.dopening_dslip, counted);
         let state = ContactState {
             friction: response.state,
             foot,
@@ -225,6 +216,23 @@ impl<'a> Loading<'a> {
         }
         Err(LawFailure::Opening { opening: response.state.opening, pressure: self.sliding.pressure })
     }
+}
+
+/// δp = −α δg + lift (share δΔu_t), with α = α_n/(1 − α_n dd/dp) and lift = α ∂d/∂Δu_t; where slip is `counted` by a share
+/// that depends on the pressure, its variation becomes that of what counts.
+fn vary(kinematics: &mut Kinematics, alpha: f64, lift: f64, counted: Option<(f64, f64)>) -> DVector<f64> {
+    if let Some((share, _)) = counted {
+        kinematics.dslip *= share;
+    }
+    let mut dpressure = &kinematics.dgap * -alpha;
+    if lift != 0.0 {
+        dpressure += &kinematics.dslip * lift;
+    }
+    if let Some((_, dslip_dpressure)) = counted {
+        kinematics.dslip *= 1.0 + lift * dslip_dpressure;
+        kinematics.dslip -= &kinematics.dgap * (alpha * dslip_dpressure);
+    }
+    dpressure
 }
 
 /// Answers of the law until its opening and the pressure must agree.

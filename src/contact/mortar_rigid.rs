@@ -18,12 +18,7 @@ impl Mortar {
         let around = self.around[point].iter();
         let met: Vec<_> = around.filter_map(|slave| meet(slave, body, before, x)).collect();
         let foot = met.first()?.0.foot;
-        let mut nodes: Vec<usize> = Vec::new();
-        for node in met.iter().flat_map(|(_, k)| &k.nodes) {
-            if !nodes.contains(node) {
-                nodes.push(*node);
-            }
-        }
+        let nodes = nodes_of(&met);
         let zero = DVector::zeros(2 * nodes.len());
         // Sums of ℓ times gap, slip, n and weights, and their variations.
         let (mut length, mut gap, mut slip, mut along) = (0.0, 0.0, 0.0, Vector2::zeros());
@@ -68,6 +63,17 @@ impl Mortar {
             Kinematics { nodes, relative, normal, tangent, slip, length, dgap, dslip, drotation, dlength, drelative };
         Some(Meeting { kinematics, gap, foot })
     }
+}
+
+/// The nodes of all points that meet the body, each once.
+fn nodes_of(met: &[(Projection, Kinematics)]) -> Vec<usize> {
+    let mut nodes: Vec<usize> = Vec::new();
+    for node in met.iter().flat_map(|(_, k)| &k.nodes) {
+        if !nodes.contains(node) {
+            nodes.push(*node);
+        }
+    }
+    nodes
 }
 
 /// Where one point of Gauss's rule meets the body.

@@ -17,7 +17,7 @@ pub struct ContactIncrement {
 
 /// Increment of a contact point, and what the iteration presumes about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Increment {
+pub struct PointIncrement {
     /// Length of the increment, and what it changes about every point
     pub during: ContactIncrement,
     /// What the linear solve presumes about the point

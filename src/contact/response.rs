@@ -3,11 +3,11 @@
 use rayon::prelude::*;
 
 use super::closed::PairResponse;
-use super::force::{Loading, Place, closes, place};
+use super::force::{Loading, PointPlace, closes, place};
 use super::kinematics::Meeting;
 use super::master::Master;
 use super::pair::ContactPair;
-use super::presumption::{ContactIncrement, Increment, Presumption};
+use super::presumption::{ContactIncrement, PointIncrement, Presumption};
 use super::search::Index;
 use super::state::ContactState;
 use super::surface::SlavePoint;
@@ -35,7 +35,7 @@ impl ContactPair {
         x: &Configuration,
     ) -> Result<PairResponse, (usize, LawFailure)> {
         let index = Index::within(&self.master, before, x);
-        let increment = |k| Increment { during, presumption: presumed(k) };
+        let increment = |k| PointIncrement { during, presumption: presumed(k) };
         if let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) {
             let was = mortar.overlaps(surface, &Index::new(&self.master, before), before);
             let is = mortar.overlaps(surface, &index, x);
@@ -65,8 +65,8 @@ impl ContactPair {
     fn each(
         &self,
         old: &[ContactState],
-        increment: impl Fn(usize) -> Increment + Sync,
-        place: impl Fn(usize, &SlavePoint, &ContactState, Increment) -> Place + Sync,
+        increment: impl Fn(usize) -> PointIncrement + Sync,
+        place: impl Fn(usize, &SlavePoint, &ContactState, PointIncrement) -> PointPlace + Sync,
     ) -> Result<PairResponse, (usize, LawFailure)> {
         let some = |(chunk, (points, old)): (usize, (&[SlavePoint], &[ContactState]))| -> Result<PairResponse, _> {
             let numbers = chunk * TOGETHER..;
@@ -114,11 +114,11 @@ fn averaged(
     slave: &SlavePoint,
     meeting: Option<Meeting>,
     old: &ContactState,
-    increment: Increment,
+    increment: PointIncrement,
     x: &Configuration,
-) -> Place {
-    let Some(Meeting { kinematics, gap, foot }) = meeting else { return Place::default() };
+) -> PointPlace {
+    let Some(Meeting { kinematics, gap, foot }) = meeting else { return PointPlace::default() };
     let gap = slave.gap(gap, increment.during.fading);
     let kinematics = closes(pair, slave, gap, old, increment, x).then_some(kinematics);
-    Place { gap, foot: Some(foot), kinematics }
+    PointPlace { gap, foot: Some(foot), kinematics }
 }

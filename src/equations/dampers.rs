@@ -7,9 +7,9 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Matrix2, Vector2};
 
+use super::dependence::Dependence;
 use super::rates::velocity;
 use super::sums::Sums;
-use super::term::Dependence;
 use super::trial::Trial;
 use crate::equations::failure::TrialFailure;
 use crate::model::boundary::Absorber;

@@ -4,10 +4,10 @@
 //! F += η M v + f_v(u, v),   ∂F/∂u += η M ∂v/∂u + ∂f_v/∂u + ∂f_v/∂v ∂v/∂u
 //! ```
 
+use super::dependence::Dependence;
 use super::rates::motion;
 use super::solids::Solids;
 use super::sums::Sums;
-use super::term::Dependence;
 use super::trial::Trial;
 use crate::linear::SparseMatrix;
 use crate::model::{Model, Step};

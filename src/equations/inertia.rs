@@ -3,9 +3,9 @@
 use nalgebra::DMatrix;
 
 use super::coupling::Layout;
+use super::dependence::Dependence;
 use super::rates::rates;
 use super::sums::add_blocks;
-use super::term::Dependence;
 use super::trial::Trial;
 use crate::linear::SparseMatrix;
 use crate::model::{Model, Step};

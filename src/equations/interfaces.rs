@@ -1,7 +1,7 @@
 //! Contact and friction: what the responses of all contact points add, and what they store, dissipate and take in.
 
+use super::dependence::Dependence;
 use super::sums::Sums;
-use super::term::Dependence;
 use super::trial::Trial;
 use crate::contact::force::{Closed, ContactState};
 use crate::contact::pair::{ContactIncrement, ContactPair, PairResponse, Presumption};

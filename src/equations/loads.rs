@@ -3,8 +3,8 @@
 
 use nalgebra::Vector2;
 
+use super::dependence::Dependence;
 use super::sums::Sums;
-use super::term::Dependence;
 use super::trial::Trial;
 use crate::equations::failure::TrialFailure;
 use crate::model::element::pressure::follower_pressure;

@@ -10,7 +10,7 @@
 //! threads.
 //!
 //! The terms add up in [`assembler`], each in a file: its forces, its tangent on request, what that depends on
-//! ([`term::Dependence`]), and its share of the [`audit`] of energies.
+//! ([`dependence::Dependence`]), and its share of the [`audit`] of energies.
 //!
 //! | term | what it adds to F or r | its share of the audit |
 //! |---|---|---|
@@ -28,6 +28,7 @@ pub mod audit;
 mod coupling;
 pub mod dampers;
 mod damping;
+pub mod dependence;
 mod equilibrium;
 pub mod evaluation;
 mod evolving;

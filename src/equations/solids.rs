@@ -10,9 +10,9 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use super::coupling::Layout;
+use super::dependence::Dependence;
 use super::evolving::evolves;
 use super::sums::{Sums, add_blocks};
-use super::term::Dependence;
 use crate::equations::failure::TrialFailure;
 use crate::laws::bulk::InvertedElement;
 use crate::linear::SparseMatrix;
@@ -62,6 +62,9 @@ struct Run {
     /// Whether [`Evolving`] adds them
     evolves: bool,
 }
+
+/// An element, and where its forces and its tangent go.
+type Slot<'a> = ((usize, &'a mut [Vector2<f64>]), &'a mut [f64]);
 
 impl Run {
     fn places(&self) -> Range<usize> {
@@ -138,7 +141,7 @@ impl Solids {
                 let elements = first..(first + BATCH).min(run.elements.end);
                 let place = run.first + n * (first - run.elements.start);
                 let forces = &mut self.forces[place..place + n * elements.len()];
-                let one = |(((e, forces), tangent), energy): (((usize, &mut [Vector2<f64>]), &mut [f64]), &mut _)| {
+                let one = |(((e, forces), tangent), energy): (Slot, &mut _)| {
                     let mut force = [0.0; 18];
                     let (u, own) = (&nodal(model, e, u)[..n], &mut force[..2 * n]);
                     *energy = model.solids[e].force_and_tangent(material, u, own, tangent);

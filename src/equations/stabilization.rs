@@ -4,8 +4,8 @@
 //! f = −c₀ (1 − share of the step that has passed) (u − u₀)/Δt
 //! ```
 
+use super::dependence::Dependence;
 use super::sums::Sums;
-use super::term::Dependence;
 use super::trial::Trial;
 use crate::model::Step;
 

@@ -1,5 +1,6 @@
-//! The terms of the equations, and what their tangents depend on.
+//! The terms of the equations.
 
+use super::dependence::Dependence;
 use super::{dampers, damping, inertia, interfaces, loads, solids, stabilization};
 use crate::model::{Model, Step};
 
@@ -20,19 +21,6 @@ pub enum Term {
     Damping,
     /// Masses
     Inertia,
-}
-
-/// What a tangent depends on while a step lasts; each includes those before it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Dependence {
-    /// Nothing: it is the same matrix throughout
-    Nothing,
-    /// Δt
-    StepSize,
-    /// t, Δt
-    Time,
-    /// u, t, Δt and the state that the increment begins with
-    Displacement,
 }
 
 impl Term {

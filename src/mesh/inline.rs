@@ -6,7 +6,8 @@ use nalgebra::Vector2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::check::{self, RawCell, RawMesh};
+use super::check;
+use super::raw::{RawCell, RawMesh};
 use super::{Mesh, MeshError};
 
 /// A mesh given in the case file. Nodes are numbered from 0 in the order of `nodes`.

@@ -9,6 +9,7 @@ pub mod configuration;
 mod error;
 pub mod gmsh;
 mod inline;
+mod raw;
 pub mod section;
 pub mod shape;
 pub mod ties;

@@ -14,14 +14,13 @@
 //!
 //! A contact without friction has a slip map, but no fronts.
 
-use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 use super::csv::Table;
 use super::memory;
+use super::passages::{Arrival, Interface, Point};
+use super::wave_speeds::WaveSpeeds;
 use crate::contact::force::ContactState;
-use crate::contact::pair::ContactPair;
-use crate::laws::bulk::Material;
 use crate::laws::friction::observables;
 use crate::model::Model;
 use crate::model::state::State;
@@ -62,92 +61,6 @@ const FRONTS: [&str; 14] = [
     "rupture_length",
     "energy_released",
 ];
-
-/// c_R, c_s and c_p of an elastic body [L/T].
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct WaveSpeeds {
-    /// c_R: Rayleigh waves along a free surface
-    pub rayleigh: f64,
-    /// c_s = √(G/ρ): shear waves
-    pub shear: f64,
-    /// c_p = √((λ + 2G)/ρ): pressure waves
-    pub pressure: f64,
-}
-
-impl WaveSpeeds {
-    /// Of the body behind the slave of a contact, if there is one.
-    fn behind(model: &Model, pair: &ContactPair) -> Option<Self> {
-        let (node, _) = *pair.points.first()?.position.first()?;
-        let body = model.bodies.iter().find(|body| body.nodes.binary_search(&node).is_ok())?;
-        Some(Self::of(&*body.material))
-    }
-
-    /// Of a material; infinite without density.
-    ///
-    /// ```text
-    /// (2 − ξ²)² = 4 √(1 − ξ²) √(1 − ξ² c_s²/c_p²),   ξ = c_R/c_s
-    /// ```
-    pub fn of(material: &dyn Material) -> Self {
-        let speed = |modulus: f64| (modulus / material.density()).sqrt();
-        let (shear, pressure) = (speed(material.shear_modulus()), speed(material.p_wave_modulus()));
-        let ratio = material.shear_modulus() / material.p_wave_modulus();
-        // Negative below the root but for the trivial one at 0, positive above.
-        let excess = |square: f64| (2.0 - square).powi(2) - 4.0 * ((1.0 - square) * (1.0 - square * ratio)).sqrt();
-        let (mut low, mut high) = (0.1, 1.0);
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if excess(middle) < 0.0 { low = middle } else { high = middle }
-        }
-        Self { rayleigh: shear * low.sqrt(), shear, pressure }
-    }
-}
-
-/// c_R, c_s and c_p of the body behind the first contact's slave; 0 if there is none, or it has no density [L/T].
-pub fn wave_speeds(model: &Model) -> [f64; 3] {
-    let speeds = model.contacts.first().and_then(|pair| WaveSpeeds::behind(model, pair));
-    let finite = speeds.filter(|speeds| speeds.pressure.is_finite());
-    finite.map_or([0.0; 3], |speeds| [speeds.rayleigh, speeds.shear, speeds.pressure])
-}
-
-/// A point of the slave surface: where it is, and what it did so far.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-struct Point {
-    /// Number of its unbroken line
-    line: usize,
-    /// Distance along the line [L]
-    position: f64,
-    at: [f64; 2],
-    /// Length that the point stands for [L]
-    length: f64,
-    /// Whether it has friction: what slides freely has no fronts
-    rubs: bool,
-    slip: f64,
-    rate: f64,
-    arrivals: Vec<Arrival>,
-}
-
-/// When a front passed a point.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct Arrival {
-    /// [T]
-    time: f64,
-    /// Number of the event of the contact, from 1
-    event: usize,
-    /// What loads and stored energies had given since the start of the run [F·L]
-    given: f64,
-}
-
-/// The points of one contact.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-struct Interface {
-    name: String,
-    speeds: Option<WaveSpeeds>,
-    points: Vec<Point>,
-    /// Events so far
-    events: usize,
-    /// Whether a point slipped faster than the threshold in the last row
-    slipping: bool,
-}
 
 /// Writes `slip_map.csv` at every row, and `fronts.csv` at the end.
 #[derive(Debug)]
@@ -249,90 +162,10 @@ impl Fronts {
     }
 }
 
-/// An event of a contact: its arrivals in order of time, each with the length that it had broken by then.
-#[derive(Clone, Debug, Default)]
-struct Event {
-    reached: Vec<(Arrival, f64)>,
-}
-
-impl Event {
-    /// Rupture length and energy released by an arrival of the event [L, F·L].
-    fn by(&self, arrival: &Arrival) -> (f64, f64) {
-        let until = self.reached.partition_point(|(other, _)| other.time <= arrival.time);
-        let first = self.reached.first().map_or(arrival.given, |(first, _)| first.given);
-        (self.reached[..until].last().map_or(0.0, |(_, length)| *length), arrival.given - first)
-    }
-}
-
 /// What loads and stored energies have given since the start of the run [F·L].
 fn given(state: &State) -> f64 {
     let energy = &state.energy;
     energy.external_work - energy.strain - energy.contact_elastic
-}
-
-impl Interface {
-    fn new(model: &Model, pair: &ContactPair) -> Self {
-        let x = model.mesh.undeformed();
-        let mut points: Vec<Point> = Vec::with_capacity(pair.points.len());
-        for (line, range) in pair.lines().into_iter().enumerate() {
-            let mut position = 0.0;
-            for k in range.clone() {
-                let at = pair.points[k].at(&x);
-                if k > range.start {
-                    position += (at - pair.points[k - 1].at(&x)).norm();
-                }
-                let length = pair.points[k].current_length(&x);
-                let rubs = pair.law(&pair.points[k]).stiffness() > 0.0;
-                let (at, arrivals) = (at.into(), Vec::new());
-                points.push(Point { line, position, at, length, rubs, slip: 0.0, rate: 0.0, arrivals });
-            }
-        }
-        let speeds = WaveSpeeds::behind(model, pair);
-        Self { name: pair.name.clone(), speeds, points, events: 0, slipping: false }
-    }
-
-    /// What each event had reached by when.
-    fn events(&self) -> Vec<Event> {
-        let mut events = vec![Event::default(); self.events];
-        for point in &self.points {
-            let mut last = 0;
-            for arrival in point.arrivals.iter() {
-                // A point that stops and sets out again within an event has broken once.
-                let length = if arrival.event == last { 0.0 } else { point.length };
-                last = arrival.event;
-                events[last - 1].reached.push((*arrival, length));
-            }
-        }
-        for event in &mut events {
-            event.reached.sort_by(|(a, _), (b, _)| a.time.total_cmp(&b.time));
-            let mut total = 0.0;
-            for (_, length) in &mut event.reached {
-                total += *length;
-                *length = total;
-            }
-        }
-        events
-    }
-
-    /// Local speed of the front that passes a point at a time [L/T]; NaN if it passed no neighbour.
-    fn speed(&self, k: usize, arrival: f64) -> f64 {
-        let own = &self.points[k];
-        let nearest = |arrivals: &[Arrival], time: f64| {
-            arrivals.iter().map(|a| a.time).min_by(|a, b| (a - time).abs().total_cmp(&(b - time).abs()))
-        };
-        // A neighbour that only another front has passed tells nothing of this one.
-        let passed = |k: usize| {
-            let point = self.points.get(k).filter(|point| point.line == own.line)?;
-            let there = nearest(&point.arrivals, arrival)?;
-            (nearest(&own.arrivals, there) == Some(arrival)).then_some((point.position, there))
-        };
-        let here = Some((own.position, arrival));
-        let (before, after) = (k.checked_sub(1).and_then(passed).or(here), passed(k + 1).or(here));
-        match before.zip(after) {
-            Some(((s0, t0), (s1, t1))) if s1 > s0 => (s1 - s0) / (t1 - t0).abs(),
-            _ => f64::NAN,
-        }
-    }
 }
 
 impl Observer for Fronts {

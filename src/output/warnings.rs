@@ -16,7 +16,7 @@ use crate::model::scheme::{Scheme, told};
 use crate::model::state::State;
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};
-use crate::time::step_size::DOUBT;
+use crate::time::touching::DOUBT;
 
 /// Penetration, as a share of the slave's edge, that is worth a warning.
 const DEEP: f64 = 0.01;

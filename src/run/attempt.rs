@@ -8,7 +8,8 @@ use super::simulation::Simulation;
 use crate::model::state::State;
 use crate::solve::IterationRecord;
 use crate::time::increment::advance;
-use crate::time::step_size::{Judgement, Touching, bounded, fastest_slip, judge};
+use crate::time::step_size::{Judgement, bounded, fastest_slip, judge};
+use crate::time::touching::Touching;
 
 /// Cut of the increment after one that could not be solved.
 const CUT: f64 = 0.5;

@@ -10,7 +10,7 @@ use crate::model::state::State;
 use crate::solve::failure::IncrementFailure;
 use crate::time::explicit::Explicit;
 use crate::time::increment::{begin, go_on};
-use crate::time::step_size::Touching;
+use crate::time::touching::Touching;
 
 impl Simulation {
     /// Begin what the next attempt needs: a step, explicit increments, or implicit ones again after them.

@@ -10,7 +10,7 @@ use crate::model::state::State;
 use crate::solve::IterationRecord;
 use crate::solve::failure::IncrementFailure;
 use crate::time::explicit::Explicit;
-use crate::time::step_size::Touching;
+use crate::time::touching::Touching;
 
 /// Results of an explicit step if the case does not say how many, and of the time that a shear wave takes across the model
 /// where a step is explicit while a contact slips fast.

@@ -4,6 +4,7 @@
 pub mod acted;
 pub mod augmented;
 pub mod contact_iteration;
+mod downhill;
 pub mod equilibrium;
 pub mod failure;
 pub mod floating;

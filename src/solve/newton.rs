@@ -27,8 +27,9 @@
 
 use thiserror::Error;
 
+use super::downhill::downhill;
 use crate::linear::system::{Request, System};
-use crate::linear::{self, LinearFailure, LinearSolver, norm};
+use crate::linear::{self, LinearFailure, LinearSolver, Solution, norm};
 
 /// When Newton's method stops, and what it may do on its way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,7 +94,7 @@ pub enum NewtonFailure<E> {
 }
 
 /// The iterations made, and the solution or why there is none.
-pub type Outcome<E> = (Vec<Iteration>, Result<Vec<f64>, NewtonFailure<E>>);
+pub type Iterated<E> = (Vec<Iteration>, Result<Vec<f64>, NewtonFailure<E>>);
 
 /// Growth of the residual over its largest start value that counts as divergence.
 const DIVERGENCE: f64 = 1e4;
@@ -109,12 +110,6 @@ const OLD_TANGENT_CORRECTIONS: f64 = 3.0;
 /// is often the price of a contact that finds its place.
 const STALLED: usize = 2;
 
-/// |s(α)|/|s(0)| at which a search along a correction ends.
-const LEVEL: f64 = 0.1;
-
-/// Most evaluations of a search along a correction.
-const LONGEST_SEARCH: usize = 12;
-
 /// Solve r(u) = 0 from the start value `u`; `evaluate` fills the system at a displacement.
 pub fn solve<E>(
     mut u: Vec<f64>,
@@ -122,54 +117,18 @@ pub fn solve<E>(
     solver: &mut dyn LinearSolver,
     system: &mut System,
     mut evaluate: impl FnMut(&[f64], Request, &mut System) -> Result<(), E>,
-) -> Outcome<E> {
+) -> Iterated<E> {
     let mut iterations: Vec<Iteration> = Vec::new();
     let result = (|| {
         evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
-        let (mut largest_start, mut before) = (0.0f64, [f64::INFINITY; 2]);
-        // Near a kink of the equations it promises more than it keeps, every time.
-        let mut old_tangent_serves = true;
-        let (mut least, mut stalled, mut searches) = (f64::INFINITY, 0, false);
-        loop {
-            let (size, residual) = (norm(&system.residual), system.imbalance);
-            let done = iterations.len();
-            if !system.forces.is_finite() {
-                return Err(NewtonFailure::Overflow);
-            }
-            if let Some(last) = iterations.last_mut() {
-                last.residual = residual;
-                let kept_promise = last.factorized || gain(size, residual, before) <= 1.0 / OLD_TANGENT;
-                old_tangent_serves &= kept_promise && !last.fallback;
-            }
-            if done > 0 && residual <= settings.tolerance {
-                return Ok(());
-            }
-            if done <= 2 {
-                largest_start = largest_start.max(size);
-            }
-            if !size.is_finite() || size > DIVERGENCE * largest_start {
-                return Err(NewtonFailure::Diverged { residual, iterations: done });
-            }
-            if done == settings.max_iterations {
-                return Err(NewtonFailure::TooManyIterations { residual, iterations: done });
-            }
-            stalled = if size < least { 0 } else { stalled + 1 };
-            least = least.min(size);
-            searches |= settings.downhill && stalled >= STALLED;
-            let slower = if iterations.last().is_some_and(|last| last.factorized) { OLD_TANGENT } else { 1.0 };
-            let corrections = corrections_left(residual, slower * gain(size, residual, before), settings.tolerance);
-            let factorized =
-                done == 0 || !(settings.old_tangents && old_tangent_serves && corrections <= OLD_TANGENT_CORRECTIONS);
-            let here = if searches { system.residual.clone() } else { Vec::new() };
-            let mut solution = if factorized {
+        let mut course = Course::new(settings);
+        while let Some(plan) = course.judge(&mut iterations, system)? {
+            let here = if plan.searched { system.residual.clone() } else { Vec::new() };
+            if plan.factorized {
                 evaluate(&u, Request::Tangent, system).map_err(NewtonFailure::Evaluation)?;
-                let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();
-                linear::solve(solver, &system.tangent, &right)?
-            } else {
-                let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();
-                linear::solve_again(solver, &system.tangent, &right)
-            };
-            if searches && factorized {
+            }
+            let mut solution = correction(plan.factorized, solver, system)?;
+            if plan.searched {
                 let along = |residual: &[f64]| -> f64 { residual.iter().zip(&solution.x).map(|(r, x)| r * x).sum() };
                 let share = downhill(along(&here), |share| {
                     let there: Vec<f64> = u.iter().zip(&solution.x).map(|(u, x)| u + share * x).collect();
@@ -178,60 +137,125 @@ pub fn solve<E>(
                 solution.x.iter_mut().for_each(|x| *x *= share);
             }
             u.iter_mut().zip(&solution.x).for_each(|(u, x)| *u += x);
-            iterations.push(Iteration {
-                residual: f64::NAN,
-                correction: solution.x.iter().fold(0.0f64, |m, x| m.max(x.abs())),
-                linear_residual: solution.residual,
-                factorized,
-                perturbed_pivots: solution.perturbed_pivots,
-                fallback: solution.fallback,
-                searched: searches && factorized,
-            });
+            iterations.push(plan.iteration(&solution));
             match evaluate(&u, Request::Residual, system) {
                 Ok(()) => {}
-                Err(failure) if factorized => return Err(NewtonFailure::Evaluation(failure)),
+                Err(failure) if plan.factorized => return Err(NewtonFailure::Evaluation(failure)),
                 Err(_) => {
                     // An old tangent led astray: the next correction starts from where this one did.
-                    old_tangent_serves = false;
+                    course.old_tangent_serves = false;
                     u.iter_mut().zip(&solution.x).for_each(|(u, x)| *u -= x);
                     evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
                 }
             }
-            before = [size, residual];
         }
+        Ok(())
     })();
     (iterations, result.map(|()| u))
 }
 
-/// How far a correction leads downhill, as a share of it: to where `slope` is near 0, or all of it if that is not beyond. It
-/// is not a number where the equations cannot be evaluated. By regula falsi (Illinois), halving where that fails: forces
-/// that stick in a narrow range make the slope steep there.
-fn downhill(start: f64, mut slope: impl FnMut(f64) -> f64) -> f64 {
-    let level = |s: f64| s.abs() <= LEVEL * start.abs();
-    let end = slope(1.0);
-    // A correction that does not start downhill was not made for this.
-    if start >= 0.0 || end <= 0.0 || level(end) {
-        return 1.0;
-    }
-    let (mut low, mut high) = ((0.0, start), (1.0, end));
-    let (mut share, mut side) = (1.0, 0.0);
-    for _ in 0..LONGEST_SEARCH {
-        let falsi = low.0 + (high.0 - low.0) * low.1 / (low.1 - high.1);
-        share = if falsi > low.0 && falsi < high.0 { falsi } else { 0.5 * (low.0 + high.0) };
-        let s = slope(share);
-        if level(s) {
-            break;
-        }
-        // The end that stays a second time counts half.
-        let stays = if s.signum() == side { 0.5 } else { 1.0 };
-        side = s.signum();
-        if s < 0.0 {
-            (low, high.1) = ((share, s), stays * high.1);
-        } else {
-            (high, low.1) = ((share, s), stays * low.1);
+/// How the next correction is made.
+#[derive(Clone, Copy)]
+struct Plan {
+    /// With a new tangent, not with the factors of an earlier one
+    factorized: bool,
+    /// Searched for how far it leads downhill
+    searched: bool,
+}
+
+impl Plan {
+    /// The record of the correction that was made; its residual is not known yet.
+    fn iteration(self, solution: &Solution) -> Iteration {
+        Iteration {
+            residual: f64::NAN,
+            correction: solution.x.iter().fold(0.0f64, |m, x| m.max(x.abs())),
+            linear_residual: solution.residual,
+            factorized: self.factorized,
+            perturbed_pivots: solution.perturbed_pivots,
+            fallback: solution.fallback,
+            searched: self.searched,
         }
     }
-    share
+}
+
+/// What the iterations have shown so far.
+struct Course {
+    settings: Settings,
+    /// ‖r‖ of the first iterates, the largest
+    largest_start: f64,
+    /// ‖r‖ and ‖r‖/‖f‖ before the last correction
+    before: [f64; 2],
+    /// Near a kink of the equations an old tangent promises more than it keeps, every time.
+    old_tangent_serves: bool,
+    /// The least ‖r‖ so far, and the corrections in a row that stayed above it
+    least: f64,
+    stalled: usize,
+    searches: bool,
+}
+
+impl Course {
+    fn new(settings: Settings) -> Self {
+        Self {
+            settings,
+            largest_start: 0.0,
+            before: [f64::INFINITY; 2],
+            old_tangent_serves: true,
+            least: f64::INFINITY,
+            stalled: 0,
+            searches: false,
+        }
+    }
+
+    /// Judge the iterate whose system is given: how to go on, nothing if it is the solution, or why to give up.
+    fn judge<E>(&mut self, iterations: &mut [Iteration], system: &System) -> Result<Option<Plan>, NewtonFailure<E>> {
+        let (size, residual) = (norm(&system.residual), system.imbalance);
+        let done = iterations.len();
+        if !system.forces.is_finite() {
+            return Err(NewtonFailure::Overflow);
+        }
+        if let Some(last) = iterations.last_mut() {
+            last.residual = residual;
+            let kept_promise = last.factorized || gain(size, residual, self.before) <= 1.0 / OLD_TANGENT;
+            self.old_tangent_serves &= kept_promise && !last.fallback;
+        }
+        if done > 0 && residual <= self.settings.tolerance {
+            return Ok(None);
+        }
+        if done <= 2 {
+            self.largest_start = self.largest_start.max(size);
+        }
+        if !size.is_finite() || size > DIVERGENCE * self.largest_start {
+            return Err(NewtonFailure::Diverged { residual, iterations: done });
+        }
+        if done == self.settings.max_iterations {
+            return Err(NewtonFailure::TooManyIterations { residual, iterations: done });
+        }
+        Ok(Some(self.plan(iterations.last(), size, residual)))
+    }
+
+    /// How to correct an iterate that is no solution, from what the corrections until now have gained.
+    fn plan(&mut self, last: Option<&Iteration>, size: f64, residual: f64) -> Plan {
+        let Settings { tolerance, old_tangents, downhill, .. } = self.settings;
+        self.stalled = if size < self.least { 0 } else { self.stalled + 1 };
+        self.least = self.least.min(size);
+        self.searches |= downhill && self.stalled >= STALLED;
+        let slower = if last.is_some_and(|last| last.factorized) { OLD_TANGENT } else { 1.0 };
+        let corrections = corrections_left(residual, slower * gain(size, residual, self.before), tolerance);
+        let old_tangent = old_tangents && self.old_tangent_serves && corrections <= OLD_TANGENT_CORRECTIONS;
+        let factorized = last.is_none() || !old_tangent;
+        self.before = [size, residual];
+        Plan { factorized, searched: self.searches && factorized }
+    }
+}
+
+/// −K⁻¹ r with the tangent of the system, or with the factors of an earlier one.
+fn correction(factorized: bool, solver: &mut dyn LinearSolver, system: &System) -> Result<Solution, LinearFailure> {
+    let right: Vec<f64> = system.residual.iter().map(|r| -r).collect();
+    if factorized {
+        linear::solve(solver, &system.tangent, &right)
+    } else {
+        Ok(linear::solve_again(solver, &system.tangent, &right))
+    }
 }
 
 /// Share of the residual that a correction has left: of the whole, or of what the worst part lacks if that is more.

@@ -4,3 +4,4 @@ mod accept;
 pub mod explicit;
 pub mod increment;
 pub mod step_size;
+pub mod touching;

@@ -2,17 +2,7 @@
 //!
 //! Without error control every solved increment is accepted, and the next one is longer if few tangents did it (corrections with
 //! an old tangent do not count: whether they are made is a question of cost); but static increments must know friction after
-//! touch:
-//!
-//! - A point that was apart at the start of an increment has slipped in part before it touched. That part lies between
-//!   nothing and what it would have been had the motion before the increment gone on until touch; what friction may have to do
-//!   with it, summed over the points of a contact, must not exceed 2 % of its force. Where points slide at the limit of
-//!   friction anyway, nothing is in doubt.
-//! - Else the increment is made in parts: up to the touch that was foreseen if nothing of the contact was closed before, else
-//!   as far as few enough points touch; then on to where it should have ended. The contact's force is the largest of
-//!   all attempts at the increment.
-//! - The shortest increment is accepted whatever its doubt, which is told as a warning.
-//! - A point that touches and parts again within one increment is not seen.
+//! touch ([`super::touching`]).
 //!
 //! With error control of a static step, the slip of every closed point is in error by no more than ε in an increment, by the
 //! estimate ½ Δt |v₁ − v₀| with the mean rates v of plastic slip in this increment and the last: laws that know time are
@@ -38,7 +28,6 @@
 //! goes within one increment, such as a short pulse of a load, needs a `max` that meets it.
 
 use crate::contact::force::ContactState;
-use crate::contact::pair::Arrival;
 use crate::laws::friction::Regime;
 use crate::model::state::State;
 use crate::model::{Model, Step};
@@ -52,19 +41,12 @@ pub const EVENT_LOCATION: f64 = 10.0;
 /// Part of the length that the error allows which is taken: the estimate is one of several terms.
 const SAFETY: f64 = 0.8;
 /// Most that one estimate shortens the next attempt: far from the solution the estimate is not of third order.
-const LEAST_SHARE: f64 = 0.1;
+pub(super) const LEAST_SHARE: f64 = 0.1;
 /// A change that is not worth having: increments of one length keep the orders of the scheme.
 const WORTHWHILE: f64 = 1.25;
 
-/// Share of a contact's force that may be in doubt after a static increment in which points touched.
-pub const DOUBT: f64 = 0.02;
-/// Part of that which the next attempt aims at.
-const AIM: f64 = 0.5;
 /// Most that one estimate lengthens the next attempt at the rest of an increment that is made in parts.
-const MOST_SHARE: f64 = 4.0;
-/// Halvings of an increment that find where to end it: as many as it takes for round-off.
-const HALVINGS: usize = 50;
-
+pub(super) const MOST_SHARE: f64 = 4.0;
 /// Excess of what is left of a step over an increment that is not worth another one.
 const ROUND_OFF: f64 = 1e-6;
 
@@ -94,139 +76,46 @@ pub fn bounded(step: &Step, time: f64, dt: f64) -> f64 {
 }
 
 /// Whether an increment is longer than the shortest.
-fn can_shorten(step: &Step, old: &State, new: &State) -> bool {
+pub(super) fn can_shorten(step: &Step, old: &State, new: &State) -> bool {
     new.time > old.time + SHORTEST * step.increments.min
 }
 
 /// Judge a solved increment from `old` to `new`, which took so many `tangents` in its hardest pass; `repeated` says that an
 /// attempt at it was given up before.
-pub fn judge(model: &Model, step: &Step, [old, new]: [&State; 2], tangents: usize, repeated: bool) -> Judgement {
-    let dt = new.dt;
-    let easy = tangents <= EASY;
-    let Some(allowed) = step.increments.error else {
-        return Judgement { accepted: true, next: if easy { dt * GROWTH } else { dt }, error: None };
-    };
-    let shortest = step.increments.min;
-    if !step.scheme.is_dynamic() {
-        let error = slip_error(model, old, new);
-        let share = (SAFETY * (allowed / error).sqrt()).clamp(LEAST_SHARE, MOST_SHARE);
-        let accepted = !can_shorten(step, old, new) || error <= allowed;
-        let keeps = accepted && (repeated || share <= WORTHWHILE);
-        let next = if keeps { dt } else { (share * dt).max(shortest) };
-        return Judgement { accepted, next, error: Some(error) };
+pub fn judge(model: &Model, step: &Step, states: [&State; 2], tangents: usize, repeated: bool) -> Judgement {
+    let (dt, easy) = (states[1].dt, tangents <= EASY);
+    match step.increments.error {
+        None => Judgement { accepted: true, next: if easy { dt * GROWTH } else { dt }, error: None },
+        Some(allowed) if step.scheme.is_dynamic() => judge_motion(model, step, states, allowed, easy && !repeated),
+        Some(allowed) => judge_slip(model, step, states, allowed, repeated),
     }
+}
+
+/// Judge a static increment by the error of slip.
+fn judge_slip(model: &Model, step: &Step, [old, new]: [&State; 2], allowed: f64, repeated: bool) -> Judgement {
+    let error = slip_error(model, old, new);
+    let share = (SAFETY * (allowed / error).sqrt()).clamp(LEAST_SHARE, MOST_SHARE);
+    let accepted = !can_shorten(step, old, new) || error <= allowed;
+    let keeps = accepted && (repeated || share <= WORTHWHILE);
+    let next = if keeps { new.dt } else { (share * new.dt).max(step.increments.min) };
+    Judgement { accepted, next, error: Some(error) }
+}
+
+/// Judge a dynamic increment by the error of displacements, and by its events.
+fn judge_motion(model: &Model, step: &Step, [old, new]: [&State; 2], allowed: f64, may_grow: bool) -> Judgement {
+    let (dt, shortest) = (new.dt, step.increments.min);
     let error = local_error(model, step, old, new);
     let share = (SAFETY * (allowed / error).cbrt()).clamp(LEAST_SHARE, GROWTH);
-    let judged = |accepted: bool, share: f64| Judgement { accepted, next: share * dt, error: Some(error) };
+    let judged = |accepted: bool, next: f64| Judgement { accepted, next, error: Some(error) };
     let can_shorten = can_shorten(step, old, new);
     if can_shorten && error > allowed {
-        return Judgement { next: (share * dt).max(shortest), ..judged(false, share) };
+        return judged(false, (share * dt).max(shortest));
     }
     if can_shorten && slip_at_events(model, old, new) > EVENT_LOCATION * allowed {
-        return Judgement { next: (0.5 * dt).max(shortest), ..judged(false, share) };
+        return judged(false, (0.5 * dt).max(shortest));
     }
-    let grows = easy && !repeated && share > WORTHWHILE;
-    judged(true, if grows { share } else { 1.0 })
-}
-
-/// What the attempts at an increment of a static step have shown about points that touch in it.
-#[derive(Clone, Debug, Default)]
-pub struct Touching {
-    /// End and length of the increment that is made in parts [T]
-    whole: Option<(f64, f64)>,
-    /// Largest force of each contact in an attempt [F]
-    forces: Vec<f64>,
-    /// Attempts given up
-    refused: usize,
-    /// Whether the attempt is to end where a contact touches
-    ends_in_touch: bool,
-}
-
-impl Touching {
-    /// Judge a solved increment that is accepted otherwise; `foreseen` are the contact states had its motion gone on as before.
-    /// The share of a contact's force that is in doubt comes with the judgement.
-    pub fn judge(
-        &mut self,
-        model: &Model,
-        step: &Step,
-        old: &State,
-        new: &mut State,
-        foreseen: &[Vec<ContactState>],
-        judged: Judgement,
-    ) -> (Judgement, f64) {
-        self.forces.resize(model.contacts.len(), 0.0);
-        let mut doubt = 0.0f64;
-        let (mut share, mut meets) = (1.0f64, false);
-        for (k, pair) in model.contacts.iter().enumerate() {
-            let states = old.contacts[k].iter().zip(&foreseen[k]).zip(&new.contacts[k]).zip(&pair.points);
-            let arrival = |(((old, foreseen), now), slave)| pair.arrival(slave, [old, foreseen, now], new.dt);
-            let unknown = Some(Arrival { at: 0.0, doubt: f64::INFINITY });
-            let arrivals: Vec<Arrival> = states.filter_map(|states| arrival(states).unwrap_or(unknown)).collect();
-            let force = |state: &ContactState| state.friction.pressure.hypot(state.friction.traction) * state.length;
-            self.forces[k] = self.forces[k].max(new.contacts[k].iter().map(force).sum());
-            let all: f64 = arrivals.iter().map(|arrival| arrival.doubt).sum();
-            if all > 0.0 {
-                doubt = doubt.max(all / self.forces[k]);
-                let first = arrivals.iter().fold(1.0, |first: f64, arrival| first.min(arrival.at));
-                let meets_first = first > 0.0 && old.contacts[k].iter().all(|state| state.friction.pressure <= 0.0);
-                let most = if meets_first { first } else { longest(&arrivals, AIM * DOUBT * self.forces[k]) };
-                if most < share {
-                    (share, meets) = (most, meets_first);
-                }
-            }
-        }
-        if doubt > DOUBT && can_shorten(step, old, new) {
-            self.whole.get_or_insert((new.time, new.dt));
-            // What was foreseen has been wrong before.
-            let most = if self.refused == 0 { 1.0 } else { 0.5 };
-            self.refused += 1;
-            self.ends_in_touch = meets;
-            let share = if meets { share } else { share.max(LEAST_SHARE) };
-            let next = (share.min(most) * new.dt).max(step.increments.min);
-            return (Judgement { accepted: false, next, ..judged }, doubt);
-        }
-        self.refused = 0;
-        let touches = std::mem::take(&mut self.ends_in_touch);
-        if let Some(last) = &mut new.last_increment {
-            last.ends_in_touch = touches;
-        }
-        let Some((end, dt)) = self.whole else {
-            self.forces.clear();
-            return (judged, doubt);
-        };
-        let left = end - new.time;
-        if left > step.increments.min {
-            // Where points touch one after the other, their doubt grows with Δt².
-            let share = (AIM * DOUBT / doubt).sqrt().clamp(LEAST_SHARE, MOST_SHARE);
-            let next = if touches { left } else { left.min(share * new.dt) };
-            return (Judgement { next, ..judged }, doubt);
-        }
-        self.give_up();
-        (Judgement { next: dt, ..judged }, doubt)
-    }
-
-    /// The attempt could not be solved, and is made shorter.
-    pub fn cut(&mut self) {
-        self.ends_in_touch = false;
-    }
-
-    /// Forget the increment: it is repeated for other reasons.
-    pub fn give_up(&mut self) {
-        *self = Self::default();
-    }
-}
-
-/// Share of an increment in which the force in doubt comes to no more than `allowed`, if that of each point grows steadily
-/// once it has touched.
-fn longest(arrivals: &[Arrival], allowed: f64) -> f64 {
-    let doubt =
-        |share: f64| -> f64 { arrivals.iter().map(|a| a.doubt * ((share - a.at) / (1.0 - a.at)).max(0.0)).sum() };
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        if doubt(middle) > allowed { high = middle } else { low = middle }
-    }
-    low
+    let grows = may_grow && share > WORTHWHILE;
+    judged(true, if grows { share * dt } else { dt })
 }
 
 /// Highest slip rate of a contact point with friction from one state to a later one [L/T].

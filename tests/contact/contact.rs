@@ -1,6 +1,8 @@
 //! Contact: exact tangents, feet at corners and past ends.
 
-use fecontact::contact::force::{Closed, ContactState, Increment, Loading, Meeting, Place, Tractions, closes, place};
+use fecontact::contact::force::{
+    Closed, ContactState, Loading, Meeting, PointIncrement, PointPlace, Tractions, closes, place,
+};
 use fecontact::contact::master::Master;
 use fecontact::contact::mortar::{Mortar, mortar_points};
 use fecontact::contact::pair::{ContactIncrement, ContactPair, InitialTraction, Presumption};
@@ -23,7 +25,7 @@ const SUPER: &str = r#"{"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "r"
         "integration": "backward_euler"}"#;
 const COULOMB: &str = r#"{"law": "coulomb", "mu": 0.3}"#;
 const FRICTIONLESS: &str = r#"{"law": "frictionless"}"#;
-const MOMENT: ContactIncrement = ContactIncrement { dt: 0.3, fading: 0.0, stiffening: 1.0, settles: true };
+const INCREMENT: ContactIncrement = ContactIncrement { dt: 0.3, fading: 0.0, stiffening: 1.0, settles: true };
 
 /// A wavy master of five segments, nodes 0 to 5 from left to right, and slave nodes 6, 7, 8 below it.
 ///
@@ -75,7 +77,7 @@ fn promised(
 ) -> (ContactState, Option<Closed>) {
     let kept = promised.map_or(0.0, |promised| promised.pressure);
     let presumption = Presumption { promised, kept, ..Presumption::default() };
-    let increment = Increment { during: MOMENT, presumption };
+    let increment = PointIncrement { during: INCREMENT, presumption };
     answer(pair, k, old, x, increment)
 }
 
@@ -84,7 +86,7 @@ fn answer(
     k: usize,
     old: &ContactState,
     x: &Positions,
-    increment: Increment,
+    increment: PointIncrement,
 ) -> (ContactState, Option<Closed>) {
     let x = &displaced(x);
     // Every point had a foot before.
@@ -100,8 +102,8 @@ fn finish(
     pair: &ContactPair,
     k: usize,
     old: &ContactState,
-    increment: Increment,
-    place: Place,
+    increment: PointIncrement,
+    place: PointPlace,
 ) -> (ContactState, Option<Closed>) {
     let loading = Loading::new(pair, &pair.points[k], old, increment, place);
     let answer = pair.law(&pair.points[k]).respond(&old.friction, loading.sliding);
@@ -262,16 +264,17 @@ fn slip_counts_from_touch() {
         let x = vec![Vector2::new(0.2, -deep), Vector2::new(0.9, -deep)];
         let old = pulled(pair, 0, &x, 0.005, pair.laws[0].initial_state(), 0.03);
         check_tangent(pair, 0, &old, &x, "after touch");
-        let friction = answer(pair, 0, &old, &x, Increment { during, presumption: Presumption::default() }).0.friction;
+        let friction =
+            answer(pair, 0, &old, &x, PointIncrement { during, presumption: Presumption::default() }).0.friction;
         assert!((friction.pressure - 10.0).abs() < 1e-12);
         let expected = 700.0 * 0.005 * d / (0.03 + d);
         assert!((friction.traction - expected).abs() < 1e-12, "{}, not {expected}", friction.traction);
     };
-    check(&plain, 0.01, MOMENT, 0.02 + 0.01);
-    check(&plain, 0.01, ContactIncrement { settles: false, ..MOMENT }, 0.01);
+    check(&plain, 0.01, INCREMENT, 0.02 + 0.01);
+    check(&plain, 0.01, ContactIncrement { settles: false, ..INCREMENT }, 0.01);
     let augmented = ContactPair { penetration: Some(1e-6), ..plain };
-    check(&augmented, 0.01, MOMENT, 0.02);
-    check(&augmented, 0.0001, ContactIncrement { stiffening: 100.0, ..MOMENT }, 0.02);
+    check(&augmented, 0.01, INCREMENT, 0.02);
+    check(&augmented, 0.0001, ContactIncrement { stiffening: 100.0, ..INCREMENT }, 0.02);
 }
 
 /// Friction of a point that has just closed far too deep answers under the pressure carried, and goes on from there in a
@@ -284,8 +287,10 @@ fn a_carried_pressure_is_where_the_answer_is_exact() {
     let at = |y: f64| vec![Vector2::new(0.2, y), Vector2::new(0.9, y)];
     for (back, gap) in [(0.002, 0.03), (0.2, 0.03), (0.002, 0.0), (0.2, 0.0)] {
         let old = pulled(&pair, 0, &at(-0.04), back, pair.laws[0].initial_state(), gap);
-        let increment =
-            |carried| Increment { during: MOMENT, presumption: Presumption { carried, ..Presumption::default() } };
+        let increment = |carried| PointIncrement {
+            during: INCREMENT,
+            presumption: Presumption { carried, ..Presumption::default() },
+        };
         let (deep, closed) = answer(&pair, 0, &old, &at(-0.04), increment(Some(5.0)));
         assert!((deep.friction.pressure - 40.0).abs() < 1e-12);
         let promise = closed.expect("a closed point").promise(|dof| if dof % 2 == 1 { 0.035 } else { 0.0 });
@@ -455,7 +460,7 @@ fn mortar_tangent_on_rigid_bodies_equals_differences() {
                 ];
                 let answer = |x: &Positions| {
                     let (before, x) = (displaced(&before), displaced(x));
-                    pair.respond(&old, &before, MOMENT, |_| Presumption::default(), &x).expect("an answer")
+                    pair.respond(&old, &before, INCREMENT, |_| Presumption::default(), &x).expect("an answer")
                 };
                 for (k, (_, found)) in answer(&x).into_iter().enumerate() {
                     let Some(Closed { contribution, .. }) = found else { continue };
@@ -556,7 +561,7 @@ fn initial_pressure_is_the_first_multiplier_of_the_augmented_lagrangian() {
     pair.start_closed(vec![InitialTraction { pressure: 20.0, traction: 2.0 }; pair.points.len()], &at).expect("feet");
     let old = pair.initial_states(&at);
     for stiffening in [1.0, 100.0] {
-        let during = ContactIncrement { stiffening, ..MOMENT };
+        let during = ContactIncrement { stiffening, ..INCREMENT };
         let answer = pair.respond(&old, &at, during, |_| Presumption::default(), &at).expect("an answer");
         let states: Vec<ContactState> = answer.into_iter().map(|(state, _)| state).collect();
         for state in &states {
@@ -606,7 +611,7 @@ fn points_that_nothing_faced_slip_past_what_they_meet() {
         let old = vec![old; pair.points.len()];
         let answer = |u: &[f64]| {
             let x = Configuration::new(&x, u);
-            pair.respond(&old, &before, MOMENT, |_| Presumption::default(), &x).expect("an answer")
+            pair.respond(&old, &before, INCREMENT, |_| Presumption::default(), &x).expect("an answer")
         };
         let mut closed = 0;
         for (k, (state, found)) in answer(&here).into_iter().enumerate() {
@@ -725,7 +730,7 @@ fn check_mortar_tangent(
         slip: 0.0,
         multiplier: 0.0,
     };
-    let increment = Increment { during: MOMENT, presumption: Presumption::default() };
+    let increment = PointIncrement { during: INCREMENT, presumption: Presumption::default() };
     let evaluate = |x: &Positions| {
         let x = Configuration::undeformed(x);
         let is = mortar.overlaps(surface, &Index::new(&pair.master, &x), &x);
@@ -733,7 +738,7 @@ fn check_mortar_tangent(
         closes(pair, &pair.points[k], meeting.gap, &old, increment, &x)
             .then(|| {
                 let Meeting { kinematics, gap, foot } = meeting;
-                let place = Place { gap, foot: Some(foot), kinematics: Some(kinematics) };
+                let place = PointPlace { gap, foot: Some(foot), kinematics: Some(kinematics) };
                 finish(pair, k, &old, increment, place).1.expect("a closed point")
             })
             .map(|closed| closed.contribution)

@@ -8,11 +8,11 @@ use fecontact::linear::{Multifrontal, Pattern, SparseMatrix};
 use fecontact::model::builder::{Contact, IncrementSettings, Load, LoadStep, Support};
 use fecontact::model::method::Method;
 use fecontact::model::{Model, NewtonSettings};
-use fecontact::solve::newton::{NewtonFailure, Outcome, Settings, solve};
+use fecontact::solve::newton::{Iterated, NewtonFailure, Settings, solve};
 use serde_json::{Value, json};
 
 /// Solve r(u) = 0 from a start value; `equation` gives r and r′, or fails.
-fn root(start: f64, equation: impl Fn(f64) -> Result<[f64; 2], ()>) -> Outcome<()> {
+fn root(start: f64, equation: impl Fn(f64) -> Result<[f64; 2], ()>) -> Iterated<()> {
     let pattern = std::sync::Arc::new(Pattern::new(1, std::iter::once(&[0usize][..])));
     let tangent = SparseMatrix::zero(pattern);
     let mut system = System { residual: vec![0.0; 2], tangent, forces: 1.0, imbalance: 1.0 };

@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use crate::common::{self, Blocks, close};
 use fecontact::case;
-use fecontact::equations::term::{Dependence, Term};
+use fecontact::equations::dependence::Dependence;
+use fecontact::equations::term::Term;
 use fecontact::equations::{Assembler, Trial};
 use fecontact::linear::system::Request;
 use fecontact::mesh::section::Section;

@@ -1,6 +1,6 @@
 use nalgebra::Matrix2;
 
-use super::isotropic::{Energy, Invariants};
+use super::isotropic::{Invariants, StrainEnergy};
 use super::{ElasticConstants, InvertedElement, Lame, Material, MaterialResponse};
 use crate::laws::parameter::InvalidParameter;
 
@@ -61,7 +61,7 @@ impl Material for Hencky {
         let areal = lambda + shear;
         let x = 0.25 * invariants.distortion / jacobian;
         let ShearStrain { d, a, l } = ShearStrain::from_sinh_squared(x);
-        let energy = Energy {
+        let energy = StrainEnergy {
             w: 0.5 * (areal * ln_j * ln_j + shear * d * d),
             w_m: 0.5 * shear * a / jacobian,
             w_j: (areal * ln_j - 2.0 * shear * a * x) / jacobian,

@@ -25,7 +25,7 @@ pub(super) struct Invariants {
 }
 
 /// W(m, J) and its derivatives.
-pub(super) struct Energy {
+pub(super) struct StrainEnergy {
     pub w: f64,
     pub w_m: f64,
     pub w_j: f64,
@@ -58,8 +58,8 @@ impl Invariants {
     ///     + 4 W_mm D ⊗ D + 2 W_mJ (D ⊗ cof F + cof F ⊗ D) + W_JJ cof F ⊗ cof F
     /// ```
     #[inline(always)]
-    pub(super) fn response(&self, energy: &Energy, stress_zz: f64) -> MaterialResponse {
-        let Energy { w, w_m, w_j, w_mm, w_mj, w_jj } = *energy;
+    pub(super) fn response(&self, energy: &StrainEnergy, stress_zz: f64) -> MaterialResponse {
+        let StrainEnergy { w, w_m, w_j, w_mm, w_mj, w_jj } = *energy;
         let stress = 2.0 * w_m * self.deviation + w_j * self.cofactor;
 
         let d = Vector4::from_column_slice(self.deviation.as_slice());

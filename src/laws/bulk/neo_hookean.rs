@@ -1,6 +1,6 @@
 use nalgebra::Matrix2;
 
-use super::isotropic::{Energy, Invariants};
+use super::isotropic::{Invariants, StrainEnergy};
 use super::{ElasticConstants, InvertedElement, Lame, Material, MaterialResponse};
 use crate::laws::parameter::InvalidParameter;
 
@@ -42,7 +42,7 @@ impl NeoHookean {
         let Lame { lambda, shear } = self.lame;
         let (jacobian, j, ln_j) = (invariants.jacobian, invariants.volume_strain, invariants.ln_jacobian() + h.ln());
         let out_of_plane = 0.5 * (h - 1.0) * (h + 1.0);
-        let energy = Energy {
+        let energy = StrainEnergy {
             w: 0.5 * shear * invariants.distortion + shear * (j + out_of_plane - ln_j) + 0.5 * lambda * ln_j * ln_j,
             w_m: 0.5 * shear,
             w_j: (shear * j + lambda * ln_j) / jacobian,

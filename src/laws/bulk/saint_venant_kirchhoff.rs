@@ -1,6 +1,6 @@
 use nalgebra::Matrix2;
 
-use super::isotropic::{Energy, Invariants};
+use super::isotropic::{Invariants, StrainEnergy};
 use super::{ElasticConstants, InvertedElement, Lame, Material, MaterialResponse};
 use crate::laws::parameter::InvalidParameter;
 
@@ -51,7 +51,7 @@ impl Material for SaintVenantKirchhoff {
         let (lambda, shear, constrained) = (self.lame.lambda, self.lame.shear, self.p_wave_modulus());
         let (m, j) = (invariants.distortion, invariants.volume_strain);
         let trace = 0.5 * m + j;
-        let energy = Energy {
+        let energy = StrainEnergy {
             w: 0.5 * (constrained * trace * trace + shear * (m - j * j)),
             w_m: 0.5 * (constrained * trace + shear),
             w_j: constrained * trace - shear * j,

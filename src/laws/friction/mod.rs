@@ -17,11 +17,15 @@ mod parameters;
 mod path;
 mod peak;
 mod rate_and_state;
+mod relaxation;
 mod root;
+mod sliding_curve;
 mod slip_equation;
 mod slip_weakening;
 pub mod state;
+mod sub_step;
 mod super_subloading;
+mod super_subloading_parameters;
 
 use std::fmt::Debug;
 
@@ -32,10 +36,12 @@ pub use coulomb::{Coulomb, CoulombParameters};
 pub use frictionless::Frictionless;
 pub use parameters::FrictionParameters;
 pub use peak::Integration;
-pub use rate_and_state::{RateAndState, RateAndStateParameters, StateEvolution};
+pub use rate_and_state::{RateAndState, RateAndStateParameters};
+pub use relaxation::StateEvolution;
 pub use slip_weakening::{SlipWeakening, SlipWeakeningParameters};
 pub use state::{FrictionState, Regime};
-pub use super_subloading::{SuperSubloading, SuperSubloadingParameters};
+pub use super_subloading::SuperSubloading;
+pub use super_subloading_parameters::SuperSubloadingParameters;
 
 /// |q| where plastic slip sets in, in an increment along which the elastic traction and the strength both go evenly from
 /// their first value to their second, and the traction ends above. One that is above from the start slips from there.

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::root::{Trial, bracketed_root};
+use super::root::{Argument, bracketed_root};
 
 /// How the evolution of an increment is integrated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -22,7 +22,7 @@ pub enum Integration {
 /// μ̇ = −κ (μ/μ_k − 1)^m λ + ξ (1 − μ/μ_s)^n
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Evolution {
+pub(super) struct PeakEvolution {
     pub(super) mu_s: f64,
     pub(super) mu_k: f64,
     kappa: f64,
@@ -53,7 +53,7 @@ pub(super) struct Peak {
 /// Largest a and b of [`Evolution::at_uniform_rate`]: μ is steady beyond, and squares must not overflow.
 const LARGEST: f64 = 1e100;
 
-impl Evolution {
+impl PeakEvolution {
     /// (μ_s, μ_k) [-], (κ [1/L], ξ [1/T]), (m, n) [-]
     pub(super) fn new(
         (mu_s, mu_k): (f64, f64),
@@ -150,7 +150,7 @@ impl Evolution {
             let ((loss, loss_slope), (gain, gain_slope)) = (self.loss(mu), self.gain(mu));
             let value = old - mu - weakening * loss + recovery * gain;
             let stiffness = 1.0 + scaled(loss_slope, weakening) + scaled(gain_slope, recovery);
-            Trial { value, step: value / stiffness, done: value.abs() <= f64::EPSILON * self.mu_k }
+            Argument { value, step: value / stiffness, done: value.abs() <= f64::EPSILON * self.mu_k }
         });
         mu
     }

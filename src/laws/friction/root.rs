@@ -4,7 +4,7 @@
 const MOST_PROPOSALS: usize = 100;
 
 /// What f says about a trial argument of [`bracketed_root`].
-pub(super) struct Trial {
+pub(super) struct Argument {
     /// f at the argument
     pub value: f64,
     /// Change of the argument that Newton's method, or a better one, proposes
@@ -19,7 +19,7 @@ pub(super) struct Trial {
 /// bracket is halved. The search ends where f says so or the argument is resolved. The last call of f is always at the
 /// answer, so a caller may keep what f computed there.
 #[inline]
-pub(super) fn bracketed_root((mut low, mut high): (f64, f64), guess: f64, mut f: impl FnMut(f64) -> Trial) {
+pub(super) fn bracketed_root((mut low, mut high): (f64, f64), guess: f64, mut f: impl FnMut(f64) -> Argument) {
     let resolution = 8.0 * f64::EPSILON * low.abs().max(high.abs());
     let mut step = high - low;
     let mut x = if low < guess && guess < high { guess } else { low + 0.5 * step };

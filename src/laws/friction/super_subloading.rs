@@ -1,78 +1,10 @@
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
-use super::path::{LoadPath, mean_traction};
-use super::peak::{Evolution, Integration};
-use super::slip_equation::{ROUND_OFF, SlidingCurve, SlipEquation};
-use super::{Answer, Approach, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, Regime, Sliding};
+use super::peak::{Integration, PeakEvolution};
+use super::sliding_curve::SlidingCurve;
+use super::slip_equation::{ROUND_OFF, SlipEquation};
+use super::sub_step::{LoadPath, mean_traction};
+use super::super_subloading_parameters::SuperSubloadingParameters;
+use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, Regime, Sliding};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
-
-/// Parameters of [`SuperSubloading`] as the case file writes them.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SuperSubloadingParameters {
-    /// μ_s: static friction coefficient, μ_s ≥ μ_k [-]
-    pub mu_s: f64,
-    /// μ_k: kinetic friction coefficient, μ_k > 0 [-]
-    pub mu_k: f64,
-    /// α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies [F/L³]
-    #[serde(default)]
-    pub alpha_t: Option<f64>,
-    /// r: rate at which R approaches 1 with plastic slip, r > 0 [1/L]
-    pub r: f64,
-    /// κ: loss of structure with plastic slip, κ ≥ 0 [1/L]
-    #[serde(default)]
-    pub kappa: f64,
-    /// ξ: recovery of structure with time, ξ ≥ 0 [1/T]
-    #[serde(default)]
-    pub xi: f64,
-    /// m: exponent of the loss, m > 0 [-]
-    #[serde(default = "one")]
-    pub m: f64,
-    /// n: exponent of the recovery, n > 0 [-]
-    #[serde(default = "one")]
-    pub n: f64,
-    /// 1/R*₀: structure at first touch, from 1 (μ = μ_k) to μ_s/μ_k (μ = μ_s, the default) [-]
-    #[serde(default)]
-    pub structure: Option<f64>,
-    /// U(R): how R approaches 1
-    #[serde(default)]
-    pub approach: Approach,
-    /// R_e: elastic core, no plastic slip for R ≤ R_e, 0 ≤ R_e < 1 [-]
-    #[serde(default)]
-    pub elastic_core: f64,
-    /// How an increment is integrated
-    #[serde(default)]
-    pub integration: Integration,
-    /// Error allowed to the controlled integration, as a share of μ_s p, from 1e-12 to 0.1; 1e-6 by default [-]
-    #[serde(default)]
-    pub tolerance: Option<f64>,
-}
-
-impl SuperSubloadingParameters {
-    /// Neither weakening nor recovery, the tangential stiffness left to the contact, all else as in a case that says no more.
-    pub fn new(mu_s: f64, mu_k: f64, r: f64) -> Self {
-        Self {
-            mu_s,
-            mu_k,
-            alpha_t: None,
-            r,
-            kappa: 0.0,
-            xi: 0.0,
-            m: one(),
-            n: one(),
-            structure: None,
-            approach: Approach::default(),
-            elastic_core: 0.0,
-            integration: Integration::default(),
-            tolerance: None,
-        }
-    }
-}
-
-fn one() -> f64 {
-    1.0
-}
 
 /// Super/subloading friction: slip weakens the interface, rest heals it.
 ///
@@ -82,7 +14,7 @@ fn one() -> f64 {
 /// μ̇ = −κ (μ/μ_k − 1)^m λ + ξ (1 − μ/μ_s)^n             weakening, recovery          (3)
 /// ```
 /// λ ≥ 0 is the rate of plastic slip; R falls freely while λ = 0. With an elastic core R_e, ln R becomes
-/// ln (R − R_e)/(1 − R_e); [`Approach`] offers a second U. Units: q, p [F/L²], α_t [F/L³], λ and v [L/T],
+/// ln (R − R_e)/(1 − R_e); [`Approach`](super::Approach) offers a second U. Units: q, p [F/L²], α_t [F/L³], λ and v [L/T],
 /// r and κ [1/L], ξ [1/T], all others [-].
 ///
 /// An increment leads slip, pressure and time along straight lines, Δu, p₀ → p, Δt. While R can only fall it is elastic.
@@ -91,7 +23,7 @@ fn one() -> f64 {
 /// ```text
 /// G(Δλ) = |q_tr| − α_t Δλ − R(Δλ) μ(Δλ) p = 0,   0 < Δλ ≤ |q_tr|/α_t,   q_tr = q₀ + α_t Δu     (4)
 /// ```
-/// with R from (2) integrated exactly ([`Approach`]). G is positive at the left end and not at the right, so a bracketed
+/// with R from (2) integrated exactly ([`Approach`](super::Approach)). G is positive at the left end and not at the right, so a bracketed
 /// search cannot fail. G falls throughout, and the root is the only one, while α_t exceeds R p |dμ/dΔλ|; where this
 /// cannot be guaranteed ([`FrictionLaw::uniqueness_limit`]), bounds of the slope of G single out the first root.
 ///
@@ -115,7 +47,7 @@ pub struct SuperSubloading {
     alpha_t: f64,
     initial_mu: f64,
     curve: SlidingCurve,
-    evolution: Evolution,
+    evolution: PeakEvolution,
     integration: Integration,
     tolerance: f64,
 }
@@ -151,7 +83,7 @@ impl SuperSubloading {
             alpha_t,
             initial_mu: (mu_k * structure).min(mu_s),
             curve: SlidingCurve::new(approach, elastic_core, r),
-            evolution: Evolution::new((mu_s, mu_k), (kappa, xi), (m, n), integration),
+            evolution: PeakEvolution::new((mu_s, mu_k), (kappa, xi), (m, n), integration),
             integration,
             tolerance,
         })

@@ -4,8 +4,10 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::dense::Panel;
+use super::forest::Forest;
+use super::front::{Front, Run};
 use super::jobs::{Job, Waiting, lock};
-use super::symbolic::{Entry, Forest, Front, Run, Symbolic};
+use super::symbolic::{Entry, Symbolic};
 
 /// L and U of all fronts.
 #[derive(Default)]

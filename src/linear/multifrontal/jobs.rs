@@ -5,7 +5,9 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use rayon::prelude::*;
 
-use super::symbolic::{Forest, Front, Symbolic};
+use super::forest::Forest;
+use super::front::Front;
+use super::symbolic::Symbolic;
 
 /// A chain of heavy fronts and all that lies below it; `P` is what each forest or heavy front owns of the data.
 pub struct Job<'a, P> {

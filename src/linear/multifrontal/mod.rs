@@ -14,6 +14,8 @@
 
 mod dense;
 mod factor;
+mod forest;
+mod front;
 mod jobs;
 mod order;
 mod scale;

@@ -4,8 +4,10 @@ use pulp::{Arch, NullaryFnOnce};
 
 use super::dense::{exchange, subtract};
 use super::factor::Factors;
+use super::forest::Forest;
+use super::front::Front;
 use super::jobs::{Job, Waiting};
-use super::symbolic::{Forest, Front, Symbolic};
+use super::symbolic::Symbolic;
 
 /// x ← (L U)⁻¹ x in the order of elimination.
 pub fn substitute(symbolic: &Symbolic, factors: &Factors, x: &mut [f64]) {

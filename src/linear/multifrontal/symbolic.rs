@@ -1,71 +1,13 @@
 //! What depends on the pattern alone: fronts, their rows, and where every value goes.
 
 use std::iter;
-use std::ops::Range;
 use std::sync::Arc;
 
 use super::super::{BlockPosition, LinearFailure, Pattern};
+use super::forest::{Forest, forests};
+use super::front::{Front, Run};
 use super::order::order;
 use super::tree::{Elimination, Supernode, supernodes};
-
-/// A dense front: `pivots` unknowns are eliminated, `below` unknowns get the contribution.
-///
-/// ```text
-/// [F₁₁ F₁₂]   pivots        F₁₁ = P L₁₁ U₁₁
-/// [F₂₁ F₂₂]   below         F₂₂ − L₂₁ U₁₂ goes to the parent
-/// ```
-pub struct Front {
-    /// First unknown eliminated here, in the order of elimination
-    pub first: usize,
-    /// Number of unknowns eliminated here
-    pub pivots: usize,
-    /// Nodes below the pivots, as positions in the order of elimination, ascending
-    pub rows: Vec<u32>,
-    /// Row in the parent's front of the first unknown of each node in `rows`
-    pub to_parent: Vec<u32>,
-    /// The rows below that stay together in the parent; the first `inner_runs` of them are eliminated there
-    pub runs: Vec<Run>,
-    /// How many of `runs` are eliminated in the parent
-    pub inner_runs: usize,
-    /// The fronts whose contributions are added to this one
-    pub children: Vec<u32>,
-    /// Whether the depth in the tree is odd
-    pub odd: bool,
-    /// Where the factors lie: L₁₁ over L₂₁ (all rows × pivots), then U₁₂ transposed (below × pivots), by columns
-    pub values: Range<usize>,
-    /// The blocks of A that go to the columns of the pivots
-    pub lower: Range<usize>,
-    /// The blocks of A that go to U₁₂
-    pub upper: Range<usize>,
-}
-
-impl Front {
-    /// Unknowns below the pivots.
-    pub fn below(&self) -> usize {
-        2 * self.rows.len()
-    }
-
-    /// Rows of the front.
-    pub fn size(&self) -> usize {
-        self.pivots + self.below()
-    }
-
-    /// Floating-point operations: LU of the pivots, both panels, the contribution.
-    fn work(&self) -> f64 {
-        let (k, r) = (self.pivots as f64, self.below() as f64);
-        2.0 / 3.0 * k * k * k + 2.0 * k * k * r + 2.0 * k * r * r
-    }
-}
-
-/// Consecutive rows below the pivots of a front that are consecutive in its parent, too.
-pub struct Run {
-    /// The first of them, counted from the first row below
-    pub from: u32,
-    /// Its row in the parent
-    pub to: u32,
-    /// How many they are
-    pub length: u32,
-}
 
 /// A 2×2 block of A and the place of its first value in the panel it goes to.
 pub struct Entry {
@@ -82,15 +24,6 @@ pub struct Symbolic {
     pub entries: Vec<Entry>,
     /// Whole subtrees, light enough to share out among threads. The fronts between are heavy.
     pub forests: Vec<Forest>,
-}
-
-/// Neighbouring subtrees.
-pub struct Forest {
-    pub fronts: Range<usize>,
-    /// The roots of the subtrees, ascending
-    pub roots: Vec<u32>,
-    /// The most values that contributions inside hold at a time
-    pub room: usize,
 }
 
 impl Symbolic {
@@ -153,12 +86,7 @@ fn fronts(pattern: &Pattern, elimination: &Elimination, supernodes: &[Supernode]
             fronts[child as usize].rows.iter().for_each(|&row| add(row as usize));
         }
         rows.sort_unstable();
-        for &child in &children {
-            let child = &mut fronts[child as usize];
-            child.to_parent = places(&child.rows, first, end, &rows);
-            let inner = child.rows.partition_point(|&row| (row as usize) < end);
-            (child.runs, child.inner_runs) = runs(&child.to_parent, inner);
-        }
+        children.iter().for_each(|&child| place_in_parent(&mut fronts[child as usize], first, end, &rows));
         if let Some(&row) = rows.first() {
             families[owner[row as usize]].push(s as u32);
         }
@@ -180,13 +108,25 @@ fn fronts(pattern: &Pattern, elimination: &Elimination, supernodes: &[Supernode]
             upper: 0..0,
         });
     }
+    mark_odd(&mut fronts);
+    fronts
+}
+
+/// Where the rows of a child lie in its parent, a front of the positions `first..end` and then `rows`.
+fn place_in_parent(child: &mut Front, first: usize, end: usize, rows: &[u32]) {
+    child.to_parent = places(&child.rows, first, end, rows);
+    let inner = child.rows.partition_point(|&row| (row as usize) < end);
+    (child.runs, child.inner_runs) = runs(&child.to_parent, inner);
+}
+
+/// Mark the fronts whose depth in the tree is odd.
+fn mark_odd(fronts: &mut [Front]) {
     for parent in (0..fronts.len()).rev() {
         for child in std::mem::take(&mut fronts[parent].children) {
             fronts[child as usize].odd = !fronts[parent].odd;
             fronts[parent].children.push(child);
         }
     }
-    fronts
 }
 
 /// The supernode of each position.
@@ -246,65 +186,6 @@ fn entries(pattern: &Pattern, elimination: &Elimination, fronts: &mut [Front]) -
         front.upper = front.lower.end..entries.len();
     }
     entries
-}
-
-/// Share of the whole work below which subtrees are lumped together. Fixed, so that the sums do not depend on threads.
-const FOREST_SHARE: f64 = 1.0 / 32.0;
-
-/// Whole subtrees, neighbours lumped up to a share of the work, from the first front to the last.
-fn forests(fronts: &[Front]) -> Vec<Forest> {
-    let (first, work) = subtrees(fronts);
-    let limit = FOREST_SHARE * fronts.iter().map(Front::work).sum::<f64>();
-    let mut forests: Vec<Forest> = Vec::new();
-    let mut lumped = 0.0;
-    let mut end = fronts.len();
-    while end > 0 {
-        let root = end - 1;
-        if work[root] > limit {
-            end = root;
-            continue;
-        }
-        match forests.last_mut() {
-            Some(forest) if forest.fronts.start == end && lumped + work[root] <= limit => {
-                forest.fronts.start = first[root];
-                forest.roots.push(root as u32);
-                lumped += work[root];
-            }
-            _ => {
-                forests.push(Forest { fronts: first[root]..end, roots: vec![root as u32], room: 0 });
-                lumped = work[root];
-            }
-        }
-        end = first[root];
-    }
-    forests.reverse();
-    for forest in &mut forests {
-        forest.roots.reverse();
-        forest.room = room(&fronts[forest.fronts.clone()], fronts);
-    }
-    forests
-}
-
-/// The most values that the contributions of consecutive fronts hold at a time.
-fn room(forest: &[Front], fronts: &[Front]) -> usize {
-    let (mut held, mut peak) = (0, 0);
-    for front in forest {
-        held += front.below().pow(2);
-        peak = peak.max(held);
-        held -= front.children.iter().map(|&child| fronts[child as usize].below().pow(2)).sum::<usize>();
-    }
-    peak
-}
-
-/// First front of each subtree and the work of it all.
-fn subtrees(fronts: &[Front]) -> (Vec<usize>, Vec<f64>) {
-    let mut first: Vec<usize> = Vec::with_capacity(fronts.len());
-    let mut work: Vec<f64> = Vec::with_capacity(fronts.len());
-    for (f, front) in fronts.iter().enumerate() {
-        first.push(front.children.first().map_or(f, |&child| first[child as usize]));
-        work.push(front.work() + front.children.iter().map(|&child| work[child as usize]).sum::<f64>());
-    }
-    (first, work)
 }
 
 /// Join the nodes whose places follow each other, and count the runs of the first `inner` nodes.

@@ -62,9 +62,9 @@ pub fn bodies(given: Vec<GivenBody>, mesh: &Mesh) -> Checked<(Vec<Body>, Vec<usi
 }
 
 fn check_damping(damping: Damping, material: &dyn Material, place: &str) -> Checked<()> {
-    let Damping { mass, retardation: stiffness } = damping;
+    let Damping { mass, retardation } = damping;
     check_not_negative(&format!("{place}.mass"), mass)?;
-    check_not_negative(&format!("{place}.stiffness"), stiffness)?;
+    check_not_negative(&format!("{place}.stiffness"), retardation)?;
     if mass > 0.0 && material.density() == 0.0 {
         let message = "has no effect on a body without mass: give material.density, or damp by stiffness";
         return Err(ModelError::new(format!("{place}.mass"), message));

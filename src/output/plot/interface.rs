@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::path::Path;
 
-use super::PlotError;
+use super::error::PlotError;
 use super::read::Columns;
 
 /// Columns that are read.

@@ -2,8 +2,9 @@
 
 use super::axis::Axis;
 use super::chart::{Curve, Figure, Look, Panel};
+use super::error::PlotError;
 use super::read::Columns;
-use super::{PlotError, Source, Units, subtitle};
+use super::source::{Source, Units, subtitle};
 use crate::run::law_report::{Hold, PathPoint, Peaks};
 
 const WANTED: [&str; 8] = ["time", "slip", "pressure", "traction", "R", "mu", "structure", "plastic_slip"];

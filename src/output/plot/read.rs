@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
-use super::PlotError;
+use super::error::PlotError;
 
 /// Columns by name, in the file's order.
 #[derive(Clone, Debug)]

@@ -1,11 +1,11 @@
 //! The figures of a run.
 
-use std::ops::Range;
-
 use super::axis::Axis;
 use super::chart::{Curve, Figure, Look, Panel};
+use super::convergence::{HARDEST, increments, residuals};
+use super::error::PlotError;
 use super::read::Columns;
-use super::{PlotError, Source, Units, subtitle};
+use super::source::{Source, Units, subtitle};
 use crate::laws::friction::FrictionParameters;
 
 /// Columns of `history.csv` that are drawn: these, ...
@@ -29,9 +29,6 @@ const NOISE: f64 = 1e-9;
 
 /// Part of its size that a force must reach backwards for its lower bound to be drawn.
 const BACKWARDS: f64 = 0.25;
-
-/// Increments whose residuals are drawn, those with the most linear solves.
-const HARDEST: usize = 100;
 
 /// One folder.
 struct Run<'a> {
@@ -263,32 +260,6 @@ impl Runs<'_> {
         }
         Ok(panels)
     }
-}
-
-/// Rows of `newton.csv` that belong to each increment, failed attempts included.
-fn increments(newton: &Columns) -> Result<Vec<Range<usize>>, PlotError> {
-    let numbers = newton.get("increment")?;
-    let mut start = 0;
-    let rows = numbers.chunk_by(|a, b| a == b).map(|rows| {
-        start += rows.len();
-        start - rows.len()..start
-    });
-    Ok(rows.collect())
-}
-
-/// Residual over iteration in the hardest increments, one attempt after the other, broken between them.
-fn residuals(newton: &Columns, increments: &[Range<usize>]) -> Result<Vec<[f64; 2]>, PlotError> {
-    let (points, iterations) = (newton.points("iteration", "residual")?, newton.get("iteration")?);
-    let mut hardest: Vec<&Range<usize>> = increments.iter().collect();
-    hardest.sort_by_key(|rows| std::cmp::Reverse(rows.len()));
-    let mut curve = Vec::new();
-    for row in hardest.into_iter().take(HARDEST).cloned().flatten() {
-        if iterations[row] == 1.0 {
-            curve.push([f64::NAN; 2]);
-        }
-        curve.push(points[row]);
-    }
-    Ok(curve)
 }
 
 /// The largest |y|.

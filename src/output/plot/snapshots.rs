@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::axis::Axis;
 use super::chart::{Curve, Figure, Look, Panel};
 use super::interface::Interface;
-use super::{Source, Units, subtitle};
+use super::source::{Source, Units, subtitle};
 
 /// Times that are shown of an interface without events.
 const TIMES: usize = 6;

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::axis::{Axis, Range};
+use super::colours::{DECADES, colour, level};
 use super::interface::Interface;
+use super::source::{Source, Units};
 use super::svg::{Anchor, Drawing, Label, Stroke};
-use super::{Source, Units};
 
 /// Cells along each axis at most; each shows the highest slip rate within it.
 const CELLS: [usize; 2] = [240, 200];
@@ -16,13 +17,6 @@ const CORNER: [f64; 2] = [76.0, 60.0];
 
 /// Distances of ticks aimed at, along x and y [px].
 const BETWEEN_TICKS: [f64; 2] = [75.0, 42.0];
-
-/// Slip rates are told apart over so many powers of ten below the highest.
-const DECADES: f64 = 4.0;
-
-/// Colours from the lowest to the highest, printed in grey they rise in darkness.
-const COLOURS: [[f64; 3]; 5] =
-    [[255.0, 255.0, 255.0], [253.0, 212.0, 120.0], [240.0, 110.0, 60.0], [170.0, 20.0, 90.0], [40.0, 0.0, 70.0]];
 
 const THIN: Stroke = Stroke { colour: "#222", width: 1.0, dashes: "" };
 
@@ -276,27 +270,10 @@ impl Map<'_> {
 /// Share of a cell by which an interval must reach into it.
 const EDGE: f64 = 1e-6;
 
-/// Colour of a slip rate, 0 to 1.
-fn level(rate: f64, highest: f64) -> f64 {
-    match rate / highest {
-        of if of > 0.0 => (1.0 + of.log10() / DECADES).clamp(0.0, 1.0),
-        _ => 0.0,
-    }
-}
-
 fn bounds(values: &[f64]) -> (f64, f64) {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     (low, high)
-}
-
-fn colour(level: f64) -> String {
-    let at = level * (COLOURS.len() - 1) as f64;
-    let k = (at as usize).min(COLOURS.len() - 2);
-    let mixed = [0, 1, 2].map(|i| COLOURS[k][i] + (at - k as f64) * (COLOURS[k + 1][i] - COLOURS[k][i]));
-    // Few different colours, so that neighbours often share one.
-    let [r, g, b] = mixed.map(|value| (8.0 * (value / 8.0).round()).min(255.0) as u8);
-    format!("#{r:02x}{g:02x}{b:02x}")
 }
 
 fn number(value: f64) -> String {
