@@ -96,6 +96,24 @@ fn every_increment_of_static_and_implicit_runs_can_be_redone_and_resumed() {
     }
 }
 
+/// From output to output in explicit increments; and where a static step turns to them because a contact slips fast.
+#[test]
+fn every_stretch_of_explicit_increments_can_be_redone_and_resumed() {
+    let mut explicit = dragged(json!({}), json!({"explicit": {}}));
+    explicit["steps"][1]["duration"] = json!(0.02);
+    explicit["output"] = json!({"interval": 5e-4});
+    check(&explicit, Path::new("test.json"));
+    let mut breaks =
+        dragged(json!({"friction": {"law": "slip_weakening", "mu_s": 0.6, "mu_d": 0.1, "D_c": 1e-4}}), json!("static"));
+    breaks["steps"][1]["rupture"] = json!({"slip_rate": 0.5});
+    breaks["steps"][1]["dt"] = json!({"initial": 0.02, "min": 1e-3});
+    breaks["steps"][1]["duration"] = json!(0.1);
+    breaks["steps"][1]["supports"][0]["ux"] = json!({"rate": 1.0});
+    let run = finish_at(&breaks, Path::new("test.json"));
+    assert!(run.report.ruptures > 0, "it breaks");
+    check(&breaks, Path::new("test.json"));
+}
+
 #[test]
 fn every_increment_of_committed_cases_can_be_redone_and_resumed() {
     for file in ["cases/coulomb_drag_5k.json", "cases/tube.json"] {
