@@ -1,6 +1,6 @@
 //! Reads gmsh meshes, format MSH 4.1, ASCII or binary.
 //!
-//! The `mshio` crate parses the sections. Around it [`bytes`] checks what `mshio` takes on trust (the format line, the
+//! The `mshio` crate parses the sections. Around it `bytes` checks what `mshio` takes on trust (the format line, the
 //! presence of the sections, the counts in their headers) and reads the names of the physical groups, which it skips.
 
 mod bytes;
