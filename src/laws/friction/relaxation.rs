@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::LawFailure;
 use super::root::{Argument, bracketed_root};
 
-/// Evolution of the state θ of [`RateAndState`](super::RateAndState).
+/// Evolution of the state θ of rate-and-state friction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum StateEvolution {
