@@ -5,8 +5,10 @@ use std::sync::Arc;
 use super::control::{Candidate, Outcome, Outputs, Phase, RESULTS};
 use super::error::Error;
 use super::simulation::Simulation;
+use crate::model::Step;
 use crate::model::state::State;
 use crate::solve::IterationRecord;
+use crate::solve::failure::IncrementFailure;
 use crate::time::increment::advance;
 use crate::time::step_size::{Judgement, bounded, fastest_slip, judge};
 use crate::time::touching::Touching;
@@ -44,16 +46,7 @@ impl Simulation {
                     Judgement { next, .. } => Outcome::Rejected(again(next, touching)),
                 }
             }
-            Err(cause) if !cause.is_retryable() => Outcome::Stopped(self.unsolvable(cause)),
-            Err(_) if shortest && step.rupture.is_some() => Outcome::Cut(self.rupture()),
-            Err(cause) if shortest => {
-                let (step, time, min) = (step.name.clone(), old.time, step.increments.min);
-                Outcome::Stopped(Error::IncrementTooSmall { step, time, dt, min, cause })
-            }
-            Err(_) => {
-                touching.cut();
-                Outcome::Cut(again(CUT * dt, touching))
-            }
+            Err(cause) => self.unsolved(cause, dt, number, touching),
         };
         let increments = usize::from(accepted.is_some());
         let coupling = self.work.assembler.coupling();
@@ -69,6 +62,23 @@ impl Simulation {
             coupling,
             explicit: None,
         }
+    }
+
+    /// What becomes of an increment that could not be solved.
+    fn unsolved(&self, cause: IncrementFailure, dt: f64, number: usize, mut touching: Touching) -> Outcome {
+        let Step { name, increments, rupture, .. } = &*self.step;
+        if !cause.is_retryable() {
+            return Outcome::Stopped(self.unsolvable(cause));
+        }
+        if CUT * dt >= increments.min {
+            touching.cut();
+            return Outcome::Cut(Phase::Implicit { dt: CUT * dt, attempt: number + 1, touching });
+        }
+        if rupture.is_some() {
+            return Outcome::Cut(self.rupture());
+        }
+        let (step, time, min) = (name.clone(), self.state.time, increments.min);
+        Outcome::Stopped(Error::IncrementTooSmall { step, time, dt, min, cause })
     }
 
     /// Where explicit increments begin within an implicit step.
