@@ -14,7 +14,8 @@ pub fn names(pairs: &[ContactPair]) -> Vec<&'static str> {
     of_surfaces.chain(always).chain(["state", "dissipation"]).chain(further).collect()
 }
 
-/// Value of a field at a point after an increment of length `dt`; NaN where the law of the point does not know the name.
+/// Value of a field at a point after an increment of length `dt`. Where a law has none, `R` and `mu` are 0 and `structure` is
+/// 1; any other name that it does not know is NaN.
 ///
 /// | name | meaning |
 /// |---|---|

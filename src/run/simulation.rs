@@ -24,7 +24,8 @@ use crate::solve::Workspace;
 use crate::solve::failure::IncrementFailure;
 use crate::time::explicit::Explicit;
 
-/// A run under way.
+/// A run under way; see the example at the head of the library. To have an increment that is rejected made shorter, drop its
+/// candidate and set `increments.max` of the step by [`Simulation::change`]: dropped alone it is found again, to the same bits.
 pub struct Simulation {
     pub(super) model: Arc<Model>,
     /// The step under way, as its caller may have changed it
@@ -40,7 +41,7 @@ pub struct Simulation {
     earlier: WallSeconds,
 }
 
-/// A run as it was: state, control and counts. What is computed after [`Simulation::resume`] has the same bits as if the run
+/// A run as it was, in this process: state, control and counts, for the same model. What is computed after [`Simulation::resume`] has the same bits as if the run
 /// had never stopped.
 #[derive(Clone)]
 pub struct Saved {
@@ -93,7 +94,8 @@ impl Simulation {
         &self.model
     }
 
-    /// The step under way, or the last one.
+    /// The step of the next increment: after the last increment of a step already the one that follows. That of an accepted
+    /// increment is [`Increment::step`].
     pub fn step(&self) -> &Step {
         &self.step
     }
@@ -210,7 +212,8 @@ impl Simulation {
         self.control.phase = Phase::Complete;
     }
 
-    /// Change loads and supports of the step under way: what changes is so from the next increment on.
+    /// Change loads, supports and bounds of increments of the step under way: what changes is so from the next increment to the
+    /// end of the step; the next one has its own.
     pub fn change(&mut self, change: impl Fn(&mut Step)) {
         let step = Arc::make_mut(&mut self.step);
         change(step);

@@ -198,14 +198,16 @@ pub type Answer = Result<FrictionResponse, LawFailure>;
 ///
 /// Where Δt = 0 the law answers to slip and pressure that come up at once; with p ≤ 0 the surfaces have parted.
 ///
-/// A law of one parameter, a film of oil, is written like this; [`ContactPair::laws`](crate::contact::pair::ContactPair)
-/// takes it boxed:
+/// A law of one parameter, a film of oil, is written like this. A law that can be cloned is friction of a contact as it is,
+/// `Contact::new("base", "block_bottom", "ground_top", Oil { viscosity: 2.0 })`; nothing has to be registered. What it remembers
+/// besides, at most [`MOST_VARIABLES`] numbers, it names in [`variables`](Self::variables) (the k-th name is that of
+/// `state.variables[k]`), and they appear by name in tables, frames and `Simulation::contact_field`:
 ///
 /// ```
 /// use fecontact::laws::friction::{FrictionLaw, FrictionResponse, FrictionState, LawFailure, Regime, Sliding};
 ///
 /// /// Viscous friction, q = η v.
-/// #[derive(Debug)]
+/// #[derive(Clone, Debug)]
 /// struct Oil {
 ///     /// η: viscosity over thickness of the film, η > 0 [F·T/L³]
 ///     viscosity: f64,

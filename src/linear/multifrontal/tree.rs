@@ -159,8 +159,11 @@ pub fn supernodes(elimination: &Elimination) -> Vec<Supernode> {
         let mut current = Supernode { first, end: last + 1, below: counts[last] - 1, zeros: 0 };
         while let Some(child) = supernodes.last() {
             // In postorder the one before is a child or belongs to another subtree.
+            if parents[child.end - 1] >= current.end {
+                break;
+            }
             let merged = current.with_child(child);
-            if parents[child.end - 1] >= current.end || !merged.worth_it() {
+            if !merged.worth_it() {
                 break;
             }
             current = merged;

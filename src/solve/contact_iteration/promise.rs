@@ -4,12 +4,11 @@
 //! Switch `promise`; `aid_promise` counts the closed points whose own tractions are others.
 //!
 //! The first linear solve of an increment has none before it and goes by the start value. Extrapolated past the edge of
-//! a contact that penetrates far too deep, so that no pressure is taken for promised which is more than twice the
+//! a contact, points penetrate far too deep, so that no pressure is taken for promised which is more than twice the
 //! committed one (switch `limit`; `aid_limit` counts the points to which this happens).
 //!
 //! Source: what p + δp leaves out is the second term of the expansion of the traction in the correction; that it is of
 //! second order is tested (`tests/contact/contact.rs`). The limit is a rule of thumb.
-//!
 
 use crate::contact::force::{Closed, ContactState, Tractions};
 use crate::contact::pair::Presumption;
