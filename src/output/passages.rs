@@ -73,7 +73,7 @@ impl Interface {
                     position += (at - pair.points[k - 1].at(&x)).norm();
                 }
                 let length = pair.points[k].current_length(&x);
-                let rubs = pair.law(&pair.points[k]).stiffness() > 0.0;
+                let rubs = !pair.law(&pair.points[k]).is_frictionless();
                 let (at, arrivals) = (at.into(), Vec::new());
                 points.push(Point { line, position, at, length, rubs, slip: 0.0, rate: 0.0, arrivals });
             }

@@ -3,11 +3,15 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::common::{self, Blocks, Finished, close, finish, model};
+use crate::common::{self, Blocks, Finished, close, finish, floor, linear, model};
+use fecontact::laws::friction::{FrictionLaw, FrictionResponse, FrictionState, LawFailure, Regime, Sliding};
 use fecontact::linear::SparseLu;
 use fecontact::model::Model;
+use fecontact::model::boundary::Drive;
+use fecontact::model::builder::{Contact, IncrementSettings, LoadStep, Support};
 use fecontact::model::state::State;
 use fecontact::output::warnings::Warnings;
+use fecontact::run::Simulation;
 use fecontact::run::error::Error;
 use fecontact::run::observer::{Attempt, Observer};
 use fecontact::run::run;
@@ -698,4 +702,66 @@ fn friction_left_in_doubt_by_touch_is_told() {
     let single = told(1.0);
     assert!(single.len() == 1 && single[0].contains("step `in`") && single[0].contains("lower dt.min"), "{single:?}");
     assert_eq!(told(1e-3), Vec::<String>::new());
+}
+
+/// A film of oil, q = η v: it resists slip and stores nothing.
+#[derive(Clone, Debug)]
+struct Oil(f64);
+
+impl FrictionLaw for Oil {
+    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Result<FrictionResponse, LawFailure> {
+        let Sliding { slip, pressure, dt } = sliding.checked()?;
+        if pressure <= 0.0 || dt == 0.0 {
+            return FrictionResponse::elastic(old.stuck(0.0, pressure.max(0.0)), 0.0).checked(1.0);
+        }
+        let dtraction_dslip = self.0 / dt;
+        let traction = dtraction_dslip * slip;
+        let state = FrictionState {
+            plastic_slip: old.plastic_slip + slip,
+            plastic_increment: slip,
+            dissipation: old.dissipation + traction * slip,
+            regime: if slip == 0.0 { Regime::Stick } else { Regime::Slip },
+            ..old.stuck(traction, pressure)
+        };
+        FrictionResponse { state, dtraction_dslip, ..Default::default() }.checked(dtraction_dslip)
+    }
+
+    fn stiffness(&self) -> f64 {
+        0.0
+    }
+}
+
+/// A periodic slab on oil, its top drawn at v from rest: s = v (t − τ (1 − e^(−t/τ))), τ = η h/G. A law without an elastic part
+/// is under error control like any other, and may slip too fast for static increments.
+#[test]
+fn friction_that_stores_nothing_is_under_error_control() {
+    const V: f64 = 1e-3;
+    const TAU: f64 = 0.5;
+    let slab = |step: LoadStep| {
+        let mesh = Blocks::default().rectangle("slab", [4, 4], [0.0, 0.0], [1.0, 1.0]).mesh();
+        let drawn = Support::on("slab_top").ux(Drive::Rate(V)).uy(0.0);
+        Model::builder(mesh)
+            .body("slab", linear(260.0, 0.3, 100.0))
+            .periodic("slab_left", "slab_right")
+            .contact(Contact::new("base", "slab_bottom", floor(), Oil(100.0 * TAU)).alpha_n(1e4).initial(1.0, 0.0))
+            .step(step.support(drawn))
+            .build()
+            .expect("a good model")
+    };
+    let error = 1e-6;
+    let increments = IncrementSettings { initial: 2.5, min: None, max: None, error: Some(error) };
+    let mut run = Simulation::new(slab(LoadStep::new("draw", 5.0).dt(increments)));
+    let mut worst = 0.0f64;
+    while let Some(increment) = run.next_increment().expect("it is solved") {
+        let t = increment.state.time;
+        let exact = V * (t - TAU * (1.0 - (-t / TAU).exp()));
+        let slips = run.contact_field("base", "slip").expect("a field");
+        worst = slips.iter().fold(worst, |worst, slip| worst.max((slip.abs() - exact).abs()));
+    }
+    println!("{} increments, off by {worst:e} at most", run.report().increments);
+    assert!(worst < 20.0 * error && run.report().rejected > 0, "off by {worst:e}");
+    let increments = IncrementSettings { initial: 0.1, min: Some(0.05), max: None, error: None };
+    let mut run = Simulation::new(slab(LoadStep::new("draw", 0.6).dt(increments).rupture(0.5 * V)));
+    while run.next_increment().expect("it is solved").is_some() {}
+    assert!(run.report().ruptures > 0, "the slip rate passes v/2 at τ ln 2 = 0.35");
 }

@@ -1,7 +1,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, Sliding, traction_at_yield};
+use super::yielding::traction_at_yield;
+use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, Sliding};
 use crate::laws::parameter::{InvalidParameter, require_positive};
 
 /// Parameters of [`Coulomb`] as the case file writes them.

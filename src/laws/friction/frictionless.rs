@@ -21,6 +21,10 @@ impl FrictionLaw for Frictionless {
         0.0
     }
 
+    fn is_frictionless(&self) -> bool {
+        true
+    }
+
     fn starting_limit(&self, _pressure: f64) -> f64 {
         0.0
     }

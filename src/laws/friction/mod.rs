@@ -26,6 +26,7 @@ pub mod state;
 mod sub_step;
 mod super_subloading;
 mod super_subloading_parameters;
+mod yielding;
 
 use std::fmt::Debug;
 
@@ -42,19 +43,6 @@ pub use slip_weakening::{SlipWeakening, SlipWeakeningParameters};
 pub use state::{FrictionState, Regime};
 pub use super_subloading::SuperSubloading;
 pub use super_subloading_parameters::SuperSubloadingParameters;
-
-/// |q| where plastic slip sets in, in an increment along which the elastic traction and the strength both go evenly from
-/// their first value to their second, and the traction ends above. One that is above from the start slips from there.
-///
-/// Both lines are counted along the sign of the trial, so a traction of the other sign unloads elastically, passes zero,
-/// and loads elastically up to the strength.
-fn traction_at_yield(elastic: [f64; 2], strength: [f64; 2]) -> f64 {
-    let (below, above) = (strength[0] - elastic[0], elastic[1] - strength[1]);
-    if below <= 0.0 || above <= 0.0 {
-        return elastic[0].max(0.0);
-    }
-    strength[0] + below / (below + above) * (strength[1] - strength[0])
-}
 
 /// Relative motion of the two surfaces during one increment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -285,6 +273,11 @@ pub trait FrictionLaw: Debug + Send + Sync {
 
     /// α_t: tangential contact stiffness; the contact stores q²/(2 α_t). 0 where it stores nothing [F/L³]
     fn stiffness(&self) -> f64;
+
+    /// True of a law whose q is 0 whatever the slip: there is no slip to resolve, and nothing to break.
+    fn is_frictionless(&self) -> bool {
+        false
+    }
 
     /// Largest |q| that a point which has not slipped yet may start with under the pressure p; infinite for a law that
     /// lets an excess slip off [F/L²]

@@ -2,7 +2,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::relaxation::{Coefficients, Relaxation, StateEvolution, arsinh_of_exp};
-use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, Regime, Sliding, traction_at_yield};
+use super::yielding::traction_at_yield;
+use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, Regime, Sliding};
 use crate::laws::parameter::{InvalidParameter, require_not_negative, require_positive};
 
 /// Parameters of [`RateAndState`] as the case file writes them.

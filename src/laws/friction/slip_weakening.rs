@@ -1,7 +1,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, Sliding, traction_at_yield};
+use super::yielding::traction_at_yield;
+use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, Sliding};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 
 /// Parameters of [`SlipWeakening`] as the case file writes them.
