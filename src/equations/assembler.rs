@@ -147,15 +147,31 @@ impl Assembler {
         self.add(&OF_PLACE_AND_MOTION, (trial, u), responses, true, tangent.then_some(&mut system.tangent))?;
         model.ties.gather(2, &mut self.evaluation.damping);
         model.ties.gather(2, &mut self.magnitudes);
-        self.equilibrium.note_contacts(model, trial, responses);
-        self.evaluation.contacts =
-            responses.iter().map(|pair| pair.iter().map(|(state, _)| *state).collect()).collect();
+        self.note_contacts(trial, responses);
         self.balance(trial, u, tangent, system);
         supports::prescribe(model, self.weight, trial, u, tangent, system)?;
         let mass = self.mass.as_ref().filter(|_| trial.step.scheme.coefficients().is_some());
         self.equilibrium.measure((model, mass), trial, u, &self.magnitudes, system);
         self.seconds.assembly += clock.elapsed().as_secs_f64();
         Ok(())
+    }
+
+    /// Keep the states of the contact points, and how large their forces are.
+    pub fn note_contacts(&mut self, trial: Trial, responses: &[PairResponse]) {
+        self.equilibrium.note_contacts(&self.model, trial, responses);
+        self.evaluation.contacts =
+            responses.iter().map(|pair| pair.iter().map(|(state, _)| *state).collect()).collect();
+    }
+
+    /// Norm of the nodal forces of each contact at the last evaluation [F].
+    pub fn contact_forces(&self) -> &[f64] {
+        self.equilibrium.contact_forces()
+    }
+
+    /// Square of what round-off can leave at every node, at the displacement that was evaluated last [F²].
+    pub fn round_off(&self, trial: Trial, u: &[f64]) -> Vec<f64> {
+        let mass = self.mass.as_ref().filter(|_| trial.step.scheme.coefficients().is_some());
+        self.equilibrium.round_off((&self.model, mass), trial, u, &self.magnitudes)
     }
 
     /// Forces of what the displacement `u` alone decides, and everything else that an accepted state takes over from the
