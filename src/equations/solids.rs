@@ -27,11 +27,17 @@ const FEW: usize = 64;
 /// Nodes whose sums are done sooner than another thread wakes up.
 const FEW_NODES: usize = 1024;
 
-/// A linear law at small strains has the same tangent everywhere; with F-bar the tangent changes nevertheless.
+/// Whether the tangent of an element is the same at every displacement: a linear law at small strains that remembers nothing;
+/// with F-bar the tangent changes nevertheless.
+pub fn is_constant(model: &Model, element: usize) -> bool {
+    let body = model.body_of_element[element];
+    model.bodies[body].material.is_linear() && !model.solids[element].is_f_bar() && !evolves(model, body)
+}
+
+/// It is the same matrix throughout if all elements are constant.
 pub(super) fn dependence(model: &Model) -> Dependence {
-    let constant =
-        |e: usize| model.bodies[model.body_of_element[e]].material.is_linear() && !model.solids[e].is_f_bar();
-    if (0..model.solids.len()).all(constant) { Dependence::Nothing } else { Dependence::Displacement }
+    let all = (0..model.solids.len()).all(|e| is_constant(model, e));
+    if all { Dependence::Nothing } else { Dependence::Displacement }
 }
 
 /// The elements of a model, what each puts on its nodes, and where each node finds its own.
