@@ -22,12 +22,13 @@ impl Explicit {
     ) -> Result<(), TrialFailure> {
         let (model, step) = (&*self.model.clone(), &*self.step.clone());
         let dt = time - state.time;
-        assembler.forces(Trial { settles: false, ..Trial::new(state, step, time, dt) }, &self.displacement)?;
         if model.is_viscous() {
             let ways = self.displacement.iter().zip(&state.displacement);
             self.mean_velocity.iter_mut().zip(ways).for_each(|(velocity, (new, old))| *velocity = (new - old) / dt);
-            assembler.add_viscous([&self.displacement, &self.mean_velocity]);
-        } else if !self.dampers.is_empty() {
+        }
+        let velocity = model.is_viscous().then_some(&self.mean_velocity[..]);
+        assembler.forces(Trial { settles: false, ..Trial::new(state, step, time, dt) }, &self.displacement, velocity)?;
+        if velocity.is_none() && !self.dampers.is_empty() {
             assembler.evaluation.damping.fill(0.0);
         }
         let found = &mut assembler.evaluation;
