@@ -24,10 +24,38 @@ const OPERATIONS: f64 = 4.0 * (32.0 + 60.0 + 32.0) + 8.0;
 const BYTES: f64 = 1096.0;
 
 const BLOCKS: [Block; 4] = [
-    Block { name: "neo-Hookean", law: "neo_hookean", unstructured: false, viscous: false, operations: OPERATIONS, bytes: BYTES },
-    Block { name: "linear, equal elements", law: "linear", unstructured: false, viscous: false, operations: OPERATIONS, bytes: BYTES },
-    Block { name: "linear, all different", law: "linear", unstructured: true, viscous: false, operations: OPERATIONS, bytes: BYTES },
-    Block { name: "linear and viscous, equal elements", law: "linear", unstructured: false, viscous: true, operations: OPERATIONS, bytes: BYTES },
+    Block {
+        name: "neo-Hookean",
+        law: "neo_hookean",
+        unstructured: false,
+        viscous: false,
+        operations: OPERATIONS,
+        bytes: BYTES,
+    },
+    Block {
+        name: "linear, equal elements",
+        law: "linear",
+        unstructured: false,
+        viscous: false,
+        operations: OPERATIONS,
+        bytes: BYTES,
+    },
+    Block {
+        name: "linear, all different",
+        law: "linear",
+        unstructured: true,
+        viscous: false,
+        operations: OPERATIONS,
+        bytes: BYTES,
+    },
+    Block {
+        name: "linear and viscous, equal elements",
+        law: "linear",
+        unstructured: false,
+        viscous: true,
+        operations: OPERATIONS,
+        bytes: BYTES,
+    },
 ];
 
 /// Processor time of this process where the system tells (other programs take their share of the wall clock), else wall
@@ -72,7 +100,9 @@ struct Block {
 /// A permutation of 0 to n − 1 without any order, the same each time.
 fn shuffled(n: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..n).collect();
-    order.sort_by_key(|k| (*k as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15).swap_bytes().wrapping_mul(0xd6e8_feb8_6659_fd93));
+    order.sort_by_key(|k| {
+        (*k as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15).swap_bytes().wrapping_mul(0xd6e8_feb8_6659_fd93)
+    });
     order
 }
 
@@ -160,11 +190,13 @@ fn memory() -> f64 {
     32.0 * n as f64 / seconds
 }
 
+/// `cargo bench --bench explicit -- viscous` measures the blocks alone whose names have that in it.
 fn main() {
+    let wanted = std::env::args().skip(1).find(|argument| !argument.starts_with('-')).unwrap_or_default();
     let limit = (0..3).map(|_| arithmetic()).fold(0.0, f64::max);
     let bandwidth = (0..5).map(|_| memory()).fold(0.0, f64::max);
     println!("one thread: {:.2} Gflop/s of multiply-adds, {:.2} GB/s of memory", 1e-9 * limit, 1e-9 * bandwidth);
-    for block in &BLOCKS {
+    for block in BLOCKS.iter().filter(|block| block.name.contains(&wanted)) {
         for threads in [1, std::thread::available_parallelism().map_or(1, usize::from)] {
             let rate = updates(block, threads);
             println!(

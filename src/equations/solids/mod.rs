@@ -22,8 +22,8 @@ use crate::equations::failure::TrialFailure;
 use crate::laws::bulk::InvertedElement;
 use crate::linear::SparseMatrix;
 use crate::model::Model;
-pub use constant::is_constant;
 use constant::Constant;
+pub use constant::is_constant;
 use kernel::Pass;
 
 /// Elements whose tangents are held at once before they are added.
@@ -89,7 +89,8 @@ impl Places {
 
     /// What is at the places of a node.
     fn at<'a>(&'a self, node: usize, forces: &'a [Vector2<f64>]) -> impl Iterator<Item = Vector2<f64>> + 'a {
-        let own = if self.starts.is_empty() { 0..0 } else { self.starts[node] as usize..self.starts[node + 1] as usize };
+        let own =
+            if self.starts.is_empty() { 0..0 } else { self.starts[node] as usize..self.starts[node + 1] as usize };
         self.places[own].iter().map(|&place| forces[place as usize])
     }
 }
@@ -125,9 +126,7 @@ impl Solids {
         for (e, element) in elements.iter().enumerate().filter(|(e, _)| !constant.is[*e]) {
             let (body, kind) = (model.body_of_element[e], element.kind);
             match runs.last_mut() {
-                Some(run)
-                    if run.elements.end == e && run.body == body && elements[run.elements.start].kind == kind =>
-                {
+                Some(run) if run.elements.end == e && run.body == body && elements[run.elements.start].kind == kind => {
                     run.elements.end += 1;
                 }
                 _ => runs.push(Run {
@@ -344,12 +343,16 @@ impl Solids {
 }
 
 /// Write the sums at the nodes over `force`.
-fn gather(sources: [(&Places, &Vec<Vector2<f64>>); 2], force: &mut [f64]) {
-    let [(elements, forces), (blocks, block_forces)] = sources;
-    force.par_chunks_exact_mut(2).enumerate().with_min_len(FEW_NODES).for_each(|(node, force)| {
-        let total: Vector2<f64> = elements.at(node, forces).chain(blocks.at(node, block_forces)).sum();
-        (force[0], force[1]) = (total.x, total.y);
-    });
+fn gather([elements, blocks]: [(&Places, &[Vector2<f64>]); 2], force: &mut [f64]) {
+    let nodes = force.par_chunks_exact_mut(2).enumerate().with_min_len(FEW_NODES);
+    let write = |force: &mut [f64], total: Vector2<f64>| force.copy_from_slice(total.as_slice());
+    match [elements, blocks].map(|(places, _)| places.places.is_empty()) {
+        [true, _] => nodes.for_each(|(node, force)| write(force, blocks.0.at(node, blocks.1).sum())),
+        [_, true] => nodes.for_each(|(node, force)| write(force, elements.0.at(node, elements.1).sum())),
+        _ => nodes.for_each(|(node, force)| {
+            write(force, elements.0.at(node, elements.1).chain(blocks.0.at(node, blocks.1)).sum());
+        }),
+    }
 }
 
 /// Values of an element's nodes, from those of all dofs.
