@@ -38,7 +38,7 @@ pub mod inertia;
 pub mod interfaces;
 mod loads;
 mod rates;
-mod solids;
+pub mod solids;
 pub mod stabilization;
 mod sums;
 pub mod supports;
