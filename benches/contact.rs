@@ -30,6 +30,7 @@ fn surfaces(n: usize) -> Surfaces {
         laws: vec![Box::new(law)],
         initial: None,
         reverse: None,
+        small: None,
         mortar: None,
         penetration: None,
     };
