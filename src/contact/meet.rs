@@ -76,7 +76,8 @@ impl ContactPair {
 
     /// From now on every point keeps meeting what it meets in the configuration `x` (small sliding).
     pub fn slide_little(&mut self, x: &Configuration) {
-        let points = self.meetings(x).into_iter().map(|met| met.map(|met| SmallPoint::new(met, &self.master)));
+        let met = self.meetings(x).into_iter().zip(&self.points);
+        let points = met.map(|(met, slave)| Some(SmallPoint::new(met?, slave, &self.master, x)));
         self.small = Some(SmallSliding { points: points.collect() });
     }
 

@@ -16,11 +16,13 @@
 //!
 //! [`SmallPoint::departure`] says how far a point has left all this behind.
 
+use std::f64::consts::FRAC_PI_2;
+
 use nalgebra::{DVector, Vector2};
 
 use super::kinematics::{Kinematics, Meeting};
 use super::master::Master;
-use super::point::MasterPoint;
+use super::point::{MasterPoint, SlavePoint};
 use crate::mesh::configuration::Configuration;
 
 /// The constant operators of a pair's points.
@@ -47,18 +49,71 @@ pub struct SmallPoint {
     pub length: f64,
     /// The foot
     pub foot: MasterPoint,
-    /// Whether the master is rigid
-    rigid: bool,
+    /// What it is to stay with
+    against: Against,
 }
 
+/// What a point is to stay with.
+#[derive(Clone, Debug, PartialEq)]
+enum Against {
+    /// A segment with these ends, it or the point's own edge being no shorter than `edge` [L]
+    Mesh { ends: [usize; 2], edge: f64 },
+    /// A rigid body, whose normal at the foot of the point's node is this
+    Rigid { normal: Vector2<f64> },
+}
+
+/// How far a point has left what small sliding keeps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Departure {
+    /// Way slid since the reference configuration [L]
+    pub slid: f64,
+    /// The same as a share of the shorter edge of the two sides; 0 on a rigid body [-]
+    pub share: f64,
+    /// Angle by which its surface, that of the master or the normal at its foot has turned; a right angle where a rigid body faces the
+    /// point no more [rad]
+    pub turned: f64,
+}
+
+/// Share of an edge up to which small sliding is no matter.
+pub const LITTLE_SLIP: f64 = 0.1;
+
+/// Angle up to which it is none [rad].
+pub const LITTLE_TURN: f64 = 0.02;
+
 impl SmallPoint {
-    /// The operator of a point that meets the master so in the reference configuration.
-    pub fn new(met: Meeting, master: &Master) -> Self {
+    /// The operator of a point that meets the master so in the reference configuration `x`.
+    pub fn new(met: Meeting, slave: &SlavePoint, master: &Master, x: &Configuration) -> Self {
         let Meeting { kinematics, gap, foot } = met;
         let Kinematics { nodes, relative, normal, tangent, length, .. } = kinematics;
-        let entries = nodes.into_iter().zip(relative).filter(|(_, w)| *w != 0.0);
-        let (nodes, weights) = entries.unzip();
-        Self { nodes, weights, normal, tangent, gap, length, foot, rigid: matches!(master, Master::Rigid(_)) }
+        let (nodes, weights) = nodes.into_iter().zip(relative).filter(|(_, w)| *w != 0.0).unzip();
+        let against = match master {
+            Master::Rigid(body) => {
+                Against::Rigid { normal: body.project(slave, x).map_or(normal, |projection| projection.normal) }
+            }
+            Master::Mesh(surface) => {
+                let ends = surface.segments[foot.segment].ends;
+                let edge = |[a, b]: [usize; 2]| x.between(a, b).norm();
+                Against::Mesh { ends, edge: edges(slave).map(edge).fold(edge(ends), f64::min) }
+            }
+        };
+        Self { nodes, weights, normal, tangent, gap, length, foot, against }
+    }
+
+    /// How far the point has left what is kept.
+    pub fn departure(&self, slave: &SlavePoint, master: &Master, x: &Configuration) -> Departure {
+        let slid = self.tangent.dot(&self.displacement(x)).abs();
+        match (&self.against, master) {
+            (Against::Mesh { ends, edge }, _) => {
+                let turned = |[a, b]: [usize; 2]| x.turn(a, b).abs();
+                let turned = edges(slave).map(turned).fold(turned(*ends), f64::max);
+                Departure { slid, share: slid / edge, turned }
+            }
+            (Against::Rigid { normal }, Master::Rigid(body)) => {
+                let now = body.project(slave, x).map(|projection| projection.normal.angle(normal));
+                Departure { slid, share: 0.0, turned: now.unwrap_or(FRAC_PI_2) }
+            }
+            (Against::Rigid { .. }, Master::Mesh(_)) => Departure::default(),
+        }
     }
 
     /// B_n: ∂g/∂u of the nodes, two dofs a node.
@@ -77,7 +132,10 @@ impl SmallPoint {
 
     /// Σ w_a of some motion of the nodes; a common motion of both sides is taken out before it can leave its round-off.
     fn relative(&self, motion: impl Fn(usize) -> Vector2<f64>) -> Vector2<f64> {
-        let common = if self.rigid { Vector2::zeros() } else { motion(self.nodes[0]) };
+        let common = match self.against {
+            Against::Mesh { .. } => motion(self.nodes[0]),
+            Against::Rigid { .. } => Vector2::zeros(),
+        };
         self.nodes.iter().zip(&self.weights).map(|(&node, &w)| (motion(node) - common) * w).sum()
     }
 
@@ -105,4 +163,9 @@ impl SmallPoint {
         };
         Meeting { kinematics, gap: self.gap + self.normal.dot(&self.displacement(x)), foot: self.foot }
     }
+}
+
+/// Ends of the edges that a slave point belongs to.
+fn edges(slave: &SlavePoint) -> impl Iterator<Item = [usize; 2]> {
+    slave.length.iter().map(|share| [share.tangent[0].0, share.tangent[1].0])
 }

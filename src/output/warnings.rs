@@ -9,6 +9,7 @@ use super::audit::Audit;
 use super::memory;
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
+use crate::contact::small_sliding::{Departure, LITTLE_SLIP, LITTLE_TURN, SmallSliding};
 use crate::contact::surface::SlavePoint;
 use crate::mesh::configuration::Configuration;
 use crate::model::Model;
@@ -42,6 +43,8 @@ enum Kind {
     DeepPenetration,
     DeepMasterNode,
     SeveralAnswers,
+    SlidFar,
+    TurnedFar,
 }
 
 impl Observer for Warnings {
@@ -72,6 +75,9 @@ impl Observer for Warnings {
                     }
                 }
             }
+            if let Some(small) = &pair.small {
+                self.no_small_sliding(number, pair, small, state.time, &x);
+            }
             let fading = model.steps[0].span.share(state.time) < 1.0 && pair.points.iter().any(|p| p.overlap > 0.0);
             let explicit = matches!(attempt.step.scheme, Scheme::Explicit { .. });
             if !(fading || explicit || pair.initial.is_some()) {
@@ -96,6 +102,46 @@ pub fn several_answers(pressure: f64, limit: f64) -> String {
 }
 
 impl Warnings {
+    /// Points that have left what small sliding keeps, closed or not: an open one may miss what it would touch.
+    fn no_small_sliding(
+        &mut self,
+        number: usize,
+        pair: &ContactPair,
+        small: &SmallSliding,
+        time: f64,
+        x: &Configuration,
+    ) {
+        for (slave, point) in pair.points.iter().zip(&small.points) {
+            let Some(Departure { slid, share, turned }) = point.as_ref().map(|p| p.departure(slave, &pair.master, x))
+            else {
+                continue;
+            };
+            let far = (share > LITTLE_SLIP).then(|| {
+                let message = format!(
+                    "the surfaces have slid by {slid:.3e} since the start, {:.1} % of an edge, and small sliding keeps what \
+                     faced what: tractions that vary from edge to edge are off by about as much",
+                    100.0 * share
+                );
+                (Kind::SlidFar, message)
+            });
+            let turned = (turned > LITTLE_TURN).then(|| {
+                let message = format!(
+                    "a surface has turned by {turned:.3} rad since the start, and small sliding keeps its direction: \
+                     tractions are off by about {:.1} % of the pressure",
+                    100.0 * turned
+                );
+                (Kind::TurnedFar, message)
+            });
+            for (kind, message) in far.into_iter().chain(turned) {
+                if self.given.insert((number, kind)) {
+                    let at = slave.at(x);
+                    let place = format!("contact `{}` at ({:.6}, {:.6}), t = {}", pair.name, at.x, at.y, told(time));
+                    self.list.push(format!("{place}: {message}; take finite sliding"));
+                }
+            }
+        }
+    }
+
     /// The points of the slave do not see a master node between them. (Where gaps are not those of the surfaces there is
     /// nothing to compare with: under initial tractions, and while a shrink fit is brought in. Explicit increments are too
     /// many to look at.)
