@@ -112,27 +112,8 @@ impl Warnings {
         x: &Configuration,
     ) {
         for (slave, point) in pair.points.iter().zip(&small.points) {
-            let Some(Departure { slid, share, turned }) = point.as_ref().map(|p| p.departure(slave, &pair.master, x))
-            else {
-                continue;
-            };
-            let far = (share > LITTLE_SLIP).then(|| {
-                let message = format!(
-                    "the surfaces have slid by {slid:.3e} since the start, {:.1} % of an edge, and small sliding keeps what \
-                     faced what: tractions that vary from edge to edge are off by about as much",
-                    100.0 * share
-                );
-                (Kind::SlidFar, message)
-            });
-            let turned = (turned > LITTLE_TURN).then(|| {
-                let message = format!(
-                    "a surface has turned by {turned:.3} rad since the start, and small sliding keeps its direction: \
-                     tractions are off by about {:.1} % of the pressure",
-                    100.0 * turned
-                );
-                (Kind::TurnedFar, message)
-            });
-            for (kind, message) in far.into_iter().chain(turned) {
+            let Some(point) = point else { continue };
+            for (kind, message) in left(point.departure(slave, &pair.master, x)) {
                 if self.given.insert((number, kind)) {
                     let at = slave.at(x);
                     let place = format!("contact `{}` at ({:.6}, {:.6}), t = {}", pair.name, at.x, at.y, told(time));
@@ -221,4 +202,29 @@ fn concerns(
     let several = limit.map(|limit| several_answers(pressure, limit));
     let deep = deep.map(|message| (Kind::DeepPenetration, message));
     deep.into_iter().chain(several.map(|message| (Kind::SeveralAnswers, message)))
+}
+
+/// What is to be said of a point that has left what small sliding keeps.
+fn left(departure: Option<Departure>) -> impl Iterator<Item = (Kind, String)> {
+    let Some(Departure { slid, share, turned }) = departure else {
+        let message = "the surface has slid past the end of the rigid master, and small sliding holds it there";
+        return [Some((Kind::SlidFar, message.into())), None].into_iter().flatten();
+    };
+    let far = (share > LITTLE_SLIP).then(|| {
+        let message = format!(
+            "the surfaces have slid by {slid:.3e} since the start, {:.1} % of an edge, and small sliding keeps what faced \
+             what: tractions that vary from edge to edge are off by about as much",
+            100.0 * share
+        );
+        (Kind::SlidFar, message)
+    });
+    let turned = (turned > LITTLE_TURN).then(|| {
+        let message = format!(
+            "a surface has turned by {turned:.3} rad since the start, and small sliding keeps its direction: tractions are \
+             off by about {:.1} % of the pressure",
+            100.0 * turned
+        );
+        (Kind::TurnedFar, message)
+    });
+    [far, turned].into_iter().flatten()
 }
