@@ -31,6 +31,7 @@ fn surfaces(n: usize) -> Surfaces {
         laws: vec![Box::new(law)],
         initial: None,
         reverse: None,
+        small: None,
         mortar: None,
         penetration: None,
     };

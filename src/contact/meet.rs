@@ -10,6 +10,7 @@ use super::kinematics::{Kinematics, Meeting, kinematics};
 use super::master::Master;
 use super::pair::{ContactPair, InitialTraction, Reverse};
 use super::search::Index;
+use super::small_sliding::{SmallPoint, SmallSliding};
 use super::state::ContactState;
 use super::surface::SlavePoint;
 use crate::mesh::configuration::Configuration;
@@ -73,8 +74,17 @@ impl ContactPair {
         met.flat_map(forces).collect()
     }
 
+    /// From now on every point keeps meeting what it meets in the configuration `x` (small sliding).
+    pub fn slide_little(&mut self, x: &Configuration) {
+        let points = self.meetings(x).into_iter().map(|met| met.map(|met| SmallPoint::new(met, &self.master)));
+        self.small = Some(SmallSliding { points: points.collect() });
+    }
+
     /// Where every point meets the master, if that faces it, the gap being that of the surfaces.
     fn meetings(&self, x: &Configuration) -> Vec<Option<Meeting>> {
+        if let Some(small) = &self.small {
+            return small.points.iter().map(|point| Some(point.as_ref()?.meeting(x, x))).collect();
+        }
         let index = Index::new(&self.master, x);
         match (&self.mortar, &self.master) {
             (Some(mortar), Master::Mesh(surface)) => {
@@ -120,11 +130,14 @@ impl ContactPair {
     /// Rate at which each point slips along +s under nodal velocities, the variation of Δu_t; 0 where nothing faces it
     /// [L/T].
     pub fn slip_rates(&self, states: &[ContactState], x: &Configuration, velocity: &[f64]) -> Vec<f64> {
-        let index = Index::new(&self.master, x);
         let rate = |k: Kinematics| {
             let dofs = k.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
             dofs.zip(&k.dslip).map(|(dof, dslip)| velocity[dof] * dslip).sum()
         };
+        if self.small.is_some() {
+            return self.meetings(x).into_iter().map(|met| met.map_or(0.0, |met| rate(met.kinematics))).collect();
+        }
+        let index = Index::new(&self.master, x);
         if let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) {
             let overlaps = mortar.overlaps(surface, &index, x);
             let met =

@@ -34,8 +34,14 @@ impl ContactPair {
         presumed: impl Fn(usize) -> Presumption + Sync,
         x: &Configuration,
     ) -> Result<PairResponse, (usize, LawFailure)> {
-        let index = Index::within(&self.master, before, x);
         let increment = |k| PointIncrement { during, presumption: presumed(k) };
+        if let Some(small) = &self.small {
+            return self.each(old, increment, |k, slave, old, increment| {
+                let meeting = small.points[k].as_ref().map(|point| point.meeting(before, x));
+                averaged(self, slave, meeting, old, increment, x)
+            });
+        }
+        let index = Index::within(&self.master, before, x);
         if let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) {
             let was = mortar.overlaps(surface, &Index::new(&self.master, before), before);
             let is = mortar.overlaps(surface, &index, x);
@@ -108,7 +114,7 @@ impl ContactPair {
     }
 }
 
-/// Where a point is whose average is known, its gap still being that of the surfaces.
+/// Where a point is that meets the master so, its gap still being that of the surfaces.
 fn averaged(
     pair: &ContactPair,
     slave: &SlavePoint,

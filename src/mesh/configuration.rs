@@ -63,6 +63,11 @@ impl<'a> Configuration<'a> {
         self.reference[node] + self.displacement[node]
     }
 
+    /// u of a node.
+    pub fn displacement(&self, node: usize) -> Vector2<f64> {
+        self.displacement[node]
+    }
+
     /// x_to − x_from.
     pub fn between(&self, from: usize, to: usize) -> Vector2<f64> {
         (self.reference[to] - self.reference[from]) + (self.displacement[to] - self.displacement[from])

@@ -59,6 +59,7 @@ fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
         laws: vec![law],
         initial: None,
         reverse: None,
+        small: None,
     }
 }
 
