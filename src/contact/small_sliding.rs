@@ -16,7 +16,7 @@
 //!
 //! [`SmallPoint::departure`] says how far a point has left all this behind.
 
-use nalgebra::{DVector, Vector2};
+use nalgebra::Vector2;
 
 use super::kinematics::{Kinematics, Meeting};
 use super::master::Master;
@@ -53,10 +53,10 @@ pub struct SmallPoint {
 
 impl SmallPoint {
     /// The operator of a point that meets the master so in the reference configuration.
-    pub fn new(met: Meeting, master: &Master) -> Self {
-        let Meeting { kinematics, gap, foot } = met;
+    pub fn new(Meeting { gap, foot }: Meeting, kinematics: &Kinematics, master: &Master) -> Self {
         let Kinematics { nodes, relative, normal, tangent, length, .. } = kinematics;
-        let entries = nodes.into_iter().zip(relative).filter(|(_, w)| *w != 0.0);
+        let (normal, tangent, length) = (*normal, *tangent, *length);
+        let entries = nodes.iter().copied().zip(relative.iter().copied()).filter(|(_, w)| *w != 0.0);
         let (nodes, weights) = entries.unzip();
         Self { nodes, weights, normal, tangent, gap, length, foot, rigid: matches!(master, Master::Rigid(_)) }
     }
@@ -87,22 +87,15 @@ impl SmallPoint {
     }
 
     /// Where the point meets the master, its slip counted from the configuration `before`.
-    pub fn meeting(&self, before: &Configuration, x: &Configuration) -> Meeting {
-        let row = |row: &mut dyn Iterator<Item = f64>| DVector::from_iterator(2 * self.nodes.len(), row);
-        let zero = DVector::zeros(2 * self.nodes.len());
-        let kinematics = Kinematics {
-            nodes: self.nodes.clone(),
-            relative: self.weights.clone(),
-            normal: self.normal,
-            tangent: self.tangent,
-            slip: self.tangent.dot(&self.relative(|node| x.since(before, node))),
-            length: self.length,
-            dgap: row(&mut self.normal_row()),
-            dslip: row(&mut self.tangent_row()),
-            drotation: zero.clone(),
-            dlength: zero,
-            drelative: Vec::new(),
-        };
-        Meeting { kinematics, gap: self.gap + self.normal.dot(&self.displacement(x)), foot: self.foot }
+    pub fn meet(&self, before: &Configuration, x: &Configuration, k: &mut Kinematics) -> Meeting {
+        k.begin(self.normal);
+        k.nodes.extend_from_slice(&self.nodes);
+        k.clear();
+        k.relative.copy_from_slice(&self.weights);
+        (k.tangent, k.length) = (self.tangent, self.length);
+        k.slip = self.tangent.dot(&self.relative(|node| x.since(before, node)));
+        k.dgap.iter_mut().zip(self.normal_row()).for_each(|(dgap, value)| *dgap = value);
+        k.dslip.iter_mut().zip(self.tangent_row()).for_each(|(dslip, value)| *dslip = value);
+        Meeting { gap: self.gap + self.normal.dot(&self.displacement(x)), foot: self.foot }
     }
 }
