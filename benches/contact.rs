@@ -1,11 +1,14 @@
 //! One update of a contact: the index of the master, and every slave point with search, law and forces.
 
-use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use criterion::{BenchmarkId, Criterion, criterion_group};
 use fecontact::contact::master::Master;
+use fecontact::contact::mortar::mortar_points;
 use fecontact::contact::pair::{ContactIncrement, ContactPair, Presumption};
 use fecontact::contact::search::Index;
-use fecontact::contact::surface::{Surface, gauss_points};
-use fecontact::laws::friction::{Coulomb, CoulombParameters};
+use fecontact::contact::surface::{Surface, gauss_points, nodal_points};
+use fecontact::laws::friction::{
+    Coulomb, CoulombParameters, FrictionParameters, SlipWeakeningParameters, SuperSubloadingParameters,
+};
 use fecontact::mesh::configuration::Configuration;
 use nalgebra::Vector2;
 
@@ -84,4 +87,89 @@ fn self_contact(criterion: &mut Criterion) {
 }
 
 criterion_group!(benches, two_surfaces, self_contact);
-criterion_main!(benches);
+
+fn main() {
+    points();
+    if std::env::var_os("POINTS").is_none() {
+        benches();
+    }
+}
+
+/// A flat slave of n edges on an equal master, its nodes moved against each other by shares of an edge and pressed in.
+fn flat(n: usize, law: &FrictionParameters, method: &str) -> (Vec<Vector2<f64>>, ContactPair) {
+    let at = |k: usize| Vector2::new(k as f64, 0.0);
+    let nodes: Vec<_> = (0..=n).chain(0..=n).map(at).collect();
+    let master: Vec<Vec<usize>> = (0..n).rev().map(|k| vec![k + 1, k]).collect();
+    let slave: Vec<Vec<usize>> = (0..n).map(|k| vec![n + 1 + k, n + 2 + k]).collect();
+    let (_, other) = surfaces(2);
+    let (points, mortar) = match method {
+        "nodes" => (nodal_points(&slave), None),
+        "gauss" => (gauss_points(&slave, 2), None),
+        _ => {
+            let (p, m) = mortar_points(&slave, &nodes);
+            (p, Some(m))
+        }
+    };
+    let laws = vec![law.build(1e3).expect("valid parameters")];
+    let pair =
+        ContactPair { name: "flat".into(), points, mortar, master: Master::Mesh(Surface::new(&master)), laws, ..other };
+    (nodes, pair)
+}
+
+fn points() {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
+    let n = 10_000;
+    let laws = [
+        ("coulomb", FrictionParameters::from(CoulombParameters { mu: 0.3, alpha_t: None })),
+        ("slip weakening", SlipWeakeningParameters::new(0.6, 0.3, 0.5).into()),
+        (
+            "super/subloading",
+            SuperSubloadingParameters { kappa: 1.0, xi: 1e-3, ..SuperSubloadingParameters::new(0.5, 0.3, 50.0) }.into(),
+        ),
+    ];
+    for method in ["nodes", "gauss", "mortar"] {
+        for (name, law) in &laws {
+            for (what, rate) in [("sticks", 0.0), ("slips", 3e-3)] {
+                let (nodes, pair) = flat(n, law, method);
+                // Pressed in by 1e-3, the slave moves by `rate` an increment, some more than others.
+                let u = |t: f64| -> Vec<f64> {
+                    (0..nodes.len())
+                        .flat_map(|k| {
+                            if k > n {
+                                [t * rate * (1.0 + 1e-3 * (k as f64).sin()), -1e-3 - 1e-6 * (t + k as f64).sin()]
+                            } else {
+                                [0.0, 1e-6 * (0.3 * t + k as f64).sin()]
+                            }
+                        })
+                        .collect()
+                };
+                let during = ContactIncrement { dt: 1.0, fading: 0.0, stiffening: 1.0, settles: true };
+                let mut old = pair.initial_states(&Configuration::undeformed(&nodes));
+                let mut before = vec![0.0; 2 * nodes.len()];
+                let mut best = f64::INFINITY;
+                let mut slipping = 0;
+                for k in 1..=12 {
+                    let now = u(f64::from(k));
+                    let clock = std::time::Instant::now();
+                    let (b, x) = (Configuration::new(&nodes, &before), Configuration::new(&nodes, &now));
+                    let response = pool
+                        .install(|| pair.respond(&old, &b, during, |_| Presumption::default(), &x))
+                        .expect("an answer");
+                    let seconds = clock.elapsed().as_secs_f64();
+                    if k > 4 {
+                        best = best.min(seconds);
+                    }
+                    old = response.iter().map(|(state, _)| *state).collect();
+                    drop(response);
+                    slipping = old.iter().filter(|s| s.friction.plastic_increment != 0.0).count();
+                    before = now;
+                }
+                println!(
+                    "{method:8} {name:18} {what:7} {:6.3} µs a point ({slipping} of {} slip)",
+                    1e6 * best / old.len() as f64,
+                    old.len()
+                );
+            }
+        }
+    }
+}

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-pub use super::closed::PairResponse;
 use super::master::Master;
 use super::mortar::Mortar;
 pub use super::presumption::{ContactIncrement, Presumption};
+pub use super::response::PairResponse;
 use super::small_sliding::SmallSliding;
 use super::state::ContactState;
 use super::surface::SlavePoint;

@@ -20,7 +20,7 @@
 //! an edge has the pressures of finite sliding within 4 to 13 % from point to point where they vary from edge to edge (mortar),
 //! and its forces and displacements within 1 %.
 
-use nalgebra::{DVector, Vector2};
+use nalgebra::Vector2;
 
 use super::kinematics::{Kinematics, Meeting};
 use super::master::Master;
@@ -94,10 +94,10 @@ pub const LITTLE_TURN: f64 = 0.02;
 
 impl SmallPoint {
     /// The operator of a point that meets the master so in the reference configuration `x`.
-    pub fn new(met: Meeting, slave: &SlavePoint, master: &Master, x: &Configuration) -> Self {
-        let Meeting { kinematics, gap, foot } = met;
-        let Kinematics { nodes, relative, normal, tangent, length, .. } = kinematics;
-        let (nodes, weights) = nodes.into_iter().zip(relative).filter(|(_, w)| *w != 0.0).unzip();
+    pub fn new(met: Meeting, k: &Kinematics, slave: &SlavePoint, master: &Master, x: &Configuration) -> Self {
+        let Meeting { gap, foot } = met;
+        let Kinematics { normal, tangent, length, .. } = *k;
+        let (nodes, weights) = k.nodes.iter().zip(&k.relative).filter(|(_, w)| **w != 0.0).unzip();
         let against = match master {
             Master::Rigid(body) => {
                 Against::Rigid { normal: body.project(slave, x).map_or(normal, |projection| projection.normal) }
@@ -157,23 +157,16 @@ impl SmallPoint {
     }
 
     /// Where the point meets the master, its slip counted from the configuration `before`.
-    pub fn meeting(&self, before: &Configuration, x: &Configuration) -> Meeting {
-        let row = |row: &mut dyn Iterator<Item = f64>| DVector::from_iterator(2 * self.nodes.len(), row);
-        let zero = DVector::zeros(2 * self.nodes.len());
-        let kinematics = Kinematics {
-            nodes: self.nodes.clone(),
-            relative: self.weights.clone(),
-            normal: self.normal,
-            tangent: self.tangent,
-            slip: self.tangent.dot(&self.relative(|node| x.since(before, node))),
-            length: self.length,
-            dgap: row(&mut self.normal_row()),
-            dslip: row(&mut self.tangent_row()),
-            drotation: zero.clone(),
-            dlength: zero,
-            drelative: Vec::new(),
-        };
-        Meeting { kinematics, gap: self.gap + self.normal.dot(&self.displacement(x)), foot: self.foot }
+    pub fn meet(&self, before: &Configuration, x: &Configuration, k: &mut Kinematics) -> Meeting {
+        k.begin(self.normal);
+        k.nodes.extend_from_slice(&self.nodes);
+        k.clear();
+        k.relative.copy_from_slice(&self.weights);
+        (k.tangent, k.length) = (self.tangent, self.length);
+        k.slip = self.tangent.dot(&self.relative(|node| x.since(before, node)));
+        k.dgap.iter_mut().zip(self.normal_row()).for_each(|(dgap, value)| *dgap = value);
+        k.dslip.iter_mut().zip(self.tangent_row()).for_each(|(dslip, value)| *dslip = value);
+        Meeting { gap: self.gap + self.normal.dot(&self.displacement(x)), foot: self.foot }
     }
 }
 

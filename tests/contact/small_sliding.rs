@@ -6,11 +6,12 @@ use crate::common::{self, Blocks, Finished, close, distance, finish};
 use fecontact::contact::force::ContactState;
 use fecontact::contact::master::Master;
 use fecontact::contact::mortar::mortar_points;
-use fecontact::contact::pair::{ContactIncrement, ContactPair, Presumption};
+use fecontact::contact::pair::{ContactIncrement, ContactPair, PairResponse, Presumption};
 use fecontact::contact::rigid::{Circle, Rigid};
 use fecontact::contact::small_sliding::{LITTLE_SLIP, LITTLE_TURN};
 use fecontact::contact::surface::{SlavePoint, Surface, gauss_points, nodal_points};
 use fecontact::laws::friction::{FrictionParameters, Regime};
+use fecontact::linear::system::Request;
 use fecontact::mesh::configuration::Configuration;
 use fecontact::output::warnings::Warnings;
 use nalgebra::Vector2;
@@ -188,20 +189,21 @@ fn answer(
     [before, u]: [&[f64]; 2],
 ) -> (Vec<f64>, Vec<Vec<f64>>, Vec<ContactState>) {
     let [before, now] = [before, u].map(|u| Configuration::new(x, u));
-    let responses = pair.respond(old, &before, INCREMENT, |_| Presumption::default(), &now).expect("an answer");
+    let mut response = PairResponse::default();
+    let presumed = |_| Presumption::default();
+    pair.respond(old, [&before, &now], INCREMENT, presumed, Request::Tangent, &mut response).expect("an answer");
     let n = 2 * x.len();
     let (mut forces, mut tangent) = (vec![0.0; n], vec![vec![0.0; n]; n]);
-    for closed in responses.iter().filter_map(|(_, closed)| closed.as_ref()) {
-        let added = &closed.contribution;
+    for (_, added) in response.all_closed() {
         let dofs: Vec<usize> = added.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]).collect();
         for (a, &row) in dofs.iter().enumerate() {
             forces[row] += added.force[a];
             for (b, &column) in dofs.iter().enumerate() {
-                tangent[row][column] += added.tangent[(a, b)];
+                tangent[row][column] += added.tangent[a + dofs.len() * b];
             }
         }
     }
-    (forces, tangent, responses.into_iter().map(|(state, _)| state).collect())
+    (forces, tangent, response.states)
 }
 
 /// Some displacement of all nodes.
