@@ -2,13 +2,12 @@
 
 use criterion::{BenchmarkId, Criterion, criterion_group};
 use fecontact::contact::master::Master;
-use fecontact::contact::mortar::mortar_points;
-use fecontact::contact::pair::{ContactIncrement, ContactPair, Presumption};
+use fecontact::contact::pair::{ContactIncrement, ContactPair, PairResponse, Presumption};
 use fecontact::contact::search::Index;
+use fecontact::contact::mortar::mortar_points;
 use fecontact::contact::surface::{Surface, gauss_points, nodal_points};
-use fecontact::laws::friction::{
-    Coulomb, CoulombParameters, FrictionParameters, SlipWeakeningParameters, SuperSubloadingParameters,
-};
+use fecontact::laws::friction::{Coulomb, CoulombParameters, FrictionParameters, SlipWeakeningParameters, SuperSubloadingParameters};
+use fecontact::linear::system::Request;
 use fecontact::mesh::configuration::Configuration;
 use nalgebra::Vector2;
 
@@ -72,7 +71,9 @@ fn measure(criterion: &mut Criterion, name: &str, sizes: [usize; 3], surfaces: f
         let old = pair.initial_states(&x);
         let increment = ContactIncrement { dt: 1.0, fading: 0.0, stiffening: 1.0, settles: true };
         group.bench_function(BenchmarkId::new("update", n), |bench| {
-            bench.iter(|| pair.respond(&old, &x, increment, |_| Presumption::default(), &x).is_ok());
+            let mut response = PairResponse::default();
+            let mut respond = || pair.respond(&old, [&x, &x], increment, |_| Presumption::default(), Request::Tangent, &mut response);
+            bench.iter(|| respond().is_ok());
         });
     }
     group.finish();
@@ -105,14 +106,10 @@ fn flat(n: usize, law: &FrictionParameters, method: &str) -> (Vec<Vector2<f64>>,
     let (points, mortar) = match method {
         "nodes" => (nodal_points(&slave), None),
         "gauss" => (gauss_points(&slave, 2), None),
-        _ => {
-            let (p, m) = mortar_points(&slave, &nodes);
-            (p, Some(m))
-        }
+        _ => { let (p, m) = mortar_points(&slave, &nodes); (p, Some(m)) }
     };
     let laws = vec![law.build(1e3).expect("valid parameters")];
-    let pair =
-        ContactPair { name: "flat".into(), points, mortar, master: Master::Mesh(Surface::new(&master)), laws, ..other };
+    let pair = ContactPair { name: "flat".into(), points, mortar, master: Master::Mesh(Surface::new(&master)), laws, ..other };
     (nodes, pair)
 }
 
@@ -122,54 +119,42 @@ fn points() {
     let laws = [
         ("coulomb", FrictionParameters::from(CoulombParameters { mu: 0.3, alpha_t: None })),
         ("slip weakening", SlipWeakeningParameters::new(0.6, 0.3, 0.5).into()),
-        (
-            "super/subloading",
-            SuperSubloadingParameters { kappa: 1.0, xi: 1e-3, ..SuperSubloadingParameters::new(0.5, 0.3, 50.0) }.into(),
-        ),
+        ("super/subloading", SuperSubloadingParameters { kappa: 1.0, xi: 1e-3, ..SuperSubloadingParameters::new(0.5, 0.3, 50.0) }.into()),
     ];
     for method in ["nodes", "gauss", "mortar"] {
         for (name, law) in &laws {
-            for (what, rate) in [("sticks", 0.0), ("slips", 3e-3)] {
+            for (motion, rate) in [("sticks", 0.0), ("slips", 3e-3)] {
                 let (nodes, pair) = flat(n, law, method);
-                // Pressed in by 1e-3, the slave moves by `rate` an increment, some more than others.
-                let u = |t: f64| -> Vec<f64> {
-                    (0..nodes.len())
-                        .flat_map(|k| {
-                            if k > n {
-                                [t * rate * (1.0 + 1e-3 * (k as f64).sin()), -1e-3 - 1e-6 * (t + k as f64).sin()]
-                            } else {
-                                [0.0, 1e-6 * (0.3 * t + k as f64).sin()]
-                            }
-                        })
-                        .collect()
-                };
-                let during = ContactIncrement { dt: 1.0, fading: 0.0, stiffening: 1.0, settles: true };
-                let mut old = pair.initial_states(&Configuration::undeformed(&nodes));
-                let mut before = vec![0.0; 2 * nodes.len()];
-                let mut best = f64::INFINITY;
-                let mut slipping = 0;
-                for k in 1..=12 {
-                    let now = u(f64::from(k));
-                    let clock = std::time::Instant::now();
-                    let (b, x) = (Configuration::new(&nodes, &before), Configuration::new(&nodes, &now));
-                    let response = pool
-                        .install(|| pair.respond(&old, &b, during, |_| Presumption::default(), &x))
-                        .expect("an answer");
-                    let seconds = clock.elapsed().as_secs_f64();
-                    if k > 4 {
-                        best = best.min(seconds);
-                    }
-                    old = response.iter().map(|(state, _)| *state).collect();
-                    drop(response);
-                    slipping = old.iter().filter(|s| s.friction.plastic_increment != 0.0).count();
-                    before = now;
-                }
-                println!(
-                    "{method:8} {name:18} {what:7} {:6.3} µs a point ({slipping} of {} slip)",
-                    1e6 * best / old.len() as f64,
-                    old.len()
-                );
+                let micros = [Request::Residual, Request::Tangent].map(|request| update(&pool, &nodes, &pair, rate, request));
+                println!("{method:8} {name:18} {motion:8} {:6.3} {:6.3}", micros[0], micros[1]);
             }
         }
     }
+}
+
+/// Microseconds of an update a point, the shortest of several increments in which the slave moves by `rate`, some of it more
+/// than the rest, pressed in by a trifle that comes and goes.
+fn update(pool: &rayon::ThreadPool, nodes: &[Vector2<f64>], pair: &ContactPair, rate: f64, request: Request) -> f64 {
+    let wave = |k: usize| (k as f64).sin();
+    let u = |t: f64| -> Vec<f64> {
+        let slave = |k| [t * rate * (1.0 + 1e-3 * wave(k)), -1e-3 - 1e-6 * (t + k as f64).sin()];
+        let master = |k| [0.0, 1e-6 * (0.3 * t + k as f64).sin()];
+        (0..nodes.len()).flat_map(|k| if k >= nodes.len() / 2 { slave(k) } else { master(k) }).collect()
+    };
+    let during = ContactIncrement { dt: 1.0, fading: 0.0, stiffening: 1.0, settles: true };
+    let (mut old, mut before) = (pair.initial_states(&Configuration::undeformed(nodes)), vec![0.0; 2 * nodes.len()]);
+    let (mut shortest, mut response) = (f64::INFINITY, PairResponse::default());
+    for k in 1..=14 {
+        let now = u(f64::from(k));
+        let clock = std::time::Instant::now();
+        let [was, is] = [&before, &now].map(|u| Configuration::new(nodes, u));
+        pool.install(|| pair.respond(&old, [&was, &is], during, |_| Presumption::default(), request, &mut response))
+            .expect("an answer");
+        if k > 4 {
+            shortest = shortest.min(clock.elapsed().as_secs_f64());
+        }
+        old.clone_from(&response.states);
+        before = now;
+    }
+    1e6 * shortest / old.len() as f64
 }
