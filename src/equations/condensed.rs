@@ -14,7 +14,7 @@ use super::Assembler;
 use super::dependence::Dependence;
 use super::term::Term;
 use super::trial::Trial;
-use crate::contact::force::Closed;
+use crate::contact::closed::Closed;
 use crate::contact::master::Master;
 use crate::contact::pair::{ContactPair, PairResponse};
 use crate::linear::system::{Request, System};
@@ -157,23 +157,32 @@ impl<'a> CondensedEquations<'a> {
         if request == Request::Tangent {
             system.tangent.values.copy_from_slice(&self.bodies.stiffness);
         }
-        for closed in responses.iter().flatten().filter_map(|(_, closed)| closed.as_ref()) {
-            self.add(assembler.model(), closed, request, system);
+        let mut dofs = Vec::new();
+        for (_, closed) in responses.iter().flat_map(PairResponse::all_closed) {
+            self.find(assembler.model(), closed.nodes, &mut dofs);
+            self.add(&closed, &dofs, request, system);
         }
         self.measure(assembler, system);
     }
 
-    /// Add the forces and the tangent of a closed point.
-    fn add(&self, model: &Model, Closed { contribution, .. }: &Closed, request: Request, system: &mut System) {
-        let size = system.residual.len();
+    /// Write the dofs of some nodes among those at contacts over `dofs`.
+    fn find(&self, model: &Model, nodes: &[usize], dofs: &mut Vec<usize>) {
         let place = |node: usize| self.nodes.places[model.ties.original(node)].expect("nodes at contacts are kept");
-        let dofs: Vec<usize> =
-            contribution.nodes.iter().flat_map(|&node| [0, 1].map(|i| 2 * place(node) as usize + i)).collect();
-        for (i, &row) in dofs.iter().enumerate().filter(|(_, row)| self.free[**row]) {
-            system.residual[row] += self.share * contribution.force[i];
-            if request == Request::Tangent {
-                for (j, &column) in dofs.iter().enumerate() {
-                    system.tangent.values[column * size + row] += self.share * contribution.tangent[(i, j)];
+        dofs.clear();
+        dofs.extend(nodes.iter().flat_map(|&node| [0, 1].map(|i| 2 * place(node) as usize + i)));
+    }
+
+    /// Add the forces and the tangent of a closed point with these dofs.
+    fn add(&self, closed: &Closed, dofs: &[usize], request: Request, system: &mut System) {
+        let size = system.residual.len();
+        for (&row, force) in dofs.iter().zip(closed.force).filter(|(row, _)| self.free[**row]) {
+            system.residual[row] += self.share * force;
+        }
+        if request == Request::Tangent {
+            for (&column, rates) in dofs.iter().zip(closed.tangent.chunks_exact(dofs.len())) {
+                let column = &mut system.tangent.values[column * size..][..size];
+                for (&row, rate) in dofs.iter().zip(rates).filter(|(row, _)| self.free[**row]) {
+                    column[row] += self.share * rate;
                 }
             }
         }
