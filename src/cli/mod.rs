@@ -260,7 +260,7 @@ fn use_threads(threads: Option<usize>) -> Result<(), Failure> {
         let message = format!("--threads {threads}: give 1 to {MOST_THREADS}, or leave it out for all cores");
         return Err(Failure::BadInput(message));
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).use_current_thread().build_global();
     pool.map_err(|error| Failure::BadInput(format!("--threads {threads}: {error}")))
 }
 

@@ -30,8 +30,7 @@ pub fn equilibrium(
     let clock = std::time::Instant::now();
     let (start, extrapolated) = start.map_or_else(|| start_value(model, trial), |start| (start, false));
     let mut watch = Watch::new(begins, extrapolated);
-    let condensed =
-        if begins && is_unaided(trial) { None } else { on_contacts(model, trial, &start, &mut watch, work) };
+    let condensed = on_contacts(model, trial, &start, &mut watch, work);
     let result = condensed.unwrap_or_else(|| on_all(model, trial, start, &mut watch, work));
     let assembled = work.assembler.seconds.assembly + work.assembler.seconds.contact - spent;
     work.linear_seconds += clock.elapsed().as_secs_f64() - assembled;
@@ -78,10 +77,14 @@ fn on_contacts(
     work: &mut Workspace,
 ) -> Option<Result<Vec<f64>, NewtonFailure<TrialFailure>>> {
     let bodies = work.interface.as_mut()?.bodies(model, trial).ok()??;
+    let mut u = start.to_vec();
+    if watch.begins && is_unaided(trial) {
+        assemble_all(trial, &u, work)?;
+        watch.floating = null_motion(model, &u, &work.system.tangent);
+    }
     if watch.begins {
         work.iteration.start_increment();
     }
-    let mut u = start.to_vec();
     for _ in 0..MOST_ROUNDS {
         if let Err(failure) = round(model, trial, &bodies, &mut u, watch, work)? {
             return Some(Err(failure));
@@ -123,14 +126,26 @@ fn round(
             Ok::<(), TrialFailure>(())
         });
     watch.record(iterations);
-    if result.is_err() {
-        // What floats is told from the tangent of everything.
-        let assemble = |assembler: &mut Assembler, responses: &[PairResponse]| {
-            assembler.assemble(trial, &all, responses, Request::Tangent, system)
-        };
-        iteration.evaluate(assembler, trial, &all, Request::Tangent, assemble).ok()?;
+    match result {
+        Ok(x) => round.follow(nodes, u, &x),
+        Err(failure) => {
+            // What floats is told from the tangent of everything.
+            assemble_all(trial, &all, work)?;
+            return Some(Err(failure));
+        }
     }
-    Some(result.map(|x| round.follow(nodes, u, &x)))
+    Some(Ok(()))
+}
+
+/// The tangent of all equations, as the first linear solve of an increment sees it.
+fn assemble_all(trial: Trial, u: &[f64], work: &mut Workspace) -> Option<()> {
+    let Workspace { assembler, iteration, system, .. } = work;
+    iteration.start_increment();
+    assembler.residual(trial, u, system).ok()?;
+    let assemble = |assembler: &mut Assembler, responses: &[PairResponse]| {
+        assembler.assemble(trial, u, responses, Request::Tangent, system)
+    };
+    iteration.evaluate(assembler, trial, u, Request::Tangent, assemble).ok()
 }
 
 /// What is seen while an increment is solved.
