@@ -8,6 +8,7 @@ mod grids;
 
 mod boundary;
 mod builder;
+mod constant;
 mod elements;
 mod history;
 mod invariance;

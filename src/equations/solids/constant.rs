@@ -10,8 +10,9 @@
 use std::collections::HashMap;
 use std::collections::hash_map::{DefaultHasher, Entry};
 use std::hash::{Hash, Hasher};
+use std::sync::Arc;
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{Matrix2, Vector2, Vector4};
 use rayon::prelude::*;
 
 use super::BATCH;
@@ -24,7 +25,7 @@ use crate::equations::sums::add_blocks;
 use crate::laws::bulk::Material;
 use crate::linear::SparseMatrix;
 use crate::mesh::shape::ElementKind;
-use crate::model::Model;
+use crate::model::{Body, Model};
 
 /// Blocks that are done sooner than another thread wakes up.
 const FEW_BLOCKS: usize = 2;
@@ -36,11 +37,14 @@ pub fn is_constant(model: &Model, element: usize) -> bool {
     model.bodies[body].material.is_linear() && !model.solids[element].is_f_bar() && !evolves(model, body)
 }
 
-/// Whether the viscous stress of a linear law is its elastic stress at the rate of strain, as it is unless a law says otherwise.
-fn damps_by_stiffness(material: &dyn Material) -> bool {
+/// Whether the viscous stress of a law is τ ∂P/∂F:Ḟ with the same ∂P/∂F at every F. A linear law need not have such a one.
+pub(in crate::equations) fn damps_by_stiffness(material: &dyn Material) -> bool {
+    if !material.is_linear() {
+        return false;
+    }
     let (deformation, rate) = (Matrix2::new(1.25, 0.5, -0.25, 0.75), Matrix2::new(0.5, -1.0, 0.75, 0.25));
     let Ok(response) = material.respond(&deformation) else { return false };
-    let elastic = response.tangent * nalgebra::Vector4::from_column_slice(rate.as_slice());
+    let elastic = response.tangent * Vector4::from_column_slice(rate.as_slice());
     let elastic = Matrix2::from_column_slice(elastic.as_slice());
     (material.viscous_stress([&deformation, &rate]) - elastic).norm() <= 1e-12 * elastic.norm()
 }
@@ -64,9 +68,7 @@ pub(super) struct Constant {
 
 impl Constant {
     pub fn new(model: &Model) -> Self {
-        let fit = |body: &crate::model::Body| {
-            !body.material.is_linear() || body.damping.retardation == 0.0 || damps_by_stiffness(&*body.material)
-        };
+        let fit = |body: &Body| body.damping.retardation == 0.0 || damps_by_stiffness(&*body.material);
         let fit: Vec<bool> = model.bodies.iter().map(fit).collect();
         let is: Vec<bool> =
             (0..model.solids.len()).map(|e| is_constant(model, e) && fit[model.body_of_element[e]]).collect();
@@ -138,7 +140,7 @@ fn kept<'a>(
     if !(0..is.len()).any(|e| is[e] && factor(e) != 0.0) {
         return None;
     }
-    if sum.as_ref().is_none_or(|sum| !std::sync::Arc::ptr_eq(&sum.pattern, &layout.pattern)) {
+    if sum.as_ref().is_none_or(|sum| !Arc::ptr_eq(&sum.pattern, &layout.pattern)) {
         let mut total = layout.matrix();
         let elements: Vec<usize> = (0..is.len()).filter(|&e| is[e] && factor(e) != 0.0).collect();
         for batch in elements.chunks(BATCH) {

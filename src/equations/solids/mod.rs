@@ -23,6 +23,7 @@ use crate::laws::bulk::InvertedElement;
 use crate::linear::SparseMatrix;
 use crate::model::Model;
 use constant::Constant;
+pub(super) use constant::damps_by_stiffness;
 pub use constant::is_constant;
 use kernel::Pass;
 
