@@ -33,6 +33,8 @@ pub struct Assembler {
     /// Sum of the forces' magnitudes at each dof [F]
     magnitudes: Vec<f64>,
     equilibrium: Equilibrium,
+    /// Contacts where nothing is presumed, kept for their memory
+    responses: Vec<PairResponse>,
     /// What was found at the last evaluated displacement
     pub evaluation: Evaluation,
     /// Time spent
@@ -59,6 +61,7 @@ impl Assembler {
             weight: supports::weight(model),
             magnitudes: vec![0.0; model.dofs()],
             equilibrium: Equilibrium::new(model),
+            responses: Vec::new(),
             evaluation: Evaluation::default(),
             seconds: Seconds::default(),
         }
@@ -96,12 +99,31 @@ impl Assembler {
     /// # Errors
     /// [`TrialFailure`] when an element inverts, a friction law fails, or a load has no value.
     pub fn residual(&mut self, trial: Trial, u: &[f64], system: &mut System) -> Result<(), TrialFailure> {
-        let responses = self.interfaces(trial, u, |_, _| Presumption::default())?;
-        self.assemble(trial, u, &responses, Request::Residual, system)
+        self.with_responses(trial, u, Request::Residual, |assembler, responses| {
+            assembler.assemble(trial, u, responses, Request::Residual, system)
+        })
+    }
+
+    /// Do something with the responses of all contact points where nothing is presumed.
+    ///
+    /// # Errors
+    /// [`TrialFailure`] when a friction law fails, and those of what is done.
+    pub fn with_responses<T>(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        request: Request,
+        act: impl FnOnce(&mut Self, &[PairResponse]) -> Result<T, TrialFailure>,
+    ) -> Result<T, TrialFailure> {
+        let mut responses = std::mem::take(&mut self.responses);
+        let found = self.interfaces(trial, u, |_, _| Presumption::default(), request, &mut responses);
+        let done = found.and_then(|()| act(self, &responses));
+        self.responses = responses;
+        done
     }
 
     /// Responses of all contact points at the displacement `u`, with what is presumed about a point of a pair: for a tangent
-    /// alone, a residual that may be accepted knows no presumptions.
+    /// alone, a residual that may be accepted knows no presumptions. They come in `responses`, whose memory is used again.
     ///
     /// # Errors
     /// [`TrialFailure`] when a friction law fails.
@@ -110,14 +132,16 @@ impl Assembler {
         trial: Trial,
         u: &[f64],
         presumed: impl Fn(usize, usize) -> Presumption + Sync,
-    ) -> Result<Vec<PairResponse>, TrialFailure> {
+        request: Request,
+        responses: &mut Vec<PairResponse>,
+    ) -> Result<(), TrialFailure> {
         if self.model.contacts.is_empty() {
-            return Ok(Vec::new());
+            return Ok(());
         }
         let clock = Instant::now();
-        let responses = interfaces::respond(&self.model, trial, u, presumed);
+        let answer = interfaces::respond(&self.model, trial, u, presumed, request, responses);
         self.seconds.contact += clock.elapsed().as_secs_f64();
-        responses
+        answer
     }
 
     /// Residual, and tangent on request, at the displacement `u` with the given responses of the contact points.
@@ -147,15 +171,30 @@ impl Assembler {
         self.add(&OF_PLACE_AND_MOTION, motion, responses, true, tangent.then_some(&mut system.tangent))?;
         model.ties.gather(2, &mut self.evaluation.damping);
         model.ties.gather(2, &mut self.magnitudes);
-        self.equilibrium.note_contacts(model, trial, responses);
-        self.evaluation.contacts =
-            responses.iter().map(|pair| pair.iter().map(|(state, _)| *state).collect()).collect();
+        self.note_contacts(trial, responses);
         self.balance(trial, u, tangent, system);
         supports::prescribe(model, self.weight, trial, u, tangent, system)?;
         let mass = self.mass.as_ref().filter(|_| trial.step.scheme.coefficients().is_some());
         self.equilibrium.measure((model, mass), trial, u, &self.magnitudes, system);
         self.seconds.assembly += clock.elapsed().as_secs_f64();
         Ok(())
+    }
+
+    /// Keep the states of the contact points, and how large their forces are.
+    pub fn note_contacts(&mut self, trial: Trial, responses: &[PairResponse]) {
+        self.equilibrium.note_contacts(&self.model, trial, responses);
+        self.keep_states(responses);
+    }
+
+    /// Norm of the nodal forces of each contact at the last evaluation [F].
+    pub fn contact_forces(&self) -> &[f64] {
+        self.equilibrium.contact_forces()
+    }
+
+    /// Square of what round-off can leave at every node, at the displacement that was evaluated last [F²].
+    pub fn round_off(&self, trial: Trial, u: &[f64]) -> Vec<f64> {
+        let mass = self.mass.as_ref().filter(|_| trial.step.scheme.coefficients().is_some());
+        self.equilibrium.round_off((&self.model, mass), trial, u, &self.magnitudes)
     }
 
     /// Forces of what the displacement `u` alone decides, and everything else that an accepted state takes over from the
@@ -165,17 +204,23 @@ impl Assembler {
     /// # Errors
     /// As [`Assembler::residual`].
     pub fn forces(&mut self, trial: Trial, u: &[f64], v: Option<&[f64]>) -> Result<(), TrialFailure> {
-        let responses = self.interfaces(trial, u, |_, _| Presumption::default())?;
-        let clock = Instant::now();
-        self.add(&OF_PLACE, (trial, u, v), &responses, false, None)?;
-        if let Some(v) = v {
-            self.add_viscous([u, v]);
-        }
-        let states = responses.into_iter().map(|pair| pair.into_iter().map(|(state, _)| state).collect());
-        self.evaluation.contacts.clear();
-        self.evaluation.contacts.extend(states);
-        self.seconds.assembly += clock.elapsed().as_secs_f64();
-        Ok(())
+        self.with_responses(trial, u, Request::Residual, |assembler, responses| {
+            let clock = Instant::now();
+            assembler.add(&OF_PLACE, (trial, u, v), responses, false, None)?;
+            if let Some(v) = v {
+                assembler.add_viscous([u, v]);
+            }
+            assembler.keep_states(responses);
+            assembler.seconds.assembly += clock.elapsed().as_secs_f64();
+            Ok(())
+        })
+    }
+
+    /// Keep the trial states of the contact points for the accepted state.
+    fn keep_states(&mut self, responses: &[PairResponse]) {
+        let contacts = &mut self.evaluation.contacts;
+        contacts.resize_with(responses.len(), Vec::new);
+        contacts.iter_mut().zip(responses).for_each(|(states, pair)| states.clone_from(&pair.states));
     }
 
     /// Add the viscous forces of the bodies to those just found, and write what they put on the nodes over the damping.
@@ -279,8 +324,19 @@ impl Assembler {
     /// # Errors
     /// As [`Assembler::residual`].
     pub fn tangent_of(&mut self, term: Term, trial: Trial, u: &[f64]) -> Result<SparseMatrix, TrialFailure> {
-        let responses = self.interfaces(trial, u, |_, _| Presumption::default())?;
-        self.cover(trial, &responses);
+        self.with_responses(trial, u, Request::Tangent, |assembler, responses| {
+            assembler.tangent_with(term, trial, u, responses)
+        })
+    }
+
+    fn tangent_with(
+        &mut self,
+        term: Term,
+        trial: Trial,
+        u: &[f64],
+        responses: &[PairResponse],
+    ) -> Result<SparseMatrix, TrialFailure> {
+        self.cover(trial, responses);
         let mut tangent = self.layout.matrix();
         if term == Term::Inertia {
             let mass = self.mass().clone();
@@ -289,7 +345,7 @@ impl Assembler {
             return Ok(tangent);
         }
         let kept = std::mem::take(&mut self.evaluation);
-        let added = self.add(&[term], (trial, u, None), &responses, false, Some(&mut tangent));
+        let added = self.add(&[term], (trial, u, None), responses, false, Some(&mut tangent));
         self.evaluation = kept;
         added.map(|()| tangent)
     }

@@ -25,6 +25,7 @@
 
 pub mod assembler;
 pub mod audit;
+pub mod condensed;
 mod coupling;
 pub mod dampers;
 mod damping;

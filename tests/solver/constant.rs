@@ -6,9 +6,7 @@ use std::sync::Arc;
 use crate::common::{Blocks, elastic, linear, neo_hookean};
 use fecontact::equations::term::Term;
 use fecontact::equations::{Assembler, Trial};
-use fecontact::laws::bulk::{
-    InvertedElement, Linear, Material, MaterialResponse, Viscoelastic, ViscoelasticConstants,
-};
+use fecontact::laws::bulk::{InvertedElement, Linear, Material, MaterialResponse, Viscoelastic, ViscoelasticConstants};
 use fecontact::linear::system::Request;
 use fecontact::mesh::section::Section;
 use fecontact::mesh::shape::ElementKind;
@@ -288,7 +286,8 @@ fn equal_elements_share_their_matrix() {
     for kind in KINDS {
         let triangles = if kind.corners() == 3 { 2 } else { 1 };
         let count = |section, map: fn([f64; 2]) -> [f64; 2]| {
-            let laws = [linear(100.0, 0.3, 1.0).into(), linear(300.0, 0.3, 1.0).into(), neo_hookean(1.0, 0.3, 1.0).into()];
+            let laws =
+                [linear(100.0, 0.3, 1.0).into(), linear(300.0, 0.3, 1.0).into(), neo_hookean(1.0, 0.3, 1.0).into()];
             Assembler::new(&built(strip(kind, section, map), laws, [0.0; 3])).stored_matrices()
         };
         assert_eq!(count(Section::PlaneStrain, |x| x), 2 * triangles, "{kind:?}");

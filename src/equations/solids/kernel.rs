@@ -67,7 +67,8 @@ impl Block {
         }
         let factors = motions.map(|(_, factor)| factor);
         let mut total = [[[0.0; 2]; 2]; NODES];
-        let elements = Elements::<N, R, M, SCALED> { block: self, stiffness, moved: &moved, factors, total: &mut total };
+        let elements =
+            Elements::<N, R, M, SCALED> { block: self, stiffness, moved: &moved, factors, total: &mut total };
         let energy = Arch::new().dispatch(elements);
         let [forces, others] = sums;
         for (place, total) in total[..self.nodes.len()].iter().enumerate() {
