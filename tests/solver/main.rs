@@ -9,6 +9,7 @@ mod grids;
 mod boundary;
 mod builder;
 mod condensed;
+mod constant;
 mod elements;
 mod history;
 mod invariance;

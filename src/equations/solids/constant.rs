@@ -10,13 +10,16 @@
 use std::collections::HashMap;
 use std::collections::hash_map::{DefaultHasher, Entry};
 use std::hash::{Hash, Hasher};
+use std::sync::Arc;
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{Matrix2, Vector2, Vector4};
 use rayon::prelude::*;
 
 use super::BATCH;
 use super::blocks::{Block, blocks};
 use super::kernel::{Pass, rows};
+use super::places::Places;
+use super::runs::nodal;
 use crate::equations::coupling::Layout;
 use crate::equations::evolving::evolves;
 use crate::equations::failure::TrialFailure;
@@ -24,7 +27,7 @@ use crate::equations::sums::add_blocks;
 use crate::laws::bulk::Material;
 use crate::linear::SparseMatrix;
 use crate::mesh::shape::ElementKind;
-use crate::model::Model;
+use crate::model::{Body, Model};
 
 /// Blocks that are done sooner than another thread wakes up.
 const FEW_BLOCKS: usize = 2;
@@ -36,11 +39,14 @@ pub fn is_constant(model: &Model, element: usize) -> bool {
     model.bodies[body].material.is_linear() && !model.solids[element].is_f_bar() && !evolves(model, body)
 }
 
-/// Whether the viscous stress of a linear law is its elastic stress at the rate of strain, as it is unless a law says otherwise.
-fn damps_by_stiffness(material: &dyn Material) -> bool {
+/// Whether the viscous stress of a law is τ ∂P/∂F:Ḟ with the same ∂P/∂F at every F. A linear law need not have such a one.
+pub(in crate::equations) fn damps_by_stiffness(material: &dyn Material) -> bool {
+    if !material.is_linear() {
+        return false;
+    }
     let (deformation, rate) = (Matrix2::new(1.25, 0.5, -0.25, 0.75), Matrix2::new(0.5, -1.0, 0.75, 0.25));
     let Ok(response) = material.respond(&deformation) else { return false };
-    let elastic = response.tangent * nalgebra::Vector4::from_column_slice(rate.as_slice());
+    let elastic = response.tangent * Vector4::from_column_slice(rate.as_slice());
     let elastic = Matrix2::from_column_slice(elastic.as_slice());
     (material.viscous_stress([&deformation, &rate]) - elastic).norm() <= 1e-12 * elastic.norm()
 }
@@ -52,8 +58,13 @@ pub(super) struct Constant {
     /// Columns of the distinct K_e of each kind from those of the second node on, one matrix after the other [F/L]
     stiffness: [Vec<f64>; 5],
     blocks: Vec<Block>,
-    /// Places that each block has for what it puts on its nodes
-    pub stride: usize,
+    /// Where each node finds its blocks' forces
+    pub places: Places,
+    /// Forces of the blocks on their nodes, `stride` places a block [F]
+    pub forces: Vec<Vector2<f64>>,
+    /// Viscous forces of the blocks, or the magnitudes of their elements' forces [F]
+    pub others: Vec<Vector2<f64>>,
+    stride: usize,
     /// What each block stores [F·L]
     energies: Vec<f64>,
     /// Sum of all K_e on the pattern
@@ -64,9 +75,7 @@ pub(super) struct Constant {
 
 impl Constant {
     pub fn new(model: &Model) -> Self {
-        let fit = |body: &crate::model::Body| {
-            !body.material.is_linear() || body.damping.retardation == 0.0 || damps_by_stiffness(&*body.material)
-        };
+        let fit = |body: &Body| body.damping.retardation == 0.0 || damps_by_stiffness(&*body.material);
         let fit: Vec<bool> = model.bodies.iter().map(fit).collect();
         let is: Vec<bool> =
             (0..model.solids.len()).map(|e| is_constant(model, e) && fit[model.body_of_element[e]]).collect();
@@ -76,7 +85,24 @@ impl Constant {
         stiffness.iter_mut().for_each(Vec::shrink_to_fit);
         let blocks = blocks(model, &matrices);
         let stride = blocks.iter().map(|block| block.nodes.len()).max().unwrap_or(0);
-        Self { is, stiffness, energies: vec![0.0; blocks.len()], blocks, stride, total: None, viscous: None }
+        let of_block = |(first, block): (usize, &'_ Block)| {
+            let own = block.nodes.iter().enumerate();
+            own.map(move |(k, &node)| ((first * stride + k) as u32, node as usize)).collect::<Vec<_>>()
+        };
+        let nodes: Vec<(u32, usize)> = blocks.iter().enumerate().flat_map(of_block).collect();
+        let zeros = || vec![Vector2::zeros(); stride * blocks.len()];
+        Self {
+            is,
+            stiffness,
+            places: Places::new(model.mesh.nodes.len(), nodes.iter().copied()),
+            forces: zeros(),
+            others: zeros(),
+            stride,
+            energies: vec![0.0; blocks.len()],
+            blocks,
+            total: None,
+            viscous: None,
+        }
     }
 
     /// Number of distinct matrices.
@@ -85,20 +111,16 @@ impl Constant {
         KINDS.into_iter().zip(&self.stiffness).map(of).sum()
     }
 
-    /// The nodes that have a place, block by block.
-    pub fn nodes(&self) -> impl Iterator<Item = &[u32]> {
-        self.blocks.iter().map(|block| &block.nodes[..])
-    }
-
-    /// Write what all elements put on the nodes over `forces`, block by block, and what a pass is asked for besides over
-    /// `others`; the displacements' stored energy is kept.
-    pub fn evaluate(&mut self, model: &Model, pass: Pass, forces: &mut [Vector2<f64>], others: &mut [Vector2<f64>]) {
+    /// Write what all elements put on the nodes over the blocks' `forces`, and what a pass is asked for besides over `others`;
+    /// what they store is kept.
+    pub fn evaluate(&mut self, model: &Model, pass: Pass) {
+        let Self { stiffness, blocks, forces, others, energies, .. } = self;
         let stride = self.stride.max(1);
         let places = forces.par_chunks_exact_mut(stride).zip(others.par_chunks_exact_mut(stride));
-        let all = self.blocks.par_iter().zip(places).zip(&mut self.energies).with_min_len(FEW_BLOCKS);
+        let all = blocks.par_iter().zip(places).zip(energies).with_min_len(FEW_BLOCKS);
         all.for_each(|((block, (forces, others)), energy)| {
             let retardation = model.bodies[block.body].damping.retardation;
-            *energy = block.evaluate(&self.stiffness[block.kind as usize], retardation, pass, [forces, others]);
+            *energy = block.evaluate(&stiffness[block.kind as usize], retardation, pass, [forces, others]);
         });
     }
 
@@ -109,7 +131,7 @@ impl Constant {
             for e in (0..self.is.len()).filter(|&e| self.is[e]) {
                 let (n, mut forces) = (model.mesh.elements[e].nodes.len(), [Vector2::zeros(); 9]);
                 let material = &*model.bodies[model.body_of_element[e]].material;
-                let found = model.solids[e].nodal_forces(material, &super::nodal(model, e, u)[..n], &mut forces[..n]);
+                let found = model.solids[e].nodal_forces(material, &nodal(model, e, u)[..n], &mut forces[..n]);
                 found.map_err(|failure| TrialFailure::inverted(model, e, failure))?;
             }
         }
@@ -138,7 +160,7 @@ fn kept<'a>(
     if !(0..is.len()).any(|e| is[e] && factor(e) != 0.0) {
         return None;
     }
-    if sum.as_ref().is_none_or(|sum| !std::sync::Arc::ptr_eq(&sum.pattern, &layout.pattern)) {
+    if sum.as_ref().is_none_or(|sum| !Arc::ptr_eq(&sum.pattern, &layout.pattern)) {
         let mut total = layout.matrix();
         let elements: Vec<usize> = (0..is.len()).filter(|&e| is[e] && factor(e) != 0.0).collect();
         for batch in elements.chunks(BATCH) {

@@ -63,12 +63,12 @@ impl Block {
     ) -> f64 {
         let mut moved = [[[0.0; 2]; M]; NODES];
         for (moved, &node) in moved.iter_mut().zip(&self.nodes) {
-            for (moved, (motion, factor)) in moved.iter_mut().zip(&motions) {
-                *moved = motion[node as usize].map(|x| factor * x);
-            }
+            moved.iter_mut().zip(&motions).for_each(|(moved, (motion, _))| *moved = motion[node as usize]);
         }
+        let factors = motions.map(|(_, factor)| factor);
         let mut total = [[[0.0; 2]; 2]; NODES];
-        let elements = Elements::<N, R, M, SCALED> { block: self, stiffness, moved: &moved, total: &mut total };
+        let elements =
+            Elements::<N, R, M, SCALED> { block: self, stiffness, moved: &moved, factors, total: &mut total };
         let energy = Arch::new().dispatch(elements);
         let [forces, others] = sums;
         for (place, total) in total[..self.nodes.len()].iter().enumerate() {
@@ -85,8 +85,10 @@ impl Block {
 struct Elements<'a, const N: usize, const R: usize, const M: usize, const SCALED: bool> {
     block: &'a Block,
     stiffness: &'a [f64],
-    /// The motions of the block's nodes, times the factors of their forces
+    /// The motions of the block's nodes
     moved: &'a [[[f64; 2]; M]; NODES],
+    /// The factors of their forces
+    factors: [f64; M],
     /// The forces of the first motion, and those of the second or the magnitudes
     total: &'a mut [[[f64; 2]; 2]; NODES],
 }
@@ -96,7 +98,7 @@ impl<const N: usize, const R: usize, const M: usize, const SCALED: bool> WithSim
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        let Self { block, stiffness, moved, total } = self;
+        let Self { block, stiffness, moved, factors, total } = self;
         let length = 2 * (N - 1) * R;
         let mut twice = simd.splat_f64s(0.0);
         for (places, &matrix) in block.places.as_chunks::<N>().0.iter().zip(&block.matrices) {
@@ -106,7 +108,8 @@ impl<const N: usize, const R: usize, const M: usize, const SCALED: bool> WithSim
             let mut motions = [[0.0; R]; M];
             for (m, motion) in motions.iter_mut().enumerate() {
                 for (a, &place) in places.iter().enumerate().skip(1) {
-                    (0..2).for_each(|i| motion[2 * a + i] = moved[place][m][i] - moved[places[0]][m][i]);
+                    let against = |i: usize| moved[place][m][i] - moved[places[0]][m][i];
+                    (0..2).for_each(|i| motion[2 * a + i] = factors[m] * against(i));
                 }
             }
             let mut forces = [[simd.splat_f64s(0.0); R]; M];

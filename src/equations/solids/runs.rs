@@ -1,0 +1,210 @@
+//! Elements that are evaluated anew each time: those of one kind and body that follow each other, in parallel.
+
+use std::ops::Range;
+
+use nalgebra::Vector2;
+use rayon::prelude::*;
+
+use super::BATCH;
+use super::places::Places;
+use crate::equations::coupling::Layout;
+use crate::equations::evolving::evolves;
+use crate::equations::failure::TrialFailure;
+use crate::equations::sums::add_blocks;
+use crate::laws::bulk::InvertedElement;
+use crate::linear::SparseMatrix;
+use crate::model::Model;
+
+/// Elements that are done sooner than another thread wakes up.
+const FEW: usize = 64;
+
+/// Elements of a model in runs.
+pub(super) struct Runs {
+    runs: Vec<Run>,
+    /// Where each node finds its elements' forces
+    pub places: Places,
+    /// Forces of the elements on their nodes [F]
+    pub forces: Vec<Vector2<f64>>,
+    /// What each element of the model stores, if it is in a run [F·L]
+    energies: Vec<Result<f64, InvertedElement>>,
+    /// Tangents of a batch, column by column
+    tangents: Vec<f64>,
+}
+
+/// Elements of one kind and body that follow each other.
+#[derive(Clone, Debug)]
+struct Run {
+    elements: Range<usize>,
+    body: usize,
+    /// Nodes of an element
+    nodes: usize,
+    /// Place of the first node of the first element
+    first: usize,
+    /// Whether [`Evolving`] adds them
+    evolves: bool,
+}
+
+/// An element, and where its forces and its tangent go.
+type Slot<'a> = ((usize, &'a mut [Vector2<f64>]), &'a mut [f64]);
+
+impl Run {
+    fn places(&self) -> Range<usize> {
+        self.first..self.first + self.nodes * self.elements.len()
+    }
+}
+
+impl Runs {
+    /// Of the elements that are `wanted`.
+    pub fn new(model: &Model, wanted: impl Fn(usize) -> bool + Clone) -> Self {
+        let elements = &model.mesh.elements;
+        let mut runs: Vec<Run> = Vec::new();
+        let mut count = 0;
+        for (e, element) in elements.iter().enumerate().filter(|(e, _)| wanted(*e)) {
+            let (body, kind) = (model.body_of_element[e], element.kind);
+            match runs.last_mut() {
+                Some(run) if run.elements.end == e && run.body == body && elements[run.elements.start].kind == kind => {
+                    run.elements.end += 1;
+                }
+                _ => runs.push(Run {
+                    elements: e..e + 1,
+                    body,
+                    nodes: element.nodes.len(),
+                    first: count,
+                    evolves: evolves(model, body),
+                }),
+            }
+            count += element.nodes.len();
+        }
+        let nodes = elements.iter().enumerate().filter(|(e, _)| wanted(*e)).flat_map(|(_, element)| &element.nodes);
+        Self {
+            runs,
+            places: Places::new(model.mesh.nodes.len(), nodes.enumerate().map(|(place, &node)| (place as u32, node))),
+            forces: vec![Vector2::zeros(); count],
+            energies: vec![Ok(0.0); if count > 0 { elements.len() } else { 0 }],
+            tangents: Vec::new(),
+        }
+    }
+
+    /// Forces of all elements.
+    pub fn evaluate(&mut self, model: &Model, u: &[f64]) {
+        for run in &self.runs {
+            if run.evolves {
+                self.forces[run.places()].fill(Vector2::zeros());
+                continue;
+            }
+            let material = &*model.bodies[run.body].material;
+            let forces = self.forces[run.places()].par_chunks_exact_mut(run.nodes);
+            let elements = run.elements.clone().into_par_iter().zip(forces);
+            let one = |((e, forces), energy): ((usize, &mut [Vector2<f64>]), &mut _)| {
+                *energy = model.solids[e].nodal_forces(material, &nodal(model, e, u)[..run.nodes], forces);
+            };
+            elements.zip(&mut self.energies[run.elements.clone()]).with_min_len(FEW).for_each(one);
+        }
+    }
+
+    /// Forces and tangents of the same, the tangents batch by batch.
+    pub fn evaluate_with_tangents(&mut self, model: &Model, u: &[f64], layout: &Layout, total: &mut SparseMatrix) {
+        for run in &self.runs {
+            if run.evolves {
+                self.forces[run.places()].fill(Vector2::zeros());
+                continue;
+            }
+            let material = &*model.bodies[run.body].material;
+            let (n, size) = (run.nodes, 4 * run.nodes * run.nodes);
+            self.tangents.resize(self.tangents.len().max(size * BATCH.min(run.elements.len())), 0.0);
+            for first in run.elements.clone().step_by(BATCH) {
+                let elements = first..(first + BATCH).min(run.elements.end);
+                let place = run.first + n * (first - run.elements.start);
+                let forces = &mut self.forces[place..place + n * elements.len()];
+                let one = |(((e, forces), tangent), energy): (Slot, &mut _)| {
+                    let mut force = [0.0; 18];
+                    let (u, own) = (&nodal(model, e, u)[..n], &mut force[..2 * n]);
+                    *energy = model.solids[e].force_and_tangent(material, u, own, tangent);
+                    forces
+                        .iter_mut()
+                        .zip(force.chunks_exact(2))
+                        .for_each(|(sum, own)| *sum = Vector2::new(own[0], own[1]));
+                };
+                let all = elements.clone().into_par_iter().zip(forces.par_chunks_exact_mut(n));
+                let all = all.zip(self.tangents.par_chunks_exact_mut(size));
+                all.zip(&mut self.energies[elements.clone()]).with_min_len(FEW).for_each(one);
+                for (e, tangent) in elements.zip(self.tangents.chunks_exact(size)) {
+                    add_blocks(total, layout.blocks_of(e), tangent, n);
+                }
+            }
+        }
+    }
+
+    /// What all elements store, or which is the first that is turned inside out.
+    pub fn stored(&self, model: &Model) -> Result<f64, TrialFailure> {
+        let mut energy = 0.0;
+        for e in self.runs.iter().filter(|run| !run.evolves).flat_map(|run| run.elements.clone()) {
+            energy += self.energies[e].map_err(|failure| TrialFailure::inverted(model, e, failure))?;
+        }
+        Ok(energy)
+    }
+
+    /// Viscous forces of all elements.
+    pub fn evaluate_viscous(&mut self, model: &Model, [u, v]: [&[f64]; 2]) {
+        for run in &self.runs {
+            let body = &model.bodies[run.body];
+            let law = (&*body.material, body.damping.retardation);
+            let one = |(e, forces): (usize, &mut [Vector2<f64>])| {
+                let [u, v] = [u, v].map(|all| nodal(model, e, all));
+                model.solids[e].viscous_forces(law, [&u[..run.nodes], &v[..run.nodes]], forces);
+            };
+            let places = &mut self.forces[run.places()];
+            match body.damping.retardation > 0.0 {
+                true => run
+                    .elements
+                    .clone()
+                    .into_par_iter()
+                    .zip(places.par_chunks_exact_mut(run.nodes))
+                    .with_min_len(FEW)
+                    .for_each(one),
+                false => places.fill(Vector2::zeros()),
+            }
+        }
+    }
+
+    /// Add the tangents of the viscous forces, where the velocity of each dof varies `dvelocity` times as much as its
+    /// displacement.
+    pub fn viscous_tangents(
+        &mut self,
+        model: &Model,
+        [u, v]: [&[f64]; 2],
+        dvelocity: &[f64],
+        layout: &Layout,
+        total: &mut SparseMatrix,
+    ) {
+        for run in self.runs.iter().filter(|run| model.bodies[run.body].damping.retardation > 0.0) {
+            let body = &model.bodies[run.body];
+            let law = (&*body.material, body.damping.retardation);
+            let (n, size) = (run.nodes, 4 * run.nodes * run.nodes);
+            self.tangents.resize(self.tangents.len().max(size * BATCH.min(run.elements.len())), 0.0);
+            for first in run.elements.clone().step_by(BATCH) {
+                let elements = first..(first + BATCH).min(run.elements.end);
+                let one = |(e, tangent): (usize, &mut [f64])| {
+                    let [u, v, rates] = [u, v, dvelocity].map(|all| nodal(model, e, all));
+                    let mut own = [0.0; 18];
+                    own.chunks_exact_mut(2).zip(&rates).for_each(|(own, rate)| own.copy_from_slice(rate.as_slice()));
+                    model.solids[e].viscous_tangent(law, [&u[..n], &v[..n]], &own[..2 * n], tangent);
+                };
+                let all = elements.clone().into_par_iter().zip(self.tangents.par_chunks_exact_mut(size));
+                all.with_min_len(FEW).for_each(one);
+                for (e, tangent) in elements.zip(self.tangents.chunks_exact(size)) {
+                    add_blocks(total, layout.blocks_of(e), tangent, n);
+                }
+            }
+        }
+    }
+}
+
+/// Values of an element's nodes, from those of all dofs.
+pub(super) fn nodal(model: &Model, e: usize, all: &[f64]) -> [Vector2<f64>; 9] {
+    let mut local = [Vector2::zeros(); 9];
+    for (local, &node) in local.iter_mut().zip(&model.mesh.elements[e].nodes) {
+        *local = Vector2::new(all[2 * node], all[2 * node + 1]);
+    }
+    local
+}
