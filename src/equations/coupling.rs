@@ -25,6 +25,13 @@ pub struct Coupling {
     ahead: usize,
 }
 
+impl Coupling {
+    /// Couple all nodes of a group with each other.
+    pub fn of(group: Vec<usize>) -> Self {
+        Self { groups: vec![group], ahead: 1 }
+    }
+}
+
 /// The pattern of a model's tangent, and where each element is in it.
 pub(super) struct Layout {
     model: Arc<Model>,
