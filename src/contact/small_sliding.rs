@@ -9,22 +9,22 @@
 //! the displacements, by the constant rows B_n = w_a n and B_t = w_a s, and the forces are what does work on them,
 //! f = −ℓ (p B_nᵀ − q B_tᵀ). With linear bodies nothing but opening and friction is nonlinear.
 //!
-//! What is left out: that the foot moves on (the forces of the two sides are in balance, but leave the moment p ℓ d when a point has
-//! slid by d, besides the q ℓ g of finite sliding), and that the surfaces turn and stretch: small sliding is objective for
-//! small rotations only. All this is of the second order in the displacements; but not where a contact starts closed, whose
+//! What is left out: that the foot moves on (the forces of the two sides are in balance, but leave the moment p ℓ d when a
+//! point has slid by d, besides the q ℓ g of finite sliding), and that the surfaces turn and stretch: small sliding is
+//! objective for small rotations only. All this is of the second order in the displacements; but not where a contact starts closed, whose
 //! initial traction turns and stretches by the first order in finite sliding, and not at all here. (Nor does the initial
 //! stress of `linear` bodies, with which it is in equilibrium.) A point that nothing faces in the reference configuration
 //! never touches.
 //!
 //! [`SmallPoint::departure`] says how far a point has left all this behind. A block pressed on another and slid by a tenth of
-//! an edge has the pressures of finite sliding within 4 to 13 % from point to point where they vary from edge to edge (mortar),
-//! and its forces and displacements within 1 %.
+//! an edge has the pressures of finite sliding within 4 to 13 % where they vary from edge to edge, and its forces and
+//! displacements within 1 %.
 
 use nalgebra::Vector2;
 
 use super::kinematics::{Kinematics, Meeting};
 use super::master::Master;
-use super::point::{MasterPoint, SlavePoint};
+use super::surface::{MasterPoint, Segment, SlavePoint};
 use crate::mesh::configuration::Configuration;
 
 /// The constant operators of a pair's points.
@@ -35,13 +35,13 @@ pub struct SmallSliding {
 }
 
 impl SmallSliding {
-    /// Way up to which small sliding is no matter, by the shortest of the edges; none on a rigid body [L].
+    /// Way up to which small sliding is no matter, where nodes are nearest to each other; none on a rigid body [L].
     pub fn little_slip(&self) -> Option<f64> {
-        let edge = |point: &SmallPoint| match point.against {
-            Against::Mesh { edge, .. } => Some(LITTLE_SLIP * edge),
+        let little = |point: &SmallPoint| match point.against {
+            Against::Mesh { spacing, .. } => Some(LITTLE_SLIP * spacing),
             Against::Rigid { .. } => None,
         };
-        self.points.iter().flatten().filter_map(edge).min_by(f64::total_cmp)
+        self.points.iter().flatten().filter_map(little).min_by(f64::total_cmp)
     }
 }
 
@@ -69,8 +69,8 @@ pub struct SmallPoint {
 /// What a point is to stay with.
 #[derive(Clone, Debug, PartialEq)]
 enum Against {
-    /// A segment with these ends, it or the point's own edge being no shorter than `edge` [L]
-    Mesh { ends: [usize; 2], edge: f64 },
+    /// A segment with these ends, where nodes of either side are no nearer to each other than `spacing` [L]
+    Mesh { ends: [usize; 2], spacing: f64 },
     /// A rigid body, whose normal at the foot of the point's node is this
     Rigid { normal: Vector2<f64> },
 }
@@ -80,16 +80,18 @@ enum Against {
 pub struct Departure {
     /// Way slid since the reference configuration [L]
     pub slid: f64,
-    /// The same as a share of the shorter edge of the two sides; 0 on a rigid body [-]
+    /// The same as a share of the distance between nodes, where it is shorter; 0 on a rigid body [-]
     pub share: f64,
     /// Angle by which its edges and the master's have turned, or the normal of a rigid body at its foot [rad]
     pub turned: f64,
+    /// Share by which its edges have grown longer or shorter [-]
+    pub stretched: f64,
 }
 
-/// Share of an edge up to which small sliding is no matter.
+/// Share of the distance between nodes up to which small sliding is no matter: of a linear edge, or half a quadratic one.
 pub const LITTLE_SLIP: f64 = 0.1;
 
-/// Angle up to which it is none [rad].
+/// Angle, and stretch, up to which it is none [rad, -].
 pub const LITTLE_TURN: f64 = 0.02;
 
 impl SmallPoint {
@@ -103,9 +105,13 @@ impl SmallPoint {
                 Against::Rigid { normal: body.project(slave, x).map_or(normal, |projection| projection.normal) }
             }
             Master::Mesh(surface) => {
-                let ends = surface.segments[foot.segment].ends;
-                let edge = |[a, b]: [usize; 2]| x.between(a, b).norm();
-                Against::Mesh { ends, edge: edges(slave).map(edge).fold(edge(ends), f64::min) }
+                let Segment { ends, middle, .. } = surface.segments[foot.segment];
+                let spacing = |(quadratic, [a, b]): (bool, [usize; 2])| {
+                    let edge = x.between(a, b).norm();
+                    if quadratic { 0.5 * edge } else { edge }
+                };
+                let own = slave.length.iter().map(|share| share.tangent.len() > 2).zip(edges(slave)).map(spacing);
+                Against::Mesh { ends, spacing: own.fold(spacing((middle.is_some(), ends)), f64::min) }
             }
         };
         Self { nodes, weights, normal, tangent, gap, length, foot, against }
@@ -114,18 +120,16 @@ impl SmallPoint {
     /// How far the point has left what is kept; `None` where it has gone past the end of a rigid body.
     pub fn departure(&self, slave: &SlavePoint, master: &Master, x: &Configuration) -> Option<Departure> {
         let slid = self.tangent.dot(&self.displacement(x)).abs();
-        match (&self.against, master) {
-            (Against::Rigid { normal }, Master::Rigid(body)) => {
-                let turned = body.project(slave, x)?.normal.angle(normal);
-                Some(Departure { slid, share: 0.0, turned })
+        let stretched = edges(slave).map(|[a, b]| x.stretch(a, b).abs()).fold(0.0, f64::max);
+        let turn = |[a, b]: [usize; 2]| x.turn(a, b).abs();
+        let (share, turned) = match (&self.against, master) {
+            (Against::Mesh { ends, spacing }, _) => {
+                (slid / spacing, edges(slave).map(turn).fold(turn(*ends), f64::max))
             }
-            (Against::Mesh { ends, edge }, _) => {
-                let turned = |[a, b]: [usize; 2]| x.turn(a, b).abs();
-                let turned = edges(slave).map(turned).fold(turned(*ends), f64::max);
-                Some(Departure { slid, share: slid / edge, turned })
-            }
-            (Against::Rigid { .. }, Master::Mesh(_)) => None,
-        }
+            (Against::Rigid { normal }, Master::Rigid(body)) => (0.0, body.project(slave, x)?.normal.angle(normal)),
+            (Against::Rigid { .. }, Master::Mesh(_)) => return None,
+        };
+        Some(Departure { slid, share, turned, stretched })
     }
 
     /// B_n: ∂g/∂u of the nodes, two dofs a node.

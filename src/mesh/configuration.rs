@@ -79,6 +79,11 @@ impl<'a> Configuration<'a> {
         was.perp(&is).atan2(was.dot(&is))
     }
 
+    /// Share by which it has grown longer [-].
+    pub fn stretch(&self, from: usize, to: usize) -> f64 {
+        self.between(from, to).norm() / (self.reference[to] - self.reference[from]).norm() - 1.0
+    }
+
     /// How far a node has moved since another configuration.
     pub fn since(&self, before: &Self, node: usize) -> Vector2<f64> {
         self.displacement(node) - before.displacement(node)

@@ -45,6 +45,7 @@ enum Kind {
     SeveralAnswers,
     SlidFar,
     TurnedFar,
+    StretchedFar,
 }
 
 impl Observer for Warnings {
@@ -206,14 +207,14 @@ fn concerns(
 
 /// What is to be said of a point that has left what small sliding keeps.
 fn left(departure: Option<Departure>) -> impl Iterator<Item = (Kind, String)> {
-    let Some(Departure { slid, share, turned }) = departure else {
+    let Some(Departure { slid, share, turned, stretched }) = departure else {
         let message = "the surface has slid past the end of the rigid master, and small sliding holds it there";
-        return [Some((Kind::SlidFar, message.into())), None].into_iter().flatten();
+        return [Some((Kind::SlidFar, message.into())), None, None].into_iter().flatten();
     };
     let far = (share > LITTLE_SLIP).then(|| {
         let message = format!(
-            "the surfaces have slid by {slid:.3e} since the start, {:.1} % of an edge, and small sliding keeps what faced \
-             what: tractions that vary from edge to edge are off by about as much",
+            "the surfaces have slid by {slid:.3e} since the start, {:.1} % of the distance between nodes, and small sliding keeps what faced \
+             what: tractions that vary from node to node are off by about as much",
             100.0 * share
         );
         (Kind::SlidFar, message)
@@ -226,5 +227,13 @@ fn left(departure: Option<Departure>) -> impl Iterator<Item = (Kind, String)> {
         );
         (Kind::TurnedFar, message)
     });
-    [far, turned].into_iter().flatten()
+    let stretched = (stretched > LITTLE_TURN).then(|| {
+        let message = format!(
+            "an edge of the slave has become {:.1} % longer or shorter since the start, and small sliding keeps its length: \
+             tractions are off by as much",
+            100.0 * stretched
+        );
+        (Kind::StretchedFar, message)
+    });
+    [far, turned, stretched].into_iter().flatten()
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::common::{self, Blocks, Finished, close, distance, finish};
+use crate::common::{self, Blocks, Finished, close, distance, finish, half_way, quadratic};
 use fecontact::contact::force::ContactState;
 use fecontact::contact::master::Master;
 use fecontact::contact::mortar::mortar_points;
@@ -358,8 +358,13 @@ fn what_is_no_small_sliding_is_told() {
         assert_eq!(told(&dragged(0.95 * LITTLE_SLIP * edge, lifted)), Vec::<String>::new());
         for way in [1.05, -1.05] {
             let far = told(&dragged(way * LITTLE_SLIP * edge, lifted));
-            assert!(far.len() == 1 && far[0].contains("10.5 % of an edge, and small sliding"), "{far:?}");
+            assert!(far.len() == 1 && far[0].contains("10.5 % of the distance between nodes, and small"), "{far:?}");
         }
+    }
+    for (share, count) in [(0.95, 0), (1.05, 1)] {
+        let mut case = dragged(share * LITTLE_SLIP * 0.5 * edge, 0.0);
+        case["mesh"] = quadratic(&case["mesh"], half_way);
+        assert_eq!(told(&case).len(), count, "quadratic edges");
     }
     for (share, count) in [(0.95, 0), (1.05, 1)] {
         let angle = share * LITTLE_TURN;
@@ -369,6 +374,15 @@ fn what_is_no_small_sliding_is_told() {
         let turned = told(&case);
         assert_eq!(turned.len(), count, "{turned:?}");
         assert!(turned.iter().all(|told| told.contains("turned by 0.021 rad")), "{turned:?}");
+    }
+    for (share, count) in [(0.95, 0), (1.05, 1), (-1.05, 1)] {
+        let mut case = dragged(0.0, 0.0);
+        let wider = format!("{}*x", share * LITTLE_TURN);
+        case["steps"][0]["supports"] =
+            json!([{"on": "lower", "ux": wider, "uy": 0}, {"on": "upper", "ux": wider, "uy": 0}]);
+        let stretched = told(&case);
+        assert_eq!(stretched.len(), count, "{stretched:?}");
+        assert!(stretched.iter().all(|told| told.contains("2.1 % longer or shorter")), "{stretched:?}");
     }
     let finite = |mut case: Value| {
         case["contacts"]["base"]["sliding"] = json!("finite");
