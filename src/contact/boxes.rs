@@ -13,9 +13,19 @@ use crate::mesh::configuration::Configuration;
 ///
 /// All places are relative to a node of the surface: which segment is the nearest must not be decided by the round-off of
 /// coordinates far from the origin.
+///
+/// The boxes are a margin larger than what they hold. As long as no node has moved by more than that against the origin, they
+/// hold it still: the tree of another configuration serves, and what is found is the same to the bit, since the distances
+/// compared in the end are those of the segments themselves. The nearest segment is the first of all by (distance, number),
+/// whatever tree finds it: the margin is far above the round-off of a box's distance.
+#[derive(Clone, Debug, Default)]
 pub struct Boxes {
     segments: usize,
     pub(super) origin: usize,
+    /// [L]
+    margin: f64,
+    /// The nodes of the segments, and their places when the tree was built
+    places: Vec<(usize, Vector2<f64>)>,
     /// Level by level from the leaves, one box a segment, to the root; each level has half the boxes of the one before
     levels: Vec<Vec<Box2>>,
 }
@@ -49,7 +59,14 @@ impl Box2 {
         Self { low: self.low.inf(&other.low), high: self.high.sup(&other.high) }
     }
 
-    fn meets(&self, other: &Self) -> bool {
+    /// The box with a margin all round.
+    fn wider(&self, margin: f64) -> Self {
+        let margin = Vector2::new(margin, margin);
+        Self { low: self.low - margin, high: self.high + margin }
+    }
+
+    /// Whether two boxes have a point in common.
+    pub fn meets(&self, other: &Self) -> bool {
         (0..2).all(|i| self.low[i] <= other.high[i] && other.low[i] <= self.high[i])
     }
 
@@ -59,53 +76,122 @@ impl Box2 {
     }
 }
 
+/// Margin of the boxes, as a share of the mean length of the segments.
+const MARGIN: f64 = 0.05;
+
+/// Share of the margin that nodes may use up before the tree is built anew: what is left is for round-off.
+const USED: f64 = 0.9;
+
 impl Boxes {
     pub(super) fn new(surface: &Surface, x: &Configuration) -> Self {
-        let origin = surface.origin();
-        let mut levels: Vec<Vec<Box2>> =
-            vec![surface.segments.iter().map(|segment| Box2::of(segment, origin, x)).collect()];
-        while let Some(last) = levels.last().filter(|last| last.len() > 1) {
-            let halved = last.chunks(2).map(|pair| pair.iter().skip(1).fold(pair[0], |sum, one| sum.around(one)));
-            let halved = halved.collect();
-            levels.push(halved);
-        }
-        Self { segments: surface.segments.len(), origin, levels }
+        let mut boxes = Self::default();
+        boxes.build(surface, x);
+        boxes
     }
 
-    /// The segments whose boxes meet another, in order along the surface.
-    pub(super) fn meeting(&self, other: &Box2) -> Vec<usize> {
-        let mut found = Vec::new();
-        let mut open = Vec::from_iter((self.segments > 0).then(|| (self.levels.len() - 1, 0)));
-        while let Some((level, number)) = open.pop() {
-            match self.levels[level][number].meets(other) {
-                true if level == 0 => found.push(number),
-                true => {
-                    let below = self.levels[level - 1].len();
-                    let halves = [2 * number + 1, 2 * number].into_iter().filter(|&number| number < below);
-                    open.extend(halves.map(|number| (level - 1, number)));
-                }
-                false => {}
-            }
+    /// See to it that the tree serves for a surface in the configuration `x`.
+    pub(super) fn update(&mut self, surface: &Surface, x: &Configuration) {
+        if !self.serves(surface, x) {
+            self.build(surface, x);
         }
-        found
+    }
+
+    /// Whether it was built for this surface, in a configuration that is near enough.
+    fn serves(&self, surface: &Surface, x: &Configuration) -> bool {
+        let most = USED * self.margin;
+        let stays = |(node, (own, place)): (usize, &(usize, Vector2<f64>))| {
+            node == *own && (x.between(self.origin, node) - place).amax() <= most
+        };
+        let nodes = || surface.segments.iter().flat_map(Segment::nodes);
+        self.segments == surface.segments.len()
+            && self.origin == surface.origin()
+            && nodes().zip(&self.places).all(stays)
+            && nodes().count() == self.places.len()
+    }
+
+    fn build(&mut self, surface: &Surface, x: &Configuration) {
+        let Self { segments, origin, margin, places, levels } = self;
+        (*segments, *origin) = (surface.segments.len(), surface.origin());
+        places.clear();
+        let nodes = surface.segments.iter().flat_map(Segment::nodes);
+        places.extend(nodes.map(|node| (node, x.between(*origin, node))));
+        let lengths = surface.segments.iter().map(|segment| x.between(segment.ends[0], segment.ends[1]).norm());
+        *margin = MARGIN * lengths.sum::<f64>() / surface.segments.len() as f64;
+        let count = usize::BITS - surface.segments.len().saturating_sub(1).leading_zeros();
+        levels.resize_with(1 + count as usize, Vec::new);
+        let (leaves, above) = levels.split_at_mut(1);
+        leaves[0].clear();
+        leaves[0].extend(surface.segments.iter().map(|segment| Box2::of(segment, *origin, x).wider(*margin)));
+        let mut below = &leaves[0];
+        for level in above {
+            let halved = below.chunks(2).map(|pair| pair.iter().skip(1).fold(pair[0], |sum, one| sum.around(one)));
+            level.clear();
+            level.extend(halved);
+            below = level;
+        }
+    }
+
+    /// The segments that may meet a box, in order along the surface.
+    pub(super) fn meeting(&self, other: &Box2, found: &mut Vec<usize>) {
+        if self.segments > 0 {
+            self.collect(other, (self.levels.len() - 1, 0), found);
+        }
+    }
+
+    fn collect(&self, other: &Box2, (level, number): (usize, usize), found: &mut Vec<usize>) {
+        if !self.levels[level][number].meets(other) {
+            return;
+        }
+        if level == 0 {
+            found.push(number);
+            return;
+        }
+        let below = self.levels[level - 1].len();
+        let halves = (2 * number..2 * number + 2).take_while(|&half| half < below);
+        halves.for_each(|half| self.collect(other, (level - 1, half), found));
     }
 
     /// The first of the segments by their distance from a point: what most points need, and found without a heap. Boxes
-    /// and segments (level 0) that do not count are passed over.
+    /// and segments (level 0) that do not count are passed over. From a segment that may be near the search goes up the
+    /// tree, else from the root down; what it finds is the same.
     pub(super) fn nearest_one(
         &self,
         slave: &SlavePoint,
         surface: &Surface,
         x: &Configuration,
+        near: Option<usize>,
         counts: impl Fn(usize, usize) -> bool,
     ) -> Option<usize> {
         let exact = |number: usize| distance_from_segment(slave, &surface.segments[number], x);
         let point = slave.offset(self.origin, x);
         let mut nearest = None;
-        if self.segments > 0 {
-            self.descend(point, &exact, &counts, (self.levels.len() - 1, 0), &mut nearest);
+        match near.filter(|&near| near < self.segments) {
+            Some(near) => self.climb(point, &exact, &counts, near, &mut nearest),
+            None if self.segments > 0 => {
+                self.descend(point, &exact, &counts, (self.levels.len() - 1, 0), &mut nearest);
+            }
+            None => {}
         }
         nearest.map(|(_, number)| number)
+    }
+
+    /// Look at a segment, and then at the other half of every box that holds it.
+    fn climb(
+        &self,
+        point: Vector2<f64>,
+        exact: &impl Fn(usize) -> f64,
+        counts: &impl Fn(usize, usize) -> bool,
+        near: usize,
+        nearest: &mut Option<(f64, usize)>,
+    ) {
+        self.descend(point, exact, counts, (0, near), nearest);
+        for (level, boxes) in self.levels.iter().enumerate() {
+            let other = (near >> level) ^ 1;
+            let Some(half) = boxes.get(other) else { continue };
+            if nearest.is_none_or(|(best, _)| half.distance(point) <= best) {
+                self.descend(point, exact, counts, (level, other), nearest);
+            }
+        }
     }
 
     /// Look for a nearer segment in a box, in the nearer half first; `nearest` is the best so far and its distance.

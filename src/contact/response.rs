@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::boxes::Boxes;
 use super::closed::{Closed, ClosedPoints};
 use super::force::{Loading, PointPlace, closes, place};
 use super::kinematics::{Kinematics, Meeting};
@@ -28,6 +29,8 @@ pub struct PairResponse {
     /// Trial states
     pub states: Vec<ContactState>,
     parts: Vec<Part>,
+    /// Tree of the master
+    boxes: Boxes,
 }
 
 /// Points that one thread evaluates.
@@ -83,7 +86,22 @@ impl ContactPair {
                 averaged(self, slave, meeting, old, increment, x)
             });
         }
-        let index = Index::within(&self.master, before, x);
+        let mut boxes = std::mem::take(&mut response.boxes);
+        let answer = self.respond_by(&question, old, [before, x], &mut boxes, response);
+        response.boxes = boxes;
+        answer
+    }
+
+    /// By search in the master's tree.
+    fn respond_by<P: Fn(usize) -> Presumption + Sync>(
+        &self,
+        question: &Question<P>,
+        old: &[ContactState],
+        [before, x]: [&Configuration; 2],
+        boxes: &mut Boxes,
+        response: &mut PairResponse,
+    ) -> Result<(), (usize, LawFailure)> {
+        let index = Index::kept(&self.master, before, x, boxes);
         if let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) {
             let was = mortar.overlaps(surface, &Index::new(&self.master, before), before);
             let is = mortar.overlaps(surface, &index, x);
@@ -119,7 +137,7 @@ impl<P: Fn(usize) -> Presumption + Sync> Question<'_, P> {
         place: impl Fn(usize, &SlavePoint, &ContactState, PointIncrement, &mut Kinematics) -> PointPlace + Sync,
     ) -> Result<(), (usize, LawFailure)> {
         let points = &self.pair.points;
-        let PairResponse { states, parts } = response;
+        let PairResponse { states, parts, .. } = response;
         states.clear();
         states.extend_from_slice(old);
         parts.resize_with(points.len().div_ceil(PART), Part::default);

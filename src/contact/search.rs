@@ -1,5 +1,7 @@
 //! Which part of the master a slave point meets: the nearest segment that faces it.
 
+use std::borrow::Cow;
+
 use nalgebra::Vector2;
 
 use super::boxes::{Box2, Boxes};
@@ -17,7 +19,7 @@ const CANDIDATES: usize = 8;
 /// The master in a spatial index at the current positions.
 pub enum Index<'a> {
     /// Segments of a mesh surface in a tree of boxes, and what points of a surface that touches itself may meet
-    Mesh(&'a Surface, Boxes, Option<Sight<'a>>),
+    Mesh(&'a Surface, Cow<'a, Boxes>, Option<Sight<'a>>),
     /// A rigid body needs none
     Rigid(&'a Rigid),
 }
@@ -30,11 +32,27 @@ impl<'a> Index<'a> {
 
     /// Index the master in the configuration `x` of an increment that began in another, O(N).
     pub fn within(master: &'a Master, before: &'a Configuration, x: &Configuration) -> Self {
+        Self::with(master, before, |surface| Cow::Owned(Boxes::new(surface, x)))
+    }
+
+    /// The same, by a tree that is built anew only where it no longer serves.
+    pub fn kept(master: &'a Master, before: &'a Configuration, x: &Configuration, boxes: &'a mut Boxes) -> Self {
+        Self::with(master, before, |surface| {
+            boxes.update(surface, x);
+            Cow::Borrowed(boxes)
+        })
+    }
+
+    fn with(
+        master: &'a Master,
+        before: &'a Configuration,
+        boxes: impl FnOnce(&Surface) -> Cow<'a, Boxes>,
+    ) -> Self {
         match master {
             Master::Rigid(body) => Self::Rigid(body),
             Master::Mesh(surface) => {
                 let sight = surface.own_depth.map(|depth| Sight::new(surface, depth, before));
-                Self::Mesh(surface, Boxes::new(surface, x), sight)
+                Self::Mesh(surface, boxes(surface), sight)
             }
         }
     }
@@ -42,7 +60,7 @@ impl<'a> Index<'a> {
     /// The foot of a slave point that had another at the start of the increment, if it had one, and if a part of the master
     /// faces it.
     pub fn project(&self, slave: &SlavePoint, from: Option<MasterPoint>, x: &Configuration) -> Option<Projection> {
-        let nearest = self.nearest(slave, x)?;
+        let nearest = self.nearest(slave, from.map(|from| from.segment), x)?;
         match (self, from) {
             (Self::Mesh(surface, _, sight), Some(from))
                 if nearest.bound == Bound::Segment && nearest.gap < 0.0 && nearest.foot.segment != from.segment =>
@@ -71,15 +89,15 @@ impl<'a> Index<'a> {
         is_valley.then(|| at_node(slave, surface, first, second, 1.0, x)).filter(|at| at.gap < 0.0)
     }
 
-    /// The foot on what is nearest; by the tree, not by going through all.
-    fn nearest(&self, slave: &SlavePoint, x: &Configuration) -> Option<Projection> {
+    /// The foot on what is nearest; by the tree, not by going through all. It may be near a segment.
+    fn nearest(&self, slave: &SlavePoint, near: Option<usize>, x: &Configuration) -> Option<Projection> {
         match self {
             Self::Rigid(body) => body.project(slave, x),
             Self::Mesh(surface, boxes, sight) => {
                 if let Some(sight) = sight {
                     let viewer = sight.point(slave)?;
                     let may_meet = |level, number| sight.may_meet(&viewer, level, number);
-                    let nearest = boxes.nearest_one(slave, surface, x, may_meet)?;
+                    let nearest = boxes.nearest_one(slave, surface, x, near, may_meet)?;
                     // Only between two segments that it may meet can a point lie behind their node: a segment of the far
                     // side of a hole is seen past its end, through the body, by points on the other side of the wall.
                     let beside = |at: &Projection| {
@@ -91,7 +109,7 @@ impl<'a> Index<'a> {
                 }
                 let outward = slave.outward(x);
                 let facing = |segment: usize| faces(surface, segment, outward, x);
-                let first = boxes.nearest_one(slave, surface, x, |_, _| true).filter(|&segment| facing(segment));
+                let first = boxes.nearest_one(slave, surface, x, near, |_, _| true).filter(|&segment| facing(segment));
                 if let Some(found) = first.and_then(|segment| on_segment(slave, surface, segment, x)) {
                     return Some(found);
                 }
@@ -109,11 +127,15 @@ impl<'a> Index<'a> {
 
     /// Segments of a mesh surface within a distance of a slave edge's bounding box, in order along it.
     pub fn around(&self, edge: &[usize], reach: f64, x: &Configuration) -> Vec<usize> {
-        let Self::Mesh(_, boxes, sight) = self else { return Vec::new() };
+        let Self::Mesh(surface, boxes, sight) = self else { return Vec::new() };
+        let mut found = Vec::new();
         let reach = Vector2::new(reach, reach);
         let at = |node: usize| x.between(boxes.origin, node);
         let each = edge.iter().map(|&node| Box2 { low: at(node) - reach, high: at(node) + reach });
-        let mut found = each.reduce(|sum, one| sum.around(&one)).map_or_else(Vec::new, |all| boxes.meeting(&all));
+        if let Some(all) = each.reduce(|sum, one| sum.around(&one)) {
+            boxes.meeting(&all, &mut found);
+            found.retain(|&segment| Box2::of(&surface.segments[segment], boxes.origin, x).meets(&all));
+        }
         if let Some(sight) = sight {
             let viewer = sight.edge(edge);
             found.retain(|&segment| sight.may_meet(&viewer, 0, segment));
