@@ -24,6 +24,13 @@ pub struct Coupling {
     ahead: usize,
 }
 
+impl Coupling {
+    /// Whether it couples some of so many nodes.
+    pub fn fits(&self, nodes: usize) -> bool {
+        self.groups.iter().flatten().all(|node| *node < nodes)
+    }
+}
+
 /// The pattern of a model's tangent, and where each element is in it.
 pub(super) struct Layout {
     model: Arc<Model>,
