@@ -126,10 +126,16 @@ pub fn write(folder: &Path, checkpoint: &Checkpoint) -> Result<(), Error> {
     bytes.extend_from_slice(&crc32fast::hash(&body).to_le_bytes());
     bytes.extend_from_slice(&body);
     let keep = || match newest.symlink_metadata() {
-        Ok(known) if known.is_file() => fs::rename(&newest, folder.join(PREVIOUS)),
+        Ok(known) if known.is_file() => kept(&newest, &folder.join(PREVIOUS)),
         _ => Ok(()),
     };
     files::replace_for_good_after(&newest, &bytes, keep).map_err(|cause| failed(&newest, &cause))
+}
+
+/// Let the newest checkpoint be the previous one as well; where a file cannot have two names, the previous one alone.
+fn kept(newest: &Path, previous: &Path) -> std::io::Result<()> {
+    files::remove(previous)?;
+    fs::hard_link(newest, previous).or_else(|_| fs::rename(newest, previous))
 }
 
 /// Take the newest checkpoint away where it was of no use: it must not become the previous one.
