@@ -1,11 +1,15 @@
 //! One update of a contact: the index of the master, and every slave point with search, law and forces.
 
-use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use criterion::{BenchmarkId, Criterion, criterion_group};
 use fecontact::contact::master::Master;
-use fecontact::contact::pair::{ContactIncrement, ContactPair, Presumption};
+use fecontact::contact::mortar::mortar_points;
+use fecontact::contact::pair::{ContactIncrement, ContactPair, PairResponse, Presumption};
 use fecontact::contact::search::Index;
-use fecontact::contact::surface::{Surface, gauss_points};
-use fecontact::laws::friction::{Coulomb, CoulombParameters};
+use fecontact::contact::surface::{Surface, gauss_points, nodal_points};
+use fecontact::laws::friction::{
+    Coulomb, CoulombParameters, FrictionParameters, SlipWeakeningParameters, SuperSubloadingParameters,
+};
+use fecontact::linear::system::Request;
 use fecontact::mesh::configuration::Configuration;
 use nalgebra::Vector2;
 
@@ -30,6 +34,7 @@ fn surfaces(n: usize) -> Surfaces {
         laws: vec![Box::new(law)],
         initial: None,
         reverse: None,
+        small: None,
         mortar: None,
         penetration: None,
     };
@@ -68,7 +73,10 @@ fn measure(criterion: &mut Criterion, name: &str, sizes: [usize; 3], surfaces: f
         let old = pair.initial_states(&x);
         let increment = ContactIncrement { dt: 1.0, fading: 0.0, stiffening: 1.0, settles: true };
         group.bench_function(BenchmarkId::new("update", n), |bench| {
-            bench.iter(|| pair.respond(&old, &x, increment, |_| Presumption::default(), &x).is_ok());
+            let mut response = PairResponse::default();
+            let mut respond =
+                || pair.respond(&old, [&x, &x], increment, |_| Presumption::default(), Request::Tangent, &mut response);
+            bench.iter(|| respond().is_ok());
         });
     }
     group.finish();
@@ -83,4 +91,81 @@ fn self_contact(criterion: &mut Criterion) {
 }
 
 criterion_group!(benches, two_surfaces, self_contact);
-criterion_main!(benches);
+
+fn main() {
+    points();
+    if std::env::var_os("POINTS").is_none() {
+        benches();
+    }
+}
+
+/// A flat slave of n edges on an equal master, its nodes moved against each other by shares of an edge and pressed in.
+fn flat(n: usize, law: &FrictionParameters, method: &str) -> (Vec<Vector2<f64>>, ContactPair) {
+    let at = |k: usize| Vector2::new(k as f64, 0.0);
+    let nodes: Vec<_> = (0..=n).chain(0..=n).map(at).collect();
+    let master: Vec<Vec<usize>> = (0..n).rev().map(|k| vec![k + 1, k]).collect();
+    let slave: Vec<Vec<usize>> = (0..n).map(|k| vec![n + 1 + k, n + 2 + k]).collect();
+    let (_, other) = surfaces(2);
+    let (points, mortar) = match method {
+        "nodes" => (nodal_points(&slave), None),
+        "gauss" => (gauss_points(&slave, 2), None),
+        _ => {
+            let (p, m) = mortar_points(&slave, &nodes);
+            (p, Some(m))
+        }
+    };
+    let laws = vec![law.build(1e3).expect("valid parameters")];
+    let pair =
+        ContactPair { name: "flat".into(), points, mortar, master: Master::Mesh(Surface::new(&master)), laws, ..other };
+    (nodes, pair)
+}
+
+fn points() {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
+    let n = 10_000;
+    let laws = [
+        ("coulomb", FrictionParameters::from(CoulombParameters { mu: 0.3, alpha_t: None })),
+        ("slip weakening", SlipWeakeningParameters::new(0.6, 0.3, 0.5).into()),
+        (
+            "super/subloading",
+            SuperSubloadingParameters { kappa: 1.0, xi: 1e-3, ..SuperSubloadingParameters::new(0.5, 0.3, 50.0) }.into(),
+        ),
+    ];
+    for method in ["nodes", "gauss", "mortar"] {
+        for (name, law) in &laws {
+            for (motion, rate) in [("sticks", 0.0), ("slips", 3e-3)] {
+                let (nodes, pair) = flat(n, law, method);
+                let micros =
+                    [Request::Residual, Request::Tangent].map(|request| update(&pool, &nodes, &pair, rate, request));
+                println!("{method:8} {name:18} {motion:8} {:6.3} {:6.3}", micros[0], micros[1]);
+            }
+        }
+    }
+}
+
+/// Microseconds of an update a point, the shortest of several increments in which the slave moves by `rate`, some of it more
+/// than the rest, pressed in by a trifle that comes and goes.
+fn update(pool: &rayon::ThreadPool, nodes: &[Vector2<f64>], pair: &ContactPair, rate: f64, request: Request) -> f64 {
+    let wave = |k: usize| (k as f64).sin();
+    let u = |t: f64| -> Vec<f64> {
+        let slave = |k| [t * rate * (1.0 + 1e-3 * wave(k)), -1e-3 - 1e-6 * (t + k as f64).sin()];
+        let master = |k| [0.0, 1e-6 * (0.3 * t + k as f64).sin()];
+        (0..nodes.len()).flat_map(|k| if k >= nodes.len() / 2 { slave(k) } else { master(k) }).collect()
+    };
+    let during = ContactIncrement { dt: 1.0, fading: 0.0, stiffening: 1.0, settles: true };
+    let (mut old, mut before) = (pair.initial_states(&Configuration::undeformed(nodes)), vec![0.0; 2 * nodes.len()]);
+    let (mut shortest, mut response) = (f64::INFINITY, PairResponse::default());
+    for k in 1..=14 {
+        let now = u(f64::from(k));
+        let clock = std::time::Instant::now();
+        let [was, is] = [&before, &now].map(|u| Configuration::new(nodes, u));
+        pool.install(|| pair.respond(&old, [&was, &is], during, |_| Presumption::default(), request, &mut response))
+            .expect("an answer");
+        if k > 4 {
+            shortest = shortest.min(clock.elapsed().as_secs_f64());
+        }
+        old.clone_from(&response.states);
+        before = now;
+    }
+    1e6 * shortest / old.len() as f64
+}

@@ -1,82 +1,157 @@
 //! What a closed point adds to the equations: the forces of its traction on the nodes, and their derivative.
 
-use nalgebra::{DVector, Vector2};
+use nalgebra::Vector2;
 
 use super::kinematics::Kinematics;
 use super::presumption::Tractions;
-use super::state::ContactState;
 use crate::laws::friction::FrictionResponse;
-use crate::linear::system::Contribution;
 
-/// A closed point: what it adds to the equations, and how its tractions vary with its nodes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Closed {
-    /// Forces and tangent
-    pub contribution: Contribution,
+/// A closed point: what it adds to the equations, and how its tractions vary with its nodes. Two dofs a node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Closed<'a> {
+    /// The nodes, in the order of the entries
+    pub nodes: &'a [usize],
+    /// Internal force [F]
+    pub force: &'a [f64],
+    /// ∂force/∂u, column by column; it and the next two are empty where only forces were asked for [F/L]
+    pub tangent: &'a [f64],
+    /// δp [F/L³]
+    pub dpressure: &'a [f64],
+    /// δq [F/L³]
+    pub dtraction: &'a [f64],
     /// p and q
     pub tractions: Tractions,
-    /// δp [F/L³]
-    pub dpressure: DVector<f64>,
-    /// δq [F/L³]
-    pub dtraction: DVector<f64>,
 }
 
-impl Closed {
+impl Closed<'_> {
     /// p + δp and q + δq for a correction of the nodes' displacements; none where the pressure would be negative.
     pub fn promise(&self, correction: impl Fn(usize) -> f64) -> Tractions {
-        let dofs = || self.contribution.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
-        let along = |rates: &DVector<f64>| dofs().zip(rates).map(|(dof, rate)| rate * correction(dof)).sum::<f64>();
-        let pressure = self.tractions.pressure + along(&self.dpressure);
-        let traction = self.tractions.traction + along(&self.dtraction);
+        let dofs = || self.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
+        let along = |rates: &[f64]| dofs().zip(rates).map(|(dof, rate)| rate * correction(dof)).sum::<f64>();
+        let pressure = self.tractions.pressure + along(self.dpressure);
+        let traction = self.tractions.traction + along(self.dtraction);
         if pressure > 0.0 { Tractions { pressure, traction } } else { Tractions::default() }
     }
 }
 
-/// Trial states and contributions of all points of a pair, in their order.
-pub type PairResponse = Vec<(ContactState, Option<Closed>)>;
+/// What points one after the other add, all in the same few lists, which are used again in the next evaluation.
+#[derive(Clone, Debug, Default)]
+pub struct ClosedPoints {
+    points: Vec<Option<Place>>,
+    nodes: Vec<usize>,
+    force: Vec<f64>,
+    tangent: Vec<f64>,
+    dpressure: Vec<f64>,
+    dtraction: Vec<f64>,
+    /// δ(t ℓ) of the point at hand, its two components
+    rows: [Vec<f64>; 2],
+}
+
+/// Where a closed point is in the lists.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    tractions: Tractions,
+    /// Its first node, and how many there are
+    nodes: [usize; 2],
+    /// Where its tangent begins
+    tangent: usize,
+}
+
+impl ClosedPoints {
+    /// No points yet.
+    pub fn clear(&mut self) {
+        let Self { points, nodes, force, tangent, dpressure, dtraction, .. } = self;
+        points.clear();
+        nodes.clear();
+        [force, tangent, dpressure, dtraction].into_iter().for_each(Vec::clear);
+    }
+
+    /// What a point added, if it is closed.
+    pub fn get(&self, point: usize) -> Option<Closed<'_>> {
+        let Place { tractions, nodes: [first, count], tangent } = (*self.points.get(point)?)?;
+        let dofs = 2 * first..2 * (first + count);
+        let varied =
+            |values: &'_ [f64]| -> std::ops::Range<usize> { if values.is_empty() { 0..0 } else { dofs.clone() } };
+        let size = if self.tangent.is_empty() { 0 } else { 4 * count * count };
+        Some(Closed {
+            nodes: &self.nodes[first..first + count],
+            force: &self.force[dofs.clone()],
+            tangent: &self.tangent[tangent..tangent + size],
+            dpressure: &self.dpressure[varied(&self.dpressure)],
+            dtraction: &self.dtraction[varied(&self.dtraction)],
+            tractions,
+        })
+    }
+
+    /// A point that is open.
+    pub fn push_open(&mut self) {
+        self.points.push(None);
+    }
+
+    /// A closed point: nodal forces of the traction and their derivative, the exact one unless tractions are promised or a
+    /// pressure carried. The variation of the pressure was added to [`ClosedPoints::dpressure`] before.
+    pub(super) fn push(&mut self, k: &Kinematics, response: &FrictionResponse, promised: Option<Tractions>) {
+        let tractions = Tractions::of(&response.state);
+        self.points.push(Some(Place {
+            tractions,
+            nodes: [self.nodes.len(), k.nodes.len()],
+            tangent: self.tangent.len(),
+        }));
+        self.nodes.extend_from_slice(&k.nodes);
+        let traction = turned(k, tractions);
+        for &w in &k.relative {
+            self.force.extend([0, 1].map(|i| -w * traction[i] * k.length));
+        }
+        if k.varied {
+            self.push_tangent(k, response, promised.unwrap_or(tractions));
+        }
+    }
+
+    /// δp = a δg + b δΔu_t of the next point.
+    pub(super) fn push_dpressure(&mut self, k: &Kinematics, [by_gap, by_slip]: [f64; 2]) {
+        let rate =
+            |(dgap, dslip): (&f64, &f64)| if by_slip == 0.0 { dgap * by_gap } else { dgap * by_gap + dslip * by_slip };
+        self.dpressure.extend(k.dgap.iter().zip(&k.dslip).map(rate));
+    }
+
+    fn push_tangent(&mut self, k: &Kinematics, response: &FrictionResponse, promised: Tractions) {
+        let Self { tangent, dpressure, dtraction, rows, .. } = self;
+        let dofs = 2 * k.nodes.len();
+        let dpressure = &dpressure[dtraction.len()..];
+        let first = dtraction.len();
+        let by = |(dslip, dp): (&f64, &f64)| dslip * response.dtraction_dslip + dp * response.dtraction_dpressure;
+        dtraction.extend(k.dslip.iter().zip(dpressure).map(by));
+        let dtraction = &dtraction[first..];
+        let force = turned(k, promised);
+        for (i, row) in rows.iter_mut().enumerate() {
+            row.clear();
+            row.extend((0..dofs).map(|c| {
+                let along_normal = dpressure[c] - k.drotation[c] * promised.traction;
+                let along_tangent = -(dtraction[c] + k.drotation[c] * promised.pressure);
+                (along_normal * k.normal[i] + along_tangent * k.tangent[i]) * k.length + k.dlength[c] * force[i]
+            }));
+        }
+        let first = tangent.len();
+        for c in 0..dofs {
+            let rows = [rows[0][c], rows[1][c]];
+            k.relative.iter().for_each(|&w| tangent.extend(rows.map(|row| -w * row)));
+        }
+        let columns = tangent[first..].chunks_exact_mut(dofs);
+        for (c, column) in columns.enumerate() {
+            for (&a, dw) in k.changing.iter().zip(k.drelative.chunks_exact(dofs)) {
+                (0..2).for_each(|i| column[2 * a + i] += -force[i] * k.length * dw[c]);
+            }
+        }
+    }
+}
+
+/// t = p n − q s.
+fn turned(k: &Kinematics, Tractions { pressure: p, traction: q }: Tractions) -> Vector2<f64> {
+    k.normal * p - k.tangent * q
+}
 
 /// What a traction puts on the nodes: w_a (p n − q s) ℓ [F].
 pub fn nodal_forces(k: &Kinematics, p: f64, q: f64) -> Vec<(usize, Vector2<f64>)> {
-    let force = (k.normal * p - k.tangent * q) * k.length;
+    let force = turned(k, Tractions { pressure: p, traction: q }) * k.length;
     k.nodes.iter().zip(&k.relative).map(|(&node, &w)| (node, force * w)).collect()
-}
-
-/// Nodal forces of the traction and their derivative: the exact one unless tractions are promised or a pressure carried.
-pub(super) fn closed(
-    k: &Kinematics,
-    response: &FrictionResponse,
-    dpressure: DVector<f64>,
-    promised: Option<Tractions>,
-) -> Closed {
-    let tractions = Tractions::of(&response.state);
-    let turned = |Tractions { pressure: p, traction: q }: Tractions| k.normal * p - k.tangent * q;
-    let traction = turned(tractions);
-    let dtraction = &k.dslip * response.dtraction_dslip + &dpressure * response.dtraction_dpressure;
-    let promised = promised.unwrap_or(tractions);
-    let turned = turned(promised);
-    let along_normal = &dpressure - &k.drotation * promised.traction;
-    let along_tangent = -(&dtraction + &k.drotation * promised.pressure);
-    // δ(t ℓ), one row a component
-    let dforce =
-        |i: usize| (&along_normal * k.normal[i] + &along_tangent * k.tangent[i]) * k.length + &k.dlength * turned[i];
-    let rows = [dforce(0), dforce(1)];
-
-    let mut result = Contribution::zero(k.nodes.clone());
-    let add = |result: &mut Contribution, node: usize, i: usize, row: &DVector<f64>, factor: f64| {
-        for (column, value) in row.iter().enumerate() {
-            result.tangent[(2 * node + i, column)] += factor * value;
-        }
-    };
-    for (node, &w) in k.relative.iter().enumerate() {
-        for (i, row) in rows.iter().enumerate() {
-            result.force[2 * node + i] = -w * traction[i] * k.length;
-            add(&mut result, node, i, row, -w);
-        }
-    }
-    for (node, dw) in &k.drelative {
-        for i in 0..2 {
-            add(&mut result, *node, i, dw, -turned[i] * k.length);
-        }
-    }
-    Closed { contribution: result, tractions, dpressure, dtraction }
 }

@@ -20,10 +20,7 @@
 //! would change with the share that counts. Without c a point that comes in with a high pressure would stick for its stiff
 //! penalty alone, and spring away by all it has missed in the increment after.
 
-use nalgebra::DVector;
-
-use super::closed::closed;
-pub use super::closed::{Closed, nodal_forces};
+pub use super::closed::{Closed, ClosedPoints, nodal_forces};
 pub use super::kinematics::Meeting;
 use super::kinematics::{Kinematics, kinematics};
 use super::pair::ContactPair;
@@ -36,21 +33,19 @@ use super::state::TOUCH;
 use crate::laws::friction::{Answer, FrictionResponse, LawFailure, Sliding};
 use crate::mesh::configuration::Configuration;
 
-/// Trial state of one point and, if closed, what it adds to the equations.
-pub type PointResponse = Result<(ContactState, Option<Closed>), LawFailure>;
-
 /// Where a point is at the end of an increment.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct PointPlace {
     /// g; 0 where nothing faces it [L]
     pub gap: f64,
     /// The foot, if the master faces it
     pub foot: Option<MasterPoint>,
-    /// Its kinematics, if it is closed
-    pub kinematics: Option<Kinematics>,
+    /// Whether it is closed, and has kinematics
+    pub closes: bool,
 }
 
-/// Where a point is whose projection is known, in the committed configuration and that of the trial.
+/// Where a point is whose projection is known, in the committed configuration and that of the trial, and its kinematics if it
+/// is closed.
 pub fn place(
     pair: &ContactPair,
     slave: &SlavePoint,
@@ -58,17 +53,18 @@ pub fn place(
     old: &ContactState,
     increment: PointIncrement,
     [before, x]: [&Configuration; 2],
+    k: &mut Kinematics,
 ) -> PointPlace {
     let Some(projection) = projection else { return PointPlace::default() };
-    let (gap, foot) = (slave.gap(projection.gap, increment.during.fading), Some(projection.foot));
-    if !closes(pair, slave, gap, old, increment, x) {
-        return PointPlace { gap, foot, kinematics: None };
+    let gap = slave.gap(projection.gap, increment.during.fading);
+    let closes = closes(pair, slave, gap, old, increment, x);
+    if closes {
+        kinematics(slave, &pair.master, &projection, old.foot, x, k);
+        if old.foot.is_none() {
+            k.count_from(before, x);
+        }
     }
-    let mut kinematics = kinematics(slave, &pair.master, &projection, old.foot, x);
-    if old.foot.is_none() {
-        kinematics.count_from(before, x);
-    }
-    PointPlace { gap, foot, kinematics: Some(kinematics) }
+    PointPlace { gap, foot: Some(projection.foot), closes }
 }
 
 /// Whether a point with this gap carries pressure, or is presumed to.
@@ -83,7 +79,10 @@ pub fn closes(
     let kept = increment.presumption.kept > 0.0;
     let clearance = gap - old.friction.opening;
     let pressure = old.multiplier - pair.normal_stiffness(increment.during.stiffening) * clearance;
-    kept || pressure > 0.0 || touches(clearance, slave.current_length(x), old, increment.presumption.presume)
+    let presume = increment.presumption.presume;
+    // The length is not worth computing where nothing is presumed.
+    let touch = || presume == Presume::Touch && touches(clearance, slave.current_length(x), old, presume);
+    kept || pressure > 0.0 || touch()
 }
 
 /// Whether a zero gap is presumed to be closed, and to stick.
@@ -93,13 +92,16 @@ pub fn touches(clearance: f64, length: f64, old: &ContactState, presume: Presume
 }
 
 /// A point on the way through its law: first what the law is asked for, then what follows from its answer.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Loading<'a> {
     pair: &'a ContactPair,
     slave: &'a SlavePoint,
     old: &'a ContactState,
     increment: PointIncrement,
     place: PointPlace,
+    kinematics: &'a mut Kinematics,
+    /// All of the slip, also what came before touch [L]
+    whole: f64,
     alpha_n: f64,
     /// p if the surfaces opened no further than they are [F/L²]
     free: f64,
@@ -110,57 +112,59 @@ pub struct Loading<'a> {
 }
 
 impl<'a> Loading<'a> {
-    /// What the law is asked for at a point in its place.
+    /// What the law is asked for at a point in its place, which has these kinematics if it is closed.
     pub fn new(
         pair: &'a ContactPair,
         slave: &'a SlavePoint,
         old: &'a ContactState,
         increment: PointIncrement,
         place: PointPlace,
+        kinematics: &'a mut Kinematics,
     ) -> Self {
         let alpha_n = pair.normal_stiffness(increment.during.stiffening);
         let free = old.multiplier - alpha_n * (place.gap - old.friction.opening);
         let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.during.dt };
-        let apart = place.kinematics.as_ref().is_some_and(|k| old.apart(k.length));
+        let apart = place.closes && old.apart(kinematics.length);
         let compliance = apart.then(|| pair.compliance_after_touch(increment.during.settles));
-        let mut loading = Self { pair, slave, old, increment, place, alpha_n, free, compliance, sliding };
-        if let Some(whole) = loading.place.kinematics.as_ref().map(|kinematics| kinematics.slip) {
-            loading.load(carried(free, increment.presumption), whole);
+        let whole = kinematics.slip;
+        let mut loading =
+            Self { pair, slave, old, increment, place, kinematics, whole, alpha_n, free, compliance, sliding };
+        if place.closes {
+            loading.load(carried(free, increment.presumption));
         }
         loading
     }
 
     /// Ask for a pressure, and the slip that counts under it.
-    fn load(&mut self, pressure: f64, whole: f64) {
-        self.sliding.slip = whole * self.counted(pressure, whole).0;
+    fn load(&mut self, pressure: f64) {
+        self.sliding.slip = self.whole * self.counted(pressure).0;
         self.sliding.pressure = pressure;
     }
 
     /// Share of the slip that counts under a pressure, d/(g₀ + d) in an increment that starts open and 1 else, and the
     /// derivative of the slip by the pressure.
-    fn counted(&self, pressure: f64, whole: f64) -> (f64, f64) {
+    fn counted(&self, pressure: f64) -> (f64, f64) {
         let Some(compliance) = self.compliance else { return (1.0, 0.0) };
         let (way, old_gap) = (compliance * pressure, self.old.clearance());
-        (way / (old_gap + way), whole * compliance * old_gap / (old_gap + way).powi(2))
+        (way / (old_gap + way), self.whole * compliance * old_gap / (old_gap + way).powi(2))
     }
 
-    /// The state of the point and, if closed, what it adds to the equations, from what its law answered.
+    /// The state of the point from what its law answered; what it adds to the equations, if closed, goes to `closed`.
     ///
     /// # Errors
     /// [`LawFailure`] of the law, or where its opening and its pressure do not come to agree.
-    pub fn finish(mut self, answer: Answer) -> PointResponse {
+    pub fn finish(mut self, answer: Answer, closed: &mut ClosedPoints) -> Result<ContactState, LawFailure> {
         let mut response = answer?;
-        let PointPlace { gap, foot, kinematics } = std::mem::take(&mut self.place);
-        let Some(mut kinematics) = kinematics else {
+        let PointPlace { gap, foot, closes } = self.place;
+        if !closes {
+            closed.push_open();
             let length = self.old.length;
-            let state = ContactState { friction: response.state, foot, length, gap, slip: 0.0, multiplier: 0.0 };
-            return Ok((state, None));
-        };
-        let whole = kinematics.slip;
-        let pressure = self.agree(&mut response, whole)?;
-        let Self { pair, slave, old, increment, alpha_n, sliding, compliance, .. } = self;
-        let carried = sliding.pressure;
-        let (share, dslip_dpressure) = self.counted(carried, whole);
+            return Ok(ContactState { friction: response.state, foot, length, gap, slip: 0.0, multiplier: 0.0 });
+        }
+        let pressure = self.agree(&mut response)?;
+        let carried = self.sliding.pressure;
+        let (share, dslip_dpressure) = self.counted(carried);
+        let Self { pair, slave, old, increment, kinematics, whole, alpha_n, sliding, compliance, .. } = self;
         let stiffness = pair.law(slave).stiffness();
         if increment.presumption.presume == Presume::Stick {
             response.state.traction = old.friction.traction + stiffness * sliding.slip;
@@ -180,10 +184,13 @@ impl<'a> Loading<'a> {
             response.dtraction_dslip = stiffness;
         }
         kinematics.slip = sliding.slip;
-        let alpha = alpha_n / (1.0 - alpha_n * opening_rate);
-        let counted = compliance.map(|_| (share, dslip_dpressure));
-        let dpressure = vary(&mut kinematics, alpha, alpha * response.dopening_dslip, counted);
-        let state = ContactState {
+        if kinematics.varied {
+            let alpha = alpha_n / (1.0 - alpha_n * opening_rate);
+            let counted = compliance.map(|_| (share, dslip_dpressure));
+            vary(kinematics, alpha, alpha * response.dopening_dslip, counted, closed);
+        }
+        closed.push(kinematics, &response, increment.presumption.promised);
+        Ok(ContactState {
             friction: response.state,
             foot,
             length: kinematics.length,
@@ -191,17 +198,16 @@ impl<'a> Loading<'a> {
             slip: whole,
             // The next increment begins with the same pressure, but the stiffness given.
             multiplier: old.multiplier - (alpha_n - pair.alpha_n) * clearance,
-        };
-        Ok((state, Some(closed(&kinematics, &response, dpressure, increment.presumption.promised))))
+        })
     }
 
     /// The pressure that goes with the opening of the law, p = p̄ − α_n (g − d): asked for again until both agree, or by the
     /// tangent of one answer where a presumption says under which pressure the law answers.
-    fn agree(&mut self, response: &mut FrictionResponse, whole: f64) -> Result<f64, LawFailure> {
+    fn agree(&mut self, response: &mut FrictionResponse) -> Result<f64, LawFailure> {
         let presumed = self.increment.presumption.carried.is_some() || self.free <= 0.0;
         for _ in 0..MOST_ANSWERS {
             let asked = self.sliding.pressure;
-            let dslip = self.counted(asked, whole).1;
+            let dslip = self.counted(asked).1;
             let opened = response.state.opening - self.old.friction.opening;
             let rate = response.dopening_dpressure + response.dopening_dslip * dslip;
             let lifted = self.alpha_n * (opened + rate * (self.free - asked)) / (1.0 - self.alpha_n * rate);
@@ -211,7 +217,7 @@ impl<'a> Loading<'a> {
                 return Ok(pressure);
             }
             // The law must not be asked below touch for an opening that ends above.
-            self.load(pressure.max(0.5 * asked), whole);
+            self.load(pressure.max(0.5 * asked));
             *response = self.pair.law(self.slave).respond(&self.old.friction, self.sliding)?;
         }
         Err(LawFailure::Opening { opening: response.state.opening, pressure: self.sliding.pressure })
@@ -220,19 +226,17 @@ impl<'a> Loading<'a> {
 
 /// δp = −α δg + lift (share δΔu_t), with α = α_n/(1 − α_n dd/dp) and lift = α ∂d/∂Δu_t; where slip is `counted` by a share
 /// that depends on the pressure, its variation becomes that of what counts.
-fn vary(kinematics: &mut Kinematics, alpha: f64, lift: f64, counted: Option<(f64, f64)>) -> DVector<f64> {
+fn vary(k: &mut Kinematics, alpha: f64, lift: f64, counted: Option<(f64, f64)>, closed: &mut ClosedPoints) {
     if let Some((share, _)) = counted {
-        kinematics.dslip *= share;
+        k.dslip.iter_mut().for_each(|dslip| *dslip *= share);
     }
-    let mut dpressure = &kinematics.dgap * -alpha;
-    if lift != 0.0 {
-        dpressure += &kinematics.dslip * lift;
-    }
+    closed.push_dpressure(k, [-alpha, lift]);
     if let Some((_, dslip_dpressure)) = counted {
-        kinematics.dslip *= 1.0 + lift * dslip_dpressure;
-        kinematics.dslip -= &kinematics.dgap * (alpha * dslip_dpressure);
+        let rates = k.dslip.iter_mut().zip(&k.dgap);
+        rates.for_each(|(dslip, dgap)| {
+            *dslip = *dslip * (1.0 + lift * dslip_dpressure) - dgap * (alpha * dslip_dpressure);
+        });
     }
-    dpressure
 }
 
 /// Answers of the law until its opening and the pressure must agree.

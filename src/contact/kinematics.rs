@@ -18,7 +18,7 @@
 //!
 //! A foot bound to a node x_v: g = ±‖x_s − x_v‖, δg = n·(δx_s − δx_v), δθ = −s·(δx_s − δx_v)/g, δξ = 0.
 
-use nalgebra::{DVector, Vector2};
+use nalgebra::Vector2;
 
 use super::master::Master;
 use super::projection::{Bound, FACING, Projection, normal_of, tangent_of};
@@ -27,8 +27,10 @@ use super::surface::{MasterPoint, Path, SlavePoint, Surface};
 use crate::mesh::configuration::Configuration;
 use crate::mesh::shape;
 
-/// Kinematics of one contact point and the variations with respect to its nodes' displacements.
-#[derive(Clone, Debug, PartialEq)]
+/// Kinematics of one contact point and, if the tangent is asked for, the variations with respect to its nodes' displacements.
+///
+/// It is filled in again for one point after the other, so that no point needs memory of its own.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Kinematics {
     /// Nodes that take part: entries of all variations, two dofs a node
     pub nodes: Vec<usize>,
@@ -42,23 +44,27 @@ pub struct Kinematics {
     pub slip: f64,
     /// Current length the point stands for [L]
     pub length: f64,
+    /// Whether the variations are asked for; they are empty if not
+    pub varied: bool,
     /// δg
-    pub dgap: DVector<f64>,
+    pub dgap: Vec<f64>,
     /// δΔu_t [-]
-    pub dslip: DVector<f64>,
+    pub dslip: Vec<f64>,
     /// δθ [1/L]
-    pub drotation: DVector<f64>,
+    pub drotation: Vec<f64>,
     /// δ(length) [-]
-    pub dlength: DVector<f64>,
-    /// δw_a of the weights that change, with their positions in `nodes` [1/L]
-    pub drelative: Vec<(usize, DVector<f64>)>,
+    pub dlength: Vec<f64>,
+    /// Positions in `nodes` of the weights that change
+    pub changing: Vec<usize>,
+    /// δw_a of these, row by row [1/L]
+    pub drelative: Vec<f64>,
+    /// δξ of the foot
+    dfoot: Vec<f64>,
 }
 
-/// Where a slave point meets the master: its kinematics, its gap and its foot.
-#[derive(Clone, Debug, PartialEq)]
+/// Where a slave point meets the master.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Meeting {
-    /// Kinematics, with slip counted from the committed state
-    pub kinematics: Kinematics,
     /// g [L]
     pub gap: f64,
     /// The foot
@@ -72,10 +78,11 @@ pub fn kinematics(
     projection: &Projection,
     from: Option<MasterPoint>,
     x: &Configuration,
-) -> Kinematics {
+    k: &mut Kinematics,
+) {
     match master {
-        Master::Rigid(body) => past_rigid(slave, body, projection, from, x),
-        Master::Mesh(surface) => on_surface(slave, surface, projection, from, x),
+        Master::Rigid(body) => past_rigid(slave, body, projection, from, x, k),
+        Master::Mesh(surface) => on_surface(slave, surface, projection, from, x, k),
     }
 }
 
@@ -86,17 +93,19 @@ pub fn past_rigid(
     projection: &Projection,
     from: Option<MasterPoint>,
     x: &Configuration,
-) -> Kinematics {
-    let mut k = Kinematics::of_slave(slave, projection.normal, &[], x);
+    k: &mut Kinematics,
+) {
+    k.begin(projection.normal);
+    k.list_slave(slave);
+    k.take_slave(slave, x);
     let (n, s) = (k.normal, k.tangent);
-    let Bound::Rigid { advance, turn } = projection.bound else { return k };
+    let Bound::Rigid { advance, turn } = projection.bound else { return };
     k.vary(&slave.position, n, |k| &mut k.dgap);
     k.vary(&slave.position, s * turn, |k| &mut k.drotation);
     if let Some(from) = from {
         k.slip = body.way(slave, from, projection.foot, x);
         k.vary(&slave.position, s * advance, |k| &mut k.dslip);
     }
-    k
 }
 
 fn on_surface(
@@ -105,48 +114,29 @@ fn on_surface(
     projection: &Projection,
     from: Option<MasterPoint>,
     x: &Configuration,
-) -> Kinematics {
+    k: &mut Kinematics,
+) {
     let MasterPoint { segment, xi } = projection.foot;
     let curve = &surface.segments[segment];
     let path =
         from.and_then(|from| surface.path(from, projection.foot)).filter(|path| slides(surface, path, projection, x));
-    let path = path.unwrap_or_default();
-    let mut masters: Vec<usize> = curve.nodes().collect();
-    masters.extend(path.iter().flat_map(|&(j, ..)| surface.segments[j].nodes()));
-    let mut k = Kinematics::of_slave(slave, projection.normal, &masters, x);
-    let (n, s, gap) = (k.normal, k.tangent, projection.gap);
-
+    k.begin(projection.normal);
+    k.list_slave(slave);
+    k.list(curve.nodes());
+    let parts = || path.into_iter().flat_map(Path::parts);
+    parts().for_each(|(j, ..)| k.list(surface.segments[j].nodes()));
+    k.take_slave(slave, x);
     let foot = curve.position(xi);
-    let relative: Vec<(usize, f64)> =
-        slave.position.iter().copied().chain(foot.iter().map(|&(node, w)| (node, -w))).collect();
     for &(node, w) in &foot {
         let at = k.local(node);
         k.relative[at] -= w;
     }
-    k.vary(&relative, n, |k| &mut k.dgap);
-
-    let slope = curve.slope(xi);
-    let length = x.combine(&slope).norm();
-    let mut dfoot = DVector::zeros(2 * k.nodes.len());
-    match projection.bound {
-        Bound::Node(_) if gap != 0.0 => k.vary(&relative, -s / gap, |k| &mut k.drotation),
-        Bound::Node(_) | Bound::Rigid { .. } => {}
-        Bound::Segment => {
-            let bend = x.combine(&curve.bend(xi)).dot(&n);
-            let stiffness = length * length - gap * bend;
-            k.vary_into(&mut dfoot, &relative, s * (length / stiffness));
-            k.vary_into(&mut dfoot, &slope, n * (gap / stiffness));
-            k.vary(&slope, n / length, |k| &mut k.drotation);
-            k.drotation += &dfoot * (bend / length);
-            k.drelative = slope.iter().map(|&(node, rate)| (k.local(node), &dfoot * -rate)).collect();
-        }
+    k.vary_foot(slave, surface, projection, x);
+    parts().for_each(|part| k.slide(surface, part, x));
+    if k.varied && path.is_some() {
+        let length = x.combine(&curve.slope(xi)).norm();
+        k.dslip.iter_mut().zip(&k.dfoot).for_each(|(dslip, dfoot)| *dslip += dfoot * length);
     }
-    if path.is_empty() {
-        return k;
-    }
-    k.slide(surface, &path, x);
-    k.dslip += dfoot * length;
-    k
 }
 
 /// Whether a foot has slid along a path. On a surface that touches itself it may also have jumped from one part of it to
@@ -156,77 +146,136 @@ fn slides(surface: &Surface, path: &Path, projection: &Projection, x: &Configura
         let [a, b] = surface.segments[segment].ends;
         normal_of(x.between(a, b).normalize()).dot(&projection.normal) > -FACING
     };
-    surface.own_depth.is_none() || path.iter().all(|&(segment, ..)| looks(segment))
+    surface.own_depth.is_none() || path.parts().all(|(segment, ..)| looks(segment))
 }
 
 impl Kinematics {
-    /// ∫ J dξ along a path, and ∫ s·δx′ dξ.
-    fn slide(&mut self, surface: &Surface, path: &Path, x: &Configuration) {
-        for &(j, start, end) in path {
-            let segment = &surface.segments[j];
-            let points = if segment.is_straight() { 1 } else { 4 };
-            for (at, weight) in shape::gauss(points) {
-                let slope = segment.slope(start + 0.5 * (1.0 + at) * (end - start));
-                let along = x.combine(&slope);
-                let share = 0.5 * weight * (end - start);
-                self.slip += share * along.norm();
-                self.vary(&slope, along.normalize() * share, |k| &mut k.dslip);
+    /// To be filled in, with the variations or without.
+    pub fn new(varied: bool) -> Self {
+        Self { varied, ..Self::default() }
+    }
+
+    /// Nothing yet but the normal.
+    pub fn begin(&mut self, normal: Vector2<f64>) {
+        (self.normal, self.tangent) = (normal, tangent_of(normal));
+        (self.slip, self.length) = (0.0, 0.0);
+        self.nodes.clear();
+        self.changing.clear();
+        self.drelative.clear();
+    }
+
+    /// All weights and variations zero, once the nodes are listed.
+    pub fn clear(&mut self) {
+        let dofs = if self.varied { 2 * self.nodes.len() } else { 0 };
+        let Self { relative, dgap, dslip, drotation, dlength, dfoot, .. } = self;
+        relative.clear();
+        relative.resize(self.nodes.len(), 0.0);
+        for row in [dgap, dslip, drotation, dlength, dfoot] {
+            row.clear();
+            row.resize(dofs, 0.0);
+        }
+    }
+
+    /// Nodes that take part, each once.
+    pub fn list(&mut self, nodes: impl IntoIterator<Item = usize>) {
+        for node in nodes {
+            if !self.nodes.contains(&node) {
+                self.nodes.push(node);
             }
+        }
+    }
+
+    /// δg, δθ, δξ and δw of a foot on a surface.
+    fn vary_foot(&mut self, slave: &SlavePoint, surface: &Surface, projection: &Projection, x: &Configuration) {
+        if !self.varied {
+            return;
+        }
+        let MasterPoint { segment, xi } = projection.foot;
+        let (curve, n, s, gap) = (&surface.segments[segment], self.normal, self.tangent, projection.gap);
+        let (foot, slope) = (curve.position(xi), curve.slope(xi));
+        let length = x.combine(&slope).norm();
+        // Of x_s − x_foot
+        let vary = |k: &mut Self, direction: Vector2<f64>, row: fn(&mut Self) -> &mut Vec<f64>| {
+            k.vary(&slave.position, direction, row);
+            k.vary(&foot, -direction, row);
+        };
+        vary(self, n, |k| &mut k.dgap);
+        match projection.bound {
+            Bound::Node(_) if gap != 0.0 => vary(self, -s / gap, |k| &mut k.drotation),
+            Bound::Node(_) | Bound::Rigid { .. } => {}
+            Bound::Segment => {
+                let bend = x.combine(&curve.bend(xi)).dot(&n);
+                let stiffness = length * length - gap * bend;
+                vary(self, s * (length / stiffness), |k| &mut k.dfoot);
+                self.vary(&slope, n * (gap / stiffness), |k| &mut k.dfoot);
+                self.vary(&slope, n / length, |k| &mut k.drotation);
+                let Self { drotation, dfoot, drelative, .. } = self;
+                drotation.iter_mut().zip(&*dfoot).for_each(|(turn, dfoot)| *turn += dfoot * (bend / length));
+                slope.iter().for_each(|(_, rate)| drelative.extend(dfoot.iter().map(|dfoot| dfoot * -rate)));
+                slope.iter().for_each(|&(node, _)| self.changing.push(self.local(node)));
+            }
+        }
+    }
+
+    /// ∫ J dξ along a part of a path, and ∫ s·δx′ dξ.
+    fn slide(&mut self, surface: &Surface, (j, start, end): (usize, f64, f64), x: &Configuration) {
+        let segment = &surface.segments[j];
+        let points = if segment.is_straight() { 1 } else { 4 };
+        for (at, weight) in shape::gauss(points) {
+            let slope = segment.slope(start + 0.5 * (1.0 + at) * (end - start));
+            let along = x.combine(&slope);
+            let share = 0.5 * weight * (end - start);
+            self.slip += share * along.norm();
+            self.vary(&slope, along.normalize() * share, |k| &mut k.dslip);
         }
     }
 
     /// Count the slip of a point that nothing faced in the configuration `before`.
     pub fn count_from(&mut self, before: &Configuration, x: &Configuration) {
-        let motions: Vec<Vector2<f64>> = self.nodes.iter().map(|&node| x.since(before, node)).collect();
-        let motion: Vector2<f64> = self.relative.iter().zip(&motions).map(|(&w, motion)| w * motion).sum();
+        let motion = |node: usize| x.since(before, node);
+        let whole: Vector2<f64> = self.nodes.iter().zip(&self.relative).map(|(&node, &w)| w * motion(node)).sum();
         let (n, s) = (self.normal, self.tangent);
-        self.slip = s.dot(&motion);
-        self.dslip = &self.drotation * n.dot(&motion);
-        for (a, &w) in self.relative.iter().enumerate() {
-            self.dslip[2 * a] += w * s.x;
-            self.dslip[2 * a + 1] += w * s.y;
+        self.slip = s.dot(&whole);
+        if !self.varied {
+            return;
         }
-        for (a, dw) in &self.drelative {
-            self.dslip += dw * s.dot(&motions[*a]);
+        let Self { nodes, relative, dslip, drotation, changing, drelative, .. } = self;
+        dslip.iter_mut().zip(&*drotation).for_each(|(dslip, turn)| *dslip = turn * n.dot(&whole));
+        for (a, &w) in relative.iter().enumerate() {
+            dslip[2 * a] += w * s.x;
+            dslip[2 * a + 1] += w * s.y;
+        }
+        for (&a, dw) in changing.iter().zip(drelative.chunks_exact(2 * nodes.len())) {
+            let along = s.dot(&motion(nodes[a]));
+            dslip.iter_mut().zip(dw).for_each(|(dslip, dw)| *dslip += dw * along);
         }
     }
 
-    /// The slave's part: its nodes, their weights, its length; everything else zero.
-    fn of_slave(slave: &SlavePoint, normal: Vector2<f64>, masters: &[usize], x: &Configuration) -> Self {
+    /// The nodes of the slave's part.
+    fn list_slave(&mut self, slave: &SlavePoint) {
         let shares = slave.length.iter().flat_map(|share| &share.tangent);
-        let mut nodes: Vec<usize> = Vec::new();
-        for node in slave.position.iter().chain(shares).map(|&(node, _)| node).chain(masters.iter().copied()) {
-            if !nodes.contains(&node) {
-                nodes.push(node);
-            }
-        }
-        let zero = DVector::zeros(2 * nodes.len());
-        let mut k = Self {
-            relative: vec![0.0; nodes.len()],
-            nodes,
-            normal,
-            tangent: tangent_of(normal),
-            slip: 0.0,
-            length: slave.current_length(x),
-            dgap: zero.clone(),
-            dslip: zero.clone(),
-            drotation: zero.clone(),
-            dlength: zero,
-            drelative: Vec::new(),
-        };
+        self.list(slave.position.iter().chain(shares).map(|&(node, _)| node));
+    }
+
+    /// The slave's weights and its length, once all nodes are listed; everything else zero.
+    fn take_slave(&mut self, slave: &SlavePoint, x: &Configuration) {
+        self.clear();
+        self.length = slave.current_length(x);
         for &(node, w) in &slave.position {
-            let at = k.local(node);
-            k.relative[at] += w;
+            let at = self.local(node);
+            self.relative[at] += w;
+        }
+        if !self.varied {
+            return;
         }
         for share in &slave.length {
             let along = x.combine(&share.tangent);
             let depth = x.weight(&share.at);
-            k.vary(&share.tangent, along * (depth * share.factor / along.norm()), |k| &mut k.dlength);
+            self.vary(&share.tangent, along * (depth * share.factor / along.norm()), |k| &mut k.dlength);
             if let Some(slope) = x.weight_slope(&share.at) {
-                k.vary(&share.at, slope * (share.factor * along.norm()), |k| &mut k.dlength);
+                self.vary(&share.at, slope * (share.factor * along.norm()), |k| &mut k.dlength);
             }
         }
-        k
     }
 
     fn local(&self, node: usize) -> usize {
@@ -234,22 +283,16 @@ impl Kinematics {
     }
 
     /// Add `direction`·Σ w_a δx_a to a variation.
-    fn vary(
-        &mut self,
-        weights: &[(usize, f64)],
-        direction: Vector2<f64>,
-        row: impl Fn(&mut Self) -> &mut DVector<f64>,
-    ) {
-        let mut variation = std::mem::replace(row(self), DVector::zeros(0));
-        self.vary_into(&mut variation, weights, direction);
-        *row(self) = variation;
-    }
-
-    fn vary_into(&self, variation: &mut DVector<f64>, weights: &[(usize, f64)], direction: Vector2<f64>) {
+    fn vary(&mut self, weights: &[(usize, f64)], direction: Vector2<f64>, row: impl Fn(&mut Self) -> &mut Vec<f64>) {
+        if !self.varied {
+            return;
+        }
+        let mut variation = std::mem::take(row(self));
         for &(node, w) in weights {
             let at = 2 * self.local(node);
             variation[at] += w * direction.x;
             variation[at + 1] += w * direction.y;
         }
+        *row(self) = variation;
     }
 }

@@ -5,6 +5,7 @@ use nalgebra::Vector2;
 use super::dual::{Dual, DualVector};
 use super::surface::Segment;
 use crate::mesh::configuration::Configuration;
+use crate::mesh::few::Few;
 use crate::mesh::section::Section;
 use crate::mesh::shape;
 
@@ -24,14 +25,14 @@ impl Line<'_> {
     }
 
     /// Shape functions, first and second derivatives, as numbers.
-    pub fn shapes(&self, xi: f64) -> [Vec<f64>; 3] {
+    pub fn shapes(&self, xi: f64) -> [Few<f64, 3>; 3] {
         let count = self.nodes().len();
         let (at, rate) = match self {
             Self::Edge(_) => (xi, 1.0),
             Self::Segment(_) => (2.0 * xi - 1.0, 2.0),
         };
-        let scaled = |values: Vec<f64>, factor: f64| values.into_iter().map(|v| factor * v).collect::<Vec<_>>();
-        let bend = if count == 2 { vec![0.0; 2] } else { vec![1.0, 1.0, -2.0] };
+        let scaled = |values: Few<f64, 3>, factor: f64| values.into_iter().map(|v| factor * v).collect();
+        let bend = if count == 2 { [0.0; 2].into() } else { [1.0, 1.0, -2.0].into() };
         [shape::edge_values(count, at), scaled(shape::edge_derivatives(count, at), rate), scaled(bend, rate * rate)]
     }
 
@@ -65,7 +66,7 @@ impl Line<'_> {
 }
 
 /// ξ where Σ N_a(ξ) level_a = 0, by Newton's method: one step on a straight line, a few on a parabola.
-pub(super) fn root(shapes: impl Fn(f64) -> [Vec<f64>; 3], levels: &[f64], start: f64) -> f64 {
+pub(super) fn root(shapes: impl Fn(f64) -> [Few<f64, 3>; 3], levels: &[f64], start: f64) -> f64 {
     let sum = |values: &[f64]| values.iter().zip(levels).map(|(v, l)| v * l).sum::<f64>();
     let mut xi = start;
     for _ in 0..20 {

@@ -10,6 +10,7 @@ use super::kinematics::{Kinematics, Meeting, kinematics};
 use super::master::Master;
 use super::pair::{ContactPair, InitialTraction, Reverse};
 use super::search::Index;
+use super::small_sliding::{SmallPoint, SmallSliding};
 use super::state::ContactState;
 use super::surface::SlavePoint;
 use crate::mesh::configuration::Configuration;
@@ -25,10 +26,10 @@ impl ContactPair {
     /// # Errors
     /// The number of the first point that no part of the master faces.
     pub fn start_closed(&mut self, initial: Vec<InitialTraction>, x: &Configuration) -> Result<(), usize> {
-        let met = self.meetings(x);
+        let met = self.meetings(x, false);
         for (k, (slave, met)) in self.points.iter_mut().zip(met).enumerate() {
             let give = if self.penetration.is_some() { 0.0 } else { initial[k].pressure / self.alpha_n };
-            slave.touch = met.ok_or(k)?.gap + give;
+            slave.touch = met.ok_or(k)?.0.gap + give;
         }
         self.initial = Some(initial);
         Ok(())
@@ -40,59 +41,75 @@ impl ContactPair {
     /// g(t) = g_surfaces + overlap × (1 − share of the first step that has passed)
     /// ```
     pub fn start_fitting(&mut self, x: &Configuration) {
-        let met = self.meetings(x);
+        let met = self.meetings(x, false);
         for (slave, met) in self.points.iter_mut().zip(met) {
-            slave.overlap = met.map_or(0.0, |met| (slave.touch - met.gap).max(0.0));
+            slave.overlap = met.map_or(0.0, |(met, _)| (slave.touch - met.gap).max(0.0));
         }
     }
 
     /// States at the start of a run: each point projected in the configuration `x`, friction at rest or, in a contact
     /// that starts closed, under its initial tractions.
     pub fn initial_states(&self, x: &Configuration) -> Vec<ContactState> {
-        let state = |(k, (slave, met)): (usize, (&SlavePoint, Option<Meeting>))| {
+        let state = |(k, (slave, met)): (usize, (&SlavePoint, Option<(Meeting, Kinematics)>))| {
             let law = self.law(slave);
             let friction = match self.initial.as_ref().map(|initial| initial[k]) {
                 Some(InitialTraction { pressure, traction }) => law.starting_state(pressure, traction),
                 None => law.initial_state(),
             };
-            let length = met.as_ref().map_or_else(|| slave.current_length(x), |met| met.kinematics.length);
-            let (gap, foot) = met.map(|met| (slave.gap(met.gap, 1.0), met.foot)).unzip();
+            let length = met.as_ref().map_or_else(|| slave.current_length(x), |(_, kinematics)| kinematics.length);
+            let (gap, foot) = met.map(|(met, _)| (slave.gap(met.gap, 1.0), met.foot)).unzip();
             let multiplier = if self.penetration.is_some() { friction.pressure } else { 0.0 };
             ContactState { friction, foot, length, gap: gap.unwrap_or(0.0), slip: 0.0, multiplier }
         };
-        self.points.iter().zip(self.meetings(x)).enumerate().map(state).collect()
+        self.points.iter().zip(self.meetings(x, false)).enumerate().map(state).collect()
     }
 
     /// What the initial tractions put on the nodes in the configuration `x` [F].
     pub fn initial_forces(&self, x: &Configuration) -> Vec<(usize, Vector2<f64>)> {
-        let met = self.meetings(x).into_iter().zip(self.initial.iter().flatten());
-        let forces = |(met, initial): (Option<Meeting>, &InitialTraction)| {
+        let met = self.meetings(x, false).into_iter().zip(self.initial.iter().flatten());
+        let forces = |(met, initial): (Option<(Meeting, Kinematics)>, &InitialTraction)| {
             let InitialTraction { pressure, traction } = *initial;
-            met.map_or_else(Vec::new, |met| nodal_forces(&met.kinematics, pressure, traction))
+            met.map_or_else(Vec::new, |(_, kinematics)| nodal_forces(&kinematics, pressure, traction))
         };
         met.flat_map(forces).collect()
     }
 
-    /// Where every point meets the master, if that faces it, the gap being that of the surfaces.
-    fn meetings(&self, x: &Configuration) -> Vec<Option<Meeting>> {
+    /// From now on every point keeps meeting what it meets in the configuration `x` (small sliding).
+    pub fn slide_little(&mut self, x: &Configuration) {
+        let met = self.meetings(x, false).into_iter().zip(&self.points);
+        let point =
+            |((met, k), slave): ((Meeting, Kinematics), &SlavePoint)| SmallPoint::new(met, &k, slave, &self.master, x);
+        let points = met.map(|(met, slave)| Some(point((met?, slave))));
+        self.small = Some(SmallSliding { points: points.collect() });
+    }
+
+    /// Where every point meets the master, if that faces it, the gap being that of the surfaces; its kinematics `varied` or not.
+    fn meetings(&self, x: &Configuration, varied: bool) -> Vec<Option<(Meeting, Kinematics)>> {
         let index = Index::new(&self.master, x);
-        match (&self.mortar, &self.master) {
-            (Some(mortar), Master::Mesh(surface)) => {
-                let overlaps = mortar.overlaps(surface, &index, x);
-                (0..self.points.len()).map(|k| mortar.kinematics(k, surface, &overlaps, None, x)).collect()
-            }
-            (Some(mortar), Master::Rigid(body)) => {
-                (0..self.points.len()).map(|k| mortar.on_rigid(k, body, x, x)).collect()
-            }
-            _ => {
-                let meet = |slave: &SlavePoint| {
+        let overlaps = match (&self.mortar, &self.master) {
+            (Some(mortar), Master::Mesh(surface)) if self.small.is_none() => Some(mortar.overlaps(surface, &index, x)),
+            _ => None,
+        };
+        let meet = |(k, slave): (usize, &SlavePoint)| {
+            let mut found = Kinematics::new(varied);
+            let at = &mut found;
+            let met = match (&self.small, &self.mortar, &self.master) {
+                (Some(small), ..) => Some(small.points[k].as_ref()?.meet(x, x, at)),
+                (_, Some(mortar), Master::Rigid(body)) => mortar.meet_rigid(k, body, [x, x], at),
+                (_, Some(mortar), Master::Mesh(surface)) => {
+                    let overlaps = overlaps.as_ref()?;
+                    let weights = mortar.weights(k, surface, overlaps, x).filter(|_| varied);
+                    mortar.meet(k, surface, overlaps, weights.as_ref(), x, at)
+                }
+                _ => {
                     let projection = index.project(slave, None, x)?;
-                    let kinematics = kinematics(slave, &self.master, &projection, None, x);
-                    Some(Meeting { kinematics, gap: projection.gap, foot: projection.foot })
-                };
-                self.points.iter().map(meet).collect()
-            }
-        }
+                    kinematics(slave, &self.master, &projection, None, x, at);
+                    Some(Meeting { gap: projection.gap, foot: projection.foot })
+                }
+            };
+            Some((met?, found))
+        };
+        self.points.iter().enumerate().map(meet).collect()
     }
 
     /// The master node that lies deepest in slave edges with closed points: place, depth [L], and depth over the length of
@@ -120,25 +137,20 @@ impl ContactPair {
     /// Rate at which each point slips along +s under nodal velocities, the variation of Δu_t; 0 where nothing faces it
     /// [L/T].
     pub fn slip_rates(&self, states: &[ContactState], x: &Configuration, velocity: &[f64]) -> Vec<f64> {
-        let index = Index::new(&self.master, x);
-        let rate = |k: Kinematics| {
+        let rate = |k: &Kinematics| {
             let dofs = k.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
             dofs.zip(&k.dslip).map(|(dof, dslip)| velocity[dof] * dslip).sum()
         };
-        if let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) {
-            let overlaps = mortar.overlaps(surface, &index, x);
-            let met =
-                |k| mortar.kinematics(k, surface, &overlaps, mortar.weights(k, surface, &overlaps, x).as_ref(), x);
-            return (0..self.points.len()).map(|k| met(k).map_or(0.0, |met| rate(met.kinematics))).collect();
+        if self.small.is_some() || self.mortar.is_some() {
+            return self.meetings(x, true).iter().map(|met| met.as_ref().map_or(0.0, |(_, k)| rate(k))).collect();
         }
-        if let (Some(mortar), Master::Rigid(body)) = (&self.mortar, &self.master) {
-            let met = |k| mortar.on_rigid(k, body, x, x);
-            return (0..self.points.len()).map(|k| met(k).map_or(0.0, |met| rate(met.kinematics))).collect();
-        }
-        let slips = |(slave, state): (&SlavePoint, &ContactState)| {
-            let projection = index.project(slave, state.foot, x);
-            projection.map_or(0.0, |projection| rate(kinematics(slave, &self.master, &projection, state.foot, x)))
+        let index = Index::new(&self.master, x);
+        let mut k = Kinematics::new(true);
+        let mut slips = |(slave, state): (&SlavePoint, &ContactState)| {
+            let Some(projection) = index.project(slave, state.foot, x) else { return 0.0 };
+            kinematics(slave, &self.master, &projection, state.foot, x, &mut k);
+            rate(&k)
         };
-        self.points.iter().zip(states).map(slips).collect()
+        self.points.iter().zip(states).map(&mut slips).collect()
     }
 }

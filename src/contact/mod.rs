@@ -30,5 +30,6 @@ mod response;
 pub mod rigid;
 pub mod search;
 pub mod sight;
+pub mod small_sliding;
 pub mod state;
 pub mod surface;

@@ -21,7 +21,7 @@
 
 use std::iter::repeat;
 
-use nalgebra::{DVector, Vector2};
+use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use super::cuts::{Overlap, Overlaps, cut};
@@ -103,15 +103,16 @@ impl Mortar {
         Overlaps(self.edges.par_iter().map(|edge| cut(edge, surface, index, x)).collect())
     }
 
-    /// Where a point meets the master; `None` where none faces it. `old` are its weights in the committed
+    /// Where a point meets the master, and its kinematics; `None` where none faces it. `old` are its weights in the committed
     /// configuration.
-    pub fn kinematics(
+    pub fn meet(
         &self,
         point: usize,
         surface: &Surface,
         overlaps: &Overlaps,
         old: Option<&Weights>,
         x: &Configuration,
+        k: &mut Kinematics,
     ) -> Option<Meeting> {
         let foot = self.foot(point, overlaps)?;
         let mut nodes = self.nodes(point, surface, overlaps);
@@ -120,7 +121,7 @@ impl Mortar {
                 nodes.push(node);
             }
         }
-        let frame = Frame::new(nodes, true, x);
+        let frame = Frame::new(nodes, k.varied, x);
         let Averages { weights, length } = self.averages(point, surface, overlaps, &frame)?;
         let along = self.along(point, &frame);
         let (s, n) = (along.clone(), along.turned());
@@ -135,23 +136,29 @@ impl Mortar {
             }
             slip = s.dot(&moved.minus(&mean));
         }
-        let dofs = 2 * frame.nodes.len();
-        let vector = |d: &Dual| DVector::from_iterator(dofs, d.gradient.iter().copied().chain(repeat(0.0)).take(dofs));
-        let (normal, tangent) = (Vector2::new(n.x.value, n.y.value), Vector2::new(s.x.value, s.y.value));
-        let kinematics = Kinematics {
-            relative: relative.iter().map(|w| w.value).collect(),
-            normal,
-            tangent,
-            slip: slip.value,
-            length: surface.share() * length.value,
-            dgap: vector(&gap),
-            dslip: vector(&slip),
-            drotation: vector(&s.x) * normal.x + vector(&s.y) * normal.y,
-            dlength: vector(&length) * surface.share(),
-            drelative: relative.iter().map(vector).enumerate().collect(),
-            nodes: frame.nodes,
-        };
-        Some(Meeting { kinematics, gap: gap.value, foot })
+        k.begin(Vector2::new(n.x.value, n.y.value));
+        k.nodes.extend_from_slice(&frame.nodes);
+        k.clear();
+        k.tangent = Vector2::new(s.x.value, s.y.value);
+        (k.slip, k.length) = (slip.value, surface.share() * length.value);
+        k.relative.iter_mut().zip(&relative).for_each(|(value, w)| *value = w.value);
+        if k.varied {
+            let set = |row: &mut Vec<f64>, d: &Dual| row[..d.gradient.len()].copy_from_slice(&d.gradient);
+            set(&mut k.dgap, &gap);
+            set(&mut k.dslip, &slip);
+            set(&mut k.dlength, &length);
+            k.dlength.iter_mut().for_each(|rate| *rate *= surface.share());
+            let [dx, dy] = [&s.x, &s.y].map(|d| d.gradient.iter().copied().chain(repeat(0.0)));
+            k.drotation
+                .iter_mut()
+                .zip(dx.zip(dy))
+                .for_each(|(turn, (dx, dy))| *turn = dx * k.normal.x + dy * k.normal.y);
+            for (a, w) in relative.iter().enumerate() {
+                k.changing.push(a);
+                k.drelative.extend(w.gradient.iter().copied().chain(repeat(0.0)).take(k.dgap.len()));
+            }
+        }
+        Some(Meeting { gap: gap.value, foot })
     }
 
     /// Weights of r_j in a configuration; `None` where no master faces the point.

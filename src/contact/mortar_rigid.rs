@@ -2,92 +2,118 @@
 //! two nodes have, each with its own foot, and n_j is the direction of the mean of their normals. One function sums them up:
 //! every value comes with its variation.
 
-use nalgebra::{DVector, Vector2};
+use nalgebra::Vector2;
 
 use super::kinematics::{Kinematics, Meeting, past_rigid};
 use super::mortar::Mortar;
-use super::point::SlavePoint;
+use super::point::{MasterPoint, SlavePoint};
 use super::projection::{Projection, tangent_of};
 use super::rigid::Rigid;
 use crate::mesh::configuration::Configuration;
 
+/// Sums of ℓ and of ℓ times gap, slip and n.
+#[derive(Default)]
+struct Sums {
+    length: f64,
+    gap: f64,
+    slip: f64,
+    along: Vector2<f64>,
+    foot: Option<MasterPoint>,
+}
+
 impl Mortar {
-    /// Where a point meets a rigid body; `None` where that faces none of its surroundings. `before` is the committed
-    /// configuration.
-    pub fn on_rigid(&self, point: usize, body: &Rigid, before: &Configuration, x: &Configuration) -> Option<Meeting> {
-        let around = self.around[point].iter();
-        let met: Vec<_> = around.filter_map(|slave| meet(slave, body, before, x)).collect();
-        let foot = met.first()?.0.foot;
-        let nodes = nodes_of(&met);
-        let zero = DVector::zeros(2 * nodes.len());
-        // Sums of ℓ times gap, slip, n and weights, and their variations.
-        let (mut length, mut gap, mut slip, mut along) = (0.0, 0.0, 0.0, Vector2::zeros());
-        let [mut dlength, mut dgap, mut dslip, mut dx, mut dy] = [(); 5].map(|()| zero.clone());
-        let mut weights = vec![0.0; nodes.len()];
-        let mut dweights = vec![zero.clone(); nodes.len()];
-        for (projection, k) in &met {
-            let local: Vec<usize> =
-                k.nodes.iter().filter_map(|node| nodes.iter().position(|other| other == node)).collect();
-            let add = |sum: &mut DVector<f64>, factor: f64, row: &DVector<f64>| {
-                for (dof, value) in row.iter().enumerate() {
-                    sum[2 * local[dof / 2] + dof % 2] += factor * value;
-                }
-            };
-            length += k.length;
-            gap += k.length * projection.gap;
-            slip += k.length * k.slip;
-            along += k.length * k.normal;
-            add(&mut dlength, 1.0, &k.dlength);
-            for (sum, value, row) in [(&mut dgap, projection.gap, &k.dgap), (&mut dslip, k.slip, &k.dslip)] {
-                add(sum, value, &k.dlength);
-                add(sum, k.length, row);
-            }
-            for (sum, n, s) in [(&mut dx, k.normal.x, k.tangent.x), (&mut dy, k.normal.y, k.tangent.y)] {
-                add(sum, n, &k.dlength);
-                add(sum, -k.length * s, &k.drotation);
-            }
-            for (&at, &w) in local.iter().zip(&k.relative) {
-                weights[at] += k.length * w;
-                add(&mut dweights[at], w, &k.dlength);
+    /// Where a point meets a rigid body, and its kinematics; `None` where that faces none of its surroundings. The
+    /// configurations are the committed one and that of the trial.
+    pub fn meet_rigid(
+        &self,
+        point: usize,
+        body: &Rigid,
+        [before, x]: [&Configuration; 2],
+        mean: &mut Kinematics,
+    ) -> Option<Meeting> {
+        let around = &self.around[point];
+        let meet = |slave: &SlavePoint, k: &mut Kinematics| meet(slave, body, [before, x], k);
+        let mut k = Kinematics::new(mean.varied);
+        mean.begin(Vector2::zeros());
+        for slave in around {
+            if meet(slave, &mut k).is_some() {
+                mean.list(k.nodes.iter().copied());
             }
         }
-        let normal = along.normalize();
-        let tangent = tangent_of(normal);
-        let mean = |value: f64, row: DVector<f64>| (value / length, (row - &dlength * (value / length)) / length);
-        let ((gap, dgap), (slip, dslip)) = (mean(gap, dgap), mean(slip, dslip));
-        let (relative, drelative): (Vec<f64>, Vec<_>) =
-            weights.into_iter().zip(dweights).map(|(w, dw)| mean(w, dw)).unzip();
-        let drotation = -(dx * tangent.x + dy * tangent.y) / along.norm();
-        let drelative = drelative.into_iter().enumerate().collect();
-        let kinematics =
-            Kinematics { nodes, relative, normal, tangent, slip, length, dgap, dslip, drotation, dlength, drelative };
-        Some(Meeting { kinematics, gap, foot })
+        mean.clear();
+        let dofs = mean.dgap.len();
+        mean.changing.extend((0..mean.nodes.len()).filter(|_| mean.varied));
+        mean.drelative.resize(mean.changing.len() * dofs, 0.0);
+        let mut sums = Sums::default();
+        let mut turns = [vec![0.0; dofs], vec![0.0; dofs]];
+        for slave in around {
+            if let Some(projection) = meet(slave, &mut k) {
+                sums.foot.get_or_insert(projection.foot);
+                sums.add(&k, projection.gap, mean, &mut turns);
+            }
+        }
+        let Sums { length, gap, slip, along, foot } = sums;
+        let foot = foot?;
+        mean.normal = along.normalize();
+        mean.tangent = tangent_of(mean.normal);
+        (mean.length, mean.slip) = (length, slip / length);
+        let Kinematics { relative, dgap, dslip, drotation, dlength, drelative, tangent, .. } = mean;
+        let vary = |row: &mut [f64], mean: f64| {
+            row.iter_mut().zip(&*dlength).for_each(|(rate, dlength)| *rate = (*rate - dlength * mean) / length);
+        };
+        vary(dgap, gap / length);
+        vary(dslip, slip / length);
+        relative.iter_mut().for_each(|w| *w /= length);
+        if dofs > 0 {
+            drelative.chunks_exact_mut(dofs).zip(&*relative).for_each(|(row, w)| vary(row, *w));
+        }
+        let rates = drotation.iter_mut().zip(turns[0].iter().zip(&turns[1]));
+        rates.for_each(|(turn, (dx, dy))| *turn = -(dx * tangent.x + dy * tangent.y) / along.norm());
+        Some(Meeting { gap: gap / length, foot })
     }
 }
 
-/// The nodes of all points that meet the body, each once.
-fn nodes_of(met: &[(Projection, Kinematics)]) -> Vec<usize> {
-    let mut nodes: Vec<usize> = Vec::new();
-    for node in met.iter().flat_map(|(_, k)| &k.nodes) {
-        if !nodes.contains(node) {
-            nodes.push(*node);
+impl Sums {
+    /// Add what a point of Gauss's rule has; its weights and variations to those of the `mean`, those of n to the `turns`.
+    fn add(&mut self, k: &Kinematics, gap: f64, mean: &mut Kinematics, turns: &mut [Vec<f64>; 2]) {
+        let Kinematics { nodes, relative, dgap, dslip, dlength, drelative, .. } = mean;
+        let local = |node: usize| nodes.iter().position(|other| *other == node).unwrap_or_default();
+        let add = |sum: &mut [f64], factor: f64, row: &[f64]| {
+            for (dof, value) in row.iter().enumerate() {
+                sum[2 * local(k.nodes[dof / 2]) + dof % 2] += factor * value;
+            }
+        };
+        self.length += k.length;
+        self.gap += k.length * gap;
+        self.slip += k.length * k.slip;
+        self.along += k.length * k.normal;
+        add(dlength, 1.0, &k.dlength);
+        for (sum, value, row) in [(&mut *dgap, gap, &k.dgap), (&mut *dslip, k.slip, &k.dslip)] {
+            add(sum, value, &k.dlength);
+            add(sum, k.length, row);
+        }
+        for (sum, n, s) in [(0, k.normal.x, k.tangent.x), (1, k.normal.y, k.tangent.y)] {
+            add(&mut turns[sum], n, &k.dlength);
+            add(&mut turns[sum], -k.length * s, &k.drotation);
+        }
+        let dofs = dgap.len();
+        for (&node, &w) in k.nodes.iter().zip(&k.relative) {
+            let at = local(node);
+            relative[at] += k.length * w;
+            if k.varied {
+                add(&mut drelative[dofs * at..dofs * (at + 1)], w, &k.dlength);
+            }
         }
     }
-    nodes
 }
 
 /// Where one point of Gauss's rule meets the body.
-fn meet(
-    slave: &SlavePoint,
-    body: &Rigid,
-    before: &Configuration,
-    x: &Configuration,
-) -> Option<(Projection, Kinematics)> {
+fn meet(slave: &SlavePoint, body: &Rigid, [before, x]: [&Configuration; 2], k: &mut Kinematics) -> Option<Projection> {
     let projection = body.project(slave, x)?;
     let from = body.project(slave, before).map(|was| was.foot);
-    let mut kinematics = past_rigid(slave, body, &projection, from, x);
+    past_rigid(slave, body, &projection, from, x, k);
     if from.is_none() {
-        kinematics.count_from(before, x);
+        k.count_from(before, x);
     }
-    Some((projection, kinematics))
+    Some(projection)
 }

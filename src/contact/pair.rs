@@ -2,10 +2,11 @@
 
 use std::ops::Range;
 
-pub use super::closed::PairResponse;
 use super::master::Master;
 use super::mortar::Mortar;
 pub use super::presumption::{ContactIncrement, Presumption};
+pub use super::response::PairResponse;
+use super::small_sliding::SmallSliding;
 use super::state::ContactState;
 use super::surface::SlavePoint;
 use crate::laws::friction::{FrictionLaw, FrictionState, LawFailure, Sliding};
@@ -34,6 +35,8 @@ pub struct ContactPair {
     pub initial: Option<Vec<InitialTraction>>,
     /// The two sides the other way round, to see what the slave's points do not: how deep master nodes lie in the slave
     pub reverse: Option<Reverse>,
+    /// What every point keeps meeting, in small sliding
+    pub small: Option<SmallSliding>,
 }
 
 /// The nodes of a mesh master as points, and the slave as their master.

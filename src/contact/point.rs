@@ -4,6 +4,7 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use crate::mesh::configuration::Configuration;
+use crate::mesh::few::Few;
 use crate::mesh::shape;
 
 /// A linear combination of nodal positions, Σ w_a x_a.
@@ -111,7 +112,7 @@ pub fn lone_point(node: usize, area: f64) -> SlavePoint {
 
 /// The point of an edge at ξ, that stands for a share of the edge's length.
 pub fn edge_point(edge: &[usize], xi: f64, weight: f64) -> SlavePoint {
-    let with = |values: Vec<f64>| -> Weights { edge.iter().copied().zip(values).collect() };
+    let with = |values: Few<f64, 3>| -> Weights { edge.iter().copied().zip(values).collect() };
     let position = with(shape::edge_values(edge.len(), xi));
     let tangent = with(shape::edge_derivatives(edge.len(), xi));
     SlavePoint {

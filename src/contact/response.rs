@@ -2,9 +2,9 @@
 
 use rayon::prelude::*;
 
-use super::closed::PairResponse;
+use super::closed::{Closed, ClosedPoints};
 use super::force::{Loading, PointPlace, closes, place};
-use super::kinematics::Meeting;
+use super::kinematics::{Kinematics, Meeting};
 use super::master::Master;
 use super::pair::ContactPair;
 use super::presumption::{ContactIncrement, PointIncrement, Presumption};
@@ -12,103 +12,186 @@ use super::search::Index;
 use super::state::ContactState;
 use super::surface::SlavePoint;
 use crate::laws::friction::{Answer, FrictionResponse, FrictionState, LawFailure, Sliding};
+use crate::linear::system::Request;
 use crate::mesh::configuration::Configuration;
 
-/// Fewer points than this are not worth waking other threads for.
-const FEW: usize = 64;
+/// Points that one thread evaluates at a time; fewer than this are not worth waking others for.
+const PART: usize = 64;
 
 /// Points whose laws are asked in one go.
 const TOGETHER: usize = 16;
 
+/// Trial states of all points of a pair, in their order, and what the closed ones add to the equations. Handed from one
+/// evaluation to the next: then its lists are there already.
+#[derive(Clone, Debug, Default)]
+pub struct PairResponse {
+    /// Trial states
+    pub states: Vec<ContactState>,
+    parts: Vec<Part>,
+}
+
+/// Points that one thread evaluates.
+#[derive(Clone, Debug, Default)]
+struct Part {
+    closed: ClosedPoints,
+    /// Kinematics of the points at hand
+    kinematics: Vec<Kinematics>,
+    failure: Option<(usize, LawFailure)>,
+}
+
+impl PairResponse {
+    /// What a point adds to the equations, if it is closed.
+    pub fn closed(&self, point: usize) -> Option<Closed<'_>> {
+        self.parts.get(point / PART)?.closed.get(point % PART)
+    }
+
+    /// The closed points.
+    pub fn all_closed(&self) -> impl Iterator<Item = (&ContactState, Closed<'_>)> {
+        self.states.iter().enumerate().filter_map(|(k, state)| Some((state, self.closed(k)?)))
+    }
+}
+
+/// What one evaluation asks of every point.
+struct Question<'a, P> {
+    pair: &'a ContactPair,
+    /// Increment of a point, and what is presumed about it
+    during: ContactIncrement,
+    presumed: P,
+    varied: bool,
+}
+
 impl ContactPair {
-    /// Every point's trial state and contribution in the configuration `x`, each with its own presumption; `before`
-    /// is the committed configuration. Pure, and the same for any number of threads.
+    /// Every point's trial state and what it adds to the equations in the configuration `x`, each with its own presumption, the
+    /// tangent on request; `before` is the committed configuration. Pure, and the same for any number of threads: whatever
+    /// `response` held, only its memory is used.
     ///
     /// # Errors
     /// The number of the first point whose friction law fails, and why.
     pub fn respond(
         &self,
         old: &[ContactState],
-        before: &Configuration,
+        [before, x]: [&Configuration; 2],
         during: ContactIncrement,
         presumed: impl Fn(usize) -> Presumption + Sync,
-        x: &Configuration,
-    ) -> Result<PairResponse, (usize, LawFailure)> {
+        request: Request,
+        response: &mut PairResponse,
+    ) -> Result<(), (usize, LawFailure)> {
+        let question = Question { pair: self, during, presumed, varied: request == Request::Tangent };
+        if let Some(small) = &self.small {
+            return question.each(old, response, |k, slave, old, increment, kinematics| {
+                let meeting = small.points[k].as_ref().map(|point| point.meet(before, x, kinematics));
+                averaged(self, slave, meeting, old, increment, x)
+            });
+        }
         let index = Index::within(&self.master, before, x);
-        let increment = |k| PointIncrement { during, presumption: presumed(k) };
         if let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) {
             let was = mortar.overlaps(surface, &Index::new(&self.master, before), before);
             let is = mortar.overlaps(surface, &index, x);
-            return self.each(old, increment, |k, slave, old, increment| {
+            return question.each(old, response, |k, slave, old, increment, kinematics| {
                 let weights = mortar.weights(k, surface, &was, before);
-                let mut meeting = mortar.kinematics(k, surface, &is, weights.as_ref(), x);
-                if let (Some(meeting), None) = (&mut meeting, &weights) {
-                    meeting.kinematics.count_from(before, x);
+                let meeting = mortar.meet(k, surface, &is, weights.as_ref(), x, kinematics);
+                if meeting.is_some() && weights.is_none() {
+                    kinematics.count_from(before, x);
                 }
                 averaged(self, slave, meeting, old, increment, x)
             });
         }
         if let (Some(mortar), Master::Rigid(body)) = (&self.mortar, &self.master) {
-            return self.each(old, increment, |k, slave, old, increment| {
-                averaged(self, slave, mortar.on_rigid(k, body, before, x), old, increment, x)
+            return question.each(old, response, |k, slave, old, increment, kinematics| {
+                averaged(self, slave, mortar.meet_rigid(k, body, [before, x], kinematics), old, increment, x)
             });
         }
-        self.each(old, increment, |_, slave, old, increment| {
+        question.each(old, response, |_, slave, old, increment, kinematics| {
             let valley = increment.presumption.astride.and_then(|segments| index.in_valley(slave, segments, x));
             let projection = valley.or_else(|| index.project(slave, old.foot, x));
-            place(self, slave, projection, old, increment, [before, x])
+            place(self, slave, projection, old, increment, [before, x], kinematics)
         })
-    }
-
-    /// One answer a point, some points at a time: where they are, what their laws say, what follows. The first failure by
-    /// number, whatever thread met it.
-    fn each(
-        &self,
-        old: &[ContactState],
-        increment: impl Fn(usize) -> PointIncrement + Sync,
-        place: impl Fn(usize, &SlavePoint, &ContactState, PointIncrement) -> PointPlace + Sync,
-    ) -> Result<PairResponse, (usize, LawFailure)> {
-        let some = |(chunk, (points, old)): (usize, (&[SlavePoint], &[ContactState]))| -> Result<PairResponse, _> {
-            let numbers = chunk * TOGETHER..;
-            let loadings: Vec<Loading> = numbers
-                .clone()
-                .zip(points.iter().zip(old))
-                .map(|(k, (slave, old))| {
-                    let increment = increment(k);
-                    Loading::new(self, slave, old, increment, place(k, slave, old, increment))
-                })
-                .collect();
-            let answers = self.answers(points, old, &loadings);
-            let finished = loadings.into_iter().zip(answers).zip(numbers);
-            finished.map(|((loading, answer), k)| loading.finish(answer).map_err(|failure| (k, failure))).collect()
-        };
-        let parts: Result<Vec<PairResponse>, _> = match self.points.len() < FEW {
-            true => self.points.chunks(TOGETHER).zip(old.chunks(TOGETHER)).enumerate().map(some).collect(),
-            false => {
-                let chunks = self.points.par_chunks(TOGETHER).zip(old.par_chunks(TOGETHER)).enumerate();
-                let all: Vec<_> = chunks.map(some).collect();
-                all.into_iter().collect()
-            }
-        };
-        Ok(parts?.into_iter().flatten().collect())
-    }
-
-    /// What the laws of consecutive points say.
-    fn answers(&self, points: &[SlavePoint], old: &[ContactState], loadings: &[Loading]) -> Vec<Answer> {
-        let committed: Vec<FrictionState> = old.iter().map(|old| old.friction).collect();
-        let sliding: Vec<Sliding> = loadings.iter().map(|loading| loading.sliding).collect();
-        let mut answers = vec![Ok(FrictionResponse::default()); points.len()];
-        let mut start = 0;
-        for alike in points.chunk_by(|a, b| a.law == b.law) {
-            let range = start..start + alike.len();
-            start = range.end;
-            self.law(&alike[0]).respond_many(&committed[range.clone()], &sliding[range.clone()], &mut answers[range]);
-        }
-        answers
     }
 }
 
-/// Where a point is whose average is known, its gap still being that of the surfaces.
+impl<P: Fn(usize) -> Presumption + Sync> Question<'_, P> {
+    /// One answer a point; `place` says where it is, and fills in its kinematics if it is closed. The first failure by number,
+    /// whatever thread met it.
+    fn each(
+        &self,
+        old: &[ContactState],
+        response: &mut PairResponse,
+        place: impl Fn(usize, &SlavePoint, &ContactState, PointIncrement, &mut Kinematics) -> PointPlace + Sync,
+    ) -> Result<(), (usize, LawFailure)> {
+        let points = &self.pair.points;
+        let PairResponse { states, parts } = response;
+        states.clear();
+        states.extend_from_slice(old);
+        parts.resize_with(points.len().div_ceil(PART), Part::default);
+        let one = |(number, (part, states)): (usize, (&mut Part, &mut [ContactState]))| {
+            let numbers = PART * number..PART * number + states.len();
+            part.evaluate(self, numbers, old, states, &place);
+        };
+        match parts.len() {
+            0 | 1 => parts.iter_mut().zip(states.chunks_mut(PART)).enumerate().for_each(one),
+            _ => parts.par_iter_mut().zip(states.par_chunks_mut(PART)).enumerate().for_each(one),
+        }
+        parts.iter_mut().find_map(|part| part.failure.take()).map_or(Ok(()), Err)
+    }
+}
+
+impl Part {
+    /// Some points at a time: where they are, what their laws say, what follows.
+    fn evaluate<P: Fn(usize) -> Presumption>(
+        &mut self,
+        question: &Question<P>,
+        numbers: std::ops::Range<usize>,
+        old: &[ContactState],
+        states: &mut [ContactState],
+        place: impl Fn(usize, &SlavePoint, &ContactState, PointIncrement, &mut Kinematics) -> PointPlace,
+    ) {
+        let Question { pair, during, .. } = *question;
+        let Self { closed, kinematics, failure } = self;
+        closed.clear();
+        kinematics.resize_with(TOGETHER.min(numbers.len()), Kinematics::default);
+        for (first, states) in numbers.step_by(TOGETHER).zip(states.chunks_mut(TOGETHER)) {
+            let together = first..first + states.len();
+            let (points, old) = (&pair.points[together.clone()], &old[together]);
+            let mut loadings = [const { None }; TOGETHER];
+            let mut sliding = [Sliding { slip: 0.0, pressure: 0.0, dt: 0.0 }; TOGETHER];
+            for (i, kinematics) in kinematics.iter_mut().take(points.len()).enumerate() {
+                let (slave, old) = (&points[i], &old[i]);
+                let increment = PointIncrement { during, presumption: (question.presumed)(first + i) };
+                kinematics.varied = question.varied;
+                let place = place(first + i, slave, old, increment, kinematics);
+                let loading = Loading::new(pair, slave, old, increment, place, kinematics);
+                sliding[i] = loading.sliding;
+                loadings[i] = Some(loading);
+            }
+            let answers = answers(pair, points, old, &sliding[..points.len()]);
+            for (i, (loading, answer)) in loadings.into_iter().flatten().zip(answers).enumerate() {
+                match loading.finish(answer, closed) {
+                    Ok(state) => states[i] = state,
+                    Err(cause) => {
+                        *failure = Some((first + i, cause));
+                        return;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What the laws of consecutive points say.
+fn answers(pair: &ContactPair, points: &[SlavePoint], old: &[ContactState], sliding: &[Sliding]) -> [Answer; TOGETHER] {
+    let mut committed = [FrictionState::default(); TOGETHER];
+    committed.iter_mut().zip(old).for_each(|(committed, old)| *committed = old.friction);
+    let mut answers = [Ok(FrictionResponse::default()); TOGETHER];
+    let mut start = 0;
+    for alike in points.chunk_by(|a, b| a.law == b.law) {
+        let range = start..start + alike.len();
+        start = range.end;
+        pair.law(&alike[0]).respond_many(&committed[range.clone()], &sliding[range.clone()], &mut answers[range]);
+    }
+    answers
+}
+
+/// Where a point is that meets the master so, its gap still being that of the surfaces.
 fn averaged(
     pair: &ContactPair,
     slave: &SlavePoint,
@@ -117,8 +200,7 @@ fn averaged(
     increment: PointIncrement,
     x: &Configuration,
 ) -> PointPlace {
-    let Some(Meeting { kinematics, gap, foot }) = meeting else { return PointPlace::default() };
+    let Some(Meeting { gap, foot }) = meeting else { return PointPlace::default() };
     let gap = slave.gap(gap, increment.during.fading);
-    let kinematics = closes(pair, slave, gap, old, increment, x).then_some(kinematics);
-    PointPlace { gap, foot: Some(foot), kinematics }
+    PointPlace { gap, foot: Some(foot), closes: closes(pair, slave, gap, old, increment, x) }
 }

@@ -8,7 +8,7 @@ pub use super::projection::FACING;
 use super::projection::{Bound, Projection, at_node, normal_of, on_curve, on_segment};
 use super::rigid::Rigid;
 use super::sight::Sight;
-use super::surface::{MasterPoint, SlavePoint, Surface};
+use super::surface::{MasterPoint, Path, SlavePoint, Surface};
 use crate::mesh::configuration::Configuration;
 
 /// Segments looked at before a point is called free. Nearest come first, so more than a few mean that nothing faces it.
@@ -139,8 +139,8 @@ fn behind_ridge(
     meets: impl Fn(usize) -> bool,
     x: &Configuration,
 ) -> Projection {
-    let way = surface.path(nearest.foot, from).unwrap_or_default();
-    let earlier = way.iter().skip(1).map(|&(segment, ..)| segment).take_while(|&segment| meets(segment));
+    let way = surface.path(nearest.foot, from).into_iter().flat_map(Path::parts);
+    let earlier = way.skip(1).map(|(segment, ..)| segment).take_while(|&segment| meets(segment));
     let behind = earlier.map(|segment| on_curve(slave, surface, segment, x));
     behind.take_while(|at| at.gap < 0.0 && (0.0..=1.0).contains(&at.foot.xi)).last().unwrap_or(nearest)
 }

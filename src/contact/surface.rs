@@ -7,6 +7,7 @@ use nalgebra::Vector2;
 pub use super::point::{
     LengthShare, MasterPoint, SlavePoint, Weights, edge_point, gauss_points, lone_point, nodal_points,
 };
+use crate::mesh::few::Few;
 use crate::mesh::shape;
 
 /// One edge of a mesh surface, run through along s: straight, a parabola through its middle node, or a part of a smooth
@@ -45,7 +46,7 @@ impl Segment {
     }
 
     /// Shape functions of x at ξ, 0 … 1.
-    pub fn position(&self, xi: f64) -> Weights {
+    pub fn position(&self, xi: f64) -> SegmentWeights {
         if self.is_smooth() {
             let (square, cube) = (xi * xi, xi * xi * xi);
             return self.hermite([3.0 * square - 2.0 * cube, cube - 2.0 * square + xi, cube - square], 1.0);
@@ -54,7 +55,7 @@ impl Segment {
     }
 
     /// Weights of x′ = dx/dξ at ξ.
-    pub fn slope(&self, xi: f64) -> Weights {
+    pub fn slope(&self, xi: f64) -> SegmentWeights {
         if self.is_smooth() {
             let square = xi * xi;
             return self.hermite([6.0 * (xi - square), 3.0 * square - 4.0 * xi + 1.0, 3.0 * square - 2.0 * xi], 0.0);
@@ -63,25 +64,28 @@ impl Segment {
     }
 
     /// Weights of x″ = d²x/dξ² at ξ.
-    pub fn bend(&self, xi: f64) -> Weights {
+    pub fn bend(&self, xi: f64) -> SegmentWeights {
         if self.is_smooth() {
             return self.hermite([6.0 - 12.0 * xi, 6.0 * xi - 4.0, 6.0 * xi - 2.0], 0.0);
         }
-        self.middle.map_or_else(Vec::new, |_| self.with(vec![1.0, 1.0, -2.0], 4.0))
+        self.middle.map_or_else(SegmentWeights::default, |_| self.with([1.0, 1.0, -2.0].into(), 4.0))
     }
 
     /// Weights of h₀₀ x₁ + h₁₀ d₁ + h₀₁ x₂ + h₁₁ d₂, where h₀₀ = `sum` − h₀₁.
-    fn hermite(&self, [h01, h10, h11]: [f64; 3], sum: f64) -> Weights {
+    fn hermite(&self, [h01, h10, h11]: [f64; 3], sum: f64) -> SegmentWeights {
         let [start, end] = self.ends;
         let [before, after] = self.beyond;
-        let mut weights = vec![(start, sum - h01), (end, h01)];
-        let mut add = |h: f64, from: usize, to: usize, half: bool| {
-            let h = if half { 0.5 * h } else { h };
-            weights.extend([(to, h), (from, -h)]);
-        };
-        add(h10, before.unwrap_or(start), end, before.is_some());
-        add(h11, start, after.unwrap_or(end), after.is_some());
-        weights
+        let halved = |h: f64, half: bool| if half { 0.5 * h } else { h };
+        let (at_start, at_end) = (halved(h10, before.is_some()), halved(h11, after.is_some()));
+        [
+            (start, sum - h01),
+            (end, h01),
+            (end, at_start),
+            (before.unwrap_or(start), -at_start),
+            (after.unwrap_or(end), at_end),
+            (start, -at_end),
+        ]
+        .into()
     }
 
     /// Coefficients c_k of x(ξ) = Σ c_k ξᵏ for nodes at the given places.
@@ -107,7 +111,7 @@ impl Segment {
         ]
     }
 
-    fn with(&self, values: Vec<f64>, factor: f64) -> Weights {
+    fn with(&self, values: Few<f64, 3>, factor: f64) -> SegmentWeights {
         self.nodes().zip(values).map(|(node, value)| (node, factor * value)).collect()
     }
 }
@@ -135,8 +139,32 @@ struct Chain {
     closed: bool,
 }
 
-/// The way along a surface from one material point to another: (segment, from ξ, to ξ).
-pub type Path = Vec<(usize, f64, f64)>;
+/// A linear combination of the nodes of a segment.
+pub type SegmentWeights = Few<(usize, f64), 6>;
+
+/// The way along a surface from one material point to another.
+#[derive(Clone, Copy, Debug)]
+pub struct Path<'a> {
+    surface: &'a Surface,
+    from: MasterPoint,
+    to: MasterPoint,
+    /// Whether it goes along s
+    ahead: bool,
+}
+
+impl<'a> Path<'a> {
+    /// The segments on the way: (segment, from ξ, to ξ).
+    pub fn parts(self) -> impl Iterator<Item = (usize, f64, f64)> + use<'a> {
+        let Self { surface, from, to, ahead } = self;
+        let (start, end) = if ahead { (0.0, 1.0) } else { (1.0, 0.0) };
+        let next = move |at: usize| if ahead { surface.next(at) } else { surface.previous(at) };
+        let segments = std::iter::successors(Some(from.segment), move |&at| next(at).filter(|_| at != to.segment));
+        segments.map(move |at| {
+            let first = if at == from.segment { from.xi } else { start };
+            (at, first, if at == to.segment { to.xi } else { end })
+        })
+    }
+}
 
 impl Surface {
     /// A surface from edges (start, end[, middle]) with the body on their left.
@@ -206,27 +234,14 @@ impl Surface {
     }
 
     /// The way from one material point to another, the shorter one round a closed chain; `None` between chains.
-    pub fn path(&self, from: MasterPoint, to: MasterPoint) -> Option<Path> {
+    pub fn path(&self, from: MasterPoint, to: MasterPoint) -> Option<Path<'_>> {
         let chain = self.chains[self.chain_of[from.segment]];
         if self.chain_of[to.segment] != self.chain_of[from.segment] {
             return None;
         }
-        if from.segment == to.segment {
-            return Some(vec![(from.segment, from.xi, to.xi)]);
-        }
         let forward = (to.segment + chain.length - from.segment) % chain.length;
         let ahead = if chain.closed { forward <= chain.length / 2 } else { to.segment > from.segment };
-        let (start, end) = if ahead { (0.0, 1.0) } else { (1.0, 0.0) };
-        let mut path = vec![(from.segment, from.xi, end)];
-        let mut at = from.segment;
-        loop {
-            at = if ahead { self.next(at)? } else { self.previous(at)? };
-            if at == to.segment {
-                path.push((at, start, to.xi));
-                return Some(path);
-            }
-            path.push((at, start, end));
-        }
+        Some(Path { surface: self, from, to, ahead })
     }
 }
 

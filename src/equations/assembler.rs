@@ -33,6 +33,8 @@ pub struct Assembler {
     /// Sum of the forces' magnitudes at each dof [F]
     magnitudes: Vec<f64>,
     equilibrium: Equilibrium,
+    /// Contacts where nothing is presumed, kept for their memory
+    responses: Vec<PairResponse>,
     /// What was found at the last evaluated displacement
     pub evaluation: Evaluation,
     /// Time spent
@@ -59,6 +61,7 @@ impl Assembler {
             weight: supports::weight(model),
             magnitudes: vec![0.0; model.dofs()],
             equilibrium: Equilibrium::new(model),
+            responses: Vec::new(),
             evaluation: Evaluation::default(),
             seconds: Seconds::default(),
         }
@@ -96,12 +99,31 @@ impl Assembler {
     /// # Errors
     /// [`TrialFailure`] when an element inverts, a friction law fails, or a load has no value.
     pub fn residual(&mut self, trial: Trial, u: &[f64], system: &mut System) -> Result<(), TrialFailure> {
-        let responses = self.interfaces(trial, u, |_, _| Presumption::default())?;
-        self.assemble(trial, u, &responses, Request::Residual, system)
+        self.with_responses(trial, u, Request::Residual, |assembler, responses| {
+            assembler.assemble(trial, u, responses, Request::Residual, system)
+        })
+    }
+
+    /// Do something with the responses of all contact points where nothing is presumed.
+    ///
+    /// # Errors
+    /// [`TrialFailure`] when a friction law fails, and those of what is done.
+    pub fn with_responses<T>(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        request: Request,
+        act: impl FnOnce(&mut Self, &[PairResponse]) -> Result<T, TrialFailure>,
+    ) -> Result<T, TrialFailure> {
+        let mut responses = std::mem::take(&mut self.responses);
+        let found = self.interfaces(trial, u, |_, _| Presumption::default(), request, &mut responses);
+        let done = found.and_then(|()| act(self, &responses));
+        self.responses = responses;
+        done
     }
 
     /// Responses of all contact points at the displacement `u`, with what is presumed about a point of a pair: for a tangent
-    /// alone, a residual that may be accepted knows no presumptions.
+    /// alone, a residual that may be accepted knows no presumptions. They come in `responses`, whose memory is used again.
     ///
     /// # Errors
     /// [`TrialFailure`] when a friction law fails.
@@ -110,14 +132,16 @@ impl Assembler {
         trial: Trial,
         u: &[f64],
         presumed: impl Fn(usize, usize) -> Presumption + Sync,
-    ) -> Result<Vec<PairResponse>, TrialFailure> {
+        request: Request,
+        responses: &mut Vec<PairResponse>,
+    ) -> Result<(), TrialFailure> {
         if self.model.contacts.is_empty() {
-            return Ok(Vec::new());
+            return Ok(());
         }
         let clock = Instant::now();
-        let responses = interfaces::respond(&self.model, trial, u, presumed);
+        let answer = interfaces::respond(&self.model, trial, u, presumed, request, responses);
         self.seconds.contact += clock.elapsed().as_secs_f64();
-        responses
+        answer
     }
 
     /// Residual, and tangent on request, at the displacement `u` with the given responses of the contact points.
@@ -140,16 +164,14 @@ impl Assembler {
             if !Arc::ptr_eq(&system.tangent.pattern, &self.layout.pattern) {
                 system.tangent = self.layout.matrix();
             }
-            system.tangent.clear();
         }
         self.magnitudes.fill(0.0);
         self.evaluation.damping.clear();
-        self.add(&OF_PLACE_AND_MOTION, (trial, u), responses, true, tangent.then_some(&mut system.tangent))?;
+        let motion = (trial, u, None);
+        self.add(&OF_PLACE_AND_MOTION, motion, responses, true, tangent.then_some(&mut system.tangent))?;
         model.ties.gather(2, &mut self.evaluation.damping);
         model.ties.gather(2, &mut self.magnitudes);
-        self.equilibrium.note_contacts(model, trial, responses);
-        self.evaluation.contacts =
-            responses.iter().map(|pair| pair.iter().map(|(state, _)| *state).collect()).collect();
+        self.note_contacts(trial, responses);
         self.balance(trial, u, tangent, system);
         supports::prescribe(model, self.weight, trial, u, tangent, system)?;
         let mass = self.mass.as_ref().filter(|_| trial.step.scheme.coefficients().is_some());
@@ -158,27 +180,53 @@ impl Assembler {
         Ok(())
     }
 
+    /// Keep the states of the contact points, and how large their forces are.
+    pub fn note_contacts(&mut self, trial: Trial, responses: &[PairResponse]) {
+        self.equilibrium.note_contacts(&self.model, trial, responses);
+        self.keep_states(responses);
+    }
+
+    /// Norm of the nodal forces of each contact at the last evaluation [F].
+    pub fn contact_forces(&self) -> &[f64] {
+        self.equilibrium.contact_forces()
+    }
+
+    /// Square of what round-off can leave at every node, at the displacement that was evaluated last [F²].
+    pub fn round_off(&self, trial: Trial, u: &[f64]) -> Vec<f64> {
+        let mass = self.mass.as_ref().filter(|_| trial.step.scheme.coefficients().is_some());
+        self.equilibrium.round_off((&self.model, mass), trial, u, &self.magnitudes)
+    }
+
     /// Forces of what the displacement `u` alone decides, and everything else that an accepted state takes over from the
-    /// evaluation but rates, damping and reactions: what explicit increments need, which find the velocities last.
+    /// evaluation but rates, damping and reactions: what explicit increments need, which find the velocities last. With
+    /// velocities `v` the viscous forces of the bodies belong to it, and what they put on the nodes is written over the damping.
     ///
     /// # Errors
     /// As [`Assembler::residual`].
-    pub fn forces(&mut self, trial: Trial, u: &[f64]) -> Result<(), TrialFailure> {
-        let responses = self.interfaces(trial, u, |_, _| Presumption::default())?;
-        let clock = Instant::now();
-        self.add(&OF_PLACE, (trial, u), &responses, false, None)?;
-        let states = responses.into_iter().map(|pair| pair.into_iter().map(|(state, _)| state).collect());
-        self.evaluation.contacts.clear();
-        self.evaluation.contacts.extend(states);
-        self.seconds.assembly += clock.elapsed().as_secs_f64();
-        Ok(())
+    pub fn forces(&mut self, trial: Trial, u: &[f64], v: Option<&[f64]>) -> Result<(), TrialFailure> {
+        self.with_responses(trial, u, Request::Residual, |assembler, responses| {
+            let clock = Instant::now();
+            assembler.add(&OF_PLACE, (trial, u, v), responses, false, None)?;
+            if let Some(v) = v {
+                assembler.add_viscous([u, v]);
+            }
+            assembler.keep_states(responses);
+            assembler.seconds.assembly += clock.elapsed().as_secs_f64();
+            Ok(())
+        })
     }
 
-    /// Add the viscous forces of the bodies at displacements and velocities to those just found, and write what they put on
-    /// the nodes over the damping.
-    pub fn add_viscous(&mut self, motion: [&[f64]; 2]) {
+    /// Keep the trial states of the contact points for the accepted state.
+    fn keep_states(&mut self, responses: &[PairResponse]) {
+        let contacts = &mut self.evaluation.contacts;
+        contacts.resize_with(responses.len(), Vec::new);
+        contacts.iter_mut().zip(responses).for_each(|(states, pair)| states.clone_from(&pair.states));
+    }
+
+    /// Add the viscous forces of the bodies to those just found, and write what they put on the nodes over the damping.
+    fn add_viscous(&mut self, motion: [&[f64]; 2]) {
         let Evaluation { force, damping, .. } = &mut self.evaluation;
-        self.solids.viscous(motion, damping, None);
+        self.solids.other_viscous(motion, damping);
         self.model.ties.gather(2, damping);
         for (force, damping) in force.iter_mut().zip(damping) {
             *force += *damping;
@@ -186,25 +234,31 @@ impl Assembler {
         }
     }
 
-    /// Write the sums of some terms over those of the evaluation, with their magnitudes and tangents where they are wanted.
-    /// A copy's share goes to the node it moves with.
+    /// Write the sums of some terms over those of the evaluation and over the tangent, if it is wanted, and add the forces'
+    /// magnitudes. A copy's share goes to the node it moves with. With velocities, see [`Solids::add`].
     fn add(
         &mut self,
         terms: &[Term],
-        (trial, u): (Trial, &[f64]),
+        (trial, u, v): (Trial, &[f64], Option<&[f64]>),
         responses: &[PairResponse],
         scaled: bool,
-        tangent: Option<&mut SparseMatrix>,
+        mut tangent: Option<&mut SparseMatrix>,
     ) -> Result<(), TrialFailure> {
         let Self { model, layout, solids, evolving, damping_mass, magnitudes, evaluation, .. } = self;
         let Evaluation { force, loads, damping, stabilization, memory, strain_energy, dissipated, .. } = evaluation;
         [&mut *force, &mut *damping].into_iter().for_each(|values| values.resize(u.len(), 0.0));
         let magnitudes = scaled.then_some(&mut magnitudes[..]);
+        if let Some(tangent) = &mut tangent {
+            match solids.constant_stiffness(layout).filter(|_| terms.contains(&Term::Solids)) {
+                Some(constant) => tangent.values.copy_from_slice(&constant.values),
+                None => tangent.clear(),
+            }
+        }
         let mut sums = Sums { force, magnitudes, tangent, layout };
         for term in terms {
             match term {
                 Term::Solids => {
-                    let elastic = solids.add(u, &mut sums)?;
+                    let elastic = solids.add(u, v, &mut sums)?;
                     *strain_energy =
                         elastic + evolving.add(model, (trial, u), (&mut *memory, &mut *dissipated), &mut sums)?;
                 }
@@ -254,6 +308,11 @@ impl Assembler {
         }
     }
 
+    /// Number of the distinct stiffness matrices that the elements whose tangent never changes share.
+    pub fn stored_matrices(&self) -> usize {
+        self.solids.matrices()
+    }
+
     /// The mass matrix on the current pattern.
     pub fn mass(&mut self) -> &SparseMatrix {
         let Self { model, layout, mass, .. } = self;
@@ -265,8 +324,19 @@ impl Assembler {
     /// # Errors
     /// As [`Assembler::residual`].
     pub fn tangent_of(&mut self, term: Term, trial: Trial, u: &[f64]) -> Result<SparseMatrix, TrialFailure> {
-        let responses = self.interfaces(trial, u, |_, _| Presumption::default())?;
-        self.cover(trial, &responses);
+        self.with_responses(trial, u, Request::Tangent, |assembler, responses| {
+            assembler.tangent_with(term, trial, u, responses)
+        })
+    }
+
+    fn tangent_with(
+        &mut self,
+        term: Term,
+        trial: Trial,
+        u: &[f64],
+        responses: &[PairResponse],
+    ) -> Result<SparseMatrix, TrialFailure> {
+        self.cover(trial, responses);
         let mut tangent = self.layout.matrix();
         if term == Term::Inertia {
             let mass = self.mass().clone();
@@ -275,7 +345,7 @@ impl Assembler {
             return Ok(tangent);
         }
         let kept = std::mem::take(&mut self.evaluation);
-        let added = self.add(&[term], (trial, u), &responses, false, Some(&mut tangent));
+        let added = self.add(&[term], (trial, u, None), responses, false, Some(&mut tangent));
         self.evaluation = kept;
         added.map(|()| tangent)
     }

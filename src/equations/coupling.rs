@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::contact::force::Closed;
 use crate::contact::master::Master;
 use crate::contact::pair::PairResponse;
+use crate::contact::surface::Path;
 use crate::linear::{BlockPosition, Pattern, SparseMatrix};
 use crate::model::Model;
 use crate::model::state::State;
@@ -28,6 +29,11 @@ impl Coupling {
     /// Whether it couples some of so many nodes.
     pub fn fits(&self, nodes: usize) -> bool {
         self.groups.iter().flatten().all(|node| *node < nodes)
+    }
+
+    /// Couple all nodes of a group with each other.
+    pub fn of(group: Vec<usize>) -> Self {
+        Self { groups: vec![group], ahead: 1 }
     }
 }
 
@@ -127,22 +133,26 @@ impl Layout {
     /// there will be twice as much, so that the pattern seldom changes as points slide.
     pub fn cover(&mut self, responses: &[PairResponse], old: &State) -> bool {
         let original = |node: &usize| self.original(*node);
-        let coupled = |closed: &Closed| {
-            let nodes: Vec<usize> = closed.contribution.nodes.iter().map(original).collect();
+        let coupled = |closed: Closed| {
+            let nodes: Vec<usize> = closed.nodes.iter().map(original).collect();
             nodes.iter().all(|&a| nodes.iter().all(|&b| self.pattern.block(a, b).is_some()))
         };
-        if responses.iter().flatten().filter_map(|(_, closed)| closed.as_ref()).all(coupled) {
+        if responses.iter().flat_map(PairResponse::all_closed).all(|(_, closed)| coupled(closed)) {
             return false;
         }
         let (mut groups, ahead) = (Vec::new(), self.coupling.ahead);
         for ((pair, responses), old) in self.model.contacts.iter().zip(responses).zip(&old.contacts) {
-            for ((slave, (state, closed)), old) in pair.points.iter().zip(responses).zip(old) {
+            for (k, ((slave, state), old)) in pair.points.iter().zip(&responses.states).zip(old).enumerate() {
+                if let Some(small) = &pair.small {
+                    groups.extend(small.points[k].iter().map(|point| point.nodes.clone()));
+                    continue;
+                }
                 let Some(foot) = state.foot.or(old.foot) else { continue };
                 let mut nodes: Vec<usize> = slave.position.iter().map(|&(node, _)| node).collect();
-                nodes.extend(closed.iter().flat_map(|closed| &closed.contribution.nodes));
+                nodes.extend(responses.closed(k).into_iter().flat_map(|closed| closed.nodes));
                 if let Master::Mesh(surface) = &pair.master {
-                    let way = old.foot.and_then(|from| surface.path(from, foot)).unwrap_or_default();
-                    let slip: f64 = way.iter().map(|(_, from, to)| to - from).sum();
+                    let way = old.foot.and_then(|from| surface.path(from, foot)).into_iter();
+                    let slip: f64 = way.flat_map(Path::parts).map(|(_, from, to)| to - from).sum();
                     let [behind, ahead] = if slip < 0.0 { [ahead, 1] } else { [1, ahead] };
                     let back = std::iter::successors(Some(foot.segment), |&segment| surface.previous(segment));
                     let forth = std::iter::successors(Some(foot.segment), |&segment| surface.next(segment));

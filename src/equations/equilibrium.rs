@@ -16,7 +16,6 @@
 //! ever subtracted from each other.
 
 use super::trial::Trial;
-use crate::contact::force::Closed;
 use crate::contact::master::Master;
 use crate::contact::pair::{ContactPair, PairResponse};
 use crate::linear::system::System;
@@ -114,19 +113,18 @@ impl Equilibrium {
         }
         for (k, (pair, responses)) in model.contacts.iter().zip(responses).enumerate() {
             let alpha_n = pair.normal_stiffness(trial.stiffening);
-            let closed = || responses.iter().filter_map(|(state, closed)| Some((state, closed.as_ref()?)));
-            for (state, Closed { contribution, .. }) in closed() {
+            for (state, closed) in responses.all_closed() {
                 let squared = (alpha_n * state.length).powi(2);
-                for (a, &node) in contribution.nodes.iter().enumerate() {
+                for (a, &node) in closed.nodes.iter().enumerate() {
                     let original = model.ties.original(node);
                     self.contact_stiffness[original][0] += squared * self.edges[k].powi(2);
                     self.contact_stiffness[original][1] += squared;
-                    (0..2).for_each(|i| self.own[2 * original + i] += contribution.force[2 * a + i].abs());
+                    (0..2).for_each(|i| self.own[2 * original + i] += closed.force[2 * a + i].abs());
                 }
             }
             let mut sum = 0.0;
-            for (_, Closed { contribution, .. }) in closed() {
-                for &node in &contribution.nodes {
+            for (_, closed) in responses.all_closed() {
+                for &node in closed.nodes {
                     let original = model.ties.original(node);
                     for dof in [2 * original, 2 * original + 1] {
                         sum += std::mem::take(&mut self.own[dof]).powi(2);
@@ -171,8 +169,13 @@ impl Equilibrium {
         }
     }
 
+    /// Norm of the nodal forces of each contact at the last evaluation [F].
+    pub(super) fn contact_forces(&self) -> &[f64] {
+        &self.contact_forces
+    }
+
     /// ρ² at every node [F²].
-    fn round_off(
+    pub(super) fn round_off(
         &self,
         (model, mass): (&Model, Option<&SparseMatrix>),
         trial: Trial,

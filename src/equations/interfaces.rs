@@ -3,9 +3,10 @@
 use super::dependence::Dependence;
 use super::sums::Sums;
 use super::trial::Trial;
-use crate::contact::force::{Closed, ContactState};
-use crate::contact::pair::{ContactIncrement, ContactPair, PairResponse, Presumption};
+use crate::contact::force::ContactState;
+use crate::contact::pair::{ContactIncrement, PairResponse, Presumption};
 use crate::equations::failure::TrialFailure;
+use crate::linear::system::Request;
 use crate::model::Model;
 
 /// Contact turns and comes and goes with the displacements, wherever there is one.
@@ -13,30 +14,35 @@ pub(super) fn dependence(model: &Model) -> Dependence {
     if model.contacts.is_empty() { Dependence::Nothing } else { Dependence::Displacement }
 }
 
-/// Responses of all contact points at the displacement `u`, with what is presumed about a point of a pair.
+/// Responses of all contact points at the displacement `u`, one a pair, with what is presumed about a point of a pair; tangents
+/// on request.
 pub(super) fn respond(
     model: &Model,
     trial: Trial,
     u: &[f64],
     presumed: impl Fn(usize, usize) -> Presumption + Sync,
-) -> Result<Vec<PairResponse>, TrialFailure> {
+    request: Request,
+    responses: &mut Vec<PairResponse>,
+) -> Result<(), TrialFailure> {
     let [before, x] = [&trial.old.displacement, u].map(|u| model.configuration(u));
     let fading = 1.0 - model.steps[0].span.share(trial.time);
     let during = ContactIncrement { dt: trial.dt, fading, stiffening: trial.stiffening, settles: trial.settles };
-    let pairs = model.contacts.iter().zip(&trial.old.contacts).enumerate();
-    let respond = |(number, (pair, old)): (usize, (&ContactPair, &Vec<ContactState>))| {
-        let responses = pair.respond(old, &before, during, |point| presumed(number, point), &x);
-        let contact = || pair.name.clone();
-        responses.map_err(|(point, cause)| TrialFailure::Friction { contact: contact(), point, cause })
-    };
-    pairs.map(respond).collect()
+    responses.resize_with(model.contacts.len(), PairResponse::default);
+    let pairs = model.contacts.iter().zip(&trial.old.contacts).zip(responses).enumerate();
+    for (number, ((pair, old), response)) in pairs {
+        let presumed = |point| presumed(number, point);
+        let answer = pair.respond(old, [&before, &x], during, presumed, request, response);
+        answer.map_err(|(point, cause)| TrialFailure::Friction { contact: pair.name.clone(), point, cause })?;
+    }
+    Ok(())
 }
 
-/// Add the forces and tangents of the closed points.
+/// Add the forces of the closed points, and their tangents if these were asked for.
 pub(super) fn add(responses: &[PairResponse], sums: &mut Sums) {
-    for (_, closed) in responses.iter().flatten() {
-        if let Some(Closed { contribution, .. }) = closed {
-            sums.contribute(contribution);
+    for (_, closed) in responses.iter().flat_map(PairResponse::all_closed) {
+        sums.push(closed.nodes, closed.force);
+        if !closed.tangent.is_empty() {
+            sums.couple(closed.nodes, closed.tangent);
         }
     }
 }

@@ -69,7 +69,7 @@ fn collect(model: &Model, trial: Trial, u: &[f64], loads: &mut [f64], sums: &mut
                 for (a, &node) in edge.iter().enumerate() {
                     (0..2).for_each(|i| loads[2 * node + i] -= pressure.force[2 * a + i]);
                 }
-                sums.couple(&pressure);
+                sums.couple(&pressure.nodes, pressure.tangent.as_slice());
             }
         }
     }

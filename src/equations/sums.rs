@@ -34,17 +34,22 @@ impl Sums<'_> {
 
     /// Add the forces and the tangent of one contact point or element.
     pub fn contribute(&mut self, contribution: &Contribution) {
-        for (a, &node) in contribution.nodes.iter().enumerate() {
-            (0..2).for_each(|i| self.add(2 * node + i, contribution.force[2 * a + i]));
-        }
-        self.couple(contribution);
+        self.push(&contribution.nodes, contribution.force.as_slice());
+        self.couple(&contribution.nodes, contribution.tangent.as_slice());
     }
 
-    /// Add the tangent alone.
-    pub fn couple(&mut self, contribution: &Contribution) {
+    /// Add forces of some nodes.
+    pub fn push(&mut self, nodes: &[usize], force: &[f64]) {
+        for (&node, force) in nodes.iter().zip(force.chunks_exact(2)) {
+            (0..2).for_each(|i| self.add(2 * node + i, force[i]));
+        }
+    }
+
+    /// Add a tangent of some nodes, column by column.
+    pub fn couple(&mut self, nodes: &[usize], local: &[f64]) {
         if let Some(tangent) = &mut self.tangent {
-            let blocks = self.layout.blocks_between(&contribution.nodes);
-            add_blocks(tangent, &blocks, contribution.tangent.as_slice(), contribution.nodes.len());
+            let blocks = self.layout.blocks_between(nodes);
+            add_blocks(tangent, &blocks, local, nodes.len());
         }
     }
 }

@@ -8,23 +8,23 @@ use super::section::Section;
 ///
 /// Differences and combinations are taken of X and of u before the two are added. The round-off of x itself, ε|X|, would
 /// be felt through a stiff contact penalty as noise in the residual; that of u is smaller by |u|/|X|.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Configuration<'a> {
     reference: &'a [Vector2<f64>],
-    displacement: Vec<Vector2<f64>>,
+    /// Two dofs a node; none is u = 0
+    displacement: Option<&'a [f64]>,
     section: Section,
 }
 
 impl<'a> Configuration<'a> {
     /// Positions X displaced by u, two dofs a node, in plane strain.
-    pub fn new(reference: &'a [Vector2<f64>], displacement: &[f64]) -> Self {
-        let displacement = displacement.chunks_exact(2).map(|u| Vector2::new(u[0], u[1])).collect();
-        Self { reference, displacement, section: Section::PlaneStrain }
+    pub fn new(reference: &'a [Vector2<f64>], displacement: &'a [f64]) -> Self {
+        Self { reference, displacement: Some(displacement), section: Section::PlaneStrain }
     }
 
     /// The reference configuration, u = 0, in plane strain.
     pub fn undeformed(reference: &'a [Vector2<f64>]) -> Self {
-        Self { reference, displacement: vec![Vector2::zeros(); reference.len()], section: Section::PlaneStrain }
+        Self { reference, displacement: None, section: Section::PlaneStrain }
     }
 
     /// The same in another section.
@@ -60,17 +60,28 @@ impl<'a> Configuration<'a> {
 
     /// x of a node.
     pub fn at(&self, node: usize) -> Vector2<f64> {
-        self.reference[node] + self.displacement[node]
+        self.reference[node] + self.displacement(node)
+    }
+
+    /// u of a node.
+    pub fn displacement(&self, node: usize) -> Vector2<f64> {
+        self.displacement.map_or_else(Vector2::zeros, |u| Vector2::new(u[2 * node], u[2 * node + 1]))
     }
 
     /// x_to − x_from.
     pub fn between(&self, from: usize, to: usize) -> Vector2<f64> {
-        (self.reference[to] - self.reference[from]) + (self.displacement[to] - self.displacement[from])
+        (self.reference[to] - self.reference[from]) + (self.displacement(to) - self.displacement(from))
+    }
+
+    /// Angle by which the line from one node to another has turned since the reference configuration [rad].
+    pub fn turn(&self, from: usize, to: usize) -> f64 {
+        let (was, is) = (self.reference[to] - self.reference[from], self.between(from, to));
+        was.perp(&is).atan2(was.dot(&is))
     }
 
     /// How far a node has moved since another configuration.
     pub fn since(&self, before: &Self, node: usize) -> Vector2<f64> {
-        self.displacement[node] - before.displacement[node]
+        self.displacement(node) - before.displacement(node)
     }
 
     /// Σ w_a x_a of weights that sum to zero, as those of a direction do: the same wherever the origin lies.
@@ -82,6 +93,6 @@ impl<'a> Configuration<'a> {
     /// X − origin and u of a point, whose weights sum to one.
     pub fn apart(&self, weights: &[(usize, f64)], origin: Vector2<f64>) -> [Vector2<f64>; 2] {
         let sum = |of: &dyn Fn(usize) -> Vector2<f64>| weights.iter().map(|&(node, w)| of(node) * w).sum();
-        [sum(&|node| self.reference[node] - origin), sum(&|node| self.displacement[node])]
+        [sum(&|node| self.reference[node] - origin), sum(&|node| self.displacement(node))]
     }
 }

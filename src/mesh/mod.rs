@@ -7,6 +7,7 @@ mod blocks;
 mod check;
 pub mod configuration;
 mod error;
+pub mod few;
 pub mod gmsh;
 mod inline;
 mod raw;
@@ -73,7 +74,7 @@ pub struct Mesh {
 
 impl Mesh {
     /// The configuration x = X + u.
-    pub fn displaced(&self, displacement: &[f64]) -> Configuration<'_> {
+    pub fn displaced<'a>(&'a self, displacement: &'a [f64]) -> Configuration<'a> {
         Configuration::new(&self.nodes, displacement).within(self.section)
     }
 

@@ -5,6 +5,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::few::Few;
+
 /// Kind of a solid element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum ElementKind {
@@ -194,40 +196,40 @@ fn square_rule(n: usize) -> Vec<QuadraturePoint> {
 ///
 /// # Panics
 /// When `n` is not 1, 2, 3 or 4: the case file is checked before.
-pub fn gauss(n: usize) -> Vec<(f64, f64)> {
+pub fn gauss(n: usize) -> Few<(f64, f64), 4> {
     match n {
-        1 => vec![(0.0, 2.0)],
+        1 => [(0.0, 2.0)].into(),
         2 => {
             let x = 1.0 / 3.0f64.sqrt();
-            vec![(-x, 1.0), (x, 1.0)]
+            [(-x, 1.0), (x, 1.0)].into()
         }
         3 => {
             let x = 0.6f64.sqrt();
-            vec![(-x, 5.0 / 9.0), (0.0, 8.0 / 9.0), (x, 5.0 / 9.0)]
+            [(-x, 5.0 / 9.0), (0.0, 8.0 / 9.0), (x, 5.0 / 9.0)].into()
         }
         4 => {
             let (near, far) = ((6.0f64 / 5.0).sqrt(), 30.0f64.sqrt());
             let (a, b) = ((3.0 / 7.0 - 2.0 / 7.0 * near).sqrt(), (3.0 / 7.0 + 2.0 / 7.0 * near).sqrt());
             let (wa, wb) = ((18.0 + far) / 36.0, (18.0 - far) / 36.0);
-            vec![(-b, wb), (-a, wa), (a, wa), (b, wb)]
+            [(-b, wb), (-a, wa), (a, wa), (b, wb)].into()
         }
         _ => panic!("a Gauss rule has 1 to 4 points, not {n}"),
     }
 }
 
 /// Shape functions of an edge with 2 or 3 nodes (end, end, middle) at ξ.
-pub fn edge_values(nodes: usize, x: f64) -> Vec<f64> {
+pub fn edge_values(nodes: usize, x: f64) -> Few<f64, 3> {
     match nodes {
-        2 => vec![0.5 * (1.0 - x), 0.5 * (1.0 + x)],
-        _ => vec![0.5 * x * (x - 1.0), 0.5 * x * (x + 1.0), 1.0 - x * x],
+        2 => [0.5 * (1.0 - x), 0.5 * (1.0 + x)].into(),
+        _ => [0.5 * x * (x - 1.0), 0.5 * x * (x + 1.0), 1.0 - x * x].into(),
     }
 }
 
 /// Derivatives dN_a/dξ of an edge with 2 or 3 nodes (end, end, middle) at ξ.
-pub fn edge_derivatives(nodes: usize, x: f64) -> Vec<f64> {
+pub fn edge_derivatives(nodes: usize, x: f64) -> Few<f64, 3> {
     match nodes {
-        2 => vec![-0.5, 0.5],
-        _ => vec![x - 0.5, x + 0.5, -2.0 * x],
+        2 => [-0.5, 0.5].into(),
+        _ => [x - 0.5, x + 0.5, -2.0 * x].into(),
     }
 }
 

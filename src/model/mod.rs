@@ -192,7 +192,7 @@ impl Model {
     }
 
     /// The configuration x = X + u.
-    pub fn configuration(&self, displacement: &[f64]) -> Configuration<'_> {
+    pub fn configuration<'a>(&'a self, displacement: &'a [f64]) -> Configuration<'a> {
         self.mesh.displaced(displacement)
     }
 

@@ -1,11 +1,12 @@
 //! Contact: exact tangents, feet at corners and past ends.
 
 use fecontact::contact::force::{
-    Closed, ContactState, Loading, Meeting, PointIncrement, PointPlace, Tractions, closes, place,
+    Closed, ClosedPoints, ContactState, Loading, PointIncrement, PointPlace, Tractions, closes, place,
 };
+use fecontact::contact::kinematics::{Kinematics, kinematics};
 use fecontact::contact::master::Master;
 use fecontact::contact::mortar::{Mortar, mortar_points};
-use fecontact::contact::pair::{ContactIncrement, ContactPair, InitialTraction, Presumption};
+use fecontact::contact::pair::{ContactIncrement, ContactPair, InitialTraction, PairResponse, Presumption};
 use fecontact::contact::projection::{Bound, nearest};
 use fecontact::contact::rigid::{Circle, Plane, Polyline, Rigid};
 use fecontact::contact::search::Index;
@@ -13,9 +14,9 @@ use fecontact::contact::surface::{MasterPoint, Segment, SlavePoint, Surface, gau
 use fecontact::laws::friction::{
     Answer, FrictionLaw, FrictionParameters, FrictionResponse, FrictionState, Regime, Sliding,
 };
-use fecontact::linear::system::Contribution;
+use fecontact::linear::system::{Contribution, Request};
 use fecontact::mesh::configuration::Configuration;
-use nalgebra::Vector2;
+use nalgebra::{DMatrix, DVector, Vector2};
 
 type Positions = Vec<Vector2<f64>>;
 
@@ -41,7 +42,8 @@ fn wavy() -> (Vec<Vec<usize>>, Positions) {
 /// that of the reference position.
 fn displaced(x: &Positions) -> Configuration<'static> {
     static ORIGIN: [Vector2<f64>; 16] = [Vector2::new(0.0, 0.0); 16];
-    Configuration::new(&ORIGIN[..x.len()], &x.iter().flat_map(|x| [x.x, x.y]).collect::<Vec<_>>())
+    // Left to the end of the program: a configuration only looks at displacements.
+    Configuration::new(&ORIGIN[..x.len()], x.iter().flat_map(|x| [x.x, x.y]).collect::<Vec<_>>().leak())
 }
 
 /// A pair with α_n = 1000, c = 0.002 and, unless given, α_t = 700.
@@ -59,7 +61,46 @@ fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
         laws: vec![law],
         initial: None,
         reverse: None,
+        small: None,
     }
+}
+
+/// What a closed point adds.
+struct Kept {
+    contribution: Contribution,
+    points: ClosedPoints,
+}
+
+impl Kept {
+    /// The first of some points.
+    fn first(points: ClosedPoints) -> Option<Self> {
+        let contribution = contribution(points.get(0)?);
+        Some(Self { contribution, points })
+    }
+
+    fn promise(&self, correction: impl Fn(usize) -> f64) -> Tractions {
+        self.points.get(0).expect("a closed point").promise(correction)
+    }
+}
+
+fn contribution(Closed { nodes, force, tangent, .. }: Closed) -> Contribution {
+    let n = 2 * nodes.len();
+    let (force, tangent) = (DVector::from_column_slice(force), DMatrix::from_column_slice(n, n, tangent));
+    Contribution { nodes: nodes.to_vec(), force, tangent }
+}
+
+/// What all points of a pair answer.
+fn respond(
+    pair: &ContactPair,
+    old: &[ContactState],
+    configurations: [&Configuration; 2],
+    during: ContactIncrement,
+) -> Vec<(ContactState, Option<Contribution>)> {
+    let mut response = PairResponse::default();
+    pair.respond(old, configurations, during, |_| Presumption::default(), Request::Tangent, &mut response)
+        .expect("an answer");
+    let closed = |k| response.closed(k).map(contribution);
+    response.states.iter().enumerate().map(|(k, state)| (*state, closed(k))).collect()
 }
 
 fn evaluate(pair: &ContactPair, k: usize, old: &ContactState, x: &Positions) -> (ContactState, Option<Contribution>) {
@@ -74,7 +115,7 @@ fn promised(
     old: &ContactState,
     x: &Positions,
     promised: Option<Tractions>,
-) -> (ContactState, Option<Closed>) {
+) -> (ContactState, Option<Kept>) {
     let kept = promised.map_or(0.0, |promised| promised.pressure);
     let presumption = Presumption { promised, kept, ..Presumption::default() };
     let increment = PointIncrement { during: INCREMENT, presumption };
@@ -87,14 +128,15 @@ fn answer(
     old: &ContactState,
     x: &Positions,
     increment: PointIncrement,
-) -> (ContactState, Option<Closed>) {
+) -> (ContactState, Option<Kept>) {
     let x = &displaced(x);
     // Every point had a foot before.
     let before = x;
     let index = Index::new(&pair.master, x);
     let projection = index.project(&pair.points[k], None, x);
-    let place = place(pair, &pair.points[k], projection, old, increment, [before, x]);
-    finish(pair, k, old, increment, place)
+    let mut kinematics = Kinematics::new(true);
+    let place = place(pair, &pair.points[k], projection, old, increment, [before, x], &mut kinematics);
+    finish(pair, k, old, increment, place, &mut kinematics)
 }
 
 /// The answer of a point in its place.
@@ -104,10 +146,13 @@ fn finish(
     old: &ContactState,
     increment: PointIncrement,
     place: PointPlace,
-) -> (ContactState, Option<Closed>) {
-    let loading = Loading::new(pair, &pair.points[k], old, increment, place);
+    kinematics: &mut Kinematics,
+) -> (ContactState, Option<Kept>) {
+    let loading = Loading::new(pair, &pair.points[k], old, increment, place, kinematics);
     let answer = pair.law(&pair.points[k]).respond(&old.friction, loading.sliding);
-    loading.finish(answer).expect("a finite increment")
+    let mut closed = ClosedPoints::default();
+    let state = loading.finish(answer, &mut closed).expect("a finite increment");
+    (state, Kept::first(closed))
 }
 
 /// Forces of one point on the given nodes.
@@ -330,7 +375,8 @@ fn feet_on_a_rigid_circle() {
         let at = |angle: f64| Vector2::new(1.0, 1.0) + Vector2::new(angle.cos(), angle.sin()) * 2.1;
         let (point, here) = (&lone_point(0, 1.0), vec![at(3.1)]);
         let moved = at(-3.1) - at(3.1);
-        let ways = [vec![0.0, 0.0], vec![moved.x, moved.y]].map(|u| Configuration::new(&here, &u));
+        let ways = [[0.0, 0.0], [moved.x, moved.y]];
+        let ways = ways.each_ref().map(|u| Configuration::new(&here, u));
         let [from, to] = [&ways[0], &ways[1]].map(|x| body.project(point, x).expect("a foot"));
         assert!((from.gap - 0.1 * side).abs() < 1e-14);
         // From 3.1 to 2π − 3.1 counter-clockwise, which is against s on a disk.
@@ -359,7 +405,9 @@ fn feet_on_a_quadratic_edge_lie_on_the_parabola() {
         let found = Index::new(&pair.master, &at).project(&pair.points[0], None, &at).expect("a foot");
         assert!((found.gap - h).abs() < tolerance && (found.foot.xi - 0.75).abs() < tolerance, "{found:?}");
         let from = Some(MasterPoint { segment: 0, xi: 0.5 });
-        let slip = fecontact::contact::kinematics::kinematics(&pair.points[0], &pair.master, &found, from, &at).slip;
+        let mut met = Kinematics::new(false);
+        kinematics(&pair.points[0], &pair.master, &found, from, &at, &mut met);
+        let slip = met.slip;
         let arc = 0.5 * (4.0f64 + 0.25).sqrt() / 4.0 + 0.25f64.asinh();
         assert!((slip - arc).abs() < 1e-9, "{slip}, exactly {arc}");
     }
@@ -460,17 +508,17 @@ fn mortar_tangent_on_rigid_bodies_equals_differences() {
                 ];
                 let answer = |x: &Positions| {
                     let (before, x) = (displaced(&before), displaced(x));
-                    pair.respond(&old, &before, INCREMENT, |_| Presumption::default(), &x).expect("an answer")
+                    respond(&pair, &old, [&before, &x], INCREMENT)
                 };
                 for (k, (_, found)) in answer(&x).into_iter().enumerate() {
-                    let Some(Closed { contribution, .. }) = found else { continue };
+                    let Some(contribution) = found else { continue };
                     closed += 1;
                     let scale = contribution.tangent.amax();
                     for column in 0..2 * contribution.nodes.len() {
                         let moved = |step: f64| {
                             let mut x = x.clone();
                             x[contribution.nodes[column / 2]][column % 2] += step;
-                            answer(&x)[k].1.clone().expect("a tiny motion does not open the point").contribution.force
+                            answer(&x)[k].1.clone().expect("a tiny motion does not open the point").force
                         };
                         let difference = (moved(1e-6) - moved(-1e-6)) / 2e-6;
                         for (row, difference) in difference.iter().enumerate() {
@@ -562,8 +610,8 @@ fn initial_pressure_is_the_first_multiplier_of_the_augmented_lagrangian() {
     let old = pair.initial_states(&at);
     for stiffening in [1.0, 100.0] {
         let during = ContactIncrement { stiffening, ..INCREMENT };
-        let answer = pair.respond(&old, &at, during, |_| Presumption::default(), &at).expect("an answer");
-        let states: Vec<ContactState> = answer.into_iter().map(|(state, _)| state).collect();
+        let states: Vec<ContactState> =
+            respond(&pair, &old, [&at, &at], during).into_iter().map(|(state, _)| state).collect();
         for state in &states {
             let FrictionState { pressure, traction, .. } = state.friction;
             assert!((pressure - 20.0).abs() < 1e-12 && (traction - 2.0).abs() < 1e-12, "{state:?}");
@@ -611,22 +659,22 @@ fn points_that_nothing_faced_slip_past_what_they_meet() {
         let old = vec![old; pair.points.len()];
         let answer = |u: &[f64]| {
             let x = Configuration::new(&x, u);
-            pair.respond(&old, &before, INCREMENT, |_| Presumption::default(), &x).expect("an answer")
+            respond(&pair, &old, [&before, &x], INCREMENT)
         };
         let mut closed = 0;
         for (k, (state, found)) in answer(&here).into_iter().enumerate() {
-            let Some(found) = found else { continue };
+            let Some(contribution) = found else { continue };
             closed += 1;
             if number == 3 {
                 let slip = motion.dot(&Vector2::new(1.0, 0.02).normalize());
                 assert!((state.friction.traction.abs() - 700.0 * slip.abs()).abs() < 1e-12);
             }
-            let (contribution, scale) = (&found.contribution, found.contribution.tangent.amax());
+            let scale = contribution.tangent.amax();
             for column in 0..2 * contribution.nodes.len() {
                 let moved = |step: f64| {
                     let mut u = here.clone();
                     u[2 * contribution.nodes[column / 2] + column % 2] += step;
-                    answer(&u)[k].1.clone().expect("a tiny motion does not open the point").contribution.force
+                    answer(&u)[k].1.clone().expect("a tiny motion does not open the point").force
                 };
                 let difference = (moved(1e-6) - moved(-1e-6)) / 2e-6;
                 for (row, difference) in difference.iter().enumerate() {
@@ -701,9 +749,10 @@ fn mortar_normal_is_the_mean_under_the_multiplier() {
     let pair = pair(points, Master::Mesh(master.clone()), FRICTIONLESS);
     let overlaps = mortar.overlaps(&master, &Index::new(&pair.master, &configuration), &configuration);
     for (k, expected) in expected.into_iter().enumerate() {
-        let met = mortar.kinematics(k, &master, &overlaps, None, &configuration).expect("the master faces the point");
-        let away = (met.kinematics.tangent - expected.normalize()).norm();
-        assert!(away < 1e-6, "point {k}: {:?}, not {:?}", met.kinematics.tangent, expected.normalize());
+        let mut met = Kinematics::new(false);
+        mortar.meet(k, &master, &overlaps, None, &configuration, &mut met).expect("the master faces the point");
+        let away = (met.tangent - expected.normalize()).norm();
+        assert!(away < 1e-6, "point {k}: {:?}, not {:?}", met.tangent, expected.normalize());
     }
 }
 
@@ -734,14 +783,13 @@ fn check_mortar_tangent(
     let evaluate = |x: &Positions| {
         let x = Configuration::undeformed(x);
         let is = mortar.overlaps(surface, &Index::new(&pair.master, &x), &x);
-        let meeting = mortar.kinematics(k, surface, &is, weights.as_ref(), &x).expect("the master faces the point");
-        closes(pair, &pair.points[k], meeting.gap, &old, increment, &x)
-            .then(|| {
-                let Meeting { kinematics, gap, foot } = meeting;
-                let place = PointPlace { gap, foot: Some(foot), kinematics: Some(kinematics) };
-                finish(pair, k, &old, increment, place).1.expect("a closed point")
-            })
-            .map(|closed| closed.contribution)
+        let mut kinematics = Kinematics::new(true);
+        let met = mortar.meet(k, surface, &is, weights.as_ref(), &x, &mut kinematics);
+        let met = met.expect("the master faces the point");
+        closes(pair, &pair.points[k], met.gap, &old, increment, &x).then(|| {
+            let place = PointPlace { gap: met.gap, foot: Some(met.foot), closes: true };
+            finish(pair, k, &old, increment, place, &mut kinematics).1.expect("a closed point").contribution
+        })
     };
     let Some(contribution) = evaluate(x) else { return false };
     let (scale, h) = (contribution.tangent.amax(), 1e-6);

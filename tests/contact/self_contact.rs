@@ -5,10 +5,11 @@ use std::path::Path;
 
 use crate::common::{Blocks, Finished, close, distance, finish, finish_at};
 use fecontact::contact::master::Master;
-use fecontact::contact::pair::{ContactIncrement, Presumption};
+use fecontact::contact::pair::{ContactIncrement, PairResponse, Presumption};
 use fecontact::contact::search::Index;
 use fecontact::contact::surface::{Surface, gauss_points};
 use fecontact::laws::friction::Regime;
+use fecontact::linear::system::Request;
 use fecontact::mesh::configuration::Configuration;
 use nalgebra::Vector2;
 use serde_json::{Value, json};
@@ -130,13 +131,16 @@ fn tangent_of_self_contact_equals_differences() {
         let respond = |u: &[f64]| {
             let during = ContactIncrement { dt: 0.1, fading: 0.0, stiffening: 1.0, settles: true };
             let presumed = |_| Presumption::default();
-            pair.respond(&old.contacts[0], &before, during, presumed, &run.model.configuration(u)).expect("an answer")
+            let (x, mut response) = (run.model.configuration(u), PairResponse::default());
+            pair.respond(&old.contacts[0], [&before, &x], during, presumed, Request::Tangent, &mut response)
+                .expect("an answer");
+            response
         };
         let forces = |u: &[f64]| {
             let mut sum = vec![0.0; u.len()];
-            for closed in respond(u).iter().filter_map(|(_, closed)| closed.as_ref()) {
-                for (a, &node) in closed.contribution.nodes.iter().enumerate() {
-                    (0..2).for_each(|i| sum[2 * node + i] += closed.contribution.force[2 * a + i]);
+            for (_, closed) in respond(u).all_closed() {
+                for (a, &node) in closed.nodes.iter().enumerate() {
+                    (0..2).for_each(|i| sum[2 * node + i] += closed.force[2 * a + i]);
                 }
             }
             sum
@@ -145,14 +149,13 @@ fn tangent_of_self_contact_equals_differences() {
         let direction: Vec<f64> = (0..u.len()).map(|dof| [0.3, 1.0, -0.7, 0.4, -0.2, 0.9, 0.5][dof % 7]).collect();
         let mut along = vec![0.0; u.len()];
         let mut closed_points = 0;
-        for closed in respond(u).iter().filter_map(|(_, closed)| closed.as_ref()) {
-            let contribution = &closed.contribution;
-            let dofs: Vec<usize> = contribution.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]).collect();
+        for (_, closed) in respond(u).all_closed() {
+            let dofs: Vec<usize> = closed.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]).collect();
             for (row, &dof) in dofs.iter().enumerate() {
                 along[dof] += dofs
                     .iter()
                     .enumerate()
-                    .map(|(k, &other)| contribution.tangent[(row, k)] * direction[other])
+                    .map(|(k, &other)| closed.tangent[row + k * dofs.len()] * direction[other])
                     .sum::<f64>();
             }
             closed_points += 1;
@@ -199,9 +202,11 @@ fn a_tube_pressed_flat_touches_itself() {
     let [before, x] = [old, new].map(|state| run.model.configuration(&state.displacement));
     let during = ContactIncrement { dt: new.dt, fading: 0.0, stiffening: 1.0, settles: true };
     let nothing = |_| Presumption::default();
-    let answer = run.model.contacts[number].respond(&old.contacts[number], &before, during, nothing, &x);
-    let closed = answer.expect("an answer").into_iter().filter_map(|(_, closed)| closed);
-    let bar: f64 = closed.map(|closed| closed.contribution.force.iter().skip(1).step_by(2).sum::<f64>()).sum();
+    let (states, mut answer) = (&old.contacts[number], PairResponse::default());
+    run.model.contacts[number]
+        .respond(states, [&before, &x], during, nothing, Request::Residual, &mut answer)
+        .expect("an answer");
+    let bar: f64 = answer.all_closed().map(|(_, closed)| closed.force.iter().skip(1).step_by(2).sum::<f64>()).sum();
     close("the bar presses", bar, plate, 1e-6 * plate);
 }
 

@@ -7,10 +7,11 @@ use std::sync::Arc;
 use crate::common::{self, Blocks, Finished, close, distance, finish, half_way, half_way_round, quadratic, turned};
 use fecontact::contact::force::ContactState;
 use fecontact::contact::master::Master;
-use fecontact::contact::pair::{ContactIncrement, Presumption};
+use fecontact::contact::pair::{ContactIncrement, PairResponse, Presumption};
 use fecontact::contact::search::Index;
 use fecontact::contact::surface::{SlavePoint, Surface, nodal_points};
 use fecontact::laws::friction::FrictionState;
+use fecontact::linear::system::Request;
 use fecontact::mesh::configuration::Configuration;
 use fecontact::model::state::State;
 use fecontact::output::warnings::Warnings;
@@ -356,13 +357,14 @@ fn accepted_contact_states_follow_from_the_committed_ones() {
                 {"name": "push", "duration": 1, "dt": {"initial": 0.05, "min": 1e-5}, "supports": [{"on": "block_top", "ux": 1}]},
             ],
         }));
-        let pair = &run.model.contacts[0];
+        let (pair, mut found) = (&run.model.contacts[0], PairResponse::default());
         for states in run.states.windows(2) {
             let [before, x] = [&states[0], &states[1]].map(|state| run.model.configuration(&state.displacement));
             let during = ContactIncrement { dt: states[1].dt, fading: 0.0, stiffening: 1.0, settles: true };
             let nothing = |_| Presumption::default();
-            let found = pair.respond(&states[0].contacts[0], &before, during, nothing, &x).expect("an answer");
-            for ((found, _), accepted) in found.iter().zip(&states[1].contacts[0]) {
+            pair.respond(&states[0].contacts[0], [&before, &x], during, nothing, Request::Residual, &mut found)
+                .expect("an answer");
+            for (found, accepted) in found.states.iter().zip(&states[1].contacts[0]) {
                 assert_eq!(found, accepted, "{method}, height {height}, t = {}", states[1].time);
             }
             let changed = states[0].contacts[0].iter().zip(&states[1].contacts[0]).filter(|(old, new)| {

@@ -8,6 +8,7 @@ mod grids;
 
 mod boundary;
 mod builder;
+mod condensed;
 mod elements;
 mod history;
 mod invariance;

@@ -43,7 +43,7 @@ fn redone_and_resumed(model: &Arc<Model>) -> Vec<State> {
 }
 
 #[track_caller]
-fn check(case: &Value, path: &Path) {
+pub fn check(case: &Value, path: &Path) {
     let run = finish_at(case, path);
     let states = redone_and_resumed(&run.model);
     assert_eq!(states.len(), run.states.len());

@@ -32,6 +32,9 @@ pub struct ContactInput {
     /// jumps where a slave slides from one to the next. Corners of more than 45° stay
     #[serde(default)]
     pub smooth: bool,
+    /// How far the surfaces may slide on each other: any way (finite), or by a small part of an edge (small)
+    #[serde(default)]
+    pub sliding: SlidingInput,
     /// Normal contact
     #[serde(default)]
     pub normal: NormalInput,
@@ -50,6 +53,20 @@ pub struct ContactInput {
     /// Tractions and structure at the start of a contact that starts closed. The gap of every slave point is then counted
     /// from where the pressure acts at its initial position, all through the run
     pub initial: Option<InitialInput>,
+}
+
+/// How far surfaces may slide on each other, and turn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SlidingInput {
+    /// Any way: every point meets what it faces at the time
+    #[default]
+    Finite,
+    /// A small part of an edge: every point keeps the foot, the normal, the weights of the nodes and the length that it has at the start, so that
+    /// gap and slip are linear in the displacements. With linear bodies nothing but friction and opening is nonlinear then.
+    /// For small rotations only; what nothing faces at the start never touches. A run warns where a point slides by more
+    /// than a tenth of an edge, or a surface turns by more than 0.02 rad. Not for contact of a surface with itself
+    Small,
 }
 
 /// The state of a contact that starts closed.

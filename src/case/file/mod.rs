@@ -14,7 +14,7 @@ use serde::{Deserialize, Deserializer};
 
 pub use contact::{
     CircleInput, ContactInput, InitialInput, MasterInput, NormalInput, PlaneInput, PolylineInput, ProfileInput,
-    ProfileTable, RigidInput,
+    ProfileTable, RigidInput, SlidingInput,
 };
 pub use drive::{Components, DriveInput, TimeInput};
 pub use load::{DashpotInput, LoadInput, SpringInput};

@@ -5,7 +5,9 @@ use serde_json::Value;
 use super::drive::profile;
 use crate::case::error::{Checked, Complaint};
 use crate::case::explain::explain;
-use crate::case::file::{CircleInput, ContactInput, InitialInput, MasterInput, PlaneInput, PolylineInput, RigidInput};
+use crate::case::file::{
+    CircleInput, ContactInput, InitialInput, MasterInput, PlaneInput, PolylineInput, RigidInput, SlidingInput,
+};
 use crate::laws::friction::FrictionParameters;
 use crate::model::boundary::Profile;
 use crate::model::builder::{Contact, Friction, InitialTractions, MasterSide, ModelError};
@@ -21,6 +23,7 @@ pub fn contact(name: &str, input: &ContactInput) -> Checked<Contact> {
         method: input.method,
         points: input.points,
         smooth: input.smooth,
+        small_sliding: input.sliding == SlidingInput::Small,
         alpha_n: input.normal.alpha_n,
         penetration: input.normal.penetration,
         shrink_fit: input.shrink_fit,

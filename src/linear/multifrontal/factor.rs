@@ -41,6 +41,11 @@ impl<'a> Part<'a> {
 }
 
 impl Factors {
+    /// Give back the room for contributions: these factors stay as they are.
+    pub fn forget_rooms(&mut self) {
+        self.rooms = Mutex::default();
+    }
+
     /// Factorize the values `a` (scaled to 1) on the pattern of `symbolic`. The storage is used again.
     pub fn compute(&mut self, symbolic: &Symbolic, a: &[f64]) {
         self.values.resize(symbolic.values(), 0.0);
@@ -126,6 +131,9 @@ impl Numeric<'_> {
         sums.add_matrix(&self.symbolic.entries, self.a);
         children.iter().for_each(|(child, values)| sums.add_contribution(child, values));
         let Sums { lower, upper, .. } = sums;
+        if front.open {
+            return;
+        }
         let mut panel = Panel { lower, upper, pivots: front.pivots, below: front.below(), exchanges: part.exchanges };
         let replaced = panel.factorize();
         if replaced > 0 {

@@ -12,6 +12,7 @@
 //! Source: Duff & Reid (1983), doi:10.1145/356044.356047; Liu (1990), doi:10.1137/0611010; Li & Demmel (1998), Making
 //! sparse Gaussian elimination scalable by static pivoting, doi:10.1109/SC.1998.10030.
 
+mod condensation;
 mod dense;
 mod factor;
 mod forest;
@@ -25,7 +26,9 @@ mod tree;
 
 use std::sync::Arc;
 
+use super::memory::available_memory;
 use super::{LinearFailure, LinearSolver, Pattern, SparseMatrix};
+pub use condensation::{Condensation, Condensed, Forwarded};
 use factor::Factors;
 use scale::Scaling;
 use symbolic::{Entry, Symbolic};
@@ -47,7 +50,7 @@ impl Multifrontal {
     /// [`LinearFailure`] when the pattern is too large for an order of elimination.
     pub fn analyse(&mut self, pattern: &Arc<Pattern>) -> Result<(), LinearFailure> {
         if self.symbolic.as_ref().is_none_or(|symbolic| !Arc::ptr_eq(&symbolic.pattern, pattern)) {
-            self.symbolic = Some(Symbolic::new(pattern.clone())?);
+            self.symbolic = Some(Symbolic::new(pattern.clone(), &[])?);
         }
         Ok(())
     }
@@ -87,13 +90,6 @@ fn fits(size: usize, needed: usize, available: usize) -> Result<(), LinearFailur
     Err(LinearFailure::TooLarge { size, needed: needed as f64 / GIB, available: available as f64 / GIB })
 }
 
-/// Bytes that programs can still take, from the Linux memory status.
-fn available_memory() -> Option<usize> {
-    let status = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
-    Some(line.trim().trim_end_matches("kB").trim().parse::<usize>().ok()? * 1024)
-}
-
 impl LinearSolver for Multifrontal {
     fn factorize(&mut self, matrix: &SparseMatrix) -> Result<(), LinearFailure> {
         self.analyse(&matrix.pattern)?;
@@ -111,7 +107,8 @@ impl LinearSolver for Multifrontal {
         self.ordered.clear();
         let dofs = || symbolic.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
         self.ordered.extend(dofs().map(|dof| rows[dof] * b[dof]));
-        solve::substitute(symbolic, &self.factors, &mut self.ordered);
+        solve::forward(symbolic, &self.factors, &mut self.ordered);
+        solve::backward(symbolic, &self.factors, &mut self.ordered);
         for (dof, x) in dofs().zip(&self.ordered) {
             b[dof] = columns[dof] * x;
         }

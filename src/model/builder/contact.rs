@@ -20,6 +20,8 @@ pub struct Contact {
     pub points: Option<usize>,
     /// Whether the master's straight edges are taken for a smooth curve
     pub smooth: bool,
+    /// Whether every point keeps meeting what it meets at the start (small sliding)
+    pub small_sliding: bool,
     /// α_n: pressure per penetration; 10 (λ + 2G)/h unless given [F/L³]
     pub alpha_n: Option<f64>,
     /// Largest penetration left by the augmented Lagrangian; plain penalty unless given [L]
@@ -92,6 +94,7 @@ impl Contact {
             method: None,
             points: None,
             smooth: false,
+            small_sliding: false,
             alpha_n: None,
             penetration: None,
             shrink_fit: false,
@@ -114,6 +117,12 @@ impl Contact {
     /// With the pressure raised until no closed gap is larger (augmented Lagrangian) [L].
     pub fn penetration(self, largest: f64) -> Self {
         Self { penetration: Some(largest), ..self }
+    }
+
+    /// In small sliding: every point keeps its foot, the weights of both sides, its normal and its length
+    /// ([`crate::contact::small_sliding`]).
+    pub fn small_sliding(self) -> Self {
+        Self { small_sliding: true, ..self }
     }
 
     /// Of a group of points, each of which stands for an area [L].

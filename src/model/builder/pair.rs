@@ -44,7 +44,16 @@ pub fn pair(contact: &Contact, model: &Model) -> Checked<ContactPair> {
         laws,
         initial: None,
         reverse: reverse(contact, &model.mesh),
+        small: None,
     };
+    if contact.small_sliding {
+        if contact.is_own() {
+            let message = "a surface meets itself where only its motion brings it, and small sliding keeps what faces a point at \
+                           the start: take finite sliding, or name the two parts that touch as slave and master";
+            return Err(ModelError::new(format!("{place}.sliding"), message));
+        }
+        pair.slide_little(&model.mesh.undeformed());
+    }
     start(&mut pair, contact, model, &place)?;
     Ok(pair)
 }

@@ -28,7 +28,7 @@ use crate::contact::force::{Closed, ContactState, Presume, Tractions};
 use crate::contact::pair::{PairResponse, Presumption};
 use crate::equations::failure::TrialFailure;
 use crate::equations::{Assembler, Trial};
-use crate::linear::system::{Request, System};
+use crate::linear::system::Request;
 use crate::model::Model;
 use crate::model::aids::Aids;
 use crate::model::state::State;
@@ -42,8 +42,6 @@ struct Point {
     slipping: Slipping,
     feet: Feet,
     presume: Presume,
-    /// The point as the last linear solve saw it, if it was closed
-    closed: Option<Closed>,
     promised: Tractions,
     /// Whether it was limited at the start of the increment
     limited: bool,
@@ -65,8 +63,7 @@ impl Point {
     }
 
     /// Count the aids that act on the point in a linear solve.
-    fn count(&self, aids: Aids, state: &ContactState, old: &ContactState, acted: &mut Acted) {
-        let Some(closed) = &self.closed else { return };
+    fn count(&self, aids: Aids, (state, closed): (&ContactState, &Closed), old: &ContactState, acted: &mut Acted) {
         let presumption = self.presumption(aids);
         let sticks = self.presume == Presume::Stick;
         acted.promise += usize::from(promise::acts(&presumption, closed));
@@ -86,6 +83,10 @@ impl Point {
 pub struct ContactIteration {
     /// One list a contact pair, empty before the first linear solve of an increment
     points: Vec<Vec<Point>>,
+    /// The points as the last linear solve saw them
+    linearized: Vec<PairResponse>,
+    /// As the next one does
+    next: Vec<PairResponse>,
     /// u of the last linear solve [L]
     linearized_at: Vec<f64>,
     /// On how many points each aid acted in the last linear solve
@@ -98,8 +99,8 @@ impl ContactIteration {
         self.points.clear();
     }
 
-    /// Residual at the displacement `u`, where nothing is presumed; on request the tangent as well, with all that is
-    /// presumed, and a residual that goes with it.
+    /// Have the equations assembled at the displacement `u` from the responses of the contact points: for a residual nothing is
+    /// presumed; for a tangent all is, and a residual that goes with it.
     ///
     /// # Errors
     /// [`TrialFailure`] when an element inverts, a friction law fails, or a load has no value.
@@ -109,20 +110,33 @@ impl ContactIteration {
         trial: Trial,
         u: &[f64],
         request: Request,
-        system: &mut System,
+        assemble: impl FnOnce(&mut Assembler, &[PairResponse]) -> Result<(), TrialFailure>,
     ) -> Result<(), TrialFailure> {
         if request != Request::Tangent {
-            return assembler.residual(trial, u, system);
+            return assembler.with_responses(trial, u, request, assemble);
         }
         let aids = assembler.model().aids;
         self.presume(assembler.model(), &assembler.evaluation.contacts, trial, u);
-        let mut responses = assembler.interfaces(trial, u, |pair, point| self.points[pair][point].presumption(aids))?;
-        if aids.stick && self.presume_sticking(assembler.model(), &responses) {
-            responses = assembler.interfaces(trial, u, |pair, point| self.points[pair][point].presumption(aids))?;
+        self.respond(assembler, trial, u, request)?;
+        if aids.stick && self.presume_sticking(assembler.model()) {
+            self.respond(assembler, trial, u, request)?;
         }
-        assembler.assemble(trial, u, &responses, request, system)?;
-        self.linearized(u, trial.old, responses, aids);
+        assemble(assembler, &self.next)?;
+        self.take_over(u, trial.old, aids);
         Ok(())
+    }
+
+    /// The points as the next linear solve sees them.
+    fn respond(
+        &mut self,
+        assembler: &mut Assembler,
+        trial: Trial,
+        u: &[f64],
+        request: Request,
+    ) -> Result<(), TrialFailure> {
+        let (aids, points) = (assembler.model().aids, &self.points);
+        let presumed = |pair: usize, point: usize| points[pair][point].presumption(aids);
+        assembler.interfaces(trial, u, presumed, request, &mut self.next)
     }
 
     /// What the next linear solve presumes about each point, from its last two iterates, but for sticking. `states` are
@@ -132,12 +146,13 @@ impl ContactIteration {
         self.points.resize_with(model.contacts.len(), Vec::new);
         let at = &self.linearized_at;
         let pairs = model.contacts.iter().zip(states).zip(&trial.old.contacts);
-        for (points, ((pair, states), old)) in self.points.iter_mut().zip(pairs) {
+        for (number, (points, ((pair, states), old))) in self.points.iter_mut().zip(pairs).enumerate() {
             points.resize_with(states.len(), Point::default);
-            for ((point, state), old) in points.iter_mut().zip(states).zip(old) {
-                let was_closed = if first { old.friction.pressure > 0.0 } else { point.closed.is_some() };
+            for (k, ((point, state), old)) in points.iter_mut().zip(states).zip(old).enumerate() {
+                let last = if first { None } else { self.linearized[number].closed(k) };
+                let was_closed = if first { old.friction.pressure > 0.0 } else { last.is_some() };
                 point.carried = carried::carried(pair, was_closed, state, trial.stiffening);
-                point.promised = match &point.closed {
+                point.promised = match last {
                     Some(closed) => closed.promise(|dof| u[dof] - at[dof]),
                     None if first && state.friction.pressure > 0.0 => promise::at_start(state, old, aids.limit),
                     None if first && aids.pull => keep::at_start(pair, state, old),
@@ -154,11 +169,12 @@ impl ContactIteration {
     }
 
     /// Presume sticking where points slip to and fro between the linear solves; whether there are any.
-    fn presume_sticking(&mut self, model: &Model, responses: &[PairResponse]) -> bool {
+    fn presume_sticking(&mut self, model: &Model) -> bool {
         let mut any = false;
-        for (points, (pair, responses)) in self.points.iter_mut().zip(model.contacts.iter().zip(responses)) {
+        for (points, (pair, response)) in self.points.iter_mut().zip(model.contacts.iter().zip(&self.next)) {
             let rough = pair.points.iter().map(|slave| pair.law(slave).stiffness() > 0.0);
-            for ((point, (state, _)), _) in points.iter_mut().zip(responses).zip(rough).filter(|(_, rough)| *rough) {
+            let answers = points.iter_mut().zip(&response.states);
+            for ((point, state), _) in answers.zip(rough).filter(|(_, rough)| *rough) {
                 if point.slipping.sticks(&state.friction, point.promised) {
                     point.presume = Presume::Stick;
                     any = true;
@@ -169,14 +185,16 @@ impl ContactIteration {
     }
 
     /// Keep the points as the next linear solve sees them, and count those on which an aid acts.
-    fn linearized(&mut self, u: &[f64], old: &State, responses: Vec<PairResponse>, aids: Aids) {
+    fn take_over(&mut self, u: &[f64], old: &State, aids: Aids) {
+        std::mem::swap(&mut self.linearized, &mut self.next);
         self.linearized_at.clear();
         self.linearized_at.extend_from_slice(u);
         self.acted = Acted::default();
-        for (points, (responses, old)) in self.points.iter_mut().zip(responses.into_iter().zip(&old.contacts)) {
-            for (point, ((state, closed), old)) in points.iter_mut().zip(responses.into_iter().zip(old)) {
-                point.closed = closed;
-                point.count(aids, &state, old, &mut self.acted);
+        for (points, (response, old)) in self.points.iter().zip(self.linearized.iter().zip(&old.contacts)) {
+            for (k, (point, (state, old))) in points.iter().zip(response.states.iter().zip(old)).enumerate() {
+                if let Some(closed) = response.closed(k) {
+                    point.count(aids, (state, &closed), old, &mut self.acted);
+                }
             }
         }
     }

@@ -141,11 +141,9 @@ impl Explicit {
     fn start(&mut self, state: &mut State, assembler: &mut Assembler) -> Result<(), IncrementFailure> {
         let (model, step) = (&*self.model.clone(), &*self.step.clone());
         let still = Trial::new(state, step, state.time, 0.0);
-        assembler.forces(still, &state.displacement).map_err(IncrementFailure::Start)?;
         assembler.evaluation.damping.fill(0.0);
-        if model.is_viscous() {
-            assembler.add_viscous([&state.displacement, &state.velocity]);
-        }
+        let velocity = model.is_viscous().then_some(&state.velocity[..]);
+        assembler.forces(still, &state.displacement, velocity).map_err(IncrementFailure::Start)?;
         let found = &mut assembler.evaluation;
         self.add_pulls(state.time, &state.velocity, found);
         let accelerations = found.force.iter().enumerate().map(|(dof, force)| -force / self.mass[dof / 2]);

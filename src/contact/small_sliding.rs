@@ -1,0 +1,176 @@
+//! Small sliding: every point keeps meeting what it met in the reference configuration.
+//!
+//! ```text
+//! g = g₀ + n·Σ w_a u_a        Δu_t = s·Σ w_a Δu_a        Σ w_a x_a = x_s − x_foot
+//! f_a = −w_a (p n − q s) ℓ
+//! ```
+//!
+//! The foot, the weights w_a of slave and master, n, s and ℓ are those of the reference configuration: g and Δu_t are linear in
+//! the displacements, by the constant rows B_n = w_a n and B_t = w_a s, and the forces are what does work on them,
+//! f = −ℓ (p B_nᵀ − q B_tᵀ). With linear bodies nothing but opening and friction is nonlinear.
+//!
+//! What is left out: that the foot moves on (the forces of the two sides are in balance, but leave the moment p ℓ d when a point has
+//! slid by d, besides the q ℓ g of finite sliding), and that the surfaces turn and stretch: small sliding is objective for
+//! small rotations only. All this is of the second order in the displacements; but not where a contact starts closed, whose
+//! initial traction turns and stretches by the first order in finite sliding, and not at all here. (Nor does the initial
+//! stress of `linear` bodies, with which it is in equilibrium.) A point that nothing faces in the reference configuration
+//! never touches.
+//!
+//! [`SmallPoint::departure`] says how far a point has left all this behind. A block pressed on another and slid by a tenth of
+//! an edge has the pressures of finite sliding within 4 to 13 % from point to point where they vary from edge to edge (mortar),
+//! and its forces and displacements within 1 %.
+
+use nalgebra::Vector2;
+
+use super::kinematics::{Kinematics, Meeting};
+use super::master::Master;
+use super::point::{MasterPoint, SlavePoint};
+use crate::mesh::configuration::Configuration;
+
+/// The constant operators of a pair's points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SmallSliding {
+    /// Operator of each point, in their order; `None` where nothing faces it
+    pub points: Vec<Option<SmallPoint>>,
+}
+
+impl SmallSliding {
+    /// Way up to which small sliding is no matter, by the shortest of the edges; none on a rigid body [L].
+    pub fn little_slip(&self) -> Option<f64> {
+        let edge = |point: &SmallPoint| match point.against {
+            Against::Mesh { edge, .. } => Some(LITTLE_SLIP * edge),
+            Against::Rigid { .. } => None,
+        };
+        self.points.iter().flatten().filter_map(edge).min_by(f64::total_cmp)
+    }
+}
+
+/// The constant operator of a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SmallPoint {
+    /// Nodes that take part
+    pub nodes: Vec<usize>,
+    /// w_a of each; they sum to zero on a master of the mesh, to one on a rigid one
+    pub weights: Vec<f64>,
+    /// n
+    pub normal: Vector2<f64>,
+    /// s
+    pub tangent: Vector2<f64>,
+    /// g₀ between the surfaces [L]
+    pub gap: f64,
+    /// ℓ: length the point stands for [L]
+    pub length: f64,
+    /// The foot
+    pub foot: MasterPoint,
+    /// What it is to stay with
+    against: Against,
+}
+
+/// What a point is to stay with.
+#[derive(Clone, Debug, PartialEq)]
+enum Against {
+    /// A segment with these ends, it or the point's own edge being no shorter than `edge` [L]
+    Mesh { ends: [usize; 2], edge: f64 },
+    /// A rigid body, whose normal at the foot of the point's node is this
+    Rigid { normal: Vector2<f64> },
+}
+
+/// How far a point has left what small sliding keeps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Departure {
+    /// Way slid since the reference configuration [L]
+    pub slid: f64,
+    /// The same as a share of the shorter edge of the two sides; 0 on a rigid body [-]
+    pub share: f64,
+    /// Angle by which its edges and the master's have turned, or the normal of a rigid body at its foot [rad]
+    pub turned: f64,
+}
+
+/// Share of an edge up to which small sliding is no matter.
+pub const LITTLE_SLIP: f64 = 0.1;
+
+/// Angle up to which it is none [rad].
+pub const LITTLE_TURN: f64 = 0.02;
+
+impl SmallPoint {
+    /// The operator of a point that meets the master so in the reference configuration `x`.
+    pub fn new(met: Meeting, k: &Kinematics, slave: &SlavePoint, master: &Master, x: &Configuration) -> Self {
+        let Meeting { gap, foot } = met;
+        let Kinematics { normal, tangent, length, .. } = *k;
+        let (nodes, weights) = k.nodes.iter().zip(&k.relative).filter(|(_, w)| **w != 0.0).unzip();
+        let against = match master {
+            Master::Rigid(body) => {
+                Against::Rigid { normal: body.project(slave, x).map_or(normal, |projection| projection.normal) }
+            }
+            Master::Mesh(surface) => {
+                let ends = surface.segments[foot.segment].ends;
+                let edge = |[a, b]: [usize; 2]| x.between(a, b).norm();
+                Against::Mesh { ends, edge: edges(slave).map(edge).fold(edge(ends), f64::min) }
+            }
+        };
+        Self { nodes, weights, normal, tangent, gap, length, foot, against }
+    }
+
+    /// How far the point has left what is kept; `None` where it has gone past the end of a rigid body.
+    pub fn departure(&self, slave: &SlavePoint, master: &Master, x: &Configuration) -> Option<Departure> {
+        let slid = self.tangent.dot(&self.displacement(x)).abs();
+        match (&self.against, master) {
+            (Against::Rigid { normal }, Master::Rigid(body)) => {
+                let turned = body.project(slave, x)?.normal.angle(normal);
+                Some(Departure { slid, share: 0.0, turned })
+            }
+            (Against::Mesh { ends, edge }, _) => {
+                let turned = |[a, b]: [usize; 2]| x.turn(a, b).abs();
+                let turned = edges(slave).map(turned).fold(turned(*ends), f64::max);
+                Some(Departure { slid, share: slid / edge, turned })
+            }
+            (Against::Rigid { .. }, Master::Mesh(_)) => None,
+        }
+    }
+
+    /// B_n: ∂g/∂u of the nodes, two dofs a node.
+    pub fn normal_row(&self) -> impl Iterator<Item = f64> {
+        self.row(self.normal)
+    }
+
+    /// B_t: ∂Δu_t/∂u of the nodes, two dofs a node.
+    pub fn tangent_row(&self) -> impl Iterator<Item = f64> {
+        self.row(self.tangent)
+    }
+
+    fn row(&self, direction: Vector2<f64>) -> impl Iterator<Item = f64> {
+        self.weights.iter().flat_map(move |w| [w * direction.x, w * direction.y])
+    }
+
+    /// Σ w_a of some motion of the nodes; a common motion of both sides is taken out before it can leave its round-off.
+    fn relative(&self, motion: impl Fn(usize) -> Vector2<f64>) -> Vector2<f64> {
+        let common = match self.against {
+            Against::Mesh { .. } => motion(self.nodes[0]),
+            Against::Rigid { .. } => Vector2::zeros(),
+        };
+        self.nodes.iter().zip(&self.weights).map(|(&node, &w)| (motion(node) - common) * w).sum()
+    }
+
+    /// Motion of the point against its foot since the reference configuration [L].
+    pub fn displacement(&self, x: &Configuration) -> Vector2<f64> {
+        self.relative(|node| x.displacement(node))
+    }
+
+    /// Where the point meets the master, its slip counted from the configuration `before`.
+    pub fn meet(&self, before: &Configuration, x: &Configuration, k: &mut Kinematics) -> Meeting {
+        k.begin(self.normal);
+        k.nodes.extend_from_slice(&self.nodes);
+        k.clear();
+        k.relative.copy_from_slice(&self.weights);
+        (k.tangent, k.length) = (self.tangent, self.length);
+        k.slip = self.tangent.dot(&self.relative(|node| x.since(before, node)));
+        k.dgap.iter_mut().zip(self.normal_row()).for_each(|(dgap, value)| *dgap = value);
+        k.dslip.iter_mut().zip(self.tangent_row()).for_each(|(dslip, value)| *dslip = value);
+        Meeting { gap: self.gap + self.normal.dot(&self.displacement(x)), foot: self.foot }
+    }
+}
+
+/// Ends of the edges that a slave point belongs to.
+fn edges(slave: &SlavePoint) -> impl Iterator<Item = [usize; 2]> {
+    slave.length.iter().map(|share| [share.tangent[0].0, share.tangent[1].0])
+}
