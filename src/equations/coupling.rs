@@ -26,6 +26,11 @@ pub struct Coupling {
 }
 
 impl Coupling {
+    /// Whether it couples some of so many nodes.
+    pub fn fits(&self, nodes: usize) -> bool {
+        self.groups.iter().flatten().all(|node| *node < nodes)
+    }
+
     /// Couple all nodes of a group with each other.
     pub fn of(group: Vec<usize>) -> Self {
         Self { groups: vec![group], ahead: 1 }

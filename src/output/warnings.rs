@@ -49,6 +49,10 @@ enum Kind {
 }
 
 impl Observer for Warnings {
+    fn name(&self) -> &'static str {
+        "warnings"
+    }
+
     fn save(&mut self) -> Result<Vec<u8>, Error> {
         memory::written(self)
     }

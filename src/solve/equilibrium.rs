@@ -9,7 +9,6 @@ use super::newton::{self, NewtonFailure};
 use super::start::start_value;
 use super::{IterationRecord, Workspace};
 use crate::contact::force::ContactState;
-use crate::contact::pair::PairResponse;
 use crate::equations::failure::TrialFailure;
 use crate::equations::{Assembler, ContactCounts, Evaluation, Trial};
 use crate::linear::system::Request;
@@ -51,9 +50,7 @@ fn on_all(
         iteration.start_increment();
     }
     let (iterations, result) = newton::solve(start, settings(model), &mut **solver, system, |u, request, system| {
-        iteration.evaluate(assembler, trial, u, request, |assembler, responses| {
-            assembler.assemble(trial, u, responses, request, system)
-        })?;
+        iteration.evaluate_all(assembler, trial, u, request, system)?;
         if request == Request::Tangent && watch.begins && watch.tangents == 0 && is_unaided(trial) {
             watch.floating = null_motion(model, u, &system.tangent);
         }
@@ -142,10 +139,7 @@ fn assemble_all(trial: Trial, u: &[f64], work: &mut Workspace) -> Option<()> {
     let Workspace { assembler, iteration, system, .. } = work;
     iteration.start_increment();
     assembler.residual(trial, u, system).ok()?;
-    let assemble = |assembler: &mut Assembler, responses: &[PairResponse]| {
-        assembler.assemble(trial, u, responses, Request::Tangent, system)
-    };
-    iteration.evaluate(assembler, trial, u, Request::Tangent, assemble).ok()
+    iteration.evaluate_all(assembler, trial, u, Request::Tangent, system).ok()
 }
 
 /// What is seen while an increment is solved.

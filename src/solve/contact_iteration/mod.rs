@@ -28,7 +28,7 @@ use crate::contact::force::{Closed, ContactState, Presume, Tractions};
 use crate::contact::pair::{PairResponse, Presumption};
 use crate::equations::failure::TrialFailure;
 use crate::equations::{Assembler, Trial};
-use crate::linear::system::Request;
+use crate::linear::system::{Request, System};
 use crate::model::Model;
 use crate::model::aids::Aids;
 use crate::model::state::State;
@@ -97,6 +97,23 @@ impl ContactIteration {
     /// Forget the iterates of the increment before.
     pub fn start_increment(&mut self) {
         self.points.clear();
+    }
+
+    /// Residual of all equations at the displacement `u`, on request with their tangent: see [`ContactIteration::evaluate`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn evaluate_all(
+        &mut self,
+        assembler: &mut Assembler,
+        trial: Trial,
+        u: &[f64],
+        request: Request,
+        system: &mut System,
+    ) -> Result<(), TrialFailure> {
+        self.evaluate(assembler, trial, u, request, |assembler, responses| {
+            assembler.assemble(trial, u, responses, request, system)
+        })
     }
 
     /// Have the equations assembled at the displacement `u` from the responses of the contact points: for a residual nothing is

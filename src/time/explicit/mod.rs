@@ -23,6 +23,7 @@
 //! Source: Irons & Treharne (1971), Proc. 3rd Conf. Matrix Methods in Struct. Mech., WPAFB; Belytschko, Liu, Moran &
 //! Elkhodary (2014), Nonlinear Finite Elements for Continua and Structures, §6.2.
 
+mod memory;
 mod motion;
 mod stability;
 
@@ -39,6 +40,7 @@ use crate::model::scheme::start_acceleration;
 use crate::model::state::State;
 use crate::model::{Model, Step};
 use crate::solve::failure::IncrementFailure;
+pub use memory::ExplicitMemory;
 use motion::{kinetic_energy, masses};
 use stability::Stability;
 
