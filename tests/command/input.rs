@@ -124,6 +124,15 @@ fn refused_edits(edits: &[(&str, Value)], fragments: &[&str]) {
     refused_case(with(edits).to_string(), fragments);
 }
 
+/// What a command says of the good case with edits, on stdout and stderr.
+fn outcome(command: &str, edits: &[(&str, Value)]) -> [String; 2] {
+    let folder = TempDir::new().unwrap();
+    write(folder.path(), "case.json", with(edits).to_string());
+    let output = fecontact(folder.path(), &[command, "case.json"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap())
+}
+
 #[test]
 fn the_good_case_is_good() {
     let folder = TempDir::new().unwrap();
@@ -892,13 +901,6 @@ fn default_penalty_is_that_of_the_softer_side() {
 /// is named stays, with a warning where pressures are known to suffer, in `check`, in the summary and on stderr.
 #[test]
 fn the_method_follows_from_the_surfaces() {
-    let folder = TempDir::new().unwrap();
-    let outcome = |command: &str, edits: &[(&str, Value)]| {
-        write(folder.path(), "case.json", with(edits).to_string());
-        let output = fecontact(folder.path(), &[command, "case.json"]);
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap())
-    };
     let bent = |by: f64| ("/mesh/nodes/6/1", json!(-by));
     let pointwise = "gauss_to_segment, 2 points an edge (chosen because surfaces are straight and linear)";
     for by in [0.0, 1e-12, 1e-6] {
