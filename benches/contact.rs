@@ -2,11 +2,13 @@
 
 use criterion::{BenchmarkId, Criterion, criterion_group};
 use fecontact::contact::master::Master;
+use fecontact::contact::mortar::mortar_points;
 use fecontact::contact::pair::{ContactIncrement, ContactPair, PairResponse, Presumption};
 use fecontact::contact::search::Index;
-use fecontact::contact::mortar::mortar_points;
 use fecontact::contact::surface::{Surface, gauss_points, nodal_points};
-use fecontact::laws::friction::{Coulomb, CoulombParameters, FrictionParameters, SlipWeakeningParameters, SuperSubloadingParameters};
+use fecontact::laws::friction::{
+    Coulomb, CoulombParameters, FrictionParameters, SlipWeakeningParameters, SuperSubloadingParameters,
+};
 use fecontact::linear::system::Request;
 use fecontact::mesh::configuration::Configuration;
 use nalgebra::Vector2;
@@ -72,7 +74,8 @@ fn measure(criterion: &mut Criterion, name: &str, sizes: [usize; 3], surfaces: f
         let increment = ContactIncrement { dt: 1.0, fading: 0.0, stiffening: 1.0, settles: true };
         group.bench_function(BenchmarkId::new("update", n), |bench| {
             let mut response = PairResponse::default();
-            let mut respond = || pair.respond(&old, [&x, &x], increment, |_| Presumption::default(), Request::Tangent, &mut response);
+            let mut respond =
+                || pair.respond(&old, [&x, &x], increment, |_| Presumption::default(), Request::Tangent, &mut response);
             bench.iter(|| respond().is_ok());
         });
     }
@@ -106,10 +109,14 @@ fn flat(n: usize, law: &FrictionParameters, method: &str) -> (Vec<Vector2<f64>>,
     let (points, mortar) = match method {
         "nodes" => (nodal_points(&slave), None),
         "gauss" => (gauss_points(&slave, 2), None),
-        _ => { let (p, m) = mortar_points(&slave, &nodes); (p, Some(m)) }
+        _ => {
+            let (p, m) = mortar_points(&slave, &nodes);
+            (p, Some(m))
+        }
     };
     let laws = vec![law.build(1e3).expect("valid parameters")];
-    let pair = ContactPair { name: "flat".into(), points, mortar, master: Master::Mesh(Surface::new(&master)), laws, ..other };
+    let pair =
+        ContactPair { name: "flat".into(), points, mortar, master: Master::Mesh(Surface::new(&master)), laws, ..other };
     (nodes, pair)
 }
 
@@ -120,14 +127,18 @@ fn points() {
     let laws = [
         ("coulomb", FrictionParameters::from(CoulombParameters { mu: 0.3, alpha_t: None })),
         ("slip weakening", SlipWeakeningParameters::new(0.6, 0.3, 0.5).into()),
-        ("super/subloading", SuperSubloadingParameters { kappa: 1.0, xi: 1e-3, ..SuperSubloadingParameters::new(0.5, 0.3, 50.0) }.into()),
+        (
+            "super/subloading",
+            SuperSubloadingParameters { kappa: 1.0, xi: 1e-3, ..SuperSubloadingParameters::new(0.5, 0.3, 50.0) }.into(),
+        ),
     ];
     println!("µs a point: {:29} residual tangent", "");
     for method in ["nodes", "gauss", "mortar"].into_iter().filter(|method| method.contains(&only)) {
         for (name, law) in &laws {
             for (motion, rate) in [("sticks", 0.0), ("slips", 3e-3)] {
                 let (nodes, pair) = flat(n, law, method);
-                let micros = [Request::Residual, Request::Tangent].map(|request| update(&pool, &nodes, &pair, rate, request));
+                let micros =
+                    [Request::Residual, Request::Tangent].map(|request| update(&pool, &nodes, &pair, rate, request));
                 println!("{method:8} {name:18} {motion:8} {:6.3} {:6.3}", micros[0], micros[1]);
             }
         }

@@ -70,7 +70,8 @@ impl ClosedPoints {
     pub fn get(&self, point: usize) -> Option<Closed<'_>> {
         let Place { tractions, nodes: [first, count], tangent } = (*self.points.get(point)?)?;
         let dofs = 2 * first..2 * (first + count);
-        let varied = |values: &'_ [f64]| -> std::ops::Range<usize> { if values.is_empty() { 0..0 } else { dofs.clone() } };
+        let varied =
+            |values: &'_ [f64]| -> std::ops::Range<usize> { if values.is_empty() { 0..0 } else { dofs.clone() } };
         let size = if self.tangent.is_empty() { 0 } else { 4 * count * count };
         Some(Closed {
             nodes: &self.nodes[first..first + count],
@@ -108,7 +109,8 @@ impl ClosedPoints {
 
     /// δp = a δg + b δΔu_t of the next point.
     pub(super) fn push_dpressure(&mut self, k: &Kinematics, [by_gap, by_slip]: [f64; 2]) {
-        let rate = |(dgap, dslip): (&f64, &f64)| if by_slip == 0.0 { dgap * by_gap } else { dgap * by_gap + dslip * by_slip };
+        let rate =
+            |(dgap, dslip): (&f64, &f64)| if by_slip == 0.0 { dgap * by_gap } else { dgap * by_gap + dslip * by_slip };
         self.dpressure.extend(k.dgap.iter().zip(&k.dslip).map(rate));
     }
 

@@ -127,7 +127,8 @@ impl<'a> Loading<'a> {
         let apart = place.closes && old.apart(kinematics.length);
         let compliance = apart.then(|| pair.compliance_after_touch(increment.during.settles));
         let whole = kinematics.slip;
-        let mut loading = Self { pair, slave, old, increment, place, kinematics, whole, alpha_n, free, compliance, sliding };
+        let mut loading =
+            Self { pair, slave, old, increment, place, kinematics, whole, alpha_n, free, compliance, sliding };
         if place.closes {
             loading.load(carried(free, increment.presumption));
         }

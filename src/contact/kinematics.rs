@@ -283,12 +283,7 @@ impl Kinematics {
     }
 
     /// Add `direction`·Σ w_a δx_a to a variation.
-    fn vary(
-        &mut self,
-        weights: &[(usize, f64)],
-        direction: Vector2<f64>,
-        row: impl Fn(&mut Self) -> &mut Vec<f64>,
-    ) {
+    fn vary(&mut self, weights: &[(usize, f64)], direction: Vector2<f64>, row: impl Fn(&mut Self) -> &mut Vec<f64>) {
         if !self.varied {
             return;
         }

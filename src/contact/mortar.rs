@@ -165,7 +165,10 @@ impl Mortar {
             set(&mut k.dlength, &length);
             k.dlength.iter_mut().for_each(|rate| *rate *= surface.share());
             let [dx, dy] = [&s.x, &s.y].map(|d| d.gradient().iter().copied().chain(repeat(0.0)));
-            k.drotation.iter_mut().zip(dx.zip(dy)).for_each(|(turn, (dx, dy))| *turn = dx * k.normal.x + dy * k.normal.y);
+            k.drotation
+                .iter_mut()
+                .zip(dx.zip(dy))
+                .for_each(|(turn, (dx, dy))| *turn = dx * k.normal.x + dy * k.normal.y);
             for (a, w) in relative.iter().enumerate() {
                 k.changing.push(a);
                 k.drelative.extend(w.gradient().iter().copied().chain(repeat(0.0)).take(k.dgap.len()));

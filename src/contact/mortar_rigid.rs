@@ -108,12 +108,7 @@ impl Sums {
 }
 
 /// Where one point of Gauss's rule meets the body.
-fn meet(
-    slave: &SlavePoint,
-    body: &Rigid,
-    [before, x]: [&Configuration; 2],
-    k: &mut Kinematics,
-) -> Option<Projection> {
+fn meet(slave: &SlavePoint, body: &Rigid, [before, x]: [&Configuration; 2], k: &mut Kinematics) -> Option<Projection> {
     let projection = body.project(slave, x)?;
     let from = body.project(slave, before).map(|was| was.foot);
     past_rigid(slave, body, &projection, from, x, k);

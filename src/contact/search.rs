@@ -43,11 +43,7 @@ impl<'a> Index<'a> {
         })
     }
 
-    fn with(
-        master: &'a Master,
-        before: &'a Configuration,
-        boxes: impl FnOnce(&Surface) -> Cow<'a, Boxes>,
-    ) -> Self {
+    fn with(master: &'a Master, before: &'a Configuration, boxes: impl FnOnce(&Surface) -> Cow<'a, Boxes>) -> Self {
         match master {
             Master::Rigid(body) => Self::Rigid(body),
             Master::Mesh(surface) => {

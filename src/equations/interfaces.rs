@@ -43,7 +43,11 @@ pub(super) fn add(responses: &[PairResponse], sums: &mut Sums) {
     for (_, closed) in responses.iter().flat_map(PairResponse::all_closed) {
         sums.push(closed.nodes, closed.force);
         if let Some(tangent) = &mut sums.tangent {
-            assert_eq!(closed.tangent.len(), 4 * closed.nodes.len().pow(2), "responses come with tangents if one is asked for");
+            assert_eq!(
+                closed.tangent.len(),
+                4 * closed.nodes.len().pow(2),
+                "responses come with tangents if one is asked for"
+            );
             let (own, others) = blocks.split_at(closed.nodes.len().pow(2));
             add_blocks(tangent, own, closed.tangent, closed.nodes.len());
             blocks = others;

@@ -138,9 +138,7 @@ fn tangent_error(model: &Arc<Model>, trial: Trial, u: &[f64], h: f64) -> f64 {
     let mut assembler = Assembler::new(model);
     let mut system = assembler.system();
     let mut responses = Vec::new();
-    assembler
-        .interfaces(trial, u, |_, _| Default::default(), Request::Tangent, &mut responses)
-        .expect("responses");
+    assembler.interfaces(trial, u, |_, _| Default::default(), Request::Tangent, &mut responses).expect("responses");
     assembler.assemble(trial, u, &responses, Request::Tangent, &mut system).expect("a tangent");
     let mut unit = vec![0.0; u.len()];
     let (mut worst, mut largest) = (0.0f64, 0.0f64);
