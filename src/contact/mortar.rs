@@ -28,10 +28,12 @@ use super::cuts::{Overlap, Overlaps, cut};
 use super::dual::{Dual, DualVector, Number};
 use super::kinematics::{Kinematics, Meeting};
 use super::lines::{Frame, Line};
+use super::master::Master;
 use super::point::{LengthShare, MasterPoint, SlavePoint, Weights, edge_point, lone_point};
 use super::search::Index;
 use super::surface::{CORNER, Segment, Surface};
 use crate::mesh::configuration::Configuration;
+use crate::mesh::section::Section;
 use crate::mesh::shape;
 
 /// The slave side: its edges, and which of them meet at each contact point.
@@ -43,6 +45,16 @@ pub struct Mortar {
     at: Vec<Vec<(usize, usize)>>,
     /// Points of Gauss's rule around each point, their lengths times φ_j
     pub(super) around: Vec<Vec<SlavePoint>>,
+}
+
+/// The weights of all points in the committed configuration. They stay as they are while an increment is iterated.
+#[derive(Clone, Debug, Default)]
+pub struct Committed {
+    section: Section,
+    /// X and u of all nodes on both sides
+    places: Vec<(usize, [Vector2<f64>; 2])>,
+    /// Weights of each point, if the master faced it
+    pub weights: Vec<Option<Weights>>,
 }
 
 /// The nodes of the slave edges as contact points, each side of a corner a point of its own.
@@ -98,6 +110,23 @@ fn gauss_around(edge: &[usize], a: usize) -> Vec<SlavePoint> {
 }
 
 impl Mortar {
+    /// The weights of all points in the configuration `x`, found anew unless they are there already.
+    pub fn commit(&self, master: &Master, surface: &Surface, x: &Configuration, committed: &mut Committed) {
+        let segments = || surface.segments.iter().flat_map(Segment::nodes);
+        let nodes = || self.edges.iter().flatten().copied().chain(segments());
+        let places = || nodes().map(|node| (node, x.apart(&[(node, 1.0)], Vector2::zeros())));
+        let Committed { section, places: kept, weights } = committed;
+        if *section == x.section() && weights.len() == self.at.len() && places().eq(kept.iter().copied()) {
+            return;
+        }
+        *section = x.section();
+        kept.clear();
+        kept.extend(places());
+        let overlaps = self.overlaps(surface, &Index::new(master, x), x);
+        let found = (0..self.at.len()).into_par_iter().map(|point| self.weights(point, surface, &overlaps, x));
+        found.collect_into_vec(weights);
+    }
+
     /// Cut all slave edges.
     pub fn overlaps(&self, surface: &Surface, index: &Index, x: &Configuration) -> Overlaps {
         Overlaps(self.edges.par_iter().map(|edge| cut(edge, surface, index, x)).collect())
