@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use fecontact::cli::{self, Failure, Input};
+use fecontact::cli::{self, Failure, Input, Options, defect};
 
 /// 2D finite-element contact with the time-dependent super/subloading-surface friction law.
 #[derive(Parser)]
@@ -29,6 +29,9 @@ enum Command {
         /// No progress
         #[arg(long)]
         quiet: bool,
+        /// Go on from the last checkpoint in the folder, to the same bits as if the run had never stopped
+        #[arg(long)]
+        resume: bool,
     },
     /// Read a case and its mesh, check everything, print what was understood; solve nothing
     Check {
@@ -61,22 +64,25 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let result = match Arguments::parse().command {
-        Command::Run { case, out, threads, quiet } => cli::run(&case, out, threads, quiet),
+    defect::watch();
+    let result = defect::catch(run).unwrap_or_else(|defect| Err(Failure::Defect(defect)));
+    let Err(failure) = result else { return ExitCode::SUCCESS };
+    let (code, told) = failure.told();
+    cli::say(format_args!("{told}"));
+    ExitCode::from(code)
+}
+
+fn run() -> Result<(), Failure> {
+    let command = match Arguments::try_parse() {
+        Ok(arguments) => arguments.command,
+        Err(error) if error.use_stderr() => error.exit(),
+        Err(help) => return cli::print(&help.render().to_string()),
+    };
+    match command {
+        Command::Run { case, out, threads, quiet, resume } => cli::run(&case, Options { out, threads, quiet, resume }),
         Command::Check { case } => cli::check(&case),
         Command::Law { test, out } => cli::law(&test, out),
         Command::Plot { folders, out } => cli::plot(&folders, out),
         Command::Schema { of } => cli::schema(of),
-    };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(Failure::Stopped(message)) => {
-            eprintln!("stopped: {message}");
-            ExitCode::from(1)
-        }
-        Err(Failure::BadInput(message)) => {
-            eprintln!("error: {message}");
-            ExitCode::from(2)
-        }
     }
 }

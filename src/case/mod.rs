@@ -1,5 +1,6 @@
 //! The case: JSON as written, translated to the builder of a model ([`crate::model::builder`]).
 
+mod again;
 mod choice;
 mod error;
 mod explain;
@@ -10,6 +11,7 @@ mod report;
 mod schema;
 mod translate;
 
+pub use again::Opened;
 pub use error::CaseError;
 pub use report::report;
 
@@ -48,10 +50,16 @@ pub fn build_on(case: &Case, mesh: Mesh, path: &Path) -> Result<Model, CaseError
 }
 
 fn built(case: &Case, mesh: Mesh) -> Checked<Model> {
+    if case.begin_with.is_some() {
+        return Err(Complaint::new("begin_with", "another case must be opened first: see case::Opened"));
+    }
     let model = translate::model(case, mesh)?.build()?;
     if case.output.every == 0 {
         let message = "is 0: must be at least 1 (to write no fields, give \"fields\": false)";
         return Err(Complaint::new("output.every", message));
+    }
+    if let Some(minutes) = case.output.checkpoint.filter(|minutes| !(*minutes >= 0.0 && minutes.is_finite())) {
+        return Err(Complaint::new("output.checkpoint", format!("is {minutes}: must be minutes, or null for none")));
     }
     match case.output.fronts.filter(|fronts| !(fronts.slip_rate > 0.0 && fronts.slip_rate.is_finite())) {
         Some(fronts) => {

@@ -30,6 +30,15 @@ pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, CaseError> {
     input.map_err(|complaint| complaint.in_file(path))
 }
 
+/// The document of a file, and what it says.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_document<T: DeserializeOwned>(path: &Path) -> Result<(Value, T), CaseError> {
+    let read = text(path).and_then(|text| document(&text)).and_then(|document| Ok((input(&document)?, document)));
+    read.map(|(input, document)| (document, input)).map_err(|complaint| complaint.in_file(path))
+}
+
 fn text(path: &Path) -> Result<String, Complaint> {
     let complain = |message: &str| Complaint::new("", message);
     let unreadable = |cause: std::io::Error| match cause.kind() {
@@ -145,7 +154,7 @@ impl<'de> Visitor<'de> for DocumentVisitor {
     }
 }
 
-fn input<T: DeserializeOwned>(document: &Value) -> Result<T, Complaint> {
+pub(super) fn input<T: DeserializeOwned>(document: &Value) -> Result<T, Complaint> {
     // A list would be taken for the keys of the object in their order.
     if document.is_array() {
         return Err(Complaint::new("", "is a list […], but must be an object {…}"));

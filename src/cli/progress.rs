@@ -44,10 +44,10 @@ impl Progress {
     }
 
     fn line(&mut self, message: &str) {
-        eprintln!("{message}");
+        say!("{message}");
         self.lines += 1;
         if self.lines == LINES {
-            eprintln!("… from here on not every increment has a line");
+            say!("… from here on not every increment has a line");
         }
     }
 }

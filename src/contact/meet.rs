@@ -76,8 +76,10 @@ impl ContactPair {
 
     /// From now on every point keeps meeting what it meets in the configuration `x` (small sliding).
     pub fn slide_little(&mut self, x: &Configuration) {
-        let point = |(met, kinematics)| SmallPoint::new(met, &kinematics, &self.master);
-        let points = self.meetings(x, false).into_iter().map(|met| met.map(point));
+        let met = self.meetings(x, false).into_iter().zip(&self.points);
+        let point =
+            |((met, k), slave): ((Meeting, Kinematics), &SlavePoint)| SmallPoint::new(met, &k, slave, &self.master, x);
+        let points = met.map(|(met, slave)| Some(point((met?, slave))));
         self.small = Some(SmallSliding { points: points.collect() });
     }
 

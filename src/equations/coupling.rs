@@ -24,6 +24,18 @@ pub struct Coupling {
     ahead: usize,
 }
 
+impl Coupling {
+    /// Whether it couples some of so many nodes.
+    pub fn fits(&self, nodes: usize) -> bool {
+        self.groups.iter().flatten().all(|node| *node < nodes)
+    }
+
+    /// Couple all nodes of a group with each other.
+    pub fn of(group: Vec<usize>) -> Self {
+        Self { groups: vec![group], ahead: 1 }
+    }
+}
+
 /// The pattern of a model's tangent, and where each element is in it.
 pub(super) struct Layout {
     model: Arc<Model>,
@@ -133,6 +145,10 @@ impl Layout {
         let (mut groups, ahead) = (Vec::new(), self.coupling.ahead);
         for ((pair, responses), old) in self.model.contacts.iter().zip(responses).zip(&old.contacts) {
             for (k, ((slave, state), old)) in pair.points.iter().zip(&responses.states).zip(old).enumerate() {
+                if let Some(small) = &pair.small {
+                    groups.extend(small.points[k].iter().map(|point| point.nodes.clone()));
+                    continue;
+                }
                 let Some(foot) = state.foot.or(old.foot) else { continue };
                 let mut nodes: Vec<usize> = slave.position.iter().map(|&(node, _)| node).collect();
                 nodes.extend(responses.closed(k).into_iter().flat_map(|closed| closed.nodes));

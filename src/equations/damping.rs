@@ -6,7 +6,7 @@
 
 use super::dependence::Dependence;
 use super::rates::motion;
-use super::solids::Solids;
+use super::solids::{Solids, damps_by_stiffness};
 use super::sums::Sums;
 use super::trial::Trial;
 use crate::linear::SparseMatrix;
@@ -28,7 +28,7 @@ pub(super) fn dependence(model: &Model, step: &Step) -> Dependence {
     };
     match model.bodies.iter().find(damped(false)) {
         None => Dependence::Nothing,
-        Some(_) if model.bodies.iter().filter(damped(true)).all(|body| body.material.is_linear()) => {
+        Some(_) if model.bodies.iter().filter(damped(true)).all(|body| damps_by_stiffness(&*body.material)) => {
             Dependence::StepSize
         }
         Some(_) => Dependence::Displacement,

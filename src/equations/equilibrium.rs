@@ -169,8 +169,13 @@ impl Equilibrium {
         }
     }
 
+    /// Norm of the nodal forces of each contact at the last evaluation [F].
+    pub(super) fn contact_forces(&self) -> &[f64] {
+        &self.contact_forces
+    }
+
     /// ρ² at every node [F²].
-    fn round_off(
+    pub(super) fn round_off(
         &self,
         (model, mass): (&Model, Option<&SparseMatrix>),
         trial: Trial,

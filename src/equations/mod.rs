@@ -25,6 +25,7 @@
 
 pub mod assembler;
 pub mod audit;
+pub mod condensed;
 mod coupling;
 pub mod dampers;
 mod damping;
@@ -37,7 +38,7 @@ pub mod inertia;
 pub mod interfaces;
 mod loads;
 mod rates;
-mod solids;
+pub mod solids;
 pub mod stabilization;
 mod sums;
 pub mod supports;

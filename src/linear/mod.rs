@@ -1,12 +1,15 @@
 //! Sparse matrices of two unknowns a node, and the linear solvers behind one trait.
 
+mod dense;
 mod lu;
+pub mod memory;
 mod multifrontal;
 mod sparse;
 pub mod system;
 
+pub use dense::DenseLu;
 pub use lu::SparseLu;
-pub use multifrontal::Multifrontal;
+pub use multifrontal::{Condensation, Condensed, Forwarded, Multifrontal};
 pub use sparse::{BlockPosition, Pattern, SparseMatrix};
 
 use thiserror::Error;

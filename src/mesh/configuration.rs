@@ -73,6 +73,17 @@ impl<'a> Configuration<'a> {
         (self.reference[to] - self.reference[from]) + (self.displacement(to) - self.displacement(from))
     }
 
+    /// Angle by which the line from one node to another has turned since the reference configuration [rad].
+    pub fn turn(&self, from: usize, to: usize) -> f64 {
+        let (was, is) = (self.reference[to] - self.reference[from], self.between(from, to));
+        was.perp(&is).atan2(was.dot(&is))
+    }
+
+    /// Share by which it has grown longer [-].
+    pub fn stretch(&self, from: usize, to: usize) -> f64 {
+        self.between(from, to).norm() / (self.reference[to] - self.reference[from]).norm() - 1.0
+    }
+
     /// How far a node has moved since another configuration.
     pub fn since(&self, before: &Self, node: usize) -> Vector2<f64> {
         self.displacement(node) - before.displacement(node)

@@ -26,6 +26,8 @@ pub struct Aids {
     pub stick_again: bool,
     /// A foot that goes to and fro between two segments lies between them: [`crate::solve::contact_iteration::valley`]
     pub valley: bool,
+    /// Increments of linear bodies are solved on the nodes at contacts: [`crate::solve::interface`]
+    pub condense: bool,
     /// Corrections with the factors of an earlier tangent: [`crate::solve::newton`]
     pub old_tangents: bool,
     /// Corrections go only downhill where the residual stalls: [`crate::solve::newton`]
@@ -47,6 +49,7 @@ impl Default for Aids {
             stick: true,
             stick_again: true,
             valley: true,
+            condense: true,
             old_tangents: true,
             downhill: true,
             stiffening: true,

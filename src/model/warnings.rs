@@ -103,6 +103,8 @@ pub fn gaps(model: &Model, pair: &ContactPair, shrink_fit: bool) -> String {
 
 /// Initial gaps of a contact; what is round-off of the positions is no gap and no overlap.
 struct Gaps {
+    /// Whether what faces nothing never touches
+    small: bool,
     points: usize,
     facing: usize,
     /// The smallest, and where [L]
@@ -126,6 +128,7 @@ impl Gaps {
         };
         let states = pair.initial_states(&x);
         let mut gaps = Self {
+            small: pair.small.is_some(),
             points: states.len(),
             facing: 0,
             low: (f64::INFINITY, Vector2::zeros()),
@@ -158,7 +161,8 @@ impl Gaps {
         }
         let mut warnings = Vec::new();
         if facing < points {
-            warnings.push(format!("{} of the slave face no part of the master", self.beside()));
+            let never = if self.small { ", and never touch it in small sliding" } else { "" };
+            warnings.push(format!("{} of the slave face no part of the master{never}", self.beside()));
         }
         if low < 0.0 {
             warnings.push(format!(

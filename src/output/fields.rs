@@ -6,6 +6,7 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 
 use super::csv::failed;
+use super::files;
 use super::memory;
 use super::vtu::{CellType, Grid};
 use crate::contact::fields;
@@ -26,8 +27,8 @@ pub struct Fields {
     every: usize,
     /// Rows of the history so far
     rows: usize,
-    /// Frames so far
-    shown: usize,
+    /// Times of the frames so far [T]
+    times: Vec<f64>,
     /// What the writer is to do; `None` when there is no more
     frames: Option<SyncSender<Task>>,
     /// `None` when it has ended
@@ -38,8 +39,10 @@ pub struct Fields {
 enum Task {
     /// Write this state
     Show(Box<State>),
-    /// Take back all frames but the first so many
-    Keep(usize),
+    /// Take back all frames but those of these times
+    Keep(Vec<f64>),
+    /// Say when all is written
+    Tell(SyncSender<()>),
 }
 
 /// Frames that may wait for the writer; a run that is faster waits, so that memory stays bounded.
@@ -50,7 +53,7 @@ const WAITING: usize = 1;
 struct Collection {
     folder: PathBuf,
     name: &'static str,
-    frames: Vec<(f64, String)>,
+    times: Vec<f64>,
 }
 
 impl Fields {
@@ -60,36 +63,31 @@ impl Fields {
     /// # Errors
     /// [`Error::Output`] when a file cannot be written.
     pub fn create(folder: &Path, model: Arc<Model>, start: &State, every: usize) -> Result<Self, Error> {
-        let mut solid = Collection::create(folder, "solid")?;
-        let mut contact = (!model.contacts.is_empty()).then(|| Collection::create(folder, "contact")).transpose()?;
-        let (frames, arriving): (_, Receiver<Task>) = sync_channel(WAITING);
-        let writer = std::thread::spawn(move || {
-            let mut grid = Grid::default();
-            for task in arriving {
-                let state = match task {
-                    Task::Show(state) => state,
-                    Task::Keep(count) => {
-                        [Some(&mut solid), contact.as_mut()].into_iter().flatten().try_for_each(|of| of.keep(count))?;
-                        continue;
-                    }
-                };
-                solid_frame(&model, &state, &mut grid);
-                solid.write(state.time, &grid)?;
-                if let Some(contact) = &mut contact {
-                    contact_frame(&model, &state, &mut grid);
-                    contact.write(state.time, &grid)?;
-                }
-            }
-            Ok(())
-        });
-        let mut fields = Self { every, rows: 0, shown: 0, frames: Some(frames), writer: Some(writer) };
+        let mut fields = Self::reopen(folder, model, every)?;
         fields.write(start)?;
         Ok(fields)
     }
 
+    /// The series that is there, to be restored.
+    ///
+    /// # Errors
+    /// [`Error::Output`] when there is no place for it.
+    pub fn reopen(folder: &Path, model: Arc<Model>, every: usize) -> Result<Self, Error> {
+        let mut collections = vec![Collection::create(folder, "solid")?];
+        if !model.contacts.is_empty() {
+            collections.push(Collection::create(folder, "contact")?);
+        }
+        let (frames, arriving): (_, Receiver<Task>) = sync_channel(WAITING);
+        let writer = std::thread::Builder::new().name("frames".into());
+        let writer = writer.spawn(move || written(&model, collections, arriving));
+        let writer =
+            writer.map_err(|cause| failed(&folder.join("solid"), &format!("no thread to write it: {cause}")))?;
+        Ok(Self { every, rows: 0, times: Vec::new(), frames: Some(frames), writer: Some(writer) })
+    }
+
     /// Hand a state to the writer. One that has ended has failed, and says why.
     fn write(&mut self, state: &State) -> Result<(), Error> {
-        self.shown += 1;
+        self.times.push(state.time);
         self.ask(Task::Show(Box::new(state.clone())))
     }
 
@@ -97,6 +95,36 @@ impl Fields {
         let taken = self.frames.as_ref().is_some_and(|frames| frames.send(task).is_ok());
         if taken { Ok(()) } else { self.finish() }
     }
+
+    /// Wait until all is written.
+    fn settle(&mut self) -> Result<(), Error> {
+        let (done, all_written) = sync_channel(1);
+        self.ask(Task::Tell(done))?;
+        // A writer that has ended says why.
+        all_written.recv().or_else(|_| self.finish())
+    }
+}
+
+/// What the writer does.
+fn written(model: &Model, mut collections: Vec<Collection>, tasks: Receiver<Task>) -> Result<(), Error> {
+    let mut grid = Grid::default();
+    for task in tasks {
+        match task {
+            Task::Show(state) => {
+                for collection in &mut collections {
+                    match collection.name {
+                        "solid" => solid_frame(model, &state, &mut grid),
+                        _ => contact_frame(model, &state, &mut grid),
+                    }
+                    collection.write(state.time, &grid)?;
+                }
+            }
+            Task::Keep(times) => collections.iter_mut().try_for_each(|collection| collection.keep(&times))?,
+            // Whoever has asked may have gone.
+            Task::Tell(done) => drop(done.send(())),
+        }
+    }
+    Ok(())
 }
 
 impl Observer for Fields {
@@ -110,13 +138,19 @@ impl Observer for Fields {
         }
     }
 
+    fn name(&self) -> &'static str {
+        "fields"
+    }
+
     fn save(&mut self) -> Result<Vec<u8>, Error> {
-        memory::written(&(self.rows, self.shown))
+        self.settle()?;
+        memory::written(&(self.rows, &self.times))
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        (self.rows, self.shown) = memory::read(memory)?;
-        self.ask(Task::Keep(self.shown))
+        (self.rows, self.times) = memory::read(memory)?;
+        self.ask(Task::Keep(self.times.clone()))?;
+        self.settle()
     }
 
     fn finish(&mut self) -> Result<(), Error> {
@@ -124,7 +158,7 @@ impl Observer for Fields {
         match self.writer.take().map(JoinHandle::join) {
             None => Ok(()),
             Some(Ok(written)) => written,
-            Some(Err(_)) => Err(failed(Path::new("solid.pvd"), &"the writer of frames broke off")),
+            Some(Err(defect)) => std::panic::resume_unwind(defect),
         }
     }
 }
@@ -132,25 +166,40 @@ impl Observer for Fields {
 impl Collection {
     fn create(folder: &Path, name: &'static str) -> Result<Self, Error> {
         let frames = folder.join(name);
-        std::fs::create_dir_all(&frames).map_err(|cause| failed(&frames, &cause))?;
-        Ok(Self { folder: folder.to_owned(), name, frames: Vec::new() })
+        files::folder(&frames).map_err(|cause| failed(&frames, &cause))?;
+        Ok(Self { folder: folder.to_owned(), name, times: Vec::new() })
+    }
+
+    fn file(&self, number: usize) -> String {
+        format!("{}/{number:05}.vtu", self.name)
     }
 
     /// Write one frame and list it, so that a running or killed run can be looked at.
     fn write(&mut self, time: f64, grid: &Grid) -> Result<(), Error> {
-        let file = format!("{}/{:05}.vtu", self.name, self.frames.len());
-        let path = self.folder.join(&file);
-        grid.write(&path).map_err(|cause| failed(&path, &cause))?;
-        self.frames.push((time, file));
+        let path = self.folder.join(self.file(self.times.len()));
+        let written = grid.write(&path);
+        if written.is_err() {
+            // Half a frame is of no use.
+            let _ = files::remove(&path);
+        }
+        written.map_err(|cause| failed(&path, &cause))?;
+        self.times.push(time);
         self.list()
     }
 
-    /// Take back all frames but the first so many.
-    fn keep(&mut self, count: usize) -> Result<(), Error> {
-        let count = count.min(self.frames.len());
-        for (_, file) in self.frames.drain(count..) {
-            let path = self.folder.join(file);
-            std::fs::remove_file(&path).map_err(|cause| failed(&path, &cause))?;
+    /// The frames of these times are kept, and those after them taken back.
+    fn keep(&mut self, times: &[f64]) -> Result<(), Error> {
+        times.clone_into(&mut self.times);
+        let missing = (0..times.len()).map(|number| self.folder.join(self.file(number))).find(|path| !path.is_file());
+        if let Some(path) = missing {
+            return Err(failed(&path, &"was there when the checkpoint was written, and is gone"));
+        }
+        for number in times.len().. {
+            let path = self.folder.join(self.file(number));
+            if path.symlink_metadata().is_err() {
+                break;
+            }
+            files::remove(&path).map_err(|cause| failed(&path, &cause))?;
         }
         self.list()
     }
@@ -158,12 +207,12 @@ impl Collection {
     fn list(&self) -> Result<(), Error> {
         let mut text =
             String::from("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n");
-        for (time, file) in &self.frames {
-            text += &format!("<DataSet timestep=\"{time}\" part=\"0\" file=\"{file}\"/>\n");
+        for (number, time) in self.times.iter().enumerate() {
+            text += &format!("<DataSet timestep=\"{time}\" part=\"0\" file=\"{}\"/>\n", self.file(number));
         }
         text += "</Collection>\n</VTKFile>\n";
         let path = self.folder.join(format!("{}.pvd", self.name));
-        std::fs::write(&path, text).map_err(|cause| failed(&path, &cause))
+        files::replace(&path, text.as_bytes()).map_err(|cause| failed(&path, &cause))
     }
 }
 

@@ -16,7 +16,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::csv::Table;
+use super::csv::{Opening, Table};
 use super::memory;
 use super::passages::{Arrival, Interface, Point};
 use super::wave_speeds::WaveSpeeds;
@@ -82,14 +82,31 @@ impl Fronts {
     /// # Errors
     /// [`Error::Output`] when it cannot be written.
     pub fn create(folder: &Path, model: &Model, start: &State, threshold: f64) -> Result<Self, Error> {
+        Self::with(Table::create, folder, model, start, threshold)
+    }
+
+    /// The `slip_map.csv` that is there, to be restored.
+    ///
+    /// # Errors
+    /// [`Error::Output`] when it cannot be opened.
+    pub fn reopen(folder: &Path, model: &Model, start: &State, threshold: f64) -> Result<Self, Error> {
+        Self::with(Table::reopen, folder, model, start, threshold)
+    }
+
+    fn with(open: Opening, folder: &Path, model: &Model, start: &State, threshold: f64) -> Result<Self, Error> {
         let observed = observables::further(model.contacts.iter().flat_map(|pair| &pair.laws).map(|law| &**law));
-        let header: Vec<&str> = MAP.iter().chain(&observed).copied().collect();
+        let header: Vec<String> = MAP.iter().chain(&observed).map(|name| (*name).into()).collect();
+        let mut interfaces: Vec<Interface> = model.contacts.iter().map(|pair| Interface::new(model, pair)).collect();
+        // What had slipped before is no event of this run.
+        let points =
+            interfaces.iter_mut().zip(&start.contacts).flat_map(|(of, states)| of.points.iter_mut().zip(states));
+        points.for_each(|(point, state)| point.slip = state.friction.plastic_slip);
         Ok(Self {
-            map: Table::create(&folder.join("slip_map.csv"), &header)?,
+            map: open(&folder.join("slip_map.csv"), &header)?,
             observed,
             path: folder.join("fronts.csv"),
             threshold,
-            interfaces: model.contacts.iter().map(|pair| Interface::new(model, pair)).collect(),
+            interfaces,
             last: [(start.time, given(start)); 2],
         })
     }
@@ -135,7 +152,7 @@ impl Fronts {
     }
 
     fn fronts(&self) -> Result<(), Error> {
-        let mut table = Table::create(&self.path, &FRONTS)?;
+        let mut table = Table::create(&self.path, &FRONTS.map(String::from))?;
         for interface in &self.interfaces {
             let events = interface.events();
             for (k, point) in interface.points.iter().enumerate() {
@@ -169,6 +186,10 @@ fn given(state: &State) -> f64 {
 }
 
 impl Observer for Fronts {
+    fn name(&self) -> &'static str {
+        "fronts"
+    }
+
     fn save(&mut self) -> Result<Vec<u8>, Error> {
         memory::written(&(self.map.length()?, &self.interfaces, self.last))
     }

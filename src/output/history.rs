@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::csv::Table;
+use super::csv::{Opening, Table};
 use super::memory;
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
@@ -48,6 +48,18 @@ impl History {
     /// # Errors
     /// [`Error::Output`] when it cannot be written.
     pub fn create(folder: &Path, model: &Model) -> Result<Self, Error> {
+        Self::with(Table::create, folder, model)
+    }
+
+    /// The `history.csv` that is there, to be restored.
+    ///
+    /// # Errors
+    /// [`Error::Output`] when it cannot be opened.
+    pub fn reopen(folder: &Path, model: &Model) -> Result<Self, Error> {
+        Self::with(Table::reopen, folder, model)
+    }
+
+    fn with(open: Opening, folder: &Path, model: &Model) -> Result<Self, Error> {
         let of = |name: &str, columns: &[&str]| columns.iter().map(|c| format!("{name}.{c}")).collect::<Vec<_>>();
         let mut header: Vec<String> = INCREMENT.iter().chain(&ENERGIES).map(|c| (*c).into()).collect();
         header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &CONTACT)));
@@ -57,7 +69,7 @@ impl History {
         for (pair, names) in model.contacts.iter().zip(&observed) {
             header.extend(names.iter().map(|name| format!("{}.mean_{name}", pair.name)));
         }
-        Ok(Self { table: Table::create(&folder.join("history.csv"), &header)?, observed })
+        Ok(Self { table: open(&folder.join("history.csv"), &header)?, observed })
     }
 }
 
@@ -81,6 +93,10 @@ impl Observer for History {
         }
         table.end_row()?;
         table.share()
+    }
+
+    fn name(&self) -> &'static str {
+        "history"
     }
 
     fn save(&mut self) -> Result<Vec<u8>, Error> {

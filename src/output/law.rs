@@ -36,7 +36,8 @@ impl<'a> LawTable<'a> {
     /// # Errors
     /// [`Error::Output`] when it cannot be written.
     pub fn create(folder: &Path, law: &'a dyn FrictionLaw) -> Result<Self, Error> {
-        let header: Vec<&str> = COLUMNS.into_iter().chain(observables::further([law])).collect();
+        let names = COLUMNS.into_iter().chain(observables::further([law]));
+        let header: Vec<String> = names.map(String::from).collect();
         Ok(Self { table: Table::create(&folder.join("law.csv"), &header)?, law })
     }
 

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use super::csv::Table;
+use super::csv::{Opening, Table};
 use super::memory;
 use crate::model::Model;
 use crate::run::error::Error;
@@ -39,7 +39,20 @@ impl NewtonLog {
     /// # Errors
     /// [`Error::Output`] when it cannot be written.
     pub fn create(folder: &Path) -> Result<Self, Error> {
-        Ok(Self(Table::create(&folder.join("newton.csv"), &[&COLUMNS[..], &Acted::COLUMNS].concat())?))
+        Self::with(Table::create, folder)
+    }
+
+    /// The `newton.csv` that is there, to be restored.
+    ///
+    /// # Errors
+    /// [`Error::Output`] when it cannot be opened.
+    pub fn reopen(folder: &Path) -> Result<Self, Error> {
+        Self::with(Table::reopen, folder)
+    }
+
+    fn with(open: Opening, folder: &Path) -> Result<Self, Error> {
+        let header: Vec<String> = COLUMNS.iter().chain(&Acted::COLUMNS).map(|name| (*name).into()).collect();
+        Ok(Self(open(&folder.join("newton.csv"), &header)?))
     }
 }
 
@@ -62,6 +75,10 @@ impl Observer for NewtonLog {
             table.end_row()?;
         }
         table.share()
+    }
+
+    fn name(&self) -> &'static str {
+        "newton"
     }
 
     fn save(&mut self) -> Result<Vec<u8>, Error> {

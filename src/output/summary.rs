@@ -6,6 +6,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::csv::failed;
+use super::files;
 use crate::laws::friction::FrictionParameters;
 use crate::model::Model;
 use crate::run::error::Error;
@@ -33,22 +34,35 @@ pub struct About {
 /// How it ended: the first lines of every `summary.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Ending {
-    /// "completed" or "stopped"
+    /// "running", "completed", "stopped" or "interrupted"
     pub status: &'static str,
     /// why it stopped
     pub reason: Option<String>,
     /// version of the program
     pub version: &'static str,
+    /// files that it writes, or may write, beside this one; a name that ends in / is a folder of frames
+    pub files: Vec<String>,
 }
 
 impl Ending {
+    /// Of a run or test that has not ended.
+    pub fn running(files: &[String]) -> Self {
+        Self { status: "running", reason: None, version: env!("CARGO_PKG_VERSION"), files: files.to_vec() }
+    }
+
     /// Of a run or test that stopped for a reason, or did not.
-    pub fn new(stopped: Option<&Error>) -> Self {
-        Self {
-            status: if stopped.is_none() { "completed" } else { "stopped" },
-            reason: stopped.map(ToString::to_string),
-            version: env!("CARGO_PKG_VERSION"),
-        }
+    pub fn new(stopped: Option<&Error>, files: &[String]) -> Self {
+        let status = match stopped {
+            None => "completed",
+            Some(Error::Interrupted) => "interrupted",
+            Some(_) => "stopped",
+        };
+        Self { status, reason: stopped.map(ToString::to_string), ..Self::running(files) }
+    }
+
+    /// Of one that ended in a defect of the program.
+    pub fn defect(what: &str, files: &[String]) -> Self {
+        Self { status: "stopped", reason: Some(format!("a defect of the program: {what}")), ..Self::running(files) }
     }
 }
 
@@ -95,10 +109,10 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Summarize a finished or stopped run.
-    pub fn new(about: About, model: &Model, report: RunReport, stopped: Option<&Error>, warnings: Vec<String>) -> Self {
+    /// Summarize a run.
+    pub fn new(ending: Ending, about: About, model: &Model, report: RunReport, warnings: Vec<String>) -> Self {
         Self {
-            ending: Ending::new(stopped),
+            ending,
             about,
             dofs: model.dofs(),
             nodes: model.mesh.nodes.len(),
@@ -112,14 +126,14 @@ impl Summary {
     }
 }
 
-/// Write a [`Summary`] or [`LawSummary`] as `summary.json` into `folder`.
+/// Write a [`Summary`] or [`LawSummary`] as `summary.json` into `folder`: the old file or the new one is there at any moment.
 ///
 /// # Errors
 /// [`Error::Output`] when it cannot be written.
 pub fn write(summary: &impl Serialize, folder: &Path) -> Result<(), Error> {
     let path = folder.join("summary.json");
     let text = serde_json::to_string_pretty(summary).map_err(|cause| failed(&path, &cause))?;
-    std::fs::write(&path, text + "\n").map_err(|cause| failed(&path, &cause))
+    files::replace_for_good(&path, (text + "\n").as_bytes()).map_err(|cause| failed(&path, &cause))
 }
 
 /// Largest resident set so far, from the Linux process status.

@@ -9,6 +9,7 @@ use super::audit::Audit;
 use super::memory;
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
+use crate::contact::small_sliding::{Departure, LITTLE_SLIP, LITTLE_TURN, SmallSliding};
 use crate::contact::surface::SlavePoint;
 use crate::mesh::configuration::Configuration;
 use crate::model::Model;
@@ -42,9 +43,16 @@ enum Kind {
     DeepPenetration,
     DeepMasterNode,
     SeveralAnswers,
+    SlidFar,
+    TurnedFar,
+    StretchedFar,
 }
 
 impl Observer for Warnings {
+    fn name(&self) -> &'static str {
+        "warnings"
+    }
+
     fn save(&mut self) -> Result<Vec<u8>, Error> {
         memory::written(self)
     }
@@ -72,6 +80,9 @@ impl Observer for Warnings {
                     }
                 }
             }
+            if let Some(small) = &pair.small {
+                self.no_small_sliding(number, pair, small, state.time, &x);
+            }
             let fading = model.steps[0].span.share(state.time) < 1.0 && pair.points.iter().any(|p| p.overlap > 0.0);
             let explicit = matches!(attempt.step.scheme, Scheme::Explicit { .. });
             if !(fading || explicit || pair.initial.is_some()) {
@@ -96,6 +107,27 @@ pub fn several_answers(pressure: f64, limit: f64) -> String {
 }
 
 impl Warnings {
+    /// Points that have left what small sliding keeps, closed or not: an open one may miss what it would touch.
+    fn no_small_sliding(
+        &mut self,
+        number: usize,
+        pair: &ContactPair,
+        small: &SmallSliding,
+        time: f64,
+        x: &Configuration,
+    ) {
+        for (slave, point) in pair.points.iter().zip(&small.points) {
+            let Some(point) = point else { continue };
+            for (kind, message) in left(point.departure(slave, &pair.master, x)) {
+                if self.given.insert((number, kind)) {
+                    let at = slave.at(x);
+                    let place = format!("contact `{}` at ({:.6}, {:.6}), t = {}", pair.name, at.x, at.y, told(time));
+                    self.list.push(format!("{place}: {message}; take finite sliding"));
+                }
+            }
+        }
+    }
+
     /// The points of the slave do not see a master node between them. (Where gaps are not those of the surfaces there is
     /// nothing to compare with: under initial tractions, and while a shrink fit is brought in. Explicit increments are too
     /// many to look at.)
@@ -175,4 +207,37 @@ fn concerns(
     let several = limit.map(|limit| several_answers(pressure, limit));
     let deep = deep.map(|message| (Kind::DeepPenetration, message));
     deep.into_iter().chain(several.map(|message| (Kind::SeveralAnswers, message)))
+}
+
+/// What is to be said of a point that has left what small sliding keeps.
+fn left(departure: Option<Departure>) -> impl Iterator<Item = (Kind, String)> {
+    let Some(Departure { slid, share, turned, stretched }) = departure else {
+        let message = "the surface has slid past the end of the rigid master, and small sliding holds it there";
+        return [Some((Kind::SlidFar, message.into())), None, None].into_iter().flatten();
+    };
+    let far = (share > LITTLE_SLIP).then(|| {
+        let message = format!(
+            "the surfaces have slid by {slid:.3e} since the start, {:.1} % of the distance between nodes, and small sliding keeps what faced \
+             what: tractions that vary from node to node are off by about as much",
+            100.0 * share
+        );
+        (Kind::SlidFar, message)
+    });
+    let turned = (turned > LITTLE_TURN).then(|| {
+        let message = format!(
+            "a surface has turned by {turned:.3} rad since the start, and small sliding keeps its direction: tractions are \
+             off by about {:.1} % of the pressure",
+            100.0 * turned
+        );
+        (Kind::TurnedFar, message)
+    });
+    let stretched = (stretched > LITTLE_TURN).then(|| {
+        let message = format!(
+            "an edge of the slave has become {:.1} % longer or shorter since the start, and small sliding keeps its length: \
+             tractions are off by as much",
+            100.0 * stretched
+        );
+        (Kind::StretchedFar, message)
+    });
+    [far, turned, stretched].into_iter().flatten()
 }

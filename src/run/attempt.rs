@@ -10,6 +10,7 @@ use crate::model::state::State;
 use crate::solve::IterationRecord;
 use crate::solve::failure::IncrementFailure;
 use crate::time::increment::advance;
+use crate::time::ladder::on_ladder;
 use crate::time::step_size::{Judgement, bounded, fastest_slip, judge};
 use crate::time::touching::Touching;
 
@@ -35,6 +36,7 @@ impl Simulation {
                     touching.give_up();
                 }
                 local_error = judgement.error;
+                judgement.next = on_ladder(step, judgement.next, work);
                 let ruptures = step.rupture.as_ref().is_some_and(|r| fastest_slip(model, old, &new) > r.slip_rate);
                 match judgement {
                     _ if ruptures && shortest => Outcome::Rejected(self.rupture()),

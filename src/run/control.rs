@@ -2,11 +2,16 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use super::error::Error;
+use crate::contact::force::ContactState;
+use crate::contact::master::Master;
+use crate::contact::pair::ContactPair;
 use crate::equations::Coupling;
-use crate::model::Step;
 use crate::model::boundary::Span;
 use crate::model::state::State;
+use crate::model::{Model, Step};
 use crate::solve::IterationRecord;
 use crate::solve::failure::IncrementFailure;
 use crate::time::explicit::Explicit;
@@ -20,7 +25,7 @@ pub(super) const RESULTS: f64 = 100.0;
 const NEAR_END: f64 = 1e-6;
 
 /// Where a run is: with the state, all that decides the next increment.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Control {
     /// number of the step
     pub step: usize,
@@ -29,7 +34,41 @@ pub(super) struct Control {
     pub coupling: Arc<Coupling>,
 }
 
-#[derive(Clone, Debug)]
+impl Control {
+    /// Whether it is one of this model; steps may have come since.
+    pub(super) fn fits(&self, model: &Model) -> bool {
+        let exists = match &self.phase {
+            Phase::Complete => self.step <= model.steps.len(),
+            Phase::Rupture { before, .. } => {
+                is_of(before, model) && model.steps.get(self.step).is_some_and(|step| step.rupture.is_some())
+            }
+            _ => self.step < model.steps.len(),
+        };
+        exists && self.coupling.fits(model.mesh.nodes.len())
+    }
+}
+
+/// Whether a state is one of a model: as many dofs, contact points and memories, and feet on its masters.
+pub(super) fn is_of(state: &State, model: &Model) -> bool {
+    let State { displacement, velocity, acceleration, force, external, damping, reaction, .. } = state;
+    let start = &state.step_start;
+    let last = state.last_increment.as_ref().map(|last| &last.displacement);
+    let all = [displacement, velocity, acceleration, force, external, damping, reaction];
+    let contact = |(states, pair): (&Vec<ContactState>, &ContactPair)| {
+        let segments = match &pair.master {
+            Master::Mesh(surface) => surface.segments.len(),
+            Master::Rigid(_) => usize::MAX,
+        };
+        let stands = |state: &ContactState| state.foot.is_none_or(|foot| foot.segment < segments);
+        states.len() == pair.points.len() && states.iter().all(stands)
+    };
+    all.into_iter().chain([&start.displacement, &start.reaction]).chain(last).all(|values| values.len() == model.dofs())
+        && state.memory.len() == model.memories().last().map_or(0, |last| last.end)
+        && state.contacts.len() == model.contacts.len()
+        && state.contacts.iter().zip(&model.contacts).all(contact)
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) enum Phase {
     /// Before the first increment of a step
     Begin,
@@ -55,8 +94,18 @@ pub(super) enum Phase {
     Complete,
 }
 
+impl Phase {
+    /// The step as it goes on in this phase: explicitly while a contact slips fast.
+    pub(super) fn of<'a>(&self, step: &'a Step) -> &'a Step {
+        match (self, &step.rupture) {
+            (Self::Rupture { .. }, Some(rupture)) => &rupture.explicit,
+            _ => step,
+        }
+    }
+}
+
 /// Times of output: start + k × interval.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Outputs {
     start: f64,
     interval: f64,

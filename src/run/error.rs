@@ -41,6 +41,18 @@ pub enum Error {
         /// what the law said
         cause: LawFailure,
     },
+    /// A run whose step its caller has changed is no run of its model alone.
+    #[error("step `{step}` was changed by its caller: such a run can be saved in this process, but not in a file")]
+    Led {
+        /// step
+        step: String,
+    },
+    /// A run could not be written down.
+    #[error("the run could not be saved: {0}")]
+    NotSaved(String),
+    /// The user, or the system, asked for the end.
+    #[error("interrupted")]
+    Interrupted,
     /// A result file could not be written.
     #[error("{path}: {cause}")]
     Output {

@@ -10,10 +10,13 @@ pub mod law_path;
 pub mod law_report;
 pub mod observer;
 pub mod report;
+pub mod saved;
 pub mod simulation;
 
 use std::sync::Arc;
 use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
 
 use crate::model::Model;
 use crate::model::state::State;
@@ -22,7 +25,8 @@ use crate::run::observer::Observer;
 use crate::run::report::RunReport;
 pub use access::{Axis, Unknown};
 pub use control::{Candidate, Increment};
-pub use simulation::{Saved, Simulation};
+pub use saved::Saved;
+pub use simulation::Simulation;
 
 /// Run all steps of a model. The report comes back from a stopped run as well.
 ///
@@ -39,7 +43,23 @@ pub fn run(model: &Arc<Model>, observers: &mut [&mut dyn Observer]) -> (RunRepor
 /// # Errors
 /// As [`run`].
 pub fn watch(simulation: &mut Simulation, observers: &mut [&mut dyn Observer]) -> Result<(), Error> {
-    let mut result = attempts(simulation, observers);
+    watch_with(simulation, observers, &mut |_, _| Ok(()))
+}
+
+/// What is done before every attempt, and after the last one: there the run and its observers can be saved, or ended by an
+/// error.
+pub type Between<'a> = dyn FnMut(&Simulation, &mut [&mut dyn Observer]) -> Result<(), Error> + 'a;
+
+/// As [`watch`], and do something between the attempts.
+///
+/// # Errors
+/// As [`run`], and those of what is done.
+pub fn watch_with(
+    simulation: &mut Simulation,
+    observers: &mut [&mut dyn Observer],
+    between: &mut Between,
+) -> Result<(), Error> {
+    let mut result = attempts(simulation, observers, between);
     let waiting = Instant::now();
     for observer in observers.iter_mut() {
         result = result.and(observer.finish());
@@ -48,11 +68,39 @@ pub fn watch(simulation: &mut Simulation, observers: &mut [&mut dyn Observer]) -
     result
 }
 
+fn attempts(
+    simulation: &mut Simulation,
+    observers: &mut [&mut dyn Observer],
+    between: &mut Between,
+) -> Result<(), Error> {
+    loop {
+        let clock = Instant::now();
+        between(simulation, observers)?;
+        simulation.observed(clock.elapsed().as_secs_f64());
+        let Some(candidate) = simulation.attempt()? else { return Ok(()) };
+        let clock = Instant::now();
+        let told = simulation.told(&candidate);
+        observers.iter_mut().try_for_each(|observer| observer.record(simulation.model(), &told))?;
+        simulation.observed(clock.elapsed().as_secs_f64());
+        simulation.follow(candidate)?;
+    }
+}
+
+/// What each observer remembers, by its name.
+type Memories = Vec<(String, Vec<u8>)>;
+
 /// A run and its observers as they were.
 #[derive(Clone)]
 pub struct SavedRun {
     simulation: Saved,
-    observers: Vec<Vec<u8>>,
+    observers: Memories,
+}
+
+/// A saved run for a file, before its model is at hand.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct RunBytes {
+    simulation: Vec<u8>,
+    observers: Memories,
 }
 
 impl SavedRun {
@@ -61,27 +109,54 @@ impl SavedRun {
     /// # Errors
     /// [`Error::Output`] when an observer cannot tell what it has written.
     pub fn new(simulation: &Simulation, observers: &mut [&mut dyn Observer]) -> Result<Self, Error> {
-        let observers = observers.iter_mut().map(|observer| observer.save()).collect::<Result<_, _>>()?;
+        let memory = |observer: &mut &mut dyn Observer| observer.save().map(|memory| (observer.name().into(), memory));
+        let observers = observers.iter_mut().map(memory).collect::<Result<_, _>>()?;
         Ok(Self { simulation: simulation.save(), observers })
     }
 
-    /// The run as it was; the observers, the same in the same order, take back what they have written since.
+    /// For a file.
+    ///
+    /// # Errors
+    /// As [`Saved::bytes`].
+    pub fn bytes(self) -> Result<RunBytes, Error> {
+        Ok(RunBytes { simulation: self.simulation.bytes()?, observers: self.observers })
+    }
+
+    /// From a file.
+    ///
+    /// # Errors
+    /// As [`Saved::from_bytes`].
+    pub fn from_bytes(bytes: RunBytes, model: &Arc<Model>) -> Result<Self, String> {
+        Ok(Self { simulation: Saved::from_bytes(&bytes.simulation, model)?, observers: bytes.observers })
+    }
+
+    /// The run without its observers.
+    pub fn simulation(&self) -> &Saved {
+        &self.simulation
+    }
+
+    /// The place it has come to, for another run with its own observers to begin from: [`Saved::begin`].
+    #[must_use]
+    pub fn begin(self) -> Self {
+        Self { simulation: self.simulation.begin(), observers: Vec::new() }
+    }
+
+    /// Whether an observer of this name has something to go on from.
+    pub fn remembers(&self, observer: &str) -> bool {
+        self.observers.iter().any(|(name, _)| name == observer)
+    }
+
+    /// The run as it was; the observers, found by their names, take back what they have written since. One that was not there
+    /// begins here.
     ///
     /// # Errors
     /// [`Error::Output`] when an observer cannot.
     pub fn resume(self, model: &Arc<Model>, observers: &mut [&mut dyn Observer]) -> Result<Simulation, Error> {
-        observers.iter_mut().zip(&self.observers).try_for_each(|(observer, memory)| observer.restore(memory))?;
+        for observer in observers.iter_mut() {
+            if let Some((_, memory)) = self.observers.iter().find(|(name, _)| name == observer.name()) {
+                observer.restore(memory)?;
+            }
+        }
         Ok(Simulation::resume(model.clone(), self.simulation))
     }
-}
-
-fn attempts(simulation: &mut Simulation, observers: &mut [&mut dyn Observer]) -> Result<(), Error> {
-    while let Some(candidate) = simulation.attempt()? {
-        let clock = Instant::now();
-        let told = simulation.told(&candidate);
-        observers.iter_mut().try_for_each(|observer| observer.record(simulation.model(), &told))?;
-        simulation.observed(clock.elapsed().as_secs_f64());
-        simulation.follow(candidate)?;
-    }
-    Ok(())
 }

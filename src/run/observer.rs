@@ -35,6 +35,11 @@ pub trait Observer {
     /// [`Error::Output`] when a file cannot be written; it ends the run.
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error>;
 
+    /// The name by which what it remembers is found again.
+    fn name(&self) -> &'static str {
+        ""
+    }
+
     /// What it remembers, and how far it has written: for [`restore`](Self::restore). Nothing unless it says so.
     ///
     /// # Errors

@@ -1,11 +1,11 @@
 //! Counts and times of a run.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::model::state::Energy;
 
 /// Counts and times of a run.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct RunReport {
     /// accepted increments
     pub increments: usize,
@@ -28,7 +28,7 @@ pub struct RunReport {
 }
 
 /// Wall time by phase [s].
-#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct WallSeconds {
     /// everything
     pub total: f64,

@@ -17,6 +17,7 @@ use super::control::{Candidate, Control, Increment, Outcome, Phase};
 use super::error::Error;
 use super::observer::Attempt;
 use super::report::{RunReport, WallSeconds};
+use super::saved::Saved;
 use crate::linear::Multifrontal;
 use crate::model::state::State;
 use crate::model::{Model, Step};
@@ -30,6 +31,8 @@ pub struct Simulation {
     pub(super) model: Arc<Model>,
     /// The step under way, as its caller may have changed it
     pub(super) step: Arc<Step>,
+    /// Whether he has
+    led: bool,
     pub(super) state: Arc<State>,
     pub(super) control: Control,
     /// What explicit increments need besides the state, while there are any
@@ -41,17 +44,6 @@ pub struct Simulation {
     earlier: WallSeconds,
 }
 
-/// A run as it was, in this process: state, control and counts, for the same model. What is computed after [`Simulation::resume`] has the same bits as if the run
-/// had never stopped.
-#[derive(Clone)]
-pub struct Saved {
-    step: Arc<Step>,
-    state: Arc<State>,
-    pub(super) control: Control,
-    explicit: Option<Explicit>,
-    report: RunReport,
-}
-
 impl Simulation {
     /// A run of a model from its initial state.
     pub fn new(model: impl Into<Arc<Model>>) -> Self {
@@ -60,6 +52,7 @@ impl Simulation {
         let phase = if model.steps.is_empty() { Phase::Complete } else { Phase::Begin };
         Self {
             step: Arc::new(model.steps.first().cloned().unwrap_or_default()),
+            led: false,
             state: Arc::new(model.initial_state()),
             control: Control { step: 0, phase, coupling: work.assembler.coupling() },
             explicit: None,
@@ -79,14 +72,15 @@ impl Simulation {
             control: self.control.clone(),
             explicit: self.explicit.clone(),
             report: self.report(),
+            led: self.led,
         }
     }
 
     /// A run as it was, of the same model.
     pub fn resume(model: impl Into<Arc<Model>>, saved: Saved) -> Self {
-        let Saved { step, state, control, explicit, report } = saved;
+        let Saved { step, state, control, explicit, report, led } = saved;
         let earlier = report.wall_s;
-        Self { step, state, control, explicit, report, earlier, ..Self::new(model) }
+        Self { step, led, state, control, explicit, report, earlier, ..Self::new(model) }
     }
 
     /// The model.
@@ -215,6 +209,7 @@ impl Simulation {
     /// Change loads, supports and bounds of increments of the step under way: what changes is so from the next increment to the
     /// end of the step; the next one has its own.
     pub fn change(&mut self, change: impl Fn(&mut Step)) {
+        self.led = true;
         let step = Arc::make_mut(&mut self.step);
         change(step);
         if let Some(rupture) = &mut step.rupture {
@@ -230,10 +225,7 @@ impl Simulation {
 
     /// The step as it goes on at present: explicitly while a contact slips fast.
     pub(super) fn step_now(&self) -> &Step {
-        match (&self.control.phase, &self.step.rupture) {
-            (Phase::Rupture { .. }, Some(rupture)) => &rupture.explicit,
-            _ => &self.step,
-        }
+        self.control.phase.of(&self.step)
     }
 
     /// Enter the phase that a candidate led to, or the next step.
@@ -251,6 +243,7 @@ impl Simulation {
             self.control.phase = Phase::Complete;
             if let Some(step) = self.model.steps.get(self.control.step) {
                 self.step = Arc::new(step.clone());
+                self.led = false;
                 self.control.phase = Phase::Begin;
             }
         }

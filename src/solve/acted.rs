@@ -24,6 +24,8 @@ pub struct Acted {
     pub stick_again: usize,
     /// its foot is the node between two segments
     pub valley: usize,
+    /// it is one on the nodes at contacts alone
+    pub condense: usize,
     /// the correction was searched for how far it leads downhill
     pub downhill: usize,
     /// the augmented Lagrangian is stiffened
@@ -32,7 +34,7 @@ pub struct Acted {
 
 impl Acted {
     /// Columns of `newton.csv`.
-    pub const COLUMNS: [&str; 12] = [
+    pub const COLUMNS: [&str; 13] = [
         "aid_start",
         "aid_promise",
         "aid_limit",
@@ -43,6 +45,7 @@ impl Acted {
         "aid_stick",
         "aid_stick_again",
         "aid_valley",
+        "aid_condense",
         "aid_downhill",
         "aid_stiffening",
     ];
@@ -50,7 +53,7 @@ impl Acted {
     /// The counts, in the order of the columns.
     pub fn counts(self) -> [usize; Self::COLUMNS.len()] {
         let Self { start, promise, limit, keep, pull, carried, touch, .. } = self;
-        let Self { stick, stick_again, valley, downhill, stiffening, .. } = self;
-        [start, promise, limit, keep, pull, carried, touch, stick, stick_again, valley, downhill, stiffening]
+        let Self { stick, stick_again, valley, condense, downhill, stiffening, .. } = self;
+        [start, promise, limit, keep, pull, carried, touch, stick, stick_again, valley, condense, downhill, stiffening]
     }
 }

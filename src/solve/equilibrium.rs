@@ -4,13 +4,15 @@ use super::acted::Acted;
 use super::contact_iteration::flips::Flips;
 use super::failure::IncrementFailure;
 use super::floating::null_motion;
-use super::newton;
+use super::interface::{Interface, Round};
+use super::newton::{self, NewtonFailure};
 use super::start::start_value;
 use super::{IterationRecord, Workspace};
+use crate::contact::force::ContactState;
 use crate::equations::failure::TrialFailure;
-use crate::equations::{ContactCounts, Evaluation, Trial};
-use crate::linear::SparseMatrix;
+use crate::equations::{Assembler, ContactCounts, Evaluation, Trial};
 use crate::linear::system::Request;
+use crate::linear::{Condensed, SparseMatrix};
 use crate::model::Model;
 use crate::model::state::State;
 
@@ -22,44 +24,175 @@ pub fn equilibrium(
     start: Option<Vec<f64>>,
     work: &mut Workspace,
 ) -> (Vec<IterationRecord>, Result<Vec<f64>, IncrementFailure>) {
-    let Workspace { assembler, iteration, solver, system, foreseen, linear_seconds } = work;
     let begins = start.is_none();
-    if begins {
-        iteration.start_increment();
-    }
-    let mut tangents = 0;
-    let mut seen = Vec::new();
-    let mut flips = Flips::default();
-    let mut floating = None;
-    let spent = assembler.seconds.assembly + assembler.seconds.contact;
+    let spent = work.assembler.seconds.assembly + work.assembler.seconds.contact;
     let clock = std::time::Instant::now();
     let (start, extrapolated) = start.map_or_else(|| start_value(model, trial), |start| (start, false));
-    // What acted in the tangent since the last correction
-    let mut acted = Acted::default();
+    let mut watch = Watch::new(begins, extrapolated);
+    let condensed = on_contacts(model, trial, &start, &mut watch, work);
+    let result = condensed.unwrap_or_else(|| on_all(model, trial, start, &mut watch, work));
+    let assembled = work.assembler.seconds.assembly + work.assembler.seconds.contact - spent;
+    work.linear_seconds += clock.elapsed().as_secs_f64() - assembled;
+    let result = told(model, trial.old, watch.floating.take(), result, &work.system.tangent);
+    (watch.records, result)
+}
+
+/// What Newton's method found on all equations.
+fn on_all(
+    model: &Model,
+    trial: Trial,
+    start: Vec<f64>,
+    watch: &mut Watch,
+    work: &mut Workspace,
+) -> Result<Vec<f64>, NewtonFailure<TrialFailure>> {
+    let Workspace { assembler, iteration, solver, system, foreseen, .. } = work;
+    if watch.begins {
+        iteration.start_increment();
+    }
     let (iterations, result) = newton::solve(start, settings(model), &mut **solver, system, |u, request, system| {
-        iteration.evaluate(assembler, trial, u, request, system)?;
+        iteration.evaluate_all(assembler, trial, u, request, system)?;
+        if request == Request::Tangent && watch.begins && watch.tangents == 0 && is_unaided(trial) {
+            watch.floating = null_motion(model, u, &system.tangent);
+        }
+        let acted = Acted { stiffening: usize::from(trial.stiffening > 1.0), ..iteration.acted };
+        watch.note(request, assembler, system.forces, acted, foreseen);
+        Ok(())
+    });
+    watch.record(iterations);
+    result
+}
+
+/// Rounds on the nodes at contacts before an increment is left to all equations.
+const MOST_ROUNDS: usize = 3;
+
+/// What Newton's method found on the nodes at contacts, if that way is worth it and the bodies can follow.
+fn on_contacts(
+    model: &Model,
+    trial: Trial,
+    start: &[f64],
+    watch: &mut Watch,
+    work: &mut Workspace,
+) -> Option<Result<Vec<f64>, NewtonFailure<TrialFailure>>> {
+    let bodies = work.interface.as_mut()?.bodies(model, trial).ok()??;
+    let mut u = start.to_vec();
+    if watch.begins && is_unaided(trial) {
+        assemble_all(trial, &u, work)?;
+        watch.floating = null_motion(model, &u, &work.system.tangent);
+    }
+    if watch.begins {
+        work.iteration.start_increment();
+    }
+    for _ in 0..MOST_ROUNDS {
+        if let Err(failure) = round(model, trial, &bodies, &mut u, watch, work)? {
+            return Some(Err(failure));
+        }
+        let Workspace { assembler, system, .. } = work;
+        assembler.residual(trial, &u, system).ok()?;
+        if let Some(last) = watch.records.last_mut() {
+            last.newton.residual = system.imbalance;
+        }
+        if system.imbalance <= model.newton.tolerance {
+            return Some(Ok(u));
+        }
+    }
+    None
+}
+
+/// Solve the condensed equations from the displacement `u` on, and have the bodies follow; nothing if they cannot be set up.
+fn round(
+    model: &Model,
+    trial: Trial,
+    bodies: &Condensed,
+    u: &mut [f64],
+    watch: &mut Watch,
+    work: &mut Workspace,
+) -> Option<Result<(), NewtonFailure<TrialFailure>>> {
+    let Workspace { assembler, iteration, system, foreseen, interface, .. } = work;
+    let Interface { nodes, solver, condensed, .. } = interface.as_mut()?;
+    let round = Round::begin((nodes, bodies), trial, u, assembler, system).ok()?;
+    let mut all = u.to_vec();
+    let (iterations, result) =
+        newton::solve(nodes.gather(u), settings(model), solver, condensed, |x, request, system| {
+            nodes.scatter(x, &mut all);
+            iteration.evaluate(assembler, trial, &all, request, |assembler, responses| {
+                round.equations.assemble(assembler, trial, x, responses, request, system);
+                Ok(())
+            })?;
+            let acted = Acted { stiffening: usize::from(trial.stiffening > 1.0), condense: 1, ..iteration.acted };
+            watch.note(request, assembler, system.forces, acted, foreseen);
+            Ok::<(), TrialFailure>(())
+        });
+    watch.record(iterations);
+    match result {
+        Ok(x) => round.follow(nodes, u, &x),
+        Err(failure) => {
+            // What floats is told from the tangent of everything.
+            assemble_all(trial, &all, work)?;
+            return Some(Err(failure));
+        }
+    }
+    Some(Ok(()))
+}
+
+/// The tangent of all equations, as the first linear solve of an increment sees it.
+fn assemble_all(trial: Trial, u: &[f64], work: &mut Workspace) -> Option<()> {
+    let Workspace { assembler, iteration, system, .. } = work;
+    iteration.start_increment();
+    assembler.residual(trial, u, system).ok()?;
+    iteration.evaluate_all(assembler, trial, u, Request::Tangent, system).ok()
+}
+
+/// What is seen while an increment is solved.
+struct Watch {
+    /// Whether it is a new increment, and whether its start value goes on with the last one
+    begins: bool,
+    extrapolated: bool,
+    tangents: usize,
+    /// What was seen after each correction of the present solution
+    seen: Vec<Seen>,
+    flips: Flips,
+    floating: Option<String>,
+    /// What acted in the tangent since the last correction
+    acted: Acted,
+    records: Vec<IterationRecord>,
+}
+
+impl Watch {
+    fn new(begins: bool, extrapolated: bool) -> Self {
+        let (flips, acted) = (Flips::default(), Acted::default());
+        Self { begins, extrapolated, tangents: 0, seen: Vec::new(), flips, floating: None, acted, records: Vec::new() }
+    }
+
+    /// Note what the equations say after they have been evaluated.
+    fn note(
+        &mut self,
+        request: Request,
+        assembler: &Assembler,
+        forces: f64,
+        acted: Acted,
+        foreseen: &mut Vec<Vec<ContactState>>,
+    ) {
         // The start value goes on with the last increment; where there is none, the first linear solve tells.
-        let foresight = if extrapolated { 0 } else { 1 };
-        if begins && request == Request::Residual && tangents == foresight {
+        let foresight = if self.extrapolated { 0 } else { 1 };
+        if self.begins && self.records.is_empty() && request == Request::Residual && self.tangents == foresight {
             foreseen.clone_from(&assembler.evaluation.contacts);
         }
         if request == Request::Tangent {
-            if begins && tangents == 0 && is_unaided(trial) {
-                floating = null_motion(model, u, &system.tangent);
-            }
-            acted = iteration.acted;
-            acted.start = usize::from(extrapolated && tangents == 0);
-            acted.stiffening = usize::from(trial.stiffening > 1.0);
-            tangents += 1;
-        } else if tangents > 0 && request == Request::Residual {
-            seen.push(look(&assembler.evaluation, &mut flips, system.forces, std::mem::take(&mut acted)));
+            self.acted = acted;
+            self.acted.start = usize::from(self.extrapolated && self.records.is_empty() && self.tangents == 0);
+            self.tangents += 1;
+        } else if self.tangents > 0 && request == Request::Residual {
+            let acted = std::mem::take(&mut self.acted);
+            self.seen.push(look(&assembler.evaluation, &mut self.flips, forces, acted));
         }
-        Ok(())
-    });
-    let assembled = assembler.seconds.assembly + assembler.seconds.contact - spent;
-    *linear_seconds += clock.elapsed().as_secs_f64() - assembled;
-    let result = told(model, trial.old, floating, result, &system.tangent);
-    (records(iterations, seen), result)
+    }
+
+    /// Keep the iterations of a solution with what was seen after each.
+    fn record(&mut self, iterations: Vec<newton::Iteration>) {
+        let seen = std::mem::take(&mut self.seen);
+        self.tangents = 0;
+        self.records.extend(records(iterations, seen));
+    }
 }
 
 /// The solution, or why there is none: bodies that move freely say more than the equations.
@@ -67,7 +200,7 @@ fn told(
     model: &Model,
     old: &State,
     floating: Option<String>,
-    result: Result<Vec<f64>, newton::NewtonFailure<TrialFailure>>,
+    result: Result<Vec<f64>, NewtonFailure<TrialFailure>>,
     tangent: &SparseMatrix,
 ) -> Result<Vec<f64>, IncrementFailure> {
     match (floating, result) {

@@ -8,18 +8,21 @@ mod downhill;
 pub mod equilibrium;
 pub mod failure;
 pub mod floating;
+pub mod interface;
 pub mod newton;
 pub mod start;
 
 use std::sync::Arc;
 
 use crate::contact::force::ContactState;
+use crate::equations::condensed::is_linear;
 use crate::equations::{Assembler, ContactCounts};
 use crate::linear::LinearSolver;
 use crate::linear::system::System;
-use crate::model::Model;
+use crate::model::{Model, Step};
 use acted::Acted;
 use contact_iteration::ContactIteration;
+use interface::Interface;
 use newton::Iteration;
 
 /// What is kept from one increment to the next to save work; it does not change any answer.
@@ -31,6 +34,8 @@ pub struct Workspace {
     /// solves them
     pub solver: Box<dyn LinearSolver>,
     pub(crate) system: System,
+    /// Linear bodies condensed on the nodes at contacts, where that is worth it
+    interface: Option<Interface>,
     /// Contact states to which the motion before the last attempt would have led, had it gone on
     pub foreseen: Vec<Vec<ContactState>>,
     /// Seconds spent in linear solves
@@ -47,9 +52,15 @@ impl Workspace {
             iteration: ContactIteration::default(),
             solver,
             system,
+            interface: Interface::new(model).filter(|_| model.aids.condense),
             foreseen: Vec::new(),
             linear_seconds: 0.0,
         }
+    }
+
+    /// Whether linear bodies are condensed on the nodes at contacts in a step.
+    pub fn condenses(&self, step: &Step) -> bool {
+        self.interface.is_some() && is_linear(self.assembler.model(), step)
     }
 }
 

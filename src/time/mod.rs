@@ -3,5 +3,6 @@
 mod accept;
 pub mod explicit;
 pub mod increment;
+pub mod ladder;
 pub mod step_size;
 pub mod touching;

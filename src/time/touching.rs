@@ -10,6 +10,8 @@
 //! - The shortest increment is accepted whatever its doubt, which is told as a warning.
 //! - A point that touches and parts again within one increment is not seen.
 
+use serde::{Deserialize, Serialize};
+
 use super::step_size::{Judgement, LEAST_SHARE, MOST_SHARE, can_shorten};
 use crate::contact::force::ContactState;
 use crate::contact::pair::Arrival;
@@ -24,7 +26,7 @@ const AIM: f64 = 0.5;
 const HALVINGS: usize = 50;
 
 /// What the attempts at an increment of a static step have shown about points that touch in it.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Touching {
     /// End and length of the increment that is made in parts [T]
     whole: Option<(f64, f64)>,

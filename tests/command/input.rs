@@ -124,6 +124,15 @@ fn refused_edits(edits: &[(&str, Value)], fragments: &[&str]) {
     refused_case(with(edits).to_string(), fragments);
 }
 
+/// What a command says of the good case with edits, on stdout and stderr.
+fn outcome(command: &str, edits: &[(&str, Value)]) -> [String; 2] {
+    let folder = TempDir::new().unwrap();
+    write(folder.path(), "case.json", with(edits).to_string());
+    let output = fecontact(folder.path(), &[command, "case.json"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap())
+}
+
 #[test]
 fn the_good_case_is_good() {
     let folder = TempDir::new().unwrap();
@@ -386,6 +395,10 @@ fn rigid_masters_and_formulations_that_make_no_sense_are_refused() {
     let smooth = ("/contacts/base/smooth", json!(true));
     refused_edits(&[smooth.clone(), mortar], &["contacts.base.smooth: ", "is not for mortar"]);
     refused_edits(&[smooth, ("/contacts/base/master", plane)], &["contacts.base.smooth: ", "a rigid body needs none"]);
+    let small = ("/contacts/base/sliding", json!("small"));
+    let itself = ("/contacts/base/master", json!("block_bottom"));
+    refused_edits(&[small, itself], &["contacts.base.sliding: ", "a surface meets itself", "name the two parts"]);
+    refused_edits(&[("/contacts/base/sliding", json!("little"))], &["contacts.base.sliding", "`small`"]);
     refused_edits(
         &[("/contacts/base/shrink_fit", json!(true)), ("/contacts/base/initial", json!({"pressure": 1}))],
         &["contacts.base.shrink_fit: ", "leave one out"],
@@ -888,13 +901,6 @@ fn default_penalty_is_that_of_the_softer_side() {
 /// is named stays, with a warning where pressures are known to suffer, in `check`, in the summary and on stderr.
 #[test]
 fn the_method_follows_from_the_surfaces() {
-    let folder = TempDir::new().unwrap();
-    let outcome = |command: &str, edits: &[(&str, Value)]| {
-        write(folder.path(), "case.json", with(edits).to_string());
-        let output = fecontact(folder.path(), &[command, "case.json"]);
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap())
-    };
     let bent = |by: f64| ("/mesh/nodes/6/1", json!(-by));
     let pointwise = "gauss_to_segment, 2 points an edge (chosen because surfaces are straight and linear)";
     for by in [0.0, 1e-12, 1e-6] {
@@ -916,6 +922,30 @@ fn the_method_follows_from_the_surfaces() {
     }
     let [told, _] = outcome("check", &[bent(0.05), ("/contacts/base/smooth", json!(true))]);
     assert!(told.contains("gauss_to_segment") && told.contains("leave `smooth` out for mortar"), "{told}");
+}
+
+/// The block of three edges of length 1 on a ground of two of length 2, and the same moved until one point in three is past the
+/// ground's end.
+#[test]
+fn check_tells_how_far_small_sliding_goes() {
+    let small = ("/contacts/base/sliding", json!("small"));
+    let line = "small sliding: every point keeps its foot, normal and length of the start; for slips up to 0.1 and turns up to 0.02 rad";
+    let [told, _] = outcome("check", &[small.clone()]);
+    assert!(told.contains(line), "{told}");
+    let plane = json!({"plane": {"point": [0, 0], "normal": [0, 1]}});
+    let [told, _] = outcome("check", &[small.clone(), ("/contacts/base/master", plane)]);
+    assert!(told.contains("length of the start; for turns up to 0.02 rad"), "{told}");
+    let moved: Vec<Value> = good()["mesh"]["nodes"]
+        .as_array()
+        .expect("nodes")
+        .iter()
+        .enumerate()
+        .map(|(k, node)| json!([node[0].as_f64().expect("x") + if k > 5 { 1.5 } else { 0.0 }, node[1]]))
+        .collect();
+    let [told, _] = outcome("check", &[small, ("/mesh/nodes", json!(moved.clone()))]);
+    assert!(told.contains("of the slave face no part of the master, and never touch it in small sliding"), "{told}");
+    let [told, _] = outcome("check", &[("/mesh/nodes", json!(moved))]);
+    assert!(told.contains("of the slave face no part of the master") && !told.contains("small sliding"), "{told}");
 }
 
 #[test]

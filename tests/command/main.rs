@@ -11,3 +11,4 @@ mod law;
 mod plot;
 mod results;
 mod schema;
+mod survive;

@@ -7,5 +7,6 @@ mod contact;
 mod periodic;
 mod points;
 mod self_contact;
+mod small_sliding;
 mod stabilization;
 mod validation;

@@ -8,6 +8,8 @@ mod grids;
 
 mod boundary;
 mod builder;
+mod condensed;
+mod constant;
 mod elements;
 mod history;
 mod invariance;

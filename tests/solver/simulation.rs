@@ -14,7 +14,8 @@ use fecontact::output::history::History;
 use fecontact::output::newton_log::NewtonLog;
 use fecontact::output::warnings::Warnings;
 use fecontact::run::observer::Observer;
-use fecontact::run::{Axis, SavedRun, Simulation, watch};
+use fecontact::run::report::RunReport;
+use fecontact::run::{Axis, Saved, SavedRun, Simulation, watch};
 use serde_json::{Value, json};
 
 fn repository(file: &str) -> (Value, std::path::PathBuf) {
@@ -23,12 +24,14 @@ fn repository(file: &str) -> (Value, std::path::PathBuf) {
     (serde_json::from_str(&case).expect("JSON"), path)
 }
 
-/// Every increment is tried and dropped, the run stopped, resumed with nothing but what was saved, and the increment made.
+/// Every increment is tried and dropped, the run stopped, resumed with nothing but the bytes of a checkpoint, and the increment
+/// made.
 fn redone_and_resumed(model: &Arc<Model>) -> Vec<State> {
     let mut simulation = Simulation::new(model.clone());
     let mut states = Vec::new();
     while let Some(dropped) = simulation.attempt().expect("the step begins") {
-        let saved = simulation.save();
+        let bytes = simulation.save().bytes().expect("it can be written");
+        let saved = Saved::from_bytes(&bytes, model).expect("it can be read");
         simulation = Simulation::resume(model.clone(), saved);
         let again = simulation.attempt().expect("it begins").expect("there is one");
         assert_eq!(dropped.is_accepted(), again.is_accepted());
@@ -40,7 +43,7 @@ fn redone_and_resumed(model: &Arc<Model>) -> Vec<State> {
 }
 
 #[track_caller]
-fn check(case: &Value, path: &Path) {
+pub fn check(case: &Value, path: &Path) {
     let run = finish_at(case, path);
     let states = redone_and_resumed(&run.model);
     assert_eq!(states.len(), run.states.len());
@@ -123,6 +126,91 @@ fn every_increment_of_committed_cases_can_be_redone_and_resumed() {
     let (mut case, path) = repository("cases/block_on_ground.json");
     case["steps"][1]["duration"] = json!(2);
     check(&case, &path);
+}
+
+/// Stopped half way, taken up from the bytes of a checkpoint and run to its end: every increment has the same bits.
+fn half_way(case: &Value, path: &Path) {
+    let run = finish_at(case, path);
+    let mut first = Simulation::new(run.model.clone());
+    for _ in 0..run.states.len() / 2 {
+        first.next_increment().expect("it is solved").expect("an increment");
+    }
+    let bytes = first.save().bytes().expect("it can be written");
+    let saved = Saved::from_bytes(&bytes, &run.model).expect("it can be read");
+    let mut second = Simulation::resume(run.model.clone(), saved);
+    for (k, straight) in run.states.iter().enumerate().skip(run.states.len() / 2) {
+        let increment = second.next_increment().expect("it is solved").expect("an increment");
+        assert!(*increment.state == *straight, "increment {k} has other bits, time {}", straight.time);
+    }
+    assert!(second.next_increment().expect("it ends").is_none() && second.is_complete());
+    let [one, other] = [run.report, second.report()];
+    let counts = |report: &RunReport| [report.increments, report.cutbacks, report.rejected, report.newton_iterations];
+    assert_eq!(counts(&one), counts(&other));
+}
+
+#[test]
+fn quick_committed_cases_stopped_half_way_go_on_to_the_same_bits() {
+    for file in [
+        "paper/slope",
+        "paper/slope_wilson",
+        "paper/forced_oscillation",
+        "validation/greco",
+        "validation/hertz_q8_friction",
+    ] {
+        let (case, path) = repository(&format!("cases/{file}.json"));
+        half_way(&case, &path);
+    }
+}
+
+/// What a point and its foot remember where a surface touches itself, and where sides are periodic.
+#[test]
+fn contact_of_a_surface_with_itself_and_periodic_sides_go_on_to_the_same_bits() {
+    let fold = |x: f64, y: f64| {
+        let angle = std::f64::consts::PI * (1.5 - 1.9 * x);
+        let radius = 1.0 + 0.2 * y;
+        [radius * angle.cos(), radius * angle.sin()]
+    };
+    let mut mesh = Blocks::default().block("strip", [24, 2], fold).json();
+    let sides = ["left", "right"].map(|side| mesh["edges"][format!("strip_{side}")].as_array().expect("edges").clone());
+    mesh["edges"]["ends"] = sides.concat().into();
+    let touching = json!({
+        "mesh": mesh,
+        "bodies": {"strip": {"material": {"model": "neo_hookean", "E": 100, "nu": 0.3}}},
+        "contacts": {"ends": {"slave": "ends", "master": "ends", "normal": {"alpha_n": 1e3},
+            "friction": {"law": "coulomb", "mu": 0.3, "alpha_t": 5e2}}},
+        "steps": [{"name": "close", "duration": 1, "dt": {"initial": 0.1}, "supports": [
+            {"on": "strip_left", "ux": 0, "uy": 0}, {"on": "strip_right", "ux": {"rate": -0.2}, "uy": {"rate": 0.7}}]}],
+    });
+    half_way(&touching, Path::new("test.json"));
+    let mut periodic = dragged(json!({"method": "mortar"}), json!({"generalized_alpha": {"rho_infinity": 0.8}}));
+    periodic["periodic"] = json!([["ground_left", "ground_right"]]);
+    check(&periodic, Path::new("test.json"));
+}
+
+/// A caller's loads are no part of the model: a file says so, and a copy in this process has them.
+#[test]
+fn a_step_that_was_led_is_saved_in_the_process_alone() {
+    let mut simulation = Simulation::new(pulled_square().build().expect("a good model"));
+    assert!(simulation.save().bytes().is_ok());
+    simulation.lead("square_top", Axis::Y, 0.01, 10.0).expect("a support");
+    let told = simulation.save().bytes().unwrap_err().to_string();
+    assert!(told.contains("step `pull` was changed by its caller"), "{told}");
+    let model = simulation.model().clone();
+    let mut again = Simulation::resume(model, simulation.save());
+    while again.next_increment().expect("it is solved").is_some() {}
+    close("led", again.displacement("square_top").expect("a group").y, 0.01, 1e-12);
+}
+
+/// Bytes of another model, or of none, are refused.
+#[test]
+fn bytes_of_another_model_are_refused() {
+    let pulled = Simulation::new(pulled_square().build().expect("a good model"));
+    let bytes = pulled.save().bytes().expect("it can be written");
+    let other = Arc::new(common::model(&dragged(json!({}), json!("static"))));
+    assert!(Saved::from_bytes(&bytes, &other).is_err());
+    for length in 0..bytes.len() {
+        assert!(Saved::from_bytes(&bytes[..length], pulled.model()).is_err(), "{length} bytes of {}", bytes.len());
+    }
 }
 
 /// A square of 4 × 4 elements on rollers, pulled by its top: u_y = F L (1 − ν²)/(E W) in plane strain with free sides.

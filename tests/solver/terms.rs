@@ -275,7 +275,7 @@ fn loads_masses_and_stress_are_weighted_by_the_section() {
         let stress = model.bodies[0].material.respond(&deformation).expect("a stress");
         let (state, mut assembler) = (model.initial_state(), Assembler::new(&model));
         let trial = Trial::new(&state, &model.steps[0], 1.0, 0.1);
-        assembler.forces(trial, &u).expect("forces");
+        assembler.forces(trial, &u, None).expect("forces");
         let found = &assembler.evaluation;
         close("energy", found.strain_energy, 2.2 * stress.energy, 1e-12);
         for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
@@ -314,7 +314,7 @@ fn contact_forces_are_weighted_by_the_section() {
                 (u[2 * node], u[2 * node + 1]) = (shift, -depth);
             }
             let (state, mut assembler) = (model.initial_state(), Assembler::new(&model));
-            assembler.forces(Trial::new(&state, &model.steps[0], 1.0, 1.0), &u).expect("forces");
+            assembler.forces(Trial::new(&state, &model.steps[0], 1.0, 1.0), &u, None).expect("forces");
             let found = &assembler.evaluation;
             let force: f64 = model.bodies[0].nodes.iter().map(|&node| found.force[2 * node + 1]).sum();
             // The end-point rule is exact for w, which is linear.

@@ -32,7 +32,7 @@ pub struct ContactInput {
     /// jumps where a slave slides from one to the next. Corners of more than 45° stay
     #[serde(default)]
     pub smooth: bool,
-    /// How far the surfaces may slide on each other: any way (finite), or by a small part of an edge (small)
+    /// How far the surfaces may slide on each other: any way (finite), or by a small part of the distance between nodes (small)
     #[serde(default)]
     pub sliding: SlidingInput,
     /// Normal contact
@@ -62,10 +62,11 @@ pub enum SlidingInput {
     /// Any way: every point meets what it faces at the time
     #[default]
     Finite,
-    /// A small part of an edge: every point keeps the foot, the normal, the weights of the nodes and the length that it has at the start, so that
-    /// gap and slip are linear in the displacements. With linear bodies nothing but friction and opening is nonlinear then.
-    /// For small rotations only; what nothing faces at the start never touches. A run warns where a point slides by more
-    /// than a tenth of an edge, or a surface turns by more than 0.02 rad. Not for contact of a surface with itself
+    /// A small part of the distance between nodes: every point keeps the foot, the normal, the weights of the nodes and the
+    /// length that it has at the start, so that gap and slip are linear in the displacements. With linear bodies nothing but
+    /// friction and opening is nonlinear then. For small rotations only; what nothing faces at the start never touches. A run
+    /// warns where a point slides by more than a tenth of the distance between nodes, or a surface turns or stretches by more
+    /// than 0.02. Not for contact of a surface with itself
     Small,
 }
 

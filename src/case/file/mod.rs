@@ -57,6 +57,10 @@ pub struct Case {
     pub initial_velocity: BTreeMap<String, [f64; 2]>,
     /// Steps, one after the other
     pub steps: Vec<StepInput>,
+    /// Folder of results, or checkpoint, of a case that has come to its end, relative to this file: this case begins there.
+    /// Mesh, bodies and contacts must be the same but for the parameters of friction and damping. The steps follow on those
+    /// of that case: supports, loads and time go on from there; energies are counted anew
+    pub begin_with: Option<String>,
     /// Groups whose mean displacement and reaction go to the history
     #[serde(default)]
     pub watch: Vec<String>,

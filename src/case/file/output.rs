@@ -14,6 +14,9 @@ pub struct OutputInput {
     /// Explicit steps write a row of the history (and fields, every n-th time) at multiples of this since the start of the
     /// step [T]; a hundredth of the step unless given. Implicit steps do so at every increment
     pub interval: Option<f64>,
+    /// Minutes of wall time between checkpoints (checkpoint.bin), from which `run --resume` goes on to the same bits after
+    /// whatever has ended the run; the last one is written at the end. 5 unless given; null or 0 for none
+    pub checkpoint: Option<f64>,
     /// Slip over time and place (slip_map.csv), and the fronts that run along contacts with friction (fronts.csv)
     pub fronts: Option<FrontsInput>,
 }
@@ -28,6 +31,6 @@ pub struct FrontsInput {
 
 impl Default for OutputInput {
     fn default() -> Self {
-        Self { every: 1, fields: true, interval: None, fronts: None }
+        Self { every: 1, fields: true, interval: None, checkpoint: Some(5.0), fronts: None }
     }
 }

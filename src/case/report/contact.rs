@@ -5,6 +5,7 @@ use crate::case::file::{
     Case, CircleInput, ContactInput, InitialInput, MasterInput, PlaneInput, PolylineInput, RigidInput,
 };
 use crate::contact::pair::ContactPair;
+use crate::contact::small_sliding::LITTLE_TURN;
 use crate::laws::friction::observables;
 use crate::model::Model;
 use crate::model::method::{Chosen, Method};
@@ -65,6 +66,12 @@ fn contact(case: &Case, pair: &ContactPair, chosen: Option<&Chosen>) -> Vec<Stri
         format!("{}: {}", evaluated(input, chosen), count(pair.points.len(), "contact point")),
         format!("alpha_n {} ({alpha_n})", number(pair.alpha_n)),
     ];
+    if let Some(small) = &pair.small {
+        let slips = small.little_slip().map(|slip| format!("slips up to {} and ", number(slip))).unwrap_or_default();
+        lines.push(format!(
+            "small sliding: every point keeps its foot, normal and length of the start; for {slips}turns up to {LITTLE_TURN} rad"
+        ));
+    }
     if input.massless {
         lines.push("the slave's nodes carry no mass in dynamic steps".into());
     }

@@ -25,6 +25,8 @@ pub struct Front {
     pub children: Vec<u32>,
     /// Whether the depth in the tree is odd
     pub odd: bool,
+    /// Whether its unknowns are only summed up: those that are kept when all others are eliminated
+    pub open: bool,
     /// Where the factors lie: L₁₁ over L₂₁ (all rows × pivots), then U₁₂ transposed (below × pivots), by columns
     pub values: Range<usize>,
     /// The blocks of A that go to the columns of the pivots
@@ -46,6 +48,9 @@ impl Front {
 
     /// Floating-point operations: LU of the pivots, both panels, the contribution.
     pub fn work(&self) -> f64 {
+        if self.open {
+            return 0.0;
+        }
         let (k, r) = (self.pivots as f64, self.below() as f64);
         2.0 / 3.0 * k * k * k + 2.0 * k * k * r + 2.0 * k * r * r
     }

@@ -12,20 +12,25 @@
 //! Source: Duff & Reid (1983), doi:10.1145/356044.356047; Liu (1990), doi:10.1137/0611010; Li & Demmel (1998), Making
 //! sparse Gaussian elimination scalable by static pivoting, doi:10.1109/SC.1998.10030.
 
+mod condensation;
 mod dense;
 mod factor;
 mod forest;
 mod front;
 mod jobs;
 mod order;
+mod reuse;
 mod scale;
 mod solve;
+mod stacks;
 mod symbolic;
 mod tree;
 
 use std::sync::Arc;
 
+use super::memory::available_memory;
 use super::{LinearFailure, LinearSolver, Pattern, SparseMatrix};
+pub use condensation::{Condensation, Condensed, Forwarded};
 use factor::Factors;
 use scale::Scaling;
 use symbolic::{Entry, Symbolic};
@@ -47,7 +52,8 @@ impl Multifrontal {
     /// [`LinearFailure`] when the pattern is too large for an order of elimination.
     pub fn analyse(&mut self, pattern: &Arc<Pattern>) -> Result<(), LinearFailure> {
         if self.symbolic.as_ref().is_none_or(|symbolic| !Arc::ptr_eq(&symbolic.pattern, pattern)) {
-            self.symbolic = Some(Symbolic::new(pattern.clone())?);
+            self.symbolic = Some(Symbolic::new(pattern.clone(), &[])?);
+            self.factors.settle();
         }
         Ok(())
     }
@@ -56,8 +62,9 @@ impl Multifrontal {
     /// scaled matrix. Known once the pattern is analysed, before any of the factors is.
     pub fn memory(&self) -> usize {
         self.symbolic.as_ref().map_or(0, |symbolic| {
-            let values =
-                symbolic.values() + symbolic.contributions(rayon::current_num_threads()) + symbolic.pattern.values();
+            let values = symbolic.values()
+                + symbolic.contributions(rayon::current_num_threads())
+                + 2 * symbolic.pattern.values();
             size_of::<f64>() * values + size_of::<Entry>() * symbolic.entries.len()
         })
     }
@@ -70,6 +77,11 @@ impl Multifrontal {
             return Ok(());
         }
         available_memory().map_or(Ok(()), |free| fits(size, self.memory(), held + free))
+    }
+
+    /// Fronts that the last factorization eliminated, and all there are: those whose values had not changed stayed.
+    pub fn eliminated(&self) -> (usize, usize) {
+        (self.factors.eliminated, self.symbolic.as_ref().map_or(0, |symbolic| symbolic.fronts.len()))
     }
 
     /// Number of values in L and U, the zeros of relaxed fronts included.
@@ -85,13 +97,6 @@ fn fits(size: usize, needed: usize, available: usize) -> Result<(), LinearFailur
         return Ok(());
     }
     Err(LinearFailure::TooLarge { size, needed: needed as f64 / GIB, available: available as f64 / GIB })
-}
-
-/// Bytes that programs can still take, from the Linux memory status.
-fn available_memory() -> Option<usize> {
-    let status = std::fs::read_to_string("/proc/meminfo").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
-    Some(line.trim().trim_end_matches("kB").trim().parse::<usize>().ok()? * 1024)
 }
 
 impl LinearSolver for Multifrontal {
@@ -111,14 +116,15 @@ impl LinearSolver for Multifrontal {
         self.ordered.clear();
         let dofs = || symbolic.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
         self.ordered.extend(dofs().map(|dof| rows[dof] * b[dof]));
-        solve::substitute(symbolic, &self.factors, &mut self.ordered);
+        solve::forward(symbolic, &self.factors, &mut self.ordered);
+        solve::backward(symbolic, &self.factors, &mut self.ordered);
         for (dof, x) in dofs().zip(&self.ordered) {
             b[dof] = columns[dof] * x;
         }
     }
 
     fn perturbed_pivots(&self) -> usize {
-        self.factors.replaced
+        self.factors.replaced()
     }
 }
 

@@ -9,10 +9,15 @@ use super::front::Front;
 use super::jobs::{Job, Waiting};
 use super::symbolic::Symbolic;
 
-/// x ← (L U)⁻¹ x in the order of elimination.
-pub fn substitute(symbolic: &Symbolic, factors: &Factors, x: &mut [f64]) {
+/// x ← L⁻¹ x in the order of elimination.
+pub fn forward(symbolic: &Symbolic, factors: &Factors, x: &mut [f64]) {
     let run = Substitution { symbolic, factors, waiting: Waiting::default() };
     parts(symbolic, x).upwards(&|forest, x| run.forest_forward(forest, x), &|front, x| run.heavy_forward(front, x));
+}
+
+/// x ← U⁻¹ x in the order of elimination.
+pub fn backward(symbolic: &Symbolic, factors: &Factors, x: &mut [f64]) {
+    let run = Substitution { symbolic, factors, waiting: Waiting::default() };
     parts(symbolic, x).downwards(&|forest, x| run.forest_backward(forest, x), &|front, x| run.heavy_backward(front, x));
 }
 
@@ -104,6 +109,9 @@ impl Substitution<'_> {
 
     /// y₁ ← L₁₁⁻¹ P y₁, y₂ ← y₂ − L₂₁ y₁
     fn forward(&self, front: &Front, y: &mut [f64]) {
+        if front.open {
+            return;
+        }
         exchange(y, &self.factors.exchanges[front.first..front.first + front.pivots], 0);
         let lower = &self.factors.values[front.values.clone()][..front.size() * front.pivots];
         Arch::new().dispatch(Forward { lower, y });
@@ -111,6 +119,9 @@ impl Substitution<'_> {
 
     /// y₁ ← U₁₁⁻¹ (y₁ − U₁₂ y₂)
     fn backward(&self, front: &Front, y: &mut [f64]) {
+        if front.open {
+            return;
+        }
         let (lower, upper) = self.factors.values[front.values.clone()].split_at(front.size() * front.pivots);
         let (own, below) = y.split_at_mut(front.pivots);
         Arch::new().dispatch(Backward { lower, upper, own, below });

@@ -27,10 +27,16 @@ pub struct Symbolic {
 }
 
 impl Symbolic {
-    pub fn new(pattern: Arc<Pattern>) -> Result<Self, LinearFailure> {
-        let elimination = Elimination::new(&pattern, order(&pattern)?);
-        let supernodes = supernodes(&elimination);
+    /// The `kept` nodes, ascending and all coupled with each other by the pattern, make up the last front, which stays open.
+    pub fn new(pattern: Arc<Pattern>, kept: &[usize]) -> Result<Self, LinearFailure> {
+        let mut order = order(&pattern)?;
+        order.retain(|node| kept.binary_search(node).is_err());
+        order.extend(kept);
+        let eliminated = pattern.nodes() - kept.len();
+        let elimination = Elimination::new(&pattern, order);
+        let supernodes = supernodes(&elimination, eliminated);
         let mut fronts = fronts(&pattern, &elimination, &supernodes);
+        fronts.iter_mut().for_each(|front| front.open = front.first >= 2 * eliminated);
         let entries = entries(&pattern, &elimination, &mut fronts);
         let forests = forests(&fronts);
         Ok(Self { pattern, nodes: elimination.nodes, fronts, entries, forests })
@@ -103,6 +109,7 @@ fn fronts(pattern: &Pattern, elimination: &Elimination, supernodes: &[Supernode]
             inner_runs: 0,
             children,
             odd: false,
+            open: false,
             values,
             lower: 0..0,
             upper: 0..0,

@@ -143,23 +143,24 @@ impl Supernode {
     }
 }
 
-/// Fundamental supernodes, relaxed by taking small last children into their parents.
+/// Fundamental supernodes, relaxed by taking small last children into their parents. None holds positions both below and
+/// above `eliminated`.
 ///
 /// Source: Ashcraft & Grimes (1989), doi:10.1145/76909.76910.
-pub fn supernodes(elimination: &Elimination) -> Vec<Supernode> {
+pub fn supernodes(elimination: &Elimination, eliminated: usize) -> Vec<Supernode> {
     let Elimination { parents, counts, .. } = elimination;
     let n = parents.len();
     let mut supernodes: Vec<Supernode> = Vec::new();
     let mut first = 0;
     while first < n {
         let mut last = first;
-        while parents[last] == last + 1 && counts[last] == counts[last + 1] + 1 {
+        while parents[last] == last + 1 && counts[last] == counts[last + 1] + 1 && last + 1 != eliminated {
             last += 1;
         }
         let mut current = Supernode { first, end: last + 1, below: counts[last] - 1, zeros: 0 };
         while let Some(child) = supernodes.last() {
             // In postorder the one before is a child or belongs to another subtree.
-            if parents[child.end - 1] >= current.end {
+            if parents[child.end - 1] >= current.end || current.first == eliminated {
                 break;
             }
             let merged = current.with_child(child);

@@ -24,6 +24,7 @@ use self::interface::Interface;
 use self::source::{Source, sources};
 use self::space_time::Map;
 use super::csv::failed;
+use super::files;
 
 /// Files that [`draw`] may write.
 pub const FIGURES: [&str; 11] = [
@@ -39,6 +40,15 @@ pub const FIGURES: [&str; 11] = [
     "events.svg",
     "traction.svg",
 ];
+
+/// Whether a file is a figure of ours: what a user has drawn under the same name is not.
+pub fn is_figure(path: &Path) -> bool {
+    use std::io::Read;
+    let plain = path.symlink_metadata().is_ok_and(|known| known.is_file());
+    let mut start = Vec::new();
+    let read = |file: std::fs::File| file.take(1024).read_to_end(&mut start);
+    plain && std::fs::File::open(path).and_then(read).is_ok() && String::from_utf8_lossy(&start).contains(svg::OURS)
+}
 
 /// Draw the figures of result folders into `out`; several folders are overlaid. Returns the files written.
 ///
@@ -59,7 +69,14 @@ pub fn draw(folders: &[PathBuf], out: &Path) -> Result<Vec<PathBuf>, PlotError> 
     let mut write = |name: &str, svg: String| {
         std::fs::create_dir_all(out).map_err(|cause| failed(out, &cause))?;
         let path = out.join(name);
-        std::fs::write(&path, svg).map_err(|cause| failed(&path, &cause))?;
+        if path.symlink_metadata().is_ok() && !is_figure(&path) {
+            return Err(failed(
+                &path,
+                &"is in the way: it is no figure drawn by fecontact; move it, or choose another --out",
+            )
+            .into());
+        }
+        files::replace(&path, svg.as_bytes()).map_err(|cause| failed(&path, &cause))?;
         written.push(path);
         Ok(())
     };

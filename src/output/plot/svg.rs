@@ -2,6 +2,9 @@
 
 use std::fmt::Write;
 
+/// By this a figure of ours is known.
+pub const OURS: &str = "drawn by fecontact";
+
 /// A drawing in progress.
 #[derive(Debug, Default)]
 pub struct Drawing(String);
@@ -159,8 +162,8 @@ impl Drawing {
     pub fn finish(self, [width, height]: [f64; 2]) -> String {
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} \
-             {height}\" font-family=\"Helvetica, Arial, DejaVu Sans, sans-serif\" fill=\"#222\">\n<rect \
-             width=\"100%\" height=\"100%\" fill=\"white\"/>\n{}</svg>\n",
+             {height}\" font-family=\"Helvetica, Arial, DejaVu Sans, sans-serif\" fill=\"#222\">\n<!-- \
+             {OURS} -->\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n{}</svg>\n",
             self.0
         )
     }

@@ -99,8 +99,25 @@ impl ContactIteration {
         self.points.clear();
     }
 
-    /// Residual at the displacement `u`, where nothing is presumed; on request the tangent as well, with all that is
-    /// presumed, and a residual that goes with it.
+    /// Residual of all equations at the displacement `u`, on request with their tangent: see [`ContactIteration::evaluate`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn evaluate_all(
+        &mut self,
+        assembler: &mut Assembler,
+        trial: Trial,
+        u: &[f64],
+        request: Request,
+        system: &mut System,
+    ) -> Result<(), TrialFailure> {
+        self.evaluate(assembler, trial, u, request, |assembler, responses| {
+            assembler.assemble(trial, u, responses, request, system)
+        })
+    }
+
+    /// Have the equations assembled at the displacement `u` from the responses of the contact points: for a residual nothing is
+    /// presumed; for a tangent all is, and a residual that goes with it.
     ///
     /// # Errors
     /// [`TrialFailure`] when an element inverts, a friction law fails, or a load has no value.
@@ -110,10 +127,10 @@ impl ContactIteration {
         trial: Trial,
         u: &[f64],
         request: Request,
-        system: &mut System,
+        assemble: impl FnOnce(&mut Assembler, &[PairResponse]) -> Result<(), TrialFailure>,
     ) -> Result<(), TrialFailure> {
         if request != Request::Tangent {
-            return assembler.residual(trial, u, system);
+            return assembler.with_responses(trial, u, request, assemble);
         }
         let aids = assembler.model().aids;
         self.presume(assembler.model(), &assembler.evaluation.contacts, trial, u);
@@ -121,7 +138,7 @@ impl ContactIteration {
         if aids.stick && self.presume_sticking(assembler.model()) {
             self.respond(assembler, trial, u, request)?;
         }
-        assembler.assemble(trial, u, &self.next, request, system)?;
+        assemble(assembler, &self.next)?;
         self.take_over(u, trial.old, aids);
         Ok(())
     }

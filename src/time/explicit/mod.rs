@@ -23,6 +23,7 @@
 //! Source: Irons & Treharne (1971), Proc. 3rd Conf. Matrix Methods in Struct. Mech., WPAFB; Belytschko, Liu, Moran &
 //! Elkhodary (2014), Nonlinear Finite Elements for Continua and Structures, §6.2.
 
+mod memory;
 mod motion;
 mod stability;
 
@@ -39,6 +40,7 @@ use crate::model::scheme::start_acceleration;
 use crate::model::state::State;
 use crate::model::{Model, Step};
 use crate::solve::failure::IncrementFailure;
+pub use memory::ExplicitMemory;
 use motion::{kinetic_energy, masses};
 use stability::Stability;
 
@@ -139,11 +141,9 @@ impl Explicit {
     fn start(&mut self, state: &mut State, assembler: &mut Assembler) -> Result<(), IncrementFailure> {
         let (model, step) = (&*self.model.clone(), &*self.step.clone());
         let still = Trial::new(state, step, state.time, 0.0);
-        assembler.forces(still, &state.displacement).map_err(IncrementFailure::Start)?;
         assembler.evaluation.damping.fill(0.0);
-        if model.is_viscous() {
-            assembler.add_viscous([&state.displacement, &state.velocity]);
-        }
+        let velocity = model.is_viscous().then_some(&state.velocity[..]);
+        assembler.forces(still, &state.displacement, velocity).map_err(IncrementFailure::Start)?;
         let found = &mut assembler.evaluation;
         self.add_pulls(state.time, &state.velocity, found);
         let accelerations = found.force.iter().enumerate().map(|(dof, force)| -force / self.mass[dof / 2]);

@@ -22,12 +22,17 @@ impl Explicit {
     ) -> Result<(), TrialFailure> {
         let (model, step) = (&*self.model.clone(), &*self.step.clone());
         let dt = time - state.time;
-        assembler.forces(Trial { settles: false, ..Trial::new(state, step, time, dt) }, &self.displacement)?;
         if model.is_viscous() {
             let ways = self.displacement.iter().zip(&state.displacement);
             self.mean_velocity.iter_mut().zip(ways).for_each(|(velocity, (new, old))| *velocity = (new - old) / dt);
-            assembler.add_viscous([&self.displacement, &self.mean_velocity]);
-        } else if !self.dampers.is_empty() {
+        }
+        let velocity = model.is_viscous().then_some(&self.mean_velocity[..]);
+        assembler.forces(
+            Trial { settles: false, ..Trial::new(state, step, time, dt) },
+            &self.displacement,
+            velocity,
+        )?;
+        if velocity.is_none() && !self.dampers.is_empty() {
             assembler.evaluation.damping.fill(0.0);
         }
         let found = &mut assembler.evaluation;
@@ -53,10 +58,13 @@ impl Explicit {
         let chunks = velocity.par_chunks_mut(CHUNK).zip(acceleration.par_chunks_mut(CHUNK));
         let chunks = chunks.zip(force.par_chunks(CHUNK).zip(self.mass.par_chunks(CHUNK / 2)));
         chunks.for_each(|((velocity, acceleration), (force, mass))| {
-            for (k, (v, a)) in velocity.iter_mut().zip(acceleration).enumerate() {
-                let new = -force[k] / mass[k / 2];
-                *v += 0.5 * dt * (*a + new);
-                *a = new;
+            let rates = velocity.chunks_exact_mut(2).zip(acceleration.chunks_exact_mut(2));
+            for ((v, a), (force, mass)) in rates.zip(force.chunks_exact(2).zip(mass)) {
+                for i in 0..2 {
+                    let new = -force[i] / mass;
+                    v[i] += 0.5 * dt * (a[i] + new);
+                    a[i] = new;
+                }
             }
         });
     }

@@ -7,6 +7,7 @@
 
 use nalgebra::{DMatrix, DVector, Vector2};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use std::sync::Arc;
 
@@ -34,28 +35,28 @@ const FEW: usize = 2048;
 /// What bounds the increment, as last looked at.
 #[derive(Clone)]
 pub(super) struct Stability {
-    model: Arc<Model>,
-    elements: Vec<Element>,
+    pub(super) model: Arc<Model>,
+    pub(super) elements: Vec<Element>,
     /// Nodes of the elements, `stride` places an element, filled up with the first one
-    nodes: Vec<usize>,
+    pub(super) nodes: Vec<usize>,
     /// Their displacements against the first one when the element was looked at [L]
-    seen: Vec<Vector2<f64>>,
-    stride: usize,
+    pub(super) seen: Vec<Vector2<f64>>,
+    pub(super) stride: usize,
     /// k/m of (3) at every node [1/T²]
-    softness: Vec<f64>,
+    pub(super) softness: Vec<f64>,
     /// Segment that every contact point met
-    segments: Vec<Option<usize>>,
+    pub(super) segments: Vec<Option<usize>>,
     /// Increments since contacts were looked at
-    since: usize,
+    pub(super) since: usize,
     /// Whether some elements were looked at again since
-    relooked: bool,
+    pub(super) relooked: bool,
     /// How far nodes may move against each other until an element may have changed [L]
-    margin: f64,
+    pub(super) margin: f64,
 }
 
 /// One element, as last looked at.
-#[derive(Clone, Copy)]
-struct Element {
+#[derive(Clone, Copy, Serialize, Deserialize)]
+pub(super) struct Element {
     /// λ_e and c [1/T², 1/T]
     bounds: [f64; 2],
     /// Area over diagonal; infinite where the law is linear, and the bounds depend on no displacement [L]
@@ -210,7 +211,7 @@ impl Stability {
 }
 
 /// The nodes of an element and as often the first one as it takes to fill `stride` places.
-fn filled(nodes: &[usize], stride: usize) -> impl Iterator<Item = usize> {
+pub(super) fn filled(nodes: &[usize], stride: usize) -> impl Iterator<Item = usize> {
     let first = nodes.iter().take(1).cycle();
     nodes.iter().chain(first).take(stride).copied()
 }

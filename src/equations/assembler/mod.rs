@@ -1,20 +1,23 @@
 //! Residual and tangent of a model: the terms added up.
 
+mod contacts;
+mod parts;
+
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::coupling::{Coupling, Layout};
-use super::equilibrium::Equilibrium;
-use super::evaluation::{Evaluation, Seconds};
-use super::evolving::Evolving;
-use super::failure::TrialFailure;
-use super::inertia::Inertia;
-use super::solids::Solids;
-use super::sums::Sums;
-use super::term::Term;
-use super::trial::Trial;
-use super::{dampers, damping, inertia, interfaces, loads, stabilization, supports};
-use crate::contact::pair::{PairResponse, Presumption};
+use crate::contact::pair::PairResponse;
+use crate::equations::coupling::{Coupling, Layout};
+use crate::equations::equilibrium::Equilibrium;
+use crate::equations::evaluation::{Evaluation, Seconds};
+use crate::equations::evolving::Evolving;
+use crate::equations::failure::TrialFailure;
+use crate::equations::inertia::Inertia;
+use crate::equations::solids::Solids;
+use crate::equations::sums::Sums;
+use crate::equations::term::Term;
+use crate::equations::trial::Trial;
+use crate::equations::{dampers, damping, inertia, interfaces, loads, stabilization, supports};
 use crate::linear::SparseMatrix;
 use crate::linear::system::{Request, System};
 use crate::model::Model;
@@ -104,43 +107,6 @@ impl Assembler {
         })
     }
 
-    /// Do something with the responses of all contact points where nothing is presumed.
-    fn with_responses<T>(
-        &mut self,
-        trial: Trial,
-        u: &[f64],
-        request: Request,
-        act: impl FnOnce(&mut Self, &[PairResponse]) -> Result<T, TrialFailure>,
-    ) -> Result<T, TrialFailure> {
-        let mut responses = std::mem::take(&mut self.responses);
-        let found = self.interfaces(trial, u, |_, _| Presumption::default(), request, &mut responses);
-        let done = found.and_then(|()| act(self, &responses));
-        self.responses = responses;
-        done
-    }
-
-    /// Responses of all contact points at the displacement `u`, with what is presumed about a point of a pair: for a tangent
-    /// alone, a residual that may be accepted knows no presumptions. They come in `responses`, whose memory is used again.
-    ///
-    /// # Errors
-    /// [`TrialFailure`] when a friction law fails.
-    pub fn interfaces(
-        &mut self,
-        trial: Trial,
-        u: &[f64],
-        presumed: impl Fn(usize, usize) -> Presumption + Sync,
-        request: Request,
-        responses: &mut Vec<PairResponse>,
-    ) -> Result<(), TrialFailure> {
-        if self.model.contacts.is_empty() {
-            return Ok(());
-        }
-        let clock = Instant::now();
-        let answer = interfaces::respond(&self.model, trial, u, presumed, request, responses);
-        self.seconds.contact += clock.elapsed().as_secs_f64();
-        answer
-    }
-
     /// Residual, and tangent on request, at the displacement `u` with the given responses of the contact points.
     ///
     /// # Errors
@@ -161,15 +127,14 @@ impl Assembler {
             if !Arc::ptr_eq(&system.tangent.pattern, &self.layout.pattern) {
                 system.tangent = self.layout.matrix();
             }
-            system.tangent.clear();
         }
         self.magnitudes.fill(0.0);
         self.evaluation.damping.clear();
-        self.add(&OF_PLACE_AND_MOTION, (trial, u), responses, true, tangent.then_some(&mut system.tangent))?;
+        let motion = (trial, u, None);
+        self.add(&OF_PLACE_AND_MOTION, motion, responses, true, tangent.then_some(&mut system.tangent))?;
         model.ties.gather(2, &mut self.evaluation.damping);
         model.ties.gather(2, &mut self.magnitudes);
-        self.equilibrium.note_contacts(model, trial, responses);
-        self.keep_states(responses);
+        self.note_contacts(trial, responses);
         self.balance(trial, u, tangent, system);
         supports::prescribe(model, self.weight, trial, u, tangent, system)?;
         let mass = self.mass.as_ref().filter(|_| trial.step.scheme.coefficients().is_some());
@@ -179,32 +144,28 @@ impl Assembler {
     }
 
     /// Forces of what the displacement `u` alone decides, and everything else that an accepted state takes over from the
-    /// evaluation but rates, damping and reactions: what explicit increments need, which find the velocities last.
+    /// evaluation but rates, damping and reactions: what explicit increments need, which find the velocities last. With
+    /// velocities `v` the viscous forces of the bodies belong to it, and what they put on the nodes is written over the damping.
     ///
     /// # Errors
     /// As [`Assembler::residual`].
-    pub fn forces(&mut self, trial: Trial, u: &[f64]) -> Result<(), TrialFailure> {
+    pub fn forces(&mut self, trial: Trial, u: &[f64], v: Option<&[f64]>) -> Result<(), TrialFailure> {
         self.with_responses(trial, u, Request::Residual, |assembler, responses| {
             let clock = Instant::now();
-            assembler.add(&OF_PLACE, (trial, u), responses, false, None)?;
+            assembler.add(&OF_PLACE, (trial, u, v), responses, false, None)?;
+            if let Some(v) = v {
+                assembler.add_viscous([u, v]);
+            }
             assembler.keep_states(responses);
             assembler.seconds.assembly += clock.elapsed().as_secs_f64();
             Ok(())
         })
     }
 
-    /// Keep the trial states of the contact points for the accepted state.
-    fn keep_states(&mut self, responses: &[PairResponse]) {
-        let contacts = &mut self.evaluation.contacts;
-        contacts.resize_with(responses.len(), Vec::new);
-        contacts.iter_mut().zip(responses).for_each(|(states, pair)| states.clone_from(&pair.states));
-    }
-
-    /// Add the viscous forces of the bodies at displacements and velocities to those just found, and write what they put on
-    /// the nodes over the damping.
-    pub fn add_viscous(&mut self, motion: [&[f64]; 2]) {
+    /// Add the viscous forces of the bodies to those just found, and write what they put on the nodes over the damping.
+    fn add_viscous(&mut self, motion: [&[f64]; 2]) {
         let Evaluation { force, damping, .. } = &mut self.evaluation;
-        self.solids.viscous(motion, damping, None);
+        self.solids.other_viscous(motion, damping);
         self.model.ties.gather(2, damping);
         for (force, damping) in force.iter_mut().zip(damping) {
             *force += *damping;
@@ -212,25 +173,31 @@ impl Assembler {
         }
     }
 
-    /// Write the sums of some terms over those of the evaluation, with their magnitudes and tangents where they are wanted.
-    /// A copy's share goes to the node it moves with.
+    /// Write the sums of some terms over those of the evaluation and over the tangent, if it is wanted, and add the forces'
+    /// magnitudes. A copy's share goes to the node it moves with. With velocities, see [`Solids::add`].
     fn add(
         &mut self,
         terms: &[Term],
-        (trial, u): (Trial, &[f64]),
+        (trial, u, v): (Trial, &[f64], Option<&[f64]>),
         responses: &[PairResponse],
         scaled: bool,
-        tangent: Option<&mut SparseMatrix>,
+        mut tangent: Option<&mut SparseMatrix>,
     ) -> Result<(), TrialFailure> {
         let Self { model, layout, solids, evolving, damping_mass, magnitudes, evaluation, .. } = self;
         let Evaluation { force, loads, damping, stabilization, memory, strain_energy, dissipated, .. } = evaluation;
         [&mut *force, &mut *damping].into_iter().for_each(|values| values.resize(u.len(), 0.0));
         let magnitudes = scaled.then_some(&mut magnitudes[..]);
+        if let Some(tangent) = &mut tangent {
+            match solids.constant_stiffness(layout).filter(|_| terms.contains(&Term::Solids)) {
+                Some(constant) => tangent.values.copy_from_slice(&constant.values),
+                None => tangent.clear(),
+            }
+        }
         let mut sums = Sums { force, magnitudes, tangent, layout };
         for term in terms {
             match term {
                 Term::Solids => {
-                    let elastic = solids.add(u, &mut sums)?;
+                    let elastic = solids.add(u, v, &mut sums)?;
                     *strain_energy =
                         elastic + evolving.add(model, (trial, u), (&mut *memory, &mut *dissipated), &mut sums)?;
                 }
@@ -278,42 +245,5 @@ impl Assembler {
         if self.layout.cover(responses, trial.old) {
             (self.mass, self.damping_mass) = (None, None);
         }
-    }
-
-    /// The mass matrix on the current pattern.
-    pub fn mass(&mut self) -> &SparseMatrix {
-        let Self { model, layout, mass, .. } = self;
-        mass.get_or_insert_with(|| inertia::mass(model, layout))
-    }
-
-    /// The tangent of one term by itself, with no supports: see [`Term::dependence`].
-    ///
-    /// # Errors
-    /// As [`Assembler::residual`].
-    pub fn tangent_of(&mut self, term: Term, trial: Trial, u: &[f64]) -> Result<SparseMatrix, TrialFailure> {
-        self.with_responses(trial, u, Request::Tangent, |assembler, responses| {
-            assembler.tangent_with(term, trial, u, responses)
-        })
-    }
-
-    fn tangent_with(
-        &mut self,
-        term: Term,
-        trial: Trial,
-        u: &[f64],
-        responses: &[PairResponse],
-    ) -> Result<SparseMatrix, TrialFailure> {
-        self.cover(trial, responses);
-        let mut tangent = self.layout.matrix();
-        if term == Term::Inertia {
-            let mass = self.mass().clone();
-            let inertia = Inertia::at(&self.model, trial, u, &mass);
-            inertia.into_iter().for_each(|inertia| tangent.add_columns(&mass, &inertia.factors));
-            return Ok(tangent);
-        }
-        let kept = std::mem::take(&mut self.evaluation);
-        let added = self.add(&[term], (trial, u), responses, false, Some(&mut tangent));
-        self.evaluation = kept;
-        added.map(|()| tangent)
     }
 }

@@ -1,50 +1,31 @@
-//! Stress of the bodies: every element's forces on its nodes, and the sums of them at each node.
-//!
-//! Elements of one kind and law follow each other in a run and are evaluated in parallel; then every node sums up what its
-//! elements put there, in their order: the same bits on any number of threads, and nothing is written twice.
+//! Elements that are evaluated anew each time: those of one kind and body that follow each other, in parallel.
 
 use std::ops::Range;
-use std::sync::Arc;
 
 use nalgebra::Vector2;
 use rayon::prelude::*;
 
-use super::coupling::Layout;
-use super::dependence::Dependence;
-use super::evolving::evolves;
-use super::sums::{Sums, add_blocks};
+use super::BATCH;
+use super::places::Places;
+use crate::equations::coupling::Layout;
+use crate::equations::evolving::evolves;
 use crate::equations::failure::TrialFailure;
+use crate::equations::sums::add_blocks;
 use crate::laws::bulk::InvertedElement;
 use crate::linear::SparseMatrix;
 use crate::model::Model;
 
-/// Elements whose tangents are held at once before they are added.
-const BATCH: usize = 1024;
-
 /// Elements that are done sooner than another thread wakes up.
 const FEW: usize = 64;
 
-/// Nodes whose sums are done sooner than another thread wakes up.
-const FEW_NODES: usize = 1024;
-
-/// A linear law at small strains has the same tangent everywhere; with F-bar the tangent changes nevertheless.
-pub(super) fn dependence(model: &Model) -> Dependence {
-    let constant =
-        |e: usize| model.bodies[model.body_of_element[e]].material.is_linear() && !model.solids[e].is_f_bar();
-    if (0..model.solids.len()).all(constant) { Dependence::Nothing } else { Dependence::Displacement }
-}
-
-/// The elements of a model, what each puts on its nodes, and where each node finds its own.
-pub(super) struct Solids {
-    model: Arc<Model>,
+/// Elements of a model in runs.
+pub(super) struct Runs {
     runs: Vec<Run>,
-    /// Where the places of each node start, and where the last one's end
-    starts: Vec<usize>,
-    /// Places in `forces`, in the order of the elements
-    places: Vec<usize>,
+    /// Where each node finds its elements' forces
+    pub places: Places,
     /// Forces of the elements on their nodes [F]
-    forces: Vec<Vector2<f64>>,
-    /// What each element stores [F·L]
+    pub forces: Vec<Vector2<f64>>,
+    /// What each element of the model stores, if it is in a run [F·L]
     energies: Vec<Result<f64, InvertedElement>>,
     /// Tangents of a batch, column by column
     tangents: Vec<f64>,
@@ -72,16 +53,18 @@ impl Run {
     }
 }
 
-impl Solids {
-    pub fn new(model: &Arc<Model>) -> Self {
+impl Runs {
+    /// Of the elements that are `wanted`.
+    pub fn new(model: &Model, wanted: impl Fn(usize) -> bool + Clone) -> Self {
         let elements = &model.mesh.elements;
         let mut runs: Vec<Run> = Vec::new();
-        let mut starts = vec![0; model.mesh.nodes.len() + 1];
         let mut count = 0;
-        for (e, element) in elements.iter().enumerate() {
+        for (e, element) in elements.iter().enumerate().filter(|(e, _)| wanted(*e)) {
             let (body, kind) = (model.body_of_element[e], element.kind);
             match runs.last_mut() {
-                Some(run) if run.body == body && elements[run.elements.start].kind == kind => run.elements.end += 1,
+                Some(run) if run.elements.end == e && run.body == body && elements[run.elements.start].kind == kind => {
+                    run.elements.end += 1;
+                }
                 _ => runs.push(Run {
                     elements: e..e + 1,
                     body,
@@ -91,35 +74,24 @@ impl Solids {
                 }),
             }
             count += element.nodes.len();
-            element.nodes.iter().for_each(|&node| starts[node + 1] += 1);
         }
-        (1..starts.len()).for_each(|node| starts[node] += starts[node - 1]);
-        let mut next = starts.clone();
-        let mut places = vec![0; count];
-        for (place, &node) in elements.iter().flat_map(|element| &element.nodes).enumerate() {
-            places[next[node]] = place;
-            next[node] += 1;
+        let nodes = elements.iter().enumerate().filter(|(e, _)| wanted(*e)).flat_map(|(_, element)| &element.nodes);
+        Self {
+            runs,
+            places: Places::new(model.mesh.nodes.len(), nodes.enumerate().map(|(place, &node)| (place as u32, node))),
+            forces: vec![Vector2::zeros(); count],
+            energies: vec![Ok(0.0); if count > 0 { elements.len() } else { 0 }],
+            tangents: Vec::new(),
         }
-        let forces = vec![Vector2::zeros(); count];
-        let model = model.clone();
-        Self { model, runs, starts, places, forces, energies: vec![Ok(0.0); elements.len()], tangents: Vec::new() }
-    }
-
-    /// Write the forces over those of `sums`, and add their tangents; returns the stored energy.
-    pub fn add(&mut self, u: &[f64], sums: &mut Sums) -> Result<f64, TrialFailure> {
-        match &mut sums.tangent {
-            None => self.evaluate(u),
-            Some(tangent) => self.evaluate_with_tangents(u, sums.layout, tangent),
-        }
-        let energy = self.stored()?;
-        self.gather(sums.force, sums.magnitudes.as_deref_mut());
-        Ok(energy)
     }
 
     /// Forces of all elements.
-    fn evaluate(&mut self, u: &[f64]) {
-        let model = &*self.model;
-        for run in self.runs.iter().filter(|run| !run.evolves) {
+    pub fn evaluate(&mut self, model: &Model, u: &[f64]) {
+        for run in &self.runs {
+            if run.evolves {
+                self.forces[run.places()].fill(Vector2::zeros());
+                continue;
+            }
             let material = &*model.bodies[run.body].material;
             let forces = self.forces[run.places()].par_chunks_exact_mut(run.nodes);
             let elements = run.elements.clone().into_par_iter().zip(forces);
@@ -130,10 +102,13 @@ impl Solids {
         }
     }
 
-    /// Forces and tangents of all elements, the tangents batch by batch.
-    fn evaluate_with_tangents(&mut self, u: &[f64], layout: &Layout, total: &mut SparseMatrix) {
-        let model = &*self.model;
-        for run in self.runs.iter().filter(|run| !run.evolves) {
+    /// Forces and tangents of the same, the tangents batch by batch.
+    pub fn evaluate_with_tangents(&mut self, model: &Model, u: &[f64], layout: &Layout, total: &mut SparseMatrix) {
+        for run in &self.runs {
+            if run.evolves {
+                self.forces[run.places()].fill(Vector2::zeros());
+                continue;
+            }
             let material = &*model.bodies[run.body].material;
             let (n, size) = (run.nodes, 4 * run.nodes * run.nodes);
             self.tangents.resize(self.tangents.len().max(size * BATCH.min(run.elements.len())), 0.0);
@@ -161,33 +136,16 @@ impl Solids {
     }
 
     /// What all elements store, or which is the first that is turned inside out.
-    fn stored(&self) -> Result<f64, TrialFailure> {
+    pub fn stored(&self, model: &Model) -> Result<f64, TrialFailure> {
         let mut energy = 0.0;
-        for (e, stored) in self.energies.iter().enumerate() {
-            energy += stored.map_err(|failure| TrialFailure::inverted(&self.model, e, failure))?;
+        for e in self.runs.iter().filter(|run| !run.evolves).flat_map(|run| run.elements.clone()) {
+            energy += self.energies[e].map_err(|failure| TrialFailure::inverted(model, e, failure))?;
         }
         Ok(energy)
     }
 
-    /// Write the sums at the nodes over `force`, and add those of the magnitudes.
-    fn gather(&self, force: &mut [f64], magnitudes: Option<&mut [f64]>) {
-        let of = |node: usize| self.places[self.starts[node]..self.starts[node + 1]].iter().map(|&k| self.forces[k]);
-        force.par_chunks_exact_mut(2).enumerate().with_min_len(FEW_NODES).for_each(|(node, force)| {
-            let total: Vector2<f64> = of(node).sum();
-            (force[0], force[1]) = (total.x, total.y);
-        });
-        let Some(magnitudes) = magnitudes else { return };
-        magnitudes.par_chunks_exact_mut(2).enumerate().with_min_len(FEW_NODES).for_each(|(node, magnitude)| {
-            for force in of(node) {
-                magnitude[0] += force.x.abs();
-                magnitude[1] += force.y.abs();
-            }
-        });
-    }
-
-    /// Write the viscous forces of the bodies at displacements `u` and velocities `v` over `force`; they resist.
-    pub fn viscous(&mut self, [u, v]: [&[f64]; 2], force: &mut [f64], magnitudes: Option<&mut [f64]>) {
-        let model = &*self.model;
+    /// Viscous forces of all elements.
+    pub fn evaluate_viscous(&mut self, model: &Model, [u, v]: [&[f64]; 2]) {
         for run in &self.runs {
             let body = &model.bodies[run.body];
             let law = (&*body.material, body.damping.retardation);
@@ -207,19 +165,18 @@ impl Solids {
                 false => places.fill(Vector2::zeros()),
             }
         }
-        self.gather(force, magnitudes);
     }
 
     /// Add the tangents of the viscous forces, where the velocity of each dof varies `dvelocity` times as much as its
     /// displacement.
     pub fn viscous_tangents(
         &mut self,
+        model: &Model,
         [u, v]: [&[f64]; 2],
         dvelocity: &[f64],
         layout: &Layout,
         total: &mut SparseMatrix,
     ) {
-        let model = &*self.model;
         for run in self.runs.iter().filter(|run| model.bodies[run.body].damping.retardation > 0.0) {
             let body = &model.bodies[run.body];
             let law = (&*body.material, body.damping.retardation);
@@ -244,7 +201,7 @@ impl Solids {
 }
 
 /// Values of an element's nodes, from those of all dofs.
-fn nodal(model: &Model, e: usize, all: &[f64]) -> [Vector2<f64>; 9] {
+pub(super) fn nodal(model: &Model, e: usize, all: &[f64]) -> [Vector2<f64>; 9] {
     let mut local = [Vector2::zeros(); 9];
     for (local, &node) in local.iter_mut().zip(&model.mesh.elements[e].nodes) {
         *local = Vector2::new(all[2 * node], all[2 * node + 1]);

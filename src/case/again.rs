@@ -1,0 +1,281 @@
+//! Cases that go on: a run taken up from its checkpoint, and a case that begins where another ended. What may differ from the
+//! case of the checkpoint, and what does.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde_json::{Map, Value};
+
+use super::error::{CaseError, Checked, Complaint};
+use super::explain::clipped;
+use super::file::Case;
+use super::read;
+use crate::contact::force::ContactState;
+use crate::contact::surface::SlavePoint;
+use crate::laws::friction::observables;
+use crate::model::Model;
+use crate::model::state::State;
+use crate::output::checkpoint::{self, Checkpoint, MeshPrint};
+use crate::run::SavedRun;
+
+/// What never changes how a run goes on.
+const FREE: [&str; 4] = ["title", "units", "watch", "output"];
+
+/// Parameters of friction that only the start of a run depends on, or that what is stored depends on.
+const STARTING: [&str; 4] = ["alpha_t", "law", "structure", "theta"];
+
+/// Values that differ by less than this, relative, are the same.
+const SAME: f64 = 1e-9;
+
+/// Differences that are told at once.
+const TOLD: usize = 5;
+
+/// A case ready to be run: its steps behind those of the case that it begins with, if there is one.
+pub struct Opened {
+    /// the case
+    pub case: Case,
+    /// its file
+    pub path: PathBuf,
+    /// the case as JSON
+    pub document: Value,
+    /// how many of its steps are those of the case that it begins with
+    pub taken_over: usize,
+    /// what else it reads, besides its file: mesh, and checkpoint that it begins with
+    pub inputs: Vec<PathBuf>,
+    /// from where it begins, unless at the beginning
+    start: Option<Checkpoint>,
+    /// whether it goes on with the run of that checkpoint
+    resumes: bool,
+}
+
+impl Opened {
+    /// Open a case to be run from its beginning.
+    ///
+    /// # Errors
+    /// [`CaseError`], also where it cannot begin with what it names.
+    pub fn open(path: &Path) -> Result<Self, CaseError> {
+        let (mut document, case): (Value, Case) = read::read_document(path)?;
+        let Some(source) = case.begin_with.as_ref() else { return Self::new(path, document, case, None) };
+        let (source, own_steps) = (beside(path, source), case.steps.len());
+        let joined = begun(&mut document, &source).map_err(|complaint| complaint.in_file(path));
+        let (file, checkpoint) = joined?;
+        let case: Case = read::input(&document).map_err(|complaint| complaint.in_file(path))?;
+        let taken_over = case.steps.len() - own_steps;
+        let mut opened = Self::new(path, document, case, Some(checkpoint))?;
+        opened.inputs.push(file);
+        opened.taken_over = taken_over;
+        Ok(opened)
+    }
+
+    /// Open a case whose run goes on from a checkpoint.
+    ///
+    /// # Errors
+    /// [`CaseError`], also where the case has changed since, and how.
+    pub fn resume(path: &Path, checkpoint: Checkpoint) -> Result<Self, CaseError> {
+        let (mut document, _): (Value, Case) = read::read_document(path)?;
+        let complain = |complaint: Complaint| complaint.in_file(path);
+        let before = document_of(&checkpoint).map_err(complain)?;
+        join(&mut document, &steps(&before)[..checkpoint.taken_over.min(steps(&before).len())]);
+        unchanged(&before, &document, checkpoint.begun).map_err(complain)?;
+        let case = read::input(&document).map_err(complain)?;
+        let taken_over = checkpoint.taken_over;
+        Ok(Self { taken_over, resumes: true, ..Self::new(path, document, case, Some(checkpoint))? })
+    }
+
+    fn new(path: &Path, document: Value, case: Case, start: Option<Checkpoint>) -> Result<Self, CaseError> {
+        let mesh = document["mesh"].as_str().map(|mesh| beside(path, mesh));
+        let inputs = mesh.into_iter().collect();
+        Ok(Self { case, path: path.to_owned(), document, taken_over: 0, inputs, start, resumes: false })
+    }
+
+    /// Build the model, and the run to begin from or to go on with; `None` to begin at the beginning.
+    ///
+    /// # Errors
+    /// [`CaseError`] as [`super::build`], and where the run is not one of this model.
+    pub fn build(&mut self) -> Result<(Arc<Model>, Option<SavedRun>), CaseError> {
+        let built = super::build(&self.case, &self.path);
+        let model = Arc::new(built.map_err(|error| CaseError { place: self.own_place(error.place), ..error })?);
+        let Some(Checkpoint { mesh, run, .. }) = self.start.take() else { return Ok((model, None)) };
+        let complain = |message: String| {
+            let place = if self.resumes { "" } else { "begin_with" };
+            Complaint::new(place, format!("{message}, so the run cannot go on from its checkpoint")).in_file(&self.path)
+        };
+        if let Some(difference) = mesh.difference(&MeshPrint::of(&model.mesh)) {
+            return Err(complain(difference));
+        }
+        let saved = SavedRun::from_bytes(run, &model).map_err(complain)?;
+        if self.resumes {
+            return Ok((model, Some(saved)));
+        }
+        self.within_strength(&model, saved.simulation().state()).map_err(|complaint| complaint.in_file(&self.path))?;
+        Ok((model, Some(saved.begin())))
+    }
+
+    /// A structure that the other case has left must be one of the law as it is now.
+    fn within_strength(&self, model: &Model, state: &State) -> Checked<()> {
+        for (pair, states) in model.contacts.iter().zip(&state.contacts) {
+            let Some(input) = self.case.contacts.get(&pair.name).filter(|input| input.friction.has_structure()) else {
+                continue;
+            };
+            let [(_, highest), (_, lowest)] = input.friction.bounds()[..] else { continue };
+            let allowed = lowest * (1.0 - SAME)..=highest * (1.0 + SAME);
+            let mu = |(point, state): (&SlavePoint, &ContactState)| {
+                observables::value(pair.law(point), "mu", &state.friction)
+            };
+            let varies = ["mu_s", "mu_k"].iter().any(|name| input.along.contains_key(*name));
+            if let Some(mu) = pair.points.iter().zip(states).map(mu).find(|mu| !varies && !allowed.contains(mu)) {
+                let place = format!("contacts.{}.friction", pair.name);
+                let message = format!("a point comes with mu = {mu}, outside mu_k = {lowest} to mu_s = {highest}");
+                return Err(Complaint::new(place, message));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether it goes on with a run.
+    pub fn resumes(&self) -> bool {
+        self.resumes
+    }
+
+    /// A place in the case as its user has written it.
+    fn own_place(&self, place: String) -> String {
+        let own = |place: &str| {
+            let (number, rest) = place.strip_prefix("steps[")?.split_once(']')?;
+            Some(format!("steps[{}]{rest}", number.parse::<usize>().ok()?.checked_sub(self.taken_over)?))
+        };
+        own(&place).unwrap_or(place)
+    }
+}
+
+/// A path relative to the folder of the case file.
+fn beside(path: &Path, file: &str) -> PathBuf {
+    path.parent().unwrap_or(Path::new("")).join(file)
+}
+
+fn steps(document: &Value) -> &[Value] {
+    document["steps"].as_array().map_or(&[], |steps| steps)
+}
+
+/// Put the steps of another case before a case's own.
+fn join(document: &mut Value, before: &[Value]) {
+    let Some(document) = document.as_object_mut() else { return };
+    document.remove("begin_with");
+    if let Some(Value::Array(own)) = document.get_mut("steps") {
+        own.splice(0..0, before.iter().cloned());
+    }
+}
+
+fn document_of(checkpoint: &Checkpoint) -> Checked<Value> {
+    serde_json::from_str(&checkpoint.case)
+        .map_err(|cause| Complaint::new("", format!("the case of the checkpoint: {cause}")))
+}
+
+/// Let a case begin with the end of another; the checkpoint read, and its file.
+fn begun(document: &mut Value, source: &Path) -> Checked<(PathBuf, Checkpoint)> {
+    let complain = |message: String| Complaint::new("begin_with", message);
+    let (file, checkpoint) = if source.is_dir() {
+        let newest = checkpoint::newest(source);
+        // What is damaged is not begun with: the one before it is not from the end.
+        let (checkpoint, damage) = newest.map_err(|(file, why)| complain(format!("{}: {why}", file.display())))?;
+        if let Some(damage) = damage {
+            return Err(complain(damage));
+        }
+        (source.join(checkpoint::NEWEST), checkpoint)
+    } else {
+        let read = checkpoint::read(source);
+        (source.to_owned(), read.map_err(|why| complain(format!("{}: {why}", source.display())))?)
+    };
+    if !checkpoint.complete {
+        let message = "has not come to its end: go on with it first (fecontact run --resume)";
+        return Err(complain(format!("{}: {message}", source.display())));
+    }
+    let before = document_of(&checkpoint)?;
+    let mut differences = Vec::new();
+    for (key, was, is) in both(object(&before), object(document)) {
+        if !(FREE.contains(&key) || ["steps", "newton", "begin_with"].contains(&key)) {
+            compare(key.into(), was, is, &mut differences);
+        }
+    }
+    differences.retain(|difference| !difference.is_variant());
+    told(differences, "this case is not one that can begin there")?;
+    join(document, steps(&before));
+    Ok((file, checkpoint))
+}
+
+/// A case may have changed where its run has not come yet, and in what is written.
+fn unchanged(before: &Value, now: &Value, begun: usize) -> Checked<()> {
+    let mut differences = Vec::new();
+    for (key, was, is) in both(object(before), object(now)) {
+        if !FREE.contains(&key) && key != "steps" {
+            compare(key.into(), was, is, &mut differences);
+        }
+    }
+    for k in 0..begun {
+        compare(format!("steps[{k}]"), steps(before).get(k), steps(now).get(k), &mut differences);
+    }
+    told(differences, "the case has changed since its checkpoint was written")
+}
+
+/// A place where two cases differ.
+struct Difference {
+    place: String,
+    was: Option<Value>,
+    is: Option<Value>,
+}
+
+impl Difference {
+    /// Whether it makes a variant of the same model: other parameters of friction, other damping.
+    fn is_variant(&self) -> bool {
+        let parts: Vec<&str> = self.place.split('.').collect();
+        match parts[..] {
+            ["contacts", _, "friction", parameter, ..] => !STARTING.contains(&parameter),
+            ["bodies", _, "damping", ..] => true,
+            _ => false,
+        }
+    }
+}
+
+fn told(differences: Vec<Difference>, what: &str) -> Checked<()> {
+    if differences.is_empty() {
+        return Ok(());
+    }
+    let value = |value: &Option<Value>| value.as_ref().map_or("not given".into(), |value| clipped(&value.to_string()));
+    let told = differences.iter().take(TOLD);
+    let told: Vec<String> = told
+        .map(|Difference { place, was, is }| format!("`{}` is {}, and was {}", clipped(place), value(is), value(was)))
+        .collect();
+    let more =
+        if differences.len() > TOLD { format!(", and {} more", differences.len() - TOLD) } else { String::new() };
+    Err(Complaint::new("", format!("{what}: {}{more}", told.join("; "))))
+}
+
+fn object(value: &Value) -> &Map<String, Value> {
+    static NONE: std::sync::LazyLock<Map<String, Value>> = std::sync::LazyLock::new(Map::new);
+    value.as_object().unwrap_or(&NONE)
+}
+
+/// Keys of two objects with their values in both.
+fn both<'a>(
+    was: &'a Map<String, Value>,
+    is: &'a Map<String, Value>,
+) -> impl Iterator<Item = (&'a str, Option<&'a Value>, Option<&'a Value>)> {
+    let new = is.keys().filter(|key| !was.contains_key(*key));
+    was.keys().chain(new).map(|key| (key.as_str(), was.get(key), is.get(key)))
+}
+
+fn compare(place: String, was: Option<&Value>, is: Option<&Value>, differences: &mut Vec<Difference>) {
+    match (was, is) {
+        // Two meshes are compared themselves, wherever they lie.
+        (Some(Value::String(_)), Some(Value::String(_))) if place == "mesh" => {}
+        (Some(Value::Object(was)), Some(Value::Object(is))) => {
+            both(was, is).for_each(|(key, was, is)| compare(format!("{place}.{key}"), was, is, differences));
+        }
+        (Some(Value::Array(was)), Some(Value::Array(is))) => {
+            let places = 0..was.len().max(is.len());
+            places.for_each(|k| compare(format!("{place}[{k}]"), was.get(k), is.get(k), differences));
+        }
+        (Some(Value::Number(was)), Some(Value::Number(is))) if was.as_f64() == is.as_f64() => {}
+        (was, is) if was == is => {}
+        (was, is) => differences.push(Difference { place, was: was.cloned(), is: is.cloned() }),
+    }
+}

@@ -1,0 +1,117 @@
+//! Stress of the bodies: every element's forces on its nodes, and the sums of them at each node.
+//!
+//! Elements whose stiffness never changes use the stored one, block by block ([`constant`]). The others of one kind and law
+//! follow each other in a run and are evaluated each time ([`runs`]). Then every node sums up what its elements and blocks put there,
+//! in their order: the same bits on any number of threads, and nothing is written twice.
+
+mod blocks;
+mod constant;
+mod kernel;
+mod places;
+mod runs;
+
+use std::sync::Arc;
+
+use super::coupling::Layout;
+use super::dependence::Dependence;
+use super::sums::Sums;
+use crate::equations::failure::TrialFailure;
+use crate::linear::SparseMatrix;
+use crate::model::Model;
+use constant::Constant;
+pub(super) use constant::damps_by_stiffness;
+pub use constant::is_constant;
+use kernel::Pass;
+use places::{gather, gather_magnitudes};
+use runs::Runs;
+
+/// Elements whose tangents are held at once before they are added.
+const BATCH: usize = 1024;
+
+/// It is the same matrix throughout if all elements are constant.
+pub(super) fn dependence(model: &Model) -> Dependence {
+    let all = (0..model.solids.len()).all(|e| is_constant(model, e));
+    if all { Dependence::Nothing } else { Dependence::Displacement }
+}
+
+/// The elements of a model, and what each puts on its nodes.
+pub(super) struct Solids {
+    model: Arc<Model>,
+    constant: Constant,
+    others: Runs,
+}
+
+impl Solids {
+    pub fn new(model: &Arc<Model>) -> Self {
+        let constant = Constant::new(model);
+        let others = Runs::new(model, |e| !constant.is[e]);
+        Self { model: model.clone(), constant, others }
+    }
+
+    /// Number of the distinct matrices that constant elements share.
+    pub fn matrices(&self) -> usize {
+        self.constant.matrices()
+    }
+
+    /// Σ K_e of the constant elements on the current pattern; nothing if there are none.
+    pub fn constant_stiffness(&mut self, layout: &Layout) -> Option<&SparseMatrix> {
+        self.constant.total(&self.model, layout)
+    }
+
+    /// Write the forces over those of `sums`, and add the tangents of all elements that are not constant; returns the stored
+    /// energy. With velocities `v` the viscous forces of the constant elements are found on the way, for
+    /// [`Solids::other_viscous`].
+    pub fn add(&mut self, u: &[f64], v: Option<&[f64]>, sums: &mut Sums) -> Result<f64, TrialFailure> {
+        let Self { model, constant, others } = self;
+        match &mut sums.tangent {
+            None => others.evaluate(model, u),
+            Some(tangent) => others.evaluate_with_tangents(model, u, sums.layout, tangent),
+        }
+        let scaled = sums.magnitudes.is_some();
+        constant.evaluate(model, v.map_or(Pass::Elastic { u, scaled }, |v| Pass::Both { u, v }));
+        let energy = others.stored(model)? + constant.stored(model, u)?;
+        self.write(sums.force, sums.magnitudes.as_deref_mut());
+        Ok(energy)
+    }
+
+    /// Write the viscous forces of the bodies at displacements `u` and velocities `v` over `force`; they resist.
+    pub fn viscous(&mut self, [u, v]: [&[f64]; 2], force: &mut [f64], magnitudes: Option<&mut [f64]>) {
+        let Self { model, constant, others } = self;
+        constant.evaluate(model, Pass::Viscous { v, scaled: magnitudes.is_some() });
+        others.evaluate_viscous(model, [u, v]);
+        self.write(force, magnitudes);
+    }
+
+    /// The same, after [`Solids::add`] has found those of the constant elements.
+    pub fn other_viscous(&mut self, motion: [&[f64]; 2], force: &mut [f64]) {
+        let Self { model, constant, others } = self;
+        others.evaluate_viscous(model, motion);
+        gather([(&others.places, &others.forces), (&constant.places, &constant.others)], force);
+    }
+
+    /// Write the sums of the forces at the nodes, and add those of their magnitudes.
+    fn write(&self, force: &mut [f64], magnitudes: Option<&mut [f64]>) {
+        let Self { constant, others, .. } = self;
+        let elements = (&others.places, &others.forces[..]);
+        gather([elements, (&constant.places, &constant.forces)], force);
+        if let Some(magnitudes) = magnitudes {
+            gather_magnitudes([elements, (&constant.places, &constant.others)], magnitudes);
+        }
+    }
+
+    /// Add the tangents of the viscous forces, where the velocity of each dof varies `dvelocity` times as much as its
+    /// displacement.
+    pub fn viscous_tangents(
+        &mut self,
+        motion: [&[f64]; 2],
+        dvelocity: &[f64],
+        layout: &Layout,
+        total: &mut SparseMatrix,
+    ) {
+        let Self { model, constant, others } = self;
+        if let Some(viscous) = constant.viscous(model, layout) {
+            total.add_columns(viscous, dvelocity);
+        }
+        others.viscous_tangents(model, motion, dvelocity, layout, total);
+    }
+}

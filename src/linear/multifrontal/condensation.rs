@@ -1,0 +1,116 @@
+//! Static condensation: all nodes but a few are eliminated, front by front.
+//!
+//! ```text
+//! [A_II A_IK] [x_I]   [b_I]         S x_K = g,        S = A_KK − A_KI A_II⁻¹ A_IK,   g = b_K − A_KI A_II⁻¹ b_I
+//! [A_KI A_KK] [x_K] = [b_K]         x_I = A_II⁻¹ (b_I − A_IK x_K)
+//! ```
+//!
+//! The kept nodes are the unknowns of one front, the last, which sums up S and stays open. Source: Guyan (1965), Reduction of
+//! stiffness and mass matrices, doi:10.2514/3.2874; by fronts as in the multifrontal method.
+
+use std::sync::Arc;
+
+use super::super::{LinearFailure, Pattern, SparseMatrix};
+use super::factor::Factors;
+use super::scale::Scaling;
+use super::solve;
+use super::symbolic::Symbolic;
+
+/// What condensations on the same nodes share: the order of elimination and the structure of the factors.
+pub struct Condensation {
+    symbolic: Arc<Symbolic>,
+    scaling: Scaling,
+    /// Number of kept unknowns
+    kept: usize,
+}
+
+impl Condensation {
+    /// Keep these nodes, ascending, all of which the pattern couples with each other.
+    ///
+    /// # Errors
+    /// [`LinearFailure`] when the pattern is too large for an order of elimination.
+    pub fn new(pattern: Arc<Pattern>, kept: &[usize]) -> Result<Self, LinearFailure> {
+        let symbolic = Arc::new(Symbolic::new(pattern, kept)?);
+        Ok(Self { symbolic, scaling: Scaling::default(), kept: 2 * kept.len() })
+    }
+
+    /// Floating-point operations of an elimination.
+    pub fn work(&self) -> f64 {
+        self.symbolic.fronts.iter().map(super::front::Front::work).sum()
+    }
+
+    /// Bytes that one condensed matrix holds.
+    pub fn memory(&self) -> usize {
+        size_of::<f64>() * (self.symbolic.values() + self.kept * self.kept + 2 * self.symbolic.pattern.nodes() * 3)
+    }
+
+    /// Eliminate all other nodes from a matrix on the pattern; nothing if a pivot vanished on the way.
+    pub fn condense(&mut self, matrix: &SparseMatrix) -> Option<Condensed> {
+        let Self { symbolic, scaling, kept } = self;
+        scaling.compute(matrix);
+        let mut factors = Factors::default();
+        factors.compute(symbolic, &scaling.values);
+        factors.settle();
+        if factors.replaced() > 0 {
+            return None;
+        }
+        let places = || symbolic.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
+        let [rows, columns] = [&scaling.rows, &scaling.columns].map(|all| places().map(|dof| all[dof]).collect());
+        let mut condensed = Condensed { symbolic: symbolic.clone(), rows, columns, stiffness: Vec::new(), factors };
+        condensed.stiffness = condensed.unscaled(*kept);
+        Some(condensed)
+    }
+}
+
+/// A matrix condensed on the kept nodes.
+pub struct Condensed {
+    symbolic: Arc<Symbolic>,
+    factors: Factors,
+    /// R and C in the order of elimination
+    rows: Vec<f64>,
+    columns: Vec<f64>,
+    /// S, column by column
+    pub stiffness: Vec<f64>,
+}
+
+impl Condensed {
+    /// S from that of the scaled matrix. The scales are powers of two: not a bit is lost.
+    fn unscaled(&self, kept: usize) -> Vec<f64> {
+        let scaled = &self.factors.values[self.factors.values.len() - kept * kept..];
+        let first = self.rows.len() - kept;
+        let column = |(k, column): (usize, &[f64])| -> Vec<f64> {
+            column.iter().zip(&self.rows[first..]).map(|(s, row)| s / row / self.columns[first + k]).collect()
+        };
+        scaled.chunks_exact(kept.max(1)).enumerate().flat_map(column).collect()
+    }
+
+    /// g from b, with what [`Condensed::backward`] needs of b.
+    pub fn forward(&self, b: &[f64]) -> Forwarded {
+        let dofs = self.symbolic.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
+        let mut ordered: Vec<f64> = dofs.zip(&self.rows).map(|(dof, row)| row * b[dof]).collect();
+        solve::forward(&self.symbolic, &self.factors, &mut ordered);
+        let first = ordered.len() - self.stiffness.len().isqrt();
+        let right = ordered[first..].iter().zip(&self.rows[first..]).map(|(g, row)| g / row).collect();
+        Forwarded { ordered, right }
+    }
+
+    /// x of all dofs from x of the kept ones.
+    pub fn backward(&self, forwarded: &Forwarded, kept: &[f64]) -> Vec<f64> {
+        let mut ordered = forwarded.ordered.clone();
+        let first = ordered.len() - kept.len();
+        let own = ordered[first..].iter_mut().zip(kept.iter().zip(&self.columns[first..]));
+        own.for_each(|(x, (kept, column))| *x = kept / column);
+        solve::backward(&self.symbolic, &self.factors, &mut ordered);
+        let mut x = vec![0.0; ordered.len()];
+        let dofs = self.symbolic.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
+        dofs.zip(ordered.iter().zip(&self.columns)).for_each(|(dof, (ordered, column))| x[dof] = column * ordered);
+        x
+    }
+}
+
+/// A right-hand side on its way through the eliminated nodes.
+pub struct Forwarded {
+    ordered: Vec<f64>,
+    /// g
+    pub right: Vec<f64>,
+}

@@ -1,0 +1,206 @@
+//! `checkpoint.bin`: what a run can be taken up from, to the same bits.
+//!
+//! ```text
+//! "fecontact checkpoint\n"   version u32   length u64   crc32 u32   postcard of a Checkpoint       little-endian
+//! ```
+//!
+//! A checkpoint is written to a new file, brought to the disk and moved into place; the one before is kept as
+//! `checkpoint_prev.bin`, and read where the newest is damaged.
+
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::csv::failed;
+use super::files;
+use crate::mesh::{Group, Mesh};
+use crate::run::RunBytes;
+use crate::run::error::Error;
+
+/// The last checkpoint.
+pub const NEWEST: &str = "checkpoint.bin";
+/// The one before.
+pub const PREVIOUS: &str = "checkpoint_prev.bin";
+
+const MAGIC: &[u8] = b"fecontact checkpoint\n";
+/// What stands in the file; another number for every change of it.
+const VERSION: u32 = 1;
+const HEAD: usize = MAGIC.len() + 16;
+
+/// A run as it was, and what it belongs to.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Checkpoint {
+    /// version of the program
+    pub program: String,
+    /// the case (JSON), with the steps of those it begins with
+    pub case: String,
+    /// how many of its steps are theirs
+    pub taken_over: usize,
+    /// how many of its steps had begun
+    pub begun: usize,
+    /// whether all had ended
+    pub complete: bool,
+    /// the mesh
+    pub mesh: MeshPrint,
+    /// the run
+    pub run: RunBytes,
+}
+
+/// A mesh as far as a checkpoint depends on it: numbers of its parts, and fingerprints of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MeshPrint {
+    nodes: (usize, u32),
+    elements: (usize, u32),
+    groups: (usize, u32),
+}
+
+impl MeshPrint {
+    /// Of a mesh.
+    pub fn of(mesh: &Mesh) -> Self {
+        let [mut nodes, mut elements, mut groups] = [(); 3].map(|()| crc32fast::Hasher::new());
+        mesh.nodes.iter().flat_map(|x| [x.x, x.y]).for_each(|x| nodes.update(&x.to_bits().to_le_bytes()));
+        let list = |print: &mut crc32fast::Hasher, list: &[usize]| {
+            let counted = std::iter::once(list.len()).chain(list.iter().copied());
+            counted.for_each(|number| print.update(&(number as u64).to_le_bytes()));
+        };
+        mesh.elements.iter().for_each(|element| list(&mut elements, &element.nodes));
+        for (name, group) in &mesh.groups {
+            groups.update(name.as_bytes());
+            match group {
+                Group::Elements(numbers) | Group::Nodes(numbers) => list(&mut groups, numbers),
+                Group::Edges(edges) => edges.iter().for_each(|edge| list(&mut groups, &edge.nodes)),
+            }
+        }
+        Self {
+            nodes: (mesh.nodes.len(), nodes.finalize()),
+            elements: (mesh.elements.len(), elements.finalize()),
+            groups: (mesh.groups.len(), groups.finalize()),
+        }
+    }
+
+    /// What differs in another mesh, if anything does.
+    pub fn difference(&self, other: &Self) -> Option<String> {
+        let parts = [
+            ("nodes", self.nodes, other.nodes, "lie elsewhere"),
+            ("elements", self.elements, other.elements, "have other nodes"),
+            ("groups", self.groups, other.groups, "have other names or members"),
+        ];
+        parts.into_iter().find(|(_, was, is, _)| was != is).map(|(name, was, is, else_)| match was.0 == is.0 {
+            true => format!("mesh: its {name} {else_}"),
+            false => format!("mesh: it has {} {name}, and had {}", is.0, was.0),
+        })
+    }
+}
+
+/// Why a checkpoint cannot be used.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum Unusable {
+    /// There is none.
+    #[error("there is none")]
+    Missing,
+    /// It cannot be read.
+    #[error("it cannot be read: {0}")]
+    Unreadable(String),
+    /// It is not what was written.
+    #[error("it is damaged: {0}")]
+    Damaged(String),
+    /// It was written by another edition of the program.
+    #[error("it has the format {0}, and this program reads {VERSION}: take the version of the program that wrote it")]
+    Foreign(u32),
+}
+
+/// Write a checkpoint into a folder; what was the newest becomes the previous one.
+///
+/// # Errors
+/// [`Error::Output`]; the checkpoints that were there are still there then.
+pub fn write(folder: &Path, checkpoint: &Checkpoint) -> Result<(), Error> {
+    let newest = folder.join(NEWEST);
+    let body = postcard::to_allocvec(checkpoint).map_err(|cause| failed(&newest, &cause))?;
+    let mut bytes = Vec::with_capacity(HEAD + body.len());
+    bytes.extend_from_slice(MAGIC);
+    bytes.extend_from_slice(&VERSION.to_le_bytes());
+    bytes.extend_from_slice(&(body.len() as u64).to_le_bytes());
+    bytes.extend_from_slice(&crc32fast::hash(&body).to_le_bytes());
+    bytes.extend_from_slice(&body);
+    let keep = || match newest.symlink_metadata() {
+        Ok(known) if known.is_file() => kept(&newest, &folder.join(PREVIOUS)),
+        _ => Ok(()),
+    };
+    files::replace_for_good_after(&newest, &bytes, keep).map_err(|cause| failed(&newest, &cause))
+}
+
+/// Let the newest checkpoint be the previous one as well; where a file cannot have two names, the previous one alone.
+fn kept(newest: &Path, previous: &Path) -> std::io::Result<()> {
+    files::remove(previous)?;
+    fs::hard_link(newest, previous).or_else(|_| fs::rename(newest, previous))
+}
+
+/// Take the newest checkpoint away where it was of no use: it must not become the previous one.
+///
+/// # Errors
+/// [`Error::Output`].
+pub fn discard_newest(folder: &Path) -> Result<(), Error> {
+    let newest = folder.join(NEWEST);
+    files::remove(&newest).map_err(|cause| failed(&newest, &cause))
+}
+
+/// Read a checkpoint.
+///
+/// # Errors
+/// [`Unusable`].
+pub fn read(path: &Path) -> Result<Checkpoint, Unusable> {
+    let bytes = fs::read(path).map_err(|cause| match cause.kind() {
+        ErrorKind::NotFound => Unusable::Missing,
+        _ => Unusable::Unreadable(cause.to_string()),
+    })?;
+    from_bytes(&bytes)
+}
+
+/// A checkpoint from its bytes.
+///
+/// # Errors
+/// [`Unusable`].
+pub fn from_bytes(bytes: &[u8]) -> Result<Checkpoint, Unusable> {
+    let damaged = |what: &str| Unusable::Damaged(what.into());
+    let (magic, rest) = bytes.split_at_checked(MAGIC.len()).ok_or_else(|| damaged("it is too short"))?;
+    if magic != MAGIC {
+        return Err(damaged("it does not begin as a checkpoint does"));
+    }
+    let Some((version, rest)) = rest.split_first_chunk() else { return Err(damaged("it is too short")) };
+    let version = u32::from_le_bytes(*version);
+    if version != VERSION {
+        return Err(Unusable::Foreign(version));
+    }
+    let head = rest.split_first_chunk().and_then(|(length, rest)| Some((length, rest.split_first_chunk()?)));
+    let Some((length, (crc, body))) = head else { return Err(damaged("it is too short")) };
+    let length = u64::from_le_bytes(*length);
+    if length != body.len() as u64 {
+        return Err(Unusable::Damaged(format!(
+            "it should have {length} bytes behind its head, and has {}",
+            body.len()
+        )));
+    }
+    if u32::from_le_bytes(*crc) != crc32fast::hash(body) {
+        return Err(damaged("its checksum is wrong"));
+    }
+    postcard::from_bytes(body).map_err(|cause| Unusable::Damaged(cause.to_string()))
+}
+
+/// The newest usable checkpoint of a folder, and what was wrong with a newer one.
+///
+/// # Errors
+/// What is wrong with the newest, with the file, where there is no other.
+pub fn newest(folder: &Path) -> Result<(Checkpoint, Option<String>), (PathBuf, Unusable)> {
+    let [newest, previous] = [NEWEST, PREVIOUS].map(|name| folder.join(name));
+    match read(&newest) {
+        Ok(checkpoint) => Ok((checkpoint, None)),
+        Err(foreign @ Unusable::Foreign(_)) => Err((newest, foreign)),
+        Err(why) => match read(&previous) {
+            Ok(checkpoint) => Ok((checkpoint, Some(format!("{}: {why}", newest.display())))),
+            Err(_) => Err((newest, why)),
+        },
+    }
+}

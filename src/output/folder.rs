@@ -1,0 +1,164 @@
+//! The folder of results: whose files may be replaced in it.
+//!
+//! `summary.json` lists the files that its run writes. A later run takes those away, and no others: a file of the user's that
+//! is in the way is named, and nothing is written.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use super::checkpoint;
+use super::files;
+use super::lock::Lock;
+use super::plot;
+use crate::run::error::Error;
+
+/// What commands write beside figures; a folder ends in `/` and holds numbered frames.
+const KNOWN: [&str; 11] = [
+    "history.csv",
+    "newton.csv",
+    "slip_map.csv",
+    "fronts.csv",
+    "law.csv",
+    "solid.pvd",
+    "solid/",
+    "contact.pvd",
+    "contact/",
+    checkpoint::NEWEST,
+    checkpoint::PREVIOUS,
+];
+
+/// What every folder of results has.
+pub const SUMMARY: &str = "summary.json";
+
+/// A folder that this process alone writes into.
+#[derive(Debug)]
+pub struct Folder {
+    /// where it lies
+    pub path: PathBuf,
+    /// held as long as it is written into
+    pub lock: Lock,
+    /// what the runs in it write, this one's included
+    pub files: Vec<String>,
+}
+
+impl Folder {
+    /// Lock a folder, made if it is not there; `inputs` are read by the run, and `outputs` written. Earlier results are taken
+    /// away, unless the run goes on from them.
+    ///
+    /// # Errors
+    /// The place that is in the way, and why.
+    pub fn claim(path: &Path, inputs: &[PathBuf], outputs: &[&str], goes_on: bool) -> Result<Self, (PathBuf, String)> {
+        let cannot = |what: &Path, cause: &dyn std::fmt::Display| {
+            (what.to_owned(), format!("results cannot be written here: {cause}"))
+        };
+        if let Some(input) = inputs.iter().find(|input| is_written(input, path, outputs)) {
+            return Err((input.clone(), "is read by this run, which would write over it: choose another --out".into()));
+        }
+        let made = !path.exists();
+        std::fs::create_dir_all(path).map_err(|cause| cannot(path, &cause))?;
+        let claimed = Lock::take(path).map_err(|cause| (path.to_owned(), cause)).and_then(|lock| {
+            let earlier = earlier(path)?;
+            in_the_way(path, outputs, &earlier)?;
+            let mut files: Vec<String> = outputs.iter().map(|name| (*name).into()).collect();
+            match goes_on {
+                true => files.extend(earlier.into_iter().filter(|name| !outputs.contains(&name.as_str()))),
+                false => clear(path, &earlier).map_err(|(file, cause)| cannot(&file, &cause))?,
+            }
+            Ok(Self { path: path.to_owned(), lock, files })
+        });
+        if claimed.is_err() && made {
+            // It stays if something else has come into it.
+            let _ = std::fs::remove_dir(path);
+        }
+        claimed
+    }
+
+    /// Where a run could not write, give it the room that was kept to say so.
+    pub fn make_room_after(&mut self, result: &Result<(), Error>) {
+        if matches!(result, Err(Error::Output { .. })) {
+            self.lock.give_room();
+        }
+    }
+}
+
+/// Whether a file lies where a run is going to write.
+fn is_written(input: &Path, folder: &Path, outputs: &[&str]) -> bool {
+    let (Ok(input), Ok(folder)) = (input.canonicalize(), folder.canonicalize()) else { return false };
+    let Ok(below) = input.strip_prefix(folder) else { return false };
+    outputs.iter().chain([&SUMMARY]).any(|name| match name.strip_suffix('/') {
+        Some(frames) => below.parent() == Some(Path::new(frames)) && is_frame(&input),
+        None => below == Path::new(name),
+    })
+}
+
+/// What the runs before have written, as their summary says; nothing where there is none.
+fn earlier(folder: &Path) -> Result<Vec<String>, (PathBuf, String)> {
+    let path = folder.join(SUMMARY);
+    if path.symlink_metadata().is_err() {
+        return Ok(Vec::new());
+    }
+    let foreign = || (path.clone(), "was not written by an earlier run: move it, or choose another --out".to_string());
+    if !path.symlink_metadata().is_ok_and(|known| known.is_file()) {
+        return Err(foreign());
+    }
+    let text = std::fs::read_to_string(&path).map_err(|_| foreign())?;
+    let summary: Value = serde_json::from_str(&text).map_err(|_| foreign())?;
+    let files = summary["files"].as_array().filter(|_| summary["version"].is_string()).ok_or_else(foreign)?;
+    let names = files.iter().filter_map(Value::as_str);
+    Ok(names.filter(|name| KNOWN.contains(name)).map(String::from).collect())
+}
+
+/// Nothing but earlier results may be where results go.
+fn in_the_way(folder: &Path, outputs: &[&str], earlier: &[String]) -> Result<(), (PathBuf, String)> {
+    let strange =
+        |path: PathBuf| Err((path, "is in the way: no earlier run wrote it; move it, or choose another --out".into()));
+    for name in outputs {
+        let path = folder.join(name.trim_end_matches('/'));
+        let Ok(known) = path.symlink_metadata() else { continue };
+        let is_right = if name.ends_with('/') { known.is_dir() } else { known.is_file() };
+        if !is_right {
+            return strange(path);
+        }
+        if earlier.iter().any(|file| file == name) {
+            continue;
+        }
+        match name.ends_with('/') {
+            false => return strange(path),
+            true => frames(&path).into_iter().next().map_or(Ok(()), strange)?,
+        }
+    }
+    Ok(())
+}
+
+/// Take away what the runs before have written.
+fn clear(folder: &Path, earlier: &[String]) -> Result<(), (PathBuf, std::io::Error)> {
+    let remove = |path: PathBuf| files::remove(&path).map_err(|cause| (path, cause));
+    for name in earlier {
+        let path = folder.join(name.trim_end_matches('/'));
+        match name.ends_with('/') {
+            true => frames(&path).into_iter().try_for_each(remove)?,
+            false => {
+                remove(files::aside(&path))?;
+                remove(path)?;
+            }
+        }
+    }
+    let figures = plot::FIGURES.iter().map(|name| folder.join(name));
+    figures.filter(|path| plot::is_figure(path)).try_for_each(remove)
+}
+
+/// The frames in a folder of its own; nothing where it is a link.
+fn frames(folder: &Path) -> Vec<PathBuf> {
+    if !folder.symlink_metadata().is_ok_and(|known| known.is_dir()) {
+        return Vec::new();
+    }
+    let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
+    entries.flatten().map(|entry| entry.path()).filter(|path| is_frame(path)).collect()
+}
+
+/// Whether a file has the name of a frame: at least five digits.
+fn is_frame(path: &Path) -> bool {
+    let name = path.file_stem().and_then(|name| name.to_str()).unwrap_or_default();
+    path.extension() == Some("vtu".as_ref()) && name.len() >= 5 && name.bytes().all(|byte| byte.is_ascii_digit())
+}

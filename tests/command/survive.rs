@@ -1,0 +1,710 @@
+//! Runs that survive: taken up again to the same bytes after whatever ended them, and folders in which nothing of a user's is
+//! lost.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::common::Blocks;
+use fecontact::output::lock::Lock;
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_fecontact");
+
+/// Wall time between checkpoints so short that there is one at every increment [min].
+const ALWAYS: f64 = 1e-9;
+
+/// A block pressed on ground and dragged, with everything a run can write.
+fn dragged(scheme: Value, increments: usize) -> Value {
+    let mesh = Blocks::default().rectangle("ground", [10, 3], [0.0, -0.5], [3.0, 0.0]).rectangle(
+        "block",
+        [5, 3],
+        [0.4, 0.01],
+        [1.4, 0.51],
+    );
+    let material = json!({"model": "neo_hookean", "E": 100, "nu": 0.3, "density": 1e-4});
+    json!({
+        "title": "A block is dragged",
+        "mesh": mesh.json(),
+        "bodies": {"ground": {"material": material}, "block": {"material": material}},
+        "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "friction": {
+            "law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "alpha_t": 2e3, "r": 100, "kappa": 10, "xi": 0.002}}},
+        "steps": [
+            {"name": "press", "duration": 1, "dt": {"initial": 0.25, "min": 1e-4}, "supports": [
+                {"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0, "uy": -0.02}]},
+            {"name": "drag", "duration": 4, "scheme": scheme, "dt": {"initial": 4.0 / increments as f64, "min": 1e-5},
+                "supports": [{"on": "block_top", "ux": {"rate": 0.1}}]},
+        ],
+        "watch": ["block_top"],
+        "output": {"checkpoint": ALWAYS, "fronts": {"slip_rate": 1e-2}, "every": 3},
+    })
+}
+
+fn written(folder: &Path, case: &Value) -> PathBuf {
+    let path = folder.join("case.json");
+    fs::write(&path, case.to_string()).expect("a file");
+    path
+}
+
+fn command(folder: &Path, out: &str, more: &[&str]) -> Command {
+    let mut command = Command::new(PROGRAM);
+    command.current_dir(folder).args(["run", "case.json", "--threads", "1", "--quiet", "--out", out]).args(more);
+    command
+}
+
+fn run(folder: &Path, out: &str, more: &[&str]) -> Output {
+    command(folder, out, more).output().expect("the program runs")
+}
+
+#[track_caller]
+fn done(output: &Output) {
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// What was told by a command that ended with this exit code.
+#[track_caller]
+fn told(output: &Output, code: i32) -> String {
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{told}");
+    told
+}
+
+/// All results but those that tell of wall time, and the checkpoints themselves.
+fn results(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    fn collect(root: &Path, folder: &Path, found: &mut BTreeMap<PathBuf, Vec<u8>>) {
+        for path in fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path()) {
+            let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+            if path.is_dir() {
+                collect(root, &path, found);
+            } else if !(name == "summary.json" || name.starts_with("checkpoint")) {
+                found.insert(path.strip_prefix(root).expect("below").to_owned(), fs::read(&path).expect("a file"));
+            }
+        }
+    }
+    let mut found = BTreeMap::new();
+    collect(folder, folder, &mut found);
+    found
+}
+
+/// The summary without what the clock says.
+fn summary(folder: &Path) -> Value {
+    let text = fs::read_to_string(folder.join("summary.json")).expect("a summary");
+    let mut summary: Value = serde_json::from_str(&text).expect("JSON");
+    for key in ["wall_s", "peak_memory_mib"] {
+        summary.as_object_mut().expect("an object").remove(key);
+    }
+    summary
+}
+
+#[track_caller]
+fn same(one: &Path, other: &Path) {
+    let (a, b) = (results(one), results(other));
+    assert!(a.keys().eq(b.keys()), "{:?} and {:?}", a.keys(), b.keys());
+    let differs: Vec<&PathBuf> = a.keys().filter(|file| a[*file] != b[*file]).collect();
+    assert!(differs.is_empty(), "these have other bytes: {differs:?}");
+    assert_eq!(summary(one), summary(other));
+}
+
+/// Rows of a history so far.
+fn rows(folder: &Path) -> usize {
+    fs::read_to_string(folder.join("history.csv")).map_or(0, |text| text.lines().count())
+}
+
+/// Wait until a run has come so far, or has ended.
+fn wait_for_rows(child: &mut Child, folder: &Path, count: usize) {
+    let start = Instant::now();
+    while rows(folder) < count && child.try_wait().expect("a child").is_none() {
+        assert!(start.elapsed() < Duration::from_secs(120), "the run does not get on");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+/// A number from 0 to 1 that looks random.
+fn chance(seed: &mut u64) -> f64 {
+    *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    (*seed >> 11) as f64 / (1u64 << 53) as f64
+}
+
+/// Kill −9 at random moments and go on, until so many kills; what is there at the end has the bytes of a run in one go.
+fn killed(case: &Value, kills: usize, seed: &mut u64) {
+    let folder = TempDir::new().expect("a folder");
+    written(folder.path(), case);
+    let clock = Instant::now();
+    done(&run(folder.path(), "straight", &[]));
+    let whole = clock.elapsed();
+    let [straight, out] = ["straight", "killed"].map(|name| folder.path().join(name));
+    let (mut killed, mut resumed) = (0, 0);
+    while killed < kills {
+        let resume = ["checkpoint.bin", "checkpoint_prev.bin"].iter().any(|name| out.join(name).exists());
+        let mut child =
+            command(folder.path(), "killed", if resume { &["--resume"] } else { &[] }).spawn().expect("it runs");
+        resumed += usize::from(resume);
+        std::thread::sleep(whole.mul_f64(0.4 * chance(seed)));
+        match child.try_wait().expect("a child") {
+            Some(status) => {
+                assert_eq!(status.code(), Some(0));
+                same(&straight, &out);
+                fs::remove_dir_all(&out).expect("it can go");
+            }
+            None => {
+                child.kill().expect("it is killed");
+                child.wait().expect("it ends");
+                killed += 1;
+            }
+        }
+    }
+    let resume = ["checkpoint.bin", "checkpoint_prev.bin"].iter().any(|name| out.join(name).exists());
+    done(&run(folder.path(), "killed", if resume { &["--resume"] } else { &[] }));
+    same(&straight, &out);
+    println!("{killed} kills, {resumed} times taken up");
+}
+
+/// An explicit run, and one that breaks and heals by turns.
+fn explicit() -> Value {
+    let mut case = dragged(json!({"explicit": {}}), 4);
+    case["steps"][1]["duration"] = json!(0.1);
+    case["output"]["interval"] = json!(1e-3);
+    case
+}
+
+fn ruptures() -> Value {
+    let mut case = dragged(json!("static"), 4);
+    case["contacts"]["base"]["friction"] = json!({"law": "slip_weakening", "mu_s": 0.6, "mu_d": 0.1, "D_c": 1e-4});
+    case["steps"][1]["rupture"] = json!({"slip_rate": 0.5});
+    case["steps"][1]["dt"] = json!({"initial": 0.02, "min": 1e-3});
+    case["steps"][1]["duration"] = json!(0.1);
+    case["steps"][1]["supports"][0]["ux"] = json!({"rate": 1.0});
+    case
+}
+
+fn augmented() -> Value {
+    let mut case = dragged(json!({"hht": {"alpha": -0.05}}), 40);
+    case["contacts"]["base"]["normal"] = json!({"penetration": 1e-6});
+    case
+}
+
+fn mortar() -> Value {
+    let mut case = dragged(json!({"newmark": {}}), 60);
+    case["contacts"]["base"]["method"] = json!("mortar");
+    case
+}
+
+#[test]
+fn runs_killed_at_random_moments_go_on_to_the_same_bytes() {
+    let mut seed = 1;
+    for case in [dragged(json!("static"), 40), explicit(), ruptures()] {
+        killed(&case, 4, &mut seed);
+    }
+}
+
+/// `cargo test --release --test command -- --ignored a_hundred_kills --nocapture`
+#[test]
+#[ignore = "minutes"]
+fn a_hundred_kills_over_five_cases_leave_no_trace() {
+    let mut seed = 2;
+    for case in [dragged(json!("static"), 40), explicit(), ruptures(), augmented(), mortar()] {
+        killed(&case, 20, &mut seed);
+    }
+}
+
+/// With checkpoints at every increment, without any, and on two threads: the same bytes.
+#[test]
+fn a_checkpoint_changes_nothing() {
+    for mut case in [dragged(json!({"newmark": {}}), 20), ruptures()] {
+        let folder = TempDir::new().expect("a folder");
+        written(folder.path(), &case);
+        done(&run(folder.path(), "with", &[]));
+        case["output"]["checkpoint"] = Value::Null;
+        written(folder.path(), &case);
+        done(&run(folder.path(), "without", &[]));
+        let [with, without] = ["with", "without"].map(|name| folder.path().join(name));
+        assert!(results(&with) == results(&without));
+        assert!(with.join("checkpoint_prev.bin").exists() && !without.join("checkpoint.bin").exists());
+        assert!(
+            told(&run(folder.path(), "without", &["--resume"]), 2).contains("checkpoint.bin: --resume: there is none")
+        );
+    }
+}
+
+fn signal(child: &Child, name: &str) {
+    let sent = Command::new("kill").args([format!("-{name}"), child.id().to_string()]).status().expect("kill");
+    assert!(sent.success());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_signal_ends_a_run_with_its_results_whole() {
+    let folder = TempDir::new().expect("a folder");
+    written(folder.path(), &dragged(json!("static"), 150));
+    done(&run(folder.path(), "straight", &[]));
+    for (k, name) in ["INT", "TERM", "HUP"].into_iter().enumerate() {
+        let out = folder.path().join(name);
+        let mut child = command(folder.path(), name, &[]).stderr(Stdio::piped()).spawn().expect("it runs");
+        wait_for_rows(&mut child, &out, 10 + 20 * k);
+        assert_eq!(summary(&out)["status"], "running");
+        signal(&child, name);
+        let output = child.wait_with_output().expect("it ends");
+        assert_eq!(told(&output, 1), "stopped: interrupted\n");
+        let summary = summary(&out);
+        assert_eq!((&summary["status"], &summary["reason"]), (&json!("interrupted"), &json!("interrupted")));
+        assert_eq!(summary["increments"].as_u64(), Some(rows(&out) as u64 - 1));
+        assert!(out.join("fronts.csv").exists() && !out.join("fecontact.lock").exists());
+        assert!(rows(&out) < rows(&folder.path().join("straight")));
+        done(&run(folder.path(), name, &["--resume"]));
+        same(&folder.path().join("straight"), &out);
+    }
+}
+
+/// Who starts a program with `nohup` wants it to outlive his terminal.
+#[cfg(unix)]
+#[test]
+fn a_signal_that_is_ignored_stays_so() {
+    let folder = TempDir::new().expect("a folder");
+    written(folder.path(), &dragged(json!("static"), 60));
+    let text = format!("trap '' HUP; exec {PROGRAM} run case.json --quiet --out out");
+    let mut child = Command::new("sh").args(["-c", &text]).current_dir(folder.path()).spawn().expect("it runs");
+    wait_for_rows(&mut child, &folder.path().join("out"), 5);
+    signal(&child, "HUP");
+    assert_eq!(child.wait().expect("it ends").code(), Some(0));
+}
+
+fn shell(folder: &Path, text: &str) -> Output {
+    let text = text.replace("PROGRAM", PROGRAM);
+    Command::new("bash").args(["-c", &text]).current_dir(folder).output().expect("bash")
+}
+
+/// Nobody has to listen.
+#[cfg(unix)]
+#[test]
+fn closed_and_full_outputs_end_no_run() {
+    let folder = TempDir::new().expect("a folder");
+    written(folder.path(), &dragged(json!("static"), 10));
+    done(&run(folder.path(), "straight", &[]));
+    for (name, redirection) in [("closed", "2>&-"), ("full", "2>/dev/full"), ("head", "2>&1 | head -1 >/dev/null")] {
+        let text = format!("set -o pipefail; PROGRAM run case.json --threads 1 --out {name} {redirection}");
+        done(&shell(folder.path(), &text));
+        same(&folder.path().join("straight"), &folder.path().join(name));
+    }
+    let unprinted = ["schema", "check case.json", "--help"].map(|what| format!("PROGRAM {what} >/dev/full"));
+    for text in unprinted {
+        assert!(told(&shell(folder.path(), &text), 1).contains("could not be printed: No space left"), "{text}");
+    }
+    done(&shell(folder.path(), "set -o pipefail; PROGRAM schema | head -1"));
+    assert_eq!(shell(folder.path(), "PROGRAM check nowhere.json 2>/dev/full").status.code(), Some(2));
+}
+
+/// Frames that a collection names, each of which must be there and whole.
+fn named_frames(out: &Path, collection: &str) -> usize {
+    let text = fs::read_to_string(out.join(collection)).expect("a collection");
+    assert!(text.ends_with("</VTKFile>\n"), "{text}");
+    let named = text.split("file=\"").skip(1).map(|rest| rest.split('"').next().expect("a name"));
+    let whole = |name: &str| fs::read_to_string(out.join(name)).expect("a frame").ends_with("</VTKFile>\n");
+    named.inspect(|name| assert!(whole(name), "{name}")).count()
+}
+
+/// The first file that cannot grow any more is told; what is there is readable, and the summary too.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_is_told_and_what_was_written_stays_readable() {
+    let folder = TempDir::new().expect("a folder");
+    let mut case = dragged(json!("static"), 400);
+    case["output"]["checkpoint"] = json!(0);
+    written(folder.path(), &case);
+    // Nothing longer than 100 KiB: the map of slip is the first to come so far.
+    let output = shell(folder.path(), "ulimit -f 100; PROGRAM run case.json --quiet --out out");
+    let told = told(&output, 1);
+    assert!(told.contains("out/slip_map.csv: File too large"), "{told}");
+    let out = folder.path().join("out");
+    let ending = summary(&out);
+    assert_eq!(ending["status"], "stopped");
+    assert!(ending["reason"].as_str().is_some_and(|reason| reason.contains("slip_map.csv")), "{ending}");
+    for table in ["history.csv", "newton.csv", "slip_map.csv"] {
+        let text = fs::read_to_string(out.join(table)).expect("a table");
+        let cells = |line: &str| line.split(',').count();
+        let width = cells(text.lines().next().expect("a header"));
+        assert!(text.ends_with('\n') && text.lines().all(|line| cells(line) == width), "{table}");
+    }
+    assert!(named_frames(&out, "solid.pvd") > 1 && named_frames(&out, "contact.pvd") > 1);
+    // A checkpoint that does not fit is a warning, and the run goes on.
+    case["output"] = json!({"checkpoint": ALWAYS, "fields": false});
+    case["steps"][1]["duration"] = json!(0.02);
+    case["mesh"] = Blocks::default()
+        .rectangle("ground", [60, 10], [0.0, -0.5], [3.0, 0.0])
+        .rectangle("block", [5, 3], [0.4, 0.01], [1.4, 0.51])
+        .json();
+    written(folder.path(), &case);
+    let output = shell(folder.path(), "ulimit -f 70; PROGRAM run case.json --quiet --out small");
+    assert!(self::told(&output, 0).matches("no checkpoint at t = ").count() == 1, "{output:?}");
+    let warnings = summary(&folder.path().join("small"))["warnings"].to_string();
+    assert!(warnings.contains("checkpoint.bin") && warnings.contains("the run goes on"), "{warnings}");
+    assert!(!folder.path().join("small/checkpoint.bin.new").exists());
+}
+
+/// Files removed under a run end it, and the reason names them.
+#[test]
+fn a_folder_that_is_taken_away_is_told() {
+    let folder = TempDir::new().expect("a folder");
+    written(folder.path(), &dragged(json!("static"), 2000));
+    for (name, gone) in [("frames", "frames/solid"), ("all", "all")] {
+        let out = folder.path().join(name);
+        let mut child = command(folder.path(), name, &[]).stderr(Stdio::piped()).spawn().expect("it runs");
+        wait_for_rows(&mut child, &out, 20);
+        // The run may put a file into a folder that is being emptied.
+        while fs::remove_dir_all(folder.path().join(gone)).is_err() {}
+        let output = child.wait_with_output().expect("it ends");
+        assert!(told(&output, 1).contains(&format!("stopped: {gone}")), "{output:?}");
+    }
+}
+
+/// Two runs never write into one folder: the second is told of the first.
+#[test]
+fn a_folder_has_one_run_at_a_time() {
+    let folder = TempDir::new().expect("a folder");
+    written(folder.path(), &dragged(json!("static"), 5));
+    let out = folder.path().join("out");
+    fs::create_dir(&out).expect("a folder");
+    let lock = Lock::take(&out).expect("it is free");
+    let told_of = format!("process {} on ", std::process::id());
+    for more in [&[][..], &["--resume"]] {
+        let output = run(folder.path(), "out", more);
+        let told = told(&output, 2);
+        assert!(more == ["--resume"] || told.contains(&told_of) && told.contains("choose another --out"), "{told}");
+    }
+    assert_eq!(fs::read_dir(&out).expect("a folder").count(), 1, "only the lock is there");
+    drop(lock);
+    assert_eq!(fs::read_dir(&out).expect("a folder").count(), 0);
+    done(&run(folder.path(), "out", &[]));
+    // What a killed run of this computer leaves is no lock; one of another computer may be.
+    let holder = |computer: &str| json!({"process": 1, "computer": computer, "since": 0}).to_string();
+    let computer = fs::read_to_string("/proc/sys/kernel/hostname").expect("a name");
+    fs::write(out.join("fecontact.lock"), holder(computer.trim())).expect("a file");
+    done(&run(folder.path(), "out", &[]));
+    fs::write(out.join("fecontact.lock"), holder("elsewhere")).expect("a file");
+    let told = told(&run(folder.path(), "out", &[]), 2);
+    assert!(told.contains("process 1 on elsewhere") && told.contains("remove fecontact.lock"), "{told}");
+}
+
+/// Only what an earlier run wrote is replaced.
+#[test]
+fn a_users_files_stay() {
+    let folder = TempDir::new().expect("a folder");
+    written(folder.path(), &dragged(json!("static"), 8));
+    let out = folder.path().join("out");
+    done(&run(folder.path(), "out", &[]));
+    let frames = named_frames(&out, "solid.pvd");
+    let mine = ["law.csv", "solid/mine.vtu", "friction.svg", "notes.txt"].map(|name| out.join(name));
+    mine.iter().for_each(|path| fs::write(path, "mine").expect("a file"));
+    written(folder.path(), &dragged(json!("static"), 4));
+    done(&run(folder.path(), "out", &[]));
+    mine.iter().for_each(|path| assert_eq!(fs::read_to_string(path).expect("it is there"), "mine"));
+    assert!(named_frames(&out, "solid.pvd") < frames);
+    let left = fs::read_dir(out.join("solid")).expect("frames").count();
+    assert_eq!(left, named_frames(&out, "solid.pvd") + 1, "the frames of the longer run are gone");
+    // What stands where results go and is none of them ends the command before anything is written.
+    for name in ["history.csv", "summary.json", "solid/00007.vtu", "contact"] {
+        let out = folder.path().join("strange");
+        let _ = fs::remove_dir_all(&out);
+        fs::create_dir_all(out.join(name).parent().expect("a folder")).expect("a folder");
+        fs::write(out.join(name), "mine").expect("a file");
+        let told = told(&run(folder.path(), "strange", &[]), 2);
+        assert!(told.contains(name), "{name}: {told}");
+        assert_eq!(fs::read_to_string(out.join(name)).expect("it is there"), "mine");
+        assert_eq!(results(&out).len() + usize::from(name == "summary.json"), 1);
+    }
+}
+
+/// What a run reads it does not write over.
+#[test]
+fn an_output_that_is_an_input_is_refused() {
+    let folder = TempDir::new().expect("a folder");
+    let case = dragged(json!("static"), 4).to_string();
+    for name in ["summary.json", "history.csv"] {
+        let path = folder.path().join(name);
+        fs::write(&path, &case).expect("a file");
+        let output = Command::new(PROGRAM).current_dir(folder.path()).args(["run", name, "--out", "."]).output();
+        let told = told(&output.expect("it runs"), 2);
+        assert!(told.contains("is read by this run"), "{told}");
+        assert_eq!(fs::read_to_string(&path).expect("it is there"), case);
+        fs::remove_file(&path).expect("it goes");
+    }
+}
+
+/// Links lead to what is not ours.
+#[cfg(unix)]
+#[test]
+fn nothing_is_written_or_removed_through_a_link() {
+    use std::os::unix::fs::symlink;
+    let folder = TempDir::new().expect("a folder");
+    written(folder.path(), &dragged(json!("static"), 4));
+    let treasure = folder.path().join("treasure");
+    fs::create_dir(&treasure).expect("a folder");
+    for name in ["00000.vtu", "file"] {
+        fs::write(treasure.join(name), "mine").expect("a file");
+    }
+    for (link, target) in
+        [("solid", treasure.clone()), ("history.csv", treasure.join("file")), ("checkpoint.bin", treasure.join("none"))]
+    {
+        for before in [false, true] {
+            let out = folder.path().join("out");
+            let _ = fs::remove_dir_all(&out);
+            if before {
+                done(&run(folder.path(), "out", &[]));
+                let place = out.join(link);
+                if place.is_dir() { fs::remove_dir_all(&place) } else { fs::remove_file(&place) }.expect("it goes");
+            }
+            fs::create_dir_all(&out).expect("a folder");
+            symlink(&target, out.join(link)).expect("a link");
+            assert!(told(&run(folder.path(), "out", &[]), 2).contains(link));
+            let left = ["00000.vtu", "file"].map(|name| fs::read_to_string(treasure.join(name)).expect("it is there"));
+            assert_eq!(left, ["mine", "mine"]);
+            assert_eq!(fs::read_dir(&treasure).expect("a folder").count(), 2);
+        }
+    }
+    // The folder that a user names may be a link itself.
+    let _ = fs::remove_dir_all(folder.path().join("out"));
+    fs::create_dir(folder.path().join("elsewhere")).expect("a folder");
+    symlink("elsewhere", folder.path().join("out")).expect("a link");
+    done(&run(folder.path(), "out", &[]));
+}
+
+/// A run that was interrupted half way: its folder, with the case beside it.
+fn interrupted(case: &Value) -> TempDir {
+    let folder = TempDir::new().expect("a folder");
+    written(folder.path(), case);
+    let out = folder.path().join("out");
+    let mut child = command(folder.path(), "out", &[]).spawn().expect("it runs");
+    wait_for_rows(&mut child, &out, 12);
+    child.kill().expect("it is killed");
+    child.wait().expect("it ends");
+    assert!(out.join("checkpoint_prev.bin").exists());
+    folder
+}
+
+/// A case may change where its run has not come yet, and in what is written; else it is told where it differs.
+#[test]
+fn a_run_goes_on_with_its_own_case_alone() {
+    let case = dragged(json!("static"), 200);
+    let folder = interrupted(&case);
+    let changed: [(&str, &str, Value, &str); 5] = [
+        ("friction", "/contacts/base/friction/mu_k", json!(0.25), "`contacts.base.friction.mu_k` is 0.25, and was 0.2"),
+        ("support", "/steps/1/supports/0/ux/rate", json!(0.2), "`steps[1].supports[0].ux.rate` is 0.2, and was 0.1"),
+        ("past", "/steps/0/duration", json!(2), "`steps[0].duration` is 2, and was 1"),
+        ("mesh", "/mesh/nodes/3/0", json!(0.8), "`mesh.nodes[3][0]`"),
+        ("a step less", "/steps", json!([case["steps"][0]]), "`steps[1]` is not given"),
+    ];
+    for (name, pointer, value, expected) in changed {
+        let mut other = case.clone();
+        *other.pointer_mut(pointer).expect("it is there") = value;
+        written(folder.path(), &other);
+        let told = told(&run(folder.path(), "out", &["--resume"]), 2);
+        assert!(told.contains("the case has changed since its checkpoint was written"), "{name}: {told}");
+        assert!(told.contains(expected), "{name}: {told}");
+    }
+    // Another title, another watched set, more frames, and a step that comes after.
+    let mut more = case.clone();
+    more["title"] = json!("Another title");
+    more["watch"] = json!(["block_top", "ground_bottom"]);
+    more["output"]["every"] = json!(1);
+    let after = json!({"name": "hold", "duration": 1, "dt": {"initial": 0.5}, "supports": [{"on": "block_top", "ux": {"rate": 0}}]});
+    more["steps"].as_array_mut().expect("steps").push(after);
+    written(folder.path(), &more);
+    done(&run(folder.path(), "out", &["--resume"]));
+    done(&run(folder.path(), "straight", &[]));
+    let [out, straight] = ["out", "straight"].map(|name| {
+        let text = fs::read_to_string(folder.path().join(name).join("history.csv")).expect("a table");
+        text.lines().map(String::from).collect::<Vec<_>>()
+    });
+    assert_eq!(out.len(), straight.len());
+    assert_eq!(out[0], straight[0]);
+    let unknown = out.iter().filter(|row| row.ends_with(",NaN,NaN,NaN,NaN")).count();
+    assert!(unknown >= 10 && unknown < out.len() - 5, "{unknown}");
+    let known = |row: &str| row.trim_end_matches(",NaN,NaN,NaN,NaN").to_string();
+    assert!(out.iter().zip(&straight).all(|(out, straight)| straight.starts_with(&known(out))));
+    // A column that would be lost is not.
+    more["watch"] = json!([]);
+    written(folder.path(), &more);
+    assert!(
+        told(&run(folder.path(), "out", &["--resume"]), 2)
+            .contains("has the column `block_top.ux`, which would be lost")
+    );
+}
+
+/// A run that has come to its end goes on with a step that was put behind.
+#[test]
+fn a_finished_run_goes_on_with_another_step() {
+    let folder = TempDir::new().expect("a folder");
+    let whole = dragged(json!("static"), 6);
+    let mut first = whole.clone();
+    first["steps"].as_array_mut().expect("steps").pop();
+    written(folder.path(), &first);
+    done(&run(folder.path(), "out", &[]));
+    // Nothing is left to be done, and so nothing changes.
+    let before = results(&folder.path().join("out"));
+    done(&run(folder.path(), "out", &["--resume"]));
+    assert!(before == results(&folder.path().join("out")));
+    written(folder.path(), &whole);
+    done(&run(folder.path(), "out", &["--resume"]));
+    done(&run(folder.path(), "straight", &[]));
+    same(&folder.path().join("straight"), &folder.path().join("out"));
+}
+
+/// A damaged checkpoint is told, and the one before it taken; two damaged ones end the command, and a later format too.
+#[test]
+fn a_damaged_checkpoint_is_told() {
+    let folder = interrupted(&dragged(json!("static"), 100));
+    let out = folder.path().join("out");
+    let newest = out.join("checkpoint.bin");
+    let bytes = fs::read(&newest).expect("a checkpoint");
+    let mut flipped = bytes.clone();
+    flipped[bytes.len() / 2] ^= 0x10;
+    for damaged in
+        [&flipped[..], &bytes[..bytes.len() - 7], &bytes[..10], b"", b"not a checkpoint at all, but a text of a user"]
+    {
+        fs::write(&newest, damaged).expect("a file");
+        fs::write(out.join("checkpoint_prev.bin"), damaged).expect("a file");
+        let told = told(&run(folder.path(), "out", &["--resume"]), 2);
+        assert!(told.contains("checkpoint.bin: --resume: it is damaged: "), "{told}");
+    }
+    let mut later = bytes.clone();
+    later[21] = 2;
+    fs::write(&newest, later).expect("a file");
+    fs::write(out.join("checkpoint_prev.bin"), &bytes).expect("a file");
+    assert!(told(&run(folder.path(), "out", &["--resume"]), 2).contains("it has the format 2"));
+    fs::write(&newest, flipped).expect("a file");
+    let output = run(folder.path(), "out", &["--resume"]);
+    let told = told(&output, 0);
+    assert!(told.contains("its checksum is wrong; the checkpoint before it is taken"), "{told}");
+    done(&run(folder.path(), "straight", &[]));
+    same(&folder.path().join("straight"), &out);
+}
+
+/// Results that were changed behind the program's back cannot be gone on with.
+#[test]
+fn results_that_are_missing_are_told() {
+    for (name, reason) in [("newton.csv", "No such file"), ("solid/00001.vtu", "is gone")] {
+        let folder = interrupted(&dragged(json!("static"), 100));
+        fs::remove_file(folder.path().join("out").join(name)).expect("it was there");
+        let told = told(&run(folder.path(), "out", &["--resume"]), 2);
+        assert!(told.contains(name) && told.contains(reason), "{told}");
+    }
+}
+
+/// Columns of a history whose names begin so.
+fn columns(path: &Path, start: &str) -> Vec<Vec<String>> {
+    let text = fs::read_to_string(path).expect("a table");
+    let header: Vec<&str> = text.lines().next().expect("a header").split(',').collect();
+    let wanted: Vec<usize> =
+        (0..header.len()).filter(|k| header[*k].starts_with(start) || header[*k] == "time").collect();
+    let row = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        wanted.iter().map(|k| cells[*k].to_string()).collect()
+    };
+    text.lines().skip(1).map(row).collect()
+}
+
+/// A case that begins where another has ended is what that one would have been with more steps; with other friction it is a
+/// variant; of another model it is none.
+#[test]
+fn a_case_begins_where_another_has_ended() {
+    let folder = TempDir::new().expect("a folder");
+    let whole = dragged(json!({"newmark": {}}), 12);
+    let mut pressed = whole.clone();
+    pressed["steps"].as_array_mut().expect("steps").pop();
+    written(folder.path(), &pressed);
+    done(&run(folder.path(), "pressed", &[]));
+    written(folder.path(), &whole);
+    done(&run(folder.path(), "straight", &[]));
+
+    let mut drags = whole.clone();
+    drags["steps"].as_array_mut().expect("steps").remove(0);
+    for source in ["pressed", "pressed/checkpoint.bin"] {
+        drags["begin_with"] = json!(source);
+        written(folder.path(), &drags);
+        done(&run(folder.path(), "drags", &[]));
+        let [straight, drags] = ["straight", "drags"].map(|name| folder.path().join(name).join("history.csv"));
+        for start in ["base.", "block_top."] {
+            let (all, part) = (columns(&straight, start), columns(&drags, start));
+            assert!(part.len() >= 12 && all.ends_with(&part), "{start}: {} and {} rows", all.len(), part.len());
+        }
+        // The audit begins anew: all that was stored is there at the start, and nothing is lost by the way it is counted.
+        let error: Vec<f64> =
+            columns(&drags, "energy_error").iter().map(|row| row[1].parse().expect("a number")).collect();
+        let work: f64 = columns(&drags, "external_work").last().expect("a row")[1].parse().expect("a number");
+        assert!(error.iter().all(|error| error.abs() < 0.05 * work.abs()), "{error:?} of {work}");
+    }
+    // Killed and taken up again, it has no need of what it began with.
+    fs::rename(folder.path().join("pressed"), folder.path().join("moved")).expect("it is moved");
+    done(&run(folder.path(), "drags", &["--resume"]));
+    fs::rename(folder.path().join("moved"), folder.path().join("pressed")).expect("it is moved");
+
+    let slide = |case: &Value| {
+        written(folder.path(), case);
+        done(&run(folder.path(), "variant", &[]));
+        let rows = columns(&folder.path().join("variant/history.csv"), "base.tangential_force");
+        rows.last().expect("a row")[1].parse::<f64>().expect("a number")
+    };
+    drags["steps"][0]["scheme"] = json!("static");
+    let usual = slide(&drags);
+    drags["contacts"]["base"]["friction"]["mu_k"] = json!(0.3);
+    drags["contacts"]["base"]["friction"]["kappa"] = json!(1000);
+    assert!(slide(&drags) > 1.1 * usual, "friction is higher");
+    for (pointer, value, expected) in [
+        ("/bodies/block/material/E", json!(200), "`bodies.block.material.E` is 200, and was 100"),
+        ("/contacts/base/friction/mu_s", json!(0.35), "a point comes with mu = 0.38"),
+        ("/steps/0/dt/initial", json!(-1), "steps[0].dt.initial"),
+        ("/begin_with", json!("nowhere"), "begin_with: "),
+    ] {
+        let mut other = drags.clone();
+        *other.pointer_mut(pointer).expect("it is there") = value;
+        written(folder.path(), &other);
+        let told = told(&run(folder.path(), "none", &[]), 2);
+        assert!(told.contains(expected), "{told}");
+    }
+    // Where a run is not over nothing begins.
+    let unfinished = interrupted(&dragged(json!("static"), 100));
+    drags["begin_with"] = json!(unfinished.path().join("out"));
+    written(folder.path(), &drags);
+    assert!(told(&run(folder.path(), "none", &[]), 2).contains("has not come to its end"));
+}
+
+/// The number of threads is checked wherever it comes from, and threads that cannot be had are told.
+#[cfg(unix)]
+#[test]
+fn threads_that_cannot_be_had_are_told() {
+    let folder = TempDir::new().expect("a folder");
+    written(folder.path(), &dragged(json!("static"), 4));
+    let many = shell(folder.path(), "RAYON_NUM_THREADS=100000 PROGRAM check case.json");
+    assert!(told(&many, 2).contains("RAYON_NUM_THREADS 100000: give 1 to 1024"), "{many:?}");
+    for text in ["RAYON_NUM_THREADS=two", "RAYON_NUM_THREADS=0", "RAYON_NUM_THREADS="] {
+        done(&shell(folder.path(), &format!("{text} PROGRAM check case.json")));
+    }
+    let cramped = shell(folder.path(), "ulimit -v 400000; RAYON_NUM_THREADS=1024 PROGRAM check case.json");
+    assert!(told(&cramped, 2).contains("RAYON_NUM_THREADS 1024: "), "{cramped:?}");
+}
+
+/// A panic is told as what it is, with another exit code than anything else.
+#[test]
+fn a_panic_is_told_as_a_defect() {
+    use fecontact::cli::{Failure, defect};
+    let caught = defect::catch(|| -> () { panic!("index {} is too large", 7) }).unwrap_err();
+    assert_eq!(caught, "index 7 is too large");
+    let (code, told) = Failure::Defect(caught).told();
+    assert_eq!(code, 70);
+    assert!(told.starts_with("defect: index 7 is too large\nThis is a defect of fecontact"), "{told}");
+    assert_eq!(defect::catch(|| 3), Ok(3));
+}
+
+/// Nothing of a bad case is left behind.
+#[test]
+fn a_refused_command_leaves_no_folder() {
+    let folder = TempDir::new().expect("a folder");
+    let mut case = dragged(json!("static"), 4);
+    case["output"]["checkpoint"] = json!(-1);
+    written(folder.path(), &case);
+    assert!(told(&run(folder.path(), "out", &[]), 2).contains("output.checkpoint: is -1"));
+    assert!(told(&run(folder.path(), "out", &["--resume"]), 2).contains("there is none"));
+    assert!(!folder.path().join("out").exists());
+}
