@@ -18,9 +18,10 @@ static COUNTED: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 /// Bodies, linear and not, viscous or not, dashpots, absorbing sides, dead loads, springs and supports, constant, by table and
 /// by expression; and contacts, at nodes and at Gauss points, on meshes that match and do not, on curved surfaces and rigid
-/// ones, sticking and slipping, in small sliding by mortar too: from the tenth increment on none asks for memory, on one thread or
-/// two. (Mortar in finite sliding, contact of a surface with itself and pressures that follow the surface do; so does the look at elements that have changed their shape and
-/// at contacts after 200 increments, which the small motion here does not make necessary.)
+/// ones, sticking and slipping, in small sliding by mortar too: from the tenth increment on none asks for memory, on one thread
+/// or two. (Mortar in finite sliding, contact of a surface with itself and pressures that follow the surface do; so does the
+/// look at elements that have changed their shape and at contacts after 200 increments, which the small motion here does not
+/// make necessary.)
 #[test]
 fn explicit_increments_allocate_nothing() {
     let mesh = Blocks::default().rectangle("plain", [24, 24], [0.0, 0.0], [1.0, 1.0]).rectangle(
