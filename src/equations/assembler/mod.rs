@@ -1,20 +1,23 @@
 //! Residual and tangent of a model: the terms added up.
 
+mod contacts;
+mod parts;
+
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::coupling::{Coupling, Layout};
-use super::equilibrium::Equilibrium;
-use super::evaluation::{Evaluation, Seconds};
-use super::evolving::Evolving;
-use super::failure::TrialFailure;
-use super::inertia::Inertia;
-use super::solids::Solids;
-use super::sums::Sums;
-use super::term::Term;
-use super::trial::Trial;
-use super::{dampers, damping, inertia, interfaces, loads, stabilization, supports};
-use crate::contact::pair::{PairResponse, Presumption};
+use crate::contact::pair::PairResponse;
+use crate::equations::coupling::{Coupling, Layout};
+use crate::equations::equilibrium::Equilibrium;
+use crate::equations::evaluation::{Evaluation, Seconds};
+use crate::equations::evolving::Evolving;
+use crate::equations::failure::TrialFailure;
+use crate::equations::inertia::Inertia;
+use crate::equations::solids::Solids;
+use crate::equations::sums::Sums;
+use crate::equations::term::Term;
+use crate::equations::trial::Trial;
+use crate::equations::{dampers, damping, inertia, interfaces, loads, stabilization, supports};
 use crate::linear::SparseMatrix;
 use crate::linear::system::{Request, System};
 use crate::model::Model;
@@ -104,46 +107,6 @@ impl Assembler {
         })
     }
 
-    /// Do something with the responses of all contact points where nothing is presumed.
-    ///
-    /// # Errors
-    /// [`TrialFailure`] when a friction law fails, and those of what is done.
-    pub fn with_responses<T>(
-        &mut self,
-        trial: Trial,
-        u: &[f64],
-        request: Request,
-        act: impl FnOnce(&mut Self, &[PairResponse]) -> Result<T, TrialFailure>,
-    ) -> Result<T, TrialFailure> {
-        let mut responses = std::mem::take(&mut self.responses);
-        let found = self.interfaces(trial, u, |_, _| Presumption::default(), request, &mut responses);
-        let done = found.and_then(|()| act(self, &responses));
-        self.responses = responses;
-        done
-    }
-
-    /// Responses of all contact points at the displacement `u`, with what is presumed about a point of a pair: for a tangent
-    /// alone, a residual that may be accepted knows no presumptions. They come in `responses`, whose memory is used again.
-    ///
-    /// # Errors
-    /// [`TrialFailure`] when a friction law fails.
-    pub fn interfaces(
-        &mut self,
-        trial: Trial,
-        u: &[f64],
-        presumed: impl Fn(usize, usize) -> Presumption + Sync,
-        request: Request,
-        responses: &mut Vec<PairResponse>,
-    ) -> Result<(), TrialFailure> {
-        if self.model.contacts.is_empty() {
-            return Ok(());
-        }
-        let clock = Instant::now();
-        let answer = interfaces::respond(&self.model, trial, u, presumed, request, responses);
-        self.seconds.contact += clock.elapsed().as_secs_f64();
-        answer
-    }
-
     /// Residual, and tangent on request, at the displacement `u` with the given responses of the contact points.
     ///
     /// # Errors
@@ -180,23 +143,6 @@ impl Assembler {
         Ok(())
     }
 
-    /// Keep the states of the contact points, and how large their forces are.
-    pub fn note_contacts(&mut self, trial: Trial, responses: &[PairResponse]) {
-        self.equilibrium.note_contacts(&self.model, trial, responses);
-        self.keep_states(responses);
-    }
-
-    /// Norm of the nodal forces of each contact at the last evaluation [F].
-    pub fn contact_forces(&self) -> &[f64] {
-        self.equilibrium.contact_forces()
-    }
-
-    /// Square of what round-off can leave at every node, at the displacement that was evaluated last [F²].
-    pub fn round_off(&self, trial: Trial, u: &[f64]) -> Vec<f64> {
-        let mass = self.mass.as_ref().filter(|_| trial.step.scheme.coefficients().is_some());
-        self.equilibrium.round_off((&self.model, mass), trial, u, &self.magnitudes)
-    }
-
     /// Forces of what the displacement `u` alone decides, and everything else that an accepted state takes over from the
     /// evaluation but rates, damping and reactions: what explicit increments need, which find the velocities last. With
     /// velocities `v` the viscous forces of the bodies belong to it, and what they put on the nodes is written over the damping.
@@ -214,13 +160,6 @@ impl Assembler {
             assembler.seconds.assembly += clock.elapsed().as_secs_f64();
             Ok(())
         })
-    }
-
-    /// Keep the trial states of the contact points for the accepted state.
-    fn keep_states(&mut self, responses: &[PairResponse]) {
-        let contacts = &mut self.evaluation.contacts;
-        contacts.resize_with(responses.len(), Vec::new);
-        contacts.iter_mut().zip(responses).for_each(|(states, pair)| states.clone_from(&pair.states));
     }
 
     /// Add the viscous forces of the bodies to those just found, and write what they put on the nodes over the damping.
@@ -306,47 +245,5 @@ impl Assembler {
         if self.layout.cover(responses, trial.old) {
             (self.mass, self.damping_mass) = (None, None);
         }
-    }
-
-    /// Number of the distinct stiffness matrices that the elements whose tangent never changes share.
-    pub fn stored_matrices(&self) -> usize {
-        self.solids.matrices()
-    }
-
-    /// The mass matrix on the current pattern.
-    pub fn mass(&mut self) -> &SparseMatrix {
-        let Self { model, layout, mass, .. } = self;
-        mass.get_or_insert_with(|| inertia::mass(model, layout))
-    }
-
-    /// The tangent of one term by itself, with no supports: see [`Term::dependence`].
-    ///
-    /// # Errors
-    /// As [`Assembler::residual`].
-    pub fn tangent_of(&mut self, term: Term, trial: Trial, u: &[f64]) -> Result<SparseMatrix, TrialFailure> {
-        self.with_responses(trial, u, Request::Tangent, |assembler, responses| {
-            assembler.tangent_with(term, trial, u, responses)
-        })
-    }
-
-    fn tangent_with(
-        &mut self,
-        term: Term,
-        trial: Trial,
-        u: &[f64],
-        responses: &[PairResponse],
-    ) -> Result<SparseMatrix, TrialFailure> {
-        self.cover(trial, responses);
-        let mut tangent = self.layout.matrix();
-        if term == Term::Inertia {
-            let mass = self.mass().clone();
-            let inertia = Inertia::at(&self.model, trial, u, &mass);
-            inertia.into_iter().for_each(|inertia| tangent.add_columns(&mass, &inertia.factors));
-            return Ok(tangent);
-        }
-        let kept = std::mem::take(&mut self.evaluation);
-        let added = self.add(&[term], (trial, u, None), responses, false, Some(&mut tangent));
-        self.evaluation = kept;
-        added.map(|()| tangent)
     }
 }
