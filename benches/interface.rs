@@ -27,7 +27,7 @@ const POINTS: [usize; 6] = [100, 300, 1000, 2000, 4000, 10000];
 const ROWS: usize = 15;
 
 /// Increments that are timed, after one that is not.
-const INCREMENTS: usize = 5;
+const INCREMENTS: usize = 40;
 
 fn main() -> Result<(), Box<dyn Error>> {
     rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global()?;
