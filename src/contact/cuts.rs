@@ -7,6 +7,7 @@ use super::projection::normal_of;
 use super::search::Index;
 use super::surface::Surface;
 use crate::mesh::configuration::Configuration;
+use crate::mesh::few::Few;
 use crate::mesh::shape;
 
 /// Master segments farther from a slave edge than this many of its lengths are not looked at: far enough for the deep
@@ -15,6 +16,9 @@ const REACH: f64 = 10.0;
 
 /// A slave edge and a master segment face each other when the cosine between their outward normals is below this.
 const EDGE_ON: f64 = -0.01;
+
+/// A segment both of whose ends project farther beyond an end of a straight edge than this faces none of it [half an edge]
+const BESIDE: f64 = 1e-3;
 
 /// A part of a slave edge that one master segment faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,14 +71,20 @@ fn facing(edge: &[usize], surface: &Surface, index: &Index, x: &Configuration) -
     let along = x.between(edge[0], edge[1]);
     let reach = REACH * along.norm();
     let normal = -normal_of(along.normalize());
+    let levels = |node: usize| -> Few<f64, 3> { edge.iter().map(|&own| x.between(node, own).dot(&along)).collect() };
+    let chord = |levels: &[f64]| 2.0 * levels[0] / (levels[0] - levels[1]) - 1.0;
     let coordinate = |node: usize| {
-        let levels: Vec<f64> = edge.iter().map(|&own| x.between(node, own).dot(&along)).collect();
-        let chord = 2.0 * levels[0] / (levels[0] - levels[1]) - 1.0;
-        root(|xi| Line::Edge(edge).shapes(xi), &levels, chord)
+        let levels = levels(node);
+        root(|xi| Line::Edge(edge).shapes(xi), &levels, chord(&levels))
     };
     let mut candidates = Vec::new();
     for segment in index.around(edge, reach, x) {
         let [a, b] = surface.segments[segment].ends;
+        // On a straight edge the chord is the coordinate, but for round-off.
+        let [start, end] = [a, b].map(|node| chord(&levels(node)));
+        if edge.len() == 2 && (start.min(end) > 1.0 + BESIDE || start.max(end) < -1.0 - BESIDE) {
+            continue;
+        }
         // A segment is taken in nearly edge-on, where it faces next to nothing: the average must not jump as it turns.
         if normal_of(x.between(a, b).normalize()).dot(&normal) >= EDGE_ON {
             continue;

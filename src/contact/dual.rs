@@ -1,123 +1,190 @@
 //! Numbers that carry their derivatives: what is computed with them brings its exact variation along.
 
-use std::ops::{Add, Div, Mul, Sub};
-
-/// A value and its derivatives with respect to the unknowns at hand; an empty gradient is that of a constant.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Dual {
-    /// value
-    pub value: f64,
-    /// derivatives
-    pub gradient: Vec<f64>,
-}
-
-impl Dual {
+/// What averages are computed with: numbers where values are enough, or numbers that carry their variations.
+pub trait Number: Clone + Default {
     /// A number that does not vary.
-    pub fn constant(value: f64) -> Self {
-        Self { value, gradient: Vec::new() }
-    }
+    fn constant(value: f64) -> Self;
 
-    /// Unknown number `k` of `n`; for n = 0 a constant.
-    pub fn unknown(value: f64, k: usize, n: usize) -> Self {
-        let mut gradient = vec![0.0; n];
-        if n > 0 {
-            gradient[k] = 1.0;
-        }
-        Self { value, gradient }
-    }
+    /// Unknown number `k` of `n`.
+    fn unknown(value: f64, k: usize, n: usize) -> Self;
 
-    /// f(self) from the value f and the derivative f′ at `self.value`.
-    pub fn map(&self, value: f64, derivative: f64) -> Self {
-        Self { value, gradient: self.gradient.iter().map(|g| derivative * g).collect() }
-    }
+    /// The value.
+    fn value(&self) -> f64;
+
+    /// The derivatives with respect to the unknowns at hand; none of a constant.
+    fn gradient(&self) -> &[f64];
+
+    /// f(self) from the value f and the derivative f′ at the value.
+    fn map(&self, value: f64, derivative: f64) -> Self;
+
+    /// A function of two: its value and its partial derivatives.
+    fn join(value: f64, a: (&Self, f64), b: (&Self, f64)) -> Self;
+
+    /// Add `factor · other`.
+    fn accumulate(&mut self, factor: f64, other: &Self);
 
     /// factor · self.
-    pub fn scaled(&self, factor: f64) -> Self {
-        self.map(factor * self.value, factor)
+    fn scaled(&self, factor: f64) -> Self {
+        self.map(factor * self.value(), factor)
     }
 
     /// √self.
-    pub fn sqrt(&self) -> Self {
-        let root = self.value.sqrt();
+    fn sqrt(&self) -> Self {
+        let root = self.value().sqrt();
         self.map(root, 0.5 / root)
     }
 
-    /// Add `factor · other`.
-    pub fn accumulate(&mut self, factor: f64, other: &Self) {
-        self.value += factor * other.value;
-        self.gradient.resize(self.gradient.len().max(other.gradient.len()), 0.0);
-        for (own, other) in self.gradient.iter_mut().zip(&other.gradient) {
-            *own += factor * other;
+    /// self + other.
+    fn plus(&self, other: &Self) -> Self {
+        Self::join(self.value() + other.value(), (self, 1.0), (other, 1.0))
+    }
+
+    /// self − other.
+    fn minus(&self, other: &Self) -> Self {
+        Self::join(self.value() - other.value(), (self, 1.0), (other, -1.0))
+    }
+
+    /// self · other.
+    fn times(&self, other: &Self) -> Self {
+        Self::join(self.value() * other.value(), (self, other.value()), (other, self.value()))
+    }
+
+    /// self/other.
+    fn over(&self, other: &Self) -> Self {
+        let value = self.value() / other.value();
+        Self::join(value, (self, 1.0 / other.value()), (other, -value / other.value()))
+    }
+}
+
+impl Number for f64 {
+    fn constant(value: f64) -> Self {
+        value
+    }
+
+    fn unknown(value: f64, _: usize, _: usize) -> Self {
+        value
+    }
+
+    fn value(&self) -> f64 {
+        *self
+    }
+
+    fn gradient(&self) -> &[f64] {
+        &[]
+    }
+
+    fn map(&self, value: f64, _: f64) -> Self {
+        value
+    }
+
+    fn join(value: f64, _: (&Self, f64), _: (&Self, f64)) -> Self {
+        value
+    }
+
+    fn accumulate(&mut self, factor: f64, other: &Self) {
+        *self += factor * other;
+    }
+}
+
+/// Derivatives that need no memory of their own: those of eight nodes.
+const FEW: usize = 16;
+
+/// A value and its derivatives with respect to the unknowns at hand.
+#[derive(Clone, Debug, Default)]
+pub struct Dual {
+    value: f64,
+    count: usize,
+    few: [f64; FEW],
+    /// All of them, where they are more
+    many: Vec<f64>,
+}
+
+impl Dual {
+    /// A value with `count` derivatives, zero so far.
+    fn with(value: f64, count: usize) -> Self {
+        let many = if count > FEW { vec![0.0; count] } else { Vec::new() };
+        Self { value, count, few: [0.0; FEW], many }
+    }
+
+    fn rates(&mut self) -> &mut [f64] {
+        if self.count > FEW { &mut self.many } else { &mut self.few[..self.count] }
+    }
+}
+
+impl Number for Dual {
+    fn constant(value: f64) -> Self {
+        Self::with(value, 0)
+    }
+
+    fn unknown(value: f64, k: usize, n: usize) -> Self {
+        let mut unknown = Self::with(value, n);
+        unknown.rates()[k] = 1.0;
+        unknown
+    }
+
+    fn value(&self) -> f64 {
+        self.value
+    }
+
+    fn gradient(&self) -> &[f64] {
+        if self.count > FEW { &self.many } else { &self.few[..self.count] }
+    }
+
+    fn map(&self, value: f64, derivative: f64) -> Self {
+        let mut mapped = Self::with(value, self.count);
+        mapped.rates().iter_mut().zip(self.gradient()).for_each(|(rate, own)| *rate = derivative * own);
+        mapped
+    }
+
+    fn join(value: f64, (a, da): (&Self, f64), (b, db): (&Self, f64)) -> Self {
+        if b.count == 0 {
+            return a.map(value, da);
         }
+        let mut joined = b.map(value, db);
+        joined.rates().iter_mut().zip(a.gradient()).for_each(|(rate, own)| *rate += da * own);
+        joined
     }
 
-    /// A function of two: its value and its partial derivatives.
-    fn of(value: f64, (a, da): (&Self, f64), (b, db): (&Self, f64)) -> Self {
-        let n = a.gradient.len().max(b.gradient.len());
-        let at = |gradient: &[f64], k: usize| gradient.get(k).copied().unwrap_or(0.0);
-        Self { value, gradient: (0..n).map(|k| da * at(&a.gradient, k) + db * at(&b.gradient, k)).collect() }
-    }
-}
-
-impl Add for &Dual {
-    type Output = Dual;
-    fn add(self, other: Self) -> Dual {
-        Dual::of(self.value + other.value, (self, 1.0), (other, 1.0))
-    }
-}
-
-impl Sub for &Dual {
-    type Output = Dual;
-    fn sub(self, other: Self) -> Dual {
-        Dual::of(self.value - other.value, (self, 1.0), (other, -1.0))
-    }
-}
-
-impl Mul for &Dual {
-    type Output = Dual;
-    fn mul(self, other: Self) -> Dual {
-        Dual::of(self.value * other.value, (self, other.value), (other, self.value))
-    }
-}
-
-impl Div for &Dual {
-    type Output = Dual;
-    fn div(self, other: Self) -> Dual {
-        let value = self.value / other.value;
-        Dual::of(value, (self, 1.0 / other.value), (other, -value / other.value))
+    fn accumulate(&mut self, factor: f64, other: &Self) {
+        if self.count == 0 {
+            *self = Self { value: self.value, ..other.map(0.0, factor) };
+        } else {
+            self.rates().iter_mut().zip(other.gradient()).for_each(|(rate, own)| *rate += factor * own);
+        }
+        self.value += factor * other.value;
     }
 }
 
 /// A vector in the plane.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct DualVector {
+#[derive(Clone, Debug, Default)]
+pub struct DualVector<N> {
     /// x component
-    pub x: Dual,
+    pub x: N,
     /// y component
-    pub y: Dual,
+    pub y: N,
 }
 
-impl DualVector {
+impl<N: Number> DualVector<N> {
     /// Scalar product.
-    pub fn dot(&self, other: &Self) -> Dual {
-        &(&self.x * &other.x) + &(&self.y * &other.y)
+    pub fn dot(&self, other: &Self) -> N {
+        self.x.times(&other.x).plus(&self.y.times(&other.y))
     }
 
     /// self/‖self‖.
     pub fn normalized(&self) -> Self {
         let norm = self.dot(self).sqrt();
-        Self { x: &self.x / &norm, y: &self.y / &norm }
+        Self { x: self.x.over(&norm), y: self.y.over(&norm) }
     }
 
     /// self − other.
     pub fn minus(&self, other: &Self) -> Self {
-        Self { x: &self.x - &other.x, y: &self.y - &other.y }
+        Self { x: self.x.minus(&other.x), y: self.y.minus(&other.y) }
     }
 
     /// Add `factor · other`.
-    pub fn add_scaled(&mut self, factor: &Dual, other: &Self) {
-        self.x = &self.x + &(factor * &other.x);
-        self.y = &self.y + &(factor * &other.y);
+    pub fn add_scaled(&mut self, factor: &N, other: &Self) {
+        self.x.accumulate(1.0, &factor.times(&other.x));
+        self.y.accumulate(1.0, &factor.times(&other.y));
     }
 
     /// Turned by +90°.

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::dual::{Dual, DualVector};
+use super::dual::{DualVector, Number};
 use super::surface::Segment;
 use crate::mesh::configuration::Configuration;
 use crate::mesh::few::Few;
@@ -17,9 +17,9 @@ pub(super) enum Line<'a> {
 }
 
 impl Line<'_> {
-    pub fn nodes(&self) -> Vec<usize> {
+    pub fn nodes(&self) -> Few<usize, 5> {
         match self {
-            Self::Edge(edge) => edge.to_vec(),
+            Self::Edge(edge) => edge.iter().copied().collect(),
             Self::Segment(segment) => segment.nodes().collect(),
         }
     }
@@ -36,32 +36,40 @@ impl Line<'_> {
         [shape::edge_values(count, at), scaled(shape::edge_derivatives(count, at), rate), scaled(bend, rate * rate)]
     }
 
-    pub fn values(&self, xi: &Dual) -> Vec<Dual> {
-        let [values, slopes, _] = self.shapes(xi.value);
-        values.into_iter().zip(slopes).map(|(value, slope)| xi.map(value, slope)).collect()
+    pub fn values<N: Number>(&self, xi: &N) -> [N; 3] {
+        let [values, slopes, _] = self.shapes(xi.value());
+        let mut values = values.into_iter().zip(slopes).map(|(value, slope)| xi.map(value, slope));
+        std::array::from_fn(|_| values.next().unwrap_or_default())
     }
 
-    pub fn slope(&self, xi: &Dual, frame: &Frame) -> DualVector {
-        let [_, slopes, bends] = self.shapes(xi.value);
-        let slopes: Vec<Dual> = slopes.into_iter().zip(bends).map(|(slope, bend)| xi.map(slope, bend)).collect();
+    pub fn slope<N: Number>(&self, xi: &N, frame: &Frame<N>) -> DualVector<N> {
+        let [_, slopes, bends] = self.shapes(xi.value());
+        let mut slopes = slopes.into_iter().zip(bends).map(|(slope, bend)| xi.map(slope, bend));
+        let slopes: [N; 3] = std::array::from_fn(|_| slopes.next().unwrap_or_default());
         frame.position(self.nodes().into_iter(), &slopes)
     }
 
     /// ξ where the line is level with a point, (x(ξ) − point)·along = 0, near `start`. One Newton step from the solution
     /// brings the exact variation.
-    pub fn coordinate(&self, point: &DualVector, along: &DualVector, start: f64, frame: &Frame) -> Dual {
-        let t = Vector2::new(along.x.value, along.y.value);
-        let p = Vector2::new(point.x.value, point.y.value);
+    pub fn coordinate<N: Number>(
+        &self,
+        point: &DualVector<N>,
+        along: &DualVector<N>,
+        start: f64,
+        frame: &Frame<N>,
+    ) -> N {
+        let vector = |v: &DualVector<N>| Vector2::new(v.x.value(), v.y.value());
+        let (t, p) = (vector(along), vector(point));
         let level = |node: usize| {
             let at = frame.at(node);
-            (Vector2::new(at.x.value, at.y.value) - p).dot(&t)
+            (vector(at) - p).dot(&t)
         };
-        let levels: Vec<f64> = self.nodes().into_iter().map(level).collect();
+        let levels: Few<f64, 5> = self.nodes().into_iter().map(level).collect();
         let xi = root(|xi| self.shapes(xi), &levels, start);
-        let fixed = Dual::constant(xi);
+        let fixed = N::constant(xi);
         let residual = frame.position(self.nodes().into_iter(), &self.values(&fixed)).minus(point).dot(along);
         let slope = self.slope(&fixed, frame).dot(along);
-        &fixed - &(&residual / &slope)
+        fixed.minus(&residual.over(&slope))
     }
 }
 
@@ -81,32 +89,32 @@ pub(super) fn root(shapes: impl Fn(f64) -> [Few<f64, 3>; 3], levels: &[f64], sta
 }
 
 /// Positions of some nodes relative to the first, as unknowns.
-pub(super) struct Frame {
+pub(super) struct Frame<N> {
     pub nodes: Vec<usize>,
     /// x of the first, and the section
     origin: (Vector2<f64>, Section),
-    pub positions: Vec<DualVector>,
+    pub positions: Vec<DualVector<N>>,
 }
 
-impl Frame {
-    pub fn new(nodes: Vec<usize>, variations: bool, x: &Configuration) -> Self {
-        let n = if variations { 2 * nodes.len() } else { 0 };
+impl<N: Number> Frame<N> {
+    pub fn new(nodes: Vec<usize>, x: &Configuration) -> Self {
+        let n = 2 * nodes.len();
         let position = |(k, &node): (usize, &usize)| {
             let at = x.between(nodes[0], node);
-            DualVector { x: Dual::unknown(at.x, 2 * k, n), y: Dual::unknown(at.y, 2 * k + 1, n) }
+            DualVector { x: N::unknown(at.x, 2 * k, n), y: N::unknown(at.y, 2 * k + 1, n) }
         };
         let origin = (x.at(nodes[0]), x.section());
         Self { positions: nodes.iter().enumerate().map(position).collect(), origin, nodes }
     }
 
     /// w of the section at a position; `None` where it is 1 everywhere.
-    pub fn depth(&self, position: &DualVector) -> Option<Dual> {
+    pub fn depth(&self, position: &DualVector<N>) -> Option<N> {
         let (origin, section) = self.origin;
-        let at = origin + Vector2::new(position.x.value, position.y.value);
+        let at = origin + Vector2::new(position.x.value(), position.y.value());
         let slope = section.slope(at)?;
-        let mut depth = Dual::constant(section.weight(at));
+        let mut depth = N::constant(section.weight(at));
         for (rate, moved) in [(slope.x, &position.x), (slope.y, &position.y)] {
-            depth.accumulate(rate, &Dual { value: 0.0, gradient: moved.gradient.clone() });
+            depth.accumulate(rate, &moved.map(0.0, 1.0));
         }
         Some(depth)
     }
@@ -115,11 +123,11 @@ impl Frame {
         self.nodes.iter().position(|&n| n == node).expect("every node of an average is listed when it is built")
     }
 
-    pub fn at(&self, node: usize) -> &DualVector {
+    pub fn at(&self, node: usize) -> &DualVector<N> {
         &self.positions[self.local(node)]
     }
 
-    pub fn position(&self, nodes: impl Iterator<Item = usize>, weights: &[Dual]) -> DualVector {
+    pub fn position(&self, nodes: impl Iterator<Item = usize>, weights: &[N]) -> DualVector<N> {
         let mut sum = DualVector::default();
         for (node, weight) in nodes.zip(weights) {
             sum.add_scaled(weight, self.at(node));
@@ -127,7 +135,7 @@ impl Frame {
         sum
     }
 
-    pub fn combine(&self, weights: &[Dual]) -> DualVector {
+    pub fn combine(&self, weights: &[N]) -> DualVector<N> {
         self.position(self.nodes.iter().copied(), weights)
     }
 }

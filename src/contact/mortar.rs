@@ -25,13 +25,15 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use super::cuts::{Overlap, Overlaps, cut};
-use super::dual::{Dual, DualVector};
+use super::dual::{Dual, DualVector, Number};
 use super::kinematics::{Kinematics, Meeting};
 use super::lines::{Frame, Line};
+use super::master::Master;
 use super::point::{LengthShare, MasterPoint, SlavePoint, Weights, edge_point, lone_point};
 use super::search::Index;
 use super::surface::{CORNER, Segment, Surface};
 use crate::mesh::configuration::Configuration;
+use crate::mesh::section::Section;
 use crate::mesh::shape;
 
 /// The slave side: its edges, and which of them meet at each contact point.
@@ -43,6 +45,16 @@ pub struct Mortar {
     at: Vec<Vec<(usize, usize)>>,
     /// Points of Gauss's rule around each point, their lengths times φ_j
     pub(super) around: Vec<Vec<SlavePoint>>,
+}
+
+/// The weights of all points in the committed configuration. They stay as they are while an increment is iterated.
+#[derive(Clone, Debug, Default)]
+pub struct Committed {
+    section: Section,
+    /// X and u of all nodes on both sides
+    places: Vec<(usize, [Vector2<f64>; 2])>,
+    /// Weights of each point, if the master faced it
+    pub weights: Vec<Option<Weights>>,
 }
 
 /// The nodes of the slave edges as contact points, each side of a corner a point of its own.
@@ -98,6 +110,23 @@ fn gauss_around(edge: &[usize], a: usize) -> Vec<SlavePoint> {
 }
 
 impl Mortar {
+    /// The weights of all points in the configuration `x`, found anew unless they are there already.
+    pub fn commit(&self, master: &Master, surface: &Surface, x: &Configuration, committed: &mut Committed) {
+        let segments = || surface.segments.iter().flat_map(Segment::nodes);
+        let nodes = || self.edges.iter().flatten().copied().chain(segments());
+        let places = || nodes().map(|node| (node, x.apart(&[(node, 1.0)], Vector2::zeros())));
+        let Committed { section, places: kept, weights } = committed;
+        if *section == x.section() && weights.len() == self.at.len() && places().eq(kept.iter().copied()) {
+            return;
+        }
+        *section = x.section();
+        kept.clear();
+        kept.extend(places());
+        let overlaps = self.overlaps(surface, &Index::new(master, x), x);
+        let found = (0..self.at.len()).into_par_iter().map(|point| self.weights(point, surface, &overlaps, x));
+        found.collect_into_vec(weights);
+    }
+
     /// Cut all slave edges.
     pub fn overlaps(&self, surface: &Surface, index: &Index, x: &Configuration) -> Overlaps {
         Overlaps(self.edges.par_iter().map(|edge| cut(edge, surface, index, x)).collect())
@@ -114,6 +143,22 @@ impl Mortar {
         x: &Configuration,
         k: &mut Kinematics,
     ) -> Option<Meeting> {
+        match k.varied {
+            true => self.meet_by::<Dual>(point, surface, overlaps, old, x, k),
+            false => self.meet_by::<f64>(point, surface, overlaps, old, x, k),
+        }
+    }
+
+    /// By numbers that carry their variations, or not.
+    fn meet_by<N: Number>(
+        &self,
+        point: usize,
+        surface: &Surface,
+        overlaps: &Overlaps,
+        old: Option<&Weights>,
+        x: &Configuration,
+        k: &mut Kinematics,
+    ) -> Option<Meeting> {
         let foot = self.foot(point, overlaps)?;
         let mut nodes = self.nodes(point, surface, overlaps);
         for &(node, _) in old.into_iter().flatten() {
@@ -121,51 +166,51 @@ impl Mortar {
                 nodes.push(node);
             }
         }
-        let frame = Frame::new(nodes, k.varied, x);
+        let frame = Frame::<N>::new(nodes, x);
         let Averages { weights, length } = self.averages(point, surface, overlaps, &frame)?;
         let along = self.along(point, &frame);
         let (s, n) = (along.clone(), along.turned());
-        let relative: Vec<Dual> = weights.iter().map(|w| w / &length).collect();
+        let relative: Vec<N> = weights.iter().map(|w| w.over(&length)).collect();
         let mean = frame.combine(&relative);
         let gap = n.dot(&mean);
-        let mut slip = Dual::constant(0.0);
+        let mut slip = N::constant(0.0);
         if let Some(old) = old {
             let mut moved = DualVector::default();
             for &(node, w) in old {
-                moved.add_scaled(&Dual::constant(w), &frame.positions[frame.local(node)]);
+                moved.add_scaled(&N::constant(w), &frame.positions[frame.local(node)]);
             }
             slip = s.dot(&moved.minus(&mean));
         }
-        k.begin(Vector2::new(n.x.value, n.y.value));
+        k.begin(Vector2::new(n.x.value(), n.y.value()));
         k.nodes.extend_from_slice(&frame.nodes);
         k.clear();
-        k.tangent = Vector2::new(s.x.value, s.y.value);
-        (k.slip, k.length) = (slip.value, surface.share() * length.value);
-        k.relative.iter_mut().zip(&relative).for_each(|(value, w)| *value = w.value);
+        k.tangent = Vector2::new(s.x.value(), s.y.value());
+        (k.slip, k.length) = (slip.value(), surface.share() * length.value());
+        k.relative.iter_mut().zip(&relative).for_each(|(value, w)| *value = w.value());
         if k.varied {
-            let set = |row: &mut Vec<f64>, d: &Dual| row[..d.gradient.len()].copy_from_slice(&d.gradient);
+            let set = |row: &mut Vec<f64>, d: &N| row[..d.gradient().len()].copy_from_slice(d.gradient());
             set(&mut k.dgap, &gap);
             set(&mut k.dslip, &slip);
             set(&mut k.dlength, &length);
             k.dlength.iter_mut().for_each(|rate| *rate *= surface.share());
-            let [dx, dy] = [&s.x, &s.y].map(|d| d.gradient.iter().copied().chain(repeat(0.0)));
+            let [dx, dy] = [&s.x, &s.y].map(|d| d.gradient().iter().copied().chain(repeat(0.0)));
             k.drotation
                 .iter_mut()
                 .zip(dx.zip(dy))
                 .for_each(|(turn, (dx, dy))| *turn = dx * k.normal.x + dy * k.normal.y);
             for (a, w) in relative.iter().enumerate() {
                 k.changing.push(a);
-                k.drelative.extend(w.gradient.iter().copied().chain(repeat(0.0)).take(k.dgap.len()));
+                k.drelative.extend(w.gradient().iter().copied().chain(repeat(0.0)).take(k.dgap.len()));
             }
         }
-        Some(Meeting { gap: gap.value, foot })
+        Some(Meeting { gap: gap.value(), foot })
     }
 
     /// Weights of r_j in a configuration; `None` where no master faces the point.
     pub fn weights(&self, point: usize, surface: &Surface, overlaps: &Overlaps, x: &Configuration) -> Option<Weights> {
-        let frame = Frame::new(self.nodes(point, surface, overlaps), false, x);
+        let frame = Frame::<f64>::new(self.nodes(point, surface, overlaps), x);
         let Averages { weights, length } = self.averages(point, surface, overlaps, &frame)?;
-        Some(frame.nodes.iter().zip(weights).map(|(&node, w)| (node, w.value / length.value)).collect())
+        Some(frame.nodes.iter().zip(weights).map(|(&node, w)| (node, w / length)).collect())
     }
 
     /// The facing segment nearest to a point along its edges.
@@ -196,29 +241,35 @@ impl Mortar {
     }
 
     /// s_j: mean direction ∫ φ_j dx of the edges at a point.
-    fn along(&self, point: usize, frame: &Frame) -> DualVector {
+    fn along<N: Number>(&self, point: usize, frame: &Frame<N>) -> DualVector<N> {
         let mut sum = DualVector::default();
         for LengthShare { factor, tangent, .. } in self.around[point].iter().flat_map(|at| &at.length) {
             for &(node, slope) in tangent {
-                sum.add_scaled(&Dual::constant(factor * slope), frame.at(node));
+                sum.add_scaled(&N::constant(factor * slope), frame.at(node));
             }
         }
         sum.normalized()
     }
 
-    fn averages(&self, point: usize, surface: &Surface, overlaps: &Overlaps, frame: &Frame) -> Option<Averages> {
-        let mut averages = Averages { weights: vec![Dual::default(); frame.nodes.len()], length: Dual::default() };
+    fn averages<N: Number>(
+        &self,
+        point: usize,
+        surface: &Surface,
+        overlaps: &Overlaps,
+        frame: &Frame<N>,
+    ) -> Option<Averages<N>> {
+        let mut averages = Averages { weights: vec![N::default(); frame.nodes.len()], length: N::default() };
         let mut whole = 0.0;
         for &(e, a) in &self.at[point] {
             let edge = &self.edges[e];
             let chord = frame.at(edge[1]).minus(frame.at(edge[0]));
-            whole += chord.dot(&chord).value.sqrt();
+            whole += chord.dot(&chord).value().sqrt();
             let along = chord.normalized();
             for overlap in &overlaps.0[e] {
                 averages.integrate(edge, a, overlap, &surface.segments[overlap.segment], &along, frame);
             }
         }
-        (averages.length.value > NEGLIGIBLE * whole).then_some(averages)
+        (averages.length.value() > NEGLIGIBLE * whole).then_some(averages)
     }
 }
 
@@ -227,12 +278,12 @@ impl Mortar {
 const NEGLIGIBLE: f64 = 1e-9;
 
 /// A_j and W_ja.
-struct Averages {
-    weights: Vec<Dual>,
-    length: Dual,
+struct Averages<N> {
+    weights: Vec<N>,
+    length: N,
 }
 
-impl Averages {
+impl<N: Number> Averages<N> {
     /// Add the integrals over one overlap.
     fn integrate(
         &mut self,
@@ -240,35 +291,35 @@ impl Averages {
         a: usize,
         overlap: &Overlap,
         segment: &Segment,
-        along: &DualVector,
-        frame: &Frame,
+        along: &DualVector<N>,
+        frame: &Frame<N>,
     ) {
         let ends = overlap.ends.map(|cut| match cut.node {
-            None => Dual::constant(cut.xi),
+            None => N::constant(cut.xi),
             Some(node) => Line::Edge(edge).coordinate(frame.at(node), along, cut.xi, frame),
         });
-        let (half, middle) = ((&ends[1] - &ends[0]).scaled(0.5), (&ends[0] + &ends[1]).scaled(0.5));
+        let (half, middle) = (ends[1].minus(&ends[0]).scaled(0.5), ends[0].plus(&ends[1]).scaled(0.5));
         let points = if edge.len() == 2 && segment.middle.is_none() { 2 } else { 4 };
         for (at, weight) in shape::gauss(points) {
-            let xi = &middle + &half.scaled(at);
+            let xi = middle.plus(&half.scaled(at));
             let slave = Line::Edge(edge);
             let values = slave.values(&xi);
             let slope = slave.slope(&xi, frame);
-            let (value, rate) = hat(edge.len(), a, xi.value);
+            let (value, rate) = hat(edge.len(), a, xi.value());
             let position = frame.position(edge.iter().copied(), &values);
-            let share = &(&slope.dot(&slope).sqrt() * &half.scaled(weight)) * &xi.map(value, rate);
+            let share = slope.dot(&slope).sqrt().times(&half.scaled(weight)).times(&xi.map(value, rate));
             let share = match frame.depth(&position) {
-                Some(depth) => &share * &depth,
+                Some(depth) => share.times(&depth),
                 None => share,
             };
             let master = Line::Segment(segment);
             let eta = master.coordinate(&position, along, 0.5, frame);
             self.length.accumulate(1.0, &share);
             for (&node, value) in edge.iter().zip(&values) {
-                self.weights[frame.local(node)].accumulate(1.0, &(&share * value));
+                self.weights[frame.local(node)].accumulate(1.0, &share.times(value));
             }
             for (node, value) in segment.nodes().zip(master.values(&eta)) {
-                self.weights[frame.local(node)].accumulate(-1.0, &(&share * &value));
+                self.weights[frame.local(node)].accumulate(-1.0, &share.times(&value));
             }
         }
     }

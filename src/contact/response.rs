@@ -7,6 +7,7 @@ use super::closed::{Closed, ClosedPoints};
 use super::force::{Loading, PointPlace, closes, place};
 use super::kinematics::{Kinematics, Meeting};
 use super::master::Master;
+use super::mortar::Committed;
 use super::pair::ContactPair;
 use super::presumption::{ContactIncrement, PointIncrement, Presumption};
 use super::search::Index;
@@ -23,14 +24,22 @@ const PART: usize = 64;
 const TOGETHER: usize = 16;
 
 /// Trial states of all points of a pair, in their order, and what the closed ones add to the equations. Handed from one
-/// evaluation to the next: then its lists are there already.
+/// evaluation of the pair to the next: then its lists are there already.
 #[derive(Clone, Debug, Default)]
 pub struct PairResponse {
     /// Trial states
     pub states: Vec<ContactState>,
     parts: Vec<Part>,
+    kept: Kept,
+}
+
+/// What need not be found anew while it stays as it is.
+#[derive(Clone, Debug, Default)]
+struct Kept {
     /// Tree of the master
     boxes: Boxes,
+    /// What mortar averages over in the committed configuration
+    committed: Committed,
 }
 
 /// Points that one thread evaluates.
@@ -86,9 +95,9 @@ impl ContactPair {
                 averaged(self, slave, meeting, old, increment, x)
             });
         }
-        let mut boxes = std::mem::take(&mut response.boxes);
-        let answer = self.respond_by(&question, old, [before, x], &mut boxes, response);
-        response.boxes = boxes;
+        let mut kept = std::mem::take(&mut response.kept);
+        let answer = self.respond_by(&question, old, [before, x], &mut kept, response);
+        response.kept = kept;
         answer
     }
 
@@ -98,16 +107,16 @@ impl ContactPair {
         question: &Question<P>,
         old: &[ContactState],
         [before, x]: [&Configuration; 2],
-        boxes: &mut Boxes,
+        Kept { boxes, committed }: &mut Kept,
         response: &mut PairResponse,
     ) -> Result<(), (usize, LawFailure)> {
         let index = Index::kept(&self.master, before, x, boxes);
         if let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) {
-            let was = mortar.overlaps(surface, &Index::new(&self.master, before), before);
+            mortar.commit(&self.master, surface, before, committed);
             let is = mortar.overlaps(surface, &index, x);
             return question.each(old, response, |k, slave, old, increment, kinematics| {
-                let weights = mortar.weights(k, surface, &was, before);
-                let meeting = mortar.meet(k, surface, &is, weights.as_ref(), x, kinematics);
+                let weights = committed.weights[k].as_ref();
+                let meeting = mortar.meet(k, surface, &is, weights, x, kinematics);
                 if meeting.is_some() && weights.is_none() {
                     kinematics.count_from(before, x);
                 }

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::contact::force::Closed;
 use crate::contact::master::Master;
 use crate::contact::pair::PairResponse;
 use crate::contact::surface::Path;
@@ -48,6 +47,10 @@ pub(super) struct Layout {
     blocks: Vec<BlockPosition>,
     /// Where each element's blocks start
     starts: Vec<usize>,
+    /// Nodes of the closed points of contacts that were last given room, each list led by its length
+    contacts: Vec<usize>,
+    /// Their blocks, point after point
+    contact_blocks: Vec<BlockPosition>,
 }
 
 impl Layout {
@@ -63,6 +66,8 @@ impl Layout {
             pattern: Arc::new(Pattern::new(model.mesh.nodes.len(), std::iter::empty())),
             blocks: Vec::new(),
             starts: starts.collect(),
+            contacts: Vec::new(),
+            contact_blocks: Vec::new(),
         };
         layout.set();
         layout
@@ -91,6 +96,8 @@ impl Layout {
         blocks.clear();
         model.mesh.elements.iter().for_each(|element| blocks.extend(self.blocks_between(&element.nodes)));
         self.blocks = blocks;
+        self.contacts.clear();
+        self.contact_blocks.clear();
     }
 
     /// The groups that have copies in them, as the nodes that those move with, and every copy with its own.
@@ -132,12 +139,7 @@ impl Layout {
     /// segment more behind each foot and a few ahead, where the point slides to. Every time the room turns out too small
     /// there will be twice as much, so that the pattern seldom changes as points slide.
     pub fn cover(&mut self, responses: &[PairResponse], old: &State) -> bool {
-        let original = |node: &usize| self.original(*node);
-        let coupled = |closed: Closed| {
-            let nodes: Vec<usize> = closed.nodes.iter().map(original).collect();
-            nodes.iter().all(|&a| nodes.iter().all(|&b| self.pattern.block(a, b).is_some()))
-        };
-        if responses.iter().flat_map(PairResponse::all_closed).all(|(_, closed)| coupled(closed)) {
+        if self.find_contacts(responses) {
             return false;
         }
         let (mut groups, ahead) = (Vec::new(), self.coupling.ahead);
@@ -166,6 +168,36 @@ impl Layout {
         }
         self.coupling = Arc::new(Coupling { groups, ahead: FARTHEST.min(2 * ahead) });
         self.set();
+        self.find_contacts(responses);
         true
+    }
+
+    /// Find the blocks of all closed points, unless they are those of before; whether the pattern has them all.
+    fn find_contacts(&mut self, responses: &[PairResponse]) -> bool {
+        let closed = || responses.iter().flat_map(PairResponse::all_closed).map(|(_, closed)| closed.nodes);
+        let listed = || closed().flat_map(|nodes| std::iter::once(nodes.len()).chain(nodes.iter().copied()));
+        if listed().eq(self.contacts.iter().copied()) {
+            return true;
+        }
+        self.contacts.clear();
+        self.contacts.extend(listed());
+        let mut blocks = std::mem::take(&mut self.contact_blocks);
+        blocks.clear();
+        let coupled = closed().all(|nodes| {
+            let own = |node: &usize| self.original(*node);
+            let pairs = nodes.iter().flat_map(|column| nodes.iter().map(move |row| (row, column)));
+            let mut found = pairs.map(|(row, column)| self.pattern.block(own(row), own(column)));
+            found.all(|block| block.map(|block| blocks.push(block)).is_some())
+        });
+        self.contact_blocks = blocks;
+        if !coupled {
+            self.contacts.clear();
+        }
+        coupled
+    }
+
+    /// Blocks of the closed points of contacts that were last given room, point after point, each column by column.
+    pub fn blocks_of_contacts(&self) -> &[BlockPosition] {
+        &self.contact_blocks
     }
 }

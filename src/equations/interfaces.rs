@@ -1,7 +1,7 @@
 //! Contact and friction: what the responses of all contact points add, and what they store, dissipate and take in.
 
 use super::dependence::Dependence;
-use super::sums::Sums;
+use super::sums::{Sums, add_blocks};
 use super::trial::Trial;
 use crate::contact::force::ContactState;
 use crate::contact::pair::{ContactIncrement, PairResponse, Presumption};
@@ -37,12 +37,20 @@ pub(super) fn respond(
     Ok(())
 }
 
-/// Add the forces of the closed points, and their tangents if these were asked for.
+/// Add the forces of the closed points and, if a tangent is asked for, theirs, for which there is room.
 pub(super) fn add(responses: &[PairResponse], sums: &mut Sums) {
+    let mut blocks = sums.layout.blocks_of_contacts();
     for (_, closed) in responses.iter().flat_map(PairResponse::all_closed) {
         sums.push(closed.nodes, closed.force);
-        if !closed.tangent.is_empty() {
-            sums.couple(closed.nodes, closed.tangent);
+        if let Some(tangent) = &mut sums.tangent {
+            assert_eq!(
+                closed.tangent.len(),
+                4 * closed.nodes.len().pow(2),
+                "responses come with tangents if one is asked for"
+            );
+            let (own, others) = blocks.split_at(closed.nodes.len().pow(2));
+            add_blocks(tangent, own, closed.tangent, closed.nodes.len());
+            blocks = others;
         }
     }
 }

@@ -922,3 +922,132 @@ fn a_law_that_dilates_presses_and_its_tangent_equals_differences() {
         .count();
     assert!(tested > 0, "no node was closed");
 }
+
+/// A master of n segments and a slave of as many edges below it, that match: many points lie over nodes, where two segments are
+/// equally near. Straight, or with middle nodes.
+fn strips(n: usize, quadratic: bool) -> (Vec<Vec<usize>>, Vec<Vec<usize>>, Positions) {
+    let place =
+        |k: usize, y: f64| Vector2::new(0.1 * k as f64, y + if quadratic { 0.01 * (k % 2) as f64 } else { 0.0 });
+    let step = if quadratic { 2 } else { 1 };
+    let nodes = step * n + 1;
+    let x = (0..nodes).map(|k| place(k, 0.0)).chain((0..nodes).map(|k| place(k, -1e-4))).collect();
+    let edge = |first: usize, last: usize| match quadratic {
+        true => vec![first, last, (first + last) / 2],
+        false => vec![first, last],
+    };
+    let master = (0..n).map(|k| edge(step * (k + 1), step * k)).collect();
+    let slave = (0..n).map(|k| edge(nodes + step * k, nodes + step * (k + 1))).collect();
+    (master, slave, x)
+}
+
+/// A response handed from evaluation to evaluation, with the tree of the master as it was built some motions ago, is that of a
+/// response made anew, and what a residual is answered is what a tangent is: every state and every force in every bit. The
+/// slave slides by trifles, by parts of an edge and over several edges, and the master bends and turns away under it.
+#[test]
+fn what_is_kept_and_what_is_left_out_changes_no_bit() {
+    let plane = Rigid::Plane(Plane { point: Vector2::new(0.0, 0.02), normal: Vector2::new(0.0, 1.0) });
+    for quadratic in [false, true] {
+        let (master, slave, x) = strips(30, quadratic);
+        let surface = || Master::Mesh(Surface::new(&master));
+        let smooth = Master::Mesh(Surface::new(&master).smoothed(&x));
+        let mortar = |master: Master| {
+            let (points, mortar) = mortar_points(&slave, &x);
+            ContactPair { mortar: Some(mortar), ..pair(points, master, COULOMB) }
+        };
+        let pairs = [
+            pair(nodal_points(&slave), surface(), SUPER),
+            pair(gauss_points(&slave, 3), surface(), COULOMB),
+            pair(gauss_points(&slave, 2), if quadratic { surface() } else { smooth }, SUPER),
+            pair(gauss_points(&slave, 2), Master::Rigid(plane.clone()), COULOMB),
+            mortar(surface()),
+            mortar(Master::Rigid(plane.clone())),
+        ];
+        for (number, pair) in pairs.iter().enumerate() {
+            let (mut kept, mut closed, mut went_over) = (PairResponse::default(), 0, 0);
+            let mut before = vec![0.0; 2 * x.len()];
+            let mut old = pair.initial_states(&Configuration::new(&x, &before));
+            for k in 0..40 {
+                // From trifles to three edges an increment, and back.
+                let way = 0.3 * 10f64.powi(-(k % 7));
+                let mut now = before.clone();
+                for (node, u) in now.chunks_mut(2).enumerate() {
+                    let wave = (1.7 * f64::from(k) + 0.9 * node as f64).sin();
+                    if node < x.len() / 2 {
+                        u[1] += 0.01 * way * wave;
+                        u[0] -= 0.1 * way;
+                    } else {
+                        u[0] += way * if k < 20 { -1.0 } else { 1.0 } * (1.0 + 0.01 * wave);
+                        u[1] -= 1e-6 * wave;
+                    }
+                }
+                let [was, is] = [&before, &now].map(|u| Configuration::new(&x, u));
+                let answer = |request: Request, response: &mut PairResponse| {
+                    let nothing = |_| Presumption::default();
+                    pair.respond(&old, [&was, &is], INCREMENT, nothing, request, response).expect("an answer");
+                };
+                let [mut fresh, mut whole] = [(); 2].map(|()| PairResponse::default());
+                answer(Request::Residual, &mut fresh);
+                answer(Request::Tangent, &mut whole);
+                // Ends with a residual or a tangent in the kept lists, as iterations do.
+                answer(if k % 2 == 0 { Request::Tangent } else { Request::Residual }, &mut kept);
+                answer(Request::Residual, &mut kept);
+                let what = format!("pair {number}, quadratic: {quadratic}, increment {k}");
+                assert_eq!(fresh.states, kept.states, "{what}");
+                assert_eq!(fresh.states, whole.states, "{what}");
+                for point in 0..pair.points.len() {
+                    let [a, b, c] = [&fresh, &kept, &whole].map(|response| response.closed(point));
+                    assert_eq!(a, b, "{what}, point {point}");
+                    let forces =
+                        |closed: Option<Closed>| closed.map(|c| (c.nodes.to_vec(), c.force.to_vec(), c.tractions));
+                    assert_eq!(forces(a), forces(c), "{what}, point {point}");
+                    closed += usize::from(a.is_some());
+                    let segment = |state: &ContactState| state.foot.map(|foot| foot.segment);
+                    went_over += usize::from(segment(&old[point]) != segment(&fresh.states[point]));
+                }
+                old.clone_from(&fresh.states);
+                before = now;
+            }
+            assert!(closed > 500, "pair {number}: {closed} closed points were compared");
+            assert!(went_over > 100 || matches!(pair.master, Master::Rigid(_)), "pair {number}: {went_over}");
+        }
+    }
+}
+
+/// The tree finds what going through all segments finds, the first along the surface of those that are equally near, from
+/// wherever the search starts.
+#[test]
+fn a_search_from_any_segment_finds_the_first_of_the_nearest() {
+    let (master, slave, x) = strips(37, false);
+    let surface = Surface::new(&master);
+    let straight = Master::Mesh(surface.clone());
+    for (lift, turn) in [(0.0, 0.0), (0.03, 0.2), (-0.2, -0.5)] {
+        let u: Vec<f64> = (0..x.len())
+            .flat_map(|node| {
+                let slave = node >= x.len() / 2;
+                let bend = if slave { lift } else { turn * (x[node].x - 1.5).powi(2) };
+                [if slave { 0.013 * turn } else { 0.0 }, bend]
+            })
+            .collect();
+        let at = Configuration::new(&x, &u);
+        let index = Index::new(&straight, &at);
+        for point in gauss_points(&slave, 3).iter().chain(&nodal_points(&slave)) {
+            let distance = |k: usize| {
+                let [a, b] = surface.segments[k].ends;
+                let (along, offset) = (at.between(a, b), point.offset(a, &at));
+                (offset - along * (offset.dot(&along) / along.norm_squared()).clamp(0.0, 1.0)).norm_squared()
+            };
+            let first = (0..37).min_by(|&j, &k| distance(j).total_cmp(&distance(k))).expect("segments");
+            let expected = index.project(point, None, &at);
+            for segment in 0..37 {
+                // Before the ridge rule, which minds the old foot behind the surface, the search is the same from anywhere.
+                let found = index.project(point, Some(MasterPoint { segment, xi: 0.5 }), &at);
+                if expected.is_some_and(|met| met.gap >= 0.0) {
+                    assert_eq!(found, expected, "from segment {segment}");
+                }
+            }
+            if let Some(met) = expected {
+                assert_eq!(met.foot.segment, first);
+            }
+        }
+    }
+}
