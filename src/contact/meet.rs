@@ -15,6 +15,9 @@ use super::state::ContactState;
 use super::surface::SlavePoint;
 use crate::mesh::configuration::Configuration;
 
+/// Where a point meets the master and its kinematics, if that faces it.
+type Met = Option<(Meeting, Kinematics)>;
+
 impl ContactPair {
     /// Start closed: from now on every point's gap is counted so that its given pressure acts in the configuration `x`.
     ///
@@ -50,7 +53,7 @@ impl ContactPair {
     /// States at the start of a run: each point projected in the configuration `x`, friction at rest or, in a contact
     /// that starts closed, under its initial tractions.
     pub fn initial_states(&self, x: &Configuration) -> Vec<ContactState> {
-        let state = |(k, (slave, met)): (usize, (&SlavePoint, Option<(Meeting, Kinematics)>))| {
+        let state = |(k, (slave, met)): (usize, (&SlavePoint, Met))| {
             let law = self.law(slave);
             let friction = match self.initial.as_ref().map(|initial| initial[k]) {
                 Some(InitialTraction { pressure, traction }) => law.starting_state(pressure, traction),
@@ -67,7 +70,7 @@ impl ContactPair {
     /// What the initial tractions put on the nodes in the configuration `x` [F].
     pub fn initial_forces(&self, x: &Configuration) -> Vec<(usize, Vector2<f64>)> {
         let met = self.meetings(x, false).into_iter().zip(self.initial.iter().flatten());
-        let forces = |(met, initial): (Option<(Meeting, Kinematics)>, &InitialTraction)| {
+        let forces = |(met, initial): (Met, &InitialTraction)| {
             let InitialTraction { pressure, traction } = *initial;
             met.map_or_else(Vec::new, |(_, kinematics)| nodal_forces(&kinematics, pressure, traction))
         };
@@ -84,7 +87,7 @@ impl ContactPair {
     }
 
     /// Where every point meets the master, if that faces it, the gap being that of the surfaces; its kinematics `varied` or not.
-    fn meetings(&self, x: &Configuration, varied: bool) -> Vec<Option<(Meeting, Kinematics)>> {
+    fn meetings(&self, x: &Configuration, varied: bool) -> Vec<Met> {
         let index = Index::new(&self.master, x);
         let overlaps = match (&self.mortar, &self.master) {
             (Some(mortar), Master::Mesh(surface)) if self.small.is_none() => Some(mortar.overlaps(surface, &index, x)),
