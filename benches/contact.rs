@@ -3,7 +3,8 @@
 use criterion::{BenchmarkId, Criterion, criterion_group};
 use fecontact::contact::master::Master;
 use fecontact::contact::mortar::mortar_points;
-use fecontact::contact::pair::{ContactIncrement, ContactPair, PairResponse, Presumption};
+use fecontact::contact::pair::{ContactIncrement, ContactPair, Presumption};
+use fecontact::contact::response::PairResponse;
 use fecontact::contact::search::Index;
 use fecontact::contact::surface::{Surface, gauss_points, nodal_points};
 use fecontact::laws::friction::{
