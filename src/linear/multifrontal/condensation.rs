@@ -50,8 +50,8 @@ impl Condensation {
         scaling.compute(matrix);
         let mut factors = Factors::default();
         factors.compute(symbolic, &scaling.values);
-        factors.forget_rooms();
-        if factors.replaced > 0 {
+        factors.settle();
+        if factors.replaced() > 0 {
             return None;
         }
         let places = || symbolic.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);

@@ -1,12 +1,14 @@
 //! The numeric phase: assemble a front, eliminate its pivots, pass the rest on.
 
+use std::collections::HashMap;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::dense::Panel;
 use super::forest::Forest;
 use super::front::{Front, Run};
 use super::jobs::{Job, Waiting, lock};
+use super::reuse::{Action, actions};
+use super::stacks::Stacks;
 use super::symbolic::{Entry, Symbolic};
 
 /// L and U of all fronts.
@@ -16,8 +18,14 @@ pub struct Factors {
     pub values: Vec<f64>,
     /// Row exchanges, in the order of elimination, counted from the front's first row
     pub exchanges: Vec<u32>,
-    /// Pivots that vanished and were replaced
-    pub replaced: usize,
+    /// Pivots that vanished and were replaced, front by front
+    replaced: Vec<usize>,
+    /// Fronts that the last factorization eliminated
+    pub eliminated: usize,
+    /// The values that were factorized
+    a: Vec<f64>,
+    /// What fronts that stay pass on to those that do not, by the number of the front
+    kept: HashMap<u32, Vec<f64>>,
     /// Room for the contributions inside a forest, used again
     rooms: Mutex<Vec<Vec<f64>>>,
 }
@@ -26,6 +34,7 @@ pub struct Factors {
 struct Part<'a> {
     values: &'a mut [f64],
     exchanges: &'a mut [u32],
+    replaced: &'a mut [usize],
 }
 
 impl<'a> Part<'a> {
@@ -36,27 +45,44 @@ impl<'a> Part<'a> {
         Part {
             values: self.values.split_off_mut(..values).unwrap_or_default(),
             exchanges: self.exchanges.split_off_mut(..pivots).unwrap_or_default(),
+            replaced: self.replaced.split_off_mut(..fronts.len()).unwrap_or_default(),
         }
     }
 }
 
 impl Factors {
-    /// Give back the room for contributions: these factors stay as they are.
-    pub fn forget_rooms(&mut self) {
-        self.rooms = Mutex::default();
+    /// Forget all that serves the next factorization: these factors stay as they are, or the next are of another pattern.
+    pub fn settle(&mut self) {
+        (self.a, self.kept, self.rooms) = (Vec::new(), HashMap::new(), Mutex::default());
     }
 
-    /// Factorize the values `a` (scaled to 1) on the pattern of `symbolic`. The storage is used again.
+    /// Number of pivots that vanished and were replaced.
+    pub fn replaced(&self) -> usize {
+        self.replaced.iter().sum()
+    }
+
+    /// Factorize the values `a` (scaled to 1) on the pattern of `symbolic`, which is that of the last ones unless they were
+    /// settled. The storage is used again, and so are fronts whose values have not changed.
     pub fn compute(&mut self, symbolic: &Symbolic, a: &[f64]) {
+        let before = (self.a.len() == a.len()).then_some(&self.a[..]);
+        let actions = actions(symbolic, before, a, &self.kept);
         self.values.resize(symbolic.values(), 0.0);
         self.exchanges.resize(2 * symbolic.nodes.len(), 0);
-        let mut rest = Part { values: &mut self.values, exchanges: &mut self.exchanges };
+        self.replaced.resize(symbolic.fronts.len(), 0);
+        let Self { values, exchanges, replaced, .. } = self;
+        let mut rest = Part { values, exchanges, replaced };
         let job = Job::new(symbolic, |fronts| rest.take(fronts));
         let rooms = std::mem::take(&mut self.rooms);
-        let numeric = Numeric { symbolic, a, waiting: Waiting::default(), replaced: AtomicUsize::new(0), rooms };
+        let (waiting, new) = (Waiting::default(), Waiting::default());
+        let numeric = Numeric { symbolic, a, actions: &actions, kept: &self.kept, new, waiting, rooms };
         job.upwards(&|forest, part| numeric.forest(forest, part), &|front, part| numeric.heavy(front, part));
-        self.rooms = numeric.rooms;
-        self.replaced = numeric.replaced.into_inner();
+        let Numeric { new, rooms, .. } = numeric;
+        self.rooms = rooms;
+        self.eliminated = actions.iter().filter(|action| action.eliminates()).count();
+        self.kept.retain(|&front, _| !actions[front as usize].eliminates());
+        self.kept.extend(new.into_inner());
+        self.a.clear();
+        self.a.extend_from_slice(a);
     }
 }
 
@@ -64,9 +90,12 @@ impl Factors {
 struct Numeric<'a> {
     symbolic: &'a Symbolic,
     a: &'a [f64],
+    actions: &'a [Action],
+    kept: &'a HashMap<u32, Vec<f64>>,
+    /// Contributions to keep
+    new: Waiting,
     /// Contributions by front
     waiting: Waiting,
-    replaced: AtomicUsize,
     rooms: Mutex<Vec<Vec<f64>>>,
 }
 
@@ -76,9 +105,17 @@ impl Numeric<'_> {
         let fronts = &self.symbolic.fronts;
         let mut room = lock(&self.rooms).pop().unwrap_or_default();
         room.resize(room.len().max(forest.room), 0.0);
-        let mut stacks = Stacks { low: 0, high: room.len(), values: room };
-        for front in &fronts[forest.fronts.clone()] {
+        let mut stacks = Stacks::new(room);
+        for (number, front) in forest.fronts.clone().map(|number| (number, &fronts[number])) {
             let part = rest.take(std::slice::from_ref(front));
+            match self.actions[number] {
+                Action::Rest => continue,
+                Action::PassOn => {
+                    stacks.push(front).copy_from_slice(&self.kept[&(number as u32)]);
+                    continue;
+                }
+                _ => {}
+            }
             let (below, mut passed_on) = stacks.next(front, fronts);
             let in_order = |k: usize| if front.odd { k } else { front.children.len() - 1 - k };
             let children: Vec<(&Front, &[f64])> = (0..front.children.len())
@@ -88,10 +125,11 @@ impl Numeric<'_> {
                 })
                 .collect();
             self.eliminate(front, part, &children, below);
+            self.keep(number, below);
             stacks.pop(front, fronts);
         }
         let (mut low, mut high) = (0, stacks.values.len());
-        for &root in &forest.roots {
+        for &root in forest.roots.iter().filter(|&&root| self.actions[root as usize] != Action::Rest) {
             let front = &fronts[root as usize];
             let count = front.below() * front.below();
             let values = if front.odd {
@@ -110,6 +148,11 @@ impl Numeric<'_> {
     fn heavy(&self, number: u32, part: Part) {
         let fronts = &self.symbolic.fronts;
         let front = &fronts[number as usize];
+        match self.actions[number as usize] {
+            Action::Rest => return,
+            Action::PassOn => return self.waiting.put(number, self.kept[&number].clone()),
+            _ => {}
+        }
         let passed_on: Vec<Vec<f64>> = front.children.iter().map(|&child| self.waiting.take(child)).collect();
         let children: Vec<(&Front, &[f64])> = front
             .children
@@ -119,7 +162,15 @@ impl Numeric<'_> {
             .collect();
         let mut below = vec![0.0; front.below() * front.below()];
         self.eliminate(front, part, &children, &mut below);
+        self.keep(number as usize, &below);
         self.waiting.put(number, below);
+    }
+
+    /// Keep what an eliminated front passes on, if it is to stay.
+    fn keep(&self, number: usize, below: &[f64]) {
+        if self.actions[number] == Action::EliminateAndKeep {
+            self.new.put(number as u32, below.to_vec());
+        }
     }
 
     /// Sum up a front, eliminate its pivots, and write what it passes on over `below`.
@@ -135,56 +186,12 @@ impl Numeric<'_> {
             return;
         }
         let mut panel = Panel { lower, upper, pivots: front.pivots, below: front.below(), exchanges: part.exchanges };
-        let replaced = panel.factorize();
-        if replaced > 0 {
-            self.replaced.fetch_add(replaced, Ordering::Relaxed);
-        }
+        part.replaced[0] = panel.factorize();
         if !below.is_empty() {
             panel.contribution(below);
             children.iter().for_each(|(child, values)| add_below(front, below, child, values));
         }
     }
-}
-
-/// Contributions that wait for the next fronts of a forest: those of fronts at an even depth grow from the low end,
-/// those at an odd depth from the high end. So a front finds those of its children on top of one stack, and puts its
-/// own on the other.
-struct Stacks {
-    values: Vec<f64>,
-    low: usize,
-    high: usize,
-}
-
-impl Stacks {
-    /// Room for the contribution of a front, and the contributions of its children.
-    fn next(&mut self, front: &Front, fronts: &[Front]) -> (&mut [f64], &[f64]) {
-        let (own, children) = (front.below() * front.below(), children_values(front, fronts));
-        if front.odd {
-            let (low, high) = self.values[..self.high].split_at_mut(self.low);
-            let room = high.len() - own;
-            (&mut high[room..], &low[low.len() - children..])
-        } else {
-            let (low, high) = self.values.split_at_mut(self.high);
-            (&mut low[self.low..][..own], &high[..children])
-        }
-    }
-
-    /// The front is done: drop the contributions of its children and keep its own.
-    fn pop(&mut self, front: &Front, fronts: &[Front]) {
-        let (own, children) = (front.below() * front.below(), children_values(front, fronts));
-        if front.odd {
-            self.high -= own;
-            self.low -= children;
-        } else {
-            self.low += own;
-            self.high += children;
-        }
-    }
-}
-
-/// Number of values that the children of a front pass on.
-fn children_values(front: &Front, fronts: &[Front]) -> usize {
-    front.children.iter().map(|&child| fronts[child as usize].below().pow(2)).sum()
 }
 
 /// The rows and columns of a front's pivots while they are summed up.

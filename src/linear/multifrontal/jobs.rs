@@ -87,6 +87,10 @@ impl Waiting {
         lock(&self.0).insert(front, values);
     }
 
+    pub fn into_inner(self) -> HashMap<u32, Vec<f64>> {
+        self.0.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
+
     pub fn take(&self, front: u32) -> Vec<f64> {
         lock(&self.0).remove(&front).unwrap_or_default()
     }

@@ -19,8 +19,10 @@ mod forest;
 mod front;
 mod jobs;
 mod order;
+mod reuse;
 mod scale;
 mod solve;
+mod stacks;
 mod symbolic;
 mod tree;
 
@@ -51,6 +53,7 @@ impl Multifrontal {
     pub fn analyse(&mut self, pattern: &Arc<Pattern>) -> Result<(), LinearFailure> {
         if self.symbolic.as_ref().is_none_or(|symbolic| !Arc::ptr_eq(&symbolic.pattern, pattern)) {
             self.symbolic = Some(Symbolic::new(pattern.clone(), &[])?);
+            self.factors.settle();
         }
         Ok(())
     }
@@ -59,8 +62,9 @@ impl Multifrontal {
     /// scaled matrix. Known once the pattern is analysed, before any of the factors is.
     pub fn memory(&self) -> usize {
         self.symbolic.as_ref().map_or(0, |symbolic| {
-            let values =
-                symbolic.values() + symbolic.contributions(rayon::current_num_threads()) + symbolic.pattern.values();
+            let values = symbolic.values()
+                + symbolic.contributions(rayon::current_num_threads())
+                + 2 * symbolic.pattern.values();
             size_of::<f64>() * values + size_of::<Entry>() * symbolic.entries.len()
         })
     }
@@ -73,6 +77,11 @@ impl Multifrontal {
             return Ok(());
         }
         available_memory().map_or(Ok(()), |free| fits(size, self.memory(), held + free))
+    }
+
+    /// Fronts that the last factorization eliminated, and all there are: those whose values had not changed stayed.
+    pub fn eliminated(&self) -> (usize, usize) {
+        (self.factors.eliminated, self.symbolic.as_ref().map_or(0, |symbolic| symbolic.fronts.len()))
     }
 
     /// Number of values in L and U, the zeros of relaxed fronts included.
@@ -115,7 +124,7 @@ impl LinearSolver for Multifrontal {
     }
 
     fn perturbed_pivots(&self) -> usize {
-        self.factors.replaced
+        self.factors.replaced()
     }
 }
 
