@@ -943,7 +943,7 @@ fn strips(n: usize, quadratic: bool) -> (Vec<Vec<usize>>, Vec<Vec<usize>>, Posit
 
 /// A response handed from evaluation to evaluation, with the tree of the master as it was built some motions ago, is that of a
 /// response made anew, and what a residual is answered is what a tangent is: every state and every force in every bit. The
-/// slave slides by trifles, by parts of an edge and over several edges, and the master bends and turns away under it.
+/// slave slides by trifles, by parts of an edge and over several edges, and the master stretches, shrinks and waves under it.
 #[test]
 fn what_is_kept_and_what_is_left_out_changes_no_bit() {
     let plane = Rigid::Plane(Plane { point: Vector2::new(0.0, 0.02), normal: Vector2::new(0.0, 1.0) });
@@ -973,11 +973,12 @@ fn what_is_kept_and_what_is_left_out_changes_no_bit() {
                 let mut now = before.clone();
                 for (node, u) in now.chunks_mut(2).enumerate() {
                     let wave = (1.7 * f64::from(k) + 0.9 * node as f64).sin();
+                    let side = if k < 20 { 1.0 } else { -1.0 };
                     if node < x.len() / 2 {
+                        u[0] += 0.4 * side * way * (x[node].x - 1.5);
                         u[1] += 0.01 * way * wave;
-                        u[0] -= 0.1 * way;
                     } else {
-                        u[0] += way * if k < 20 { -1.0 } else { 1.0 } * (1.0 + 0.01 * wave);
+                        u[0] -= side * way * (1.0 + 0.01 * wave);
                         u[1] -= 1e-6 * wave;
                     }
                 }
