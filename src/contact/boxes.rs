@@ -8,8 +8,7 @@ use nalgebra::Vector2;
 use super::surface::{Segment, SlavePoint, Surface};
 use crate::mesh::configuration::Configuration;
 
-/// A binary tree of boxes around the segments of a surface. Segments that follow each other are near each other, so the
-/// tree simply halves their range: it is built without sorting.
+/// A binary tree of boxes around the segments of a surface. Neighbours are near each other, so the tree simply halves their range.
 ///
 /// All places are relative to a node of the surface: which segment is the nearest must not be decided by the round-off of
 /// coordinates far from the origin.

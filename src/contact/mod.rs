@@ -21,6 +21,7 @@ mod lines;
 pub mod master;
 mod meet;
 pub mod mortar;
+mod mortar_averages;
 mod mortar_rigid;
 pub mod pair;
 pub mod point;

@@ -19,16 +19,15 @@
 //!
 //! Against a rigid body nothing is cut, see `mortar_rigid.rs`.
 
-use std::iter::repeat;
-
 use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use super::cuts::{Overlap, Overlaps, cut};
 use super::dual::{Dual, DualVector, Number};
 use super::kinematics::{Kinematics, Meeting};
-use super::lines::{Frame, Line};
+use super::lines::Frame;
 use super::master::Master;
+use super::mortar_averages::{Averages, MeanPlace, hat};
 use super::point::{LengthShare, MasterPoint, SlavePoint, Weights, edge_point, lone_point};
 use super::search::Index;
 use super::surface::{CORNER, Segment, Surface};
@@ -83,16 +82,6 @@ pub fn mortar_points(edges: &[Vec<usize>], positions: &[Vector2<f64>]) -> (Vec<S
     let points =
         nodes.iter().zip(&around).map(|(&node, at)| SlavePoint { length: shares(at), ..lone_point(node, 0.0) });
     (points.collect(), Mortar { edges: edges.to_vec(), at, around })
-}
-
-/// φ_a at ξ on an edge of n nodes, and its derivative: linear from node to node.
-fn hat(n: usize, a: usize, xi: f64) -> (f64, f64) {
-    let (place, width) = ([-1.0, 1.0, 0.0][a], if n == 2 { 2.0 } else { 1.0 });
-    let away: f64 = xi - place;
-    match away.abs() < width {
-        true => (1.0 - away.abs() / width, -away.signum() / width),
-        false => (0.0, 0.0),
-    }
 }
 
 /// The points of Gauss's rule between the nodes of an edge, that ∫ φ_a ds is the sum of their lengths.
@@ -181,29 +170,10 @@ impl Mortar {
             }
             slip = s.dot(&moved.minus(&mean));
         }
-        k.begin(Vector2::new(n.x.value(), n.y.value()));
-        k.nodes.extend_from_slice(&frame.nodes);
-        k.clear();
-        k.tangent = Vector2::new(s.x.value(), s.y.value());
-        (k.slip, k.length) = (slip.value(), surface.share() * length.value());
-        k.relative.iter_mut().zip(&relative).for_each(|(value, w)| *value = w.value());
-        if k.varied {
-            let set = |row: &mut Vec<f64>, d: &N| row[..d.gradient().len()].copy_from_slice(d.gradient());
-            set(&mut k.dgap, &gap);
-            set(&mut k.dslip, &slip);
-            set(&mut k.dlength, &length);
-            k.dlength.iter_mut().for_each(|rate| *rate *= surface.share());
-            let [dx, dy] = [&s.x, &s.y].map(|d| d.gradient().iter().copied().chain(repeat(0.0)));
-            k.drotation
-                .iter_mut()
-                .zip(dx.zip(dy))
-                .for_each(|(turn, (dx, dy))| *turn = dx * k.normal.x + dy * k.normal.y);
-            for (a, w) in relative.iter().enumerate() {
-                k.changing.push(a);
-                k.drelative.extend(w.gradient().iter().copied().chain(repeat(0.0)).take(k.dgap.len()));
-            }
-        }
-        Some(Meeting { gap: gap.value(), foot })
+        let length = length.scaled(surface.share());
+        let met = Meeting { gap: gap.value(), foot };
+        MeanPlace { nodes: frame.nodes, relative, gap, slip, length, axes: [s, n] }.write(k);
+        Some(met)
     }
 
     /// Weights of r_j in a configuration; `None` where no master faces the point.
@@ -276,51 +246,3 @@ impl Mortar {
 /// A point whose average is taken over less than this share of its edges is not in contact: the mean over a sliver is
 /// lost in round-off.
 const NEGLIGIBLE: f64 = 1e-9;
-
-/// A_j and W_ja.
-struct Averages<N> {
-    weights: Vec<N>,
-    length: N,
-}
-
-impl<N: Number> Averages<N> {
-    /// Add the integrals over one overlap.
-    fn integrate(
-        &mut self,
-        edge: &[usize],
-        a: usize,
-        overlap: &Overlap,
-        segment: &Segment,
-        along: &DualVector<N>,
-        frame: &Frame<N>,
-    ) {
-        let ends = overlap.ends.map(|cut| match cut.node {
-            None => N::constant(cut.xi),
-            Some(node) => Line::Edge(edge).coordinate(frame.at(node), along, cut.xi, frame),
-        });
-        let (half, middle) = (ends[1].minus(&ends[0]).scaled(0.5), ends[0].plus(&ends[1]).scaled(0.5));
-        let points = if edge.len() == 2 && segment.middle.is_none() { 2 } else { 4 };
-        for (at, weight) in shape::gauss(points) {
-            let xi = middle.plus(&half.scaled(at));
-            let slave = Line::Edge(edge);
-            let values = slave.values(&xi);
-            let slope = slave.slope(&xi, frame);
-            let (value, rate) = hat(edge.len(), a, xi.value());
-            let position = frame.position(edge.iter().copied(), &values);
-            let share = slope.dot(&slope).sqrt().times(&half.scaled(weight)).times(&xi.map(value, rate));
-            let share = match frame.depth(&position) {
-                Some(depth) => share.times(&depth),
-                None => share,
-            };
-            let master = Line::Segment(segment);
-            let eta = master.coordinate(&position, along, 0.5, frame);
-            self.length.accumulate(1.0, &share);
-            for (&node, value) in edge.iter().zip(&values) {
-                self.weights[frame.local(node)].accumulate(1.0, &share.times(value));
-            }
-            for (node, value) in segment.nodes().zip(master.values(&eta)) {
-                self.weights[frame.local(node)].accumulate(-1.0, &share.times(&value));
-            }
-        }
-    }
-}
