@@ -3,7 +3,8 @@
 use criterion::{BenchmarkId, Criterion, criterion_group};
 use fecontact::contact::master::Master;
 use fecontact::contact::mortar::mortar_points;
-use fecontact::contact::pair::{ContactIncrement, ContactPair, PairResponse, Presumption};
+use fecontact::contact::pair::{ContactIncrement, ContactPair, Presumption};
+use fecontact::contact::response::PairResponse;
 use fecontact::contact::search::Index;
 use fecontact::contact::surface::{Surface, gauss_points, nodal_points};
 use fecontact::laws::friction::{
@@ -107,7 +108,7 @@ fn flat(n: usize, law: &FrictionParameters, method: &str) -> (Vec<Vector2<f64>>,
     let slave: Vec<Vec<usize>> = (0..n).map(|k| vec![n + 1 + k, n + 2 + k]).collect();
     let (_, other) = surfaces(2);
     let (points, mortar) = match method {
-        "nodes" => (nodal_points(&slave), None),
+        "nodes" | "small" => (nodal_points(&slave), None),
         "gauss" => (gauss_points(&slave, 2), None),
         _ => {
             let (p, m) = mortar_points(&slave, &nodes);
@@ -115,8 +116,11 @@ fn flat(n: usize, law: &FrictionParameters, method: &str) -> (Vec<Vector2<f64>>,
         }
     };
     let laws = vec![law.build(1e3).expect("valid parameters")];
-    let pair =
+    let mut pair =
         ContactPair { name: "flat".into(), points, mortar, master: Master::Mesh(Surface::new(&master)), laws, ..other };
+    if method == "small" {
+        pair.slide_little(&Configuration::undeformed(&nodes));
+    }
     (nodes, pair)
 }
 
@@ -133,7 +137,7 @@ fn points() {
         ),
     ];
     println!("µs a point: {:29} residual tangent", "");
-    for method in ["nodes", "gauss", "mortar"].into_iter().filter(|method| method.contains(&only)) {
+    for method in ["nodes", "gauss", "mortar", "small"].into_iter().filter(|method| method.contains(&only)) {
         for (name, law) in &laws {
             for (motion, rate) in [("sticks", 0.0), ("slips", 3e-3)] {
                 let (nodes, pair) = flat(n, law, method);

@@ -68,6 +68,34 @@ const BLOCKS: [Block; 4] = [
     },
 ];
 
+/// Processor time of this process where the system tells (other programs take their share of the wall clock), else wall
+/// time.
+struct Clock {
+    wall: Instant,
+    processor: Option<f64>,
+}
+
+impl Clock {
+    fn start() -> Self {
+        Self { wall: Instant::now(), processor: processor_seconds() }
+    }
+
+    fn seconds(&self) -> f64 {
+        let processor = processor_seconds().zip(self.processor).map(|(now, then)| now - then);
+        processor.unwrap_or_else(|| self.wall.elapsed().as_secs_f64())
+    }
+}
+
+/// Seconds that all threads of this process have run, from the Linux scheduler.
+fn processor_seconds() -> Option<f64> {
+    let threads = std::fs::read_dir("/proc/self/task").ok()?;
+    let of = |thread: std::fs::DirEntry| {
+        let text = std::fs::read_to_string(thread.path().join("schedstat")).ok()?;
+        text.split_whitespace().next()?.parse::<f64>().ok()
+    };
+    Some(1e-9 * threads.flatten().filter_map(of).sum::<f64>())
+}
+
 /// What is measured.
 struct Block {
     name: &'static str,

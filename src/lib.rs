@@ -37,7 +37,8 @@
 //! ```
 //!
 //! Between two increments supports can be led ([`run::Simulation::lead`]) and loads changed, a candidate can be dropped
-//! ([`run::Simulation::attempt`]), and a run saved and resumed to the same bits ([`run::SavedRun`]).
+//! ([`run::Simulation::attempt`]), and a run saved and resumed to the same bits ([`run::SavedRun`], in
+//! a file by [`output::checkpoint`]).
 //!
 //! # The way through the house
 //!

@@ -18,9 +18,10 @@ static COUNTED: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 /// Bodies, linear and not, viscous or not, dashpots, absorbing sides, dead loads, springs and supports, constant, by table and
 /// by expression; and contacts, at nodes and at Gauss points, on meshes that match and do not, on curved surfaces and rigid
-/// ones, sticking and slipping: from the tenth increment on none asks for memory, on one thread or two. (Mortar, contact of a
-/// surface with itself and pressures that follow the surface do; so does the look at elements that have changed their shape and
-/// at contacts after 200 increments, which the small motion here does not make necessary.)
+/// ones, sticking and slipping, in small sliding by mortar too: from the tenth increment on none asks for memory, on one thread
+/// or two. (Mortar in finite sliding, contact of a surface with itself and pressures that follow the surface do; so does the
+/// look at elements that have changed their shape and at contacts after 200 increments, which the small motion here does not
+/// make necessary.)
 #[test]
 fn explicit_increments_allocate_nothing() {
     let mesh = Blocks::default().rectangle("plain", [24, 24], [0.0, 0.0], [1.0, 1.0]).rectangle(
@@ -54,11 +55,18 @@ fn explicit_increments_allocate_nothing() {
     let plane = json!({"plane": {"point": [0, 0], "normal": [0, 1]}});
     let pool = |threads| ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
     let pools = [1, 2].map(|threads| (threads, pool(threads)));
+    let small = |method: &str| {
+        let mut case = touching(&json!("lower_top"), method, &weakening);
+        case["contacts"]["fault"]["sliding"] = json!("small");
+        case
+    };
     for (case, least) in [
         (case, 100),
         (touching(&json!("lower_top"), "node_to_segment", &weakening), 50),
         (touching(&json!("lower_top"), "gauss_to_segment", &healing), 50),
         (touching(&plane, "gauss_to_segment", &weakening), 50),
+        (small("node_to_segment"), 50),
+        (small("mortar"), 50),
     ] {
         count(&case, least, &pools);
     }

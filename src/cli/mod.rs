@@ -3,7 +3,9 @@
 #[macro_use]
 mod say;
 pub mod defect;
+mod failure;
 mod interrupt;
+mod place;
 pub mod progress;
 mod run;
 mod threads;
@@ -12,53 +14,16 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
+pub use self::failure::Failure;
+use self::place::{claim, default_folder};
 pub use self::run::{Options, run};
 pub use self::say::{print, say};
 use self::threads::use_threads;
-use crate::case::{self, CaseError, Opened, law_test};
-use crate::output::folder::Folder;
+use crate::case::{self, Opened, law_test};
 use crate::output::law::LawTable;
-use crate::output::plot::{self, PlotError};
+use crate::output::plot;
 use crate::output::summary::{self, About, Ending, LawSummary};
-use crate::run::error::Error;
 use crate::run::law_report::{Hold, LawReport, PathPoint};
-
-/// Why a command did not end well.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Failure {
-    /// It stopped while solving; results so far are kept.
-    Stopped(String),
-    /// The input is bad; nothing was written.
-    BadInput(String),
-    /// The program itself is wrong.
-    Defect(String),
-}
-
-impl Failure {
-    /// The exit code, and what stderr is told.
-    pub fn told(&self) -> (u8, String) {
-        match self {
-            Self::Stopped(message) => (1, format!("stopped: {message}")),
-            Self::BadInput(message) => (2, format!("error: {message}")),
-            Self::Defect(message) => (70, defect::told(message)),
-        }
-    }
-}
-
-impl From<CaseError> for Failure {
-    fn from(error: CaseError) -> Self {
-        Self::BadInput(error.to_string())
-    }
-}
-
-impl From<PlotError> for Failure {
-    fn from(error: PlotError) -> Self {
-        match error {
-            PlotError::Output(error) => error.into(),
-            PlotError::Unreadable { .. } => Self::BadInput(error.to_string()),
-        }
-    }
-}
 
 /// What a schema describes.
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -67,12 +32,6 @@ pub enum Input {
     Case,
     /// the test of `fecontact law`
     Law,
-}
-
-impl From<Error> for Failure {
-    fn from(error: Error) -> Self {
-        Self::Stopped(error.to_string())
-    }
 }
 
 /// `fecontact check`.
@@ -161,15 +120,4 @@ pub fn schema(of: Input) -> Result<(), Failure> {
         Input::Law => law_test::schema(),
     };
     print(&format!("{schema:#}\n"))
-}
-
-/// `out/<name of the file>` in the current folder.
-fn default_folder(path: &Path) -> PathBuf {
-    Path::new("out").join(path.file_stem().unwrap_or("case".as_ref()))
-}
-
-/// Lock the output folder, and make it ready.
-fn claim(folder: &Path, inputs: &[PathBuf], outputs: &[&str], goes_on: bool) -> Result<Folder, Failure> {
-    let bad = |(path, cause): (PathBuf, String)| Failure::BadInput(format!("{}: --out: {cause}", path.display()));
-    Folder::claim(folder, inputs, outputs, goes_on).map_err(bad)
 }

@@ -4,7 +4,7 @@
 use std::fmt::Arguments;
 use std::io::{ErrorKind, Write};
 
-use super::Failure;
+use super::failure::Failure;
 
 /// Tell stderr a line, if it listens.
 macro_rules! say {

@@ -2,7 +2,7 @@
 
 use rayon::ThreadPoolBuilder;
 
-use super::Failure;
+use super::failure::Failure;
 
 /// More threads than this are a slip of the keyboard.
 const MOST: usize = 1024;

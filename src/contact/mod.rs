@@ -26,7 +26,7 @@ pub mod pair;
 pub mod point;
 pub mod presumption;
 pub mod projection;
-mod response;
+pub mod response;
 pub mod rigid;
 pub mod search;
 pub mod sight;

@@ -5,7 +5,6 @@ use std::ops::Range;
 use super::master::Master;
 use super::mortar::Mortar;
 pub use super::presumption::{ContactIncrement, Presumption};
-pub use super::response::PairResponse;
 use super::small_sliding::SmallSliding;
 use super::state::ContactState;
 use super::surface::SlavePoint;

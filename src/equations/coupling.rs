@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::master::Master;
-use crate::contact::pair::PairResponse;
+use crate::contact::response::PairResponse;
 use crate::contact::surface::Path;
 use crate::linear::{BlockPosition, Pattern, SparseMatrix};
 use crate::model::Model;

@@ -17,7 +17,8 @@
 
 use super::trial::Trial;
 use crate::contact::master::Master;
-use crate::contact::pair::{ContactPair, PairResponse};
+use crate::contact::pair::ContactPair;
+use crate::contact::response::PairResponse;
 use crate::linear::system::System;
 use crate::linear::{SparseMatrix, norm};
 use crate::mesh::configuration::Configuration;

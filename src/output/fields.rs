@@ -73,15 +73,12 @@ impl Fields {
     /// # Errors
     /// [`Error::Output`] when there is no place for it.
     pub fn reopen(folder: &Path, model: Arc<Model>, every: usize) -> Result<Self, Error> {
-        let mut collections = vec![Collection::create(folder, "solid")?];
-        if !model.contacts.is_empty() {
-            collections.push(Collection::create(folder, "contact")?);
-        }
+        let names = if model.contacts.is_empty() { &["solid"][..] } else { &["solid", "contact"] };
+        let collections = names.iter().map(|name| Collection::create(folder, name)).collect::<Result<_, _>>()?;
         let (frames, arriving): (_, Receiver<Task>) = sync_channel(WAITING);
         let writer = std::thread::Builder::new().name("frames".into());
         let writer = writer.spawn(move || written(&model, collections, arriving));
-        let writer =
-            writer.map_err(|cause| failed(&folder.join("solid"), &format!("no thread to write it: {cause}")))?;
+        let writer = writer.map_err(|cause| failed(&folder.join("solid"), &cause))?;
         Ok(Self { every, rows: 0, times: Vec::new(), frames: Some(frames), writer: Some(writer) })
     }
 

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 /// What the system says; a link or a folder in its place is left alone.
 pub fn create(path: &Path) -> io::Result<File> {
     remove(path)?;
-    File::options().write(true).create_new(true).open(path)
+    File::options().read(true).write(true).create_new(true).open(path)
 }
 
 /// A file that is there already, to be gone on with.

@@ -11,7 +11,7 @@ use crate::model::{Increments, Step};
 use crate::solve::Workspace;
 
 /// 2^(k/4), k = 0 … 3.
-const RUNGS: [f64; 4] = [1.0, 1.189_207_115_002_721, 1.414_213_562_373_095_1, 1.681_792_830_507_429];
+const RUNGS: [f64; 4] = [1.0, 1.189_207_115_002_721, std::f64::consts::SQRT_2, 1.681_792_830_507_429];
 
 /// Share of a rung by which rounding may have missed it.
 const ROUND_OFF: f64 = 1e-12;

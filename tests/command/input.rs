@@ -930,7 +930,7 @@ fn the_method_follows_from_the_surfaces() {
 fn check_tells_how_far_small_sliding_goes() {
     let small = ("/contacts/base/sliding", json!("small"));
     let line = "small sliding: every point keeps its foot, normal and length of the start; for slips up to 0.1 and turns up to 0.02 rad";
-    let [told, _] = outcome("check", &[small.clone()]);
+    let [told, _] = outcome("check", std::slice::from_ref(&small));
     assert!(told.contains(line), "{told}");
     let plane = json!({"plane": {"point": [0, 0], "normal": [0, 1]}});
     let [told, _] = outcome("check", &[small.clone(), ("/contacts/base/master", plane)]);

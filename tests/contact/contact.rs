@@ -6,8 +6,9 @@ use fecontact::contact::force::{
 use fecontact::contact::kinematics::{Kinematics, kinematics};
 use fecontact::contact::master::Master;
 use fecontact::contact::mortar::{Mortar, mortar_points};
-use fecontact::contact::pair::{ContactIncrement, ContactPair, InitialTraction, PairResponse, Presumption};
+use fecontact::contact::pair::{ContactIncrement, ContactPair, InitialTraction, Presumption};
 use fecontact::contact::projection::{Bound, nearest};
+use fecontact::contact::response::PairResponse;
 use fecontact::contact::rigid::{Circle, Plane, Polyline, Rigid};
 use fecontact::contact::search::Index;
 use fecontact::contact::surface::{MasterPoint, Segment, SlavePoint, Surface, gauss_points, lone_point, nodal_points};

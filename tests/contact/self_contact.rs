@@ -5,7 +5,8 @@ use std::path::Path;
 
 use crate::common::{Blocks, Finished, close, distance, finish, finish_at};
 use fecontact::contact::master::Master;
-use fecontact::contact::pair::{ContactIncrement, PairResponse, Presumption};
+use fecontact::contact::pair::{ContactIncrement, Presumption};
+use fecontact::contact::response::PairResponse;
 use fecontact::contact::search::Index;
 use fecontact::contact::surface::{Surface, gauss_points};
 use fecontact::laws::friction::Regime;

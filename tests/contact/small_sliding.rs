@@ -6,7 +6,8 @@ use crate::common::{self, Blocks, Finished, close, distance, finish, half_way, q
 use fecontact::contact::force::ContactState;
 use fecontact::contact::master::Master;
 use fecontact::contact::mortar::mortar_points;
-use fecontact::contact::pair::{ContactIncrement, ContactPair, PairResponse, Presumption};
+use fecontact::contact::pair::{ContactIncrement, ContactPair, Presumption};
+use fecontact::contact::response::PairResponse;
 use fecontact::contact::rigid::{Circle, Rigid};
 use fecontact::contact::small_sliding::{LITTLE_SLIP, LITTLE_TURN};
 use fecontact::contact::surface::{SlavePoint, Surface, gauss_points, nodal_points};

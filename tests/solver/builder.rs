@@ -122,7 +122,7 @@ fn a_committed_rupture_from_code_is_the_same_model() {
         };
         Ok(Box::new(SlipWeakening::new(&parameters, alpha_t)?))
     });
-    let contact = Contact::new("fault", "upper_bottom", "lower_top", friction).alpha_n(3203.8);
+    let contact = Contact::new("fault", "upper_bottom", "lower_top", friction).alpha_n(3203.8).small_sliding();
     let initial = InitialTractions { pressure: 120.0.into(), traction, balanced: true };
     let damping = Damping { mass: 0.0, retardation: 0.003 };
     let step = LoadStep::new("rupture", 12.0).scheme(Scheme::Explicit { safety: 0.9 }).dt(1.0);

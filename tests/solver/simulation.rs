@@ -99,6 +99,22 @@ fn every_increment_of_static_and_implicit_runs_can_be_redone_and_resumed() {
     }
 }
 
+/// Linear bodies, whose constant parts are kept from one increment to the next: what is kept decides no bit.
+#[test]
+fn every_increment_of_linear_bodies_can_be_redone_and_resumed() {
+    for (scheme, duration) in
+        [(json!("static"), 4.0), (json!({"hht": {"alpha": -0.1}}), 4.0), (json!({"explicit": {}}), 0.02)]
+    {
+        let mut case = dragged(json!({}), scheme);
+        for body in ["ground", "block"] {
+            case["bodies"][body]["material"]["model"] = json!("linear");
+        }
+        case["steps"][1]["duration"] = json!(duration);
+        case["output"] = json!({"interval": 5e-4});
+        check(&case, Path::new("test.json"));
+    }
+}
+
 /// From output to output in explicit increments; and where a static step turns to them because a contact slips fast.
 #[test]
 fn every_stretch_of_explicit_increments_can_be_redone_and_resumed() {

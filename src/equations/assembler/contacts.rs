@@ -3,7 +3,8 @@
 use std::time::Instant;
 
 use super::Assembler;
-use crate::contact::pair::{PairResponse, Presumption};
+use crate::contact::pair::Presumption;
+use crate::contact::response::PairResponse;
 use crate::equations::failure::TrialFailure;
 use crate::equations::interfaces;
 use crate::equations::trial::Trial;

@@ -6,7 +6,7 @@ mod parts;
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::contact::pair::PairResponse;
+use crate::contact::response::PairResponse;
 use crate::equations::coupling::{Coupling, Layout};
 use crate::equations::equilibrium::Equilibrium;
 use crate::equations::evaluation::{Evaluation, Seconds};

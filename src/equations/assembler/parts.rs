@@ -1,7 +1,7 @@
 //! Parts of the equations by themselves: the masses, and the tangent of one term.
 
 use super::Assembler;
-use crate::contact::pair::PairResponse;
+use crate::contact::response::PairResponse;
 use crate::equations::failure::TrialFailure;
 use crate::equations::inertia::{self, Inertia};
 use crate::equations::term::Term;

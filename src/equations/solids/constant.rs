@@ -15,10 +15,9 @@ use std::sync::Arc;
 use nalgebra::{Matrix2, Vector2, Vector4};
 use rayon::prelude::*;
 
-use super::BATCH;
 use super::blocks::{Block, blocks};
 use super::kernel::{Pass, rows};
-use super::places::Places;
+use super::places::{BATCH, Places};
 use super::runs::nodal;
 use crate::equations::coupling::Layout;
 use crate::equations::evolving::evolves;

@@ -25,9 +25,6 @@ use kernel::Pass;
 use places::{gather, gather_magnitudes};
 use runs::Runs;
 
-/// Elements whose tangents are held at once before they are added.
-const BATCH: usize = 1024;
-
 /// It is the same matrix throughout if all elements are constant.
 pub(super) fn dependence(model: &Model) -> Dependence {
     let all = (0..model.solids.len()).all(|e| is_constant(model, e));

@@ -3,6 +3,9 @@
 use nalgebra::Vector2;
 use rayon::prelude::*;
 
+/// Elements whose tangents are held at once before they are added.
+pub const BATCH: usize = 1024;
+
 /// Nodes whose sums are done sooner than another thread wakes up.
 const FEW_NODES: usize = 1024;
 

@@ -5,8 +5,7 @@ use std::ops::Range;
 use nalgebra::Vector2;
 use rayon::prelude::*;
 
-use super::BATCH;
-use super::places::Places;
+use super::places::{BATCH, Places};
 use crate::equations::coupling::Layout;
 use crate::equations::evolving::evolves;
 use crate::equations::failure::TrialFailure;

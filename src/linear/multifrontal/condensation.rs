@@ -49,7 +49,7 @@ impl Condensation {
         let Self { symbolic, scaling, kept } = self;
         scaling.compute(matrix);
         let mut factors = Factors::default();
-        factors.compute(symbolic, &scaling.values);
+        factors.compute(symbolic, &mut scaling.values);
         factors.settle();
         if factors.replaced() > 0 {
             return None;

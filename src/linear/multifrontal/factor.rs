@@ -62,8 +62,9 @@ impl Factors {
     }
 
     /// Factorize the values `a` (scaled to 1) on the pattern of `symbolic`, which is that of the last ones unless they were
-    /// settled. The storage is used again, and so are fronts whose values have not changed.
-    pub fn compute(&mut self, symbolic: &Symbolic, a: &[f64]) {
+    /// settled; they are taken, and the last ones left in their place. The storage is used again, and so are fronts whose values
+    /// have not changed.
+    pub fn compute(&mut self, symbolic: &Symbolic, a: &mut Vec<f64>) {
         let before = (self.a.len() == a.len()).then_some(&self.a[..]);
         let actions = actions(symbolic, before, a, &self.kept);
         self.values.resize(symbolic.values(), 0.0);
@@ -81,8 +82,7 @@ impl Factors {
         self.eliminated = actions.iter().filter(|action| action.eliminates()).count();
         self.kept.retain(|&front, _| !actions[front as usize].eliminates());
         self.kept.extend(new.into_inner());
-        self.a.clear();
-        self.a.extend_from_slice(a);
+        std::mem::swap(&mut self.a, a);
     }
 }
 

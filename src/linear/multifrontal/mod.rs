@@ -105,7 +105,7 @@ impl LinearSolver for Multifrontal {
         self.check_memory(matrix.size())?;
         if let Some(symbolic) = &self.symbolic {
             self.scaling.compute(matrix);
-            self.factors.compute(symbolic, &self.scaling.values);
+            self.factors.compute(symbolic, &mut self.scaling.values);
         }
         Ok(())
     }

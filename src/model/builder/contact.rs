@@ -136,6 +136,14 @@ impl Contact {
         Self { initial: Some(initial), ..self }
     }
 
+    /// With bodies whose initial stress is in equilibrium with the tractions it starts with.
+    pub fn balanced(mut self) -> Self {
+        if let Some(initial) = &mut self.initial {
+            initial.balanced = true;
+        }
+        self
+    }
+
     /// Whether the slave is its own master.
     pub(super) fn is_own(&self) -> bool {
         matches!(&self.master, MasterSide::Group(group) if *group == self.slave)

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 /// By this a figure of ours is known.
-pub const OURS: &str = "drawn by fecontact";
+pub const OURS: &str = "data-drawn-by=\"fecontact\"";
 
 /// A drawing in progress.
 #[derive(Debug, Default)]
@@ -162,8 +162,8 @@ impl Drawing {
     pub fn finish(self, [width, height]: [f64; 2]) -> String {
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} \
-             {height}\" font-family=\"Helvetica, Arial, DejaVu Sans, sans-serif\" fill=\"#222\">\n<!-- \
-             {OURS} -->\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n{}</svg>\n",
+             {height}\" font-family=\"Helvetica, Arial, DejaVu Sans, sans-serif\" fill=\"#222\" \
+             {OURS}>\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n{}</svg>\n",
             self.0
         )
     }

@@ -25,7 +25,8 @@ pub mod touch;
 pub mod valley;
 
 use crate::contact::force::{Closed, ContactState, Presume, Tractions};
-use crate::contact::pair::{PairResponse, Presumption};
+use crate::contact::pair::Presumption;
+use crate::contact::response::PairResponse;
 use crate::equations::failure::TrialFailure;
 use crate::equations::{Assembler, Trial};
 use crate::linear::system::{Request, System};

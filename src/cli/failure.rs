@@ -1,0 +1,49 @@
+//! Why a command did not end well, and what is said of it.
+
+use super::defect;
+use crate::case::CaseError;
+use crate::output::plot::PlotError;
+use crate::run::error::Error;
+
+/// Why a command did not end well.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Failure {
+    /// It stopped while solving; results so far are kept.
+    Stopped(String),
+    /// The input is bad; nothing was written.
+    BadInput(String),
+    /// The program itself is wrong.
+    Defect(String),
+}
+
+impl Failure {
+    /// The exit code, and what stderr is told.
+    pub fn told(&self) -> (u8, String) {
+        match self {
+            Self::Stopped(message) => (1, format!("stopped: {message}")),
+            Self::BadInput(message) => (2, format!("error: {message}")),
+            Self::Defect(message) => (70, defect::told(message)),
+        }
+    }
+}
+
+impl From<CaseError> for Failure {
+    fn from(error: CaseError) -> Self {
+        Self::BadInput(error.to_string())
+    }
+}
+
+impl From<PlotError> for Failure {
+    fn from(error: PlotError) -> Self {
+        match error {
+            PlotError::Output(error) => error.into(),
+            PlotError::Unreadable { .. } => Self::BadInput(error.to_string()),
+        }
+    }
+}
+
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        Self::Stopped(error.to_string())
+    }
+}

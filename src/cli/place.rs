@@ -1,0 +1,17 @@
+//! Where results go.
+
+use std::path::{Path, PathBuf};
+
+use super::failure::Failure;
+use crate::output::folder::Folder;
+
+/// `out/<name of the file>` in the current folder.
+pub(super) fn default_folder(path: &Path) -> PathBuf {
+    Path::new("out").join(path.file_stem().unwrap_or("case".as_ref()))
+}
+
+/// Lock the output folder, and make it ready.
+pub(super) fn claim(folder: &Path, inputs: &[PathBuf], outputs: &[&str], goes_on: bool) -> Result<Folder, Failure> {
+    let bad = |(path, cause): (PathBuf, String)| Failure::BadInput(format!("{}: --out: {cause}", path.display()));
+    Folder::claim(folder, inputs, outputs, goes_on).map_err(bad)
+}
