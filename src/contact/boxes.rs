@@ -98,14 +98,11 @@ impl Boxes {
     /// Whether it was built for this surface, in a configuration that is near enough.
     fn serves(&self, surface: &Surface, x: &Configuration) -> bool {
         let most = USED * self.margin;
-        let stays = |(node, (own, place)): (usize, &(usize, Vector2<f64>))| {
-            node == *own && (x.between(self.origin, node) - place).amax() <= most
-        };
         let nodes = || surface.segments.iter().flat_map(Segment::nodes);
-        self.segments == surface.segments.len()
-            && self.origin == surface.origin()
-            && nodes().zip(&self.places).all(stays)
-            && nodes().count() == self.places.len()
+        let near = |node: usize, place: &Vector2<f64>| (x.between(self.origin, node) - place).amax() <= most;
+        (self.segments, self.origin) == (surface.segments.len(), surface.origin())
+            && nodes().eq(self.places.iter().map(|(node, _)| *node))
+            && self.places.iter().all(|(node, place)| near(*node, place))
     }
 
     fn build(&mut self, surface: &Surface, x: &Configuration) {

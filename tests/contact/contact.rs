@@ -996,7 +996,7 @@ fn what_is_kept_and_what_is_left_out_changes_no_bit() {
                 let what = format!("pair {number}, quadratic: {quadratic}, increment {k}");
                 assert_eq!(fresh.states, kept.states, "{what}");
                 assert_eq!(fresh.states, whole.states, "{what}");
-                for (point, before) in old.iter().enumerate() {
+                for (point, (first, last)) in old.iter().zip(&fresh.states).enumerate() {
                     let [a, b, c] = [&fresh, &kept, &whole].map(|response| response.closed(point));
                     assert_eq!(a, b, "{what}, point {point}");
                     let forces =
@@ -1004,7 +1004,7 @@ fn what_is_kept_and_what_is_left_out_changes_no_bit() {
                     assert_eq!(forces(a), forces(c), "{what}, point {point}");
                     closed += usize::from(a.is_some());
                     let segment = |state: &ContactState| state.foot.map(|foot| foot.segment);
-                    went_over += usize::from(segment(before) != segment(&fresh.states[point]));
+                    went_over += usize::from(segment(first) != segment(last));
                 }
                 old.clone_from(&fresh.states);
                 before = now;
