@@ -5,7 +5,7 @@
 //! accepted does not depend on how it was found. If it says no, another round starts from there, and after a few the increment
 //! is left to Newton's method on all equations. Switch `condense`; `aid_condense` is 1 in iterations on the contacts.
 //!
-//! That way is taken where it costs less: where a dense LU of the nodes at contacts takes no more than [`DENSE`] times the
+//! That way is taken where it costs less: where a dense LU of the nodes at contacts takes no more than three times the
 //! operations of an elimination of all others. It follows from the model and the step, never from what is kept. Condensed matrices are kept
 //! for all lengths as long as they take no more than [`MOST_MEMORY`] and half of what is free; those that were used last stay.
 

@@ -1,7 +1,7 @@
 //! Stress of the bodies: every element's forces on its nodes, and the sums of them at each node.
 //!
-//! Elements whose stiffness never changes use the stored one, block by block ([`constant`]). The others of one kind and law
-//! follow each other in a run and are evaluated each time ([`runs`]). Then every node sums up what its elements and blocks put there,
+//! Elements whose stiffness never changes use the stored one, block by block (`constant.rs`). The others of one kind and law
+//! follow each other in a run and are evaluated each time (`runs.rs`). Then every node sums up what its elements and blocks put there,
 //! in their order: the same bits on any number of threads, and nothing is written twice.
 
 mod blocks;
