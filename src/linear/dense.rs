@@ -49,6 +49,10 @@ impl LinearSolver for DenseLu {
         }
     }
 
+    fn is_stable(&self) -> bool {
+        true
+    }
+
     fn solve(&mut self, b: &mut [f64]) {
         let Self { size, factors, rows, places, room } = self;
         let Some(room) = room else { return b.fill(f64::NAN) };

@@ -180,6 +180,13 @@ impl SparseMatrix {
     /// A x.
     pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; x.len()];
+        if self.pattern.rows.len() == self.pattern.nodes().pow(2) {
+            // All nodes are coupled: a dense matrix.
+            for (column, x) in self.values.chunks_exact(y.len().max(1)).zip(x) {
+                y.iter_mut().zip(column).for_each(|(y, a)| *y += a * x);
+            }
+            return y;
+        }
         let mut k = 0;
         for node in 0..self.pattern.nodes() {
             let rows = self.pattern.neighbours(node);
