@@ -5,8 +5,9 @@
 //! accepted does not depend on how it was found. If it says no, another round starts from there, and after a few the increment
 //! is left to Newton's method on all equations. Switch `condense`; `aid_condense` is 1 in iterations on the contacts.
 //!
-//! That way is taken where it costs less: where a dense LU of the nodes at contacts takes no more operations
-//! than an elimination of all others. It follows from the model and the step, never from what is kept. Condensed matrices are kept
+//! That way is taken where it costs less: where a dense LU of the nodes at contacts takes no more than
+//! three times the operations of a factorization of the bodies: they are that much faster; and where most nodes are not
+//! at contacts. It follows from the model and the step, never from what is kept. Condensed matrices are kept
 //! for all lengths as long as they take no more than [`MOST_MEMORY`] and half of what is free; those that were used last stay.
 
 use std::sync::Arc;
@@ -23,6 +24,9 @@ use crate::model::{Model, Step};
 
 /// Most bytes that condensed matrices of all lengths of increments take.
 pub const MOST_MEMORY: usize = 2 << 30;
+
+/// How much faster the operations of a dense LU are than those of an elimination front by front.
+const DENSE: f64 = 3.0;
 
 /// The bodies of a model condensed on the nodes at its contacts.
 pub struct Interface {
@@ -74,13 +78,15 @@ impl Interface {
         }
         let nodes = ContactNodes::new(model);
         let mut bodies = Assembler::new(model);
+        let size = 2.0 * nodes.nodes.len() as f64;
+        let elimination = Condensation::new(bodies.system().tangent.pattern, &[]).ok()?.work();
+        let most = 2 * nodes.nodes.len() > model.mesh.nodes.len();
+        if most || 2.0 / 3.0 * size.powi(3) > DENSE * elimination {
+            return None;
+        }
         bodies.couple(&Arc::new(Coupling::of(nodes.nodes.clone())));
         let system = bodies.system();
         let condensation = Condensation::new(system.tangent.pattern.clone(), &nodes.nodes).ok()?;
-        let size = 2.0 * nodes.nodes.len() as f64;
-        if 2.0 / 3.0 * size.powi(3) > condensation.work() {
-            return None;
-        }
         let condensed = nodes.system();
         let (constants, rungs, solver) = (None, Vec::new(), DenseLu::default());
         Some(Self { nodes, bodies, system, condensation, constants, rungs, solver, condensed })
