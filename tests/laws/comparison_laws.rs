@@ -1,9 +1,11 @@
 //! Slip weakening and rate-and-state friction alone: tangents, closed forms, differential equations.
 
+use super::random::Random;
 use crate::strokes::strokes;
+use fecontact::laws::friction::rate_law::Loading;
 use fecontact::laws::friction::{
-    FrictionLaw, FrictionResponse, FrictionState, RateAndState, RateAndStateParameters, STEEPEST, Sliding,
-    SlipWeakening, SlipWeakeningParameters, StateEvolution,
+    FrictionLaw, FrictionResponse, FrictionState, PrescribedSlip, PrescribedSlipParameters, RateAndState,
+    RateAndStateParameters, STEEPEST, Sliding, SlipWeakening, SlipWeakeningParameters, StateEvolution,
 };
 
 /// μ, the one variable of slip weakening.
@@ -50,23 +52,6 @@ fn respond(law: &dyn FrictionLaw, old: &FrictionState, slip: f64, pressure: f64,
 
 fn assert_close(actual: f64, expected: f64, tolerance: f64, what: &str) {
     assert!((actual - expected).abs() <= tolerance, "{what}: {actual} instead of {expected} ± {tolerance:e}");
-}
-
-/// Pseudo-random numbers in [0, 1) (splitmix64).
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
 }
 
 /// Compare both tangents with central differences, where the answer is smooth: both one-sided differences agree.
@@ -144,6 +129,14 @@ fn weakening_with_cohesion_and_an_initial_excess() {
     let over = FrictionState { traction: 8.5, pressure: 10.0, ..law.initial_state() };
     assert_close(respond(&law, &over, 0.0, 10.0, 0.0).state.plastic_slip, 0.5 / 999.0, 1e-15, "excess slips off");
     assert_eq!(law.starting_limit(10.0), f64::INFINITY);
+}
+
+/// α_t D_c/b: below it no slip, however fast, weakens faster than the contact gives way.
+#[test]
+fn rate_and_state_has_one_answer_below_a_pressure() {
+    let law = rate_and_state(RateAndStateParameters { alpha_t: Some(5.0), ..RATE_AND_STATE });
+    let RateAndStateParameters { b, critical_slip, .. } = RATE_AND_STATE;
+    assert_close(law.uniqueness_limit().expect("a limit"), 5.0 * critical_slip / b, 1e-12, "limit");
 }
 
 #[test]
@@ -539,5 +532,76 @@ fn no_increment_panics_or_is_not_a_number() {
             assert!(answer.evaluations < 200, "{} evaluations", answer.evaluations);
             state = new;
         }
+    }
+}
+
+/// The slip rate that follows from traction and state is the V of |q| = a p arsinh(V/(2 V₀) exp(ψ/a)), τ = q + η V, over forty
+/// decades and for both signs; its state evolves as θ̇ = 1 − V θ/D_c, or as −(V θ/D_c) ln(V θ/D_c).
+#[test]
+fn the_slip_rate_follows_from_traction_and_state() {
+    let mut random = Random(5);
+    for k in 0..4000 {
+        let evolution = [StateEvolution::Ageing, StateEvolution::Slip][k % 2];
+        let parameters = RateAndStateParameters { evolution, a: 0.003 + 0.03 * random.unit(), ..RATE_AND_STATE };
+        let law = rate_and_state(parameters);
+        let rates = law.rates().expect("it has rates");
+        let RateAndStateParameters { f_0, reference_rate, a, b, critical_slip, .. } = parameters;
+        let rate = 10f64.powf(-30.0 + 40.0 * random.unit()) * [1.0, -1.0][k / 2 % 2];
+        let x = -10.0 + 50.0 * random.unit();
+        let (pressure, damping) = (0.1 + 100.0 * random.unit(), 10f64.powf(-6.0 + 8.0 * random.unit()));
+        let psi = f_0 + b * x;
+        let log = (rate.abs() / (2.0 * reference_rate)).ln() + psi / a;
+        let arsinh = if log > 20.0 { log + std::f64::consts::LN_2 } else { log.exp().asinh() };
+        let traction = rate.signum() * a * pressure * arsinh + damping * rate;
+        let found = rates.slip_rate(x, Loading { traction, pressure, damping });
+        // Round-off of τ is that of its larger part, and friction makes an error of arsinh times its size of it.
+        let allowed = 1e-13 * (1.0 + arsinh + psi / a) * (1.0 + damping * rate.abs() / (a * pressure));
+        assert_close(found / rate, 1.0, allowed.min(1e-6), &format!("V = {rate:e}, x = {x}, a = {a}"));
+        let theta = critical_slip / reference_rate * x.exp();
+        let slid = rate.abs() * theta / critical_slip;
+        let expected = match evolution {
+            StateEvolution::Ageing => (1.0 - slid) / theta,
+            StateEvolution::Slip => -slid * slid.ln() / theta,
+        };
+        let size = (1.0 + slid * (1.0 + slid.ln().abs())) / theta;
+        assert_close(rates.evolution(x, rate) / size, expected / size, 1e-12, "evolution");
+        let state = rates.remember(x, FrictionState::default());
+        assert_close(state.variables[0] / theta, 1.0, 1e-12, "θ");
+        assert_close(rates.evolving(&state), x, 1e-12 * x.abs(), "x");
+    }
+}
+
+/// Prescribed slip: q follows the elastic slip, with that tangent, and its work is that of the mean traction.
+#[test]
+fn prescribed_slip_is_slip_at_its_rate() {
+    let parameters = PrescribedSlipParameters { slip_rate: -0.3, alpha_t: Some(50.0) };
+    let law = PrescribedSlip::new(&parameters, f64::NAN).expect("valid parameters");
+    let old = FrictionState { traction: 2.0, pressure: 1.0, plastic_slip: 0.5, ..FrictionState::default() };
+    let answer = respond(&law, &old, 0.1, 4.0, 0.5);
+    // 2 + 50 (0.1 + 0.15), and −0.15 (2 + 14.5)/2
+    assert_close(answer.state.traction, 14.5, 1e-13, "q");
+    assert_close(answer.state.plastic_slip, 0.35, 1e-15, "slip");
+    assert_close(answer.state.dissipation, -0.15 * 8.25, 1e-14, "work");
+    let [up, down] = [0.1 + 1e-5, 0.1 - 1e-5].map(|slip| respond(&law, &old, slip, 4.0, 0.5).state.traction);
+    assert_close(answer.dtraction_dslip, (up - down) / 2e-5, 1e-8, "∂q/∂Δu_t");
+    assert_eq!(answer.dtraction_dpressure, 0.0);
+    assert_eq!(respond(&law, &old, 0.1, 0.0, 0.5).state.traction, 0.0, "once parted");
+}
+
+/// Numbers from below the smallest to beyond the largest, and none at all: an answer is finite, and every search ends.
+#[test]
+fn absurd_increments_of_rate_and_state_are_answered_or_refused() {
+    let numbers = [0.0, 1e-320, 1e-30, 1.0, 1e30, 1e300, f64::MAX, f64::INFINITY, f64::NAN];
+    for evolution in [StateEvolution::Ageing, StateEvolution::Slip] {
+        let law = rate_and_state(RateAndStateParameters { evolution, alpha_t: Some(1e4), ..RATE_AND_STATE });
+        let mut answered = 0;
+        for k in 0..numbers.len().pow(3) {
+            let [slip, pressure, dt] = [k % 9, k / 9 % 9, k / 81].map(|k| numbers[k]);
+            if let Ok(answer) = law.respond(&law.initial_state(), Sliding { slip, pressure, dt }) {
+                assert!(answer.state.traction.is_finite() && answer.dtraction_dslip.is_finite());
+                answered += 1;
+            }
+        }
+        assert!(answered > 50, "{answered}");
     }
 }

@@ -4,6 +4,7 @@ use crate::strokes::strokes;
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use super::random::Random;
 use fecontact::laws::friction::{
     Approach, Coulomb, CoulombParameters, FrictionLaw, FrictionParameters, FrictionResponse, FrictionState,
     Frictionless, Integration, LawFailure, STEEPEST, Sliding, SuperSubloading, SuperSubloadingParameters,
@@ -98,36 +99,6 @@ fn distance(approach: Approach, y: f64) -> f64 {
     }
 }
 
-/// Pseudo-random numbers (splitmix64).
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    /// 10 to the power of a number between `low` and `high`.
-    fn magnitude(&mut self, low: f64, high: f64) -> f64 {
-        10f64.powf(self.between(low, high))
-    }
-
-    fn chance(&mut self, probability: f64) -> bool {
-        self.unit() < probability
-    }
-
-    fn sign(&mut self) -> f64 {
-        if self.chance(0.5) { 1.0 } else { -1.0 }
-    }
-}
-
 // Closed forms
 
 #[test]
@@ -193,6 +164,55 @@ fn the_attained_peak_converges_to_25_0175() {
     assert_close(ratio, 0.8711, 2e-3, "R at the peak");
     assert_close(slip, 0.040_384, 1e-4, "slip at the peak");
     assert_first_order((peak(2000).0 - 25.017_5).abs(), (peak(4000).0 - 25.017_5).abs(), "peak");
+}
+
+/// What `check` says of a law in closed form is what the law does when it is driven: in slip without time, and in time without slip.
+#[test]
+fn what_the_parameters_mean_is_what_the_law_does() {
+    let sets = [
+        SuperSubloadingParameters { integration: Integration::Controlled, ..PAPER },
+        SuperSubloadingParameters { r: 400.0, kappa: 2.0, xi: 0.02, structure: None, ..PAPER },
+        SuperSubloadingParameters { r: 1000.0, m: 2.0, n: 3.0, structure: Some(1.5), ..PAPER },
+        SuperSubloadingParameters { r: 300.0, m: 0.5, n: 0.5, elastic_core: 0.3, structure: Some(1.0), ..PAPER },
+        SuperSubloadingParameters { r: 80.0, approach: Approach::Cotangent, ..PAPER },
+    ];
+    for parameters in sets {
+        let of_start =
+            law(&SuperSubloadingParameters { integration: Integration::Controlled, alpha_t: Some(1e6), ..parameters });
+        let of_rest = law(&SuperSubloadingParameters {
+            integration: Integration::Controlled,
+            alpha_t: Some(1e6),
+            structure: None,
+            ..parameters
+        });
+        let onset = of_start.onset().expect("the law says so");
+        assert_eq!((onset.rested, onset.residual), (of_rest.onset().expect("the law says so").rested, parameters.mu_k));
+        for (law, rise) in [(&of_rest, onset.rested), (&of_start, onset.fresh)] {
+            let end = rise.slip.map_or(0.5, |slip| 2.0 * slip);
+            let states = drive(law, law.initial_state(), end, 0.0, 4000);
+            let highest = states.iter().max_by(|a, b| a.traction.total_cmp(&b.traction)).expect("a state");
+            assert_close(rise.peak, highest.traction / PRESSURE, 1e-6 * rise.peak, &format!("peak of {parameters:?}"));
+            if let Some(slip) = rise.slip {
+                assert_close(slip, highest.plastic_slip, 2.0 * end / 4000.0, &format!("slip of {parameters:?}"));
+            }
+        }
+        // Half of the way between μ_s and μ_k, from above and from below.
+        let half = 0.5 * (parameters.mu_s + parameters.mu_k);
+        let [lost, healed] = [onset.half_lost, onset.half_healed].map(|some| some.expect("it weakens and heals"));
+        let states = drive(&of_rest, of_rest.initial_state(), 2.0 * lost, 0.0, 4000);
+        let crossing = states.iter().find(|state| mu_of(state) <= half).expect("it has weakened");
+        assert_close(lost, crossing.plastic_slip, 2.0 * lost / 2000.0, &format!("slip of half of {parameters:?}"));
+        let weak = of_rest.initial_state().with_variables([parameters.mu_k]);
+        let rested = respond(&of_rest, &weak, 0.0, PRESSURE, healed).state;
+        assert_close(mu_of(&rested), half, 1e-12, &format!("rest of half of {parameters:?}"));
+    }
+    // Friction that only rises, to the kinetic coefficient or to the static one, has no peak.
+    let only =
+        |kappa: f64, mu_s: f64| law(&SuperSubloadingParameters { kappa, mu_s, structure: None, xi: 0.0, ..PAPER });
+    for (law, limit) in [(only(0.0, 0.4), 0.4), (only(1e5, 0.4), 0.2), (only(10.0, 0.2), 0.2)] {
+        let onset = law.onset().expect("the law says so");
+        assert_eq!((onset.rested.peak, onset.rested.slip, onset.half_healed), (limit, None, None));
+    }
 }
 
 #[test]

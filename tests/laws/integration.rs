@@ -1,5 +1,7 @@
 //! The super/subloading law under error control: right whatever the increment, with the tangent of what was computed.
 
+use super::random::Random;
+use fecontact::laws::friction::sensitivity::{Direction, Variation};
 use fecontact::laws::friction::{FrictionLaw, FrictionParameters, FrictionState, Sliding};
 use serde_json::{Value, json};
 
@@ -185,6 +187,44 @@ fn one_increment_is_right_to_the_tolerance() {
     }
 }
 
+/// Short increments are answered by one step alone where a bound of its error allows: against the rate equations, q and μ p
+/// to a hundredth of the tolerance and the mean of q to the tolerance, over states, slips, times and pressures of all sizes.
+#[test]
+fn steps_taken_alone_are_right_to_their_bounds() {
+    let mut random = Random(7);
+    let mut alone = 0;
+    let mut worst = [0.0f64; 3];
+    for _ in 0..20_000 {
+        let kappa = if random.chance(0.1) { 0.0 } else { random.magnitude(-2.0, 0.9) };
+        let xi = if random.chance(0.1) { 0.0 } else { random.magnitude(-4.0, 2.0) };
+        let mu = random.between(MU_K, MU_S);
+        let start = pressed(mu, random.between(0.02, 1.0).powf(0.3) * mu * PRESSURE);
+        let slip = random.magnitude(-8.0, -2.0);
+        let pressure = PRESSURE * (1.0 + if random.chance(0.5) { 0.0 } else { random.between(-1e-3, 1e-3) });
+        let sliding = Sliding { slip, pressure, dt: random.magnitude(-7.0, -1.0) };
+        let law = law(json!({"kappa": kappa, "xi": xi}));
+        let answer = law.respond(&start, sliding).unwrap();
+        if !(1..=2).contains(&answer.evaluations) {
+            continue; // a whole and two halves take three at least
+        }
+        alone += 1;
+        let numbers = [kappa, xi, 1.0, 1.0];
+        let [q, mu, work] = rate_form(numbers, start, [0.0, 0.0, PRESSURE], [sliding.dt, slip, pressure], 400);
+        let state = answer.state;
+        let noise = 1e-12 * PRESSURE;
+        let errors = [
+            ((state.traction - q).abs() - noise) / (1e-8 * MU_S * PRESSURE),
+            ((mu_of(&state) - mu).abs() * PRESSURE - noise) / (1e-8 * MU_S * PRESSURE),
+            ((state.dissipation - work).abs() - noise * slip)
+                / (1e-6 * MU_S * PRESSURE * (slip + state.plastic_increment)),
+        ];
+        worst = [0, 1, 2].map(|i| worst[i].max(errors[i]));
+    }
+    println!("{alone} steps alone, errors up to {worst:.2?} of their bounds");
+    assert!(alone > 5000, "{alone}");
+    assert!(worst.iter().all(|error| *error < 1.05), "{worst:?}");
+}
+
 /// Tangents of whole increments, sub-steps and all, against differences.
 #[test]
 fn tangents_belong_to_the_answers() {
@@ -216,6 +256,78 @@ fn tangents_belong_to_the_answers() {
                 "{what}: {} {by_pressure}",
                 answer.dtraction_dpressure
             );
+        }
+    }
+}
+
+fn any(given: &Value) -> Box<dyn FrictionLaw> {
+    serde_json::from_value::<FrictionParameters>(given.clone()).unwrap().build(1.0).unwrap()
+}
+
+/// Slips, pressures and times with holds, reversals, and a parting after which the surfaces are pressed before they slip.
+fn increments() -> Vec<Sliding> {
+    let mut random = Random(7);
+    let mut next = || random.unit();
+    (0..60)
+        .map(|k| {
+            let slip = if k % 7 == 0 || k == 34 { 0.0 } else { 0.02 * (next() - if k % 20 < 14 { 0.2 } else { 0.9 }) };
+            Sliding { slip, pressure: if k == 33 { -1.0 } else { 0.7 + 0.6 * next() }, dt: 0.1 + next() }
+        })
+        .collect()
+}
+
+/// Tractions along a path whose slips are `stretch` times as long.
+fn tractions(given: &Value, stretch: f64) -> Vec<f64> {
+    let law = any(given);
+    let mut state = law.initial_state();
+    let lead = |sliding: &Sliding| {
+        state = law.respond(&state, Sliding { slip: stretch * sliding.slip, ..*sliding }).unwrap().state;
+        state.traction
+    };
+    increments().iter().map(lead).collect()
+}
+
+/// Against central differences of whole paths: by every parameter, and by the slip, beside it.
+#[test]
+fn sensitivities_are_those_of_differences() {
+    let base = json!({"law": "super_subloading", "mu_s": 0.6, "mu_k": 0.4, "alpha_t": 40.0, "r": 20.0, "kappa": 3.0, "xi": 0.05,
+        "tolerance": 1e-11});
+    let mut curved = base.clone();
+    let further = json!({"m": 1.3, "n": 0.8, "elastic_core": 0.2, "structure": 1.3, "approach": "cotangent"});
+    curved.as_object_mut().unwrap().extend(further.as_object().unwrap().clone());
+    let rate = json!({"law": "rate_and_state", "a": 0.02, "b": 0.025, "f_0": 0.6, "V_0": 0.1, "D_c": 0.3, "alpha_t": 40.0, "theta": 2.0});
+    let slip_law = json!({"law": "rate_and_state", "a": 0.02, "b": 0.025, "f_0": 0.6, "V_0": 0.1, "D_c": 0.3, "alpha_t": 40.0,
+        "evolution": "slip"});
+    let weakening =
+        json!({"law": "slip_weakening", "mu_s": 0.6, "mu_d": 0.4, "D_c": 0.5, "cohesion": 0.1, "alpha_t": 4.0});
+    for given in [base, curved, rate, slip_law, weakening, json!({"law": "coulomb", "mu": 0.5, "alpha_t": 4.0})] {
+        let law = any(&given);
+        let sensitive = law.sensitivities().unwrap();
+        for (place, name) in sensitive.parameters().iter().enumerate().filter(|(_, name)| given[**name].is_f64()) {
+            let (mut old, mut states) = (law.initial_state(), [sensitive.start(place), Variation::default()]);
+            let mut exact = Vec::new();
+            for sliding in increments() {
+                let by_parameter = Direction { state: states[0], slip: 0.0, parameter: Some(place) };
+                let by_slip = Direction { state: states[1], slip: sliding.slip, parameter: None };
+                states = sensitive.vary(&old, sliding, [by_parameter, by_slip]).unwrap();
+                old = law.respond(&old, sliding).unwrap().state;
+                exact.push(states.map(|state| state.traction));
+            }
+            let moved = |by: f64| {
+                let mut other = given.clone();
+                other[*name] = json!(given[*name].as_f64().unwrap() + by);
+                tractions(&other, 1.0)
+            };
+            let h = 1e-5 * given[*name].as_f64().unwrap();
+            let apart =
+                [(moved(h), moved(-h), h), (tractions(&given, 1.0 + 1e-5), tractions(&given, 1.0 - 1e-5), 1e-5)];
+            for (k, (above, below, step)) in apart.iter().enumerate() {
+                let largest = exact.iter().map(|row| row[k].abs()).fold(0.0, f64::max);
+                for (i, row) in exact.iter().enumerate() {
+                    let error = row[k] - (above[i] - below[i]) / (2.0 * step);
+                    assert!(error.abs() <= 1e-6 * largest, "{given} by {name}, {k}, at {i}: {error:e} of {largest:e}");
+                }
+            }
         }
     }
 }

@@ -4,6 +4,10 @@
 mod strokes;
 
 mod comparison_laws;
+mod controlled;
 mod friction;
+mod imposed;
 mod integration;
 mod materials;
+mod offset;
+mod random;

@@ -1,7 +1,7 @@
 //! The bulk laws against their energies, closed forms, differences, and the constants they refuse.
 
-use fecontact::laws::bulk::{Evolution, InvertedElement, Material, MaterialParameters, Straining};
-use nalgebra::{Matrix2, Matrix4, Rotation2, Vector4};
+use fecontact::laws::bulk::{Evolution, InvertedElement, Material, MaterialParameters, Straining, Stretched};
+use nalgebra::{Matrix2, Matrix4, Rotation2, Vector4, Vector5};
 use serde_json::json;
 
 const MODELS: [&str; 4] = ["linear", "saint_venant_kirchhoff", "neo_hookean", "hencky"];
@@ -413,4 +413,135 @@ fn dissipation_is_never_negative() {
         assert!(now.dissipation >= -1e-14 * now.response.energy.abs(), "{}", now.dissipation);
         old = new;
     }
+}
+
+/// The answer of a law with a stretch h across the plane to an increment from what it remembers.
+fn stretched(material: &dyn Material, f: &Vector5<f64>, dt: f64, old: &[f64]) -> Stretched {
+    let deformation = Matrix2::from_column_slice(&f.as_slice()[..4]);
+    let straining = Straining { deformation, stretch: f[4], dt, old };
+    material.spatial().expect("it is known").stretched(&straining, &mut old.to_vec()).unwrap()
+}
+
+fn all_laws() -> impl Iterator<Item = Box<dyn Material>> {
+    MODELS.into_iter().map(material).chain([viscoelastic()])
+}
+
+/// P = ∂W/∂F and A = ∂P/∂F in all five components, over an increment for the law that remembers; without a stretch the law is
+/// that of plane strain.
+#[test]
+fn across_the_plane_stress_and_tangent_are_derivatives() {
+    for material in all_laws() {
+        let count = material.variables().len();
+        let old = match count {
+            0 => Vec::new(),
+            _ => evolve(&*material, &Matrix2::new(1.1, 0.2, -0.1, 0.9), 0.3, &vec![0.0; count]).1,
+        };
+        for (k, plane) in deformations().into_iter().enumerate() {
+            let (h, dt) = ([1.0, 0.7, 1.0 + 1e-7, 1.6, 0.98][k % 5], if k % 2 == 0 { 0.1 } else { 0.0 });
+            let f = Vector5::from_iterator(plane.iter().copied().chain([h]));
+            let answer = stretched(&*material, &f, dt, &old);
+            for column in 0..5 {
+                let step = 1e-5;
+                let at = |way: f64| stretched(&*material, &(f + Vector5::ith(column, way)), dt, &old);
+                let (hi, lo) = (at(step), at(-step));
+                let difference = (hi.stress - lo.stress) / (2.0 * step);
+                let error = (difference - answer.tangent.column(column)).amax();
+                assert!(error < 2e-7, "{material:?} at {f:?}: {error:e}");
+                if count == 0 {
+                    let work = (hi.energy - lo.energy) / (2.0 * step);
+                    assert!((work - answer.stress[column]).abs() < 2e-8, "{material:?} at {f:?}");
+                }
+            }
+            let flat = stretched(&*material, &Vector5::from_iterator(plane.iter().copied().chain([1.0])), dt, &old);
+            let mut new = vec![0.0; count];
+            let straining = Straining { deformation: plane, stretch: 1.0, dt, old: &old };
+            let known = material.evolve(&straining, &mut new).unwrap().response;
+            let sigma = flat.stress[4] / if material.is_linear() { 1.0 } else { plane.determinant() };
+            assert!(
+                (Vector4::from_column_slice(known.stress.as_slice()) - flat.stress.fixed_rows::<4>(0)).amax() < 1e-13
+            );
+            assert!((sigma - known.stress_zz).abs() < 1e-13, "{material:?}: {sigma} {}", known.stress_zz);
+            assert!((flat.energy - known.energy).abs() < 1e-13);
+        }
+    }
+}
+
+/// In plane stress the answer has no stress across the plane, and the tangent is that of the stress.
+#[test]
+fn a_plate_has_no_stress_across_and_its_tangent_is_the_derivative() {
+    for law in all_laws() {
+        let plate = law.plane_stress().expect("it is known");
+        let count = plate.variables().len();
+        let old = vec![0.0; count];
+        let (bulk, shear) = (plate.p_wave_modulus(), plate.shear_modulus());
+        if count == 0 {
+            assert!((bulk - E / (1.0 - NU * NU)).abs() < 1e-14, "{bulk}");
+            assert_eq!(shear, G);
+        }
+        for f in [
+            Matrix2::new(1.0, 0.0, 0.0, 1.0),
+            Matrix2::new(1.0 + 1e-9, 2e-9, 0.0, 1.0),
+            Matrix2::new(1.2, 0.3, -0.1, 0.8),
+            rotation(2.0) * Matrix2::new(1.3, 0.2, 0.1, 0.7),
+        ] {
+            let at = |f: &Matrix2<f64>| evolve(&*plate, f, 0.2, &old).0.response;
+            let rows: [[f64; 4]; 4] = by_difference(&f, |f| at(f).stress.as_slice().try_into().unwrap());
+            let error = at(&f).tangent - Matrix4::from_fn(|i, j| rows[i][j]);
+            assert!(error.amax() < 1e-8, "{plate:?} at {f}: {error}");
+            let sigma = plate.cauchy_stress(&f, &evolve(&*plate, &f, 0.2, &old).1).unwrap();
+            assert_eq!(sigma.zz, 0.0);
+        }
+        assert!(plate.respond(&Matrix2::identity()).unwrap().stress.iter().all(|stress| *stress == 0.0));
+    }
+}
+
+/// A bar pulled to the stretch a in a plate, free at its sides: lateral stretch and thickness are the same b. Hencky's law
+/// has b = a^(−ν) and P = E ln a/a; of the neo-Hookean law b is the root of G (b² − 1) + λ ln(a b²), found here by bisection, and
+/// P = (G (a² − 1) + λ ln(a b²))/a.
+#[test]
+fn a_bar_in_plane_stress_has_its_closed_form() {
+    for a in [0.6, 0.99, 1.0 + 1e-8, 1.5, 2.5f64] {
+        let (mut low, mut high) = (0.1f64, 10.0f64);
+        for _ in 0..200 {
+            let b = 0.5 * (low + high);
+            let stress = G * (b * b - 1.0) + LAMBDA * (a * b * b).ln();
+            if stress > 0.0 { high = b } else { low = b }
+        }
+        let root = 0.5 * (low + high);
+        let neo = (G * (a * a - 1.0) + LAMBDA * (a * root * root).ln()) / a;
+        for (model, b, pull) in [("hencky", a.powf(-NU), E * a.ln() / a), ("neo_hookean", root, neo)] {
+            let plate = material(model).plane_stress().unwrap();
+            let response = plate.respond(&Matrix2::new(a, 0.0, 0.0, b)).unwrap();
+            assert!((response.stress.m11 - pull).abs() < 1e-13, "{model} at {a}: {} for {pull}", response.stress.m11);
+            assert!(response.stress.m22.abs() < 1e-13, "{model} at {a}: {}", response.stress.m22);
+            // Of a plate the whole work is done in the plane.
+            let sigma = plate.cauchy_stress(&Matrix2::new(a, 0.0, 0.0, b), &[]).unwrap();
+            assert!((sigma.xx - pull / (b * b)).abs() < 1e-13 / (b * b), "{model}: {}", sigma.xx);
+        }
+    }
+}
+
+/// A linear plate, against the closed form E/(1 − ν²) (ε_xx + ν ε_yy) and G γ.
+#[test]
+fn a_linear_plate_has_its_closed_form() {
+    let plate = material("linear").plane_stress().unwrap();
+    let response = plate.respond(&Matrix2::new(1.01, 0.004, 0.002, 0.98)).unwrap();
+    let modulus = E / (1.0 - NU * NU);
+    for (found, expected) in [
+        (response.stress.m11, modulus * (0.01 - NU * 0.02)),
+        (response.stress.m22, modulus * (-0.02 + NU * 0.01)),
+        (response.stress.m12, G * 0.006),
+        (response.stress_zz, 0.0),
+    ] {
+        assert!((found - expected).abs() < 1e-15, "{found} for {expected}");
+    }
+    assert!(plate.is_linear());
+}
+
+/// Saint Venant and Kirchhoff's plate cannot be stretched to e > (λ + 2G)/(2λ): its thickness would vanish.
+#[test]
+fn a_plate_without_a_thickness_is_refused() {
+    let plate = material("saint_venant_kirchhoff").plane_stress().unwrap();
+    assert!(plate.respond(&Matrix2::new(1.3, 0.0, 0.0, 1.3)).is_ok());
+    assert!(plate.respond(&Matrix2::new(1.8, 0.0, 0.0, 1.8)).is_err());
 }

@@ -1,7 +1,10 @@
 use nalgebra::Matrix2;
 
-use super::isotropic::{Invariants, StrainEnergy};
-use super::{ElasticConstants, InvertedElement, Lame, Material, MaterialResponse};
+use super::isotropic::{Across, Invariants, StrainEnergy};
+use super::spatial::{ln_stretch, positive_stretch};
+use super::{
+    ElasticConstants, InvertedElement, Lame, Material, MaterialResponse, PlaneStress, Spatial, Straining, Stretched,
+};
 use crate::laws::parameter::InvalidParameter;
 
 /// Hencky's law: Kirchhoff stress proportional to the logarithmic strain.
@@ -38,6 +41,24 @@ impl Hencky {
     pub fn new(constants: &ElasticConstants) -> Result<Self, InvalidParameter> {
         Ok(Self { lame: constants.lame()?, density: constants.density })
     }
+
+    /// W and its derivatives in plane strain.
+    #[inline(always)]
+    fn energy(&self, invariants: &Invariants) -> StrainEnergy {
+        let Lame { lambda, shear } = self.lame;
+        let (jacobian, ln_j) = (invariants.jacobian, invariants.ln_jacobian());
+        let areal = lambda + shear;
+        let x = 0.25 * invariants.distortion / jacobian;
+        let ShearStrain { d, a, l } = ShearStrain::from_sinh_squared(x);
+        StrainEnergy {
+            w: 0.5 * (areal * ln_j * ln_j + shear * d * d),
+            w_m: 0.5 * shear * a / jacobian,
+            w_j: (areal * ln_j - 2.0 * shear * a * x) / jacobian,
+            w_mm: -0.25 * shear * a * a * l / jacobian.powi(2),
+            w_mj: shear * (a * a * l * x - 0.5 * a) / jacobian.powi(2),
+            w_jj: (areal * (1.0 - ln_j) + 4.0 * shear * (a * x - a * a * l * x * x)) / jacobian.powi(2),
+        }
+    }
 }
 
 impl Material for Hencky {
@@ -53,23 +74,43 @@ impl Material for Hencky {
         self.lame.shear
     }
 
+    fn plane_stress(&self) -> Option<Box<dyn Material>> {
+        Some(Box::new(PlaneStress::new(*self)))
+    }
+
+    fn spatial(&self) -> Option<&dyn Spatial> {
+        Some(self)
+    }
+
     #[inline(always)]
     fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
         let invariants = Invariants::of(deformation)?;
+        let stress_zz = self.lame.lambda * invariants.ln_jacobian() / invariants.jacobian;
+        Ok(invariants.response(&self.energy(&invariants), stress_zz))
+    }
+}
+
+impl Spatial for Hencky {
+    /// ```text
+    /// W(h) = W(1) + λ ln J ln h + (λ/2 + G) (ln h)²
+    /// ```
+    fn stretched(&self, straining: &Straining, _: &mut [f64]) -> Result<Stretched, InvertedElement> {
+        let h = positive_stretch(straining)?;
+        let invariants = Invariants::of(&straining.deformation)?;
         let Lame { lambda, shear } = self.lame;
-        let (jacobian, ln_j) = (invariants.jacobian, invariants.ln_jacobian());
-        let areal = lambda + shear;
-        let x = 0.25 * invariants.distortion / jacobian;
-        let ShearStrain { d, a, l } = ShearStrain::from_sinh_squared(x);
-        let energy = StrainEnergy {
-            w: 0.5 * (areal * ln_j * ln_j + shear * d * d),
-            w_m: 0.5 * shear * a / jacobian,
-            w_j: (areal * ln_j - 2.0 * shear * a * x) / jacobian,
-            w_mm: -0.25 * shear * a * a * l / jacobian.powi(2),
-            w_mj: shear * (a * a * l * x - 0.5 * a) / jacobian.powi(2),
-            w_jj: (areal * (1.0 - ln_j) + 4.0 * shear * (a * x - a * a * l * x * x)) / jacobian.powi(2),
+        let (jacobian, ln_j, ln_h) = (invariants.jacobian, invariants.ln_jacobian(), ln_stretch(h));
+        let mut energy = self.energy(&invariants);
+        energy.w += lambda * ln_j * ln_h + (0.5 * lambda + shear) * ln_h * ln_h;
+        energy.w_j += lambda * ln_h / jacobian;
+        energy.w_jj -= lambda * ln_h / jacobian.powi(2);
+        let kirchhoff = lambda * (ln_j + ln_h) + 2.0 * shear * ln_h;
+        let across = Across {
+            w_h: kirchhoff / h,
+            w_mh: 0.0,
+            w_jh: lambda / (jacobian * h),
+            w_hh: (self.lame.constrained_modulus() - kirchhoff) / (h * h),
         };
-        Ok(invariants.response(&energy, lambda * ln_j / jacobian))
+        Ok(invariants.stretched(invariants.response(&energy, 0.0), &across))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix2, Vector4};
 
-use super::{InvertedElement, MaterialResponse, cofactor, positive_jacobian};
+use super::{InvertedElement, MaterialResponse, Stretched, cofactor, positive_jacobian};
 
 /// The two invariants that an isotropic law sees in plane strain, and their derivatives.
 ///
@@ -32,6 +32,14 @@ pub(super) struct StrainEnergy {
     pub w_mm: f64,
     pub w_mj: f64,
     pub w_jj: f64,
+}
+
+/// Derivatives of W(m, J, h) by the stretch h across the plane, J being that in plane.
+pub(super) struct Across {
+    pub w_h: f64,
+    pub w_mh: f64,
+    pub w_jh: f64,
+    pub w_hh: f64,
 }
 
 impl Invariants {
@@ -74,5 +82,17 @@ impl Invariants {
             tangent[(i, 3 - i)] += sign * of_cofactor;
         }
         MaterialResponse { stress, tangent, energy: w, stress_zz }
+    }
+
+    /// The answer in plane at the stretch h, and what comes with it across the plane.
+    ///
+    /// ```text
+    /// P₃₃ = W_h,   ∂P/∂h = 2 W_mh D + W_Jh cof F,   ∂P₃₃/∂h = W_hh                       (5)
+    /// ```
+    pub(super) fn stretched(&self, plane: MaterialResponse, across: &Across) -> Stretched {
+        let Across { w_h, w_mh, w_jh, w_hh } = *across;
+        let coupling = 2.0 * w_mh * self.deviation + w_jh * self.cofactor;
+        let coupling = Vector4::from_column_slice(coupling.as_slice());
+        Stretched::new((plane.stress, plane.tangent), (w_h, coupling, w_hh), plane.energy)
     }
 }

@@ -1,6 +1,8 @@
-use nalgebra::{Matrix2, Matrix4};
+use nalgebra::{Matrix2, Matrix4, Vector4};
 
-use super::{CauchyStress, ElasticConstants, InvertedElement, Lame, Material, MaterialResponse};
+use super::{
+    CauchyStress, ElasticConstants, InvertedElement, Lame, Material, MaterialResponse, Spatial, Straining, Stretched,
+};
 use crate::laws::parameter::InvalidParameter;
 
 /// Linear elasticity: stress proportional to the small strain, whatever the rotation.
@@ -11,13 +13,16 @@ use crate::laws::parameter::InvalidParameter;
 /// ```
 ///
 /// The law does not tell the reference from the current configuration: P is reported as the Cauchy stress.
-/// A rotation strains it, so it is for small rotations only; it never inverts.
+/// A rotation strains it, so it is for small rotations only; it never inverts. In plane stress it is (1) with
+/// λ* = 2 λ G/(λ + 2G) in place of λ, and σ_zz = 0.
 ///
 /// # Errors
 /// [`InvertedElement`] when F is not finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Linear {
     lame: Lame,
+    /// σ_zz/tr ε [F/L²]
+    across: f64,
     density: f64,
 }
 
@@ -25,7 +30,8 @@ impl Linear {
     /// # Errors
     /// [`InvalidParameter`] when a constant is out of its range.
     pub fn new(constants: &ElasticConstants) -> Result<Self, InvalidParameter> {
-        Ok(Self { lame: constants.lame()?, density: constants.density })
+        let lame = constants.lame()?;
+        Ok(Self { lame, across: lame.lambda, density: constants.density })
     }
 }
 
@@ -46,6 +52,16 @@ impl Material for Linear {
         true
     }
 
+    fn plane_stress(&self) -> Option<Box<dyn Material>> {
+        let Lame { lambda, shear } = self.lame;
+        let lambda = 2.0 * lambda * shear / (lambda + 2.0 * shear);
+        Some(Box::new(Self { lame: Lame { lambda, shear }, across: 0.0, ..*self }))
+    }
+
+    fn spatial(&self) -> Option<&dyn Spatial> {
+        Some(self)
+    }
+
     #[inline(always)]
     fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
         if !deformation.iter().all(|component| component.is_finite()) {
@@ -54,8 +70,8 @@ impl Material for Linear {
         let Lame { lambda, shear } = self.lame;
         let displacement_gradient = deformation - Matrix2::identity();
         let strain = 0.5 * (displacement_gradient + displacement_gradient.transpose());
-        let stress_zz = lambda * strain.trace();
-        let stress = Matrix2::from_diagonal_element(stress_zz) + 2.0 * shear * strain;
+        let trace = strain.trace();
+        let stress = Matrix2::from_diagonal_element(lambda * trace) + 2.0 * shear * strain;
         let m = self.p_wave_modulus();
         #[rustfmt::skip]
         let tangent = Matrix4::new(
@@ -64,7 +80,7 @@ impl Material for Linear {
             0.0,    shear, shear, 0.0,
             lambda, 0.0,   0.0,   m,
         );
-        Ok(MaterialResponse { stress, tangent, energy: 0.5 * stress.dot(&strain), stress_zz })
+        Ok(MaterialResponse { stress, tangent, energy: 0.5 * stress.dot(&strain), stress_zz: self.across * trace })
     }
 
     fn viscous_stress(&self, [_, rate]: [&Matrix2<f64>; 2]) -> Matrix2<f64> {
@@ -78,5 +94,19 @@ impl Material for Linear {
     fn cauchy_stress(&self, deformation: &Matrix2<f64>, _: &[f64]) -> Result<CauchyStress, InvertedElement> {
         let MaterialResponse { stress, stress_zz, .. } = self.respond(deformation)?;
         Ok(CauchyStress { xx: stress.m11, yy: stress.m22, zz: stress_zz, xy: stress.m12 })
+    }
+}
+
+impl Spatial for Linear {
+    fn stretched(&self, straining: &Straining, _: &mut [f64]) -> Result<Stretched, InvertedElement> {
+        let MaterialResponse { stress, tangent, energy, .. } = self.respond(&straining.deformation)?;
+        let strain = straining.stretch - 1.0;
+        let trace = straining.deformation.m11 - 1.0 + (straining.deformation.m22 - 1.0);
+        let Lame { lambda, .. } = self.lame;
+        let modulus = self.lame.constrained_modulus();
+        let stress = stress + Matrix2::from_diagonal_element(lambda * strain);
+        let energy = energy + lambda * trace * strain + 0.5 * modulus * strain * strain;
+        let coupling = Vector4::new(lambda, 0.0, 0.0, lambda);
+        Ok(Stretched::new((stress, tangent), (lambda * trace + modulus * strain, coupling, modulus), energy))
     }
 }

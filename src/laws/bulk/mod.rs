@@ -10,6 +10,10 @@
 //! All have the same two constants, λ and G, and the same response to small strains. [`Viscoelastic`] has a neo-Hookean body
 //! beside a Maxwell arm that relaxes.
 //!
+//! Laws are written in plane strain, F₃₃ = 1. One that also knows what a stretch across the plane does is [`Spatial`], and
+//! can be that of a ring; [`PlaneStress`] is such a law in a plate, and [`Imposed`] one in a body with an initial stress or a
+//! temperature.
+//!
 //! A law may remember some numbers of its own at every quadrature point. They are handled like the state of friction: the
 //! answer to an increment is a pure function of what was committed, and what it leaves is a second value.
 //!
@@ -28,18 +32,24 @@ use nalgebra::{Matrix2, Matrix4};
 use thiserror::Error;
 
 mod hencky;
+mod imposed;
 mod isotropic;
 mod linear;
 mod neo_hookean;
 mod parameters;
+mod plane_stress;
 mod saint_venant_kirchhoff;
+pub(crate) mod spatial;
 mod viscoelastic;
 
 pub use hencky::Hencky;
+pub use imposed::{INITIAL_STRESS, Imposed, TEMPERATURE};
 pub use linear::Linear;
 pub use neo_hookean::NeoHookean;
 pub use parameters::{ElasticConstants, Lame, MaterialParameters};
+pub use plane_stress::PlaneStress;
 pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
+pub use spatial::{Spatial, Stretched};
 pub use viscoelastic::{Viscoelastic, ViscoelasticConstants};
 
 /// Stress, tangent and stored energy at one deformation gradient (plane strain: F₃₃ = 1).
@@ -146,8 +156,19 @@ pub trait Material: Debug + Send + Sync {
     /// [`InvertedElement`] when det F is not positive.
     fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement>;
 
-    /// Names of what the law remembers at every quadrature point, zero before the first increment; none for elastic laws.
-    fn variables(&self) -> &'static [&'static str] {
+    /// The law in a plate, which has no stress across the plane; none unless it is known.
+    fn plane_stress(&self) -> Option<Box<dyn Material>> {
+        None
+    }
+
+    /// The law with a stretch across the plane, as rings have it; none unless it is known.
+    fn spatial(&self) -> Option<&dyn Spatial> {
+        None
+    }
+
+    /// Names of what the law remembers at every quadrature point, zero before the first increment unless it is imposed
+    /// ([`Imposed`]); none for elastic laws.
+    fn variables(&self) -> &[&'static str] {
         &[]
     }
 
@@ -221,8 +242,14 @@ pub trait Material: Debug + Send + Sync {
     /// # Errors
     /// As [`Material::respond`].
     fn cauchy_stress(&self, deformation: &Matrix2<f64>, old: &[f64]) -> Result<CauchyStress, InvertedElement> {
-        let now = Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old };
-        let Evolution { response, .. } = self.evolve(&now, &mut old.to_vec())?;
+        let response = match old {
+            // Compiled for each law: the tangent that is not asked for costs nothing.
+            [] => self.respond(deformation)?,
+            old => {
+                let now = Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old };
+                self.evolve(&now, &mut old.to_vec())?.response
+            }
+        };
         let sigma = response.stress * deformation.transpose() / deformation.determinant();
         Ok(CauchyStress { xx: sigma.m11, yy: sigma.m22, zz: response.stress_zz, xy: sigma.m12 })
     }

@@ -1,7 +1,10 @@
 use nalgebra::Matrix2;
 
-use super::isotropic::{Invariants, StrainEnergy};
-use super::{ElasticConstants, InvertedElement, Lame, Material, MaterialResponse};
+use super::isotropic::{Across, Invariants, StrainEnergy};
+use super::spatial::{ln_stretch, positive_stretch};
+use super::{
+    ElasticConstants, InvertedElement, Lame, Material, MaterialResponse, PlaneStress, Spatial, Straining, Stretched,
+};
 use crate::laws::parameter::InvalidParameter;
 
 /// Compressible neo-Hookean law.
@@ -37,7 +40,7 @@ impl NeoHookean {
     /// W = G/2 m + G (J − 1 + (h² − 1)/2 − ln J h) + λ/2 (ln J h)²
     /// ```
     #[inline(always)]
-    pub(super) fn stretched(&self, deformation: &Matrix2<f64>, h: f64) -> Result<MaterialResponse, InvertedElement> {
+    pub(super) fn at_stretch(&self, deformation: &Matrix2<f64>, h: f64) -> Result<MaterialResponse, InvertedElement> {
         let invariants = Invariants::of(deformation)?;
         let Lame { lambda, shear } = self.lame;
         let (jacobian, j, ln_j) = (invariants.jacobian, invariants.volume_strain, invariants.ln_jacobian() + h.ln());
@@ -67,8 +70,35 @@ impl Material for NeoHookean {
         self.lame.shear
     }
 
+    fn plane_stress(&self) -> Option<Box<dyn Material>> {
+        Some(Box::new(PlaneStress::new(*self)))
+    }
+
+    fn spatial(&self) -> Option<&dyn Spatial> {
+        Some(self)
+    }
+
     #[inline(always)]
     fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
-        self.stretched(deformation, 1.0)
+        self.at_stretch(deformation, 1.0)
+    }
+}
+
+impl Spatial for NeoHookean {
+    /// ```text
+    /// ∂W/∂h = G (h − 1/h) + λ ln(J h)/h
+    /// ```
+    fn stretched(&self, straining: &Straining, _: &mut [f64]) -> Result<Stretched, InvertedElement> {
+        let h = positive_stretch(straining)?;
+        let invariants = Invariants::of(&straining.deformation)?;
+        let Lame { lambda, shear } = self.lame;
+        let (jacobian, ln_j) = (invariants.jacobian, invariants.ln_jacobian() + ln_stretch(h));
+        let across = Across {
+            w_h: (shear * (h - 1.0) * (h + 1.0) + lambda * ln_j) / h,
+            w_mh: 0.0,
+            w_jh: lambda / (jacobian * h),
+            w_hh: (shear * (h * h + 1.0) + lambda * (1.0 - ln_j)) / (h * h),
+        };
+        Ok(invariants.stretched(self.at_stretch(&straining.deformation, h)?, &across))
     }
 }

@@ -1,7 +1,10 @@
 use nalgebra::Matrix2;
 
-use super::isotropic::{Invariants, StrainEnergy};
-use super::{ElasticConstants, InvertedElement, Lame, Material, MaterialResponse};
+use super::isotropic::{Across, Invariants, StrainEnergy};
+use super::spatial::positive_stretch;
+use super::{
+    ElasticConstants, InvertedElement, Lame, Material, MaterialResponse, PlaneStress, Spatial, Straining, Stretched,
+};
 use crate::laws::parameter::InvalidParameter;
 
 /// Saint Venant–Kirchhoff: second Piola–Kirchhoff stress proportional to the Green strain.
@@ -30,6 +33,23 @@ impl SaintVenantKirchhoff {
     pub fn new(constants: &ElasticConstants) -> Result<Self, InvalidParameter> {
         Ok(Self { lame: constants.lame()?, density: constants.density })
     }
+
+    /// W and its derivatives in plane strain, and e.
+    #[inline(always)]
+    fn energy(&self, invariants: &Invariants) -> (StrainEnergy, f64) {
+        let (shear, constrained) = (self.lame.shear, self.p_wave_modulus());
+        let (m, j) = (invariants.distortion, invariants.volume_strain);
+        let trace = 0.5 * m + j;
+        let energy = StrainEnergy {
+            w: 0.5 * (constrained * trace * trace + shear * (m - j * j)),
+            w_m: 0.5 * (constrained * trace + shear),
+            w_j: constrained * trace - shear * j,
+            w_mm: 0.25 * constrained,
+            w_mj: 0.5 * constrained,
+            w_jj: constrained - shear,
+        };
+        (energy, trace)
+    }
 }
 
 impl Material for SaintVenantKirchhoff {
@@ -45,20 +65,42 @@ impl Material for SaintVenantKirchhoff {
         self.lame.shear
     }
 
+    fn plane_stress(&self) -> Option<Box<dyn Material>> {
+        Some(Box::new(PlaneStress::new(*self)))
+    }
+
+    fn spatial(&self) -> Option<&dyn Spatial> {
+        Some(self)
+    }
+
     #[inline(always)]
     fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
         let invariants = Invariants::of(deformation)?;
-        let (lambda, shear, constrained) = (self.lame.lambda, self.lame.shear, self.p_wave_modulus());
-        let (m, j) = (invariants.distortion, invariants.volume_strain);
-        let trace = 0.5 * m + j;
-        let energy = StrainEnergy {
-            w: 0.5 * (constrained * trace * trace + shear * (m - j * j)),
-            w_m: 0.5 * (constrained * trace + shear),
-            w_j: constrained * trace - shear * j,
-            w_mm: 0.25 * constrained,
-            w_mj: 0.5 * constrained,
-            w_jj: constrained - shear,
+        let (energy, trace) = self.energy(&invariants);
+        Ok(invariants.response(&energy, self.lame.lambda * trace / invariants.jacobian))
+    }
+}
+
+impl Spatial for SaintVenantKirchhoff {
+    /// ```text
+    /// W(h) = W(1) + λ e E₃₃ + (λ/2 + G) E₃₃²,   E₃₃ = ½ (h² − 1)
+    /// ```
+    fn stretched(&self, straining: &Straining, _: &mut [f64]) -> Result<Stretched, InvertedElement> {
+        let h = positive_stretch(straining)?;
+        let invariants = Invariants::of(&straining.deformation)?;
+        let Lame { lambda, shear } = self.lame;
+        let (mut energy, trace) = self.energy(&invariants);
+        let strain = 0.5 * (h - 1.0) * (h + 1.0);
+        energy.w += lambda * trace * strain + (0.5 * lambda + shear) * strain * strain;
+        energy.w_m += 0.5 * lambda * strain;
+        energy.w_j += lambda * strain;
+        let stress = lambda * (trace + strain) + 2.0 * shear * strain;
+        let across = Across {
+            w_h: h * stress,
+            w_mh: 0.5 * lambda * h,
+            w_jh: lambda * h,
+            w_hh: stress + h * h * self.lame.constrained_modulus(),
         };
-        Ok(invariants.response(&energy, lambda * trace / invariants.jacobian))
+        Ok(invariants.stretched(invariants.response(&energy, 0.0), &across))
     }
 }

@@ -2,7 +2,10 @@ use nalgebra::{Matrix2, Vector4};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{ElasticConstants, Evolution, InvertedElement, Lame, Material, MaterialResponse, NeoHookean, Straining};
+use super::spatial::{Spatial, Stretched, positive_stretch};
+use super::{
+    ElasticConstants, Evolution, InvertedElement, Lame, Material, MaterialResponse, NeoHookean, PlaneStress, Straining,
+};
 use crate::laws::parameter::{InvalidParameter, require_positive};
 
 /// Constants of [`Viscoelastic`].
@@ -137,6 +140,14 @@ impl Material for Viscoelastic {
         &["arm_xx", "arm_yy", "arm_xy", "arm_zz", "strain_xx", "strain_yy", "strain_xy", "strain_zz"]
     }
 
+    fn plane_stress(&self) -> Option<Box<dyn Material>> {
+        Some(Box::new(PlaneStress::new(*self)))
+    }
+
+    fn spatial(&self) -> Option<&dyn Spatial> {
+        Some(self)
+    }
+
     /// The answer at once, without time to relax, of a body that has not been strained before.
     fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
         let at_once = Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old: &[0.0; 8] };
@@ -145,7 +156,7 @@ impl Material for Viscoelastic {
 
     fn evolve(&self, straining: &Straining, new: &mut [f64]) -> Result<Evolution, InvertedElement> {
         let Straining { deformation: f, stretch, dt, old } = *straining;
-        let mut response = self.behind.stretched(&f, stretch)?;
+        let mut response = self.behind.at_stretch(&f, stretch)?;
         let (arm, before) = (Tensor::from(&old[..4]), Tensor::from(&old[4..]));
         // E by the displacement gradient D, which loses no digits when it is small: sym(D) + ½ DᵀD
         let d = f - Matrix2::identity();
@@ -174,5 +185,23 @@ impl Material for Viscoelastic {
             response.tangent.set_column(column, &total);
         }
         Ok(Evolution { response, dissipation })
+    }
+}
+
+impl Spatial for Viscoelastic {
+    /// ```text
+    /// P₃₃ = P_∞,₃₃ + h H₃₃,   ∂P/∂h = ∂P_∞/∂h + φ λ₁ h F,   ∂P₃₃/∂h = ∂P_∞,₃₃/∂h + H₃₃ + φ (λ₁ + 2G₁) h²
+    /// ```
+    fn stretched(&self, straining: &Straining, new: &mut [f64]) -> Result<Stretched, InvertedElement> {
+        let h = positive_stretch(straining)?;
+        let Evolution { response, dissipation } = self.evolve(straining, new)?;
+        let behind = Spatial::stretched(&self.behind, straining, &mut [])?;
+        let [_, phi, _] = relaxation(straining.dt / self.tau);
+        let held = self.arm.stress(&Tensor::from(&new[..4])).zz;
+        let f = Vector4::from_column_slice(straining.deformation.as_slice());
+        let coupling = behind.tangent.fixed_view::<4, 1>(0, 4) + f * (phi * self.arm.lambda * h);
+        let stiffness = behind.tangent[(4, 4)] + held + phi * self.arm.constrained_modulus() * h * h;
+        let across = (behind.stress[4] + h * held, coupling, stiffness);
+        Ok(Stretched { dissipation, ..Stretched::new((response.stress, response.tangent), across, response.energy) })
     }
 }

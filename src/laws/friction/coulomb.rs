@@ -1,8 +1,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::sensitivity::{Direction, SensitiveLaw, Variation};
 use super::yielding::traction_at_yield;
-use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, Sliding};
+use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Sliding};
 use crate::laws::parameter::{InvalidParameter, require_positive};
 
 /// Parameters of [`Coulomb`] as the case file writes them.
@@ -93,5 +94,39 @@ impl FrictionLaw for Coulomb {
 
     fn starting_limit(&self, pressure: f64) -> f64 {
         self.mu * pressure
+    }
+
+    fn sensitivities(&self) -> Option<&dyn SensitiveLaw> {
+        Some(self)
+    }
+}
+
+impl SensitiveLaw for Coulomb {
+    fn parameters(&self) -> &'static [&'static str] {
+        &["mu", "alpha_t"]
+    }
+
+    fn start(&self, _: usize) -> Variation {
+        Variation::default()
+    }
+
+    fn vary(
+        &self,
+        old: &FrictionState,
+        sliding: Sliding,
+        directions: [Direction; 2],
+    ) -> Result<[Variation; 2], LawFailure> {
+        let Sliding { slip, pressure, .. } = sliding.checked()?;
+        let trial = old.traction + self.alpha_t * slip;
+        Ok(directions.map(|by| {
+            let traction = if pressure <= 0.0 {
+                0.0
+            } else if trial.abs() <= self.mu * pressure {
+                by.state.traction + self.alpha_t * by.slip + by.of(1) * slip
+            } else {
+                trial.signum() * pressure * by.of(0)
+            };
+            Variation { traction, ..Variation::default() }
+        }))
     }
 }

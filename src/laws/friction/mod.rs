@@ -5,20 +5,34 @@
 //!
 //! Signs: `q` resists positive slip of the slave along +s; pressure is positive in compression.
 //!
-//! Laws: [`SuperSubloading`], [`SlipWeakening`], [`RateAndState`], [`Coulomb`], [`Frictionless`]; [`FrictionParameters`]
-//! reads any of them from a case.
+//! Laws: [`SuperSubloading`], [`SlipWeakening`], [`RateAndState`], [`Coulomb`], [`Frictionless`], [`PrescribedSlip`]; [`Offset`]
+//! adds dilatancy and wear to any of them; [`FrictionParameters`]
+//! reads any of them from a case, and laws from elsewhere that are [registered](register).
 
 mod approach;
 mod coulomb;
 mod exponential_integral;
+mod failure;
 mod frictionless;
 pub mod observables;
+mod offset;
+mod onset;
 mod parameters;
 mod path;
 mod peak;
+mod peak_sensitivity;
+mod prescribed;
 mod rate_and_state;
+mod rate_and_state_law;
+mod rate_and_state_path;
+mod rate_and_state_sensitivity;
+pub mod rate_law;
+mod registered;
 mod relaxation;
 mod root;
+pub mod sensitivity;
+mod short_step;
+mod sliding;
 mod sliding_curve;
 mod slip_equation;
 mod slip_weakening;
@@ -26,51 +40,31 @@ pub mod state;
 mod sub_step;
 mod super_subloading;
 mod super_subloading_parameters;
+mod super_subloading_path;
+mod super_subloading_sensitivity;
 mod yielding;
 
 use std::fmt::Debug;
 
-use thiserror::Error;
-
 pub use approach::Approach;
 pub use coulomb::{Coulomb, CoulombParameters};
+pub use failure::LawFailure;
 pub use frictionless::Frictionless;
+pub use offset::{Dilatancy, Offset};
+pub use onset::{Onset, Rise};
 pub use parameters::FrictionParameters;
 pub use peak::Integration;
+pub use prescribed::{PrescribedSlip, PrescribedSlipParameters};
 pub use rate_and_state::{RateAndState, RateAndStateParameters};
+pub use rate_law::RateLaw;
+pub use registered::{RegisteredParameters, register};
 pub use relaxation::StateEvolution;
+pub use sensitivity::SensitiveLaw;
+pub use sliding::Sliding;
 pub use slip_weakening::{SlipWeakening, SlipWeakeningParameters};
 pub use state::{FrictionState, Regime};
 pub use super_subloading::SuperSubloading;
 pub use super_subloading_parameters::SuperSubloadingParameters;
-
-/// Relative motion of the two surfaces during one increment.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sliding {
-    /// Δu_t: slip increment of the slave relative to the master along +s [L]
-    pub slip: f64,
-    /// p: effective pressure at the end of the increment, ≤ 0 where the point is open [F/L²]
-    pub pressure: f64,
-    /// Δt: length of the increment [T]
-    pub dt: f64,
-}
-
-impl Sliding {
-    /// Refuses what no law can answer.
-    ///
-    /// # Errors
-    /// [`LawFailure`] when a number is not finite, or time goes backwards.
-    pub fn checked(self) -> Result<Self, LawFailure> {
-        let Self { slip, pressure, dt } = self;
-        if !(slip.is_finite() && pressure.is_finite() && dt.is_finite()) {
-            return Err(LawFailure::NotFinite { slip, pressure, dt });
-        }
-        if dt < 0.0 {
-            return Err(LawFailure::NegativeTime { dt });
-        }
-        Ok(self)
-    }
-}
 
 /// No law answers a tangent |∂q/∂Δu_t| above this many times α_t, or |∂q/∂p| above it. Where two roots of a law's equation
 /// of plastic slip merge the traction snaps, and just before it the derivative grows without bound, like the inverse of the
@@ -122,53 +116,6 @@ impl FrictionResponse {
             Err(LawFailure::Overflow { traction: self.state.traction })
         }
     }
-}
-
-/// Why a law could not answer; the increment is tried again with a smaller step.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum LawFailure {
-    /// The increment itself is not a finite number.
-    #[error("friction was asked for a slip {slip}, pressure {pressure} and time {dt} that are not all finite")]
-    NotFinite {
-        /// slip increment [L]
-        slip: f64,
-        /// pressure [F/L²]
-        pressure: f64,
-        /// increment length [T]
-        dt: f64,
-    },
-    /// The increment goes back in time.
-    #[error("friction was asked for an increment of negative time {dt}")]
-    NegativeTime {
-        /// increment length [T]
-        dt: f64,
-    },
-    /// The equation of plastic slip was not solved, or the sub-steps of the increment did not come to agree.
-    #[error(
-        "friction did not converge within {evaluations} evaluations: {rest:.3e} of the trial traction {trial:.3e} is left"
-    )]
-    NotConverged {
-        /// evaluations of the equation of plastic slip
-        evaluations: usize,
-        /// what is left out of balance, or the difference between sub-steps [F/L²]
-        rest: f64,
-        /// |q_tr|: traction without plastic slip [F/L²]
-        trial: f64,
-    },
-    /// The opening of a law that dilates grows faster with the pressure than the contact gives way.
-    #[error("the opening {opening:.6e} of the friction law and the pressure {pressure:.6e} did not come to agree")]
-    Opening {
-        /// d [L]
-        opening: f64,
-        /// p [F/L²]
-        pressure: f64,
-    },
-    /// The state was not finite, or the increment is so large that it no longer is.
-    #[error("the friction state is not finite: the traction is {traction}")]
-    Overflow {
-        /// q: traction [F/L²]
-        traction: f64,
-    },
 }
 
 /// What a law says of one point.
@@ -248,6 +195,36 @@ pub trait FrictionLaw: Debug + Send + Sync {
     /// solved to their tolerance.
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer;
 
+    /// The law as it holds in an increment from one time to another, if its parameters vary in time.
+    ///
+    /// # Errors
+    /// [`LawFailure::Undefined`] where they have no good values then.
+    fn during(&self, _: [f64; 2]) -> Result<Option<Box<dyn FrictionLaw>>, LawFailure> {
+        Ok(None)
+    }
+
+    /// Whether parameters that vary in time enter by their mean over an increment, as rates do, and not by their value at its
+    /// end, as strengths do.
+    fn takes_means(&self) -> bool {
+        false
+    }
+
+    /// The law as it answers along a path that is given, such as a record of a test: with sub-steps where the error of an
+    /// increment asks for them. None of a law whose increments are right whatever their length, or as they are.
+    fn controlled(&self) -> Option<Box<dyn FrictionLaw>> {
+        None
+    }
+
+    /// How fast a point slips under a traction, if the law says so.
+    fn rates(&self) -> Option<&dyn RateLaw> {
+        None
+    }
+
+    /// How its answers vary with its parameters, if the law says so.
+    fn sensitivities(&self) -> Option<&dyn SensitiveLaw> {
+        None
+    }
+
     /// The answers of many points, each the same as alone. A law that has a quicker way than one after the other takes it
     /// here.
     fn respond_many(&self, old: &[FrictionState], sliding: &[Sliding], answers: &mut [Answer]) {
@@ -271,6 +248,12 @@ pub trait FrictionLaw: Debug + Send + Sync {
         self.variables().iter().zip(state.variables).find_map(|(own, value)| (*own == name).then_some(value))
     }
 
+    /// Names of the parts of the opening that outputs show: `dilation`, `wear`, as far as the law has them. A law whose opening
+    /// changes names one: then a point is closed by what slip makes of its opening, not by that of the old state.
+    fn offsets(&self) -> &'static [&'static str] {
+        &[]
+    }
+
     /// α_t: tangential contact stiffness; the contact stores q²/(2 α_t). 0 where it stores nothing [F/L³]
     fn stiffness(&self) -> f64;
 
@@ -285,8 +268,19 @@ pub trait FrictionLaw: Debug + Send + Sync {
         f64::INFINITY
     }
 
-    /// Pressure from which the rate problem may have several answers, if there is one [F/L²]
-    fn uniqueness_limit(&self) -> Option<f64> {
+    /// −d(q/p)/dδ at its largest: how much friction fast slip takes over its way δ, 0 where it takes none [1/L]
+    fn weakening(&self) -> f64 {
+        0.0
+    }
+
+    /// What its parameters mean for the peak of friction, its fall and its healing, if the law says so.
+    fn onset(&self) -> Option<Onset> {
         None
+    }
+
+    /// Pressure from which the rate problem may have several answers, α_t over [`FrictionLaw::weakening`], if there is one [F/L²]
+    fn uniqueness_limit(&self) -> Option<f64> {
+        let pressure = self.stiffness() / self.weakening();
+        pressure.is_finite().then_some(pressure)
     }
 }

@@ -9,7 +9,7 @@ pub const ALWAYS: [(&str, f64); 3] = [("R", 0.0), ("mu", 0.0), ("structure", 1.0
 /// Names of the further observables of some laws, each once, in order of appearance.
 pub fn further<'a>(laws: impl IntoIterator<Item = &'a dyn FrictionLaw>) -> Vec<&'static str> {
     let mut names = Vec::new();
-    for name in laws.into_iter().flat_map(FrictionLaw::observables) {
+    for name in laws.into_iter().flat_map(|law| law.observables().iter().chain(law.offsets())) {
         if ALWAYS.iter().all(|(always, _)| always != name) && !names.contains(name) {
             names.push(*name);
         }

@@ -4,13 +4,14 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Coulomb, CoulombParameters, FrictionLaw, Frictionless, RateAndState, RateAndStateParameters, SlipWeakening,
-    SlipWeakeningParameters, SuperSubloading, SuperSubloadingParameters,
+    Coulomb, CoulombParameters, FrictionLaw, Frictionless, PrescribedSlip, PrescribedSlipParameters, RateAndState,
+    RateAndStateParameters, RegisteredParameters, SlipWeakening, SlipWeakeningParameters, SuperSubloading,
+    SuperSubloadingParameters,
 };
 use crate::laws::parameter::InvalidParameter;
 
 /// A friction law and its parameters.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "law", rename_all = "snake_case", deny_unknown_fields)]
 pub enum FrictionParameters {
     /// No friction
@@ -24,6 +25,10 @@ pub enum FrictionParameters {
     SlipWeakening(SlipWeakeningParameters),
     /// Regularized rate-and-state friction: depends on the slip rate and on a state that ages or slips
     RateAndState(RateAndStateParameters),
+    /// Slip at a given rate, whatever traction that takes
+    Prescribed(PrescribedSlipParameters),
+    /// A law that the program has not itself: one that calls the library has registered it, such as a law written in Python
+    Registered(RegisteredParameters),
 }
 
 impl FrictionParameters {
@@ -38,7 +43,17 @@ impl FrictionParameters {
             Self::SuperSubloading(parameters) => Box::new(SuperSubloading::new(parameters, default_alpha_t)?),
             Self::SlipWeakening(parameters) => Box::new(SlipWeakening::new(parameters, default_alpha_t)?),
             Self::RateAndState(parameters) => Box::new(RateAndState::new(parameters, default_alpha_t)?),
+            Self::Prescribed(parameters) => Box::new(PrescribedSlip::new(parameters, default_alpha_t)?),
+            Self::Registered(parameters) => parameters.build(default_alpha_t)?,
         })
+    }
+
+    /// What is wrong where it is a law that nobody has registered.
+    pub fn unknown(&self) -> Option<String> {
+        match self {
+            Self::Registered(parameters) => parameters.unknown(),
+            _ => None,
+        }
     }
 
     /// Whether the law has a structure that may be given for the start.
@@ -52,7 +67,11 @@ impl FrictionParameters {
             Self::Coulomb(law) => vec![("μ", law.mu)],
             Self::SuperSubloading(law) => vec![("μ_s", law.mu_s), ("μ_k", law.mu_k)],
             Self::SlipWeakening(law) if law.cohesion == 0.0 => vec![("μ_s", law.mu_s), ("μ_d", law.mu_d)],
-            Self::Frictionless {} | Self::SlipWeakening(_) | Self::RateAndState(_) => Vec::new(),
+            Self::Frictionless {}
+            | Self::SlipWeakening(_)
+            | Self::RateAndState(_)
+            | Self::Prescribed(_)
+            | Self::Registered(_) => Vec::new(),
         }
     }
 }
@@ -78,5 +97,11 @@ impl From<SlipWeakeningParameters> for FrictionParameters {
 impl From<RateAndStateParameters> for FrictionParameters {
     fn from(parameters: RateAndStateParameters) -> Self {
         Self::RateAndState(parameters)
+    }
+}
+
+impl From<PrescribedSlipParameters> for FrictionParameters {
+    fn from(parameters: PrescribedSlipParameters) -> Self {
+        Self::Prescribed(parameters)
     }
 }

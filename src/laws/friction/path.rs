@@ -39,12 +39,15 @@ impl Halves<'_> {
 }
 
 impl LoadPath<'_> {
-    /// The end of the path.
+    /// The end of the path: one step where that is right by itself.
     ///
     /// # Errors
     /// [`LawFailure::NotConverged`] when sub-steps do not come to agree.
     pub(super) fn end(&mut self, start: &Station) -> Result<Station, LawFailure> {
         let end = self.advance(start, 1.0)?;
+        if self.is_right_alone(start, &end) {
+            return Ok(end);
+        }
         self.refine(start, end, [0.0; 3], MAX_HALVINGS)
     }
 
@@ -134,7 +137,9 @@ impl LoadPath<'_> {
         let pressure = self.pressure(fine.x);
         let (mut mu, mut dmu) = (beyond(fine.mu, coarse.mu), beyond_each(fine.dmu, coarse.dmu));
         if mu != self.evolution.clamp(mu) {
-            (mu, dmu) = (self.evolution.clamp(mu), [0.0; 2]);
+            dmu = [0, 1]
+                .map(|i| self.parameters.map_or(0.0, |shifts| self.evolution.clamped_by(mu, 0.0, &shifts[i].peak)));
+            mu = self.evolution.clamp(mu);
         }
         let mut traction = beyond(fine.traction, coarse.traction).max(0.0);
         let mut dtraction = beyond_each(fine.dtraction, coarse.dtraction);

@@ -25,13 +25,13 @@ pub enum Integration {
 pub(super) struct PeakEvolution {
     pub(super) mu_s: f64,
     pub(super) mu_k: f64,
-    kappa: f64,
-    xi: f64,
-    m: f64,
-    n: f64,
+    pub(super) kappa: f64,
+    pub(super) xi: f64,
+    pub(super) m: f64,
+    pub(super) n: f64,
     /// 1/μ_s and 1/μ_k: divisions are what an evaluation would spend most of its time on.
-    per_mu_s: f64,
-    per_mu_k: f64,
+    pub(super) per_mu_s: f64,
+    pub(super) per_mu_k: f64,
     integration: Integration,
 }
 
@@ -94,6 +94,12 @@ impl PeakEvolution {
         self.xi * self.gain(mu).0
     }
 
+    /// a b (μ_s − μ_k), where a = κ Δλ/μ_k and b = ξ Δt/μ_s: how much it matters for m = n = 1 whether μ weakens first or
+    /// recovers first.
+    pub(super) fn commutator(&self, slip: f64, dt: f64) -> f64 {
+        self.sharpness() * slip * self.xi * dt * self.per_mu_s * (self.mu_s - self.mu_k)
+    }
+
     /// μ after plastic slip `slip` and time `dt` from `old`, by one step of the integration.
     #[inline(always)]
     pub(super) fn after(&self, old: f64, slip: f64, dt: f64) -> Peak {
@@ -126,7 +132,7 @@ impl PeakEvolution {
     /// μ = μ₀ − κ Δλ (μ/μ_k − 1)^m + ξ Δt (1 − μ/μ_s)^n
     /// ```
     #[inline(always)]
-    fn backward_euler(&self, old: f64, slip: f64, dt: f64) -> Peak {
+    pub(super) fn backward_euler(&self, old: f64, slip: f64, dt: f64) -> Peak {
         let (weakening, recovery) = (self.kappa * slip, self.xi * dt);
         if self.is_linear() {
             let share = 1.0 / (1.0 + weakening * self.per_mu_k + recovery * self.per_mu_s);
@@ -221,13 +227,13 @@ impl PeakEvolution {
 }
 
 /// What is left of a deviation after Z relaxation times.
-struct Decay {
+pub(super) struct Decay {
     /// e^(−Z)
     left: f64,
     /// φ = (1 − e^(−Z))/Z
-    mean: f64,
+    pub mean: f64,
     /// dφ/dZ
-    slope: f64,
+    pub slope: f64,
     /// d²φ/dZ²
     curvature: f64,
 }
@@ -235,7 +241,7 @@ struct Decay {
 /// e^(−Z) and φ(Z) for Z ≥ 0. The round-off of φ and its derivatives is of the order ε/Z, ε/Z², ε/Z³, and harmless as
 /// they are used times Z, Z and Z².
 #[inline]
-fn decay(z: f64) -> Decay {
+pub(super) fn decay(z: f64) -> Decay {
     if z < 1e-3 {
         let mean = 1.0 - z * (0.5 - z * (1.0 / 6.0 - z / 24.0));
         let slope = -0.5 + z * (1.0 / 3.0 - z / 8.0);
@@ -249,7 +255,7 @@ fn decay(z: f64) -> Decay {
 
 /// x^k and its derivative, which is infinite at x = 0 for k < 1.
 #[inline]
-fn power(x: f64, k: f64) -> (f64, f64) {
+pub(super) fn power(x: f64, k: f64) -> (f64, f64) {
     if k == 1.0 {
         (x, 1.0)
     } else if x > 0.0 {
@@ -261,6 +267,6 @@ fn power(x: f64, k: f64) -> (f64, f64) {
 }
 
 /// A slope times a factor; a term without a factor counts for nothing even where its slope is infinite.
-fn scaled(slope: f64, factor: f64) -> f64 {
+pub(super) fn scaled(slope: f64, factor: f64) -> f64 {
     if factor == 0.0 { 0.0 } else { slope * factor }
 }

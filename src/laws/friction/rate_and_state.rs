@@ -1,9 +1,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::relaxation::{Coefficients, Relaxation, StateEvolution, arsinh_of_exp};
+use super::rate_law::{Loading, RateLaw};
+use super::relaxation::{Coefficients, Relaxation, Relaxed, StateEvolution, arsinh_of_exp};
 use super::yielding::traction_at_yield;
-use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, Regime, Sliding};
+use super::{FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Regime, Sliding};
 use crate::laws::parameter::{InvalidParameter, require_not_negative, require_positive};
 
 /// Parameters of [`RateAndState`] as the case file writes them.
@@ -54,7 +55,9 @@ pub struct RateAndStateParameters {
 /// ```
 /// and Δλ is the *smallest* root of G(Δλ) = |q_tr| − α_t Δλ − |q|(Δλ) with |q| from (2) at the end of the increment. G is
 /// positive at Δλ = 0 and negative at |q_tr|/α_t. Where α_t exceeds the weakening by slip, G falls throughout; else bounds
-/// of its slope single out the first root. The method is of first order in Δt.
+/// of its slope single out the first root. The method is of first order in Δt. Along paths that are
+/// [given](FrictionLaw::controlled) sub-steps of an increment, even in slip and pressure, are extrapolated from such answers
+/// and halved until their error is below 1e-6 f₀ p in q, and 1e-6 f₀ in (a + b) ln θ.
 ///
 /// The work dissipated is ∫ |q| dλ = ½ (q_y + |q|) Δλ with slip at the rate V once the traction, elastic until then, has
 /// met at q_y what (2) asks for V; that goes evenly from its value at the start to |q|.
@@ -66,8 +69,12 @@ pub struct RateAndStateParameters {
 /// PNAS 93, 3811 (the regularized form).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RateAndState {
-    coefficients: Coefficients,
-    initial_theta: f64,
+    pub(super) coefficients: Coefficients,
+    pub(super) initial_theta: f64,
+    /// Whether θ at the start is given, and not D_c/V₀.
+    pub(super) has_theta: bool,
+    /// Whether the error of an increment is controlled.
+    pub(super) is_controlled: bool,
 }
 
 impl RateAndState {
@@ -87,28 +94,27 @@ impl RateAndState {
         let theta = parameters.theta.unwrap_or(critical_slip / reference_rate);
         require_positive("theta", theta)?;
         let coefficients = Coefficients { f_0, reference_rate, a, b, critical_slip, evolution, alpha_t };
-        Ok(Self { coefficients, initial_theta: theta })
+        Ok(Self { coefficients, initial_theta: theta, has_theta: parameters.theta.is_some(), is_controlled: false })
     }
 
     /// Whether slip at the end of an increment outweighs ageing, V θ/D_c ≥ ½.
     fn slips(&self, slip: f64, theta: f64, dt: f64) -> bool {
         slip * theta >= OUTWEIGHS * self.coefficients.critical_slip * dt
     }
-}
 
-/// V θ/D_c from which a point slips.
-const OUTWEIGHS: f64 = 0.5;
-
-impl FrictionLaw for RateAndState {
-    fn initial_state(&self) -> FrictionState {
-        FrictionState::default().with_variables([self.initial_theta])
-    }
-
-    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
+    /// One increment of first order, and where its equation is solved if it has one.
+    pub(super) fn relax(
+        &self,
+        old: &FrictionState,
+        sliding: Sliding,
+    ) -> Result<(FrictionResponse, Option<Relaxed>), LawFailure> {
         let law = &self.coefficients;
         let alpha_t = law.alpha_t;
         let Sliding { slip, pressure, dt } = sliding.checked()?;
         let trial = old.traction + alpha_t * slip;
+        if !trial.is_finite() {
+            return Err(LawFailure::Overflow { traction: trial });
+        }
         let log_state = law.log_state(old.variables[0]);
         let relaxation = Relaxation { law, trial: trial.abs(), pressure, dt, log_state };
         if dt == 0.0 || pressure <= 0.0 || trial == 0.0 {
@@ -116,11 +122,12 @@ impl FrictionLaw for RateAndState {
             let aged = |theta| if dt == 0.0 { theta } else { law.theta(relaxation.log_state_after(0.0).0) };
             let old = old.with_variables([aged(old.variables[0])]);
             if pressure <= 0.0 {
-                return FrictionResponse::elastic(old.parted(alpha_t), 0.0).checked(alpha_t);
+                return Ok((FrictionResponse::elastic(old.parted(alpha_t), 0.0).checked(alpha_t)?, None));
             }
             let softness =
                 if dt == 0.0 { 0.0 } else { alpha_t / relaxation.outcome(0.0).slope.max(LEAST_SLOPE * alpha_t) };
-            return FrictionResponse::elastic(old.stuck(trial, pressure), alpha_t * (1.0 - softness)).checked(alpha_t);
+            let stuck = FrictionResponse::elastic(old.stuck(trial, pressure), alpha_t * (1.0 - softness));
+            return Ok((stuck.checked(alpha_t)?, None));
         }
         let (found, evaluations) = relaxation.solve()?;
         let traction = trial.signum() * found.traction.min(trial.abs());
@@ -133,35 +140,90 @@ impl FrictionLaw for RateAndState {
         let theta = law.theta(found.log_state);
         let state = old.slid(trial, traction, mean, pressure, alpha_t).with_variables([theta]);
         let slips = self.slips(state.plastic_increment.abs(), theta, dt);
-        FrictionResponse {
+        let response = FrictionResponse {
             state: FrictionState { regime: if slips { Regime::Slip } else { Regime::Stick }, ..state },
             dtraction_dslip: alpha_t * (1.0 - softness),
             dtraction_dpressure: traction / pressure * softness,
             evaluations,
             ..Default::default()
-        }
-        .checked(alpha_t)
-    }
-
-    fn stiffness(&self) -> f64 {
-        self.coefficients.alpha_t
-    }
-
-    fn variables(&self) -> &'static [&'static str] {
-        &["theta"]
-    }
-
-    fn observables(&self) -> &'static [&'static str] {
-        &["R", "mu", "theta"]
-    }
-
-    fn observe(&self, name: &str, state: &FrictionState) -> Option<f64> {
-        let psi = || self.coefficients.psi(self.coefficients.log_state(state.variables[0]));
-        match name {
-            "R" => Some(state.ratio(psi())),
-            "mu" => Some(psi()),
-            "theta" => Some(state.variables[0]),
-            _ => None,
-        }
+        };
+        Ok((response.checked(alpha_t)?, Some(found)))
     }
 }
+
+/// V θ/D_c from which a point slips.
+const OUTWEIGHS: f64 = 0.5;
+
+/// x = ln(V₀ θ/D_c), ψ = f₀ + b x.
+///
+/// ```text
+/// a p z + 2 V₀ η e^(−ψ/a) sinh z = |τ|,   V = 2 V₀ e^(−ψ/a) sinh z          rising and convex in z = |q|/(a p)
+/// ẋ = (V₀ e⁻ˣ − V)/D_c   or   ẋ = −V/D_c (x + ln(V/V₀))
+/// ```
+impl RateLaw for RateAndState {
+    fn slip_rate(&self, x: f64, Loading { traction, pressure, damping }: Loading) -> f64 {
+        let Coefficients { a, reference_rate, .. } = self.coefficients;
+        if traction == 0.0 {
+            return 0.0;
+        }
+        let exponent = self.coefficients.psi(x) / a;
+        // V over its scale |τ|/η, as a function of z, and the share of the traction that friction takes
+        let log_share = (2.0 * reference_rate * damping / traction.abs()).ln() - exponent;
+        let friction = a * pressure / traction.abs();
+        let sinh = |z: f64| {
+            if z > LARGE { 0.5 * (z + log_share).exp() } else { z.sinh() * log_share.exp() }
+        };
+        let cosh = |z: f64| {
+            if z > LARGE { 0.5 * (z + log_share).exp() } else { z.cosh() * log_share.exp() }
+        };
+        // Both terms alone bound z from above, and from above Newton's method descends to the root.
+        let mut z = arsinh_of_exp(-log_share).0.min(1.0 / friction);
+        for _ in 0..MOST_STEPS {
+            let step = (friction * z + sinh(z) - 1.0) / (friction + cosh(z));
+            z -= step;
+            if step.abs() <= f64::EPSILON * z {
+                break;
+            }
+        }
+        let rate = if z > LARGE {
+            reference_rate * (z - exponent).exp()
+        } else {
+            2.0 * reference_rate * z.sinh() * (-exponent).exp()
+        };
+        traction.signum() * rate
+    }
+
+    fn evolution(&self, x: f64, slip_rate: f64) -> f64 {
+        let Coefficients { reference_rate, critical_slip, evolution, .. } = self.coefficients;
+        let rate = slip_rate.abs();
+        match evolution {
+            StateEvolution::Ageing => (reference_rate * (-x).exp() - rate) / critical_slip,
+            StateEvolution::Slip if rate == 0.0 => 0.0,
+            StateEvolution::Slip => -rate / critical_slip * (x + (rate / reference_rate).ln()),
+        }
+    }
+
+    fn evolving(&self, state: &FrictionState) -> f64 {
+        self.coefficients.log_state(state.variables[0])
+    }
+
+    fn remember(&self, x: f64, state: FrictionState) -> FrictionState {
+        state.with_variables([self.coefficients.theta(x)])
+    }
+
+    fn weight(&self) -> f64 {
+        self.coefficients.b
+    }
+
+    fn regime(&self, x: f64, slip_rate: f64) -> Regime {
+        let theta = self.coefficients.theta(x);
+        let slips = slip_rate.abs() * theta >= OUTWEIGHS * self.coefficients.critical_slip;
+        if slips { Regime::Slip } else { Regime::Stick }
+    }
+}
+
+/// z from which sinh z is ½ eᶻ.
+const LARGE: f64 = 20.0;
+
+/// Newton's method gains digits by the square; this many steps are never taken.
+const MOST_STEPS: usize = 60;

@@ -74,11 +74,11 @@ pub(super) struct Relaxation<'a> {
 #[derive(Clone, Copy)]
 pub(super) struct Relaxed {
     /// Δλ [L]
-    slip: f64,
+    pub slip: f64,
     /// ln Δλ, from that of the largest slip down
     log: f64,
     /// w: |q| = a p arsinh(eʷ)
-    log_sinh: f64,
+    pub log_sinh: f64,
     /// G [F/L²]
     excess: f64,
     /// −∂G/∂Δλ [F/L³]

@@ -38,7 +38,8 @@ pub(super) fn bracketed_root((mut low, mut high): (f64, f64), guess: f64, mut f:
             evaluation < MOST_PROPOSALS && low < proposed && proposed < high && trial.step.abs() <= 0.5 * step.abs();
         let next = if safe { proposed } else { low + 0.5 * (high - low) };
         step = next - x;
-        if step.abs() <= resolution {
+        // A bracket that is no interval of numbers resolves nothing either.
+        if step.is_nan() || step.abs() <= resolution || high - low == f64::INFINITY {
             return;
         }
         x = next;

@@ -2,6 +2,7 @@
 
 use super::Approach;
 use super::approach::Progress;
+use super::peak_sensitivity::Shift;
 
 /// How R follows from plastic slip.
 ///
@@ -84,6 +85,18 @@ impl SlidingCurve {
             rate: self.r * here.rate,
             full: false,
         }
+    }
+
+    /// How R varies with r and R_e after a given plastic slip, R at the start being given.
+    pub(super) fn shifted(&self, start: &Reach, here: &Reach, by: &Shift) -> f64 {
+        if start.full {
+            return 0.0;
+        }
+        let slip = here.slip - start.slip;
+        let passed =
+            if self.begins_at(start) { 0.0 } else { (1.0 - self.progress(start.ratio)) * here.rate / start.rate };
+        let by_core = 1.0 - self.progress(here.ratio) - passed + here.rate * slip * self.per_range;
+        here.rate / self.r * slip * by.r + by_core * by.elastic_core
     }
 
     /// Mean of R over the plastic slip between two points.

@@ -126,6 +126,12 @@ impl SlipEquation<'_> {
         self.alpha_t + self.pressure * (rate * peak.mu + ratio * peak.slope)
     }
 
+    /// The point with μ and D as they are there, and not as they were before the last step.
+    pub(super) fn settled(&self, point: Point) -> Point {
+        let peak = self.evolution.after(self.old_mu, point.slip, self.dt);
+        Point { peak, slope: self.slope(point.reach.ratio, point.reach.rate, &peak), ..point }
+    }
+
     /// Whether terms of third order of the step are round-off; the fold where D = 0 magnifies them.
     #[inline(always)]
     fn is_close(&self, reach: &Reach, slope: f64, step: f64) -> bool {

@@ -1,8 +1,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::sensitivity::{Direction, SensitiveLaw, Variation};
 use super::yielding::traction_at_yield;
-use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, Sliding};
+use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Sliding};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 
 /// Parameters of [`SlipWeakening`] as the case file writes them.
@@ -57,6 +58,8 @@ impl SlipWeakeningParameters {
 pub struct SlipWeakening {
     mu_s: f64,
     mu_d: f64,
+    /// D_c [L]
+    critical_slip: f64,
     /// W [1/L]
     weakening: f64,
     cohesion: f64,
@@ -76,7 +79,7 @@ impl SlipWeakening {
         require_positive("D_c", critical_slip)?;
         require_not_negative("cohesion", cohesion)?;
         require_positive("alpha_t", alpha_t)?;
-        Ok(Self { mu_s, mu_d, weakening: (mu_s - mu_d) / critical_slip, cohesion, alpha_t })
+        Ok(Self { mu_s, mu_d, critical_slip, weakening: (mu_s - mu_d) / critical_slip, cohesion, alpha_t })
     }
 }
 
@@ -197,8 +200,58 @@ impl FrictionLaw for SlipWeakening {
         }
     }
 
-    fn uniqueness_limit(&self) -> Option<f64> {
-        let pressure = self.alpha_t / self.weakening;
-        pressure.is_finite().then_some(pressure)
+    fn weakening(&self) -> f64 {
+        self.weakening
+    }
+
+    fn sensitivities(&self) -> Option<&dyn SensitiveLaw> {
+        Some(self)
+    }
+}
+
+impl SensitiveLaw for SlipWeakening {
+    fn parameters(&self) -> &'static [&'static str] {
+        &["mu_s", "mu_d", "D_c", "cohesion", "alpha_t"]
+    }
+
+    fn start(&self, parameter: usize) -> Variation {
+        Variation::new(0.0, if parameter == 0 { 1.0 } else { 0.0 })
+    }
+
+    fn vary(
+        &self,
+        old: &FrictionState,
+        sliding: Sliding,
+        directions: [Direction; 2],
+    ) -> Result<[Variation; 2], LawFailure> {
+        let Self { mu_d, critical_slip, weakening, cohesion, alpha_t, .. } = *self;
+        let Sliding { slip, pressure, .. } = sliding.checked()?;
+        let old_mu = mu_of(old);
+        let trial = old.traction + alpha_t * slip;
+        let (sign, excess) = (trial.signum(), trial.abs() - cohesion - old_mu * pressure);
+        let net = alpha_t - weakening * pressure;
+        let slid = excess / net;
+        let weakens = net > 0.0 && old_mu - weakening * slid > mu_d;
+        Ok(directions.map(|by| {
+            let dtrial = by.state.traction + alpha_t * by.slip + by.of(4) * slip;
+            let dold = by.variable();
+            if pressure <= 0.0 {
+                return Variation::new(0.0, dold);
+            } else if excess <= 0.0 {
+                return Variation::new(dtrial, dold);
+            }
+            let dmu = if weakens {
+                let dweakening = (by.of(0) - by.of(1) - weakening * by.of(2)) / critical_slip;
+                let dexcess = sign * dtrial - by.of(3) - pressure * dold;
+                let dslid = (dexcess - slid * (by.of(4) - pressure * dweakening)) / net.max(LEAST_SLOPE * alpha_t);
+                dold - dweakening * slid - weakening * dslid
+            } else if old_mu > mu_d {
+                by.of(1)
+            } else {
+                dold
+            };
+            let dtraction = sign * (by.of(3) + pressure * dmu);
+            Variation::new(dtraction, dmu)
+        }))
     }
 }

@@ -18,8 +18,10 @@ pub struct FrictionState {
     pub plastic_increment: f64,
     /// Work dissipated by friction so far per contact area [F/L]
     pub dissipation: f64,
-    /// d: how far the law holds the surfaces apart; 0 for laws that do not dilate [L]
+    /// d: how far the law holds the surfaces apart, negative where they have worn; 0 for laws without dilatancy and wear [L]
     pub opening: f64,
+    /// w: what of the surfaces has worn away, which `opening` counts [L]
+    pub wear: f64,
     /// Open, stick or slip, as the law sees its last increment
     pub regime: Regime,
     /// What else the law remembers, by the names of its [`variables`](super::FrictionLaw::variables); the rest is 0
@@ -93,8 +95,9 @@ impl FrictionState {
 
     /// Whether all of it are numbers.
     pub(super) fn is_finite(&self) -> bool {
-        let Self { traction, pressure, plastic_slip, plastic_increment, dissipation, opening, variables, .. } = self;
-        let common = traction + pressure + plastic_slip + plastic_increment + dissipation + opening;
+        let Self { traction, pressure, plastic_slip, plastic_increment, dissipation, opening, wear, variables, .. } =
+            self;
+        let common = traction + pressure + plastic_slip + plastic_increment + dissipation + opening + wear;
         (common + variables.iter().sum::<f64>()).is_finite()
     }
 }

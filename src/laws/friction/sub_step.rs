@@ -1,12 +1,34 @@
 //! One sub-step of an increment along linear paths of slip, pressure and time.
 
 use super::peak::PeakEvolution;
+use super::peak_sensitivity::Shift;
 use super::sliding_curve::{Reach, SlidingCurve};
 use super::slip_equation::{Point, ROUND_OFF, SlipEquation};
 use super::{LEAST_SLOPE, LawFailure, STEEPEST};
 
-/// What an answer depends on: [by Δu, by the pressure p at the end]
+/// Derivatives along two directions of what an answer depends on.
 pub(super) type Derivative = [f64; 2];
+
+/// How what an answer depends on varies along the two directions.
+#[derive(Clone, Copy)]
+pub(super) struct Directions {
+    /// of Δu
+    pub slip: Derivative,
+    /// of p at the end
+    pub pressure: Derivative,
+    /// of q at the start
+    pub traction: Derivative,
+    /// of μ at the start
+    pub mu: Derivative,
+    /// of the parameters, if they vary
+    pub parameters: Option<[Shift; 2]>,
+}
+
+impl Directions {
+    /// Δu and p: those of the consistent tangent.
+    pub(super) const TANGENT: Self =
+        Self { slip: [1.0, 0.0], pressure: [0.0, 1.0], traction: [0.0; 2], mu: [0.0; 2], parameters: None };
+}
 
 /// The part of an increment in which slip may be plastic, mirrored so that the traction does not become negative.
 ///
@@ -18,16 +40,20 @@ pub(super) struct LoadPath<'a> {
     pub alpha_t: f64,
     /// Greatest error of the traction, relative to the static strength μ_s p [-]
     pub tolerance: f64,
-    /// Slip from x = 0 to 1 [L]; its derivative by Δu is 1.
+    /// Slip from x = 0 to 1 [L]
     pub slip: f64,
+    /// Derivatives of the slip
+    pub dslip: Derivative,
     /// Pressures at x = 0 and 1 [F/L²]
     pub pressures: [f64; 2],
-    /// Derivatives of the pressure at x = 0
-    pub dstart_pressure: Derivative,
+    /// Derivatives of the pressures
+    pub dpressures: [Derivative; 2],
     /// Time from x = 0 to 1 [T]
     pub time: f64,
     /// Derivatives of the time
     pub dtime: Derivative,
+    /// How the parameters vary, if they do
+    pub parameters: Option<[Shift; 2]>,
     /// Evaluations of the slip equation so far
     pub evaluations: usize,
 }
@@ -56,10 +82,15 @@ pub(super) struct Station {
 
 impl LoadPath<'_> {
     /// The beginning of the path.
-    pub(super) fn start(&self, traction: f64, ratio: f64, mu: f64, dmu: Derivative) -> Station {
+    pub(super) fn start(
+        &self,
+        (traction, dtraction): (f64, Derivative),
+        (mu, dmu): (f64, Derivative),
+        ratio: f64,
+    ) -> Station {
         let reach = self.curve.start(ratio);
         let (plastic_slip, work, overlooked) = (0.0, 0.0, 0.0);
-        Station { x: 0.0, traction, dtraction: [0.0; 2], mu, dmu, reach, plastic_slip, work, overlooked }
+        Station { x: 0.0, traction, dtraction, mu, dmu, reach, plastic_slip, work, overlooked }
     }
 
     /// One sub-step.
@@ -82,6 +113,8 @@ impl LoadPath<'_> {
         }
         let (end, evaluations) = equation.solve(start)?;
         self.evaluations += evaluations;
+        // The tangent leaves out what the last step of the search changes in it, which adds up over many increments.
+        let end = if self.parameters.is_some() { equation.settled(end) } else { end };
         Ok(self.slide(from, x, &end))
     }
 
@@ -100,13 +133,15 @@ impl LoadPath<'_> {
         Station {
             x,
             traction,
-            dtraction: if trial > 0.0 {
-                [from.dtraction[0] + self.alpha_t * share, from.dtraction[1]]
-            } else {
-                [0.0; 2]
-            },
+            dtraction: if trial > 0.0 { [0, 1].map(|i| self.dtrial(from, share, i)) } else { [0.0; 2] },
             mu,
-            dmu: [0, 1].map(|i| by_old * from.dmu[i] + by_time * share * self.dtime[i]),
+            dmu: [0, 1].map(|i| match &self.parameters {
+                None => by_old * from.dmu[i] + by_time * share * self.dtime[i],
+                Some(shifts) => {
+                    let by = [from.dmu[i], share * self.dtime[i]];
+                    self.evolution.rested_by(from.mu, self.time * share, by, &shifts[i].peak)
+                }
+            }),
             reach,
             overlooked: self.alpha_t * rate * share,
             ..*from
@@ -123,18 +158,24 @@ impl LoadPath<'_> {
         let per_slope = 1.0 / point.slope.max(LEAST_SLOPE * self.alpha_t);
 
         // dR = U dλ + U/U₀ dR₀ along the curve of R
-        let begins = from.x == 0.0 || self.curve.begins_at(&from.reach) || from.reach.rate == 0.0;
+        let given = from.x == 0.0 && self.parameters.is_none();
+        let begins = given || self.curve.begins_at(&from.reach) || from.reach.rate == 0.0;
         let inherited = if begins { 0.0 } else { reach.rate / from.reach.rate / (from.mu * start_pressure) };
         let derivatives = |i: usize| {
             let dstart_pressure = self.dpressure(from.x)[i];
             let dratio =
                 from.dtraction[i] - from.reach.ratio * (start_pressure * from.dmu[i] + from.mu * dstart_pressure);
-            let dtrial = from.dtraction[i] + if i == 0 { self.alpha_t * share } else { 0.0 };
-            let dmu = peak.by_old * from.dmu[i] + peak.by_time * share * self.dtime[i];
-            let dstrength = pressure * (peak.mu * inherited * dratio + reach.ratio * dmu)
+            let own = self.parameters.map_or([0.0; 3], |shifts| self.own(from, x, point, &shifts[i]));
+            let dtrial = self.dtrial(from, share, i) - own[0];
+            let dmu = peak.by_old * from.dmu[i] + peak.by_time * share * self.dtime[i] + own[1];
+            let dstrength = pressure * (peak.mu * inherited * dratio + peak.mu * own[2] + reach.ratio * dmu)
                 + reach.ratio * peak.mu * self.dpressure(x)[i];
             let dslip = (dtrial - dstrength) * per_slope;
-            let limit = if i == 0 { STEEPEST * self.alpha_t } else { STEEPEST };
+            let limit = match self.parameters {
+                Some(_) => f64::INFINITY,
+                None if i == 0 => STEEPEST * self.alpha_t,
+                None => STEEPEST,
+            };
             let dtraction = (dtrial - self.alpha_t * dslip).clamp(-limit, limit);
             (dtraction, (dmu + peak.slope * dslip).clamp(-limit / pressure, limit / pressure))
         };
@@ -154,6 +195,23 @@ impl LoadPath<'_> {
             work: from.work + work,
             overlooked: 0.0,
         }
+    }
+
+    /// Derivatives of the trial traction.
+    #[inline]
+    fn dtrial(&self, from: &Station, share: f64, i: usize) -> f64 {
+        let by_stiffness = self.parameters.map_or(0.0, |shifts| shifts[i].alpha_t * self.slip * share);
+        from.dtraction[i] + self.alpha_t * self.dslip[i] * share + by_stiffness
+    }
+
+    /// What parameters that vary add to α_t Δλ, μ and R after a given plastic slip from a given start.
+    fn own(&self, from: &Station, x: f64, point: &Point, by: &Shift) -> [f64; 3] {
+        let time = self.time * (x - from.x);
+        [
+            by.alpha_t * point.slip,
+            self.evolution.after_by(from.mu, point.slip, time, &by.peak),
+            self.curve.shifted(&from.reach, &point.reach, by),
+        ]
     }
 
     /// dλ/dx of the rate equations, 0 where R falls by itself or the answer is not unique.
@@ -176,7 +234,7 @@ impl LoadPath<'_> {
 
     /// Derivatives of p
     pub(super) fn dpressure(&self, x: f64) -> Derivative {
-        [(1.0 - x) * self.dstart_pressure[0], (1.0 - x) * self.dstart_pressure[1] + x]
+        [0, 1].map(|i| (1.0 - x) * self.dpressures[0][i] + x * self.dpressures[1][i])
     }
 }
 

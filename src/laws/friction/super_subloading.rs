@@ -1,9 +1,10 @@
 use super::peak::{Integration, PeakEvolution};
+use super::sensitivity::SensitiveLaw;
 use super::sliding_curve::SlidingCurve;
 use super::slip_equation::{ROUND_OFF, SlipEquation};
-use super::sub_step::{LoadPath, mean_traction};
+use super::sub_step::{Directions, mean_traction};
 use super::super_subloading_parameters::SuperSubloadingParameters;
-use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, Regime, Sliding};
+use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, Onset, Regime, Sliding};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 
 /// Super/subloading friction: slip weakens the interface, rest heals it.
@@ -29,8 +30,9 @@ use crate::laws::parameter::{InvalidParameter, require, require_not_negative, re
 ///
 /// [`Integration`] says where μ of (4) comes from. *Backward Euler* takes one step of (3) and of (4) an increment. The
 /// *controlled* integration solves (3) for slip and time that pass in step with one another, which leaves no error
-/// where μ only weakens or only recovers (m = n = 1). How much the order of weakening and recovery matters is found by
-/// halving the increment, and halving again, until q, μ p and the mean of q are right to the tolerance (`path.rs`).
+/// where μ only weakens or only recovers (m = n = 1). How much the order of weakening and recovery matters is bounded for
+/// short increments, which one step answers (`short_step.rs`), and else found by halving the increment, and halving again,
+/// until q, μ p and the mean of q are right to the tolerance (`path.rs`).
 /// The dissipation is ∫ |q| dλ, over a step with R along its curve and μ p linear in ∫ R dλ, or where |q| falls with |q|
 /// linear in λ; the work of the increment, ∫ q du, is this and what the contact has stored. The tangent is that of what was computed; for one step
 /// ```text
@@ -44,12 +46,14 @@ use crate::laws::parameter::{InvalidParameter, require, require_not_negative, re
 /// Ozaki & Hashiguchi (2010), Tribology International 43:2120.
 #[derive(Clone, Copy, Debug)]
 pub struct SuperSubloading {
-    alpha_t: f64,
+    pub(super) alpha_t: f64,
     initial_mu: f64,
-    curve: SlidingCurve,
-    evolution: PeakEvolution,
+    /// 1/R*₀, if it is given
+    pub(super) structure: Option<f64>,
+    pub(super) curve: SlidingCurve,
+    pub(super) evolution: PeakEvolution,
     integration: Integration,
-    tolerance: f64,
+    pub(super) tolerance: f64,
 }
 
 impl SuperSubloading {
@@ -82,6 +86,7 @@ impl SuperSubloading {
         Ok(Self {
             alpha_t,
             initial_mu: (mu_k * structure).min(mu_s),
+            structure: parameters.structure,
             curve: SlidingCurve::new(approach, elastic_core, r),
             evolution: PeakEvolution::new((mu_s, mu_k), (kappa, xi), (m, n), integration),
             integration,
@@ -94,11 +99,11 @@ impl SuperSubloading {
 pub const SLIPPING: f64 = 0.9;
 
 /// A traction above the strength μ p by more than this, relative, has not come from this law.
-const EXCESS: f64 = 1e-12;
+pub(super) const EXCESS: f64 = 1e-12;
 
 impl SuperSubloading {
     /// The state with a traction above the strength μ p brought down to it, at once and by plastic slip alone.
-    fn within_strength(&self, old: &FrictionState) -> FrictionState {
+    pub(super) fn within_strength(&self, old: &FrictionState) -> FrictionState {
         let mu = self.evolution.clamp(mu_of(old));
         let old = FrictionState { plastic_increment: 0.0, ..*old }.with_variables([mu]);
         let strength = mu * old.pressure.max(0.0);
@@ -153,37 +158,11 @@ impl SuperSubloading {
         })
     }
 
-    /// An increment in which slip may be plastic, in sub-steps: from the start, or from where the traction passes 0.
+    /// An increment in which slip may be plastic, in sub-steps.
     fn follow(&self, old: &FrictionState, trial: f64, sliding: Sliding) -> Answer {
-        let Sliding { slip, pressure, dt } = sliding;
-        let reversed = old.traction != 0.0 && trial * old.traction.signum() < 0.0;
-        let sign = if reversed || old.traction == 0.0 { trial.signum() } else { old.traction.signum() };
-        let mut path = LoadPath {
-            curve: &self.curve,
-            evolution: &self.evolution,
-            alpha_t: self.alpha_t,
-            tolerance: self.tolerance,
-            slip: sign * slip,
-            pressures: [old.pressure, pressure],
-            dstart_pressure: [0.0; 2],
-            time: dt,
-            dtime: [0.0; 2],
-            evaluations: 0,
-        };
-        let start = if reversed {
-            let share = old.traction / (old.traction - trial);
-            let dshare = -share / path.slip;
-            let (mu, mu_rate) = self.evolution.rested(mu_of(old), dt * share);
-            path.slip = trial.abs() / self.alpha_t;
-            path.pressures[0] = path.pressure(share);
-            path.dstart_pressure = [(pressure - old.pressure) * dshare, share];
-            path.time = dt * (1.0 - share);
-            path.dtime = [-dt * dshare, 0.0];
-            path.start(0.0, 0.0, mu, [mu_rate * dt * dshare, 0.0])
-        } else {
-            path.start(old.traction.abs(), old.ratio(mu_of(old)).min(1.0), mu_of(old), [0.0; 2])
-        };
+        let (mut path, start, sign) = self.lead(old, trial, sliding, &Directions::TANGENT);
         let end = path.end(&start)?;
+        let pressure = sliding.pressure;
         let plastic_slip = sign * end.plastic_slip;
         Ok(FrictionResponse {
             state: ruled(FrictionState {
@@ -194,7 +173,7 @@ impl SuperSubloading {
                 dissipation: old.dissipation + end.work,
                 ..old.with_variables([end.mu])
             }),
-            dtraction_dslip: end.dtraction[0],
+            dtraction_dslip: sign * end.dtraction[0],
             dtraction_dpressure: sign * end.dtraction[1],
             evaluations: path.evaluations,
             ..Default::default()
@@ -202,8 +181,14 @@ impl SuperSubloading {
     }
 }
 
+/// Whether R can only fall on the way to the trial traction.
+pub(super) fn falls(old: &FrictionState, trial: f64, pressure: f64) -> bool {
+    let ratio_falls = trial.abs() * old.pressure <= old.traction.abs() * pressure * (1.0 + ROUND_OFF);
+    trial * old.traction.signum() >= 0.0 && ratio_falls && old.pressure > 0.0
+}
+
 /// μ, the one variable of the law [-]
-fn mu_of(state: &FrictionState) -> f64 {
+pub(super) fn mu_of(state: &FrictionState) -> f64 {
     state.variables[0]
 }
 
@@ -227,9 +212,7 @@ impl FrictionLaw for SuperSubloading {
         }
         let old = self.within_strength(old);
         let trial = old.traction + self.alpha_t * slip;
-        let falls = trial * old.traction.signum() >= 0.0
-            && trial.abs() * old.pressure <= old.traction.abs() * pressure * (1.0 + ROUND_OFF);
-        if falls && old.pressure > 0.0 {
+        if falls(&old, trial, pressure) {
             let (mu, _) = self.evolution.rested(mu_of(&old), dt);
             return self.elastic(&old, trial, pressure, mu).checked(self.alpha_t);
         }
@@ -242,6 +225,10 @@ impl FrictionLaw for SuperSubloading {
 
     fn stiffness(&self) -> f64 {
         self.alpha_t
+    }
+
+    fn sensitivities(&self) -> Option<&dyn SensitiveLaw> {
+        (self.integration == Integration::Controlled).then_some(self as &dyn SensitiveLaw)
     }
 
     fn variables(&self) -> &'static [&'static str] {
@@ -266,8 +253,11 @@ impl FrictionLaw for SuperSubloading {
         self.initial_mu * pressure
     }
 
-    fn uniqueness_limit(&self) -> Option<f64> {
-        let pressure = self.alpha_t / self.evolution.weakening(self.evolution.mu_s);
-        pressure.is_finite().then_some(pressure)
+    fn weakening(&self) -> f64 {
+        self.evolution.weakening(self.evolution.mu_s)
+    }
+
+    fn onset(&self) -> Option<Onset> {
+        Some(Onset::of(&self.curve, &self.evolution, self.initial_mu))
     }
 }

@@ -1,0 +1,236 @@
+//! Bodies that are stressed before anything moves them, and bodies that expand when they are heated.
+
+use std::sync::Arc;
+
+use nalgebra::{Matrix2, Matrix4};
+
+use super::spatial::plane;
+use super::{
+    CauchyStress, Evolution, InvertedElement, Material, MaterialResponse, PlaneStress, Spatial, Straining, Stretched,
+};
+
+/// Names of the initial stress among the variables of a law.
+pub const INITIAL_STRESS: [&str; 4] = ["initial_xx", "initial_yy", "initial_xy", "initial_zz"];
+
+/// Names of T − T₀ and of −∂W/∂ϑ among the variables of a law, the last ones.
+pub const TEMPERATURE: [&str; 2] = ["temperature_rise", "expansion_stress"];
+
+/// A law under what is imposed on it: an initial stress σ₀, and a temperature T.
+///
+/// ```text
+/// F = ϑ F_e,   ϑ = 1 + α (T − T₀)                                                                            (1)
+/// W = ϑ³ (W_l(F_e) + σ₀:E_e),   E_e = ½ (F_eᵀF_e − 1)                                                        (2)
+/// P = ϑ² (P_l(F_e) + F_e σ₀),   ∂P_iJ/∂F_kL = ϑ (∂P_l,iJ/∂F_kL + δ_ik σ₀,JL)                                 (3)
+/// −∂W/∂ϑ = (P:F − 3W)/ϑ                                          expansion stress, tr σ at small strains      (4)
+/// ```
+/// F, P and W are those of the unheated, undeformed body, whose stress is σ₀ as it is given. It turns with the body: σ₀ is a
+/// constant second Piola–Kirchhoff stress beside that of the law, and δ_ik σ₀ its geometric stiffness. All tensors are those in
+/// space, F₃₃ = 1 in plane strain. A [linear](Material::is_linear) law adds small strains, and no rotation matters:
+///
+/// ```text
+/// ε_e = ε − α (T − T₀) 1,   W = W_l(ε_e) + σ₀:ε_e,   σ = σ_l(ε_e) + σ₀,   −∂W/∂ϑ = tr σ                       (5)
+/// ```
+/// The initial stress stands among the variables from the start. [`Material::evolve`] finds T − T₀ at the end of the increment
+/// in the new variables, which the caller writes there.
+///
+/// # Errors
+/// [`InvertedElement`] of the law at F_e, and when ϑ is not positive.
+///
+/// Source: Lu & Pister (1975), Int. J. Solids Struct. 11, 927, doi:10.1016/0020-7683(75)90015-3 (the split of F).
+#[derive(Clone, Debug)]
+pub struct Imposed {
+    law: Arc<dyn Material>,
+    /// A linear law in plane stress, which no stretch across the plane is asked of
+    flat: bool,
+    stressed: bool,
+    /// α [1/Θ]
+    expansion: Option<f64>,
+    names: Vec<&'static str>,
+}
+
+impl Imposed {
+    /// A law in a body with an initial stress, or with an expansion α when it is heated, or both; `None` if it does not know
+    /// a stretch across the plane.
+    pub fn new(law: Box<dyn Material>, stressed: bool, expansion: Option<f64>) -> Option<Self> {
+        law.spatial()?;
+        Some(Self::of(law, false, stressed, expansion))
+    }
+
+    fn of(law: Box<dyn Material>, flat: bool, stressed: bool, expansion: Option<f64>) -> Self {
+        let mut names = law.variables().to_vec();
+        names.extend(INITIAL_STRESS.iter().filter(|_| stressed));
+        names.extend(TEMPERATURE.iter().filter(|_| expansion.is_some()));
+        Self { law: law.into(), flat, stressed, expansion, names }
+    }
+
+    /// F and F₃₃ as the law under it sees them, at a thermal strain.
+    fn elastic<'a>(&self, straining: &Straining<'a>, strain: f64) -> Straining<'a> {
+        let Straining { deformation, stretch, dt, old } = *straining;
+        let old = &old[..self.law.variables().len()];
+        match self.is_linear() {
+            true => Straining {
+                deformation: deformation - Matrix2::from_diagonal_element(strain),
+                stretch: stretch - strain,
+                dt,
+                old,
+            },
+            false => {
+                let theta = 1.0 + strain;
+                Straining { deformation: deformation / theta, stretch: stretch / theta, dt, old }
+            }
+        }
+    }
+
+    /// The law's own answer.
+    fn answer(&self, elastic: &Straining, new: &mut [f64]) -> Result<Stretched, InvertedElement> {
+        match self.law.spatial().filter(|_| !self.flat) {
+            Some(law) => law.stretched(elastic, new),
+            None => {
+                let Evolution { response, dissipation } = self.law.evolve(elastic, new)?;
+                let MaterialResponse { stress, tangent, energy, .. } = response;
+                Ok(Stretched {
+                    dissipation,
+                    ..Stretched::new((stress, tangent), (0.0, Default::default(), 0.0), energy)
+                })
+            }
+        }
+    }
+
+    /// The initial stress in plane and across it, which stays as it is.
+    fn initial(&self, old: &[f64], new: &mut [f64]) -> Option<(Matrix2<f64>, f64)> {
+        let own = self.law.variables().len()..self.law.variables().len() + INITIAL_STRESS.len();
+        self.stressed.then(|| {
+            new[own.clone()].copy_from_slice(&old[own.clone()]);
+            let [xx, yy, xy, zz] = [0, 1, 2, 3].map(|k| old[own.start + k]);
+            (Matrix2::new(xx, xy, xy, yy), zz)
+        })
+    }
+}
+
+/// Add the stress, tangent and energy of an initial stress.
+fn add_initial(answer: &mut Stretched, elastic: &Straining, (plane, across): (Matrix2<f64>, f64), linear: bool) {
+    let (f, h) = (elastic.deformation, elastic.stretch);
+    let strain = match linear {
+        true => 0.5 * (f + f.transpose()) - Matrix2::identity(),
+        false => {
+            let d = f - Matrix2::identity();
+            0.5 * (d + d.transpose() + d.transpose() * d)
+        }
+    };
+    let strain_across = if linear { h - 1.0 } else { 0.5 * (h - 1.0) * (h + 1.0) };
+    answer.energy += plane.dot(&strain) + across * strain_across;
+    let stress = if linear { plane } else { f * plane };
+    for (sum, stress) in answer.stress.iter_mut().zip(stress.iter().chain([&if linear { across } else { h * across }]))
+    {
+        *sum += stress;
+    }
+    if linear {
+        return;
+    }
+    let mut geometric = Matrix4::zeros();
+    for (j, l, i) in [(0, 0), (0, 1), (1, 0), (1, 1)].into_iter().flat_map(|(j, l)| [(j, l, 0), (j, l, 1)]) {
+        geometric[(i + 2 * j, i + 2 * l)] = plane[(j, l)];
+    }
+    let mut own = answer.tangent.fixed_view_mut::<4, 4>(0, 0);
+    own += geometric;
+    answer.tangent[(4, 4)] += across;
+}
+
+impl Spatial for Imposed {
+    fn stretched(&self, straining: &Straining, new: &mut [f64]) -> Result<Stretched, InvertedElement> {
+        let heat = self.names.len().saturating_sub(TEMPERATURE.len());
+        let strain = self.expansion.map_or(0.0, |alpha| alpha * new[heat]);
+        let theta = 1.0 + strain;
+        if theta.is_nan() || theta <= 0.0 {
+            return Err(InvertedElement { jacobian: theta });
+        }
+        let (elastic, linear) = (self.elastic(straining, strain), self.is_linear());
+        let mut answer = self.answer(&elastic, &mut new[..self.law.variables().len()])?;
+        if let Some(initial) = self.initial(straining.old, new) {
+            add_initial(&mut answer, &elastic, initial, linear);
+        }
+        if self.expansion.is_none() {
+            return Ok(answer);
+        }
+        if linear {
+            new[heat + 1] = answer.stress[0] + answer.stress[3] + answer.stress[4];
+            return Ok(answer);
+        }
+        answer.stress *= theta * theta;
+        answer.tangent *= theta;
+        answer.energy *= theta.powi(3);
+        let before = 1.0 + self.expansion.map_or(0.0, |alpha| alpha * straining.old[heat]);
+        answer.dissipation *= 0.5 * (before.powi(3) + theta.powi(3));
+        let work = plane(&answer.stress).dot(&straining.deformation) + answer.stress[4] * straining.stretch;
+        new[heat + 1] = (work - 3.0 * answer.energy) / theta;
+        Ok(answer)
+    }
+}
+
+impl Material for Imposed {
+    fn density(&self) -> f64 {
+        self.law.density()
+    }
+
+    fn p_wave_modulus(&self) -> f64 {
+        self.law.p_wave_modulus()
+    }
+
+    fn shear_modulus(&self) -> f64 {
+        self.law.shear_modulus()
+    }
+
+    fn is_linear(&self) -> bool {
+        self.law.is_linear()
+    }
+
+    fn is_symmetric(&self) -> bool {
+        self.law.is_symmetric()
+    }
+
+    fn variables(&self) -> &[&'static str] {
+        &self.names
+    }
+
+    fn plane_stress(&self) -> Option<Box<dyn Material>> {
+        match self.is_linear() {
+            true => Some(Box::new(Self::of(self.law.plane_stress()?, true, self.stressed, self.expansion))),
+            false => Some(Box::new(PlaneStress::new(self.clone()))),
+        }
+    }
+
+    fn spatial(&self) -> Option<&dyn Spatial> {
+        (!self.flat).then_some(self)
+    }
+
+    /// The answer at once, of a body without initial stress that is not heated.
+    fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
+        let old = vec![0.0; self.names.len()];
+        let at_once = Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old: &old };
+        self.evolve(&at_once, &mut old.clone()).map(|evolution| evolution.response)
+    }
+
+    fn evolve(&self, straining: &Straining, new: &mut [f64]) -> Result<Evolution, InvertedElement> {
+        let Stretched { stress, tangent, energy, dissipation } = self.stretched(straining, new)?;
+        let volume = if self.is_linear() { 1.0 } else { straining.deformation.determinant() };
+        let response = MaterialResponse {
+            stress: plane(&stress),
+            tangent: tangent.fixed_view::<4, 4>(0, 0).into(),
+            energy,
+            stress_zz: stress[4] / volume,
+        };
+        Ok(Evolution { response, dissipation })
+    }
+
+    fn viscous_stress(&self, motion: [&Matrix2<f64>; 2]) -> Matrix2<f64> {
+        self.law.viscous_stress(motion)
+    }
+
+    fn viscous_variation(&self, motion: [&Matrix2<f64>; 2], varied: [&Matrix2<f64>; 2]) -> Matrix2<f64> {
+        self.law.viscous_variation(motion, varied)
+    }
+
+    fn cauchy_stress(&self, deformation: &Matrix2<f64>, old: &[f64]) -> Result<CauchyStress, InvertedElement> {
+        self.cauchy(&Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old })
+    }
+}

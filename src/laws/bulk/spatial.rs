@@ -1,0 +1,117 @@
+//! Laws with a stretch across the plane, which plane stress and axisymmetry need.
+//!
+//! Bodies are not sheared across the plane, so F and P have five components each, (11, 21, 12, 22, 33).
+
+use nalgebra::{Matrix2, Matrix3, Matrix5, Vector4, Vector5};
+
+use super::{CauchyStress, InvertedElement, Material, Straining};
+
+/// What a law answers at F with a stretch across the plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretched {
+    /// P [F/L²]
+    pub stress: Vector5<f64>,
+    /// ∂P/∂F [F/L²]
+    pub tangent: Matrix5<f64>,
+    /// W: stored energy per reference volume [F/L²]
+    pub energy: f64,
+    /// Energy dissipated in the increment per reference volume [F/L²]
+    pub dissipation: f64,
+}
+
+impl Stretched {
+    /// From the part in plane and what comes across it: P₃₃, ∂P/∂F₃₃ = (∂P₃₃/∂F)ᵀ, ∂P₃₃/∂F₃₃.
+    pub(super) fn new(
+        (stress, tangent): (Matrix2<f64>, nalgebra::Matrix4<f64>),
+        (stress_33, coupling, stiffness): (f64, Vector4<f64>, f64),
+        energy: f64,
+    ) -> Self {
+        let mut whole = Matrix5::zeros();
+        whole.fixed_view_mut::<4, 4>(0, 0).copy_from(&tangent);
+        whole.fixed_view_mut::<4, 1>(0, 4).copy_from(&coupling);
+        whole.fixed_view_mut::<1, 4>(4, 0).copy_from(&coupling.transpose());
+        whole[(4, 4)] = stiffness;
+        Self { stress: components(&stress, stress_33), tangent: whole, energy, dissipation: 0.0 }
+    }
+}
+
+/// A law that knows the stretch across the plane.
+pub trait Spatial: Material {
+    /// The answer to an increment, as [`Material::evolve`], at any F₃₃.
+    ///
+    /// # Errors
+    /// [`InvertedElement`] when det F or F₃₃ is not positive.
+    fn stretched(&self, straining: &Straining, new: &mut [f64]) -> Result<Stretched, InvertedElement>;
+
+    /// σ = P Fᵀ/J where the law remembers `straining.old`.
+    ///
+    /// # Errors
+    /// As [`Spatial::stretched`].
+    fn cauchy(&self, straining: &Straining) -> Result<CauchyStress, InvertedElement> {
+        let stress = self.stretched(straining, &mut straining.old.to_vec())?.stress;
+        let (f, h) = (&straining.deformation, straining.stretch);
+        if self.is_linear() {
+            return Ok(CauchyStress { xx: stress[0], yy: stress[3], zz: stress[4], xy: stress[1] });
+        }
+        let sigma = plane(&stress) * f.transpose() / (f.determinant() * h);
+        Ok(CauchyStress { xx: sigma.m11, yy: sigma.m22, zz: stress[4] / f.determinant(), xy: sigma.m12 })
+    }
+
+    /// P_v/τ at F and Ḟ, see [`super`]; of a linear law the elastic stress of the rate [F/(L² T)].
+    fn viscous(&self, [f, rate]: [&Vector5<f64>; 2]) -> Vector5<f64> {
+        let [f, rate] = [f, rate].map(matrix);
+        in_five(&match self.is_linear() {
+            true => hooke(self, &rate),
+            false => f * hooke(self, &(f.transpose() * rate)),
+        })
+    }
+
+    /// Variation of P_v/τ with δF and δḞ.
+    fn varied_viscous(&self, [f, rate]: [&Vector5<f64>; 2], [df, drate]: [&Vector5<f64>; 2]) -> Vector5<f64> {
+        let [f, rate, df, drate] = [f, rate, df, drate].map(matrix);
+        in_five(&match self.is_linear() {
+            true => hooke(self, &drate),
+            false => {
+                let strain = df.transpose() * rate + f.transpose() * drate;
+                df * hooke(self, &(f.transpose() * rate)) + f * hooke(self, &strain)
+            }
+        })
+    }
+}
+
+/// λ tr(e) 1 + G (e + eᵀ)
+fn hooke(law: &(impl Spatial + ?Sized), strain: &Matrix3<f64>) -> Matrix3<f64> {
+    let shear = law.shear_modulus();
+    let lambda = law.p_wave_modulus() - 2.0 * shear;
+    Matrix3::from_diagonal_element(lambda * strain.trace()) + shear * (strain + strain.transpose())
+}
+
+/// The five components of a tensor, from its part in plane and 33.
+pub(crate) fn components(plane: &Matrix2<f64>, across: f64) -> Vector5<f64> {
+    Vector5::new(plane.m11, plane.m21, plane.m12, plane.m22, across)
+}
+
+/// The part in plane.
+pub(crate) fn plane(tensor: &Vector5<f64>) -> Matrix2<f64> {
+    Matrix2::new(tensor[0], tensor[2], tensor[1], tensor[3])
+}
+
+fn matrix(t: &Vector5<f64>) -> Matrix3<f64> {
+    Matrix3::new(t[0], t[2], 0.0, t[1], t[3], 0.0, 0.0, 0.0, t[4])
+}
+
+fn in_five(t: &Matrix3<f64>) -> Vector5<f64> {
+    Vector5::new(t.m11, t.m21, t.m12, t.m22, t.m33)
+}
+
+/// ln h, without losing digits near 1.
+pub(super) fn ln_stretch(h: f64) -> f64 {
+    if (h - 1.0).abs() < 0.5 { (h - 1.0).ln_1p() } else { h.ln() }
+}
+
+/// F₃₃, known to be positive and finite.
+pub(super) fn positive_stretch(straining: &Straining) -> Result<f64, InvertedElement> {
+    let h = straining.stretch;
+    let jacobian = h * straining.deformation.determinant();
+    if h > 0.0 && h.is_finite() { Ok(h) } else { Err(InvertedElement { jacobian }) }
+}

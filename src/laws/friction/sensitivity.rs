@@ -1,0 +1,73 @@
+//! How answers vary with parameters of a law and with what it remembers: what fits to measurements are made with.
+
+use std::fmt::Debug;
+
+use super::state::MOST_VARIABLES;
+use super::{FrictionState, LawFailure, Sliding};
+
+/// Derivatives of a state, per unit of what it is differentiated by.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Variation {
+    /// of q [F/L²]
+    pub traction: f64,
+    /// of the law's variables
+    pub variables: [f64; MOST_VARIABLES],
+}
+
+/// What an answer is differentiated by: how that which it follows from varies, the pressure and the time being given.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Direction {
+    /// of the state at the start
+    pub state: Variation,
+    /// of Δu_t [L]
+    pub slip: f64,
+    /// The one parameter that varies, by 1: its place among [`SensitiveLaw::parameters`]
+    pub parameter: Option<usize>,
+}
+
+/// A law that differentiates its answers by its parameters. The derivatives are those of exactly what it computes, its sub-steps
+/// staying as they are.
+///
+/// ```text
+/// (q, variables)₁ = law((q, p, variables)₀; Δu_t, p₁, Δt; parameters)
+/// d(q, variables)₁ = ∂law/∂(q, variables)₀ d(q, variables)₀ + ∂law/∂Δu_t dΔu_t + ∂law/∂parameter
+/// ```
+pub trait SensitiveLaw: Debug + Send + Sync {
+    /// The parameters it differentiates by, as cases name them.
+    fn parameters(&self) -> &'static [&'static str];
+
+    /// How the state of a point that has not slipped varies with a parameter.
+    fn start(&self, parameter: usize) -> Variation;
+
+    /// How the state at the end of an increment varies along two directions.
+    ///
+    /// # Errors
+    /// As of the answer itself.
+    fn vary(
+        &self,
+        old: &FrictionState,
+        sliding: Sliding,
+        directions: [Direction; 2],
+    ) -> Result<[Variation; 2], LawFailure>;
+}
+
+impl Variation {
+    /// Of a law with one variable.
+    pub(super) fn new(traction: f64, variable: f64) -> Self {
+        let mut variables = [0.0; MOST_VARIABLES];
+        variables[0] = variable;
+        Self { traction, variables }
+    }
+}
+
+impl Direction {
+    /// How much the parameter at this place varies: 1 or 0.
+    pub(super) fn of(&self, parameter: usize) -> f64 {
+        f64::from(u8::from(self.parameter == Some(parameter)))
+    }
+
+    /// Of the only variable of a law.
+    pub(super) fn variable(&self) -> f64 {
+        self.state.variables[0]
+    }
+}
