@@ -21,6 +21,41 @@ pub struct DenseLu {
 }
 
 impl DenseLu {
+    /// Factorize a matrix of this size, given column by column.
+    ///
+    /// # Errors
+    /// [`LinearFailure::Singular`] when a pivot vanishes.
+    pub fn factorize_columns(&mut self, size: usize, columns: Vec<f64>) -> Result<(), LinearFailure> {
+        self.resize(size);
+        if size == 0 {
+            return Ok(());
+        }
+        let Self { size, factors, rows, places, room } = self;
+        *factors = columns;
+        let Some(room) = room else { return Ok(()) };
+        let lu = MatMut::from_column_major_slice_mut(factors, *size, *size);
+        factor::lu_in_place(lu, rows, places, Par::Seq, MemStack::new(room), Default::default());
+        let vanished = |k: &usize| factors[k * *size + k] == 0.0;
+        match (0..*size).find(vanished) {
+            Some(k) => Err(LinearFailure::Singular(format!("pivot {k} of {size} vanished"))),
+            None => Ok(()),
+        }
+    }
+
+    /// Solve for as many right-hand sides as there are columns.
+    pub fn solve_columns(&self, b: &mut [f64]) {
+        if b.is_empty() {
+            return;
+        }
+        let Self { size, factors, rows, places, .. } = self;
+        let count = b.len() / (*size).max(1);
+        let mut room = MemBuffer::new(solve::solve_in_place_scratch::<usize, f64>(*size, count, Par::Seq));
+        let lu = MatRef::from_column_major_slice(factors, *size, *size);
+        let right = MatMut::from_column_major_slice_mut(b, *size, count);
+        let exchanges = PermRef::new_checked(rows, places, *size);
+        solve::solve_in_place_with_conj(lu, lu, exchanges, faer::Conj::No, right, Par::Seq, MemStack::new(&mut room));
+    }
+
     /// Room for matrices of this size.
     fn resize(&mut self, size: usize) {
         if self.size == size && self.room.is_some() {
@@ -36,17 +71,9 @@ impl DenseLu {
 
 impl LinearSolver for DenseLu {
     fn factorize(&mut self, matrix: &SparseMatrix) -> Result<(), LinearFailure> {
-        self.resize(matrix.size());
-        let Self { size, factors, rows, places, room } = self;
-        factors.clone_from(&matrix.values);
-        let Some(room) = room else { return Ok(()) };
-        let lu = MatMut::from_column_major_slice_mut(factors, *size, *size);
-        factor::lu_in_place(lu, rows, places, Par::Seq, MemStack::new(room), Default::default());
-        let vanished = |k: &usize| factors[k * *size + k] == 0.0;
-        match (0..*size).find(vanished) {
-            Some(k) => Err(LinearFailure::Singular(format!("pivot {k} of {size} vanished"))),
-            None => Ok(()),
-        }
+        let mut columns = std::mem::take(&mut self.factors);
+        columns.clone_from(&matrix.values);
+        self.factorize_columns(matrix.size(), columns)
     }
 
     fn is_stable(&self) -> bool {

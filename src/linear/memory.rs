@@ -1,13 +1,64 @@
-//! How much memory there is, as far as the system tells.
+//! How much memory there is, as far as the system tells, and whether something fits into it.
 
 use std::fs::read_to_string;
 
-/// Bytes that this process can still take: what Linux says is available, and what its control groups leave.
+use thiserror::Error;
+
+/// Of less than this the system is not even asked [bytes].
+pub const LITTLE: usize = 1 << 24;
+
+/// What does not fit into memory.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error("{needed:.2} GiB of memory, and {available:.2} GiB are free")]
+pub struct NoRoom {
+    /// what is needed [GiB]
+    pub needed: f64,
+    /// what there is [GiB]
+    pub available: f64,
+}
+
+/// Refuse what needs more bytes than are free, as far as the system tells: the process would be killed. Those that are `held`
+/// already are given back before.
+///
+/// # Errors
+/// [`NoRoom`].
+pub fn room_for(needed: usize, held: usize) -> Result<(), NoRoom> {
+    if needed < held + LITTLE {
+        return Ok(());
+    }
+    available_memory().map_or(Ok(()), |free| fits(needed, held + free))
+}
+
+/// Whether bytes that are needed are available.
+fn fits(needed: usize, available: usize) -> Result<(), NoRoom> {
+    match needed <= available {
+        true => Ok(()),
+        false => Err(NoRoom { needed: gibibytes(needed), available: gibibytes(available) }),
+    }
+}
+
+/// Bytes in GiB.
+pub(super) fn gibibytes(bytes: usize) -> f64 {
+    bytes as f64 / (1u64 << 30) as f64
+}
+
+/// Bytes that this process can still take: what Linux says is available, what its control groups leave, and what the limit of
+/// its address space does (ulimit -v).
 pub fn available_memory() -> Option<usize> {
     let status = read_to_string("/proc/meminfo").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
     let machine = line.trim().trim_end_matches("kB").trim().parse::<usize>().ok()? * 1024;
-    Some(control_groups().fold(machine, usize::min))
+    Some(control_groups().chain(address_space()).fold(machine, usize::min))
+}
+
+/// What the limit of the address space leaves, if there is one.
+fn address_space() -> Option<usize> {
+    let limits = read_to_string("/proc/self/limits").ok()?;
+    let limit = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
+    let limit: usize = limit.split_whitespace().next()?.parse().ok()?;
+    let status = read_to_string("/proc/self/status").ok()?;
+    let used = status.lines().find_map(|line| line.strip_prefix("VmSize:"))?;
+    Some(limit.saturating_sub(1024 * used.trim().trim_end_matches("kB").trim().parse::<usize>().ok()?))
 }
 
 /// What every control group around this process leaves: its limit less what is used, caches that can be dropped not counted.

@@ -1,6 +1,7 @@
 //! Sparse matrices of two unknowns a node, and the linear solvers behind one trait.
 
 mod dense;
+mod halved;
 mod lu;
 pub mod memory;
 mod multifrontal;
@@ -8,6 +9,7 @@ mod sparse;
 pub mod system;
 
 pub use dense::DenseLu;
+pub use halved::{Eliminated, HalvedLu, Steady};
 pub use lu::SparseLu;
 pub use multifrontal::{Condensation, Condensed, Forwarded, Multifrontal};
 pub use sparse::{BlockPosition, Pattern, SparseMatrix};
@@ -20,9 +22,12 @@ pub enum LinearFailure {
     /// The matrix has no inverse, or none that double precision can find: what the solver met.
     #[error("the linear system is singular ({0})")]
     Singular(String),
+    /// A matrix that is worth its factorization only while half of its equations do not vary ([`HalvedLu`]), and they do.
+    #[error("more of the matrix varies than was eliminated before")]
+    Varies,
     /// The factors do not fit into memory.
     #[error(
-        "the factors of {size} equations take {needed:.1} GiB, and {available:.1} GiB of memory are free: use a coarser \
+        "the factors of {size} equations take {needed:.2} GiB, and {available:.2} GiB of memory are free: use a coarser \
          mesh, or a machine with more memory"
     )]
     TooLarge {
@@ -36,7 +41,7 @@ pub enum LinearFailure {
 }
 
 /// A direct solver: factorize once, solve often. The order of elimination is kept while the pattern stands.
-pub trait LinearSolver {
+pub trait LinearSolver: Send {
     /// Factorize A = LU.
     ///
     /// # Errors

@@ -177,28 +177,68 @@ impl SparseMatrix {
         }
     }
 
+    /// Add a share of the equation of one dof, (node, component), to that of another; whatever the first couples with, the other does.
+    pub fn add_row(&mut self, (from, i): (usize, usize), (to, j): (usize, usize), share: f64) {
+        for k in self.pattern.starts[from]..self.pattern.starts[from + 1] {
+            let column = self.pattern.rows[k];
+            let (Some(source), Some(target)) = (self.pattern.block(from, column), self.pattern.block(to, column))
+            else {
+                continue;
+            };
+            for c in 0..2 {
+                self.values[target.value(j, c)] += share * self.values[source.value(i, c)];
+            }
+        }
+    }
+
+    /// Turn the equations of a node: that of `dof` becomes Σ own_j x_j over its own two unknowns, the other Σ across_i times
+    /// both as they are.
+    pub fn turn_rows(&mut self, dof: usize, own: [f64; 2], across: [f64; 2]) {
+        let (node, d) = (dof / 2, dof % 2);
+        for k in self.pattern.starts[node]..self.pattern.starts[node + 1] {
+            let column = self.pattern.rows[k];
+            let Some(block) = self.pattern.block(node, column) else { continue };
+            for (j, own) in own.into_iter().enumerate() {
+                let rows = [0, 1].map(|i| self.values[block.value(i, j)]);
+                self.values[block.value(1 - d, j)] = across[0] * rows[0] + across[1] * rows[1];
+                self.values[block.value(d, j)] = if column == node { own } else { 0.0 };
+            }
+        }
+    }
+
     /// A x.
     pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
-        let mut y = vec![0.0; x.len()];
+        let [y] = self.multiply_all([x]);
+        y
+    }
+
+    /// A x of several vectors, the values being read once.
+    pub fn multiply_all<const N: usize>(&self, all: [&[f64]; N]) -> [Vec<f64>; N] {
+        let mut products = all.map(|x| vec![0.0; x.len()]);
         if self.pattern.rows.len() == self.pattern.nodes().pow(2) {
             // All nodes are coupled: a dense matrix.
-            for (column, x) in self.values.chunks_exact(y.len().max(1)).zip(x) {
-                y.iter_mut().zip(column).for_each(|(y, a)| *y += a * x);
+            for (j, column) in self.values.chunks_exact(self.size().max(1)).enumerate() {
+                for (y, x) in products.iter_mut().zip(all) {
+                    y.iter_mut().zip(column).for_each(|(y, a)| *y += a * x[j]);
+                }
             }
-            return y;
+            return products;
         }
         let mut k = 0;
         for node in 0..self.pattern.nodes() {
             let rows = self.pattern.neighbours(node);
-            for x in &x[2 * node..2 * node + 2] {
+            for column in 2 * node..2 * node + 2 {
+                let here = all.map(|x| x[column]);
                 for &row in rows {
-                    y[2 * row] += self.values[k] * x;
-                    y[2 * row + 1] += self.values[k + 1] * x;
+                    for (y, x) in products.iter_mut().zip(here) {
+                        y[2 * row] += self.values[k] * x;
+                        y[2 * row + 1] += self.values[k + 1] * x;
+                    }
                     k += 2;
                 }
             }
         }
-        y
+        products
     }
 
     /// b − A x.

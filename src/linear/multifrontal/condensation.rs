@@ -10,6 +10,7 @@
 
 use std::sync::Arc;
 
+use super::super::memory::room_for;
 use super::super::{LinearFailure, Pattern, SparseMatrix};
 use super::factor::Factors;
 use super::scale::Scaling;
@@ -44,11 +45,14 @@ impl Condensation {
         size_of::<f64>() * (self.symbolic.values() + self.kept * self.kept + 2 * self.symbolic.pattern.nodes() * 3)
     }
 
-    /// Eliminate all other nodes from a matrix on the pattern; nothing if a pivot vanished on the way.
+    /// Eliminate all other nodes from a matrix on the pattern; nothing if a pivot vanished on the way, or there is no room.
     pub fn condense(&mut self, matrix: &SparseMatrix) -> Option<Condensed> {
         let Self { symbolic, scaling, kept } = self;
-        scaling.compute(matrix);
         let mut factors = Factors::default();
+        let contributions = symbolic.contributions(rayon::current_num_threads()) + symbolic.pattern.values();
+        room_for(size_of::<f64>() * (symbolic.values() + contributions), 0).ok()?;
+        factors.reserve(symbolic).ok()?;
+        scaling.compute(matrix);
         factors.compute(symbolic, &mut scaling.values);
         factors.settle();
         if factors.replaced() > 0 {

@@ -56,6 +56,11 @@ impl Factors {
         (self.a, self.kept, self.rooms) = (Vec::new(), HashMap::new(), Mutex::default());
     }
 
+    /// Room for the factors.
+    pub fn reserve(&mut self, symbolic: &Symbolic) -> Result<(), std::collections::TryReserveError> {
+        self.values.try_reserve_exact(symbolic.values().saturating_sub(self.values.len()))
+    }
+
     /// Number of pivots that vanished and were replaced.
     pub fn replaced(&self) -> usize {
         self.replaced.iter().sum()

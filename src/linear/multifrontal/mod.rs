@@ -28,7 +28,7 @@ mod tree;
 
 use std::sync::Arc;
 
-use super::memory::available_memory;
+use super::memory::{NoRoom, available_memory, gibibytes, room_for};
 use super::{LinearFailure, LinearSolver, Pattern, SparseMatrix};
 pub use condensation::{Condensation, Condensed, Forwarded};
 use factor::Factors;
@@ -69,14 +69,16 @@ impl Multifrontal {
         })
     }
 
-    /// Refuse what does not fit, as far as the system tells: it would be killed. Of a little memory it is not even asked.
-    fn check_memory(&self, size: usize) -> Result<(), LinearFailure> {
-        const LITTLE: usize = 1 << 24;
+    /// Refuse what does not fit, and make room for what does.
+    fn make_room(&mut self, size: usize) -> Result<(), LinearFailure> {
         let held = size_of::<f64>() * (self.factors.values.capacity() + self.scaling.values.capacity());
-        if self.memory() < held + LITTLE {
-            return Ok(());
-        }
-        available_memory().map_or(Ok(()), |free| fits(size, self.memory(), held + free))
+        let (needed, symbolic) = (self.memory(), self.symbolic.as_ref());
+        let too_large = |NoRoom { needed, available }| LinearFailure::TooLarge { size, needed, available };
+        room_for(needed, held).map_err(too_large)?;
+        let reserved = symbolic.map_or(Ok(()), |symbolic| self.factors.reserve(symbolic));
+        reserved.map_err(|_| {
+            too_large(NoRoom { needed: gibibytes(needed), available: gibibytes(available_memory().unwrap_or(0)) })
+        })
     }
 
     /// Fronts that the last factorization eliminated, and all there are: those whose values had not changed stayed.
@@ -90,19 +92,10 @@ impl Multifrontal {
     }
 }
 
-/// Whether bytes that are needed are available.
-fn fits(size: usize, needed: usize, available: usize) -> Result<(), LinearFailure> {
-    const GIB: f64 = (1u64 << 30) as f64;
-    if needed <= available {
-        return Ok(());
-    }
-    Err(LinearFailure::TooLarge { size, needed: needed as f64 / GIB, available: available as f64 / GIB })
-}
-
 impl LinearSolver for Multifrontal {
     fn factorize(&mut self, matrix: &SparseMatrix) -> Result<(), LinearFailure> {
         self.analyse(&matrix.pattern)?;
-        self.check_memory(matrix.size())?;
+        self.make_room(matrix.size())?;
         if let Some(symbolic) = &self.symbolic {
             self.scaling.compute(matrix);
             self.factors.compute(symbolic, &mut self.scaling.values);
@@ -125,18 +118,5 @@ impl LinearSolver for Multifrontal {
 
     fn perturbed_pivots(&self) -> usize {
         self.factors.replaced()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::fits;
-
-    #[test]
-    fn what_does_not_fit_is_refused_with_its_size() {
-        assert_eq!(fits(2_000_000, 3 << 30, 3 << 30), Ok(()));
-        let refusal = fits(2_000_000, 7 << 29, 3 << 30).unwrap_err().to_string();
-        let said = "the factors of 2000000 equations take 3.5 GiB, and 3.0 GiB of memory are free";
-        assert!(refusal.starts_with(said), "{refusal}");
     }
 }
