@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use nalgebra::Vector2;
 
+use super::degenerate;
 use super::raw::{NodeNumbers, RawCell, RawMesh};
 use super::{Edge, Element, Group, Mesh, MeshError};
 use crate::mesh::shape::ElementKind;
@@ -47,6 +48,7 @@ fn add_bodies(mesh: &mut Mesh, numbers: &NodeNumbers, bodies: BTreeMap<String, V
             let nodes = numbers.of("element", &name, &cell)?;
             let element = counter_clockwise(Element { kind: kind(&name, &cell)?, nodes }, &mesh.nodes);
             check_area(&element, cell.tag, &name, &mesh.nodes, &gradients)?;
+            degenerate::refuse(&element, (cell.tag, &name), &mesh.nodes, &mesh.node_tags)?;
             mesh.elements.push(element);
             mesh.element_tags.push(cell.tag);
         }

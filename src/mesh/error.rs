@@ -5,11 +5,13 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use super::names::in_line;
+
 /// Why a mesh was refused.
 #[derive(Debug, Error)]
 pub enum MeshError {
     /// Any of the others, in a file.
-    #[error("{}: {cause}", file.display())]
+    #[error("{}: {cause}", in_line(&file.to_string_lossy()))]
     InFile {
         /// the mesh file
         file: PathBuf,
@@ -184,6 +186,38 @@ pub enum MeshError {
         /// its body
         group: String,
     },
+    /// A side without length.
+    #[error(
+        "element {element} of `{group}` is degenerate: its side from node {} to node {} is {length:.3e} long, and the element \
+         {size:.3e}; merge the two nodes, or remesh there", ends[0], ends[1]
+    )]
+    ShortSide {
+        /// tag of the element
+        element: u64,
+        /// its body
+        group: String,
+        /// tags of the nodes
+        ends: [u64; 2],
+        /// length of the side [L]
+        length: f64,
+        /// that of the longest side [L]
+        size: f64,
+    },
+    /// Positions with too few digits.
+    #[error(
+        "element {element} of `{group}` lies so far from the origin that the positions of its nodes are known to {known:.1e} \
+         only, and its shortest side is {side:.3e} long; move the mesh to the origin"
+    )]
+    Vague {
+        /// tag of the element
+        element: u64,
+        /// its body
+        group: String,
+        /// round-off of the positions [L]
+        known: f64,
+        /// length of the side [L]
+        side: f64,
+    },
     /// The same element twice.
     #[error(
         "element {first} of `{first_group}` and element {second} of `{second_group}` have the same corners; \
@@ -262,23 +296,3 @@ pub enum MeshError {
 
 const EXPORT: &str =
     "export it anew with `gmsh -2 -format msh41 file.geo`, or Mesh.MshFileVersion = 4.1 in the .geo file";
-
-/// A name that no group of the mesh has.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("the mesh has no group `{name}`{}; it has {}", suggestion(nearest), listing(groups))]
-pub struct UnknownGroup {
-    /// the name that was asked for
-    pub name: String,
-    /// the group whose name resembles it most
-    pub nearest: Option<String>,
-    /// the groups there are
-    pub groups: Vec<String>,
-}
-
-fn suggestion(nearest: &Option<String>) -> String {
-    nearest.as_ref().map_or_else(String::new, |name| format!(" (did you mean `{name}`?)"))
-}
-
-fn listing(groups: &[String]) -> String {
-    if groups.is_empty() { "no groups at all".into() } else { format!("`{}`", groups.join("`, `")) }
-}

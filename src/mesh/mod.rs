@@ -1,19 +1,22 @@
 //! Nodes, solid elements, and the named groups that a case refers to.
 //!
-//! A mesh comes from a gmsh file ([`gmsh::read`]), from the case file or from code ([`InlineMesh::build`]). Both readers only fill
-//! in a raw mesh; one check turns it into a [`Mesh`], so that a mesh keeps its promises wherever it comes from.
+//! A mesh comes from a gmsh file ([`gmsh::read`]), from blocks ([`Blocks`]), or node by node from the case file or from code
+//! ([`InlineMesh::build`]). Readers only fill in a raw mesh; one check turns it into a [`Mesh`], so that a mesh keeps its promises wherever it comes from.
 
 mod blocks;
 mod check;
 pub mod configuration;
+mod degenerate;
 mod error;
 pub mod few;
 pub mod gmsh;
 mod inline;
+pub mod names;
 mod raw;
 pub mod section;
 pub mod shape;
 pub mod ties;
+mod transfinite;
 
 use std::collections::BTreeMap;
 
@@ -23,8 +26,10 @@ use crate::mesh::configuration::Configuration;
 use crate::mesh::section::Section;
 use crate::mesh::shape::ElementKind;
 
-pub use error::{MeshError, UnknownGroup};
+pub use error::MeshError;
 pub use inline::InlineMesh;
+pub use names::UnknownGroup;
+pub use transfinite::{Block, BlockError, BlockKind, Blocks, Grading};
 
 /// A solid element: its kind and its nodes, counter-clockwise.
 #[derive(Clone, Debug, PartialEq)]
@@ -128,8 +133,6 @@ impl Mesh {
     }
 
     fn nearest_name(&self, name: &str) -> Option<String> {
-        let likeness = |other: &str| strsim::jaro_winkler(name, other);
-        let nearest = self.groups.keys().max_by(|a, b| likeness(a).total_cmp(&likeness(b)))?;
-        (likeness(nearest) > 0.7).then(|| nearest.clone())
+        names::nearest(name, self.groups.keys().map(String::as_str)).map(String::from)
     }
 }

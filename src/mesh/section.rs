@@ -3,19 +3,36 @@
 //! ```text
 //! ∫ f dV = ∫ f w(X) dA,   ∫ f ds = ∫ f w(x) dl,   F = [F_plane, F₃₃]
 //! ```
+//! | section | w | F₃₃ |
+//! |---|---|---|
+//! | plane strain | 1 | 1 |
+//! | plane stress | t, the undeformed thickness | what leaves σ_zz = 0 |
+//! | axisymmetry, x = r, y = z | 2π r | 1 + u_r/R, the hoop stretch |
+//!
 //! Integrals over reference bodies and edges (stress, masses, dead loads, absorbing sides) take w at the reference position,
-//! those over current surfaces (follower pressure, contact) at the current one, which varies: δw = ∂w/∂x·δx. Whoever
-//! integrates asks here; no element, load or contact has a thickness of its own. Point masses, springs, dashpots and the
-//! areas of contact points are given as a whole.
+//! those over current surfaces (follower pressure, contact) at the current one, which varies: δw = ∂w/∂x·δx. So forces, masses and
+//! energies of rings are those of the full turn, and pressures are stresses; on a plate, pressures count the undeformed
+//! thickness. Whoever integrates asks here; no element, load or contact has a thickness of its own. Forces at nodes, point masses,
+//! springs, dashpots and the areas of contact points are given as a whole.
+
+use std::f64::consts::TAU;
+use std::fmt::{Display, Formatter, Result};
 
 use nalgebra::Vector2;
 
 /// The section of a model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Section {
-    /// Plane strain: a slice of depth 1 of bodies that go on without end; w = 1, F₃₃ = 1
+    /// Plane strain: a slice of depth 1 of bodies that go on without end
     #[default]
     PlaneStrain,
+    /// Plane stress: plates
+    PlaneStress {
+        /// t: undeformed thickness [L]
+        thickness: f64,
+    },
+    /// Axisymmetry about x = 0: rings, x = r and y = z
+    Axisymmetric,
     /// A depth w = `depth` + `slope`·x, F₃₃ = 1. No body has it: it is there for verification, since an integral that forgets
     /// w or ∂w/∂x shows against it
     Graded {
@@ -31,6 +48,8 @@ impl Section {
     pub fn weight(&self, at: Vector2<f64>) -> f64 {
         match self {
             Self::PlaneStrain => 1.0,
+            Self::PlaneStress { thickness } => *thickness,
+            Self::Axisymmetric => TAU * at.x,
             Self::Graded { depth, slope } => depth + slope[0] * at.x + slope[1] * at.y,
         }
     }
@@ -38,15 +57,38 @@ impl Section {
     /// ∂w/∂x at a place; `None` where w is the same everywhere [1/L].
     pub fn slope(&self, _at: Vector2<f64>) -> Option<Vector2<f64>> {
         match self {
-            Self::PlaneStrain => None,
+            Self::PlaneStrain | Self::PlaneStress { .. } => None,
+            Self::Axisymmetric => Some(Vector2::new(TAU, 0.0)),
             Self::Graded { slope, .. } => Some(Vector2::from(*slope)),
         }
     }
 
-    /// F₃₃: stretch across the plane [-].
-    pub fn stretch(&self) -> f64 {
+    /// Whether bodies are plates, which have no stress across the plane.
+    pub fn is_plate(&self) -> bool {
+        matches!(self, Self::PlaneStress { .. })
+    }
+
+    /// Whether bodies are rings, whose hoops stretch when they move along x.
+    pub fn is_axisymmetric(&self) -> bool {
+        *self == Self::Axisymmetric
+    }
+}
+
+/// In a line, with what forces are counted by.
+impl Display for Section {
+    fn fmt(&self, f: &mut Formatter) -> Result {
         match self {
-            Self::PlaneStrain | Self::Graded { .. } => 1.0,
+            Self::PlaneStrain => write!(f, "plane strain: forces and energies per unit of thickness"),
+            Self::PlaneStress { thickness } => {
+                write!(f, "plane stress: forces and energies of the thickness {thickness}")
+            }
+            Self::Axisymmetric => {
+                write!(
+                    f,
+                    "axisymmetric, x = r and y = z: forces and energies per full turn; zz is the hoop direction; ux = 0 on the axis"
+                )
+            }
+            Self::Graded { .. } => write!(f, "a depth that varies"),
         }
     }
 }

@@ -1,7 +1,7 @@
-//! Nodes that move as one: the two sides of a periodic model.
+//! Nodes that move as one: the two sides of a periodic model, and the nodes of a loading plate.
 //!
-//! Every node of a side is a copy of its partner on the other: u, v and a are those of the partner, and what acts on the
-//! copy acts on the partner. The copy keeps its own position, so that the elements beside it know their shape.
+//! Every node of a side is a copy of its partner on the other, and all nodes of a plate are copies of one: u, v and a are those of
+//! that node, and what acts on a copy acts on it. The copy keeps its own position, so that the elements beside it know their shape.
 
 /// Copies and the nodes they move with.
 #[derive(Clone, Debug, Default, PartialEq)]

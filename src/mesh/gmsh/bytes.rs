@@ -3,6 +3,8 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
+use memchr::memmem;
+
 use crate::mesh::MeshError;
 
 /// How the numbers are written.
@@ -47,8 +49,15 @@ fn section(bytes: &[u8], name: &'static str) -> Result<Option<Range<usize>>, Mes
     Ok(Some(begin.end..end.start))
 }
 
+/// A section that the file must have, and once: what is checked in one would be read from another.
 fn required_section(bytes: &[u8], name: &'static str) -> Result<Range<usize>, MeshError> {
-    section(bytes, name)?.ok_or(MeshError::NoSection(name))
+    let range = section(bytes, name)?.ok_or(MeshError::NoSection(name))?;
+    let title = format!("${name}");
+    let ends = memmem::find_iter(bytes, &title).map(|start| bytes.get(start + title.len()));
+    if ends.filter(|next| next.is_none_or(u8::is_ascii_whitespace)).count() > 1 {
+        return Err(MeshError::Malformed { at: title, what: "the file has this section more than once".into() });
+    }
+    Ok(range)
 }
 
 /// The number of nodes or elements that a section's header claims (of curves, for the entities).
@@ -136,6 +145,20 @@ fn bad_name(line: &str) -> MeshError {
     }
 }
 
+/// What stands where the parser gave up without a word.
+fn unexpected(bytes: &[u8], offset: usize, encoding: Encoding) -> String {
+    if encoding != Encoding::Ascii {
+        return "the numbers there are not those that the format has at this place".into();
+    }
+    let begin = bytes[..offset.min(bytes.len())].iter().rposition(|&b| b == b'\n').map_or(0, |end| end + 1);
+    let line = bytes[begin..].split(|&b| b == b'\n').next().unwrap_or_default();
+    let line: String = String::from_utf8_lossy(line).trim().chars().take(80).collect();
+    match line.is_empty() {
+        true => "the line is empty, where the format has numbers".into(),
+        false => format!("`{line}` has more, fewer or other entries than the format has there"),
+    }
+}
+
 /// The parser's trace of errors (innermost first) in one line, with the place in the file.
 pub(super) fn explain(bytes: &[u8], encoding: Encoding, error: &mshio::MshParserError<&[u8]>) -> MeshError {
     let trace: Vec<String> = error.filter_msh_errors().map(|(_, kind)| kind.to_string()).collect();
@@ -148,5 +171,7 @@ pub(super) fn explain(bytes: &[u8], encoding: Encoding, error: &mshio::MshParser
         Encoding::Ascii => format!("line {}", 1 + bytes.iter().take(offset).filter(|&&b| b == b'\n').count()),
         _ => format!("byte {offset}"),
     };
-    MeshError::Malformed { at, what: trace.into_iter().rev().collect::<Vec<_>>().join(", ") }
+    let told = trace.into_iter().rev().filter(|message| !message.trim().is_empty()).collect::<Vec<_>>().join(", ");
+    let what = if told.is_empty() { unexpected(bytes, offset, encoding) } else { told };
+    MeshError::Malformed { at, what }
 }

@@ -1,0 +1,253 @@
+//! The nodes of one block.
+
+use nalgebra::{Rotation2, Vector2};
+
+use super::spacing::{Share, shares};
+use super::{Block, BlockKind};
+
+/// Radii at the ends of an arc that differ by less, relative, are the same; and an arc is less than a half circle by more.
+const ROUND: f64 = 1e-6;
+
+/// Places of a side in the outline of its block.
+const OUTLINE: usize = 32;
+
+/// The nodes of a block, row by row, with slots counted over all blocks.
+pub struct Grid {
+    /// slot of its first node
+    pub first: usize,
+    /// positions
+    pub nodes: Vec<Vector2<f64>>,
+    /// spacings of nodes along side 0 and side 1
+    count: [usize; 2],
+    kind: BlockKind,
+    /// whether its corners run counter-clockwise
+    pub upright: bool,
+    /// nine places inside
+    pub inside: Vec<Vector2<f64>>,
+    sides: Sides,
+}
+
+impl Grid {
+    /// The nodes of a block; a complaint about it.
+    pub fn new(block: &Block, first: usize) -> Result<Self, String> {
+        let coordinates = block.corners.iter().chain(block.arcs.iter().flatten()).flatten();
+        if let Some(bad) = coordinates.into_iter().find(|x| !x.is_finite()) {
+            return Err(format!("has the coordinate {bad}: must be finite"));
+        }
+        let sides = Sides::new(block)?;
+        let order = block.kind.order();
+        let along = |k: usize| {
+            shares(block.elements[k], block.grading[k], order).map_err(|message| format!("grading[{k}] {message}"))
+        };
+        let (columns, rows) = (along(0)?, along(1)?);
+        let mut nodes = Vec::new();
+        for (j, t) in rows.iter().enumerate() {
+            let used = columns.iter().enumerate().filter(|(i, _)| order == 1 || i % 2 == 0 || j % 2 == 0);
+            nodes.extend(used.map(|(_, s)| sides.place(*s, *t)));
+        }
+        let quarters = || [1.0, 2.0, 3.0].map(|part| Share::new(part, 4.0));
+        let inside = quarters().into_iter().flat_map(|t| quarters().map(|s| sides.place(s, t))).collect();
+        let count = block.elements.map(|elements| order * elements);
+        let mut grid = Self { first, nodes, count, kind: block.kind, upright: true, inside, sides };
+        grid.upright = area(&grid.outline()) > 0.0;
+        grid.refuse_folds()?;
+        Ok(grid)
+    }
+
+    /// Slot of the node in a column and a row of the grid.
+    fn slot(&self, [i, j]: [usize; 2]) -> usize {
+        let [n, _] = self.count;
+        let local = match self.kind {
+            BlockKind::Q4 => j * (n + 1) + i,
+            // Rows through corners are full, those between have every other node.
+            BlockKind::Q8 if j % 2 == 0 => j / 2 * (n + 1 + n / 2 + 1) + i,
+            BlockKind::Q8 => j / 2 * (n + 1 + n / 2 + 1) + n + 1 + i / 2,
+        };
+        self.first + local
+    }
+
+    /// Position of a slot.
+    pub fn at(&self, slot: usize) -> Vector2<f64> {
+        self.nodes[slot - self.first]
+    }
+
+    /// Position of a corner.
+    pub fn corner(&self, corner: usize) -> Vector2<f64> {
+        self.sides.corners[corner]
+    }
+
+    /// Distance of a place from a side.
+    pub fn distance(&self, side: usize, at: Vector2<f64>) -> f64 {
+        self.sides.distance(side, at)
+    }
+
+    /// Slots of the nodes along a side, from its corner to the next.
+    pub fn side(&self, side: usize) -> Vec<usize> {
+        let [n, m] = self.count;
+        match side {
+            0 => (0..=n).map(|i| self.slot([i, 0])).collect(),
+            1 => (0..=m).map(|j| self.slot([n, j])).collect(),
+            2 => (0..=n).rev().map(|i| self.slot([i, m])).collect(),
+            _ => (0..=m).rev().map(|j| self.slot([0, j])).collect(),
+        }
+    }
+
+    /// Edges of a side, opposite sides in the same order: end, end, and the middle of quadratic ones.
+    pub fn edges(&self, side: usize) -> Vec<Vec<usize>> {
+        let (mut nodes, order) = (self.side(side), self.kind.order());
+        if side >= 2 {
+            nodes.reverse();
+        }
+        let edge = |k: usize| [vec![nodes[k], nodes[k + order]], nodes[k + 1..k + order].to_vec()].concat();
+        (0..nodes.len() - 1).step_by(order).map(edge).collect()
+    }
+
+    /// Elements, row by row: corners in turn, then the middles of their sides.
+    pub fn elements(&self) -> Vec<Vec<usize>> {
+        let (order, [n, m]) = (self.kind.order(), self.count);
+        let element = |i: usize, j: usize| {
+            let corners = [[i, j], [i + order, j], [i + order, j + order], [i, j + order]];
+            let middles = [[i + 1, j], [i + order, j + 1], [i + 1, j + order], [i, j + 1]];
+            let all = corners.into_iter().chain(middles.into_iter().take(4 * (order - 1)));
+            all.map(|at| self.slot(at)).collect()
+        };
+        let rows = (0..m).step_by(order);
+        rows.flat_map(|j| (0..n).step_by(order).map(move |i| [i, j])).map(|[i, j]| element(i, j)).collect()
+    }
+
+    /// Places all around, from corner 0 on.
+    pub fn outline(&self) -> Vec<Vector2<f64>> {
+        let place = |k: usize| {
+            let (side, step) = (k / OUTLINE, k % OUTLINE);
+            let part = if side < 2 { step } else { OUTLINE - step };
+            self.sides.on(side, Share::new(part as f64, OUTLINE as f64))
+        };
+        (0..4 * OUTLINE).map(place).collect()
+    }
+
+    /// Every corner of every element must be one less than a half turn.
+    fn refuse_folds(&self) -> Result<(), String> {
+        let turn = if self.upright { 1.0 } else { -1.0 };
+        for element in self.elements() {
+            let corners: Vec<_> = element[..4].iter().map(|&slot| self.at(slot)).collect();
+            if wrong_turns(&corners, turn) == 0 {
+                continue;
+            }
+            let [x, y]: [f64; 2] = (0.25 * corners.iter().sum::<Vector2<f64>>()).into();
+            let cause = match wrong_turns(&self.sides.corners, turn) {
+                0 => "its arcs are too much for its sides: divide it",
+                1 => "it has a corner of a half turn or more: divide it there",
+                _ => "two of its sides cross or fall together: give its corners in turn, one way round",
+            };
+            return Err(format!("has elements that are folded or flat, near ({x}, {y}); {cause}"));
+        }
+        Ok(())
+    }
+}
+
+/// Corners of a polygon that turn the other way, or not at all.
+fn wrong_turns(corners: &[Vector2<f64>], turn: f64) -> usize {
+    let n = corners.len();
+    let at = |k: usize| (corners[(k + 1) % n] - corners[k]).perp(&(corners[(k + 2) % n] - corners[(k + 1) % n]));
+    (0..n).filter(|k| turn * at(*k) <= 0.0).count()
+}
+
+/// Area of a polygon, positive if it runs counter-clockwise.
+fn area(polygon: &[Vector2<f64>]) -> f64 {
+    let arms = polygon.iter().map(|x| x - polygon[0]).collect::<Vec<_>>();
+    arms.windows(2).map(|pair| 0.5 * pair[0].perp(&pair[1])).sum()
+}
+
+/// Corners that a side goes between in the map: with growing s or t.
+const ENDS: [[usize; 2]; 4] = [[0, 1], [1, 2], [3, 2], [0, 3]];
+
+/// The four sides.
+struct Sides {
+    corners: [Vector2<f64>; 4],
+    /// centre of the circle of each, and the angle from its one end to the other
+    arcs: [Option<(Vector2<f64>, f64)>; 4],
+}
+
+impl Sides {
+    fn new(block: &Block) -> Result<Self, String> {
+        let corners = block.corners.map(Vector2::from);
+        let mut arcs = [None; 4];
+        for (k, centre) in block.arcs.iter().enumerate() {
+            let Some(centre) = centre.map(Vector2::from) else { continue };
+            let [a, b] = ENDS[k].map(|corner| corners[corner] - centre);
+            let angle = a.perp(&b).atan2(a.dot(&b));
+            let (one, other) = (a.norm(), b.norm());
+            if (one - other).abs() > ROUND * one.max(other) {
+                let [first, second] = ENDS[k];
+                return Err(format!(
+                    "arcs[{k}]: corner {first} is {one:.3e} from the centre, and corner {second} {other:.3e}: give the centre of a \
+                     circle through both"
+                ));
+            }
+            if !(angle != 0.0 && angle.abs() < (1.0 - ROUND) * std::f64::consts::PI) {
+                let message = "is a half circle, or none: an arc goes the shorter way round, so divide the block";
+                return Err(format!("arcs[{k}] {message}"));
+            }
+            arcs[k] = Some((centre, angle));
+        }
+        Ok(Self { corners, arcs })
+    }
+
+    fn ends(&self, side: usize) -> [Vector2<f64>; 2] {
+        ENDS[side].map(|corner| self.corners[corner])
+    }
+
+    fn chord(&self, side: usize, s: Share) -> Vector2<f64> {
+        let [a, b] = self.ends(side);
+        Vector2::new(s.between(a.x, b.x), s.between(a.y, b.y))
+    }
+
+    /// A place on a side.
+    fn on(&self, side: usize, s: Share) -> Vector2<f64> {
+        let ([a, b], share) = (self.ends(side), s.between(0.0, 1.0));
+        match self.arcs[side] {
+            Some((centre, angle)) if share > 0.0 && share < 1.0 => {
+                let [from, to] = [a - centre, b - centre];
+                let radius = s.between(from.norm(), to.norm());
+                centre + Rotation2::new(share * angle) * from * (radius / from.norm())
+            }
+            _ => self.chord(side, s),
+        }
+    }
+
+    fn distance(&self, side: usize, at: Vector2<f64>) -> f64 {
+        let [a, b] = self.ends(side);
+        let (share, foot) = match self.arcs[side] {
+            Some((centre, angle)) => {
+                let (from, arm) = (a - centre, at - centre);
+                (from.perp(&arm).atan2(from.dot(&arm)) / angle, centre + arm * (from.norm() / arm.norm()))
+            }
+            None => {
+                let share = (at - a).dot(&(b - a)) / (b - a).norm_squared();
+                (share, a + share * (b - a))
+            }
+        };
+        let foot = if share <= 0.0 {
+            a
+        } else if share >= 1.0 {
+            b
+        } else {
+            foot
+        };
+        let beyond = (at - a).norm().min((at - b).norm());
+        (at - foot).norm().min(beyond)
+    }
+
+    /// How far a side leaves its chord; nothing where it is straight.
+    fn bulge(&self, side: usize, s: Share) -> Vector2<f64> {
+        self.on(side, s) - self.chord(side, s)
+    }
+
+    /// The transfinite map.
+    fn place(&self, s: Share, t: Share) -> Vector2<f64> {
+        let (below, above) = (self.on(0, s), self.on(2, s));
+        let (left, right) = (self.bulge(3, t), self.bulge(1, t));
+        let at = |i: usize| t.between(below[i], above[i]) + s.between(left[i], right[i]);
+        Vector2::new(at(0), at(1))
+    }
+}

@@ -1,0 +1,188 @@
+//! Blocks that share a side get the same nodes there; blocks that touch otherwise are refused.
+
+use nalgebra::Vector2;
+
+use super::grid::Grid;
+use super::{BlockError, Blocks};
+
+/// Places nearer to each other than this share of the shortest side are the same.
+const SAME: f64 = 1e-6;
+
+/// A side of a block.
+type Side = (usize, usize);
+
+/// The number of the node in each slot.
+pub fn joined(blocks: &Blocks, grids: &[Grid]) -> Result<Vec<usize>, BlockError> {
+    let slots = grids.iter().map(|grid| grid.nodes.len()).sum();
+    let mut join = Join { blocks, grids, first: (0..slots).collect(), partner: vec![[None; 4]; grids.len()] };
+    let pairs =
+        || (0..grids.len()).flat_map(|b| (0..b).map(move |a| [a, b])).filter(|[a, b]| join_body(blocks, *a, *b));
+    for [a, b] in pairs() {
+        for side in 0..16 {
+            join.sides((a, side / 4), (b, side % 4))?;
+        }
+    }
+    for [a, b] in pairs() {
+        join.refuse_touching(a, b)?;
+        join.refuse_touching(b, a)?;
+        join.refuse_overlap(a, b)?;
+        join.refuse_overlap(b, a)?;
+    }
+    Ok(join.numbers())
+}
+
+fn join_body(blocks: &Blocks, a: usize, b: usize) -> bool {
+    blocks.blocks[a].body == blocks.blocks[b].body
+}
+
+struct Join<'b> {
+    blocks: &'b Blocks,
+    grids: &'b [Grid],
+    /// an earlier slot of the same node, or itself
+    first: Vec<usize>,
+    /// what each side is joined to
+    partner: Vec<[Option<Side>; 4]>,
+}
+
+impl Join<'_> {
+    /// Join two sides if they lie on each other.
+    fn sides(&mut self, one: Side, other: Side) -> Result<(), BlockError> {
+        if self.blocks.is_apart(one.0, one.1) || self.blocks.is_apart(other.0, other.1) {
+            return Ok(());
+        }
+        let [a, mut b] = [one, other].map(|(block, side)| self.grids[block].side(side));
+        let near = self.near(one.0, other.0);
+        let at = |(block, _): Side, slot: usize| self.grids[block].at(slot);
+        let together = |a: usize, b: usize| (at(one, a) - at(other, b)).norm() <= near;
+        let (ends, last) = ([a[0], a[a.len() - 1]], b.len() - 1);
+        let opposite = together(ends[0], b[last]) && together(ends[1], b[0]);
+        let alike = together(ends[0], b[0]) && together(ends[1], b[last]);
+        if !(opposite || alike) {
+            return Ok(());
+        }
+        if opposite {
+            b.reverse();
+        }
+        if a.len() != b.len() {
+            let message = format!(
+                "and has {} nodes there to {}: give both the same number and kind of elements, or list a name of one of the \
+                 sides in `apart`",
+                b.len(),
+                a.len()
+            );
+            return Err(self.complain(one, other, &message));
+        }
+        if !a.iter().zip(&b).all(|(a, b)| together(*a, *b)) {
+            let message = "but its nodes lie elsewhere between the ends: give both the same grading, seen from the same end, \
+                and the same arc";
+            return Err(self.complain(one, other, message));
+        }
+        // Round two blocks on either side of an edge this runs in opposite directions.
+        if opposite != (self.grids[one.0].upright == self.grids[other.0].upright) {
+            return Err(self.complain(one, other, "on the same side of it: the two lie on each other; remove one"));
+        }
+        self.partners(one, other)?;
+        a.into_iter().zip(b).for_each(|(a, b)| self.unite(a, b));
+        Ok(())
+    }
+
+    /// Two sides are joined to each other, and to no third one; none has a name.
+    fn partners(&mut self, one: Side, other: Side) -> Result<(), BlockError> {
+        for (side, partner) in [(one, other), (other, one)] {
+            if let Some(third) = self.partner[side.0][side.1].replace(partner) {
+                let message =
+                    format!("which is joined to blocks[{}] already: blocks lie on each other; remove one", third.0);
+                return Err(self.complain(one, other, &message));
+            }
+            if let Some(name) = &self.blocks.blocks[side.0].sides[side.1] {
+                let message = format!(
+                    "is joined to side {} of blocks[{}], so `{name}` lies inside the body: leave the name out, or list it in \
+                     `apart` if the two sides can part",
+                    partner.1, partner.0
+                );
+                return Err(BlockError::new(format!("blocks[{}].sides[{}]", side.0, side.1), message));
+            }
+        }
+        Ok(())
+    }
+
+    fn complain(&self, one: Side, other: Side, message: &str) -> BlockError {
+        let what = format!("its side {} is side {} of blocks[{}], {message}", other.1, one.1, one.0);
+        BlockError::new(format!("blocks[{}]", other.0), what)
+    }
+
+    fn unite(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.first[a.max(b)] = a.min(b);
+    }
+
+    fn root(&self, mut slot: usize) -> usize {
+        while self.first[slot] != slot {
+            slot = self.first[slot];
+        }
+        slot
+    }
+
+    /// How near places of two blocks are the same.
+    fn near(&self, a: usize, b: usize) -> f64 {
+        let corners = [a, b].map(|block| [0, 1, 2, 3].map(|corner| self.grids[block].corner(corner)));
+        let sides = corners.iter().flat_map(|c| (0..4).map(|k| (c[(k + 1) % 4] - c[k]).norm()));
+        let farthest = corners.iter().flatten().fold(0.0f64, |most, corner| most.max(corner.amax()));
+        (SAME * sides.fold(f64::INFINITY, f64::min)).max(8.0 * f64::EPSILON * farthest)
+    }
+
+    /// A corner of `a` that lies on a side of `b`, and is none of its nodes; sides that are apart may meet there.
+    fn refuse_touching(&self, a: usize, b: usize) -> Result<(), BlockError> {
+        let near = self.near(a, b);
+        for corner in 0..4 {
+            let (slot, at) = (self.root(self.grids[a].side(corner)[0]), self.grids[a].corner(corner));
+            let touched: Vec<usize> = (0..4).filter(|side| self.grids[b].distance(*side, at) <= near).collect();
+            let apart = |block: usize, sides: &[usize]| sides.iter().any(|side| self.blocks.is_apart(block, *side));
+            let Some(side) = touched.first() else { continue };
+            let joined =
+                touched.iter().any(|side| self.grids[b].side(*side).iter().any(|&node| self.root(node) == slot));
+            if !(joined || apart(a, &[corner, (corner + 3) % 4]) || apart(b, &touched)) {
+                let message = format!(
+                    "its corner {corner} lies on side {side} of blocks[{b}] and is not joined to it: blocks of a body are joined \
+                     along whole sides. Divide blocks[{b}] there, or list a name of one of the sides in `apart`"
+                );
+                return Err(BlockError::new(format!("blocks[{a}]"), message));
+            }
+        }
+        Ok(())
+    }
+
+    /// Places inside `a` that are inside `b`.
+    fn refuse_overlap(&self, a: usize, b: usize) -> Result<(), BlockError> {
+        let outline = self.grids[b].outline();
+        match self.grids[a].inside.iter().find(|at| is_inside(**at, &outline)) {
+            Some(at) => {
+                let message =
+                    format!("lies on blocks[{b}], at ({}, {}) for one: move it, or give it another body", at.x, at.y);
+                Err(BlockError::new(format!("blocks[{a}]"), message))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Numbers in the order in which nodes come first.
+    fn numbers(&self) -> Vec<usize> {
+        let mut numbers = vec![0; self.first.len()];
+        let mut next = 0;
+        for slot in 0..numbers.len() {
+            let root = self.root(slot);
+            numbers[slot] = if root == slot { next } else { numbers[root] };
+            next += usize::from(root == slot);
+        }
+        numbers
+    }
+}
+
+/// Whether a polygon goes round a place: the edges right of it cross its height an odd number of times.
+fn is_inside(at: Vector2<f64>, polygon: &[Vector2<f64>]) -> bool {
+    let next = polygon.iter().cycle().skip(1);
+    let crosses = |(a, b): &(&Vector2<f64>, &Vector2<f64>)| {
+        (a.y > at.y) != (b.y > at.y) && at.x < a.x + (b.x - a.x) * (at.y - a.y) / (b.y - a.y)
+    };
+    polygon.iter().zip(next).filter(crosses).count() % 2 == 1
+}

@@ -1,0 +1,198 @@
+//! Meshes of blocks: quadrilaterals with straight sides or arcs, each divided into rows and columns of elements, and joined where
+//! they share a side.
+//!
+//! ```text
+//!            side 2
+//!   corner 3 ──────── corner 2       side k goes from corner k to the next; elements and grading are given along
+//!   side 3  │        │  side 1       side 0 and along side 1, from corner 0 on
+//!   corner 0 ──────── corner 1
+//!            side 0
+//! ```
+//! Corners may run either way round. Inside, nodes lie on the transfinite map of the four sides x₀ … x₃:
+//!
+//! ```text
+//! x(s, t) = (1 − t) x₀(s) + t x₂(s) + (1 − s) x₃(t) + s x₁(t) − bilinear map of the corners
+//! ```
+//! W. J. Gordon and C. A. Hall (1973), Int. J. Numer. Meth. Engng 7, 461.
+
+mod grid;
+mod join;
+mod spacing;
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::InlineMesh;
+use grid::Grid;
+pub use spacing::Grading;
+
+/// Most elements of all blocks together: more than a computer solves for, and few enough to be counted.
+const MOST: f64 = 4e6;
+
+/// Elements of a block.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub enum BlockKind {
+    /// Bilinear, 4 nodes
+    #[default]
+    Q4,
+    /// Serendipity, 8 nodes: those in the middle of sides lie on the arcs
+    Q8,
+}
+
+impl BlockKind {
+    /// Spacings of nodes along an edge.
+    fn order(self) -> usize {
+        match self {
+            Self::Q4 => 1,
+            Self::Q8 => 2,
+        }
+    }
+}
+
+/// A quadrilateral divided into rows and columns of elements.
+#[derive(Clone, Debug)]
+pub struct Block {
+    /// body that its elements belong to
+    pub body: String,
+    /// corners in turn [L]
+    pub corners: [[f64; 2]; 4],
+    /// for each side the centre of the circle that it lies on, along its shorter arc; straight where there is none [L]
+    pub arcs: [Option<[f64; 2]>; 4],
+    /// elements along side 0 and along side 1
+    pub elements: [usize; 2],
+    /// how their sizes vary, from corner 0 on
+    pub grading: [Grading; 2],
+    /// kind
+    pub kind: BlockKind,
+    /// names of the sides
+    pub sides: [Option<String>; 4],
+}
+
+impl Block {
+    /// A block with straight sides that have no names, of even Q4 elements.
+    pub fn new(body: &str, corners: [[f64; 2]; 4], elements: [usize; 2]) -> Self {
+        Self {
+            body: body.into(),
+            corners,
+            arcs: [None; 4],
+            elements,
+            grading: [Grading::default(); 2],
+            kind: BlockKind::Q4,
+            sides: [const { None }; 4],
+        }
+    }
+
+    /// A rectangle from its lower left to its upper right corner [L]; one named `b` is of the body `b` and has the sides
+    /// `b_bottom`, `b_right`, `b_top` and `b_left`.
+    pub fn rectangle(name: &str, elements: [usize; 2], [x, y]: [f64; 2], [right, top]: [f64; 2]) -> Self {
+        let sides = ["bottom", "right", "top", "left"].map(|side| Some(format!("{name}_{side}")));
+        Self { sides, ..Self::new(name, [[x, y], [right, y], [right, top], [x, top]], elements) }
+    }
+}
+
+/// Blocks, joined where two of one body share a side.
+///
+/// ```
+/// use fecontact::mesh::{Block, Blocks, Grading};
+///
+/// let ground = Block { grading: [Grading::Ratio(1.0), Grading::Ratio(0.2)], ..Block::rectangle("ground", [8, 4], [0.0, -1.0], [4.0, 0.0]) };
+/// let block = Block::rectangle("block", [5, 3], [1.0, 0.0], [3.0, 1.0]);
+/// let mesh = Blocks { blocks: vec![ground, block], apart: vec![] }.mesh()?.build()?;
+/// assert_eq!((mesh.nodes.len(), mesh.elements.len()), (9 * 5 + 6 * 4, 47));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Blocks {
+    /// blocks; nodes are numbered in their order, row by row from side 0 on
+    pub blocks: Vec<Block>,
+    /// names of sides that are not joined, such as the two sides of a crack
+    pub apart: Vec<String>,
+}
+
+/// What is wrong with a block, and what to do.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{place}: {message}")]
+pub struct BlockError {
+    /// such as `blocks[1].elements`
+    pub place: String,
+    /// what is wrong, and what to do
+    pub message: String,
+}
+
+impl BlockError {
+    fn new(place: impl Into<String>, message: impl Into<String>) -> Self {
+        Self { place: place.into(), message: message.into() }
+    }
+}
+
+impl Blocks {
+    /// The mesh: a body of each name, and a group of edges for each name of sides.
+    ///
+    /// # Errors
+    /// [`BlockError`] of a block that is none, or of blocks that touch and cannot be joined.
+    pub fn mesh(&self) -> Result<InlineMesh, BlockError> {
+        self.check_size()?;
+        let mut first = 0;
+        let mut grids = Vec::new();
+        for (b, block) in self.blocks.iter().enumerate() {
+            let grid = Grid::new(block, first).map_err(|message| BlockError::new(format!("blocks[{b}]"), message))?;
+            first += grid.nodes.len();
+            grids.push(grid);
+        }
+        let numbers = join::joined(self, &grids)?;
+        let mut mesh = InlineMesh::default();
+        for (grid, block) in grids.iter().zip(&self.blocks) {
+            let own = &numbers[grid.first..grid.first + grid.nodes.len()];
+            for (&number, &position) in own.iter().zip(&grid.nodes) {
+                if number == mesh.nodes.len() {
+                    mesh.nodes.push(position.into());
+                }
+            }
+            let named = |cells: Vec<Vec<usize>>| -> Vec<Vec<usize>> {
+                cells.into_iter().map(|cell| cell.into_iter().map(|slot| numbers[slot]).collect()).collect()
+            };
+            mesh.elements.entry(block.body.clone()).or_default().extend(named(grid.elements()));
+            for (k, name) in block.sides.iter().enumerate() {
+                if let Some(name) = name {
+                    mesh.edges.entry(name.clone()).or_default().extend(named(grid.edges(k)));
+                }
+            }
+        }
+        Ok(mesh)
+    }
+
+    fn check_size(&self) -> Result<(), BlockError> {
+        let mut total = 0.0;
+        for (b, Block { elements, .. }) in self.blocks.iter().enumerate() {
+            let place = format!("blocks[{b}].elements");
+            if elements.contains(&0) {
+                return Err(BlockError::new(place, "is 0 along a side: must be at least 1"));
+            }
+            total += elements[0] as f64 * elements[1] as f64;
+            if total > MOST {
+                let message = format!("makes {total:.0} elements, more than {MOST:.0}: take fewer");
+                return Err(BlockError::new(place, message));
+            }
+        }
+        let sides: BTreeMap<_, _> =
+            self.blocks.iter().flat_map(|block| &block.sides).flatten().map(|s| (s, ())).collect();
+        match self.apart.iter().position(|name| !sides.contains_key(name)) {
+            Some(k) => {
+                let known = sides.keys().map(|name| name.as_str());
+                let near = super::names::nearest(&self.apart[k], known);
+                let meant = near.map_or_else(String::new, |near| format!(" (did you mean `{near}`?)"));
+                let message =
+                    format!("no side is named `{}`{meant}: name the sides that are not joined", self.apart[k]);
+                Err(BlockError::new(format!("apart[{k}]"), message))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn is_apart(&self, block: usize, side: usize) -> bool {
+        self.blocks[block].sides[side].as_ref().is_some_and(|name| self.apart.contains(name))
+    }
+}
