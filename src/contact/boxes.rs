@@ -82,12 +82,6 @@ const MARGIN: f64 = 0.05;
 const USED: f64 = 0.9;
 
 impl Boxes {
-    pub(super) fn new(surface: &Surface, x: &Configuration) -> Self {
-        let mut boxes = Self::default();
-        boxes.build(surface, x);
-        boxes
-    }
-
     /// See to it that the tree serves for a surface in the configuration `x`.
     pub(super) fn update(&mut self, surface: &Surface, x: &Configuration) {
         if !self.serves(surface, x) {

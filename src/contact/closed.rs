@@ -1,4 +1,4 @@
-//! What a closed point adds to the equations: the forces of its traction on the nodes, and their derivative.
+//! What a closed point, or one in a fluid, adds to the equations: the forces of its traction on the nodes, and their derivative.
 
 use nalgebra::Vector2;
 
@@ -6,7 +6,8 @@ use super::kinematics::Kinematics;
 use super::presumption::Tractions;
 use crate::laws::friction::FrictionResponse;
 
-/// A closed point: what it adds to the equations, and how its tractions vary with its nodes. Two dofs a node.
+/// A point that is closed, or in a fluid: what it adds to the equations, and how its tractions vary with its nodes. Two dofs a
+/// node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closed<'a> {
     /// The nodes, in the order of the entries
@@ -19,8 +20,21 @@ pub struct Closed<'a> {
     pub dpressure: &'a [f64],
     /// δq [F/L³]
     pub dtraction: &'a [f64],
+    /// The fluid's part of the force, as a load has it, −1 times that of an internal one; empty without a fluid [F]
+    pub fluid: &'a [f64],
     /// p and q
     pub tractions: Tractions,
+    /// Whether only a fluid acts, and the point is open
+    pub is_open: bool,
+}
+
+/// What acts at a point beside pressure and friction.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Beside {
+    /// What slip radiates, η v and its derivative by slip
+    pub radiates: [f64; 2],
+    /// p_w
+    pub fluid: f64,
 }
 
 impl Closed<'_> {
@@ -43,6 +57,8 @@ pub struct ClosedPoints {
     tangent: Vec<f64>,
     dpressure: Vec<f64>,
     dtraction: Vec<f64>,
+    /// Forces of a fluid, of all points as soon as one has any
+    fluid: Vec<f64>,
     /// δ(t ℓ) of the point at hand, its two components
     rows: [Vec<f64>; 2],
 }
@@ -51,6 +67,7 @@ pub struct ClosedPoints {
 #[derive(Clone, Copy, Debug)]
 struct Place {
     tractions: Tractions,
+    is_open: bool,
     /// Its first node, and how many there are
     nodes: [usize; 2],
     /// Where its tangent begins
@@ -60,15 +77,15 @@ struct Place {
 impl ClosedPoints {
     /// No points yet.
     pub fn clear(&mut self) {
-        let Self { points, nodes, force, tangent, dpressure, dtraction, .. } = self;
+        let Self { points, nodes, force, tangent, dpressure, dtraction, fluid, .. } = self;
         points.clear();
         nodes.clear();
-        [force, tangent, dpressure, dtraction].into_iter().for_each(Vec::clear);
+        [force, tangent, dpressure, dtraction, fluid].into_iter().for_each(Vec::clear);
     }
 
     /// What a point added, if it is closed.
     pub fn get(&self, point: usize) -> Option<Closed<'_>> {
-        let Place { tractions, nodes: [first, count], tangent } = (*self.points.get(point)?)?;
+        let Place { tractions, is_open, nodes: [first, count], tangent } = (*self.points.get(point)?)?;
         let dofs = 2 * first..2 * (first + count);
         let varied =
             |values: &'_ [f64]| -> std::ops::Range<usize> { if values.is_empty() { 0..0 } else { dofs.clone() } };
@@ -79,32 +96,65 @@ impl ClosedPoints {
             tangent: &self.tangent[tangent..tangent + size],
             dpressure: &self.dpressure[varied(&self.dpressure)],
             dtraction: &self.dtraction[varied(&self.dtraction)],
+            fluid: self.fluid.get(dofs.clone()).unwrap_or_default(),
             tractions,
+            is_open,
         })
     }
 
-    /// A point that is open.
-    pub fn push_open(&mut self) {
-        self.points.push(None);
+    /// A point that is open, and what a fluid does to it; the length on which that acts.
+    pub(super) fn push_open(&mut self, k: &Kinematics, fluid: f64) -> Option<f64> {
+        if fluid == 0.0 {
+            self.points.push(None);
+            return None;
+        }
+        if k.varied {
+            self.push_dpressure(k, [0.0; 2]);
+        }
+        self.push(k, &FrictionResponse::default(), Beside { fluid, ..Beside::default() }, None);
+        if let Some(Some(place)) = self.points.last_mut() {
+            place.is_open = true;
+        }
+        Some(k.length)
     }
 
     /// A closed point: nodal forces of the traction and their derivative, the exact one unless tractions are promised or a
     /// pressure carried. The variation of the pressure was added to [`ClosedPoints::dpressure`] before.
-    pub(super) fn push(&mut self, k: &Kinematics, response: &FrictionResponse, promised: Option<Tractions>) {
+    /// What acts beside is part of the forces and no part of what friction promises.
+    pub(super) fn push(
+        &mut self,
+        k: &Kinematics,
+        response: &FrictionResponse,
+        Beside { radiates, fluid }: Beside,
+        promised: Option<Tractions>,
+    ) {
         let tractions = Tractions::of(&response.state);
+        let whole = |of: Tractions| Tractions { pressure: of.pressure + fluid, traction: of.traction + radiates[0] };
         self.points.push(Some(Place {
             tractions,
+            is_open: false,
             nodes: [self.nodes.len(), k.nodes.len()],
             tangent: self.tangent.len(),
         }));
         self.nodes.extend_from_slice(&k.nodes);
-        let traction = turned(k, tractions);
+        let traction = turned(k, whole(tractions));
+        self.push_fluid(k, fluid);
         for &w in &k.relative {
             self.force.extend([0, 1].map(|i| -w * traction[i] * k.length));
         }
         if k.varied {
-            self.push_tangent(k, response, promised.unwrap_or(tractions));
+            self.push_tangent(k, response, radiates[1], whole(promised.unwrap_or(tractions)));
         }
+    }
+
+    /// The forces of a fluid on the nodes of the point at hand; those of all points before it have none where this is the first.
+    fn push_fluid(&mut self, k: &Kinematics, fluid: f64) {
+        if fluid == 0.0 && self.fluid.is_empty() {
+            return;
+        }
+        self.fluid.resize(self.force.len(), 0.0);
+        let traction = k.normal * fluid;
+        self.fluid.extend(k.relative.iter().flat_map(|&w| [0, 1].map(|i| w * traction[i] * k.length)));
     }
 
     /// δp = a δg + b δΔu_t of the next point.
@@ -114,7 +164,7 @@ impl ClosedPoints {
         self.dpressure.extend(k.dgap.iter().zip(&k.dslip).map(rate));
     }
 
-    fn push_tangent(&mut self, k: &Kinematics, response: &FrictionResponse, promised: Tractions) {
+    fn push_tangent(&mut self, k: &Kinematics, response: &FrictionResponse, damping: f64, promised: Tractions) {
         let Self { tangent, dpressure, dtraction, rows, .. } = self;
         let dofs = 2 * k.nodes.len();
         let dpressure = &dpressure[dtraction.len()..];
@@ -127,7 +177,8 @@ impl ClosedPoints {
             row.clear();
             row.extend((0..dofs).map(|c| {
                 let along_normal = dpressure[c] - k.drotation[c] * promised.traction;
-                let along_tangent = -(dtraction[c] + k.drotation[c] * promised.pressure);
+                let resisting = dtraction[c] + damping * k.dslip[c];
+                let along_tangent = -(resisting + k.drotation[c] * promised.pressure);
                 (along_normal * k.normal[i] + along_tangent * k.tangent[i]) * k.length + k.dlength[c] * force[i]
             }));
         }

@@ -35,39 +35,62 @@ pub(super) struct Cut {
     pub node: Option<usize>,
 }
 
-/// The cuts of all slave edges in one configuration.
-pub struct Overlaps(pub(super) Vec<Vec<Overlap>>);
+/// The cuts of all slave edges in one configuration, written again and again in the same memory.
+#[derive(Clone, Debug, Default)]
+pub struct Overlaps(pub(super) Vec<CutEdge>);
 
-/// Cut one slave edge where master nodes project on it; of several segments that face a part the nearest counts.
-pub(super) fn cut(edge: &[usize], surface: &Surface, index: &Index, x: &Configuration) -> Vec<Overlap> {
-    let candidates = facing(edge, surface, index, x);
-    let mut cuts: Vec<Cut> = candidates.iter().flat_map(|overlap| overlap.ends).collect();
-    if edge.len() == 3 {
-        cuts.push(Cut { xi: 0.0, node: None });
-    }
-    cuts.sort_by(|a, b| a.xi.total_cmp(&b.xi));
-    let distance = |overlap: &Overlap, xi: f64| {
-        let values = shape::edge_values(edge.len(), xi);
-        let [a, b] = surface.segments[overlap.segment].ends;
-        edge.iter()
-            .zip(values)
-            .map(|(&node, w)| w * x.between(a, node))
-            .sum::<Vector2<f64>>()
-            .dot(&normal_of(x.between(a, b).normalize()))
-            .abs()
-    };
-    let mut overlaps: Vec<Overlap> = Vec::new();
-    for pair in cuts.windows(2).filter(|pair| pair[0].xi < pair[1].xi) {
-        let middle = 0.5 * (pair[0].xi + pair[1].xi);
-        let facing = candidates.iter().filter(|overlap| overlap.ends[0].xi < middle && middle < overlap.ends[1].xi);
-        let nearest = facing.min_by(|a, b| distance(a, middle).total_cmp(&distance(b, middle)));
-        overlaps.extend(nearest.map(|overlap| Overlap { segment: overlap.segment, ends: [pair[0], pair[1]] }));
-    }
-    overlaps
+/// A slave edge, cut.
+#[derive(Clone, Debug, Default)]
+pub(super) struct CutEdge {
+    /// Its parts that are faced, in order
+    pub overlaps: Vec<Overlap>,
+    /// What each segment around it faces, whatever lies in between
+    candidates: Vec<Overlap>,
+    cuts: Vec<Cut>,
+    /// Segments around it
+    around: Vec<usize>,
 }
 
-/// The part of a slave edge that each segment around it faces, whatever lies in between.
-fn facing(edge: &[usize], surface: &Surface, index: &Index, x: &Configuration) -> Vec<Overlap> {
+impl CutEdge {
+    /// Cut an edge where master nodes project on it; of several segments that face a part the nearest counts.
+    pub fn cut(&mut self, edge: &[usize], surface: &Surface, index: &Index, x: &Configuration) {
+        let Self { overlaps, candidates, cuts, around } = self;
+        candidates.clear();
+        facing(edge, surface, index, x, (around, candidates));
+        cuts.clear();
+        cuts.extend(candidates.iter().flat_map(|overlap| overlap.ends));
+        if edge.len() == 3 {
+            cuts.push(Cut { xi: 0.0, node: None });
+        }
+        cuts.sort_by(|a, b| a.xi.total_cmp(&b.xi));
+        let distance = |overlap: &Overlap, xi: f64| {
+            let values = shape::edge_values(edge.len(), xi);
+            let [a, b] = surface.segments[overlap.segment].ends;
+            edge.iter()
+                .zip(values)
+                .map(|(&node, w)| w * x.between(a, node))
+                .sum::<Vector2<f64>>()
+                .dot(&normal_of(x.between(a, b).normalize()))
+                .abs()
+        };
+        overlaps.clear();
+        for pair in cuts.windows(2).filter(|pair| pair[0].xi < pair[1].xi) {
+            let middle = 0.5 * (pair[0].xi + pair[1].xi);
+            let facing = candidates.iter().filter(|overlap| overlap.ends[0].xi < middle && middle < overlap.ends[1].xi);
+            let nearest = facing.min_by(|a, b| distance(a, middle).total_cmp(&distance(b, middle)));
+            overlaps.extend(nearest.map(|overlap| Overlap { segment: overlap.segment, ends: [pair[0], pair[1]] }));
+        }
+    }
+}
+
+/// The part of a slave edge that each segment around it faces, whatever lies in between, added to the `candidates`.
+fn facing(
+    edge: &[usize],
+    surface: &Surface,
+    index: &Index,
+    x: &Configuration,
+    (around, candidates): (&mut Vec<usize>, &mut Vec<Overlap>),
+) {
     let along = x.between(edge[0], edge[1]);
     let reach = REACH * along.norm();
     let normal = -normal_of(along.normalize());
@@ -77,8 +100,8 @@ fn facing(edge: &[usize], surface: &Surface, index: &Index, x: &Configuration) -
         let levels = levels(node);
         root(|xi| Line::Edge(edge).shapes(xi), &levels, chord(&levels))
     };
-    let mut candidates = Vec::new();
-    for segment in index.around(edge, reach, x) {
+    index.around(edge, reach, x, around);
+    for &segment in &*around {
         let [a, b] = surface.segments[segment].ends;
         // On a straight edge the chord is the coordinate, but for round-off.
         let [start, end] = [a, b].map(|node| chord(&levels(node)));
@@ -101,5 +124,4 @@ fn facing(edge: &[usize], surface: &Surface, index: &Index, x: &Configuration) -
             candidates.push(Overlap { segment, ends: [first, last] });
         }
     }
-    candidates
 }

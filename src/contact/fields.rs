@@ -11,7 +11,8 @@ pub fn names(pairs: &[ContactPair]) -> Vec<&'static str> {
     let always = observables::ALWAYS.iter().map(|(name, _)| *name);
     let of_surfaces = ["gap", "pressure", "traction", "slip", "elastic_slip", "slip_rate"].into_iter();
     let further = observables::further(laws.map(|law| law as &dyn FrictionLaw));
-    of_surfaces.chain(always).chain(["state", "dissipation"]).chain(further).collect()
+    let fluid = pairs.iter().any(|pair| pair.fluid.is_some()).then_some("fluid_pressure");
+    of_surfaces.chain(always).chain(["state", "dissipation"]).chain(further).chain(fluid).collect()
 }
 
 /// Value of a field at a point after an increment of length `dt`. Where a law has none, `R` and `mu` are 0 and `structure` is
@@ -23,8 +24,9 @@ pub fn names(pairs: &[ContactPair]) -> Vec<&'static str> {
 /// | `pressure`, `traction` | p, q [F/L²] |
 /// | `slip`, `elastic_slip` | total plastic slip, q/α_t [L] |
 /// | `slip_rate` | plastic slip of the increment over its length [L/T] |
-/// | `state` | 0 open, 1 sticking, 2 slipping, as the law says |
+/// | `state` | 0 open, 1 sticking (or closed without friction), 2 slipping, as the law says |
 /// | `dissipation` | work of friction so far per area [F/L] |
+/// | `fluid_pressure` | p_w, beside `pressure`, where a contact has a fluid [F/L²] |
 /// | any other | what the law observes under this name, such as `R`, `mu`, `structure`, `theta` |
 pub fn value(pair: &ContactPair, slave: &SlavePoint, state: &ContactState, dt: f64, name: &str) -> f64 {
     let friction = &state.friction;
@@ -36,7 +38,8 @@ pub fn value(pair: &ContactPair, slave: &SlavePoint, state: &ContactState, dt: f
         "elastic_slip" => pair.elastic_slip(slave, friction),
         "slip_rate" => friction.plastic_increment * if dt > 0.0 { 1.0 / dt } else { 0.0 },
         "dissipation" => friction.dissipation,
-        "state" => match state.regime() {
+        "fluid_pressure" => state.fluid,
+        "state" => match pair.regime(slave, state) {
             Regime::Open => 0.0,
             Regime::Stick => 1.0,
             Regime::Slip => 2.0,

@@ -8,6 +8,18 @@
 //! δt = (δp − q δθ) n − (δq + p δθ) s,   δp = −α_n (δg − δd),   δq = ∂q/∂Δu_t δΔu_t + ∂q/∂p δp,   δd likewise
 //! ```
 //!
+//! Surfaces that dilate part where the opening that goes with p = 0 ends, not where that of the old state does: between the two
+//! gaps slip lifts them, and they carry what presses them together. A point is closed where
+//!
+//! ```text
+//! p̄ − α_n (g − d(Δu_t, p → 0)) > 0
+//! ```
+//!
+//! A fluid adds its pressure p_w to p in the forces and in nothing else, see `fluid.rs`; it acts on open points too.
+//!
+//! With radiation damping, q + η Δu_t/Δt stands for q in static increments: without inertia slip could be as fast as it likes;
+//! the bodies, were they unbounded, would take η v from the traction by the shear waves that slip sends into them.
+//!
 //! In an increment that starts open, at the gap g₀, only the slip after touch counts; all where nothing faced the point at
 //! its start. The surfaces approach at a steady rate, first through the gap and then by what the pressure pushes in:
 //!
@@ -20,76 +32,18 @@
 //! would change with the share that counts. Without c a point that comes in with a high pressure would stick for its stiff
 //! penalty alone, and spring away by all it has missed in the increment after.
 
+use super::closed::Beside;
 pub use super::closed::{Closed, ClosedPoints, nodal_forces};
+use super::kinematics::Kinematics;
 pub use super::kinematics::Meeting;
-use super::kinematics::{Kinematics, kinematics};
 use super::pair::ContactPair;
-use super::point::{MasterPoint, SlavePoint};
+use super::place::may_ride;
+pub use super::place::{PointPlace, closes, place, touches};
+use super::point::SlavePoint;
 use super::presumption::Presumption;
 pub use super::presumption::{PointIncrement, Presume, Tractions};
-use super::projection::Projection;
 pub use super::state::ContactState;
-use super::state::TOUCH;
 use crate::laws::friction::{Answer, FrictionResponse, LawFailure, Sliding};
-use crate::mesh::configuration::Configuration;
-
-/// Where a point is at the end of an increment.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct PointPlace {
-    /// g; 0 where nothing faces it [L]
-    pub gap: f64,
-    /// The foot, if the master faces it
-    pub foot: Option<MasterPoint>,
-    /// Whether it is closed, and has kinematics
-    pub closes: bool,
-}
-
-/// Where a point is whose projection is known, in the committed configuration and that of the trial, and its kinematics if it
-/// is closed.
-pub fn place(
-    pair: &ContactPair,
-    slave: &SlavePoint,
-    projection: Option<Projection>,
-    old: &ContactState,
-    increment: PointIncrement,
-    [before, x]: [&Configuration; 2],
-    k: &mut Kinematics,
-) -> PointPlace {
-    let Some(projection) = projection else { return PointPlace::default() };
-    let gap = slave.gap(projection.gap, increment.during.fading);
-    let closes = closes(pair, slave, gap, old, increment, x);
-    if closes {
-        kinematics(slave, &pair.master, &projection, old.foot, x, k);
-        if old.foot.is_none() {
-            k.count_from(before, x);
-        }
-    }
-    PointPlace { gap, foot: Some(projection.foot), closes }
-}
-
-/// Whether a point with this gap carries pressure, or is presumed to.
-pub fn closes(
-    pair: &ContactPair,
-    slave: &SlavePoint,
-    gap: f64,
-    old: &ContactState,
-    increment: PointIncrement,
-    x: &Configuration,
-) -> bool {
-    let kept = increment.presumption.kept > 0.0;
-    let clearance = gap - old.friction.opening;
-    let pressure = old.multiplier - pair.normal_stiffness(increment.during.stiffening) * clearance;
-    let presume = increment.presumption.presume;
-    // The length is not worth computing where nothing is presumed.
-    let touch = || presume == Presume::Touch && touches(clearance, slave.current_length(x), old, presume);
-    kept || pressure > 0.0 || touch()
-}
-
-/// Whether a zero gap is presumed to be closed, and to stick.
-pub fn touches(clearance: f64, length: f64, old: &ContactState, presume: Presume) -> bool {
-    let presumed = presume == Presume::Touch && old.foot.is_some();
-    presumed && [old.clearance(), clearance].iter().all(|gap| gap.abs() <= TOUCH * length)
-}
 
 /// A point on the way through its law: first what the law is asked for, then what follows from its answer.
 #[derive(Debug)]
@@ -105,6 +59,8 @@ pub struct Loading<'a> {
     alpha_n: f64,
     /// p if the surfaces opened no further than they are [F/L²]
     free: f64,
+    /// What the opening at p → 0 adds to it [F/L²]
+    lift: f64,
     /// d/p of slip after touch; none where all slip counts [L³/F]
     compliance: Option<f64>,
     /// What the law is asked for
@@ -113,6 +69,9 @@ pub struct Loading<'a> {
 
 impl<'a> Loading<'a> {
     /// What the law is asked for at a point in its place, which has these kinematics if it is closed.
+    ///
+    /// # Errors
+    /// [`LawFailure`] of a law that does not say where its surfaces part.
     pub fn new(
         pair: &'a ContactPair,
         slave: &'a SlavePoint,
@@ -120,19 +79,73 @@ impl<'a> Loading<'a> {
         increment: PointIncrement,
         place: PointPlace,
         kinematics: &'a mut Kinematics,
-    ) -> Self {
+    ) -> Result<Self, LawFailure> {
         let alpha_n = pair.normal_stiffness(increment.during.stiffening);
         let free = old.multiplier - alpha_n * (place.gap - old.friction.opening);
         let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.during.dt };
         let apart = place.closes && old.apart(kinematics.length);
         let compliance = apart.then(|| pair.compliance_after_touch(increment.during.settles));
         let whole = kinematics.slip;
-        let mut loading =
-            Self { pair, slave, old, increment, place, kinematics, whole, alpha_n, free, compliance, sliding };
+        let mut loading = Self {
+            pair,
+            slave,
+            old,
+            increment,
+            place,
+            kinematics,
+            whole,
+            alpha_n,
+            free,
+            lift: 0.0,
+            compliance,
+            sliding,
+        };
         if place.closes {
-            loading.load(carried(free, increment.presumption));
+            loading.close()?;
         }
-        loading
+        Ok(loading)
+    }
+
+    /// Ask for the pressure of a point that is closed by its gap or, where surfaces ride up on each other, by its slip.
+    fn close(&mut self) -> Result<(), LawFailure> {
+        let Presumption { kept, presume, .. } = self.increment.presumption;
+        let (length, clearance) = (self.kinematics.length, self.place.gap - self.old.friction.opening);
+        if may_ride(self.pair, self.slave, self.old, || length) {
+            self.lift = self.alpha_n * (self.parting()? - self.old.friction.opening);
+            self.place.closes = kept > 0.0 || !self.parts() || touches(clearance, length, self.old, presume);
+        }
+        if self.place.closes {
+            let (lifted, before) = (self.free + self.lift, self.old.friction.pressure);
+            let free = if self.free > 0.0 && !self.parts() { self.free } else { lifted };
+            // What slip alone could lift is far more than what friction lets it.
+            let first = if self.lift > 0.0 && before > 0.0 { free.min(before) } else { free };
+            self.load(carried(first, self.increment.presumption));
+        }
+        Ok(())
+    }
+
+    /// Whether no pressure is left.
+    fn parts(&self) -> bool {
+        self.free + self.lift <= 0.0
+    }
+
+    /// d at p → 0: a law has no answer at 0, but near it the answer no longer changes.
+    fn parting(&self) -> Result<f64, LawFailure> {
+        let (old, slip) = (&self.old.friction, self.whole * self.counted(0.0).0);
+        let law = self.pair.law(self.slave);
+        let size = old.pressure + old.traction.abs() + (self.alpha_n + law.stiffness()) * slip.abs();
+        if size == 0.0 {
+            return Ok(old.opening);
+        }
+        let sliding = Sliding { slip, pressure: f64::EPSILON * size, ..self.sliding };
+        Ok(self.answer(sliding)?.state.opening)
+    }
+
+    /// The answer of the law as it holds in the increment.
+    fn answer(&self, sliding: Sliding) -> Answer {
+        let law = self.pair.law(self.slave);
+        let now = law.during(self.increment.during.span())?;
+        now.as_deref().unwrap_or(law).respond(&self.old.friction, sliding)
     }
 
     /// Ask for a pressure, and the slip that counts under it.
@@ -155,14 +168,13 @@ impl<'a> Loading<'a> {
     /// [`LawFailure`] of the law, or where its opening and its pressure do not come to agree.
     pub fn finish(mut self, answer: Answer, closed: &mut ClosedPoints) -> Result<ContactState, LawFailure> {
         let mut response = answer?;
-        let PointPlace { gap, foot, closes } = self.place;
+        let PointPlace { gap, foot, closes, fluid } = self.place;
         if !closes {
-            closed.push_open();
-            let length = self.old.length;
-            return Ok(ContactState { friction: response.state, foot, length, gap, slip: 0.0, multiplier: 0.0 });
+            let length = closed.push_open(self.kinematics, fluid).unwrap_or(self.old.length);
+            let parted = ContactState { slip: 0.0, radiation: 0.0, multiplier: 0.0, ..*self.old };
+            return Ok(ContactState { friction: response.state, foot, gap, length, fluid, ..parted });
         }
-        let pressure = self.agree(&mut response)?;
-        let carried = self.sliding.pressure;
+        let (pressure, carried) = (self.agree(&mut response)?, self.sliding.pressure);
         let (share, dslip_dpressure) = self.counted(carried);
         let Self { pair, slave, old, increment, kinematics, whole, alpha_n, sliding, compliance, .. } = self;
         let stiffness = pair.law(slave).stiffness();
@@ -189,22 +201,28 @@ impl<'a> Loading<'a> {
             let counted = compliance.map(|_| (share, dslip_dpressure));
             vary(kinematics, alpha, alpha * response.dopening_dslip, counted, closed);
         }
-        closed.push(kinematics, &response, increment.presumption.promised);
+        let radiates @ [radiation, _] = pair.radiated(increment.during, sliding.slip);
+        closed.push(kinematics, &response, Beside { radiates, fluid }, increment.presumption.promised);
         Ok(ContactState {
             friction: response.state,
             foot,
             length: kinematics.length,
             gap,
             slip: whole,
+            radiation,
+            radiated: old.radiated + 0.5 * (old.radiation + radiation) * sliding.slip,
             // The next increment begins with the same pressure, but the stiffness given.
             multiplier: old.multiplier - (alpha_n - pair.alpha_n) * clearance,
+            fluid,
         })
     }
 
     /// The pressure that goes with the opening of the law, p = p̄ − α_n (g − d): asked for again until both agree, or by the
     /// tangent of one answer where a presumption says under which pressure the law answers.
     fn agree(&mut self, response: &mut FrictionResponse) -> Result<f64, LawFailure> {
-        let presumed = self.increment.presumption.carried.is_some() || self.free <= 0.0;
+        let presumed = self.increment.presumption.carried.is_some() || self.parts();
+        // Between them p − p̄ + α_n (g − d) changes its sign: no pressure is too little where the surfaces do not part.
+        let [mut low, mut high] = [0.0, f64::INFINITY];
         for _ in 0..MOST_ANSWERS {
             let asked = self.sliding.pressure;
             let dslip = self.counted(asked).1;
@@ -212,13 +230,17 @@ impl<'a> Loading<'a> {
             let rate = response.dopening_dpressure + response.dopening_dslip * dslip;
             let lifted = self.alpha_n * (opened + rate * (self.free - asked)) / (1.0 - self.alpha_n * rate);
             let pressure = self.free + lifted;
-            let size = asked.abs() + self.alpha_n * opened.abs();
+            // An opening is known to its own round-off, which a small pressure feels.
+            let size = asked.abs() + self.alpha_n * (opened.abs() + response.state.opening.abs());
             if presumed || (pressure - asked).abs() <= AGREE * size {
                 return Ok(pressure);
             }
-            // The law must not be asked below touch for an opening that ends above.
-            self.load(pressure.max(0.5 * asked));
-            *response = self.pair.law(self.slave).respond(&self.old.friction, self.sliding)?;
+            let side = if asked < self.free + self.alpha_n * opened { &mut low } else { &mut high };
+            *side = asked;
+            // Where slip sets in the opening has a kink, over which tangents lead to and fro.
+            let between = low < pressure && pressure < high;
+            self.load(if between { pressure } else { 0.5 * (low + high.min(4.0 * asked)) });
+            *response = self.answer(self.sliding)?;
         }
         Err(LawFailure::Opening { opening: response.state.opening, pressure: self.sliding.pressure })
     }

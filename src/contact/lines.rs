@@ -89,6 +89,7 @@ pub(super) fn root(shapes: impl Fn(f64) -> [Few<f64, 3>; 3], levels: &[f64], sta
 }
 
 /// Positions of some nodes relative to the first, as unknowns.
+#[derive(Clone, Debug)]
 pub(super) struct Frame<N> {
     pub nodes: Vec<usize>,
     /// x of the first, and the section
@@ -96,23 +97,34 @@ pub(super) struct Frame<N> {
     pub positions: Vec<DualVector<N>>,
 }
 
+impl<N> Default for Frame<N> {
+    fn default() -> Self {
+        Self { nodes: Vec::new(), origin: (Vector2::zeros(), Section::default()), positions: Vec::new() }
+    }
+}
+
 impl<N: Number> Frame<N> {
-    pub fn new(nodes: Vec<usize>, x: &Configuration) -> Self {
+    /// Find the positions of its nodes.
+    pub fn place(&mut self, x: &Configuration) {
+        let Self { nodes, origin, positions } = self;
         let n = 2 * nodes.len();
-        let position = |(k, &node): (usize, &usize)| {
+        *origin = (x.at(nodes[0]), x.section());
+        positions.clear();
+        positions.extend(nodes.iter().enumerate().map(|(k, &node)| {
             let at = x.between(nodes[0], node);
             DualVector { x: N::unknown(at.x, 2 * k, n), y: N::unknown(at.y, 2 * k + 1, n) }
-        };
-        let origin = (x.at(nodes[0]), x.section());
-        Self { positions: nodes.iter().enumerate().map(position).collect(), origin, nodes }
+        }));
     }
 
-    /// w of the section at a position; `None` where it is 1 everywhere.
+    /// w of the section at a position; `None` in plane strain, where it is 1 everywhere.
     pub fn depth(&self, position: &DualVector<N>) -> Option<N> {
         let (origin, section) = self.origin;
+        if section == Section::PlaneStrain {
+            return None;
+        }
         let at = origin + Vector2::new(position.x.value(), position.y.value());
-        let slope = section.slope(at)?;
         let mut depth = N::constant(section.weight(at));
+        let slope = section.slope(at).unwrap_or_default();
         for (rate, moved) in [(slope.x, &position.x), (slope.y, &position.y)] {
             depth.accumulate(rate, &moved.map(0.0, 1.0));
         }

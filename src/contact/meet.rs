@@ -3,20 +3,21 @@
 
 use std::collections::BTreeSet;
 
-use nalgebra::Vector2;
+use nalgebra::{Matrix2, Vector2};
 
 use super::closed::nodal_forces;
 use super::kinematics::{Kinematics, Meeting, kinematics};
 use super::master::Master;
+use super::mortar::{Overlaps, Room};
 use super::pair::{ContactPair, InitialTraction, Reverse};
 use super::search::Index;
 use super::small_sliding::{SmallPoint, SmallSliding};
 use super::state::ContactState;
-use super::surface::SlavePoint;
+use super::surface::{SlavePoint, Weights};
 use crate::mesh::configuration::Configuration;
 
 /// Where a point meets the master and its kinematics, if that faces it.
-type Met = Option<(Meeting, Kinematics)>;
+pub(super) type Met = Option<(Meeting, Kinematics)>;
 
 impl ContactPair {
     /// Start closed: from now on every point's gap is counted so that its given pressure acts in the configuration `x`.
@@ -36,6 +37,26 @@ impl ContactPair {
         }
         self.initial = Some(initial);
         Ok(())
+    }
+
+    /// Tractions with which a stress σ of the slave's body by position ends at every point in the configuration `x`, less what a fluid
+    /// carries at the start; `None` where no part of the master faces it.
+    ///
+    /// ```text
+    /// σ (−n) = p_total n − q s   →   p = −n·σ n − p_w,   q = s·σ n
+    /// ```
+    pub fn tractions_under(
+        &self,
+        stress: impl Fn(Vector2<f64>) -> Matrix2<f64>,
+        x: &Configuration,
+    ) -> Vec<Option<InitialTraction>> {
+        let of = |(slave, met): (&SlavePoint, Met)| {
+            let Kinematics { normal, tangent, .. } = met?.1;
+            let carried = stress(slave.at(x)) * normal;
+            let pressure = -normal.dot(&carried) - self.fluid_pressure(slave, x, 0.0);
+            Some(InitialTraction { pressure, traction: tangent.dot(&carried) })
+        };
+        self.points.iter().zip(self.meetings(x, false)).map(of).collect()
     }
 
     /// Begin a shrink fit: what the surfaces overlap in the configuration `x` counts bit by bit.
@@ -62,17 +83,28 @@ impl ContactPair {
             let length = met.as_ref().map_or_else(|| slave.current_length(x), |(_, kinematics)| kinematics.length);
             let (gap, foot) = met.map(|(met, _)| (slave.gap(met.gap, 1.0), met.foot)).unzip();
             let multiplier = if self.penetration.is_some() { friction.pressure } else { 0.0 };
-            ContactState { friction, foot, length, gap: gap.unwrap_or(0.0), slip: 0.0, multiplier }
+            ContactState {
+                friction,
+                foot,
+                length,
+                gap: gap.unwrap_or(0.0),
+                slip: 0.0,
+                radiation: 0.0,
+                radiated: 0.0,
+                multiplier,
+                fluid: if foot.is_some() { self.fluid_pressure(slave, x, 0.0) } else { 0.0 },
+            }
         };
         self.points.iter().zip(self.meetings(x, false)).enumerate().map(state).collect()
     }
 
-    /// What the initial tractions put on the nodes in the configuration `x` [F].
+    /// What the initial tractions, and a fluid at the start, put on the nodes in the configuration `x` [F].
     pub fn initial_forces(&self, x: &Configuration) -> Vec<(usize, Vector2<f64>)> {
-        let met = self.meetings(x, false).into_iter().zip(self.initial.iter().flatten());
-        let forces = |(met, initial): (Met, &InitialTraction)| {
-            let InitialTraction { pressure, traction } = *initial;
-            met.map_or_else(Vec::new, |(_, kinematics)| nodal_forces(&kinematics, pressure, traction))
+        let points = self.points.iter().zip(self.initial.iter().flatten());
+        let met = self.meetings(x, false).into_iter().zip(points);
+        let forces = |(met, (slave, initial)): (Met, (&SlavePoint, &InitialTraction))| {
+            let pressure = initial.pressure + self.fluid_pressure(slave, x, 0.0);
+            met.map_or_else(Vec::new, |(_, kinematics)| nodal_forces(&kinematics, pressure, initial.traction))
         };
         met.flat_map(forces).collect()
     }
@@ -87,22 +119,28 @@ impl ContactPair {
     }
 
     /// Where every point meets the master, if that faces it, the gap being that of the surfaces; its kinematics `varied` or not.
-    fn meetings(&self, x: &Configuration, varied: bool) -> Vec<Met> {
+    pub(super) fn meetings(&self, x: &Configuration, varied: bool) -> Vec<Met> {
         let index = Index::new(&self.master, x);
         let overlaps = match (&self.mortar, &self.master) {
-            (Some(mortar), Master::Mesh(surface)) if self.small.is_none() => Some(mortar.overlaps(surface, &index, x)),
+            (Some(mortar), Master::Mesh(surface)) if self.small.is_none() => {
+                let mut overlaps = Overlaps::default();
+                mortar.cut(surface, &index, x, &mut overlaps);
+                Some(overlaps)
+            }
             _ => None,
         };
+        let (mut room, mut weights) = (Room::default(), Weights::new());
         let meet = |(k, slave): (usize, &SlavePoint)| {
             let mut found = Kinematics::new(varied);
             let at = &mut found;
             let met = match (&self.small, &self.mortar, &self.master) {
                 (Some(small), ..) => Some(small.points[k].as_ref()?.meet(x, x, at)),
-                (_, Some(mortar), Master::Rigid(body)) => mortar.meet_rigid(k, body, [x, x], at),
+                (_, Some(mortar), Master::Rigid(body)) => mortar.meet_rigid(k, body, [x, x], (at, &mut room)),
                 (_, Some(mortar), Master::Mesh(surface)) => {
                     let overlaps = overlaps.as_ref()?;
-                    let weights = mortar.weights(k, surface, overlaps, x).filter(|_| varied);
-                    mortar.meet(k, surface, overlaps, weights.as_ref(), x, at)
+                    mortar.weigh(k, surface, overlaps, x, (&mut room, &mut weights));
+                    let weights = Some(&weights).filter(|weights| varied && !weights.is_empty());
+                    mortar.meet(k, surface, overlaps, weights, x, (at, &mut room))
                 }
                 _ => {
                     let projection = index.project(slave, None, x)?;

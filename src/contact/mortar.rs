@@ -22,14 +22,16 @@
 use nalgebra::Vector2;
 use rayon::prelude::*;
 
-use super::cuts::{Overlap, Overlaps, cut};
-use super::dual::{Dual, DualVector, Number};
+pub use super::cuts::Overlaps;
+use super::cuts::{CutEdge, Overlap};
+use super::dual::{DualVector, Number};
 use super::kinematics::{Kinematics, Meeting};
 use super::lines::Frame;
 use super::master::Master;
-use super::mortar_averages::{Averages, MeanPlace, hat};
+pub use super::mortar_averages::Room;
+use super::mortar_averages::{Averages, Averaging, MeanPlace, hat};
 use super::point::{LengthShare, MasterPoint, SlavePoint, Weights, edge_point, lone_point};
-use super::search::Index;
+use super::search::{Index, Trees};
 use super::surface::{CORNER, Segment, Surface};
 use crate::mesh::configuration::Configuration;
 use crate::mesh::section::Section;
@@ -52,9 +54,23 @@ pub struct Committed {
     section: Section,
     /// X and u of all nodes on both sides
     places: Vec<(usize, [Vector2<f64>; 2])>,
-    /// Weights of each point, if the master faced it
-    pub weights: Vec<Option<Weights>>,
+    trees: Trees,
+    overlaps: Overlaps,
+    /// Memory of some points each
+    rooms: Vec<Room>,
+    /// Weights of each point, none where no master faced it
+    weights: Vec<Weights>,
 }
+
+impl Committed {
+    /// Weights of a point, if the master faced it.
+    pub fn weights(&self, point: usize) -> Option<&Weights> {
+        self.weights.get(point).filter(|weights| !weights.is_empty())
+    }
+}
+
+/// Points whose committed weights one thread finds at a time.
+const TOGETHER: usize = 64;
 
 /// The nodes of the slave edges as contact points, each side of a corner a point of its own.
 pub fn mortar_points(edges: &[Vec<usize>], positions: &[Vector2<f64>]) -> (Vec<SlavePoint>, Mortar) {
@@ -104,21 +120,29 @@ impl Mortar {
         let segments = || surface.segments.iter().flat_map(Segment::nodes);
         let nodes = || self.edges.iter().flatten().copied().chain(segments());
         let places = || nodes().map(|node| (node, x.apart(&[(node, 1.0)], Vector2::zeros())));
-        let Committed { section, places: kept, weights } = committed;
+        let Committed { section, places: kept, trees, overlaps, rooms, weights } = committed;
         if *section == x.section() && weights.len() == self.at.len() && places().eq(kept.iter().copied()) {
             return;
         }
         *section = x.section();
         kept.clear();
         kept.extend(places());
-        let overlaps = self.overlaps(surface, &Index::new(master, x), x);
-        let found = (0..self.at.len()).into_par_iter().map(|point| self.weights(point, surface, &overlaps, x));
-        found.collect_into_vec(weights);
+        self.cut(surface, &Index::kept(master, [x, x], trees), x, overlaps);
+        weights.resize_with(self.at.len(), Weights::default);
+        rooms.resize_with(self.at.len().div_ceil(TOGETHER), Room::default);
+        let parts = weights.par_chunks_mut(TOGETHER).zip(rooms).enumerate();
+        parts.for_each(|(part, (weights, room))| {
+            for (k, weights) in weights.iter_mut().enumerate() {
+                self.weigh(TOGETHER * part + k, surface, overlaps, x, (room, weights));
+            }
+        });
     }
 
     /// Cut all slave edges.
-    pub fn overlaps(&self, surface: &Surface, index: &Index, x: &Configuration) -> Overlaps {
-        Overlaps(self.edges.par_iter().map(|edge| cut(edge, surface, index, x)).collect())
+    pub fn cut(&self, surface: &Surface, index: &Index, x: &Configuration, overlaps: &mut Overlaps) {
+        overlaps.0.resize_with(self.edges.len(), CutEdge::default);
+        let edges = self.edges.par_iter().zip(&mut overlaps.0);
+        edges.for_each(|(edge, cut)| cut.cut(edge, surface, index, x));
     }
 
     /// Where a point meets the master, and its kinematics; `None` where none faces it. `old` are its weights in the committed
@@ -130,11 +154,11 @@ impl Mortar {
         overlaps: &Overlaps,
         old: Option<&Weights>,
         x: &Configuration,
-        k: &mut Kinematics,
+        (k, room): (&mut Kinematics, &mut Room),
     ) -> Option<Meeting> {
         match k.varied {
-            true => self.meet_by::<Dual>(point, surface, overlaps, old, x, k),
-            false => self.meet_by::<f64>(point, surface, overlaps, old, x, k),
+            true => self.meet_by(point, surface, overlaps, old, x, (k, &mut room.duals)),
+            false => self.meet_by(point, surface, overlaps, old, x, (k, &mut room.values)),
         }
     }
 
@@ -146,21 +170,26 @@ impl Mortar {
         overlaps: &Overlaps,
         old: Option<&Weights>,
         x: &Configuration,
-        k: &mut Kinematics,
+        (k, room): (&mut Kinematics, &mut Averaging<N>),
     ) -> Option<Meeting> {
         let foot = self.foot(point, overlaps)?;
-        let mut nodes = self.nodes(point, surface, overlaps);
+        let Averaging { frame, averages, relative } = room;
+        self.list(point, surface, overlaps, &mut frame.nodes);
         for &(node, _) in old.into_iter().flatten() {
-            if !nodes.contains(&node) {
-                nodes.push(node);
+            if !frame.nodes.contains(&node) {
+                frame.nodes.push(node);
             }
         }
-        let frame = Frame::<N>::new(nodes, x);
-        let Averages { weights, length } = self.averages(point, surface, overlaps, &frame)?;
-        let along = self.along(point, &frame);
+        frame.place(x);
+        if !self.average(point, surface, overlaps, frame, averages) {
+            return None;
+        }
+        let Averages { weights, length } = averages;
+        let along = self.along(point, frame);
         let (s, n) = (along.clone(), along.turned());
-        let relative: Vec<N> = weights.iter().map(|w| w.over(&length)).collect();
-        let mean = frame.combine(&relative);
+        relative.clear();
+        relative.extend(weights.iter().map(|w| w.over(length)));
+        let mean = frame.combine(relative);
         let gap = n.dot(&mean);
         let mut slip = N::constant(0.0);
         if let Some(old) = old {
@@ -172,21 +201,32 @@ impl Mortar {
         }
         let length = length.scaled(surface.share());
         let met = Meeting { gap: gap.value(), foot };
-        MeanPlace { nodes: frame.nodes, relative, gap, slip, length, axes: [s, n] }.write(k);
+        MeanPlace { nodes: &frame.nodes, relative, gap, slip, length, axes: [s, n] }.write(k);
         Some(met)
     }
 
-    /// Weights of r_j in a configuration; `None` where no master faces the point.
-    pub fn weights(&self, point: usize, surface: &Surface, overlaps: &Overlaps, x: &Configuration) -> Option<Weights> {
-        let frame = Frame::<f64>::new(self.nodes(point, surface, overlaps), x);
-        let Averages { weights, length } = self.averages(point, surface, overlaps, &frame)?;
-        Some(frame.nodes.iter().zip(weights).map(|(&node, w)| (node, w / length)).collect())
+    /// Write the weights of r_j in a configuration over `found`; none where no master faces the point.
+    pub fn weigh(
+        &self,
+        point: usize,
+        surface: &Surface,
+        overlaps: &Overlaps,
+        x: &Configuration,
+        (room, found): (&mut Room, &mut Weights),
+    ) {
+        let Averaging { frame, averages, .. } = &mut room.values;
+        self.list(point, surface, overlaps, &mut frame.nodes);
+        frame.place(x);
+        found.clear();
+        if self.average(point, surface, overlaps, frame, averages) {
+            found.extend(frame.nodes.iter().zip(&averages.weights).map(|(&node, w)| (node, w / averages.length)));
+        }
     }
 
     /// The facing segment nearest to a point along its edges.
     fn foot(&self, point: usize, overlaps: &Overlaps) -> Option<MasterPoint> {
         let station = [-1.0, 1.0, 0.0];
-        let all = self.at[point].iter().flat_map(|&(e, a)| overlaps.0[e].iter().map(move |o| (o, station[a])));
+        let all = self.at[point].iter().flat_map(|&(e, a)| overlaps.0[e].overlaps.iter().map(move |o| (o, station[a])));
         let away = |o: &Overlap, at: f64| (at - at.clamp(o.ends[0].xi, o.ends[1].xi)).abs();
         let (nearest, at) = all.min_by(|a, b| away(a.0, a.1).total_cmp(&away(b.0, b.1)))?;
         // Master and slave run along s alike.
@@ -195,19 +235,19 @@ impl Mortar {
         Some(MasterPoint { segment: nearest.segment, xi })
     }
 
-    /// All nodes that take part in the average at a point.
-    fn nodes(&self, point: usize, surface: &Surface, overlaps: &Overlaps) -> Vec<usize> {
-        let mut nodes = Vec::new();
+    /// Write all nodes that take part in the average at a point over `nodes`.
+    fn list(&self, point: usize, surface: &Surface, overlaps: &Overlaps, nodes: &mut Vec<usize>) {
+        nodes.clear();
         let edges = || self.at[point].iter().map(|&(e, _)| e);
+        let parts = || edges().flat_map(|e| &overlaps.0[e].overlaps);
         let slaves = edges().flat_map(|e| self.edges[e].iter().copied());
-        let masters = edges().flat_map(|e| overlaps.0[e].iter().flat_map(|o| surface.segments[o.segment].nodes()));
-        let cuts = edges().flat_map(|e| overlaps.0[e].iter().flat_map(|o| o.ends.iter().filter_map(|cut| cut.node)));
+        let masters = parts().flat_map(|o| surface.segments[o.segment].nodes());
+        let cuts = parts().flat_map(|o| o.ends.iter().filter_map(|cut| cut.node));
         for node in slaves.chain(masters).chain(cuts) {
             if !nodes.contains(&node) {
                 nodes.push(node);
             }
         }
-        nodes
     }
 
     /// s_j: mean direction ∫ φ_j dx of the edges at a point.
@@ -221,25 +261,27 @@ impl Mortar {
         sum.normalized()
     }
 
-    fn averages<N: Number>(
+    /// Write the average at a point over `averages`; whether a master faces enough of its edges.
+    fn average<N: Number>(
         &self,
         point: usize,
         surface: &Surface,
         overlaps: &Overlaps,
         frame: &Frame<N>,
-    ) -> Option<Averages<N>> {
-        let mut averages = Averages { weights: vec![N::default(); frame.nodes.len()], length: N::default() };
+        averages: &mut Averages<N>,
+    ) -> bool {
+        averages.clear(frame.nodes.len());
         let mut whole = 0.0;
         for &(e, a) in &self.at[point] {
             let edge = &self.edges[e];
             let chord = frame.at(edge[1]).minus(frame.at(edge[0]));
             whole += chord.dot(&chord).value().sqrt();
             let along = chord.normalized();
-            for overlap in &overlaps.0[e] {
+            for overlap in &overlaps.0[e].overlaps {
                 averages.integrate(edge, a, overlap, &surface.segments[overlap.segment], &along, frame);
             }
         }
-        (averages.length.value() > NEGLIGIBLE * whole).then_some(averages)
+        averages.length.value() > NEGLIGIBLE * whole
     }
 }
 

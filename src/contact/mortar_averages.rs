@@ -5,7 +5,7 @@ use std::iter::repeat;
 use nalgebra::Vector2;
 
 use super::cuts::Overlap;
-use super::dual::{DualVector, Number};
+use super::dual::{Dual, DualVector, Number};
 use super::kinematics::Kinematics;
 use super::lines::{Frame, Line};
 use super::surface::Segment;
@@ -22,12 +22,20 @@ pub fn hat(n: usize, a: usize, xi: f64) -> (f64, f64) {
 }
 
 /// A_j and W_ja.
+#[derive(Clone, Debug, Default)]
 pub struct Averages<N> {
     pub weights: Vec<N>,
     pub length: N,
 }
 
 impl<N: Number> Averages<N> {
+    /// Nothing summed up yet for so many nodes.
+    pub fn clear(&mut self, nodes: usize) {
+        self.weights.clear();
+        self.weights.resize(nodes, N::default());
+        self.length = N::default();
+    }
+
     /// Add the integrals over one overlap.
     pub fn integrate(
         &mut self,
@@ -69,11 +77,30 @@ impl<N: Number> Averages<N> {
     }
 }
 
-/// The mean place of a slave node on the master.
-pub struct MeanPlace<N> {
-    pub nodes: Vec<usize>,
+/// Memory for the averages around one point after the other.
+#[derive(Clone, Debug, Default)]
+pub struct Room {
+    pub(super) values: Averaging<f64>,
+    pub(super) duals: Averaging<Dual>,
+    /// What a point of Gauss's rule has against a rigid body, and the variations of the mean normal
+    pub(super) around: Kinematics,
+    pub(super) turns: [Vec<f64>; 2],
+}
+
+/// What an average is taken over, and its parts.
+#[derive(Clone, Debug, Default)]
+pub struct Averaging<N> {
+    pub(super) frame: Frame<N>,
+    pub(super) averages: Averages<N>,
     /// W_ja/A_j
-    pub relative: Vec<N>,
+    pub(super) relative: Vec<N>,
+}
+
+/// The mean place of a slave node on the master.
+pub struct MeanPlace<'a, N> {
+    pub nodes: &'a [usize],
+    /// W_ja/A_j
+    pub relative: &'a [N],
     pub gap: N,
     pub slip: N,
     pub length: N,
@@ -81,16 +108,16 @@ pub struct MeanPlace<N> {
     pub axes: [DualVector<N>; 2],
 }
 
-impl<N: Number> MeanPlace<N> {
+impl<N: Number> MeanPlace<'_, N> {
     /// Write it, and how it varies if that is asked for, over the kinematics of the point.
     pub fn write(self, k: &mut Kinematics) {
         let Self { nodes, relative, gap, slip, length, axes: [s, n] } = self;
         k.begin(Vector2::new(n.x.value(), n.y.value()));
-        k.nodes.extend_from_slice(&nodes);
+        k.nodes.extend_from_slice(nodes);
         k.clear();
         k.tangent = Vector2::new(s.x.value(), s.y.value());
         (k.slip, k.length) = (slip.value(), length.value());
-        k.relative.iter_mut().zip(&relative).for_each(|(value, w)| *value = w.value());
+        k.relative.iter_mut().zip(relative).for_each(|(value, w)| *value = w.value());
         if !k.varied {
             return;
         }

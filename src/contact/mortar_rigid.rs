@@ -5,7 +5,7 @@
 use nalgebra::Vector2;
 
 use super::kinematics::{Kinematics, Meeting, past_rigid};
-use super::mortar::Mortar;
+use super::mortar::{Mortar, Room};
 use super::point::{MasterPoint, SlavePoint};
 use super::projection::{Projection, tangent_of};
 use super::rigid::Rigid;
@@ -29,14 +29,15 @@ impl Mortar {
         point: usize,
         body: &Rigid,
         [before, x]: [&Configuration; 2],
-        mean: &mut Kinematics,
+        (mean, room): (&mut Kinematics, &mut Room),
     ) -> Option<Meeting> {
         let around = &self.around[point];
         let meet = |slave: &SlavePoint, k: &mut Kinematics| meet(slave, body, [before, x], k);
-        let mut k = Kinematics::new(mean.varied);
+        let Room { around: k, turns, .. } = room;
+        k.varied = mean.varied;
         mean.begin(Vector2::zeros());
         for slave in around {
-            if meet(slave, &mut k).is_some() {
+            if meet(slave, k).is_some() {
                 mean.list(k.nodes.iter().copied());
             }
         }
@@ -45,11 +46,11 @@ impl Mortar {
         mean.changing.extend((0..mean.nodes.len()).filter(|_| mean.varied));
         mean.drelative.resize(mean.changing.len() * dofs, 0.0);
         let mut sums = Sums::default();
-        let mut turns = [vec![0.0; dofs], vec![0.0; dofs]];
+        turns.iter_mut().for_each(|turn| *turn = zeros(std::mem::take(turn), dofs));
         for slave in around {
-            if let Some(projection) = meet(slave, &mut k) {
+            if let Some(projection) = meet(slave, k) {
                 sums.foot.get_or_insert(projection.foot);
-                sums.add(&k, projection.gap, mean, &mut turns);
+                sums.add(k, projection.gap, mean, turns);
             }
         }
         let Sums { length, gap, slip, along, foot } = sums;
@@ -105,6 +106,13 @@ impl Sums {
             }
         }
     }
+}
+
+/// So many zeros in the memory of other values.
+fn zeros(mut values: Vec<f64>, count: usize) -> Vec<f64> {
+    values.clear();
+    values.resize(count, 0.0);
+    values
 }
 
 /// Where one point of Gauss's rule meets the body.

@@ -2,13 +2,17 @@
 
 use std::ops::Range;
 
+use nalgebra::Vector2;
+
+use super::fluid::{BadPressure, Fluid};
 use super::master::Master;
 use super::mortar::Mortar;
 pub use super::presumption::{ContactIncrement, Presumption};
 use super::small_sliding::SmallSliding;
 use super::state::ContactState;
 use super::surface::SlavePoint;
-use crate::laws::friction::{FrictionLaw, FrictionState, LawFailure, Sliding};
+use crate::laws::friction::{FrictionLaw, FrictionState, LawFailure, Regime, Sliding};
+use crate::mesh::configuration::Configuration;
 
 /// Two surfaces that may touch.
 #[derive(Debug)]
@@ -28,12 +32,21 @@ pub struct ContactPair {
     pub compliance: f64,
     /// Largest penetration left by the augmented Lagrangian; plain penalty if not given [L]
     pub penetration: Option<f64>,
+    /// η: radiation damping in static steps, 0 for none [F T/L³]
+    pub radiation: f64,
+    /// What pushes the surfaces apart beside their own pressure
+    pub fluid: Option<Fluid>,
     /// The friction laws, each with the parameters of some of the points
     pub laws: Vec<Box<dyn FrictionLaw>>,
     /// Tractions of every point at the start of a contact that starts closed
     pub initial: Option<Vec<InitialTraction>>,
     /// The two sides the other way round, to see what the slave's points do not: how deep master nodes lie in the slave
     pub reverse: Option<Reverse>,
+    /// Nodes on the surface of the slave's bodies that no point stands for, where the master is rigid
+    pub unseen: Vec<SlavePoint>,
+    /// G*: G/(1 − ν) of both sides, what slip that varies along the interface is resisted with; 0 where there are no bodies
+    /// [F/L²]
+    pub modulus: f64,
     /// What every point keeps meeting, in small sliding
     pub small: Option<SmallSliding>,
 }
@@ -66,9 +79,22 @@ pub struct Arrival {
 }
 
 impl ContactPair {
+    /// Whether the master is the slave itself.
+    pub fn is_own(&self) -> bool {
+        matches!(&self.master, Master::Mesh(surface) if surface.own_depth.is_some())
+    }
+
     /// The friction law of a slave point.
     pub fn law(&self, slave: &SlavePoint) -> &dyn FrictionLaw {
         &*self.laws[slave.law]
+    }
+
+    /// Open, stick or slip; what has no friction slides freely, and is not called slipping.
+    pub fn regime(&self, slave: &SlavePoint, state: &ContactState) -> Regime {
+        match state.regime() {
+            Regime::Slip if self.law(slave).is_frictionless() => Regime::Stick,
+            regime => regime,
+        }
     }
 
     /// Largest gap of a closed point that the multipliers of a pass leave, over the one allowed; 0 for the plain penalty.
@@ -81,6 +107,34 @@ impl ContactPair {
     /// α_n, under the augmented Lagrangian this many times the one given.
     pub fn normal_stiffness(&self, stiffening: f64) -> f64 {
         if self.penetration.is_some() { stiffening * self.alpha_n } else { self.alpha_n }
+    }
+
+    /// p_w at a slave point; 0 without a fluid [F/L²].
+    pub fn fluid_pressure(&self, slave: &SlavePoint, x: &Configuration, time: f64) -> f64 {
+        let at = || x.apart(&slave.position, Vector2::zeros())[0];
+        self.fluid.as_ref().map_or(0.0, |fluid| fluid.pressure(at(), time))
+    }
+
+    /// The first point at which the fluid pulls, or has no finite pressure.
+    pub fn bad_fluid_pressure(&self, x: &Configuration, time: f64) -> Option<BadPressure> {
+        self.fluid.as_ref()?;
+        let pressures = self.points.iter().map(|slave| (slave, self.fluid_pressure(slave, x, time)));
+        let bad = pressures.into_iter().find(|(_, pressure)| !(pressure.is_finite() && *pressure >= 0.0));
+        bad.map(|(slave, pressure)| BadPressure { at: x.apart(&slave.position, Vector2::zeros())[0], pressure })
+    }
+
+    /// The larger of α_n and α_t; slip that lifts the surfaces, δp = α_n tan ψ δu and δq = μ δp, has α_n (1 + μ tan ψ), which is
+    /// below 2 α_n as long as μ is below 1 [F/L³].
+    pub fn stiffest(&self, slave: &SlavePoint) -> f64 {
+        let law = self.law(slave);
+        let lifted = if law.offsets().is_empty() { 1.0 } else { 2.0 };
+        (lifted * self.alpha_n).max(law.stiffness())
+    }
+
+    /// η v by the slip of an increment, and its derivative η/Δt [F/L²], [F/L³].
+    pub fn radiated(&self, during: ContactIncrement, slip: f64) -> [f64; 2] {
+        let damping = if during.radiates && during.dt > 0.0 { self.radiation / during.dt } else { 0.0 };
+        [damping * slip, damping]
     }
 
     /// d/p: how far a pressure brings the surfaces after touch. It pushes the bodies in by c p where they settle, and the plain

@@ -87,6 +87,24 @@ pub fn gauss_points(edges: &[Vec<usize>], per_edge: usize) -> Vec<SlavePoint> {
 
 /// Nodes with their tributary lengths: the end-point rule (linear edges) or Simpson's (quadratic edges).
 pub fn nodal_points(edges: &[Vec<usize>]) -> Vec<SlavePoint> {
+    at_nodes(edges, |edge, xi, weight| edge_point(edge, xi, weight).length)
+}
+
+/// Nodes of rings with their tributary areas ∫ N_a 2π r ds, by Gauss's rule: the rules above know r at the nodes alone, and
+/// leave nothing to one on the axis. (Nor has the end of a quadratic edge anything there in truth.)
+pub fn nodal_points_of_rings(edges: &[Vec<usize>]) -> Vec<SlavePoint> {
+    let shares = |edge: &[usize], node: f64| -> Vec<LengthShare> {
+        let share = |(xi, weight): (f64, f64)| edge_point(edge, xi, 0.5 * (1.0 + node * xi) * weight).length;
+        shape::gauss(2).into_iter().flat_map(share).collect()
+    };
+    at_nodes(edges, |edge, xi, weight| match edge.len() {
+        2 => shares(edge, xi),
+        _ => edge_point(edge, xi, weight).length,
+    })
+}
+
+/// The nodes with what each edge gives them, by their ξ and the weight of the rule.
+fn at_nodes(edges: &[Vec<usize>], shares: impl Fn(&[usize], f64, f64) -> Vec<LengthShare>) -> Vec<SlavePoint> {
     let mut points: Vec<(usize, SlavePoint)> = Vec::new();
     for edge in edges {
         let ends = [(edge[0], -1.0), (edge[1], 1.0)];
@@ -95,7 +113,7 @@ pub fn nodal_points(edges: &[Vec<usize>]) -> Vec<SlavePoint> {
             Some(&middle) => vec![(ends[0].0, -1.0, 1.0 / 3.0), (middle, 0.0, 4.0 / 3.0), (ends[1].0, 1.0, 1.0 / 3.0)],
         };
         for (node, xi, weight) in stations {
-            let share = edge_point(edge, xi, weight).length;
+            let share = shares(edge, xi, weight);
             match points.iter_mut().rev().find(|(other, _)| *other == node) {
                 Some((_, point)) => point.length.extend(share),
                 None => points.push((node, SlavePoint { length: share, ..lone_point(node, 0.0) })),

@@ -5,14 +5,25 @@ use crate::laws::friction::FrictionState;
 /// When a pair is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactIncrement {
+    /// t at its end [T]
+    pub time: f64,
     /// Δt [T]
     pub dt: f64,
+    /// Whether slip radiates, where the contact has a radiation damping: in motions without inertia
+    pub radiates: bool,
     /// Share of an initial overlap that does not count yet
     pub fading: f64,
     /// α_n under the augmented Lagrangian is this many times the one given
     pub stiffening: f64,
     /// Whether the bodies give way under the pressures that come up within the increment
     pub settles: bool,
+}
+
+impl ContactIncrement {
+    /// From when to when.
+    pub fn span(&self) -> [f64; 2] {
+        [self.time - self.dt, self.time]
+    }
 }
 
 /// Increment of a contact point, and what the iteration presumes about it.

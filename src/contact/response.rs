@@ -2,15 +2,14 @@
 
 use rayon::prelude::*;
 
-use super::boxes::Boxes;
 use super::closed::{Closed, ClosedPoints};
 use super::force::{Loading, PointPlace, closes, place};
 use super::kinematics::{Kinematics, Meeting};
 use super::master::Master;
-use super::mortar::Committed;
+use super::mortar::{Committed, Overlaps, Room};
 use super::pair::ContactPair;
 use super::presumption::{ContactIncrement, PointIncrement, Presumption};
-use super::search::Index;
+use super::search::{Index, Trees};
 use super::state::ContactState;
 use super::surface::SlavePoint;
 use crate::laws::friction::{Answer, FrictionResponse, FrictionState, LawFailure, Sliding};
@@ -36,10 +35,11 @@ pub struct PairResponse {
 /// What need not be found anew while it stays as it is.
 #[derive(Clone, Debug, Default)]
 struct Kept {
-    /// Tree of the master
-    boxes: Boxes,
-    /// What mortar averages over in the committed configuration
+    /// Trees of the master
+    trees: Trees,
+    /// What mortar averages over in the committed configuration, and in that of the trial
     committed: Committed,
+    overlaps: Overlaps,
 }
 
 /// Points that one thread evaluates.
@@ -48,20 +48,30 @@ struct Part {
     closed: ClosedPoints,
     /// Kinematics of the points at hand
     kinematics: Vec<Kinematics>,
+    /// Memory for averages
+    room: Room,
     failure: Option<(usize, LawFailure)>,
 }
 
 impl PairResponse {
     /// What a point adds to the equations, if it is closed.
     pub fn closed(&self, point: usize) -> Option<Closed<'_>> {
+        self.acting(point).filter(|closed| !closed.is_open)
+    }
+
+    /// What a point adds to the equations, if it is closed or in a fluid.
+    pub fn acting(&self, point: usize) -> Option<Closed<'_>> {
         self.parts.get(point / PART)?.closed.get(point % PART)
     }
 
-    /// The closed points.
-    pub fn all_closed(&self) -> impl Iterator<Item = (&ContactState, Closed<'_>)> {
-        self.states.iter().enumerate().filter_map(|(k, state)| Some((state, self.closed(k)?)))
+    /// The points that are closed or in a fluid.
+    pub fn all_acting(&self) -> impl Iterator<Item = (&ContactState, Closed<'_>)> {
+        self.states.iter().enumerate().filter_map(|(k, state)| Some((state, self.acting(k)?)))
     }
 }
+
+/// Kinematics of a point to be filled in, and memory for averages.
+type At<'a> = (&'a mut Kinematics, &'a mut Room);
 
 /// What one evaluation asks of every point.
 struct Question<'a, P> {
@@ -90,7 +100,7 @@ impl ContactPair {
     ) -> Result<(), (usize, LawFailure)> {
         let question = Question { pair: self, during, presumed, varied: request == Request::Tangent };
         if let Some(small) = &self.small {
-            return question.each(old, response, |k, slave, old, increment, kinematics| {
+            return question.each(old, response, |k, slave, old, increment, (kinematics, _)| {
                 let meeting = small.points[k].as_ref().map(|point| point.meet(before, x, kinematics));
                 averaged(self, slave, meeting, old, increment, x)
             });
@@ -107,16 +117,17 @@ impl ContactPair {
         question: &Question<P>,
         old: &[ContactState],
         [before, x]: [&Configuration; 2],
-        Kept { boxes, committed }: &mut Kept,
+        Kept { trees, committed, overlaps }: &mut Kept,
         response: &mut PairResponse,
     ) -> Result<(), (usize, LawFailure)> {
-        let index = Index::kept(&self.master, before, x, boxes);
+        let index = Index::kept(&self.master, [before, x], trees);
         if let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) {
             mortar.commit(&self.master, surface, before, committed);
-            let is = mortar.overlaps(surface, &index, x);
-            return question.each(old, response, |k, slave, old, increment, kinematics| {
-                let weights = committed.weights[k].as_ref();
-                let meeting = mortar.meet(k, surface, &is, weights, x, kinematics);
+            mortar.cut(surface, &index, x, overlaps);
+            let (committed, overlaps) = (&*committed, &*overlaps);
+            return question.each(old, response, |k, slave, old, increment, (kinematics, room)| {
+                let weights = committed.weights(k);
+                let meeting = mortar.meet(k, surface, overlaps, weights, x, (&mut *kinematics, room));
                 if meeting.is_some() && weights.is_none() {
                     kinematics.count_from(before, x);
                 }
@@ -124,11 +135,11 @@ impl ContactPair {
             });
         }
         if let (Some(mortar), Master::Rigid(body)) = (&self.mortar, &self.master) {
-            return question.each(old, response, |k, slave, old, increment, kinematics| {
-                averaged(self, slave, mortar.meet_rigid(k, body, [before, x], kinematics), old, increment, x)
+            return question.each(old, response, |k, slave, old, increment, at| {
+                averaged(self, slave, mortar.meet_rigid(k, body, [before, x], at), old, increment, x)
             });
         }
-        question.each(old, response, |_, slave, old, increment, kinematics| {
+        question.each(old, response, |_, slave, old, increment, (kinematics, _)| {
             let valley = increment.presumption.astride.and_then(|segments| index.in_valley(slave, segments, x));
             let projection = valley.or_else(|| index.project(slave, old.foot, x));
             place(self, slave, projection, old, increment, [before, x], kinematics)
@@ -143,7 +154,7 @@ impl<P: Fn(usize) -> Presumption + Sync> Question<'_, P> {
         &self,
         old: &[ContactState],
         response: &mut PairResponse,
-        place: impl Fn(usize, &SlavePoint, &ContactState, PointIncrement, &mut Kinematics) -> PointPlace + Sync,
+        place: impl Fn(usize, &SlavePoint, &ContactState, PointIncrement, At) -> PointPlace + Sync,
     ) -> Result<(), (usize, LawFailure)> {
         let points = &self.pair.points;
         let PairResponse { states, parts, .. } = response;
@@ -170,10 +181,10 @@ impl Part {
         numbers: std::ops::Range<usize>,
         old: &[ContactState],
         states: &mut [ContactState],
-        place: impl Fn(usize, &SlavePoint, &ContactState, PointIncrement, &mut Kinematics) -> PointPlace,
+        place: impl Fn(usize, &SlavePoint, &ContactState, PointIncrement, At) -> PointPlace,
     ) {
         let Question { pair, during, .. } = *question;
-        let Self { closed, kinematics, failure } = self;
+        let Self { closed, kinematics, room, failure } = self;
         closed.clear();
         kinematics.resize_with(TOGETHER.min(numbers.len()), Kinematics::default);
         for (first, states) in numbers.step_by(TOGETHER).zip(states.chunks_mut(TOGETHER)) {
@@ -185,12 +196,19 @@ impl Part {
                 let (slave, old) = (&points[i], &old[i]);
                 let increment = PointIncrement { during, presumption: (question.presumed)(first + i) };
                 kinematics.varied = question.varied;
-                let place = place(first + i, slave, old, increment, kinematics);
-                let loading = Loading::new(pair, slave, old, increment, place, kinematics);
-                sliding[i] = loading.sliding;
-                loadings[i] = Some(loading);
+                let place = place(first + i, slave, old, increment, (&mut *kinematics, room));
+                match Loading::new(pair, slave, old, increment, place, kinematics) {
+                    Ok(loading) => {
+                        sliding[i] = loading.sliding;
+                        loadings[i] = Some(loading);
+                    }
+                    Err(cause) => {
+                        *failure = Some((first + i, cause));
+                        return;
+                    }
+                }
             }
-            let answers = answers(pair, points, old, &sliding[..points.len()]);
+            let answers = answers(pair, during, points, old, &sliding[..points.len()]);
             for (i, (loading, answer)) in loadings.into_iter().flatten().zip(answers).enumerate() {
                 match loading.finish(answer, closed) {
                     Ok(state) => states[i] = state,
@@ -205,7 +223,13 @@ impl Part {
 }
 
 /// What the laws of consecutive points say.
-fn answers(pair: &ContactPair, points: &[SlavePoint], old: &[ContactState], sliding: &[Sliding]) -> [Answer; TOGETHER] {
+fn answers(
+    pair: &ContactPair,
+    during: ContactIncrement,
+    points: &[SlavePoint],
+    old: &[ContactState],
+    sliding: &[Sliding],
+) -> [Answer; TOGETHER] {
     let mut committed = [FrictionState::default(); TOGETHER];
     committed.iter_mut().zip(old).for_each(|(committed, old)| *committed = old.friction);
     let mut answers = [Ok(FrictionResponse::default()); TOGETHER];
@@ -213,7 +237,13 @@ fn answers(pair: &ContactPair, points: &[SlavePoint], old: &[ContactState], slid
     for alike in points.chunk_by(|a, b| a.law == b.law) {
         let range = start..start + alike.len();
         start = range.end;
-        pair.law(&alike[0]).respond_many(&committed[range.clone()], &sliding[range.clone()], &mut answers[range]);
+        let (old, sliding, answers) = (&committed[range.clone()], &sliding[range.clone()], &mut answers[range]);
+        let law = pair.law(&alike[0]);
+        match law.during(during.span()) {
+            Ok(None) => law.respond_many(old, sliding, answers),
+            Ok(Some(law)) => law.respond_many(old, sliding, answers),
+            Err(failure) => answers.fill(Err(failure)),
+        }
     }
     answers
 }
@@ -229,5 +259,6 @@ fn averaged(
 ) -> PointPlace {
     let Some(Meeting { gap, foot }) = meeting else { return PointPlace::default() };
     let gap = slave.gap(gap, increment.during.fading);
-    PointPlace { gap, foot: Some(foot), closes: closes(pair, slave, gap, old, increment, x) }
+    let fluid = pair.fluid_pressure(slave, x, increment.during.time);
+    PointPlace { gap, foot: Some(foot), closes: closes(pair, slave, gap, old, increment, x), fluid }
 }

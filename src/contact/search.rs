@@ -9,7 +9,7 @@ use super::master::Master;
 pub use super::projection::FACING;
 use super::projection::{Bound, Projection, at_node, normal_of, on_curve, on_segment};
 use super::rigid::Rigid;
-use super::sight::Sight;
+use super::sight::{Branches, Sight};
 use super::surface::{MasterPoint, Path, SlavePoint, Surface};
 use crate::mesh::configuration::Configuration;
 
@@ -24,31 +24,48 @@ pub enum Index<'a> {
     Rigid(&'a Rigid),
 }
 
+/// The trees of a mesh surface.
+#[derive(Clone, Debug, Default)]
+pub struct Trees {
+    boxes: Boxes,
+    /// Of a surface that touches itself
+    branches: Branches,
+}
+
+impl Trees {
+    /// See to it that they serve in the configuration `x` of an increment that began in another.
+    fn update(&mut self, surface: &Surface, [before, x]: [&Configuration; 2]) {
+        self.boxes.update(surface, x);
+        if surface.own_depth.is_some() {
+            self.branches.update(surface, before);
+        }
+    }
+}
+
 impl<'a> Index<'a> {
     /// Index the master in the configuration `x`, O(N).
     pub fn new(master: &'a Master, x: &'a Configuration) -> Self {
-        Self::within(master, x, x)
-    }
-
-    /// Index the master in the configuration `x` of an increment that began in another, O(N).
-    pub fn within(master: &'a Master, before: &'a Configuration, x: &Configuration) -> Self {
-        Self::with(master, before, |surface| Cow::Owned(Boxes::new(surface, x)))
-    }
-
-    /// The same, by a tree that is built anew only where it no longer serves.
-    pub fn kept(master: &'a Master, before: &'a Configuration, x: &Configuration, boxes: &'a mut Boxes) -> Self {
-        Self::with(master, before, |surface| {
-            boxes.update(surface, x);
-            Cow::Borrowed(boxes)
-        })
-    }
-
-    fn with(master: &'a Master, before: &'a Configuration, boxes: impl FnOnce(&Surface) -> Cow<'a, Boxes>) -> Self {
         match master {
             Master::Rigid(body) => Self::Rigid(body),
             Master::Mesh(surface) => {
-                let sight = surface.own_depth.map(|depth| Sight::new(surface, depth, before));
-                Self::Mesh(surface, boxes(surface), sight)
+                let mut trees = Trees::default();
+                trees.update(surface, [x, x]);
+                let sight = |depth| Sight::new(surface, depth, x, Cow::Owned(trees.branches));
+                Self::Mesh(surface, Cow::Owned(trees.boxes), surface.own_depth.map(sight))
+            }
+        }
+    }
+
+    /// Index the master in the configuration `x` of an increment that began in another, by trees that are built anew only
+    /// where they no longer serve.
+    pub fn kept(master: &'a Master, [before, x]: [&'a Configuration<'a>; 2], trees: &'a mut Trees) -> Self {
+        match master {
+            Master::Rigid(body) => Self::Rigid(body),
+            Master::Mesh(surface) => {
+                trees.update(surface, [before, x]);
+                let Trees { boxes, branches } = trees;
+                let sight = |depth| Sight::new(surface, depth, before, Cow::Borrowed(&*branches));
+                Self::Mesh(surface, Cow::Borrowed(&*boxes), surface.own_depth.map(sight))
             }
         }
     }
@@ -121,22 +138,21 @@ impl<'a> Index<'a> {
         }
     }
 
-    /// Segments of a mesh surface within a distance of a slave edge's bounding box, in order along it.
-    pub fn around(&self, edge: &[usize], reach: f64, x: &Configuration) -> Vec<usize> {
-        let Self::Mesh(surface, boxes, sight) = self else { return Vec::new() };
-        let mut found = Vec::new();
+    /// Write the segments of a mesh surface within a distance of a slave edge's bounding box over `found`, in order along it.
+    pub fn around(&self, edge: &[usize], reach: f64, x: &Configuration, found: &mut Vec<usize>) {
+        found.clear();
+        let Self::Mesh(surface, boxes, sight) = self else { return };
         let reach = Vector2::new(reach, reach);
         let at = |node: usize| x.between(boxes.origin, node);
         let each = edge.iter().map(|&node| Box2 { low: at(node) - reach, high: at(node) + reach });
         if let Some(all) = each.reduce(|sum, one| sum.around(&one)) {
-            boxes.meeting(&all, &mut found);
+            boxes.meeting(&all, found);
             found.retain(|&segment| Box2::of(&surface.segments[segment], boxes.origin, x).meets(&all));
         }
         if let Some(sight) = sight {
             let viewer = sight.edge(edge);
             found.retain(|&segment| sight.may_meet(&viewer, 0, segment));
         }
-        found
     }
 }
 

@@ -13,6 +13,7 @@
 //!
 //! so a point searches neither its own side nor the other side of the body.
 
+use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector2;
@@ -27,6 +28,14 @@ pub struct Sight<'a> {
     surface: &'a Surface,
     before: &'a Configuration<'a>,
     depth: f64,
+    branches: Cow<'a, Branches>,
+}
+
+/// The tree of a surface in one configuration, which serves as long as no node of the surface moves.
+#[derive(Clone, Debug, Default)]
+pub struct Branches {
+    /// X and u of the nodes of the segments
+    places: Vec<(usize, [Vector2<f64>; 2])>,
     /// Level by level as in [`super::boxes::Boxes`]
     levels: Vec<Vec<Branch>>,
 }
@@ -40,53 +49,89 @@ struct Branch {
 }
 
 /// A point or an edge of the surface that looks out.
-pub struct Viewer {
+pub struct Viewer<'a> {
     /// Place relative to the surface's origin
     at: Vector2<f64>,
     outward: Vector2<f64>,
     angle: f64,
-    own: Vec<usize>,
+    own: Own<'a>,
+}
+
+/// What a viewer does not meet.
+enum Own<'a> {
+    /// The nodes of a point's edges
+    Point(&'a SlavePoint),
+    /// Those of an edge
+    Edge(&'a [usize]),
+}
+
+impl Own<'_> {
+    fn has(&self, node: usize) -> bool {
+        match self {
+            Self::Edge(edge) => edge.contains(&node),
+            Self::Point(slave) => {
+                let shares = slave.length.iter().flat_map(|share| &share.tangent);
+                slave.position.iter().chain(shares).any(|&(own, _)| own == node)
+            }
+        }
+    }
+}
+
+impl Branches {
+    /// See to it that the tree is that of a surface in the configuration `x`, O(N).
+    pub(super) fn update(&mut self, surface: &Surface, x: &Configuration) {
+        let nodes = || surface.segments.iter().flat_map(Segment::nodes);
+        let places = || nodes().map(|node| (node, x.apart(&[(node, 1.0)], Vector2::zeros())));
+        if places().eq(self.places.iter().copied()) {
+            return;
+        }
+        self.places.clear();
+        self.places.extend(places());
+        let mut angle = 0.0;
+        let branch = |segment: &Segment| {
+            let normal = normal_of(x.between(segment.ends[0], segment.ends[1]));
+            angle += turn(normal.y.atan2(normal.x) - angle);
+            Branch { bounds: Box2::of(segment, surface.origin(), x), turn: [angle; 2] }
+        };
+        let count = usize::BITS - surface.segments.len().saturating_sub(1).leading_zeros();
+        self.levels.resize_with(1 + count as usize, Vec::new);
+        let (leaves, above) = self.levels.split_at_mut(1);
+        leaves[0].clear();
+        leaves[0].extend(surface.segments.iter().map(branch));
+        let mut below = &leaves[0];
+        for level in above {
+            level.clear();
+            level.extend(below.chunks(2).map(|pair| pair.iter().skip(1).fold(pair[0], Branch::joined)));
+            below = level;
+        }
+    }
 }
 
 impl<'a> Sight<'a> {
-    /// The segments of a surface that touches itself, in the configuration before the increment, O(N); `depth` is how far
-    /// a point may lie behind what it touches.
-    pub fn new(surface: &'a Surface, depth: f64, before: &'a Configuration<'a>) -> Self {
-        let mut angle = 0.0;
-        let mut branch = |segment: &Segment| {
-            let normal = normal_of(before.between(segment.ends[0], segment.ends[1]));
-            angle += turn(normal.y.atan2(normal.x) - angle);
-            Branch { bounds: Box2::of(segment, surface.origin(), before), turn: [angle; 2] }
-        };
-        let mut levels = vec![surface.segments.iter().map(&mut branch).collect::<Vec<_>>()];
-        while let Some(last) = levels.last().filter(|last| last.len() > 1) {
-            let joined = last.chunks(2).map(|pair| pair.iter().skip(1).fold(pair[0], Branch::joined)).collect();
-            levels.push(joined);
-        }
-        Self { surface, before, depth, levels }
+    /// The segments of a surface that touches itself, in the configuration before the increment, whose tree is given; `depth`
+    /// is how far a point may lie behind what it touches.
+    pub fn new(surface: &'a Surface, depth: f64, before: &'a Configuration<'a>, branches: Cow<'a, Branches>) -> Self {
+        Self { surface, before, depth, branches }
     }
 
     /// A slave point as a viewer; `None` for a point of no edge.
-    pub fn point(&self, slave: &SlavePoint) -> Option<Viewer> {
-        let shares = slave.length.iter().flat_map(|share| &share.tangent);
-        let own = slave.position.iter().chain(shares).map(|&(node, _)| node).collect();
-        slave
-            .outward(self.before)
-            .map(|outward| Viewer::new(slave.offset(self.surface.origin(), self.before), outward, own))
+    pub fn point<'b>(&self, slave: &'b SlavePoint) -> Option<Viewer<'b>> {
+        let at = || slave.offset(self.surface.origin(), self.before);
+        slave.outward(self.before).map(|outward| Viewer::new(at(), outward, Own::Point(slave)))
     }
 
     /// An edge as a viewer, from its middle; the body is on its left.
-    pub fn edge(&self, edge: &[usize]) -> Viewer {
+    pub fn edge<'b>(&self, edge: &'b [usize]) -> Viewer<'b> {
         let along = self.before.between(edge[0], edge[1]);
         let at = |node: usize| self.before.between(self.surface.origin(), node);
         let middle = 0.5 * (at(edge[0]) + at(edge[1]));
-        Viewer::new(middle, -normal_of(along.normalize()), edge.to_vec())
+        Viewer::new(middle, -normal_of(along.normalize()), Own::Edge(edge))
     }
 
     /// Whether a viewer may meet a segment (level 0), or any below a branch: never false where one may be.
     pub fn may_meet(&self, viewer: &Viewer, level: usize, number: usize) -> bool {
         if level > 0 {
-            let branch = &self.levels[level][number];
+            let branch = &self.branches.levels[level][number];
             return branch.faces(viewer) && branch.is_before(viewer, self.depth);
         }
         let segment = &self.surface.segments[number];
@@ -94,12 +139,12 @@ impl<'a> Sight<'a> {
         let normal = normal_of(self.before.between(start, end).normalize());
         normal.dot(&viewer.outward) < FACING
             && normal.dot(&(viewer.at - self.before.between(self.surface.origin(), start))) > -self.depth
-            && !segment.nodes().any(|node| viewer.own.contains(&node))
+            && !segment.nodes().any(|node| viewer.own.has(node))
     }
 }
 
-impl Viewer {
-    fn new(at: Vector2<f64>, outward: Vector2<f64>, own: Vec<usize>) -> Self {
+impl<'a> Viewer<'a> {
+    fn new(at: Vector2<f64>, outward: Vector2<f64>, own: Own<'a>) -> Self {
         Self { at, outward, angle: outward.y.atan2(outward.x), own }
     }
 }

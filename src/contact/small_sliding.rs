@@ -91,6 +91,9 @@ pub struct Departure {
 /// Share of the distance between nodes up to which small sliding is no matter: of a linear edge, or half a quadratic one.
 pub const LITTLE_SLIP: f64 = 0.1;
 
+/// Weights below it are the round-off of those of a node that faces another.
+const ROUND_OFF: f64 = 1e-9;
+
 /// Angle, and stretch, up to which it is none [rad, -].
 pub const LITTLE_TURN: f64 = 0.02;
 
@@ -115,6 +118,21 @@ impl SmallPoint {
             }
         };
         Self { nodes, weights, normal, tangent, gap, length, foot, against }
+    }
+
+    /// The slave's node and the one of the master that it faces, or the slave's alone on a rigid master; none where the point
+    /// is more than one node of either side.
+    pub fn facing(&self) -> Option<(usize, Option<usize>)> {
+        let counts = |&(_, w): &(&usize, &f64)| w.abs() > ROUND_OFF;
+        let mut part = self.nodes.iter().zip(&self.weights).filter(counts);
+        let whole = |(node, w): (&usize, &f64), of: f64| ((w - of).abs() <= ROUND_OFF).then_some(*node);
+        let (first, second) = (part.next()?, part.next());
+        let slave = whole(first, 1.0)?;
+        let master = match second {
+            Some(second) => Some(whole(second, -1.0)?),
+            None => None,
+        };
+        part.next().is_none().then_some((slave, master))
     }
 
     /// How far the point has left what is kept; `None` where it has gone past the end of a rigid body.

@@ -15,14 +15,21 @@ pub struct ContactState {
     pub friction: FrictionState,
     /// Foot on the master, open or closed; `None` where no part of the master faces the point
     pub foot: Option<MasterPoint>,
-    /// Length the point stands for: its own or, by mortar, the part of it that the master faces; once open, the last one [L]
+    /// Length the point stands for: its own or, by mortar, the part of it that the master faces; once open, the last one
+    /// (that of now where a fluid acts) [L]
     pub length: f64,
     /// g at the foot; a contact that starts closed counts it from where its points touch [L]
     pub gap: f64,
     /// Δu_t of the last increment, what came before touch included; 0 while open [L]
     pub slip: f64,
+    /// η v of the last increment, what slip radiates; 0 without radiation damping, and in dynamic steps [F/L²]
+    pub radiation: f64,
+    /// Energy radiated so far per contact area [F/L]
+    pub radiated: f64,
     /// p̄: pressure at zero gap, raised until the penetration is small enough; 0 for the plain penalty [F/L²]
     pub multiplier: f64,
+    /// p_w: pressure of the fluid where the master faces the point [F/L²]
+    pub fluid: f64,
 }
 
 impl ContactState {

@@ -6,6 +6,7 @@ use nalgebra::Vector2;
 
 pub use super::point::{
     LengthShare, MasterPoint, SlavePoint, Weights, edge_point, gauss_points, lone_point, nodal_points,
+    nodal_points_of_rings,
 };
 use crate::mesh::few::Few;
 use crate::mesh::shape;

@@ -5,7 +5,7 @@ use fecontact::contact::force::{
 };
 use fecontact::contact::kinematics::{Kinematics, kinematics};
 use fecontact::contact::master::Master;
-use fecontact::contact::mortar::{Mortar, mortar_points};
+use fecontact::contact::mortar::{Mortar, Overlaps, Room, mortar_points};
 use fecontact::contact::pair::{ContactIncrement, ContactPair, InitialTraction, Presumption};
 use fecontact::contact::projection::{Bound, nearest};
 use fecontact::contact::response::PairResponse;
@@ -27,7 +27,8 @@ const SUPER: &str = r#"{"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "r"
         "integration": "backward_euler"}"#;
 const COULOMB: &str = r#"{"law": "coulomb", "mu": 0.3}"#;
 const FRICTIONLESS: &str = r#"{"law": "frictionless"}"#;
-const INCREMENT: ContactIncrement = ContactIncrement { dt: 0.3, fading: 0.0, stiffening: 1.0, settles: true };
+const INCREMENT: ContactIncrement =
+    ContactIncrement { dt: 0.3, time: 0.0, radiates: true, fading: 0.0, stiffening: 1.0, settles: true };
 
 /// A wavy master of five segments, nodes 0 to 5 from left to right, and slave nodes 6, 7, 8 below it.
 ///
@@ -48,7 +49,7 @@ fn displaced(x: &Positions) -> Configuration<'static> {
 }
 
 /// A pair with α_n = 1000, c = 0.002 and, unless given, α_t = 700.
-fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
+pub fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
     let law =
         serde_json::from_str::<FrictionParameters>(law).expect("a law").build(700.0).expect("parameters in range");
     ContactPair {
@@ -59,8 +60,12 @@ fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
         alpha_n: 1000.0,
         compliance: 2e-3,
         penetration: None,
+        radiation: 0.0,
+        fluid: None,
         laws: vec![law],
         initial: None,
+        unseen: Vec::new(),
+        modulus: 0.0,
         reverse: None,
         small: None,
     }
@@ -149,7 +154,7 @@ fn finish(
     place: PointPlace,
     kinematics: &mut Kinematics,
 ) -> (ContactState, Option<Kept>) {
-    let loading = Loading::new(pair, &pair.points[k], old, increment, place, kinematics);
+    let loading = Loading::new(pair, &pair.points[k], old, increment, place, kinematics).expect("a good law");
     let answer = pair.law(&pair.points[k]).respond(&old.friction, loading.sliding);
     let mut closed = ClosedPoints::default();
     let state = loading.finish(answer, &mut closed).expect("a finite increment");
@@ -195,7 +200,13 @@ fn pulled(pair: &ContactPair, k: usize, x: &Positions, back: f64, friction: Fric
         Master::Mesh(_) => MasterPoint { segment: at.floor() as usize, xi: at - at.floor() },
         Master::Rigid(_) => MasterPoint { xi: foot.xi - back, ..foot },
     };
-    ContactState { friction, foot: Some(foot), length: 1.0, gap, slip: 0.0, multiplier: 0.0 }
+    committed(friction, foot, gap)
+}
+
+/// A committed state that has not slipped.
+fn committed(friction: FrictionState, foot: MasterPoint, gap: f64) -> ContactState {
+    let (foot, slip, radiation, radiated) = (Some(foot), 0.0, 0.0, 0.0);
+    ContactState { friction, foot, length: 1.0, gap, slip, radiation, radiated, multiplier: 0.0, fluid: 0.0 }
 }
 
 #[test]
@@ -206,8 +217,11 @@ fn tangent_equals_differences_in_stick_partial_and_full_slip_and_after_touch() {
     let surfaces = [Surface::new(&edges), Surface::new(&edges).smoothed(&x)];
     let all = all.iter().flat_map(|points| surfaces.iter().map(move |surface| (points, surface)));
     for (points, surface) in all {
-        for law in [SUPER, COULOMB, FRICTIONLESS] {
-            let pair = pair(points.clone(), Master::Mesh(surface.clone()), law);
+        for (law, radiation) in
+            [(SUPER, 0.0), (COULOMB, 0.0), (FRICTIONLESS, 0.0), (COULOMB, 150.0), (FRICTIONLESS, 150.0)]
+        {
+            let plain = pair(points.clone(), Master::Mesh(surface.clone()), law);
+            let pair = ContactPair { radiation, ..plain };
             let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.laws[0].initial_state() };
             let mut closed = 0;
             for k in 0..pair.points.len() {
@@ -227,7 +241,7 @@ fn tangent_equals_differences_in_stick_partial_and_full_slip_and_after_touch() {
                 ] {
                     let friction = if gap > 0.0 { pair.laws[0].initial_state() } else { pressed };
                     let old = pulled(&pair, k, &x, back, friction, gap);
-                    check_tangent(&pair, k, &old, &x, &format!("{law}, {what}"));
+                    check_tangent(&pair, k, &old, &x, &format!("{law}, {what}, radiation {radiation}"));
                 }
             }
             assert!(closed > 1, "{closed} points were tested");
@@ -504,7 +518,17 @@ fn mortar_tangent_on_rigid_bodies_equals_differences() {
                 let friction = if gap > 0.0 { friction } else { pressed };
                 let foot = Some(MasterPoint { segment: 0, xi: 0.0 });
                 let old = vec![
-                    ContactState { friction, foot, length: 1.0, gap, slip: 0.0, multiplier: 0.0 };
+                    ContactState {
+                        friction,
+                        foot,
+                        length: 1.0,
+                        gap,
+                        slip: 0.0,
+                        radiation: 0.0,
+                        radiated: 0.0,
+                        multiplier: 0.0,
+                        fluid: 0.0,
+                    };
                     pair.points.len()
                 ];
                 let answer = |x: &Positions| {
@@ -656,7 +680,17 @@ fn points_that_nothing_faced_slip_past_what_they_meet() {
         aside[12..].chunks_mut(2).for_each(|u| u.copy_from_slice(&[-motion.x, -motion.y]));
         let before = Configuration::new(&x, &aside);
         let friction = pair.laws[0].initial_state();
-        let old = ContactState { friction, foot: None, length: 1.0, gap: 0.0, slip: 0.0, multiplier: 0.0 };
+        let old = ContactState {
+            friction,
+            foot: None,
+            length: 1.0,
+            gap: 0.0,
+            slip: 0.0,
+            radiation: 0.0,
+            radiated: 0.0,
+            multiplier: 0.0,
+            fluid: 0.0,
+        };
         let old = vec![old; pair.points.len()];
         let answer = |u: &[f64]| {
             let x = Configuration::new(&x, u);
@@ -748,13 +782,22 @@ fn mortar_normal_is_the_mean_under_the_multiplier() {
     ];
     let configuration = Configuration::undeformed(&x);
     let pair = pair(points, Master::Mesh(master.clone()), FRICTIONLESS);
-    let overlaps = mortar.overlaps(&master, &Index::new(&pair.master, &configuration), &configuration);
+    let overlaps = overlaps(&pair, &mortar, &master, &configuration);
     for (k, expected) in expected.into_iter().enumerate() {
         let mut met = Kinematics::new(false);
-        mortar.meet(k, &master, &overlaps, None, &configuration, &mut met).expect("the master faces the point");
+        mortar
+            .meet(k, &master, &overlaps, None, &configuration, (&mut met, &mut Room::default()))
+            .expect("the master faces the point");
         let away = (met.tangent - expected.normalize()).norm();
         assert!(away < 1e-6, "point {k}: {:?}, not {:?}", met.tangent, expected.normalize());
     }
+}
+
+/// The slave edges cut in the configuration `x`.
+fn overlaps(pair: &ContactPair, mortar: &Mortar, surface: &Surface, x: &Configuration) -> Overlaps {
+    let mut found = Overlaps::default();
+    mortar.cut(surface, &Index::new(&pair.master, x), x, &mut found);
+    found
 }
 
 /// Compare the tangent of one mortar point with central differences; whether it was closed.
@@ -768,27 +811,22 @@ fn check_mortar_tangent(
     x: &Positions,
 ) -> bool {
     let before = Configuration::undeformed(before);
-    let was = mortar.overlaps(surface, &Index::new(&pair.master, &before), &before);
-    let weights = mortar.weights(k, surface, &was, &before);
+    let was = overlaps(pair, mortar, surface, &before);
+    let (mut room, mut weights) = (Room::default(), Vec::new());
+    mortar.weigh(k, surface, &was, &before, (&mut room, &mut weights));
+    let weights = Some(weights).filter(|weights| !weights.is_empty());
     let open = pair.laws[0].initial_state();
     let friction = if gap > 0.0 { open } else { FrictionState { traction: 2.0, pressure: 20.0, ..open } };
-    let old = ContactState {
-        friction,
-        foot: Some(MasterPoint { segment: 0, xi: 0.0 }),
-        length: 1.0,
-        gap,
-        slip: 0.0,
-        multiplier: 0.0,
-    };
+    let old = committed(friction, MasterPoint { segment: 0, xi: 0.0 }, gap);
     let increment = PointIncrement { during: INCREMENT, presumption: Presumption::default() };
     let evaluate = |x: &Positions| {
         let x = Configuration::undeformed(x);
-        let is = mortar.overlaps(surface, &Index::new(&pair.master, &x), &x);
+        let is = overlaps(pair, mortar, surface, &x);
         let mut kinematics = Kinematics::new(true);
-        let met = mortar.meet(k, surface, &is, weights.as_ref(), &x, &mut kinematics);
+        let met = mortar.meet(k, surface, &is, weights.as_ref(), &x, (&mut kinematics, &mut Room::default()));
         let met = met.expect("the master faces the point");
         closes(pair, &pair.points[k], met.gap, &old, increment, &x).then(|| {
-            let place = PointPlace { gap: met.gap, foot: Some(met.foot), closes: true };
+            let place = PointPlace { gap: met.gap, foot: Some(met.foot), closes: true, fluid: 0.0 };
             finish(pair, k, &old, increment, place, &mut kinematics).1.expect("a closed point").contribution
         })
     };
@@ -830,7 +868,10 @@ fn tangent_equals_differences_at_a_concave_corner() {
         length: 1.0,
         gap: -0.05,
         slip: 0.0,
+        radiation: 0.0,
+        radiated: 0.0,
         multiplier: 0.0,
+        fluid: 0.0,
     };
     check_tangent(&pair, 1, &old, &x, "concave corner");
 }
@@ -878,6 +919,10 @@ impl FrictionLaw for RidesUp {
             evaluations: 0,
         }
         .checked(self.alpha_t)
+    }
+
+    fn offsets(&self) -> &'static [&'static str] {
+        &["dilation"]
     }
 
     fn stiffness(&self) -> f64 {

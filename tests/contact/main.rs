@@ -3,10 +3,14 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod along;
 mod contact;
+mod moving;
 mod periodic;
 mod points;
+mod rings;
 mod self_contact;
 mod small_sliding;
 mod stabilization;
 mod validation;
+mod warned;

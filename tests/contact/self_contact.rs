@@ -130,7 +130,8 @@ fn tangent_of_self_contact_equals_differences() {
         let [old, new] = [&run.states[run.states.len() - 2], run.last()];
         let before = run.model.configuration(&old.displacement);
         let respond = |u: &[f64]| {
-            let during = ContactIncrement { dt: 0.1, fading: 0.0, stiffening: 1.0, settles: true };
+            let during =
+                ContactIncrement { dt: 0.1, time: 0.0, radiates: true, fading: 0.0, stiffening: 1.0, settles: true };
             let presumed = |_| Presumption::default();
             let (x, mut response) = (run.model.configuration(u), PairResponse::default());
             pair.respond(&old.contacts[0], [&before, &x], during, presumed, Request::Tangent, &mut response)
@@ -139,7 +140,7 @@ fn tangent_of_self_contact_equals_differences() {
         };
         let forces = |u: &[f64]| {
             let mut sum = vec![0.0; u.len()];
-            for (_, closed) in respond(u).all_closed() {
+            for (_, closed) in respond(u).all_acting() {
                 for (a, &node) in closed.nodes.iter().enumerate() {
                     (0..2).for_each(|i| sum[2 * node + i] += closed.force[2 * a + i]);
                 }
@@ -150,7 +151,7 @@ fn tangent_of_self_contact_equals_differences() {
         let direction: Vec<f64> = (0..u.len()).map(|dof| [0.3, 1.0, -0.7, 0.4, -0.2, 0.9, 0.5][dof % 7]).collect();
         let mut along = vec![0.0; u.len()];
         let mut closed_points = 0;
-        for (_, closed) in respond(u).all_closed() {
+        for (_, closed) in respond(u).all_acting() {
             let dofs: Vec<usize> = closed.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]).collect();
             for (row, &dof) in dofs.iter().enumerate() {
                 along[dof] += dofs
@@ -201,13 +202,14 @@ fn a_tube_pressed_flat_touches_itself() {
     let number = run.model.contacts.iter().position(|pair| pair.name == "bar").expect("a contact of the case");
     let [old, new] = [&run.states[run.states.len() - 2], run.last()];
     let [before, x] = [old, new].map(|state| run.model.configuration(&state.displacement));
-    let during = ContactIncrement { dt: new.dt, fading: 0.0, stiffening: 1.0, settles: true };
+    let during =
+        ContactIncrement { dt: new.dt, time: 0.0, radiates: true, fading: 0.0, stiffening: 1.0, settles: true };
     let nothing = |_| Presumption::default();
     let (states, mut answer) = (&old.contacts[number], PairResponse::default());
     run.model.contacts[number]
         .respond(states, [&before, &x], during, nothing, Request::Residual, &mut answer)
         .expect("an answer");
-    let bar: f64 = answer.all_closed().map(|(_, closed)| closed.force.iter().skip(1).step_by(2).sum::<f64>()).sum();
+    let bar: f64 = answer.all_acting().map(|(_, closed)| closed.force.iter().skip(1).step_by(2).sum::<f64>()).sum();
     close("the bar presses", bar, plate, 1e-6 * plate);
 }
 

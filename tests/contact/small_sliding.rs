@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::contact::pair as pair_under;
 use crate::common::{self, Blocks, Finished, close, distance, finish, half_way, quadratic};
 use fecontact::contact::force::ContactState;
 use fecontact::contact::master::Master;
@@ -10,8 +11,8 @@ use fecontact::contact::pair::{ContactIncrement, ContactPair, Presumption};
 use fecontact::contact::response::PairResponse;
 use fecontact::contact::rigid::{Circle, Rigid};
 use fecontact::contact::small_sliding::{LITTLE_SLIP, LITTLE_TURN};
-use fecontact::contact::surface::{SlavePoint, Surface, gauss_points, nodal_points};
-use fecontact::laws::friction::{FrictionParameters, Regime};
+use fecontact::contact::surface::{Surface, gauss_points, nodal_points};
+use fecontact::laws::friction::Regime;
 use fecontact::linear::system::Request;
 use fecontact::mesh::configuration::Configuration;
 use fecontact::output::warnings::Warnings;
@@ -156,31 +157,14 @@ fn wavy(law: &str, method: &str, gap: f64) -> (ContactPair, Vec<Vector2<f64>>) {
         _ => (gauss_points(&edges, 3), None),
     };
     let master: Vec<Vec<usize>> = (0..5).map(|k| vec![k + 1, k]).collect();
-    let mut pair = pair_of(points, Master::Mesh(Surface::new(&master)), law);
+    let mut pair = pair_under(points, Master::Mesh(Surface::new(&master)), law);
     pair.mortar = mortar;
     pair.slide_little(&Configuration::undeformed(&x));
     (pair, x)
 }
 
-/// A pair with α_n = 1000 and α_t = 700.
-fn pair_of(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
-    let law = serde_json::from_str::<FrictionParameters>(law).expect("a law").build(700.0).expect("good parameters");
-    ContactPair {
-        name: "test".into(),
-        points,
-        master,
-        mortar: None,
-        alpha_n: 1000.0,
-        compliance: 2e-3,
-        penetration: None,
-        laws: vec![law],
-        initial: None,
-        reverse: None,
-        small: None,
-    }
-}
-
-const INCREMENT: ContactIncrement = ContactIncrement { dt: 0.3, fading: 0.0, stiffening: 1.0, settles: true };
+const INCREMENT: ContactIncrement =
+    ContactIncrement { dt: 0.3, time: 0.0, radiates: true, fading: 0.0, stiffening: 1.0, settles: true };
 
 /// Forces on all nodes, their derivative by the tangents of the points, and the states.
 fn answer(
@@ -195,7 +179,7 @@ fn answer(
     pair.respond(old, [&before, &now], INCREMENT, presumed, Request::Tangent, &mut response).expect("an answer");
     let n = 2 * x.len();
     let (mut forces, mut tangent) = (vec![0.0; n], vec![vec![0.0; n]; n]);
-    for (_, added) in response.all_closed() {
+    for (_, added) in response.all_acting() {
         let dofs: Vec<usize> = added.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]).collect();
         for (a, &row) in dofs.iter().enumerate() {
             forces[row] += added.force[a];
@@ -221,10 +205,11 @@ const COULOMB: &str = r#"{"law": "coulomb", "mu": 0.3}"#;
 #[test]
 fn tangents_and_rows_equal_differences() {
     for method in METHODS {
-        for law in [SUPER, COULOMB] {
+        for (law, radiation) in [(SUPER, 0.0), (COULOMB, 0.0), (SUPER, 150.0)] {
             for (gap, slip, wanted) in [(0.0, 1e-4, Regime::Stick), (0.0, 0.1, Regime::Slip), (0.12, 0.1, Regime::Slip)]
             {
-                let (pair, x) = wavy(law, method, gap);
+                let (mut pair, x) = wavy(law, method, gap);
+                pair.radiation = radiation;
                 let n = 2 * x.len();
                 let rest = pair.initial_states(&Configuration::undeformed(&x));
                 let before = motion(n, 1e-5, [0.0, if gap > 0.0 { 0.0 } else { -0.06 }]);
@@ -417,7 +402,7 @@ fn rigid_bodies_are_left_where_their_normal_turns() {
 fn a_circle_is_its_tangent() {
     let x = vec![Vector2::new(-0.3, 1.96), Vector2::new(0.4, 1.95)];
     let circle = Master::Rigid(Rigid::Circle(Circle { centre: Vector2::zeros(), radius: 2.0, hole: false }));
-    let mut pair = pair_of(nodal_points(&[vec![0, 1]]), circle, COULOMB);
+    let mut pair = pair_under(nodal_points(&[vec![0, 1]]), circle, COULOMB);
     let undeformed = Configuration::undeformed(&x);
     pair.slide_little(&undeformed);
     let u = [0.3, -0.1, 0.2, -0.15];

@@ -361,7 +361,14 @@ fn accepted_contact_states_follow_from_the_committed_ones() {
         let (pair, mut found) = (&run.model.contacts[0], PairResponse::default());
         for states in run.states.windows(2) {
             let [before, x] = [&states[0], &states[1]].map(|state| run.model.configuration(&state.displacement));
-            let during = ContactIncrement { dt: states[1].dt, fading: 0.0, stiffening: 1.0, settles: true };
+            let during = ContactIncrement {
+                dt: states[1].dt,
+                time: 0.0,
+                radiates: true,
+                fading: 0.0,
+                stiffening: 1.0,
+                settles: true,
+            };
             let nothing = |_| Presumption::default();
             pair.respond(&states[0].contacts[0], [&before, &x], during, nothing, Request::Residual, &mut found)
                 .expect("an answer");

@@ -1,0 +1,135 @@
+//! Friction that varies along a contact by law, and in time.
+
+use std::path::Path;
+
+use crate::common::{Finished, close, finish, model};
+use serde_json::{Value, json};
+
+/// Points on a plane, one law for those beyond x = 1.5, each pressed with 4 and held by a spring of 10 to a driver.
+fn points(along: &Value, friction: &Value, duration: f64, dt: f64) -> Value {
+    let loads = json!([
+        {"on": "block", "force": {"y": "-4"}},
+        {"on": "block", "spring": {"kx": 10, "driver": {"x": {"rate": 1}}}},
+    ]);
+    json!({
+        "mesh": {"nodes": [[0, 0], [1, 0], [2, 0]], "points": {"block": [0, 1, 2]}},
+        "point_masses": {"block": {"mass": 1}},
+        "contacts": {"base": {
+            "slave": "block", "area": 2, "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+            "normal": {"alpha_n": 1000}, "friction": friction, "along": along, "initial": {"pressure": 2},
+        }},
+        "newton": {"tolerance": 1e-13},
+        "steps": [{"name": "pull", "duration": duration, "scheme": "static", "dt": {"initial": dt}, "loads": loads}],
+    })
+}
+
+/// α_t A of every point
+const CONTACT: f64 = 1e4;
+
+fn coulomb(mu: f64) -> Value {
+    json!({"law": "coulomb", "mu": mu, "alpha_t": 0.5 * CONTACT})
+}
+
+fn slips(run: &Finished) -> Vec<f64> {
+    run.last().contacts[0].iter().map(|state| state.friction.plastic_slip).collect()
+}
+
+/// Creep at 0.3 beyond x = 1.5, Coulomb's law before: the spring's force is that of the law on one side, and what the given
+/// slip leaves of the driver's way on the other.
+#[test]
+fn creep_beside_friction() {
+    let creep = json!({"law": "prescribed", "slip_rate": 0.3, "alpha_t": 0.5 * CONTACT});
+    let along = json!({"mu": "0.1 + 0.1*x", "law": [{"where": "x - 1.5", "friction": creep}]});
+    let run = finish(&points(&along, &coulomb(0.5), 2.0, 0.125));
+    let last = run.last();
+    let force = |node: usize| 10.0 * (2.0 - last.displacement[2 * node]);
+    close("μ p at x = 0", force(0), 0.1 * 4.0, 1e-9);
+    close("μ p at x = 1", force(1), 0.2 * 4.0, 1e-9);
+    close("slip of the creeping point", slips(&run)[2], 0.6, 1e-12);
+    // F = k (V t − u), u = 0.6 + F/(α_t A)
+    close("its force", force(2), 10.0 * 1.4 / (1.0 + 10.0 / CONTACT), 1e-9);
+    close("energy error", last.energy.error(), 0.0, 1e-2 * last.energy.external_work);
+}
+
+/// A rate that varies in time enters by its mean: ∫ 0.3 t² dt = 0.8 to the last digits, whatever the increments.
+#[test]
+fn given_slip_is_the_integral_of_its_rate() {
+    let creep = json!({"law": "prescribed", "slip_rate": 1, "alpha_t": 0.5 * CONTACT});
+    for dt in [2.0, 0.5, 0.3] {
+        let run = finish(&points(&json!({"slip_rate": "0.3*t^2*(1 + x)"}), &creep, 2.0, dt));
+        for (slip, expected) in slips(&run).iter().zip([0.8, 1.6, 2.4]) {
+            close("slip", *slip, expected, 1e-12);
+        }
+    }
+}
+
+/// A patch that weakens and recovers: the force of a sliding point is μ(t) p at the end of every increment, and what is observed
+/// of it belongs to its time.
+#[test]
+fn strength_follows_the_time() {
+    let mu = "0.4 - 0.2*exp(0 - (t - 2)^2)";
+    let run = finish(&points(&json!({"mu": mu}), &coulomb(0.5), 4.0, 0.25));
+    for state in run.states.iter().filter(|state| state.time >= 1.0) {
+        let mu = 0.4 - 0.2 * (-(state.time - 2.0).powi(2)).exp();
+        for contact in &state.contacts[0] {
+            close("q", contact.friction.traction, mu * 2.0, 1e-10);
+        }
+        let pair = &run.model.contacts[0];
+        let observed = fecontact::contact::fields::value(pair, &pair.points[1], &state.contacts[0][1], state.dt, "R");
+        close("R", observed, 1.0, 1e-12);
+    }
+    // From Coulomb's law with a constant coefficient it differs by far.
+    assert!(run.at(2.0).contacts[0][0].friction.traction < 0.41);
+}
+
+/// What is wrong is told with its place.
+#[test]
+fn bad_choices_are_refused() {
+    let refused = |along: Value| {
+        let case = points(&along, &coulomb(0.5), 1.0, 0.5);
+        match serde_json::from_value(case) {
+            Ok(case) => fecontact::case::build(&case, Path::new("test.json")).err().map(|error| error.to_string()),
+            Err(error) => Some(error.to_string()),
+        }
+        .expect("it is refused")
+    };
+    let creep = json!({"law": "prescribed", "slip_rate": 1});
+    for (along, place, what) in [
+        (
+            json!({"law": [{"where": "x + t", "friction": coulomb(0.1)}]}),
+            "along.law[0].where",
+            "the time t has no meaning",
+        ),
+        (
+            json!({"law": [{"where": "1/x", "friction": coulomb(0.1)}]}),
+            "along.law[0].where",
+            "not a finite number at (0, 0)",
+        ),
+        (json!({"law": [{"where": 1, "friction": coulomb(-1.0)}]}), "along.law[0].friction", "mu"),
+        (json!({"law": [{"where": 1, "friction": creep}]}), "along.law[0].friction.alpha_t", "is missing"),
+        (
+            json!({"law": [{"where": 1, "friction": coulomb(0.1), "along": {"mu": "0 - x"}}]}),
+            "along.law[0].along.mu",
+            "mu",
+        ),
+        (json!({"alpha_t": "1 + t"}), "along.alpha_t", "and not t"),
+        (json!({"law": [{"on": "x"}]}), "", "where"),
+    ] {
+        let told = refused(along);
+        assert!(told.contains(place) && told.contains(what), "{place}, {what}: {told}");
+    }
+}
+
+/// A parameter that leaves its range in time ends the run, and says when.
+#[test]
+fn a_parameter_that_leaves_its_range_stops_the_run() {
+    let case = points(&json!({"mu": "0.5 - t"}), &coulomb(0.5), 1.0, 0.125);
+    let mut run = fecontact::run::Simulation::new(model(&case));
+    let mut result = run.next_increment();
+    while matches!(result, Ok(Some(_))) {
+        result = run.next_increment();
+    }
+    let told = result.err().expect("it stops").to_string();
+    assert!(told.contains("the parameters of the friction law") && told.contains("along"), "{told}");
+    assert!((0.4..0.5).contains(&run.state().time), "{}", run.state().time);
+}
