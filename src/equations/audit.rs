@@ -4,12 +4,14 @@
 //! work       ½ (f₀ + f₁)·Δu of loads and reactions; drivers of dashpots; overlaps of shrink fits
 //! damping    −½ (d₀ + d₁)·Δu of the forces of dashpots on the nodes; drivers; what statics takes out of a motion
 //! friction   ∫ q v^p ds dt
+//! radiated   ½ (r₀ + r₁) Δu_t of the tractions r = η v of radiation damping
 //! ```
 //! Whatever the scheme, forces are taken at both ends of the increment.
 
 use super::evaluation::Evaluation;
-use super::{dampers, interfaces, stabilization};
+use super::{dampers, interfaces, links, stabilization};
 use crate::model::state::State;
+use crate::model::support::Direction;
 use crate::model::{Model, Step};
 
 /// Degrees of freedom whose work one thread sums up.
@@ -26,6 +28,8 @@ pub struct Flows {
     pub stabilization: f64,
     /// dissipated by friction
     pub friction: f64,
+    /// radiated by slip
+    pub radiated: f64,
 }
 
 impl Flows {
@@ -39,21 +43,27 @@ impl Flows {
         let fitted = interfaces::fitted(model, [&old.contacts, &found.contacts], times);
         Self {
             work: mean_work([&old.external, &found.loads], ends) + driven + fitted,
-            damping: driven - damped + relaxed(step, old, u),
+            damping: driven - damped + relaxed(model, step, old, u),
             stabilization: stabilization::dissipated(step, times, way),
             friction: interfaces::dissipated(&old.contacts, &found.contacts),
+            radiated: interfaces::radiated(&old.contacts, &found.contacts),
         }
     }
 }
 
 /// What forces out of balance at the start of a static increment, left by motion before it, would have set in motion.
-fn relaxed(step: &Step, old: &State, u: &[f64]) -> f64 {
+fn relaxed(model: &Model, step: &Step, old: &State, u: &[f64]) -> f64 {
     if step.scheme.is_dynamic() {
         return 0.0;
     }
-    let work = |dof: usize| old.force[dof] * (u[dof] - old.displacement[dof]);
+    let force = links::relieved(model, &old.displacement, &old.force);
+    let work = |dof: usize| force[dof] * (u[dof] - old.displacement[dof]);
     let all: f64 = (0..u.len()).map(work).sum();
-    let supported: f64 = step.supports.iter().map(|support| work(support.dof)).sum();
+    let along = |at: Direction| match at.inclined {
+        None => work(at.dof),
+        Some(_) => at.of(&force) * (at.of(u) - at.of(&old.displacement)),
+    };
+    let supported: f64 = step.supports.iter().map(|support| along(support.at)).sum();
     -0.5 * (all - supported)
 }
 

@@ -7,11 +7,17 @@
 //!
 //! x are the displacements of K, x₀ and u₀ those to start from. r = 0 where ρ(x) = 0 and the others follow x; how far the
 //! bodies are from the origin, or have moved, does not enter.
-
-use std::sync::Arc;
+//!
+//! In small sliding, nodes of the slave are counted from what they face for good, and x are their jumps (see `jumps.rs`): with
+//! equal nodes on both sides ρ has half as many equations, and its tangent takes an eighth of the operations.
+//!
+//! Where all nodes are counted so, nothing opens and the pressure is linear, the equations of the jumps along the normal do not
+//! vary, and are eliminated as well ([`crate::linear::Eliminated`]): an eighth of the operations again.
 
 use super::Assembler;
+use super::contact_nodes::{ContactNodes, contact_share};
 use super::dependence::Dependence;
+use super::jumps::fixed;
 use super::term::Term;
 use super::trial::Trial;
 use crate::contact::closed::Closed;
@@ -19,81 +25,34 @@ use crate::contact::master::Master;
 use crate::contact::pair::ContactPair;
 use crate::contact::response::PairResponse;
 use crate::linear::system::{Request, System};
-use crate::linear::{Condensed, Pattern, SparseMatrix, norm};
+use crate::linear::{Condensed, norm};
 use crate::model::{Model, Step};
 
 /// Whether everything but contact adds the same tangent in all increments of one length in a step.
 pub fn is_linear(model: &Model, step: &Step) -> bool {
+    if bound_at_contacts(model, step) || !model.linkage.rigid.is_empty() {
+        return false;
+    }
     let others = Term::ALL.into_iter().filter(|term| *term != Term::Interfaces);
     others.map(|term| term.dependence(model, step)).all(|dependence| dependence <= Dependence::StepSize)
 }
 
-/// The nodes at contacts: those of the slaves, and all that they may slide to. Copies come with the nodes they move with.
-pub struct ContactNodes {
-    /// The nodes, ascending
-    pub nodes: Vec<usize>,
-    /// Place of each node among them
-    places: Vec<Option<u32>>,
-    /// Places of the nodes of each contact
-    parts: Vec<Vec<usize>>,
-    /// All coupled with each other: the values of a matrix are those of a dense one, column by column
-    pattern: Arc<Pattern>,
-}
-
-impl ContactNodes {
-    /// The nodes of all contacts of a model.
-    pub fn new(model: &Model) -> Self {
-        let of_pairs: Vec<Vec<usize>> = model.contacts.iter().map(|pair| nodes_of(model, pair)).collect();
-        let copies = model.ties.pairs().iter().filter(|(_, original)| of_pairs.iter().flatten().any(|n| n == original));
-        let mut nodes: Vec<usize> = of_pairs.iter().flatten().copied().chain(copies.map(|(copy, _)| *copy)).collect();
-        nodes.sort_unstable();
-        nodes.dedup();
-        let mut places = vec![None; model.mesh.nodes.len()];
-        nodes.iter().enumerate().for_each(|(place, &node)| places[node] = Some(place as u32));
-        let place = |node: &usize| places[*node].map(|place| place as usize);
-        let parts = of_pairs.iter().map(|nodes| nodes.iter().filter_map(place).collect()).collect();
-        let all: Vec<usize> = (0..nodes.len()).collect();
-        let pattern = Arc::new(Pattern::new(nodes.len(), std::iter::once(&all[..])));
-        Self { nodes, places, parts, pattern }
-    }
-
-    /// A system of their equations.
-    pub fn system(&self) -> System {
-        System {
-            residual: vec![0.0; 2 * self.nodes.len()],
-            tangent: SparseMatrix::zero(self.pattern.clone()),
-            forces: 0.0,
-            imbalance: f64::INFINITY,
-        }
-    }
-
-    /// Values at their dofs from those at all.
-    pub fn gather(&self, all: &[f64]) -> Vec<f64> {
-        self.nodes.iter().flat_map(|&node| [all[2 * node], all[2 * node + 1]]).collect()
-    }
-
-    /// Write the values at their dofs over those of all.
-    pub fn scatter(&self, own: &[f64], all: &mut [f64]) {
-        for (values, &node) in own.chunks_exact(2).zip(&self.nodes) {
-            all[2 * node..2 * node + 2].copy_from_slice(values);
-        }
-    }
-}
-
-/// Nodes that a contact couples, or may come to couple.
-fn nodes_of(model: &Model, pair: &ContactPair) -> Vec<usize> {
-    let mut nodes: Vec<usize> = Vec::new();
-    for point in &pair.points {
-        nodes.extend(point.position.iter().map(|&(node, _)| node));
-        nodes.extend(point.length.iter().flat_map(|share| share.tangent.iter().map(|&(node, _)| node)));
-    }
-    if let Master::Mesh(surface) = &pair.master {
-        nodes.extend(surface.segments.iter().flat_map(|segment| segment.nodes()));
-    }
-    nodes.iter_mut().for_each(|node| *node = model.ties.original(*node));
+/// Whether a node at a contact is held along an inclined direction, or follows others or leads them: its equations are no sums of
+/// its forces.
+fn bound_at_contacts(model: &Model, step: &Step) -> bool {
+    let inclined = step.supports.iter().map(|support| support.at).filter(|at| at.inclined.is_some());
+    let mut nodes: Vec<usize> = inclined.map(|at| at.node()).chain(model.linkage.nodes()).collect();
     nodes.sort_unstable();
-    nodes.dedup();
-    nodes
+    let is = |node: usize| nodes.binary_search(&model.ties.original(node)).is_ok();
+    let of = |pair: &ContactPair| {
+        let slaves = pair.points.iter().flat_map(|point| &point.position).map(|(node, _)| *node);
+        let masters = match &pair.master {
+            Master::Mesh(surface) => &surface.segments[..],
+            Master::Rigid(_) => &[],
+        };
+        slaves.chain(masters.iter().flat_map(|segment| segment.nodes())).any(is)
+    };
+    !nodes.is_empty() && model.contacts.iter().any(of)
 }
 
 /// ρ(x) of an increment from one start value on.
@@ -123,18 +82,12 @@ impl<'a> CondensedEquations<'a> {
         constant: Vec<f64>,
         (assembler, system): (&Assembler, &System),
     ) -> Self {
-        let mut free = vec![true; constant.len()];
-        let mut take = |dof: usize| {
-            if let Some(place) = nodes.places[dof / 2] {
-                free[2 * place as usize + dof % 2] = false;
-            }
-        };
-        trial.step.supports.iter().for_each(|support| take(support.dof));
-        assembler.model().ties.pairs().iter().flat_map(|&(copy, _)| [2 * copy, 2 * copy + 1]).for_each(take);
-        let share = trial.step.scheme.coefficients().map_or(1.0, |scheme| 1.0 - scheme.alpha_f);
+        let fixed = fixed(assembler.model(), trial.step);
+        let free = nodes.nodes.iter().flat_map(|&node| [!fixed[2 * node], !fixed[2 * node + 1]]).collect();
+        let share = contact_share(trial.step);
         let round_off = assembler.round_off(trial, u);
-        let hidden = |part: &Vec<usize>| part.iter().map(|&k| round_off[nodes.nodes[k]]).sum::<f64>().sqrt();
-        let hidden = nodes.parts.iter().map(hidden).collect();
+        let hidden = |side: &Vec<usize>| side.iter().map(|&node| round_off[node]).sum::<f64>().sqrt();
+        let hidden = nodes.sides.iter().map(hidden).collect();
         Self { nodes, bodies, start: nodes.gather(u), constant, share, free, hidden, forces: system.forces }
     }
 
@@ -158,12 +111,23 @@ impl<'a> CondensedEquations<'a> {
         if request == Request::Tangent {
             system.tangent.values.copy_from_slice(&self.bodies.stiffness);
         }
-        let mut dofs = Vec::new();
-        for (_, closed) in responses.iter().flat_map(PairResponse::all_closed) {
+        let (mut dofs, mut rates) = (Vec::new(), Vec::new());
+        for (_, closed) in responses.iter().flat_map(PairResponse::all_acting) {
+            let closed = self.of_jump(closed, &mut rates);
             self.find(assembler.model(), closed.nodes, &mut dofs);
             self.add(&closed, &dofs, request, system);
         }
         self.measure(assembler, system);
+    }
+
+    /// What a closed point adds to the equations of its jump, if it has one: contact acts on that node alone.
+    fn of_jump<'b>(&self, closed: Closed<'b>, rates: &'b mut Vec<f64>) -> Closed<'b> {
+        let Some(k) = closed.nodes.iter().position(|node| self.nodes.jumps.has(*node)) else { return closed };
+        let own = 2 * k..2 * k + 2;
+        let columns = closed.tangent.chunks_exact(2 * closed.nodes.len()).skip(own.start).take(2);
+        rates.clear();
+        rates.extend(columns.flat_map(|column| &column[own.clone()]));
+        Closed { nodes: &closed.nodes[k..=k], force: &closed.force[own], tangent: rates, ..closed }
     }
 
     /// Write the dofs of some nodes among those at contacts over `dofs`.
@@ -194,7 +158,8 @@ impl<'a> CondensedEquations<'a> {
         let tolerance = assembler.model().newton.tolerance;
         system.imbalance = 0.0;
         system.forces = self.forces + norm(assembler.contact_forces());
-        let square = |dof: usize| if self.free[dof] { system.residual[dof].powi(2) } else { 0.0 };
+        let share = |dof: usize| self.nodes.jumps.share(self.nodes.nodes[dof / 2]);
+        let square = |dof: usize| if self.free[dof] { share(dof) * system.residual[dof].powi(2) } else { 0.0 };
         let parts = self.nodes.parts.iter().zip(assembler.contact_forces().iter().zip(&self.hidden));
         for (part, (forces, hidden)) in parts {
             let residual = part.iter().map(|&k| square(2 * k) + square(2 * k + 1)).sum::<f64>().sqrt();

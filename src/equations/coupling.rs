@@ -25,14 +25,14 @@ pub struct Coupling {
 }
 
 impl Coupling {
-    /// Whether it couples some of so many nodes.
-    pub fn fits(&self, nodes: usize) -> bool {
-        self.groups.iter().flatten().all(|node| *node < nodes)
-    }
-
     /// Couple all nodes of a group with each other.
     pub fn of(group: Vec<usize>) -> Self {
         Self { groups: vec![group], ahead: 1 }
+    }
+
+    /// Whether it couples some of so many nodes.
+    pub fn fits(&self, nodes: usize) -> bool {
+        self.groups.iter().flatten().all(|node| *node < nodes)
     }
 }
 
@@ -101,16 +101,46 @@ impl Layout {
     }
 
     /// The groups that have copies in them, as the nodes that those move with, and every copy with its own.
-    fn tied<'a>(&self, groups: impl Iterator<Item = &'a [usize]>) -> Vec<Vec<usize>> {
+    fn tied<'a>(&self, groups: impl Iterator<Item = &'a [usize]> + Clone) -> Vec<Vec<usize>> {
         let ties = &self.model.ties;
+        let mut linked = self.linked(groups.clone());
         if ties.pairs().is_empty() {
-            return Vec::new();
+            return linked;
         }
         let originals = |group: &[usize]| -> Vec<usize> { group.iter().map(|&node| ties.original(node)).collect() };
         let moved = groups.map(|group| (group, originals(group))).filter(|(group, originals)| group != originals);
         let mut tied: Vec<Vec<usize>> = moved.map(|(_, originals)| originals).collect();
         tied.extend(ties.pairs().iter().map(|&(copy, original)| vec![copy, original]));
+        tied.append(&mut linked);
         tied
+    }
+
+    /// The groups that have followers in them, with their leaders; and the leaders of rigid plates.
+    fn linked<'a>(&self, groups: impl Iterator<Item = &'a [usize]>) -> Vec<Vec<usize>> {
+        let linkage = &self.model.linkage;
+        if linkage.is_empty() && linkage.rigid.is_empty() {
+            return Vec::new();
+        }
+        let mut leaders: Vec<Vec<usize>> = vec![Vec::new(); self.model.mesh.nodes.len()];
+        for follower in &linkage.followers {
+            leaders[follower.node].extend(follower.leaders.iter().map(|(leader, _)| *leader));
+        }
+        // What B couples with, the equations of A have as well.
+        linkage.rigid.iter().for_each(|&[a, b]| leaders[b].push(a));
+        if self.model.steps.iter().any(|step| step.scheme.coefficients().is_some()) {
+            // In motion, what turns the plate about its center moves A.
+            linkage.rigid.iter().for_each(|&[a, b]| leaders[a].push(b));
+        }
+        let with = |group: &[usize]| -> Vec<usize> {
+            let leading = group.iter().flat_map(|node| &leaders[*node]);
+            let further = leading.clone().flat_map(|node| &leaders[*node]);
+            group.iter().chain(leading).chain(further).copied().collect()
+        };
+        let longer = groups.map(|group| (group.len(), with(group))).filter(|(own, all)| all.len() > *own);
+        let mut linked: Vec<Vec<usize>> = longer.map(|(_, all)| all).collect();
+        linked.extend(linkage.followers.iter().map(|follower| with(&[follower.node])));
+        linked.extend(linkage.rigid.iter().map(|plate| plate.to_vec()));
+        linked
     }
 
     /// The node that a node moves with.
@@ -151,7 +181,7 @@ impl Layout {
                 }
                 let Some(foot) = state.foot.or(old.foot) else { continue };
                 let mut nodes: Vec<usize> = slave.position.iter().map(|&(node, _)| node).collect();
-                nodes.extend(responses.closed(k).into_iter().flat_map(|closed| closed.nodes));
+                nodes.extend(responses.acting(k).into_iter().flat_map(|closed| closed.nodes));
                 if let Master::Mesh(surface) = &pair.master {
                     let way = old.foot.and_then(|from| surface.path(from, foot)).into_iter();
                     let slip: f64 = way.flat_map(Path::parts).map(|(_, from, to)| to - from).sum();
@@ -174,7 +204,7 @@ impl Layout {
 
     /// Find the blocks of all closed points, unless they are those of before; whether the pattern has them all.
     fn find_contacts(&mut self, responses: &[PairResponse]) -> bool {
-        let closed = || responses.iter().flat_map(PairResponse::all_closed).map(|(_, closed)| closed.nodes);
+        let closed = || responses.iter().flat_map(PairResponse::all_acting).map(|(_, closed)| closed.nodes);
         let listed = || closed().flat_map(|nodes| std::iter::once(nodes.len()).chain(nodes.iter().copied()));
         if listed().eq(self.contacts.iter().copied()) {
             return true;

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use nalgebra::{Matrix2, Vector2};
 
 use super::dependence::Dependence;
-use super::rates::velocity;
+use super::rates::{motion, velocity};
 use super::sums::Sums;
 use super::trial::Trial;
 use crate::equations::failure::TrialFailure;
@@ -29,10 +29,16 @@ pub(super) fn add(
     damping: &mut [f64],
     sums: &mut Sums,
 ) -> Result<(), TrialFailure> {
+    // Of rigid plates, v of one node follows from those of others.
+    let turning = if model.linkage.rigid.is_empty() { None } else { motion(model, trial, u) };
+    let velocity = |dof: usize| match &turning {
+        Some((velocity, dvelocity)) => (velocity[dof], dvelocity[dof]),
+        None => velocity(model, trial, u, dof),
+    };
     for dashpot in &trial.step.loads.dashpots {
         let dof = dashpot.dof;
         let driver = dashpot.driver_velocity(model.mesh.nodes[dof / 2], trial.time);
-        let (velocity, dvelocity) = velocity(model, trial, u, dof);
+        let (velocity, dvelocity) = velocity(dof);
         let pull = dashpot.coefficient * (driver - velocity);
         if !pull.is_finite() {
             return Err(TrialFailure::Undefined { node: model.mesh.node_tags[dof / 2], time: trial.time });
@@ -42,7 +48,7 @@ pub(super) fn add(
         sums.stiffen(dof / 2, (dof % 2, dof % 2), dashpot.coefficient * dvelocity);
     }
     for Absorber { node, coefficients } in &trial.step.loads.absorbers {
-        let rates = [0, 1].map(|i| velocity(model, trial, u, 2 * node + i));
+        let rates = [0, 1].map(|i| velocity(2 * node + i));
         for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
             let (velocity, dvelocity) = rates[j];
             let pull = -coefficients[(i, j)] * velocity;
@@ -79,11 +85,11 @@ pub struct NodeDamper {
 /// The dampers of a step, a matrix a node, by the number of the node; those of copies at the nodes they move with.
 pub fn by_node(model: &Model, step: &Step) -> Vec<NodeDamper> {
     let mut total: BTreeMap<usize, Matrix2<f64>> = BTreeMap::new();
-    for body in model.bodies.iter().filter(|body| body.damping.mass > 0.0) {
+    for (body, damping) in model.bodies.iter().zip(model.dampings(step)).filter(|(_, damping)| damping.mass > 0.0) {
         for &e in &body.elements {
             for (&node, mass) in model.mesh.elements[e].nodes.iter().zip(model.element_lumped_mass(e).iter()) {
                 let node = model.ties.original(node);
-                *total.entry(node).or_default() += Matrix2::from_diagonal_element(body.damping.mass * mass);
+                *total.entry(node).or_default() += Matrix2::from_diagonal_element(damping.mass * mass);
             }
         }
     }

@@ -15,6 +15,7 @@
 //! which are differences of displacements over Δt. How far a model lies from the origin does not enter: positions are only
 //! ever subtracted from each other.
 
+use super::links;
 use super::trial::Trial;
 use crate::contact::master::Master;
 use crate::contact::pair::ContactPair;
@@ -22,8 +23,8 @@ use crate::contact::response::PairResponse;
 use crate::linear::system::System;
 use crate::linear::{SparseMatrix, norm};
 use crate::mesh::configuration::Configuration;
-use crate::model::Model;
 use crate::model::boundary::Absorber;
+use crate::model::{Damping, Model, Step};
 
 /// Errors of a force in units of ε: every element adds a few to each node.
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
@@ -50,6 +51,8 @@ pub(super) struct Equilibrium {
     parts: Vec<Part>,
     /// Σ (C h)², Σ C² and Σ (τ C)² of the elements at each node
     stiffness: Vec<[f64; 3]>,
+    /// that of the bodies for which these are
+    dampings: Vec<Damping>,
     /// Longest edge of each contact [L]
     edges: Vec<f64>,
     diagonal: f64,
@@ -99,12 +102,30 @@ impl Equilibrium {
         Self {
             parts: bodies.chain(surfaces).chain(lone).collect(),
             stiffness,
+            dampings: model.bodies.iter().map(|body| body.damping).collect(),
             edges: model.contacts.iter().map(|pair| longest_edge(pair, &model.mesh.undeformed())).collect(),
             diagonal: model.mesh.diagonal(),
             contact_forces: vec![0.0; model.contacts.len()],
             contact_stiffness: vec![[0.0; 2]; count],
             own: vec![0.0; 2 * count],
         }
+    }
+
+    /// Take the viscous stress that the bodies have in a step.
+    pub(super) fn retard(&mut self, model: &Model, step: &Step) {
+        let dampings = model.dampings(step);
+        if self.dampings == dampings {
+            return;
+        }
+        self.stiffness.iter_mut().for_each(|[.., viscous]| *viscous = 0.0);
+        for (e, element) in model.mesh.elements.iter().enumerate() {
+            let body = model.body_of_element[e];
+            let modulus = model.bodies[body].material.p_wave_modulus() * model.solids[e].mean_weight();
+            let viscous = dampings[body].retardation * modulus;
+            let originals = element.nodes.iter().map(|&node| model.ties.original(node));
+            originals.for_each(|node| self.stiffness[node][2] += viscous * viscous);
+        }
+        self.dampings = dampings;
     }
 
     /// Keep how large the forces of every contact are, and how stiff it is.
@@ -114,8 +135,9 @@ impl Equilibrium {
         }
         for (k, (pair, responses)) in model.contacts.iter().zip(responses).enumerate() {
             let alpha_n = pair.normal_stiffness(trial.stiffening);
-            for (state, closed) in responses.all_closed() {
-                let squared = (alpha_n * state.length).powi(2);
+            for (state, closed) in responses.all_acting() {
+                let stiffness = if closed.is_open { 0.0 } else { alpha_n };
+                let squared = (stiffness * state.length).powi(2);
                 for (a, &node) in closed.nodes.iter().enumerate() {
                     let original = model.ties.original(node);
                     self.contact_stiffness[original][0] += squared * self.edges[k].powi(2);
@@ -124,7 +146,7 @@ impl Equilibrium {
                 }
             }
             let mut sum = 0.0;
-            for (_, closed) in responses.all_closed() {
+            for (_, closed) in responses.all_acting() {
                 for &node in closed.nodes {
                     let original = model.ties.original(node);
                     for dof in [2 * original, 2 * original + 1] {
@@ -150,8 +172,10 @@ impl Equilibrium {
         system.forces = norm(magnitudes);
         let tolerance = model.newton.tolerance;
         let mut free: Vec<f64> = system.residual.clone();
-        trial.step.supports.iter().for_each(|support| free[support.dof] = 0.0);
+        trial.step.supports.iter().for_each(|support| free[support.at.dof] = 0.0);
         model.ties.pairs().iter().for_each(|&(copy, _)| free[2 * copy..2 * copy + 2].fill(0.0));
+        model.linkage.followers.iter().flat_map(|follower| follower.dofs()).for_each(|(_, dof)| free[dof] = 0.0);
+        model.linkage.rigid.iter().for_each(|[_, b]| free[2 * b + 1] = 0.0);
         let mut round_off = None;
         system.imbalance = missed(model, trial, u);
         for part in &self.parts {
@@ -217,6 +241,9 @@ impl Equilibrium {
             squares[*node] += (coefficients.norm() * dvelocity).powi(2) * square(&way, *node);
         }
         model.ties.gather(1, &mut squares);
+        for follower in &model.linkage.followers {
+            follower.leaders.iter().for_each(|(leader, _)| squares[*leader] += squares[follower.node]);
+        }
         squares.iter_mut().for_each(|squared| *squared *= ROUND_OFF * ROUND_OFF);
         squares
     }
@@ -227,9 +254,11 @@ fn missed(model: &Model, trial: Trial, u: &[f64]) -> f64 {
     let (mut missed, mut motion, mut place) = (0.0f64, 0.0f64, 0.0f64);
     for support in &trial.step.supports {
         let target = trial.prescribed(support, model);
-        missed = missed.max((u[support.dof] - target).abs());
-        motion = motion.max((target - trial.old.displacement[support.dof]).abs());
-        place = place.max(target.abs());
+        missed = missed.max((support.at.of(u) - target).abs());
+        motion = motion.max((target - support.at.of(&trial.old.displacement)).abs());
+        // Along an inclined direction the components cancel.
+        let of_node = |i: usize| if support.at.inclined.is_some() { u[(support.at.dof & !1) + i].abs() } else { 0.0 };
+        place = place.max(target.abs()).max(of_node(0)).max(of_node(1));
     }
     for &(copy, original) in model.ties.pairs() {
         for (copy, original) in [(2 * copy, 2 * original), (2 * copy + 1, 2 * original + 1)] {
@@ -237,6 +266,8 @@ fn missed(model: &Model, trial: Trial, u: &[f64]) -> f64 {
             place = place.max(u[original].abs());
         }
     }
+    let [apart, way] = links::missed(model, u);
+    (missed, place) = (missed.max(apart), place.max(way));
     if missed == 0.0 { 0.0 } else { missed / motion.max(ROUND_OFF * place / model.newton.tolerance) }
 }
 

@@ -1,6 +1,7 @@
 //! What an evaluation of the equations leaves for the accepted state.
 
 use crate::contact::force::ContactState;
+use crate::contact::pair::ContactPair;
 use crate::laws::friction::Regime;
 
 /// What was found at the last evaluated displacement, for the accepted state.
@@ -28,6 +29,8 @@ pub struct Evaluation {
     pub strain_energy: f64,
     /// What the materials dissipated in the increment [F·L]
     pub dissipated: f64,
+    /// Work of the temperatures that changed in the increment [F·L]
+    pub heating: f64,
 }
 
 /// Numbers of contact points by status.
@@ -43,10 +46,13 @@ pub struct ContactCounts {
 
 impl ContactCounts {
     /// Count the points of all pairs.
-    pub fn of(contacts: &[Vec<ContactState>]) -> Self {
+    pub fn of(pairs: &[ContactPair], contacts: &[Vec<ContactState>]) -> Self {
         let mut counts = Self::default();
-        for state in contacts.iter().flatten() {
-            match state.regime() {
+        let regimes = |(pair, states): (&ContactPair, &Vec<ContactState>)| {
+            pair.points.iter().zip(states).map(|(point, state)| pair.regime(point, state)).collect::<Vec<_>>()
+        };
+        for regime in pairs.iter().zip(contacts).flat_map(regimes) {
+            match regime {
                 Regime::Open => counts.open += 1,
                 Regime::Stick => counts.stick += 1,
                 Regime::Slip => counts.slip += 1,

@@ -32,21 +32,21 @@ impl Evolving {
         Self(model.memories().into_iter().enumerate().filter(own).collect())
     }
 
-    /// Add the forces of these elements and what they store; their variables at the end of the trial and what they dissipate
-    /// are written over those `found`.
+    /// Add the forces of these elements and what they store; their variables at the end of the trial, what they dissipate and the
+    /// work of their temperatures are written over those `found`.
     pub fn add(
         &self,
         model: &Model,
         (trial, u): (Trial, &[f64]),
-        found: (&mut Vec<f64>, &mut f64),
+        found: (&mut Vec<f64>, [&mut f64; 2]),
         sums: &mut Sums,
     ) -> Result<f64, TrialFailure> {
-        let (memory, heat) = found;
+        let (memory, [heat, heating]) = found;
         let old = &trial.old.memory;
         memory.resize(old.len(), 0.0);
         let mut rest = &mut memory[..];
         let mut energy = 0.0;
-        *heat = 0.0;
+        (*heat, *heating) = (0.0, 0.0);
         for batch in self.0.chunks(BATCH) {
             let mut trials: Vec<&mut [f64]> = Vec::with_capacity(batch.len());
             for (_, range) in batch {
@@ -56,14 +56,18 @@ impl Evolving {
             }
             let wanted = sums.tangent.is_some();
             let one = |((e, range), new): (&(usize, Range<usize>), &mut [f64])| {
-                evolve(model, *e, Memory { dt: trial.dt, old: &old[range.clone()], new }, u, wanted)
+                let old = &old[range.clone()];
+                model.write_temperatures((trial.dt > 0.0).then_some((trial.step, trial.time)), *e, old, new);
+                let found = evolve(model, *e, Memory { dt: trial.dt, old, new: &mut *new }, u, wanted)?;
+                Ok((found, model.heating(*e, [old, new])))
             };
             let answers: Vec<_> = batch.par_iter().zip(trials).map(one).collect();
             for ((e, _), answer) in batch.iter().zip(answers) {
-                let ([stored, dissipated], contribution) =
+                let (([stored, dissipated], contribution), work) =
                     answer.map_err(|failure| TrialFailure::inverted(model, *e, failure))?;
                 energy += stored;
                 *heat += dissipated;
+                *heating += work;
                 sums.contribute(&contribution);
             }
         }

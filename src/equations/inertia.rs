@@ -4,10 +4,12 @@ use nalgebra::DMatrix;
 
 use super::coupling::Layout;
 use super::dependence::Dependence;
-use super::rates::rates;
+use super::rates::{followed, missed, rates};
 use super::sums::add_blocks;
 use super::trial::Trial;
+use super::turning::{self, Turning};
 use crate::linear::SparseMatrix;
+use crate::model::scheme::Coefficients;
 use crate::model::{Model, Step};
 
 /// M ∂a/∂u: the mass over Δt².
@@ -49,8 +51,10 @@ pub(super) struct Inertia {
     pub weighted: Vec<f64>,
     /// ∂(weighted a)/∂u of each dof: the factor of its column of M [1/T²]
     pub factors: Vec<f64>,
-    /// α_f
-    pub alpha_f: f64,
+    /// rigid plates, of which the factors are not all
+    turning: Vec<Turning>,
+    /// the scheme and Δt
+    scheme: (Coefficients, f64),
 }
 
 impl Inertia {
@@ -59,31 +63,54 @@ impl Inertia {
         let Trial { old, step, dt, .. } = trial;
         let scheme = step.scheme.coefficients()?;
         let (velocity, acceleration) = rates(model, trial, u, scheme);
-        let blend = |dof: usize, weight: f64| blend(weight, old.acceleration[dof], acceleration[dof]);
-        let mut weighted: Vec<f64> = (0..u.len()).map(|dof| blend(dof, scheme.alpha_m)).collect();
+        let accelerations = old.acceleration.iter().zip(&acceleration);
+        let mut weighted: Vec<f64> = accelerations.map(|(old, new)| blend(scheme.alpha_m, *old, *new)).collect();
         let mut factors = vec![(1.0 - scheme.alpha_m) * scheme.dacceleration(dt); u.len()];
         for support in &step.supports {
-            weighted[support.dof] = blend(support.dof, scheme.alpha_f);
-            factors[support.dof] = 0.0;
+            let at = support.at;
+            let along = blend(scheme.alpha_f, at.of(&old.acceleration), at.of(&acceleration));
+            match at.inclined {
+                None => (weighted[at.dof], factors[at.dof]) = (along, 0.0),
+                Some(_) => {
+                    let missed = missed(support, trial.prescribed(support, model), u);
+                    let rest = (scheme.alpha_f - scheme.alpha_m) * scheme.dacceleration(dt) * missed;
+                    at.set(along + rest, &mut weighted);
+                }
+            }
         }
-        let (force, weighted) = (mass.multiply(&acceleration), mass.multiply(&weighted));
-        Some(Self { velocity, acceleration, force, weighted, factors, alpha_f: scheme.alpha_f })
+        for (dof, base, leads) in followed(model, trial, u) {
+            weighted[dof] = leads(&weighted) + factors[dof] * (u[dof] - base);
+        }
+        let turning = Turning::all(model, trial, u, scheme);
+        let rate = (1.0 - scheme.alpha_m) * scheme.dacceleration(dt);
+        turning.iter().for_each(|plate| plate.weighted(scheme, rate, &mut weighted));
+        turning::spread(model, rate, u, &mut weighted);
+        let [force, weighted] = mass.multiply_all([&acceleration, &weighted]);
+        Some(Self { velocity, acceleration, force, weighted, factors, turning, scheme: (scheme, dt) })
     }
 
     /// (1) of [`crate::model::scheme`]: blend the forces and their tangent, and add those of the masses.
     pub fn add(
         &self,
+        model: &Model,
         [old, force]: [&[f64]; 2],
         residual: &mut Vec<f64>,
         tangent: Option<(&mut SparseMatrix, &SparseMatrix)>,
     ) {
+        let alpha_f = self.scheme.0.alpha_f;
         residual.clear();
-        let blended = old.iter().zip(force).map(|(&old, &force)| blend(self.alpha_f, old, force));
+        let blended = old.iter().zip(force).map(|(&old, &force)| blend(alpha_f, old, force));
         residual.extend(blended.zip(&self.weighted).map(|(force, inertia)| force + inertia));
         if let Some((tangent, mass)) = tangent {
-            tangent.values.iter_mut().for_each(|value| *value *= 1.0 - self.alpha_f);
-            tangent.add_columns(mass, &self.factors);
+            tangent.values.iter_mut().for_each(|value| *value *= 1.0 - alpha_f);
+            self.stiffen(model, mass, tangent);
         }
+    }
+
+    /// Add the tangent of the weighted forces.
+    pub fn stiffen(&self, model: &Model, mass: &SparseMatrix, tangent: &mut SparseMatrix) {
+        tangent.add_columns(mass, &self.factors);
+        self.turning.iter().for_each(|plate| plate.stiffen(model, self.scheme, &self.factors, mass, tangent));
     }
 }
 

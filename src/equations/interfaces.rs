@@ -3,6 +3,7 @@
 use super::dependence::Dependence;
 use super::sums::{Sums, add_blocks};
 use super::trial::Trial;
+use crate::contact::fluid::BadPressure;
 use crate::contact::force::ContactState;
 use crate::contact::pair::{ContactIncrement, Presumption};
 use crate::contact::response::PairResponse;
@@ -27,10 +28,16 @@ pub(super) fn respond(
 ) -> Result<(), TrialFailure> {
     let [before, x] = [&trial.old.displacement, u].map(|u| model.configuration(u));
     let fading = 1.0 - model.steps[0].span.share(trial.time);
-    let during = ContactIncrement { dt: trial.dt, fading, stiffening: trial.stiffening, settles: trial.settles };
+    let Trial { time, dt, stiffening, settles, .. } = trial;
+    let radiates = !trial.step.scheme.is_dynamic();
+    let during = ContactIncrement { time, dt, radiates, fading, stiffening, settles };
     responses.resize_with(model.contacts.len(), PairResponse::default);
     let pairs = model.contacts.iter().zip(&trial.old.contacts).zip(responses).enumerate();
     for (number, ((pair, old), response)) in pairs {
+        if let Some(BadPressure { at, pressure }) = pair.bad_fluid_pressure(&x, time) {
+            let contact = pair.name.clone();
+            return Err(TrialFailure::FluidPressure { contact, at: [at.x, at.y], pressure, time });
+        }
         let presumed = |point| presumed(number, point);
         let answer = pair.respond(old, [&before, &x], during, presumed, request, response);
         answer.map_err(|(point, cause)| TrialFailure::Friction { contact: pair.name.clone(), point, cause })?;
@@ -41,7 +48,7 @@ pub(super) fn respond(
 /// Add the forces of the closed points and, if a tangent is asked for, theirs, for which there is room.
 pub(super) fn add(responses: &[PairResponse], sums: &mut Sums) {
     let mut blocks = sums.layout.blocks_of_contacts();
-    for (_, closed) in responses.iter().flat_map(PairResponse::all_closed) {
+    for (_, closed) in responses.iter().flat_map(PairResponse::all_acting) {
         sums.push(closed.nodes, closed.force);
         if let Some(tangent) = &mut sums.tangent {
             assert_eq!(
@@ -52,6 +59,16 @@ pub(super) fn add(responses: &[PairResponse], sums: &mut Sums) {
             let (own, others) = blocks.split_at(closed.nodes.len().pow(2));
             add_blocks(tangent, own, closed.tangent, closed.nodes.len());
             blocks = others;
+        }
+    }
+}
+
+/// Add what fluids put on the nodes to the loads, whose work the audit knows; among the forces it is already.
+pub(super) fn add_fluids(model: &Model, responses: &[PairResponse], loads: &mut [f64]) {
+    let fluids = model.contacts.iter().zip(responses).filter(|(pair, _)| pair.fluid.is_some());
+    for (_, closed) in fluids.flat_map(|(_, response)| response.all_acting()) {
+        for (&node, force) in closed.nodes.iter().zip(closed.fluid.chunks_exact(2)) {
+            (0..2).for_each(|i| loads[2 * node + i] += force[i]);
         }
     }
 }
@@ -75,6 +92,12 @@ pub fn stored(model: &Model, contacts: &[Vec<ContactState>]) -> f64 {
 pub fn dissipated(old: &[Vec<ContactState>], new: &[Vec<ContactState>]) -> f64 {
     let points = new.iter().flatten().zip(old.iter().flatten());
     points.map(|(new, old)| new.length * (new.friction.dissipation - old.friction.dissipation)).sum()
+}
+
+/// Radiated by slip from `old` to `new` [F·L].
+pub fn radiated(old: &[Vec<ContactState>], new: &[Vec<ContactState>]) -> f64 {
+    let points = new.iter().flatten().zip(old.iter().flatten());
+    points.map(|(new, old)| new.length * (new.radiated - old.radiated)).sum()
 }
 
 /// Work of bringing in the overlap of shrink fits: mean force × what of the overlap came in [F·L].

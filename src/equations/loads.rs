@@ -4,6 +4,7 @@
 use nalgebra::Vector2;
 
 use super::dependence::Dependence;
+use super::links;
 use super::sums::Sums;
 use super::trial::Trial;
 use crate::equations::failure::TrialFailure;
@@ -12,7 +13,11 @@ use crate::model::{Model, Step};
 
 /// A pressure is linear in the displacements and grows with time; springs are constant.
 pub(super) fn dependence(step: &Step) -> Dependence {
-    if step.loads.pressures.is_empty() { Dependence::Nothing } else { Dependence::Time }
+    match step.loads.pressures.is_empty() {
+        _ if !step.loads.moments.is_empty() => Dependence::Displacement,
+        true => Dependence::Nothing,
+        false => Dependence::Time,
+    }
 }
 
 /// Whether a step has any.
@@ -22,6 +27,7 @@ fn any(model: &Model, step: &Step) -> bool {
         && loads.dead.is_empty()
         && loads.pressures.is_empty()
         && loads.springs.is_empty()
+        && loads.moments.is_empty()
         && step.released.is_empty())
 }
 
@@ -73,13 +79,22 @@ fn collect(model: &Model, trial: Trial, u: &[f64], loads: &mut [f64], sums: &mut
             }
         }
     }
+    for moment in &step.loads.moments {
+        let [a, b] = moment.plate;
+        let size = moment.amplitude.value(model.mesh.nodes[a], time);
+        let (force, rates) = links::couple(model, moment.plate, u, size);
+        (0..2).for_each(|i| {
+            (loads[2 * a + i], loads[2 * b + i]) = (loads[2 * a + i] - force[i], loads[2 * b + i] + force[i])
+        });
+        sums.couple(&[a, b], rates.as_slice());
+    }
     for spring in &step.loads.springs {
         let position = model.mesh.nodes[spring.dof / 2];
         let driver = spring.driver.as_ref().map_or(0.0, |driver| driver.value(position, time));
         loads[spring.dof] += spring.stiffness * (driver - u[spring.dof]);
         sums.stiffen(spring.dof / 2, (spring.dof % 2, spring.dof % 2), spring.stiffness);
     }
-    for &dof in &step.released {
-        loads[dof] += old.step_start.reaction[dof] * (1.0 - step.span.share(time));
+    for at in &step.released {
+        at.add(at.of(&old.step_start.reaction) * (1.0 - step.span.share(time)), loads);
     }
 }

@@ -22,10 +22,12 @@
 //! | `damping` | viscous bodies | damping |
 //! | [`inertia`] | M a | kinetic energy |
 //! | [`supports`] | the equations of prescribed dofs and copies | work of reactions |
+//! | [`links`] | the equations of nodes that follow others; `turning`: rigid plates in motion | none |
 
 pub mod assembler;
 pub mod audit;
 pub mod condensed;
+pub mod contact_nodes;
 mod coupling;
 pub mod dampers;
 mod damping;
@@ -36,14 +38,18 @@ mod evolving;
 pub mod failure;
 pub mod inertia;
 pub mod interfaces;
+mod jumps;
+pub mod links;
 mod loads;
 mod rates;
+pub mod slip_operator;
 pub mod solids;
 pub mod stabilization;
 mod sums;
 pub mod supports;
 pub mod term;
 pub mod trial;
+pub mod turning;
 
 pub use assembler::Assembler;
 pub use coupling::Coupling;

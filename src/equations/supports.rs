@@ -2,21 +2,24 @@
 //!
 //! ```text
 //! w (u − ū) = 0,   w (u_copy − u_original) = 0        w: a stiffness for scale
+//! w (d·u − ū) = 0,   t·r = 0                          along an inclined direction d, and across it, t ⊥ d
 //! ```
 
+use super::links;
 use super::trial::Trial;
 use crate::equations::failure::TrialFailure;
 use crate::linear::SparseMatrix;
 use crate::linear::system::System;
 use crate::model::Model;
+use crate::model::support::Direction;
 
 /// w: the largest stiffness of the materials and springs; a model of points alone has that of its contacts [F/L].
 pub(super) fn weight(model: &Model) -> f64 {
-    let materials = model.bodies.iter().map(|body| body.material.p_wave_modulus());
+    let solids = std::iter::once(model.stiffness());
     let springs = model.steps.iter().flat_map(|step| step.loads.springs.iter().map(|spring| spring.stiffness));
     let contacts = model.contacts.iter().flat_map(|pair| pair.points.iter().map(|point| pair.alpha_n * point.area));
     let largest = |stiffness: &mut dyn Iterator<Item = f64>| stiffness.reduce(f64::max).filter(|w| *w > 0.0);
-    largest(&mut materials.chain(springs)).or_else(|| largest(&mut { contacts })).unwrap_or(1.0)
+    largest(&mut solids.chain(springs)).or_else(|| largest(&mut { contacts })).unwrap_or(1.0)
 }
 
 /// Replace the equations of prescribed dofs and of copies.
@@ -28,15 +31,18 @@ pub(super) fn prescribe(
     tangent: bool,
     system: &mut System,
 ) -> Result<(), TrialFailure> {
+    links::gather_residual(model, &mut system.residual);
+    if tangent {
+        links::gather_rows(model, &mut system.tangent);
+    }
     for support in &trial.step.supports {
-        let dof = support.dof;
         let target = trial.prescribed(support, model);
         if !target.is_finite() {
-            return Err(TrialFailure::Undefined { node: model.mesh.node_tags[dof / 2], time: trial.time });
+            return Err(TrialFailure::Undefined { node: model.mesh.node_tags[support.at.node()], time: trial.time });
         }
-        system.residual[dof] = weight * (u[dof] - target);
+        turn(support.at, weight * (support.at.of(u) - target), &mut system.residual);
         if tangent {
-            system.tangent.replace_row(dof, weight);
+            hold(support.at, weight, &mut system.tangent);
         }
     }
     for &(copy, original) in model.ties.pairs() {
@@ -47,7 +53,24 @@ pub(super) fn prescribe(
     if tangent {
         tie(model, &mut system.tangent, weight);
     }
+    links::prescribe(model, weight, trial, u, tangent, system);
     Ok(())
+}
+
+/// Write `own` over the right side of the equation of a held direction, and what is across over that of the other.
+pub fn turn(at: Direction, own: f64, values: &mut [f64]) {
+    if let Some(across) = at.across() {
+        values[across.dof] = across.of(values);
+    }
+    values[at.dof] = own;
+}
+
+/// Replace the equation of a held direction by w d·u, and the other of an inclined one by what is across.
+pub fn hold(at: Direction, weight: f64, matrix: &mut SparseMatrix) {
+    match at.across() {
+        None => matrix.replace_row(at.dof, weight),
+        Some(across) => matrix.turn_rows(at.dof, (at.vector() * weight).into(), across.vector().into()),
+    }
 }
 
 /// Replace the equations of copies by w (x_copy − x_original) = 0.

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector2;
 
-use crate::model::boundary::Prescribed;
 use crate::model::state::State;
+use crate::model::support::Prescribed;
 use crate::model::{Model, Step};
 
 /// One increment to be solved: from where, to when, under which step.
@@ -54,7 +54,7 @@ impl<'a> Trial<'a> {
 
     /// Reference position of a support, and its displacement at the start of the step.
     fn place(&self, support: &Prescribed, model: &Model) -> (Vector2<f64>, Vector2<f64>) {
-        let node = support.dof / 2;
+        let node = support.at.node();
         let start = &self.old.step_start.displacement[2 * node..][..2];
         (model.mesh.nodes[node], Vector2::new(start[0], start[1]))
     }

@@ -8,8 +8,9 @@ use std::time::Instant;
 
 use crate::contact::response::PairResponse;
 use crate::equations::coupling::{Coupling, Layout};
+use crate::equations::damping::ByMass;
 use crate::equations::equilibrium::Equilibrium;
-use crate::equations::evaluation::{Evaluation, Seconds};
+use crate::equations::evaluation::{ContactCounts, Evaluation, Seconds};
 use crate::equations::evolving::Evolving;
 use crate::equations::failure::TrialFailure;
 use crate::equations::inertia::Inertia;
@@ -17,7 +18,7 @@ use crate::equations::solids::Solids;
 use crate::equations::sums::Sums;
 use crate::equations::term::Term;
 use crate::equations::trial::Trial;
-use crate::equations::{dampers, damping, inertia, interfaces, loads, stabilization, supports};
+use crate::equations::{dampers, damping, inertia, interfaces, links, loads, stabilization, supports};
 use crate::linear::SparseMatrix;
 use crate::linear::system::{Request, System};
 use crate::model::Model;
@@ -29,8 +30,8 @@ pub struct Assembler {
     solids: Solids,
     evolving: Evolving,
     mass: Option<SparseMatrix>,
-    /// η M of the bodies' damping
-    damping_mass: Option<SparseMatrix>,
+    /// η M of the bodies' damping, and their η
+    damping_mass: Option<ByMass>,
     /// w of prescribed dofs [F/L]
     weight: f64,
     /// Sum of the forces' magnitudes at each dof [F]
@@ -52,6 +53,11 @@ const OF_PLACE_AND_MOTION: [Term; 6] =
     [Term::Solids, Term::Interfaces, Term::Loads, Term::Dampers, Term::Stabilization, Term::Damping];
 
 impl Assembler {
+    /// Numbers of contact points by status, as last evaluated.
+    pub fn contact_counts(&self) -> ContactCounts {
+        ContactCounts::of(&self.model.contacts, &self.evaluation.contacts)
+    }
+
     /// An assembler of a model.
     pub fn new(model: &Arc<Model>) -> Self {
         Self {
@@ -134,10 +140,13 @@ impl Assembler {
         self.add(&OF_PLACE_AND_MOTION, motion, responses, true, tangent.then_some(&mut system.tangent))?;
         model.ties.gather(2, &mut self.evaluation.damping);
         model.ties.gather(2, &mut self.magnitudes);
+        model.linkage.gather(&mut self.evaluation.damping);
+        model.linkage.gather_magnitudes(&mut self.magnitudes);
         self.note_contacts(trial, responses);
         self.balance(trial, u, tangent, system);
         supports::prescribe(model, self.weight, trial, u, tangent, system)?;
         let mass = self.mass.as_ref().filter(|_| trial.step.scheme.coefficients().is_some());
+        self.equilibrium.retard(model, trial.step);
         self.equilibrium.measure((model, mass), trial, u, &self.magnitudes, system);
         self.seconds.assembly += clock.elapsed().as_secs_f64();
         Ok(())
@@ -152,6 +161,7 @@ impl Assembler {
     pub fn forces(&mut self, trial: Trial, u: &[f64], v: Option<&[f64]>) -> Result<(), TrialFailure> {
         self.with_responses(trial, u, Request::Residual, |assembler, responses| {
             let clock = Instant::now();
+            assembler.solids.retard(trial.step);
             assembler.add(&OF_PLACE, (trial, u, v), responses, false, None)?;
             if let Some(v) = v {
                 assembler.add_viscous([u, v]);
@@ -167,6 +177,7 @@ impl Assembler {
         let Evaluation { force, damping, .. } = &mut self.evaluation;
         self.solids.other_viscous(motion, damping);
         self.model.ties.gather(2, damping);
+        self.model.linkage.gather(damping);
         for (force, damping) in force.iter_mut().zip(damping) {
             *force += *damping;
             *damping = -*damping;
@@ -184,7 +195,8 @@ impl Assembler {
         mut tangent: Option<&mut SparseMatrix>,
     ) -> Result<(), TrialFailure> {
         let Self { model, layout, solids, evolving, damping_mass, magnitudes, evaluation, .. } = self;
-        let Evaluation { force, loads, damping, stabilization, memory, strain_energy, dissipated, .. } = evaluation;
+        let Evaluation { force, loads, damping, stabilization, memory, strain_energy, dissipated, heating, .. } =
+            evaluation;
         [&mut *force, &mut *damping].into_iter().for_each(|values| values.resize(u.len(), 0.0));
         let magnitudes = scaled.then_some(&mut magnitudes[..]);
         if let Some(tangent) = &mut tangent {
@@ -198,16 +210,18 @@ impl Assembler {
             match term {
                 Term::Solids => {
                     let elastic = solids.add(u, v, &mut sums)?;
-                    *strain_energy =
-                        elastic + evolving.add(model, (trial, u), (&mut *memory, &mut *dissipated), &mut sums)?;
+                    let found = (&mut *memory, [&mut *dissipated, &mut *heating]);
+                    *strain_energy = elastic + evolving.add(model, (trial, u), found, &mut sums)?;
                 }
                 Term::Interfaces => interfaces::add(responses, &mut sums),
-                Term::Loads => loads::add(model, trial, u, loads, &mut sums)?,
+                Term::Loads => {
+                    loads::add(model, trial, u, loads, &mut sums)?;
+                    interfaces::add_fluids(model, responses, loads);
+                }
                 Term::Dampers => dampers::add(model, trial, u, damping, &mut sums)?,
                 Term::Stabilization => *stabilization = stabilization::add(trial, u, damping, &mut sums),
                 Term::Damping => {
-                    let mass = || inertia::elements(model, layout, |body| model.bodies[body].damping.mass);
-                    let momentum = damping::by_mass(model).then(|| &*damping_mass.get_or_insert_with(mass));
+                    let momentum = damping::momentum(model, trial.step, layout, damping_mass);
                     damping::add(model, solids, momentum, (trial, u), damping, &mut sums);
                 }
                 // Blended with the forces of before, once all of these are known.
@@ -216,6 +230,8 @@ impl Assembler {
         }
         model.ties.gather(2, force);
         model.ties.gather(2, loads);
+        model.linkage.gather(force);
+        model.linkage.gather(loads);
         Ok(())
     }
 
@@ -224,19 +240,23 @@ impl Assembler {
     fn balance(&mut self, trial: Trial, u: &[f64], tangent: bool, system: &mut System) {
         let Self { model, layout, mass, evaluation, magnitudes, .. } = self;
         let Evaluation { force, reactions, velocity, acceleration, .. } = evaluation;
+        let held = links::relieved(model, u, force);
         reactions.clear();
-        reactions.extend(trial.step.supports.iter().map(|support| force[support.dof]));
+        reactions.extend(trial.step.supports.iter().map(|support| support.at.of(&held)));
         let mass = trial.step.scheme.coefficients().map(|_| &*mass.get_or_insert_with(|| inertia::mass(model, layout)));
-        let Some((mass, inertia)) = mass.and_then(|mass| Some((mass, Inertia::at(model, trial, u, mass)?))) else {
+        let Some((mass, mut inertia)) = mass.and_then(|mass| Some((mass, Inertia::at(model, trial, u, mass)?))) else {
             [velocity, acceleration].into_iter().for_each(|rates| *rates = vec![0.0; u.len()]);
             system.residual.clone_from(force);
             return;
         };
+        [&mut inertia.force, &mut inertia.weighted].into_iter().for_each(|forces| model.linkage.gather(forces));
         let wanted = tangent.then_some((&mut system.tangent, mass));
-        inertia.add([&trial.old.force, force], &mut system.residual, wanted);
+        inertia.add(model, [&trial.old.force, force], &mut system.residual, wanted);
         magnitudes.iter_mut().zip(&inertia.force).for_each(|(magnitude, inertia)| *magnitude += inertia.abs());
+        let held = links::relieved(model, u, &inertia.force);
         let supports = reactions.iter_mut().zip(&trial.step.supports);
-        supports.for_each(|(reaction, support)| *reaction += inertia.force[support.dof]);
+        supports.for_each(|(reaction, support)| *reaction += support.at.of(&held));
+        drop(held);
         (*velocity, *acceleration) = (inertia.velocity, inertia.acceleration);
     }
 

@@ -43,7 +43,7 @@ impl Assembler {
         if term == Term::Inertia {
             let mass = self.mass().clone();
             let inertia = Inertia::at(&self.model, trial, u, &mass);
-            inertia.into_iter().for_each(|inertia| tangent.add_columns(&mass, &inertia.factors));
+            inertia.into_iter().for_each(|inertia| inertia.stiffen(&self.model, &mass, &mut tangent));
             return Ok(tangent);
         }
         let kept = std::mem::take(&mut self.evaluation);

@@ -4,7 +4,7 @@
 //! f_e = K_e (u_e − u_1),   W_e = ½ (u_e − u_1)·f_e,   f_v = τ K_e (v_e − v_1)
 //! ```
 //! Motions are taken against the element's first node: a displacement of all nodes costs no digits, and K_e's columns of that
-//! node are not needed. An element keeps them if none before it has the same ones: 384 bytes for Q4, 256 for T3, 960 for T6,
+//! node are not needed (in rings only motions along the axis are, and all columns are kept). An element keeps them if none before it has the same ones: 384 bytes for Q4, 256 for T3, 960 for T6,
 //! 1792 for Q8, 2560 for Q9. Equal elements of a regular mesh differ in the last bits of their nodes' places unless these are round.
 
 use std::collections::HashMap;
@@ -16,7 +16,7 @@ use nalgebra::{Matrix2, Vector2, Vector4};
 use rayon::prelude::*;
 
 use super::blocks::{Block, blocks};
-use super::kernel::{Pass, rows};
+use super::kernel::{Pass, first, rows};
 use super::places::{BATCH, Places};
 use super::runs::nodal;
 use crate::equations::coupling::Layout;
@@ -54,8 +54,11 @@ pub(in crate::equations) fn damps_by_stiffness(material: &dyn Material) -> bool 
 pub(super) struct Constant {
     /// Whether each element is one
     pub is: Vec<bool>,
-    /// Columns of the distinct K_e of each kind from those of the second node on, one matrix after the other [F/L]
+    /// Columns of the distinct K_e of each kind from those of the second node on (in rings of the first), one matrix after the
+    /// other [F/L]
     stiffness: [Vec<f64>; 5],
+    /// Whether they are rings
+    ring: bool,
     blocks: Vec<Block>,
     /// Where each node finds its blocks' forces
     pub places: Places,
@@ -74,8 +77,10 @@ pub(super) struct Constant {
 
 impl Constant {
     pub fn new(model: &Model) -> Self {
-        let fit = |body: &Body| body.damping.retardation == 0.0 || damps_by_stiffness(&*body.material);
-        let fit: Vec<bool> = model.bodies.iter().map(fit).collect();
+        let never = |body: usize| model.steps.iter().all(|step| model.damping(step, body).retardation == 0.0);
+        let undamped = |body: usize| model.bodies[body].damping.retardation == 0.0 && never(body);
+        let fit = |(k, body): (usize, &Body)| undamped(k) || damps_by_stiffness(&*body.material);
+        let fit: Vec<bool> = model.bodies.iter().enumerate().map(fit).collect();
         let is: Vec<bool> =
             (0..model.solids.len()).map(|e| is_constant(model, e) && fit[model.body_of_element[e]]).collect();
         let (mut stiffness, matrices) = distinct(model, &is);
@@ -93,6 +98,7 @@ impl Constant {
         Self {
             is,
             stiffness,
+            ring: model.mesh.section.is_axisymmetric(),
             places: Places::new(model.mesh.nodes.len(), nodes.iter().copied()),
             forces: zeros(),
             others: zeros(),
@@ -106,20 +112,20 @@ impl Constant {
 
     /// Number of distinct matrices.
     pub fn matrices(&self) -> usize {
-        let of = |(kind, all): (ElementKind, &Vec<f64>)| all.len() / length(kind.nodes());
+        let of = |(kind, all): (ElementKind, &Vec<f64>)| all.len() / length(kind.nodes(), self.ring);
         KINDS.into_iter().zip(&self.stiffness).map(of).sum()
     }
 
     /// Write what all elements put on the nodes over the blocks' `forces`, and what a pass is asked for besides over `others`;
     /// what they store is kept.
-    pub fn evaluate(&mut self, model: &Model, pass: Pass) {
-        let Self { stiffness, blocks, forces, others, energies, .. } = self;
+    pub fn evaluate(&mut self, retardation: &[f64], pass: Pass) {
+        let Self { stiffness, ring, blocks, forces, others, energies, .. } = self;
         let stride = self.stride.max(1);
         let places = forces.par_chunks_exact_mut(stride).zip(others.par_chunks_exact_mut(stride));
         let all = blocks.par_iter().zip(places).zip(energies).with_min_len(FEW_BLOCKS);
         all.for_each(|((block, (forces, others)), energy)| {
-            let retardation = model.bodies[block.body].damping.retardation;
-            *energy = block.evaluate(&stiffness[block.kind as usize], retardation, pass, [forces, others]);
+            let retardation = retardation[block.body];
+            *energy = block.evaluate((&stiffness[block.kind as usize], *ring), retardation, pass, [forces, others]);
         });
     }
 
@@ -143,8 +149,13 @@ impl Constant {
     }
 
     /// Σ τ K_e on the current pattern; nothing if there are none.
-    pub fn viscous(&mut self, model: &Model, layout: &Layout) -> Option<&SparseMatrix> {
-        kept(&mut self.viscous, (model, layout), &self.is, |body| model.bodies[body].damping.retardation)
+    pub fn viscous(&mut self, model: &Model, retardation: &[f64], layout: &Layout) -> Option<&SparseMatrix> {
+        kept(&mut self.viscous, (model, layout), &self.is, |body| retardation[body])
+    }
+
+    /// Have that sum found again: τ has changed.
+    pub fn forget_viscous(&mut self) {
+        self.viscous = None;
     }
 }
 
@@ -177,14 +188,14 @@ fn kept<'a>(
 const KINDS: [ElementKind; 5] = [ElementKind::T3, ElementKind::T6, ElementKind::Q4, ElementKind::Q8, ElementKind::Q9];
 
 /// Numbers that are kept of the K_e of an element of n nodes.
-fn length(n: usize) -> usize {
-    2 * (n - 1) * rows(n)
+fn length(n: usize, ring: bool) -> usize {
+    2 * (n - first(ring)) * rows(n)
 }
 
 /// The columns that are kept.
-fn columns(matrix: &[f64], n: usize) -> Vec<f64> {
-    let mut kept = vec![0.0; length(n)];
-    let columns = matrix.chunks_exact(2 * n).skip(2);
+fn columns(matrix: &[f64], n: usize, ring: bool) -> Vec<f64> {
+    let mut kept = vec![0.0; length(n, ring)];
+    let columns = matrix.chunks_exact(2 * n).skip(2 * first(ring));
     kept.chunks_exact_mut(rows(n)).zip(columns).for_each(|(kept, column)| kept[..2 * n].copy_from_slice(column));
     kept
 }
@@ -209,7 +220,8 @@ fn distinct(model: &Model, is: &[bool]) -> ([Vec<f64>; 5], Vec<Option<u32>>) {
         for (&e, matrix) in batch.iter().zip(found) {
             let Some(matrix) = matrix else { continue };
             let kind = model.mesh.elements[e].kind;
-            let (own, all) = (columns(&matrix, kind.nodes()), &mut stiffness[kind as usize]);
+            let (own, all) =
+                (columns(&matrix, kind.nodes(), model.mesh.section.is_axisymmetric()), &mut stiffness[kind as usize]);
             let next = (all.len() / own.len()) as u32;
             let number = match seen.entry((kind, hash(&own))) {
                 Entry::Vacant(entry) => *entry.insert(next),

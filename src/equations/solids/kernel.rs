@@ -22,6 +22,12 @@ pub(super) const fn rows(n: usize) -> usize {
     (2 * n).next_multiple_of(4)
 }
 
+/// The first node whose columns are kept. Motions count against the first node, whose own columns then are not needed, but
+/// along x in rings: there a motion of all nodes stretches the hoops.
+pub(super) const fn first(ring: bool) -> usize {
+    if ring { 0 } else { 1 }
+}
+
 /// Motions by nodes.
 fn all(motion: &[f64]) -> &[[f64; 2]] {
     motion.as_chunks().0
@@ -30,32 +36,51 @@ fn all(motion: &[f64]) -> &[[f64; 2]] {
 impl Block {
     /// Write what the elements put on the nodes, and what the pass asks for besides, over `sums`; returns what the first of
     /// its motions stores.
-    pub fn evaluate(&self, stiffness: &[f64], tau: f64, pass: Pass, sums: [&mut [Vector2<f64>]; 2]) -> f64 {
-        match pass {
-            Pass::Elastic { u, scaled: false } => self.of_kind::<1, false>(stiffness, [(all(u), 1.0)], sums),
-            Pass::Elastic { u, scaled: true } => self.of_kind::<1, true>(stiffness, [(all(u), 1.0)], sums),
-            Pass::Viscous { v, scaled: false } => self.of_kind::<1, false>(stiffness, [(all(v), tau)], sums),
-            Pass::Viscous { v, scaled: true } => self.of_kind::<1, true>(stiffness, [(all(v), tau)], sums),
-            Pass::Both { u, v } => self.of_kind::<2, false>(stiffness, [(all(u), 1.0), (all(v), tau)], sums),
+    pub fn evaluate(
+        &self,
+        (stiffness, ring): (&[f64], bool),
+        tau: f64,
+        pass: Pass,
+        sums: [&mut [Vector2<f64>]; 2],
+    ) -> f64 {
+        match ring {
+            false => self.of_section::<false>(stiffness, tau, pass, sums),
+            true => self.of_section::<true>(stiffness, tau, pass, sums),
         }
     }
 
-    fn of_kind<const M: usize, const SCALED: bool>(
+    fn of_section<const RING: bool>(
+        &self,
+        stiffness: &[f64],
+        tau: f64,
+        pass: Pass,
+        sums: [&mut [Vector2<f64>]; 2],
+    ) -> f64 {
+        match pass {
+            Pass::Elastic { u, scaled: false } => self.of_kind::<1, false, RING>(stiffness, [(all(u), 1.0)], sums),
+            Pass::Elastic { u, scaled: true } => self.of_kind::<1, true, RING>(stiffness, [(all(u), 1.0)], sums),
+            Pass::Viscous { v, scaled: false } => self.of_kind::<1, false, RING>(stiffness, [(all(v), tau)], sums),
+            Pass::Viscous { v, scaled: true } => self.of_kind::<1, true, RING>(stiffness, [(all(v), tau)], sums),
+            Pass::Both { u, v } => self.of_kind::<2, false, RING>(stiffness, [(all(u), 1.0), (all(v), tau)], sums),
+        }
+    }
+
+    fn of_kind<const M: usize, const SCALED: bool, const RING: bool>(
         &self,
         stiffness: &[f64],
         motions: [(&[[f64; 2]], f64); M],
         sums: [&mut [Vector2<f64>]; 2],
     ) -> f64 {
         match self.kind {
-            ElementKind::T3 => self.dispatched::<3, { rows(3) }, M, SCALED>(stiffness, motions, sums),
-            ElementKind::T6 => self.dispatched::<6, { rows(6) }, M, SCALED>(stiffness, motions, sums),
-            ElementKind::Q4 => self.dispatched::<4, { rows(4) }, M, SCALED>(stiffness, motions, sums),
-            ElementKind::Q8 => self.dispatched::<8, { rows(8) }, M, SCALED>(stiffness, motions, sums),
-            ElementKind::Q9 => self.dispatched::<9, { rows(9) }, M, SCALED>(stiffness, motions, sums),
+            ElementKind::T3 => self.dispatched::<3, { rows(3) }, M, SCALED, RING>(stiffness, motions, sums),
+            ElementKind::T6 => self.dispatched::<6, { rows(6) }, M, SCALED, RING>(stiffness, motions, sums),
+            ElementKind::Q4 => self.dispatched::<4, { rows(4) }, M, SCALED, RING>(stiffness, motions, sums),
+            ElementKind::Q8 => self.dispatched::<8, { rows(8) }, M, SCALED, RING>(stiffness, motions, sums),
+            ElementKind::Q9 => self.dispatched::<9, { rows(9) }, M, SCALED, RING>(stiffness, motions, sums),
         }
     }
 
-    fn dispatched<const N: usize, const R: usize, const M: usize, const SCALED: bool>(
+    fn dispatched<const N: usize, const R: usize, const M: usize, const SCALED: bool, const RING: bool>(
         &self,
         stiffness: &[f64],
         motions: [(&[[f64; 2]], f64); M],
@@ -68,7 +93,7 @@ impl Block {
         let factors = motions.map(|(_, factor)| factor);
         let mut total = [[[0.0; 2]; 2]; NODES];
         let elements =
-            Elements::<N, R, M, SCALED> { block: self, stiffness, moved: &moved, factors, total: &mut total };
+            Elements::<N, R, M, SCALED, RING> { block: self, stiffness, moved: &moved, factors, total: &mut total };
         let energy = Arch::new().dispatch(elements);
         let [forces, others] = sums;
         for (place, total) in total[..self.nodes.len()].iter().enumerate() {
@@ -82,7 +107,7 @@ impl Block {
 }
 
 /// Elements of N nodes with R rows of numbers, at M motions of their nodes.
-struct Elements<'a, const N: usize, const R: usize, const M: usize, const SCALED: bool> {
+struct Elements<'a, const N: usize, const R: usize, const M: usize, const SCALED: bool, const RING: bool> {
     block: &'a Block,
     stiffness: &'a [f64],
     /// The motions of the block's nodes
@@ -93,13 +118,15 @@ struct Elements<'a, const N: usize, const R: usize, const M: usize, const SCALED
     total: &'a mut [[[f64; 2]; 2]; NODES],
 }
 
-impl<const N: usize, const R: usize, const M: usize, const SCALED: bool> WithSimd for Elements<'_, N, R, M, SCALED> {
+impl<const N: usize, const R: usize, const M: usize, const SCALED: bool, const RING: bool> WithSimd
+    for Elements<'_, N, R, M, SCALED, RING>
+{
     type Output = f64;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
         let Self { block, stiffness, moved, factors, total } = self;
-        let length = 2 * (N - 1) * R;
+        let length = 2 * (N - first(RING)) * R;
         let mut twice = simd.splat_f64s(0.0);
         for (places, &matrix) in block.places.as_chunks::<N>().0.iter().zip(&block.matrices) {
             // The remainder only tells the compiler that the place is one of the block's.
@@ -107,8 +134,11 @@ impl<const N: usize, const R: usize, const M: usize, const SCALED: bool> WithSim
             let matrix = &stiffness[length * matrix as usize..][..length];
             let mut motions = [[0.0; R]; M];
             for (m, motion) in motions.iter_mut().enumerate() {
-                for (a, &place) in places.iter().enumerate().skip(1) {
-                    let against = |i: usize| moved[place][m][i] - moved[places[0]][m][i];
+                for (a, &place) in places.iter().enumerate().skip(first(RING)) {
+                    let against = |i: usize| match RING && i == 0 {
+                        true => moved[place][m][i],
+                        false => moved[place][m][i] - moved[places[0]][m][i],
+                    };
                     (0..2).for_each(|i| motion[2 * a + i] = factors[m] * against(i));
                 }
             }
@@ -116,7 +146,7 @@ impl<const N: usize, const R: usize, const M: usize, const SCALED: bool> WithSim
             for (dof, column) in matrix.as_chunks::<R>().0.iter().enumerate() {
                 let column = S::as_simd_f64s(column).0;
                 for (forces, motion) in forces.iter_mut().zip(&motions) {
-                    let moved = simd.splat_f64s(motion[2 + dof]);
+                    let moved = simd.splat_f64s(motion[2 * first(RING) + dof]);
                     forces.iter_mut().zip(column).for_each(|(f, k)| *f = simd.mul_add_e_f64s(*k, moved, *f));
                 }
             }

@@ -17,7 +17,7 @@ use super::dependence::Dependence;
 use super::sums::Sums;
 use crate::equations::failure::TrialFailure;
 use crate::linear::SparseMatrix;
-use crate::model::Model;
+use crate::model::{Model, Step};
 use constant::Constant;
 pub(super) use constant::damps_by_stiffness;
 pub use constant::is_constant;
@@ -36,13 +36,26 @@ pub(super) struct Solids {
     model: Arc<Model>,
     constant: Constant,
     others: Runs,
+    /// τ of every body in the step under way [T]
+    retardation: Vec<f64>,
 }
 
 impl Solids {
     pub fn new(model: &Arc<Model>) -> Self {
         let constant = Constant::new(model);
         let others = Runs::new(model, |e| !constant.is[e]);
-        Self { model: model.clone(), constant, others }
+        let retardation = model.bodies.iter().map(|body| body.damping.retardation).collect();
+        Self { model: model.clone(), constant, others, retardation }
+    }
+
+    /// Take the viscous stress that the bodies have in a step.
+    pub fn retard(&mut self, step: &Step) {
+        let model = &self.model;
+        let times = || (0..model.bodies.len()).map(|body| model.damping(step, body).retardation);
+        if !self.retardation.iter().copied().eq(times()) {
+            self.retardation = times().collect();
+            self.constant.forget_viscous();
+        }
     }
 
     /// Number of the distinct matrices that constant elements share.
@@ -59,13 +72,13 @@ impl Solids {
     /// energy. With velocities `v` the viscous forces of the constant elements are found on the way, for
     /// [`Solids::other_viscous`].
     pub fn add(&mut self, u: &[f64], v: Option<&[f64]>, sums: &mut Sums) -> Result<f64, TrialFailure> {
-        let Self { model, constant, others } = self;
+        let Self { model, constant, others, retardation } = self;
         match &mut sums.tangent {
             None => others.evaluate(model, u),
             Some(tangent) => others.evaluate_with_tangents(model, u, sums.layout, tangent),
         }
         let scaled = sums.magnitudes.is_some();
-        constant.evaluate(model, v.map_or(Pass::Elastic { u, scaled }, |v| Pass::Both { u, v }));
+        constant.evaluate(retardation, v.map_or(Pass::Elastic { u, scaled }, |v| Pass::Both { u, v }));
         let energy = others.stored(model)? + constant.stored(model, u)?;
         self.write(sums.force, sums.magnitudes.as_deref_mut());
         Ok(energy)
@@ -73,16 +86,16 @@ impl Solids {
 
     /// Write the viscous forces of the bodies at displacements `u` and velocities `v` over `force`; they resist.
     pub fn viscous(&mut self, [u, v]: [&[f64]; 2], force: &mut [f64], magnitudes: Option<&mut [f64]>) {
-        let Self { model, constant, others } = self;
-        constant.evaluate(model, Pass::Viscous { v, scaled: magnitudes.is_some() });
-        others.evaluate_viscous(model, [u, v]);
+        let Self { model, constant, others, retardation } = self;
+        constant.evaluate(retardation, Pass::Viscous { v, scaled: magnitudes.is_some() });
+        others.evaluate_viscous((model, retardation), [u, v]);
         self.write(force, magnitudes);
     }
 
     /// The same, after [`Solids::add`] has found those of the constant elements.
     pub fn other_viscous(&mut self, motion: [&[f64]; 2], force: &mut [f64]) {
-        let Self { model, constant, others } = self;
-        others.evaluate_viscous(model, motion);
+        let Self { model, constant, others, retardation } = self;
+        others.evaluate_viscous((model, retardation), motion);
         gather([(&others.places, &others.forces), (&constant.places, &constant.others)], force);
     }
 
@@ -105,10 +118,10 @@ impl Solids {
         layout: &Layout,
         total: &mut SparseMatrix,
     ) {
-        let Self { model, constant, others } = self;
-        if let Some(viscous) = constant.viscous(model, layout) {
+        let Self { model, constant, others, retardation } = self;
+        if let Some(viscous) = constant.viscous(model, retardation, layout) {
             total.add_columns(viscous, dvelocity);
         }
-        others.viscous_tangents(model, motion, dvelocity, layout, total);
+        others.viscous_tangents((model, retardation), motion, dvelocity, layout, total);
     }
 }

@@ -144,16 +144,15 @@ impl Runs {
     }
 
     /// Viscous forces of all elements.
-    pub fn evaluate_viscous(&mut self, model: &Model, [u, v]: [&[f64]; 2]) {
+    pub fn evaluate_viscous(&mut self, (model, retardation): (&Model, &[f64]), [u, v]: [&[f64]; 2]) {
         for run in &self.runs {
-            let body = &model.bodies[run.body];
-            let law = (&*body.material, body.damping.retardation);
+            let law = (&*model.bodies[run.body].material, retardation[run.body]);
             let one = |(e, forces): (usize, &mut [Vector2<f64>])| {
                 let [u, v] = [u, v].map(|all| nodal(model, e, all));
                 model.solids[e].viscous_forces(law, [&u[..run.nodes], &v[..run.nodes]], forces);
             };
             let places = &mut self.forces[run.places()];
-            match body.damping.retardation > 0.0 {
+            match retardation[run.body] > 0.0 {
                 true => run
                     .elements
                     .clone()
@@ -170,15 +169,14 @@ impl Runs {
     /// displacement.
     pub fn viscous_tangents(
         &mut self,
-        model: &Model,
+        (model, retardation): (&Model, &[f64]),
         [u, v]: [&[f64]; 2],
         dvelocity: &[f64],
         layout: &Layout,
         total: &mut SparseMatrix,
     ) {
-        for run in self.runs.iter().filter(|run| model.bodies[run.body].damping.retardation > 0.0) {
-            let body = &model.bodies[run.body];
-            let law = (&*body.material, body.damping.retardation);
+        for run in self.runs.iter().filter(|run| retardation[run.body] > 0.0) {
+            let law = (&*model.bodies[run.body].material, retardation[run.body]);
             let (n, size) = (run.nodes, 4 * run.nodes * run.nodes);
             self.tangents.resize(self.tangents.len().max(size * BATCH.min(run.elements.len())), 0.0);
             for first in run.elements.clone().step_by(BATCH) {
