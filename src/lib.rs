@@ -36,7 +36,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Between two increments supports can be led ([`run::Simulation::lead`]) and loads changed, a candidate can be dropped
+//! Between two increments supports can be led ([`run::Simulation::lead`]) and loads changed ([`case::loading`]), a candidate can be dropped
 //! ([`run::Simulation::attempt`]), and a run saved and resumed to the same bits ([`run::SavedRun`], in
 //! a file by [`output::checkpoint`]).
 //!
@@ -47,8 +47,8 @@
 //! | room | what is in it |
 //! |---|---|
 //! | [`cli`] | commands, arguments, progress |
-//! | [`case`] | the JSON of a case: read, and translated to the builder of a model |
-//! | [`output`] | observers of a run and the files they write; figures |
+//! | [`case`] | the JSON of a case: read, translated to the builder of a model, and run into a folder ([`case::job`]) |
+//! | [`output`] | observers of a run and the files they write; figures; the page of results |
 //! | [`run`] | steps, increments accepted and cut, observers |
 //! | [`time`] | one increment, implicit or explicit: old state → new state; how long the next one is |
 //! | [`solve`] | Newton's method; bodies that float |
@@ -59,7 +59,7 @@
 //! | [`mesh`] | nodes, elements, groups, shapes |
 //! | [`laws`] | friction of interfaces, stress of bodies |
 //!
-//! Reading order: `main` → [`cli`] → [`case`] (JSON) → [`model::builder`] (defaults, checks) → [`model`] → [`run`] (steps,
+//! Reading order: `main` → [`cli`] → [`case`] (JSON, [`case::job`]) → [`model::builder`] (defaults, checks) → [`model`] → [`run`] (steps,
 //! increments, cut-back; [`time::step_size`] says how long) → [`time::increment`] (one increment: old state → new state) →
 //! [`solve::newton`] → [`equations`] → {[`model::element`] → [`laws::bulk`]} and {[`contact`] → [`laws::friction`]}; then up
 //! again: accepted [`model::state`] → [`output`].
@@ -71,7 +71,7 @@
 //! The slip increment Δu_t of a contact point, from the case file to the law and back to `history.csv`:
 //!
 //! 1. `case/file` reads what moves the block, `"ux": {"rate": 0.05}`; `case/translate` makes it a
-//!    [`model::builder::Support`], and the builder a [`model::boundary::Prescribed`] dof of the [`model::Step`].
+//!    [`model::builder::Support`], and the builder a [`model::support::Prescribed`] dof of the [`model::Step`].
 //! 2. [`run`] asks for an increment, [`time::increment`] sets a [`equations::Trial`] for it, and [`solve::equilibrium`] finds
 //!    the displacement u at its end, iterate by iterate.
 //! 3. At every iterate `equations/interfaces.rs` asks each [`contact::pair`] for its points' answers. `contact/search.rs` and
@@ -93,7 +93,7 @@
 //! | q | `traction` | resists positive slip; the traction on the slave is p n − q s |
 //!
 //! Surfaces in the mesh have their body on the left; the segments of a master run along s, so its body is on the right.
-//! The plane is a slice of depth 1 ([`mesh::section`]), units are any consistent set.
+//! The plane is a slice of depth 1 unless a section says otherwise ([`mesh::section`]), units are any consistent set.
 //!
 //! # Invariants
 //!

@@ -10,16 +10,18 @@ use super::error::{CaseError, Checked, Complaint};
 use super::explain::clipped;
 use super::file::Case;
 use super::read;
+use super::written::Written;
 use crate::contact::force::ContactState;
 use crate::contact::surface::SlavePoint;
 use crate::laws::friction::observables;
+use crate::mesh::Mesh;
 use crate::model::Model;
 use crate::model::state::State;
 use crate::output::checkpoint::{self, Checkpoint, MeshPrint};
 use crate::run::SavedRun;
 
 /// What never changes how a run goes on.
-const FREE: [&str; 4] = ["title", "units", "watch", "output"];
+const FREE: [&str; 5] = ["title", "units", "watch", "probes", "output"];
 
 /// Parameters of friction that only the start of a run depends on, or that what is stored depends on.
 const STARTING: [&str; 4] = ["alpha_t", "law", "structure", "theta"];
@@ -42,6 +44,8 @@ pub struct Opened {
     pub taken_over: usize,
     /// what else it reads, besides its file: mesh, and checkpoint that it begins with
     pub inputs: Vec<PathBuf>,
+    /// its mesh, where it is at hand and not named by the case
+    mesh: Option<Mesh>,
     /// from where it begins, unless at the beginning
     start: Option<Checkpoint>,
     /// whether it goes on with the run of that checkpoint
@@ -52,16 +56,16 @@ impl Opened {
     /// Open a case to be run from its beginning.
     ///
     /// # Errors
-    /// [`CaseError`], also where it cannot begin with what it names.
-    pub fn open(path: &Path) -> Result<Self, CaseError> {
-        let (mut document, case): (Value, Case) = read::read_document(path)?;
-        let Some(source) = case.begin_with.as_ref() else { return Self::new(path, document, case, None) };
+    /// [`CaseError`] where it cannot begin with what it names.
+    pub fn begin(Written { path, mut document, case }: Written) -> Result<Self, CaseError> {
+        let path = path.as_path();
+        let Some(source) = case.begin_with.as_ref() else { return Ok(Self::new(path, document, case, None)) };
         let (source, own_steps) = (beside(path, source), case.steps.len());
         let joined = begun(&mut document, &source).map_err(|complaint| complaint.in_file(path));
         let (file, checkpoint) = joined?;
         let case: Case = read::input(&document).map_err(|complaint| complaint.in_file(path))?;
         let taken_over = case.steps.len() - own_steps;
-        let mut opened = Self::new(path, document, case, Some(checkpoint))?;
+        let mut opened = Self::new(path, document, case, Some(checkpoint));
         opened.inputs.push(file);
         opened.taken_over = taken_over;
         Ok(opened)
@@ -71,21 +75,27 @@ impl Opened {
     ///
     /// # Errors
     /// [`CaseError`], also where the case has changed since, and how.
-    pub fn resume(path: &Path, checkpoint: Checkpoint) -> Result<Self, CaseError> {
-        let (mut document, _): (Value, Case) = read::read_document(path)?;
+    pub fn resume(written: Written, checkpoint: Checkpoint) -> Result<Self, CaseError> {
+        let Written { path, mut document, .. } = written;
+        let path = path.as_path();
         let complain = |complaint: Complaint| complaint.in_file(path);
         let before = document_of(&checkpoint).map_err(complain)?;
         join(&mut document, &steps(&before)[..checkpoint.taken_over.min(steps(&before).len())]);
         unchanged(&before, &document, checkpoint.begun).map_err(complain)?;
         let case = read::input(&document).map_err(complain)?;
         let taken_over = checkpoint.taken_over;
-        Ok(Self { taken_over, resumes: true, ..Self::new(path, document, case, Some(checkpoint))? })
+        Ok(Self { taken_over, resumes: true, ..Self::new(path, document, case, Some(checkpoint)) })
     }
 
-    fn new(path: &Path, document: Value, case: Case, start: Option<Checkpoint>) -> Result<Self, CaseError> {
-        let mesh = document["mesh"].as_str().map(|mesh| beside(path, mesh));
-        let inputs = mesh.into_iter().collect();
-        Ok(Self { case, path: path.to_owned(), document, taken_over: 0, inputs, start, resumes: false })
+    fn new(path: &Path, document: Value, case: Case, start: Option<Checkpoint>) -> Self {
+        let inputs = document["mesh"].as_str().map(|mesh| beside(path, mesh)).into_iter().collect();
+        Self { case, path: path.to_owned(), document, taken_over: 0, inputs, mesh: None, start, resumes: false }
+    }
+
+    /// On a mesh at hand, for which what the case says of its mesh is a name.
+    #[must_use]
+    pub fn on(self, mesh: Mesh) -> Self {
+        Self { mesh: Some(mesh), inputs: self.inputs.into_iter().skip(1).collect(), ..self }
     }
 
     /// Build the model, and the run to begin from or to go on with; `None` to begin at the beginning.
@@ -93,7 +103,10 @@ impl Opened {
     /// # Errors
     /// [`CaseError`] as [`super::build`], and where the run is not one of this model.
     pub fn build(&mut self) -> Result<(Arc<Model>, Option<SavedRun>), CaseError> {
-        let built = super::build(&self.case, &self.path);
+        let built = match self.mesh.take() {
+            Some(mesh) => super::build_on(&self.case, mesh, &self.path),
+            None => super::build(&self.case, &self.path),
+        };
         let model = Arc::new(built.map_err(|error| CaseError { place: self.own_place(error.place), ..error })?);
         let Some(Checkpoint { mesh, run, .. }) = self.start.take() else { return Ok((model, None)) };
         let complain = |message: String| {
@@ -122,7 +135,8 @@ impl Opened {
             let mu = |(point, state): (&SlavePoint, &ContactState)| {
                 observables::value(pair.law(point), "mu", &state.friction)
             };
-            let varies = ["mu_s", "mu_k"].iter().any(|name| input.along.contains_key(*name));
+            let of_law = ["mu_s", "mu_k"].iter().any(|name| input.along.parameters.contains_key(*name));
+            let varies = of_law || !input.along.law.is_empty();
             if let Some(mu) = pair.points.iter().zip(states).map(mu).find(|mu| !varies && !allowed.contains(mu)) {
                 let place = format!("contacts.{}.friction", pair.name);
                 let message = format!("a point comes with mu = {mu}, outside mu_k = {lowest} to mu_s = {highest}");
@@ -186,8 +200,9 @@ fn begun(document: &mut Value, source: &Path) -> Checked<(PathBuf, Checkpoint)> 
         (source.to_owned(), read.map_err(|why| complain(format!("{}: {why}", source.display())))?)
     };
     if !checkpoint.complete {
-        let message = "has not come to its end: go on with it first (fecontact run --resume)";
-        return Err(complain(format!("{}: {message}", source.display())));
+        let message =
+            format!("{}: has not come to its end: go on with it first (fecontact run --resume)", source.display());
+        return Err(complain(message));
     }
     let before = document_of(&checkpoint)?;
     let mut differences = Vec::new();

@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use crate::mesh::names::{in_line, printable};
 use crate::model::builder::ModelError;
 
 /// Something in a case that cannot be run.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("{}: {}{message}", file.display(), if place.is_empty() { String::new() } else { format!("{place}: ") })]
+#[error("{}: {}{}", in_line(&file.to_string_lossy()), within(place), printable(message))]
 pub struct CaseError {
     /// the case or mesh file
     pub file: PathBuf,
@@ -16,6 +17,10 @@ pub struct CaseError {
     pub place: String,
     /// what is wrong, and what to do
     pub message: String,
+}
+
+fn within(place: &str) -> String {
+    if place.is_empty() { String::new() } else { format!("{}: ", in_line(place)) }
 }
 
 /// A complaint about a place in the case; the file is added at the top.

@@ -1,5 +1,7 @@
 //! serde's complaints in the words of somebody who writes a case.
 
+use crate::mesh::names::{in_line, nearest};
+
 /// Longest piece of the user's own text that a message repeats.
 const LONGEST: usize = 100;
 
@@ -36,16 +38,14 @@ fn unknown(message: &str) -> String {
     let mut quoted = message.split('`').skip(1).step_by(2);
     let name = quoted.next().unwrap_or_default();
     let known: Vec<&str> = quoted.collect();
-    let likeness = |other: &str| strsim::jaro_winkler(&other.to_lowercase(), &name.to_lowercase());
-    let nearest = known.iter().rev().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
-    match nearest {
-        Some(nearest) => format!(
-            "`{}` is not known here; did you mean `{nearest}`? Known are `{}`",
-            clipped(name),
-            known.join("`, `")
-        ),
-        None => format!("`{}` is not known here: leave it out, nothing more may stand in this object", clipped(name)),
+    let name_shown = clipped(name);
+    if known.is_empty() {
+        return format!("`{name_shown}` is not known here: leave it out, nothing more may stand in this object");
     }
+    let meant =
+        nearest(name, known.iter().copied()).map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+    let stop = if meant.is_empty() { "." } else { "" };
+    format!("`{name_shown}` is not known here{meant}{stop} Known are `{}`", known.join("`, `"))
 }
 
 fn plain_found(found: &str) -> String {
@@ -67,6 +67,7 @@ fn plain_expected(expected: &str) -> &str {
         "a map" => OBJECT,
         "a sequence" => "a list […]",
         "an array of length 2" => "2 numbers",
+        "an array of length 4" => "4",
         "fewer elements in array" | "fewer elements in map" => "fewer",
         "enum" => "an object {…} with exactly one key",
         "string or map" | "variant identifier" => "a name in quotes, or an object {…} with one key",
@@ -75,10 +76,10 @@ fn plain_expected(expected: &str) -> &str {
     }
 }
 
-/// The text, cut where it is too long for a message.
+/// The text in one line, cut where it is too long for a message.
 pub fn clipped(text: &str) -> String {
     match text.char_indices().nth(LONGEST) {
-        Some((end, _)) => format!("{}…", &text[..end]),
-        None => text.into(),
+        Some((end, _)) => format!("{}…", in_line(&text[..end])),
+        None => in_line(text).into(),
     }
 }

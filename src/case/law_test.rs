@@ -68,8 +68,8 @@ pub struct PhaseInput {
 /// Steps of a phase that nobody asked for by a dt.
 const STEPS: f64 = 100.0;
 
-/// A phase of more steps is a slip of the keyboard.
-const MOST_STEPS: f64 = 1e8;
+/// A phase of more steps is a slip of the keyboard: each is a row of the table.
+const MOST_STEPS: f64 = 1e7;
 
 /// Steps as a share of the time at the end of their phase below which round-off would swallow them.
 const SHORTEST_STEP: f64 = 16.0 * f64::EPSILON;
@@ -88,6 +88,14 @@ pub fn schema() -> Value {
 /// [`CaseError`] when the file cannot be read or is not a test.
 pub fn read(path: &Path) -> Result<LawTestInput, CaseError> {
     super::read::read(path)
+}
+
+/// A test from its text; `path` is where it would stand.
+///
+/// # Errors
+/// As [`read`].
+pub fn from_text(text: &str, path: &Path) -> Result<LawTestInput, CaseError> {
+    super::read::read_text(text, path)
 }
 
 /// Check a test and make it ready to run. `path` is its file.
@@ -110,13 +118,17 @@ fn test(input: &LawTestInput) -> Checked<LawTest> {
 }
 
 fn law(parameters: &FrictionParameters) -> Checked<Box<dyn FrictionLaw>> {
+    if let Some(message) = parameters.unknown() {
+        return Err(Complaint::new("friction.name", message));
+    }
     // There is no mesh from which a stiffness could be chosen: NaN stands for none.
-    parameters.build(f64::NAN).map_err(|error| match error.name {
+    let law = parameters.build(f64::NAN).map_err(|error| match error.name {
         "alpha_t" if error.value.is_nan() => {
             Complaint::new("friction", "the key `alpha_t` is missing here: a law alone has no mesh to choose it from")
         }
         _ => Complaint::new("friction", error),
-    })
+    })?;
+    Ok(law.controlled().unwrap_or(law))
 }
 
 fn start(input: &LawTestInput, law: &dyn FrictionLaw, pressure: f64) -> Checked<FrictionState> {
@@ -188,7 +200,7 @@ fn course(place: &str, given: Option<&DriveInput>, reached: Option<f64>) -> Chec
     let drive = drive(given, place)?;
     drive.check().map_err(|message| Complaint::new(place, message))?;
     match (&drive, reached) {
-        (Drive::Expression(expression), _) if expression.depends_on_position() => {
+        (given, _) if given.depends_on_position() => {
             complain("x and y have no meaning here: the only variable is the time t")
         }
         (Drive::Rate(_), None) => complain("a rate needs a value to start from: give initial.pressure"),

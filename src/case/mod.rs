@@ -1,19 +1,24 @@
-//! The case: JSON as written, translated to the builder of a model ([`crate::model::builder`]).
+//! The case: JSON as written, translated to the builder of a model ([`crate::model::builder`]), and run ([`job`]).
 
 mod again;
 mod choice;
 mod error;
 mod explain;
 pub mod file;
+pub mod job;
 pub mod law_test;
+pub mod loading;
 mod read;
 mod report;
 mod schema;
+mod strict;
 mod translate;
+mod written;
 
 pub use again::Opened;
 pub use error::CaseError;
-pub use report::report;
+pub use report::{report, understood};
+pub use written::Written;
 
 use std::path::Path;
 
@@ -30,6 +35,14 @@ use file::{Case, MeshSource};
 /// [`CaseError`] when the file cannot be read or is not a case.
 pub fn read(path: &Path) -> Result<Case, CaseError> {
     read::read(path)
+}
+
+/// A case from its text; `path` is where it would stand.
+///
+/// # Errors
+/// As [`read()`].
+pub fn from_text(text: &str, path: &Path) -> Result<Case, CaseError> {
+    read::read_text(text, path)
 }
 
 /// Read the mesh of a case, check everything, and build the model. `path` is the case file.
@@ -54,7 +67,7 @@ fn built(case: &Case, mesh: Mesh) -> Checked<Model> {
         return Err(Complaint::new("begin_with", "another case must be opened first: see case::Opened"));
     }
     let model = translate::model(case, mesh)?.build()?;
-    if case.output.every == 0 {
+    if case.output.every == Some(0) {
         let message = "is 0: must be at least 1 (to write no fields, give \"fields\": false)";
         return Err(Complaint::new("output.every", message));
     }
@@ -72,9 +85,21 @@ fn built(case: &Case, mesh: Mesh) -> Checked<Model> {
 fn mesh(case: &Case, path: &Path) -> Checked<Mesh> {
     let mesh = match &case.mesh {
         MeshSource::Inline(mesh) => mesh.build(),
+        MeshSource::Blocks(blocks) => translate::blocks(blocks, "mesh")?.build(),
         MeshSource::File(file) => gmsh::read(&path.parent().unwrap_or(Path::new("")).join(file)),
     };
     mesh.map_err(|error| Complaint::new("mesh", error))
+}
+
+/// A mesh of blocks from its text, as `mesh` of a case has it.
+///
+/// # Errors
+/// [`CaseError`] as [`build`]; the file it names is `mesh`.
+pub fn blocks_from_text(text: &str) -> Result<Mesh, CaseError> {
+    let path = Path::new("mesh");
+    let input = read::read_text(text, path)?;
+    let mesh = translate::blocks(&input, "").and_then(|mesh| mesh.build().map_err(|error| Complaint::new("", error)));
+    mesh.map_err(|complaint| complaint.in_file(path))
 }
 
 /// The JSON Schema of a case file.

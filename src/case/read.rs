@@ -14,6 +14,7 @@ use serde_path_to_error::{Path as KeyPath, Segment};
 
 use super::error::{CaseError, Complaint};
 use super::explain::{SEVERAL_KEYS, clipped, explain};
+use super::strict::Strict;
 
 /// No case is larger: large meshes have files of their own [MiB].
 const LARGEST: u64 = 16;
@@ -30,12 +31,29 @@ pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, CaseError> {
     input.map_err(|complaint| complaint.in_file(path))
 }
 
+/// Read what would be the text of a file; `path` is for complaints.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_text<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, CaseError> {
+    document(text).and_then(|document| input(&document)).map_err(|complaint| complaint.in_file(path))
+}
+
 /// The document of a file, and what it says.
 ///
 /// # Errors
 /// As [`read`].
 pub fn read_document<T: DeserializeOwned>(path: &Path) -> Result<(Value, T), CaseError> {
-    let read = text(path).and_then(|text| document(&text)).and_then(|document| Ok((input(&document)?, document)));
+    let text = text(path).map_err(|complaint| complaint.in_file(path))?;
+    read_document_text(&text, path)
+}
+
+/// The same of what would be the text of a file.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_document_text<T: DeserializeOwned>(text: &str, path: &Path) -> Result<(Value, T), CaseError> {
+    let read = document(text).and_then(|document| Ok((input(&document)?, document)));
     read.map(|(input, document)| (document, input)).map_err(|complaint| complaint.in_file(path))
 }
 
@@ -155,11 +173,7 @@ impl<'de> Visitor<'de> for DocumentVisitor {
 }
 
 pub(super) fn input<T: DeserializeOwned>(document: &Value) -> Result<T, Complaint> {
-    // A list would be taken for the keys of the object in their order.
-    if document.is_array() {
-        return Err(Complaint::new("", "is a list […], but must be an object {…}"));
-    }
-    serde_path_to_error::deserialize(document).map_err(|error| {
+    serde_path_to_error::deserialize(Strict(document)).map_err(|error| {
         let message = error.inner().to_string();
         let key = blamed_key::<T>(document, error.path(), &message);
         Complaint::new(place(error.path(), key.as_deref()), explain(&message))
@@ -188,7 +202,7 @@ fn blamed_key<T: DeserializeOwned>(document: &Value, path: &KeyPath, message: &s
     others.into_iter().chain(tags).find(|key| {
         let mut without = document.clone();
         object_at(&mut without, path).map(|object| object.remove(key));
-        T::deserialize(&without).map_or_else(|error| error.to_string() != message, |_| true)
+        T::deserialize(Strict(&without)).map_or_else(|error| error.to_string() != message, |_| true)
     })
 }
 

@@ -1,4 +1,4 @@
-//! Supports and loads: what is prescribed or applied at a node, and how it varies in time and space.
+//! How what is prescribed or applied varies in time and space, and loads. Supports are in [`super::support`].
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -15,6 +15,9 @@ pub enum Drive {
     Table(Vec<[f64; 2]>),
     /// An expression in the reference position x, y and the run time t
     Expression(Expression),
+    /// (coordinate, value) pairs along x (0) or y (1) of the reference position, linear between, constant outside: reached at the end
+    /// of the step, linearly from the value at its start
+    ByPlace(usize, Vec<[f64; 2]>),
 }
 
 /// How a quantity varies along a surface, by reference position.
@@ -22,7 +25,7 @@ pub enum Drive {
 pub enum Profile {
     /// The same everywhere
     Constant(f64),
-    /// An expression in x and y
+    /// An expression in x and y and, where it says so, t
     Expression(Expression),
     /// (coordinate, value) pairs along x (0) or y (1), linear between, constant outside; of two pairs with the same
     /// coordinate the second holds there and beyond
@@ -36,13 +39,23 @@ impl From<f64> for Profile {
 }
 
 impl Profile {
-    /// Value at a reference position; NaN where an expression is not defined.
+    /// Value at a reference position at the start of the run; NaN where an expression is not defined.
     pub fn value(&self, position: Vector2<f64>) -> f64 {
+        self.value_at(position, 0.0)
+    }
+
+    /// Value at a reference position and run time; NaN where an expression is not defined.
+    pub fn value_at(&self, position: Vector2<f64>, time: f64) -> f64 {
         match self {
             Self::Constant(value) => *value,
-            Self::Expression(expression) => expression.value(position, 0.0),
+            Self::Expression(expression) => expression.value(position, time),
             Self::Table(component, table) => interpolate(table, position[*component]),
         }
+    }
+
+    /// Whether it varies in time.
+    pub fn depends_on_time(&self) -> bool {
+        matches!(self, Self::Expression(expression) if expression.depends_on_time())
     }
 }
 
@@ -77,16 +90,46 @@ impl Drive {
         let numbers: &[f64] = match self {
             Self::Constant(value) | Self::Rate(value) => &[*value],
             Self::Table(table) if table.is_empty() => return Err("the table is empty: give pairs [time, value]".into()),
-            Self::Table(table) => table.as_flattened(),
+            Self::ByPlace(_, table) if table.is_empty() => {
+                return Err("the table is empty: give pairs [coordinate, value]".into());
+            }
+            Self::Table(table) | Self::ByPlace(_, table) => table.as_flattened(),
             Self::Expression(_) => &[],
         };
         if let Some(value) = numbers.iter().find(|value| !value.is_finite()) {
             return Err(format!("is {value}: must be a finite number"));
         }
-        let Self::Table(table) = self else { return Ok(()) };
-        match table.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
-            Some(pair) => Err(format!("the times of the table must ascend: {} follows {}", pair[1][0], pair[0][0])),
+        let (table, kind, may_jump) = match self {
+            Self::Table(table) => (table, "times", false),
+            Self::ByPlace(_, table) => (table, "coordinates", true),
+            _ => return Ok(()),
+        };
+        match table.windows(2).find(|pair| pair[1][0] < pair[0][0] || pair[1][0] == pair[0][0] && !may_jump) {
+            Some(pair) => Err(format!("the {kind} of the table must ascend: {} follows {}", pair[1][0], pair[0][0])),
             None => Ok(()),
+        }
+    }
+
+    /// Whether it varies from place to place.
+    pub fn depends_on_position(&self) -> bool {
+        match self {
+            Self::Expression(expression) => expression.depends_on_position(),
+            Self::ByPlace(..) => true,
+            _ => false,
+        }
+    }
+
+    /// The same with the other sign.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        match self {
+            Self::Constant(value) => Self::Constant(-value),
+            Self::Rate(rate) => Self::Rate(-rate),
+            Self::Table(table) => Self::Table(table.iter().map(|[time, value]| [*time, -value]).collect()),
+            Self::Expression(expression) => Self::Expression(expression.negated()),
+            Self::ByPlace(along, table) => {
+                Self::ByPlace(*along, table.iter().map(|[place, value]| [*place, -value]).collect())
+            }
         }
     }
 
@@ -97,6 +140,7 @@ impl Drive {
             Self::Rate(rate) => start + rate * (time - span.start),
             Self::Table(table) => interpolate(table, time),
             Self::Expression(expression) => expression.value(position, time),
+            Self::ByPlace(along, table) => start + (interpolate(table, position[*along]) - start) * span.share(time),
         }
     }
 }
@@ -129,66 +173,28 @@ impl Amplitude {
     }
 
     /// Value at the start of a step: what was taken over if the drive is new in this step, else its own.
-    fn at_start_of(&self, step: Span, position: Vector2<f64>) -> f64 {
+    pub(super) fn at_start_of(&self, step: Span, position: Vector2<f64>) -> f64 {
         if step.start > self.span.start { self.value(position, step.start) } else { self.taken_over(position) }
+    }
+
+    /// The same from a time on where it stays as it is then, and remembers no more than it needs: what a new drive takes over
+    /// from that is given many times in a step. What varies from place to place is left as it is.
+    #[must_use]
+    pub fn settled(&self, time: f64) -> Self {
+        if self.chain().any(|amplitude| amplitude.drive.depends_on_position()) {
+            return self.clone();
+        }
+        let value = self.value(Vector2::zeros(), time);
+        Self { drive: Drive::Table(vec![[time, value]]), span: self.span, before: None }
+    }
+
+    /// It, and the drives that it remembers.
+    pub fn chain(&self) -> impl Iterator<Item = &Self> {
+        std::iter::successors(Some(self), |amplitude| amplitude.before.as_deref())
     }
 
     fn taken_over(&self, position: Vector2<f64>) -> f64 {
         self.before.as_ref().map_or(0.0, |before| before.value(position, self.span.start))
-    }
-}
-
-/// A prescribed displacement of one dof.
-#[derive(Clone, Debug)]
-pub struct Prescribed {
-    /// the dof, 2 × node + component
-    pub dof: usize,
-    /// its motion
-    pub motion: Motion,
-}
-
-/// Motion of a prescribed dof.
-#[derive(Clone, Debug)]
-pub enum Motion {
-    /// Displacement, counted from the one at the start of the step where the drive says so [L]
-    Displacement(Drive, Span),
-    /// Rigid rotation about a fixed point of what is there at the start of the step, θ counter-clockwise [rad]:
-    /// u = u₀ + (Q(θ − θ₀) − I)(X + u₀ − x_c)
-    Rotation {
-        /// x_c
-        about: Vector2<f64>,
-        /// θ
-        angle: Amplitude,
-    },
-}
-
-impl Prescribed {
-    /// ū at a time within `step`, for the node's reference position and its displacement at the start of the step [L].
-    pub fn value(&self, position: Vector2<f64>, time: f64, step: Span, start: Vector2<f64>) -> f64 {
-        let component = self.dof % 2;
-        match &self.motion {
-            Motion::Displacement(drive, span) => drive.value(position, time, *span, start[component]),
-            Motion::Rotation { about, angle } => {
-                let arm = (position - about) + start;
-                let turn = angle.value(position, time) - angle.at_start_of(step, position);
-                // Q − I, to the last digit of small angles as well
-                let (sine, versed) = (turn.sin(), 2.0 * (0.5 * turn).sin().powi(2));
-                let moved = Vector2::new(-versed * arm.x - sine * arm.y, sine * arm.x - versed * arm.y);
-                (start + moved)[component]
-            }
-        }
-    }
-
-    /// ū at the start, thirds and end of an increment. What is linear in time is taken straight from end to end: the kinks
-    /// of a table are jumps of the velocity and no accelerations [L].
-    pub fn thirds(&self, position: Vector2<f64>, [t0, t1]: [f64; 2], step: Span, start: Vector2<f64>) -> [f64; 4] {
-        let at = |time: f64| self.value(position, time, step, start);
-        let [first, last] = [t0, t1].map(at);
-        let within = |share: f64| match &self.motion {
-            Motion::Displacement(Drive::Expression(_), _) | Motion::Rotation { .. } => at(t0 + share * (t1 - t0)),
-            Motion::Displacement(..) => first + share * (last - first),
-        };
-        [first, within(1.0 / 3.0), within(2.0 / 3.0), last]
     }
 }
 
@@ -253,6 +259,15 @@ pub struct Absorber {
     pub coefficients: Matrix2<f64>,
 }
 
+/// A moment on a rigid plate, counter-clockwise: a couple of forces on its leaders that turns with it.
+#[derive(Clone, Debug)]
+pub struct PlateMoment {
+    /// A and B
+    pub plate: [usize; 2],
+    /// moment [F L]
+    pub amplitude: Amplitude,
+}
+
 /// Everything that acts on the model in one step.
 #[derive(Clone, Debug, Default)]
 pub struct Loads {
@@ -266,4 +281,18 @@ pub struct Loads {
     pub dashpots: Vec<Dashpot>,
     /// absorbing sides
     pub absorbers: Vec<Absorber>,
+    /// moments on plates
+    pub moments: Vec<PlateMoment>,
+}
+
+impl Loads {
+    /// What of them varies in time.
+    pub fn amplitudes(&mut self) -> impl Iterator<Item = &mut Amplitude> {
+        let dead = self.dead.iter_mut().map(|load| &mut load.amplitude);
+        let pressures = self.pressures.iter_mut().map(|load| &mut load.amplitude);
+        let springs = self.springs.iter_mut().filter_map(|spring| spring.driver.as_mut());
+        let dashpots = self.dashpots.iter_mut().filter_map(|dashpot| dashpot.driver.as_mut());
+        let moments = self.moments.iter_mut().map(|moment| &mut moment.amplitude);
+        dead.chain(pressures).chain(springs).chain(dashpots).chain(moments)
+    }
 }

@@ -1,89 +1,46 @@
 //! The problem to solve: mesh, bodies, contact pairs, and the steps with their supports, loads and schemes.
 
 pub mod aids;
+mod balance;
+mod body;
 pub mod boundary;
 pub mod builder;
+mod damping;
 pub mod element;
 mod expression;
+mod heat;
+pub mod imposed;
+pub mod linkage;
 pub mod method;
+mod plates;
+pub mod probe;
 pub mod scheme;
 pub mod state;
+mod step;
+pub mod support;
 pub mod told;
+pub mod until;
 pub mod warnings;
 
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector, Vector2};
 
+pub use body::{Body, PointMass};
+
 use crate::contact::pair::ContactPair;
-use crate::laws::bulk::Material;
 use crate::mesh::configuration::Configuration;
 use crate::mesh::ties::Ties;
 use crate::mesh::{Element, Mesh};
 use crate::model::aids::Aids;
-use crate::model::boundary::{Loads, Prescribed, Span};
+use crate::model::boundary::Loads;
+pub use crate::model::damping::Damping;
 use crate::model::element::{SolidElement, consistent_mass, lumped_mass, redistributed};
+use crate::model::linkage::Linkage;
 use crate::model::method::Chosen;
-use crate::model::scheme::Scheme;
+use crate::model::probe::Probe;
 use crate::model::state::{Energy, State, StepStart};
-
-/// Rayleigh's damping of a body: C = η M + τ K, K being that of [`crate::laws::bulk`]'s viscous stress. A vibration ω of a
-/// body that only this damps has the damping ratio ½ (η/ω + τ ω).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Damping {
-    /// η: share of the masses [1/T]
-    pub mass: f64,
-    /// τ: share of the stiffness, Kelvin–Voigt's time of retardation [T]
-    pub retardation: f64,
-}
-
-/// A body: a material on a group of elements.
-#[derive(Debug)]
-pub struct Body {
-    /// name of its group
-    pub name: String,
-    /// bulk law
-    pub material: Box<dyn Material>,
-    /// damping in dynamic steps
-    pub damping: Damping,
-    /// its elements
-    pub elements: Vec<usize>,
-    /// its nodes, ascending
-    pub nodes: Vec<usize>,
-}
-
-/// A mass at every node of a group.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PointMass {
-    /// name of the group
-    pub name: String,
-    /// m of each node, the same in both directions [M]
-    pub mass: f64,
-    /// its nodes, ascending
-    pub nodes: Vec<usize>,
-}
-
-/// How increments are chosen.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Increments {
-    /// first Δt [T]
-    pub initial: f64,
-    /// below this a failed increment stops the run [T]
-    pub min: f64,
-    /// never above this [T]
-    pub max: f64,
-    /// local error that an increment may make in a displacement or, in a static step, in the slip of a contact point; `None`
-    /// lets the iterations decide [L]
-    pub error: Option<f64>,
-}
-
-impl Increments {
-    /// The same, but none longer than `longest`: a stabilized step has a last increment after its dashpots have faded.
-    pub fn at_most(self, longest: f64) -> Self {
-        let Self { initial, min, max, error } = self;
-        Self { initial: initial.min(longest), min: min.min(longest), max: max.min(longest), error }
-    }
-}
+pub use crate::model::step::{Increments, Rupture, Step};
 
 /// When Newton's method stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,49 +57,15 @@ impl Default for NewtonSettings {
     }
 }
 
-/// A step: a time span with its supports, loads, scheme and increments.
-#[derive(Clone, Debug, Default)]
-pub struct Step {
-    /// name, for messages and output
-    pub name: String,
-    /// time span
-    pub span: Span,
-    /// scheme
-    pub scheme: Scheme,
-    /// increments
-    pub increments: Increments,
-    /// when and how the step goes on explicitly, if it may
-    pub rupture: Option<Box<Rupture>>,
-    /// prescribed dofs, ascending
-    pub supports: Vec<Prescribed>,
-    /// dofs that were prescribed in the step before and are free in this static one: their reaction is ramped off. In a
-    /// dynamic step it is gone at once
-    pub released: Vec<usize>,
-    /// loads, springs and dashpots
-    pub loads: Loads,
-    /// c₀ of every dof: dashpots c₀ (1 − share of the step that has passed) that keep bodies from floating until contact
-    /// holds them; empty if none are asked for [F T/L]
-    pub stabilization: Vec<f64>,
-}
-
-/// When a static or implicit step turns to explicit increments, and back.
-#[derive(Clone, Debug)]
-pub struct Rupture {
-    /// Slip rate of a contact point above which it does [L/T]
-    pub slip_rate: f64,
-    /// Time over whose mean no point may slip that fast when it turns back: that of a shear wave across the model [T]
-    pub calm: f64,
-    /// The step as it goes on explicitly
-    pub explicit: Step,
-}
-
 /// A set of nodes whose mean displacement and reaction the history reports.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WatchedSet {
     /// name of the group
     pub name: String,
-    /// its nodes
+    /// its nodes, of which the displacement is the mean
     pub nodes: Vec<usize>,
+    /// nodes whose reactions along x and y are its own
+    pub held: [Vec<usize>; 2],
 }
 
 /// The model; it does not change while it is solved.
@@ -156,8 +79,12 @@ pub struct Model {
     pub massless: Vec<bool>,
     /// bodies
     pub bodies: Vec<Body>,
-    /// nodes of periodic sides
+    /// nodes of periodic sides and of loading plates
     pub ties: Ties,
+    /// nodes that follow others: plates that turn, or of which one component is alike
+    pub linkage: Linkage,
+    /// nodes of each loading plate, ascending
+    pub plates: Vec<Vec<usize>>,
     /// point masses
     pub point_masses: Vec<PointMass>,
     /// body of each element
@@ -174,11 +101,14 @@ pub struct Model {
     pub watch: Vec<WatchedSet>,
     /// initial velocity of every dof [L/T]
     pub initial_velocity: Vec<f64>,
-    /// Forces of an initial stress of the bodies on every dof, which balance the initial tractions of contacts; empty if
-    /// there is none [F]
+    /// Forces of an initial stress of the bodies on every dof, which balance initial tractions of contacts, if any [F]
     pub prestress: Vec<f64>,
-    /// Time between the results of explicit steps; a hundredth of each step if it is not given [T]
+    /// Least time between two rows of the history of implicit steps, and between the results of explicit ones [T]
     pub interval: Option<f64>,
+    /// Times that increments end at, ascending, because fields are written then [T]
+    pub times: Vec<f64>,
+    /// Points of the bodies that are watched
+    pub probes: Vec<Probe>,
     /// when Newton's method stops
     pub newton: NewtonSettings,
     /// what makes iterations converge, all of it unless switched off for an experiment
@@ -196,9 +126,30 @@ impl Model {
         self.mesh.displaced(displacement)
     }
 
-    /// Whether some body has the viscous stress of Kelvin and Voigt.
-    pub fn is_viscous(&self) -> bool {
-        self.bodies.iter().any(|body| body.damping.retardation > 0.0)
+    /// Damping of a body in a step.
+    pub fn damping(&self, step: &Step, body: usize) -> Damping {
+        step.damping.get(body).copied().unwrap_or(self.bodies[body].damping)
+    }
+
+    /// Damping of all bodies in a step.
+    pub fn dampings(&self, step: &Step) -> Vec<Damping> {
+        (0..self.bodies.len()).map(|body| self.damping(step, body)).collect()
+    }
+
+    /// τ of all bodies in a step [T].
+    pub fn retardations(&self, step: &Step) -> Vec<f64> {
+        self.dampings(step).iter().map(|damping| damping.retardation).collect()
+    }
+
+    /// Whether some body has the viscous stress of Kelvin and Voigt in a step.
+    pub fn is_viscous(&self, step: &Step) -> bool {
+        (0..self.bodies.len()).any(|body| self.damping(step, body).retardation > 0.0)
+    }
+
+    /// Whether forces act before anything has moved: bodies are stressed, or contacts closed already.
+    pub fn starts_loaded(&self) -> bool {
+        self.contacts.iter().any(|pair| pair.initial.is_some())
+            || self.bodies.iter().any(|body| body.initial_stress.is_some())
     }
 
     /// Where each element finds what its material remembers, in [`State::memory`].
@@ -212,11 +163,17 @@ impl Model {
         self.solids.iter().zip(&self.body_of_element).map(own).collect()
     }
 
+    /// Where one element finds it.
+    pub fn memory_of(&self, element: usize) -> std::ops::Range<usize> {
+        let none = self.bodies.iter().all(|body| body.material.variables().is_empty());
+        if none { 0..0 } else { self.memories()[element].clone() }
+    }
+
     /// Whether dashpots, absorbing sides or viscous bodies act in a step.
     pub fn is_damped(&self, step: &Step) -> bool {
         let Loads { dashpots, absorbers, .. } = &step.loads;
         !(dashpots.is_empty() && absorbers.is_empty() && step.stabilization.is_empty())
-            || self.bodies.iter().any(|body| body.damping != Damping::default())
+            || (0..self.bodies.len()).any(|body| self.damping(step, body) != Damping::default())
     }
 
     /// Consistent mass matrix of an element, the same for both directions [M].
@@ -238,6 +195,23 @@ impl Model {
             .expect("elements are checked when the model is built")
     }
 
+    /// (λ + 2G) w of the stiffest element, the scale of forces over displacements; 0 without elements [F/L].
+    pub fn stiffness(&self) -> f64 {
+        let of =
+            |(solid, &body): (&SolidElement, &usize)| self.bodies[body].material.p_wave_modulus() * solid.mean_weight();
+        self.solids.iter().zip(&self.body_of_element).map(of).fold(0.0, f64::max)
+    }
+
+    /// Whether fields are asked for at a time; round-off of the way there does not matter.
+    pub fn is_output_time(&self, time: f64) -> bool {
+        self.times.iter().any(|at| (at - time).abs() <= near(*at))
+    }
+
+    /// The next time after another at which fields are asked for.
+    pub fn next_output_time(&self, after: f64) -> Option<f64> {
+        self.times.iter().copied().find(|at| *at > after + near(*at))
+    }
+
     /// The state at rest before the first increment.
     pub fn initial_state(&self) -> State {
         let zero = vec![0.0; self.dofs()];
@@ -253,10 +227,15 @@ impl Model {
             damping: zero.clone(),
             reaction: zero.clone(),
             contacts: self.contacts.iter().map(|pair| pair.initial_states(&self.mesh.undeformed())).collect(),
-            memory: vec![0.0; self.memories().last().map_or(0, |last| last.end)],
+            memory: self.initial_memory(),
             last_increment: None,
             step_start: Arc::new(StepStart { displacement: zero.clone(), reaction: zero }),
             energy: Energy::default(),
         }
     }
+}
+
+/// What two times may differ by and be the same [T].
+fn near(time: f64) -> f64 {
+    16.0 * f64::EPSILON * time
 }

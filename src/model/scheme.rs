@@ -34,6 +34,10 @@
 //! ```
 //! It is of second order and stable while ω Δt ≤ 2 for every vibration ω; `explicit/` has the bound of ω.
 //!
+//! # Quasi-dynamic steps
+//! Without inertia but for what slip radiates, an interface on linear bodies is a system of ordinary differential equations;
+//! `time/quasi_dynamic` has them.
+//!
 //! # Supports
 //! A prescribed dof follows its support and not (2), by which a jerk would ring. Its velocity is that of the support, and
 //! ```text
@@ -96,6 +100,17 @@ pub enum Scheme {
         #[serde(default = "nine_tenths")]
         safety: f64,
     },
+    /// Without inertia, bodies linear and contacts in small sliding with radiation damping: slip and state of the interface are
+    /// integrated explicitly, in steps that their error decides. For friction whose slip rate follows from traction and
+    /// state (rate_and_state, prescribed), nodes facing nodes, loads and supports that go evenly within the step
+    QuasiDynamic {
+        /// Error of one step in the coefficient of friction, 0 < tolerance < 0.1; 1e-5 unless given [-]
+        #[serde(default = "hundred_thousandth")]
+        tolerance: f64,
+        /// Steps from one result to the next, at least 1; 10 unless given
+        #[serde(default = "ten")]
+        every: usize,
+    },
     /// Wilson-θ: linear acceleration, equilibrium at t + θ Δt.
     Wilson {
         /// 1.37 ≤ θ ≤ 2; 1.4 unless given [-]
@@ -121,6 +136,14 @@ pub fn nine_tenths() -> f64 {
     0.9
 }
 
+fn hundred_thousandth() -> f64 {
+    1e-5
+}
+
+fn ten() -> usize {
+    10
+}
+
 fn seven_fifths() -> f64 {
     1.4
 }
@@ -141,13 +164,13 @@ pub struct Coefficients {
 impl Scheme {
     /// Whether masses have inertia.
     pub fn is_dynamic(self) -> bool {
-        self != Self::Static
+        !matches!(self, Self::Static | Self::QuasiDynamic { .. })
     }
 
     /// The numbers of the scheme; `None` for statics and central differences.
     pub fn coefficients(self) -> Option<Coefficients> {
         match self {
-            Self::Static | Self::Explicit { .. } => None,
+            Self::Static | Self::Explicit { .. } | Self::QuasiDynamic { .. } => None,
             Self::Newmark { beta, gamma } => Some(Coefficients { alpha_m: 0.0, alpha_f: 0.0, beta, gamma }),
             Self::Hht { alpha } => Some(Coefficients::of_second_order(0.0, -alpha)),
             Self::GeneralizedAlpha { rho_infinity: rho } => {
@@ -202,6 +225,11 @@ impl Scheme {
             Self::GeneralizedAlpha { rho_infinity: rho } => {
                 let fits = (0.0..=1.0).contains(&rho);
                 require("rho_infinity", rho, fits, "it must be between 0 (most damping) and 1 (none)")
+            }
+            Self::QuasiDynamic { tolerance, every } => {
+                let fits = tolerance > 0.0 && tolerance < 0.1;
+                require("tolerance", tolerance, fits, "it must be above 0 and below 0.1; 1e-5 is the default")?;
+                require("every", every as f64, every > 0, "it must be at least 1")
             }
             Self::Wilson { theta } => {
                 let fits = (1.37..=2.0).contains(&theta);

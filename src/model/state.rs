@@ -91,9 +91,11 @@ pub struct Energy {
     pub friction_dissipation: f64,
     /// ∫ c (v_driver − v)² dt of the dashpots, and what bodies turned into heat
     pub damping_dissipation: f64,
+    /// ∫ η v² ds dt: what slip radiates where contacts have a radiation damping
+    pub radiated: f64,
     /// ∫ c v² dt of the dashpots that stabilize floating bodies, a part of the damping dissipation
     pub stabilization: f64,
-    /// work of loads, springs, supports, drivers of dashpots and overlaps of shrink fits on the model
+    /// work of loads, springs, supports, drivers of dashpots, overlaps of shrink fits and changes of temperature on the model
     pub external_work: f64,
     /// kinetic + strain + contact energy at the start of the run
     pub initial: f64,
@@ -105,10 +107,10 @@ impl Energy {
         self.initial.abs().max((self.initial + self.external_work).abs())
     }
 
-    /// external work + initial − (kinetic + strain + contact) − dissipation: 0 for an exact integration.
+    /// external work + initial − (kinetic + strain + contact) − dissipation − radiated: 0 for an exact integration.
     pub fn error(&self) -> f64 {
         self.external_work + self.initial
             - (self.kinetic + self.strain + self.contact_elastic)
-            - (self.friction_dissipation + self.damping_dissipation)
+            - (self.friction_dissipation + self.damping_dissipation + self.radiated)
     }
 }

@@ -2,14 +2,16 @@
 
 use nalgebra::Vector2;
 
+use super::balance;
 use super::told::{count, number};
 use crate::contact::master::Master;
 use crate::contact::pair::ContactPair;
 use crate::contact::rigid::Rigid;
 use crate::contact::surface::SlavePoint;
 use crate::mesh::Mesh;
-use crate::model::Model;
 use crate::model::method::Chosen;
+use crate::model::scheme::Scheme;
+use crate::model::{Model, Step};
 
 /// Round-off of a gap, as a share of the positions that it is the difference of.
 const OF_POSITIONS: f64 = 8.0 * f64::EPSILON;
@@ -26,9 +28,15 @@ impl Model {
                 true => Vec::new(),
                 false => Gaps::of(self, pair).warnings(),
             };
-            warnings.into_iter().map(|warning| format!("contact `{}`: {warning}", pair.name)).collect::<Vec<_>>()
+            let away = faces_away(self, pair);
+            warnings
+                .into_iter()
+                .chain(away)
+                .map(|warning| format!("contact `{}`: {warning}", pair.name))
+                .collect::<Vec<_>>()
         };
-        let of_model = coarse_positions(&self.mesh).into_iter().chain(lost_velocity(self));
+        let of_model = coarse_positions(&self.mesh).into_iter().chain(lost_velocity(self)).chain(many_increments(self));
+        let of_model = of_model.chain(idle_radiation(self)).chain(uncertain_times(self)).chain(balance::concerns(self));
         let concerns = self.told_of_methods(|chosen| chosen.concern.map(String::from));
         of_model.chain(concerns).chain(self.contacts.iter().flat_map(of_contact)).collect()
     }
@@ -46,6 +54,34 @@ impl Model {
     }
 }
 
+/// Fields at times of a run that may be over before.
+fn uncertain_times(model: &Model) -> Option<String> {
+    let step = model.steps.iter().find(|step| step.until.is_some()).filter(|_| !model.times.is_empty())?;
+    Some(format!(
+        "step `{}` may end before its time (until), and all that follows then comes earlier: output.times after its start may \
+         lie in other steps, or after the end of the run, and are not written then",
+        step.name
+    ))
+}
+
+/// A slave whose outside is everywhere that of its rigid master lies in it, and nothing pushes it out as it should. (Edges of a
+/// mesh that do not face a slave are not met at all.)
+fn faces_away(model: &Model, pair: &ContactPair) -> Option<String> {
+    let Master::Rigid(rigid) = &pair.master else { return None };
+    let x = model.mesh.undeformed();
+    let outward = |point: &SlavePoint| Some(rigid.project(point, &x)?.normal.dot(&point.outward(&x)?));
+    let away = |point: &&SlavePoint| outward(point).is_none_or(|along| along > 0.0);
+    let first = pair.points.iter().find(|point| outward(point).is_some())?;
+    pair.points.iter().all(|point| away(&point)).then(|| {
+        let at = first.at(&x);
+        format!(
+            "the slave faces away from the rigid master everywhere, as at ({}, {}): turn the normal of the plane, or see `hole` of the circle",
+            number(at.x),
+            number(at.y)
+        )
+    })
+}
+
 /// What is wrong with velocities that a static first step takes no notice of.
 fn lost_velocity(model: &Model) -> Option<String> {
     let first = model.steps.first().filter(|step| !step.scheme.is_dynamic())?;
@@ -58,6 +94,43 @@ fn lost_velocity(model: &Model) -> Option<String> {
     })
 }
 
+/// Increments that are worth a warning: each is a row of the history, and explicit ones are quick.
+const MANY: [f64; 2] = [1e6, 1e7];
+
+/// The least number of increments: of implicit steps by their longest, of explicit ones by the time that a wave takes along the
+/// shortest side.
+fn many_increments(model: &Model) -> Option<String> {
+    let fastest =
+        model.bodies.iter().map(|body| body.material.p_wave_modulus() / body.material.density()).fold(0.0, f64::max);
+    let crossed = shortest_side(&model.mesh) / fastest.sqrt();
+    let of_steps = |explicit: bool| -> f64 {
+        let steps = model.steps.iter().filter(|step| matches!(step.scheme, Scheme::Explicit { .. }) == explicit);
+        let longest = |step: &Step| if explicit { step.increments.max.min(crossed) } else { step.increments.max };
+        steps.map(|step| (step.span.end - step.span.start) / longest(step)).sum()
+    };
+    let (implicit, explicit) = (of_steps(false), of_steps(true));
+    let told = |count: f64, why: &str| format!("this takes at least {count:.1e} increments{why}");
+    match (implicit > MANY[0], explicit > MANY[1]) {
+        (true, _) => Some(told(implicit, ", each a row of history.csv: lengthen dt (initial, max) unless it is meant")),
+        (_, true) => Some(told(
+            explicit,
+            ": explicit ones are no longer than a wave takes along the shortest side of an element",
+        )),
+        _ => None,
+    }
+}
+
+/// What is wrong with a radiation damping that acts in no step.
+fn idle_radiation(model: &Model) -> Option<String> {
+    let pair = model.contacts.iter().find(|pair| pair.radiation > 0.0)?;
+    model.steps.iter().all(|step| step.scheme.is_dynamic()).then(|| {
+        format!(
+            "the radiation damping of contact `{}` acts in no step: all have inertia, which radiates by itself",
+            pair.name
+        )
+    })
+}
+
 fn is_its_own_master(pair: &ContactPair) -> bool {
     matches!(&pair.master, Master::Mesh(surface) if surface.own_depth.is_some())
 }
@@ -65,14 +138,19 @@ fn is_its_own_master(pair: &ContactPair) -> bool {
 /// A share of the shortest edge to which positions should be known: displacements of interest are thousands of times larger.
 const KNOWN: f64 = 1e-8;
 
-/// Positions are known to ε |X|. What that is beside an element is an error of its shape, and of gaps and overlaps.
-fn coarse_positions(mesh: &Mesh) -> Option<String> {
-    let farthest = mesh.nodes.iter().fold(0.0, |most: f64, node| most.max(node.amax()));
-    let edges = mesh.elements.iter().flat_map(|element| {
+/// Shortest side of all elements [L].
+fn shortest_side(mesh: &Mesh) -> f64 {
+    let sides = mesh.elements.iter().flat_map(|element| {
         let corners = &element.nodes[..element.kind.corners()];
         corners.iter().zip(corners.iter().cycle().skip(1)).map(|(&a, &b)| (mesh.nodes[b] - mesh.nodes[a]).norm())
     });
-    let shortest = edges.fold(f64::INFINITY, f64::min);
+    sides.fold(f64::INFINITY, f64::min)
+}
+
+/// Positions are known to ε |X|. What that is beside an element is an error of its shape, and of gaps and overlaps.
+fn coarse_positions(mesh: &Mesh) -> Option<String> {
+    let farthest = mesh.nodes.iter().fold(0.0, |most: f64, node| most.max(node.amax()));
+    let shortest = shortest_side(mesh);
     let known = f64::EPSILON * farthest;
     (known > KNOWN * shortest).then(|| {
         format!(

@@ -1,10 +1,11 @@
 //! Contacts as they are written.
 
-use std::collections::BTreeMap;
-
 use schemars::JsonSchema;
+use serde::de::Visitor;
 use serde::{Deserialize, Deserializer};
 
+use super::along::AlongInput;
+use super::profile::ProfileInput;
 use crate::case::choice::Choice;
 use crate::laws::friction::FrictionParameters;
 use crate::model::method::Method;
@@ -16,8 +17,8 @@ pub struct ContactInput {
     /// Edge group whose points are kept out of the master, the finer or softer side; or a group of points, each with the
     /// `area`
     pub slave: String,
-    /// Area that each point of a slave group of points stands for; it does not change. Edges have lengths of their own
-    /// [L, the thickness being 1]
+    /// Area that each point of a slave group of points stands for, with the thickness or the full turn; it does not change.
+    /// Edges have lengths of their own [L, the thickness being 1, or L²]
     pub area: Option<f64>,
     /// Edge group, or a rigid body. The slave's group again: contact of the surface with itself, each point of which then
     /// stands for half its length, because every contact is met from both sides
@@ -47,12 +48,89 @@ pub struct ContactInput {
     pub massless: bool,
     /// Friction law
     pub friction: FrictionParameters,
-    /// Parameters of the friction law that vary along the slave, by name: they replace the numbers given in `friction`
+    /// How far the surfaces move apart with plastic slip
+    pub dilatancy: Option<DilatancyInput>,
+    /// k of Archard's law: the surfaces wear away by dw = k p × plastic slip, whichever way it goes, and come nearer; k is the wear
+    /// coefficient over the hardness. The depth w stands in tables and frames as `wear` [L²/F]
+    pub wear: Option<f64>,
+    /// Static steps: a traction η × slip rate that resists slip beside friction, in place of the inertia that is left out: the
+    /// shear waves that slip would send into unbounded bodies take it away. A number is η [F·T/L³]; true is that of the
+    /// bodies, 1/η = 1/Z₁ + 1/Z₂ with Z = ρ c_s of each side: G/(2 c_s) where both are alike, Z on a rigid master. Dynamic and
+    /// explicit steps have inertia, and leave it out
     #[serde(default)]
-    pub along: BTreeMap<String, ProfileInput>,
+    pub radiation_damping: RadiationInput,
+    /// p_w: pressure of a fluid between the surfaces, zero or positive; expressions may have the run time t besides the
+    /// reference position x, y of the slave. It pushes both sides apart wherever the master faces the slave, closed or open, beside
+    /// the pressure p that the surfaces carry; friction, `initial.pressure` and all outputs called pressure are this effective p
+    /// alone. It is given, and does not flow. Not for quasi_dynamic steps [F/L²]
+    pub fluid_pressure: Option<ProfileInput>,
+    /// What of friction varies along the slave, and in time
+    #[serde(default)]
+    pub along: AlongInput,
     /// Tractions and structure at the start of a contact that starts closed. The gap of every slave point is then counted
     /// from where the pressure acts at its initial position, all through the run
     pub initial: Option<InitialInput>,
+}
+
+/// Dilatancy of a contact, with any friction law.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DilatancyInput {
+    /// tan ψ: opening per plastic slip at the start, whichever way it goes; below the friction coefficient, for the work that
+    /// lifts the load is friction's [-]
+    pub rate: f64,
+    /// d_max: opening that much slip leads to, dδ = tan ψ (1 − δ/d_max) × plastic slip; no limit unless given. The opening δ stands
+    /// in tables and frames as `dilation` [L]
+    pub limit: Option<f64>,
+}
+
+/// Radiation damping: whether, or how much.
+#[derive(Clone, Copy, Debug, JsonSchema)]
+#[schemars(untagged)]
+pub enum RadiationInput {
+    /// That of the bodies, or none
+    OfBodies(bool),
+    /// η [F·T/L³]
+    Given(f64),
+}
+
+impl Default for RadiationInput {
+    fn default() -> Self {
+        Self::OfBodies(false)
+    }
+}
+
+impl<'de> Deserialize<'de> for RadiationInput {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(WhetherOrHowMuch)
+    }
+}
+
+/// Reads `true`, `false` or a number.
+struct WhetherOrHowMuch;
+
+impl Visitor<'_> for WhetherOrHowMuch {
+    type Value = RadiationInput;
+
+    fn expecting(&self, formatter: &mut std::fmt::Formatter) -> std::fmt::Result {
+        formatter.write_str("true, false or a number")
+    }
+
+    fn visit_bool<E: serde::de::Error>(self, value: bool) -> Result<RadiationInput, E> {
+        Ok(RadiationInput::OfBodies(value))
+    }
+
+    fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<RadiationInput, E> {
+        Ok(RadiationInput::Given(value))
+    }
+
+    fn visit_i64<E: serde::de::Error>(self, value: i64) -> Result<RadiationInput, E> {
+        self.visit_f64(value as f64)
+    }
+
+    fn visit_u64<E: serde::de::Error>(self, value: u64) -> Result<RadiationInput, E> {
+        self.visit_f64(value as f64)
+    }
 }
 
 /// How far surfaces may slide on each other, and turn.
@@ -75,53 +153,19 @@ pub enum SlidingInput {
 #[serde(deny_unknown_fields)]
 pub struct InitialInput {
     /// p: contact pressure, zero or positive [F/L²]
-    pub pressure: ProfileInput,
+    pub pressure: Option<ProfileInput>,
     /// q: traction that resists the slip of the slave along +s, the master's normal turned by −90° [F/L²]
-    #[serde(default)]
-    pub traction: ProfileInput,
+    pub traction: Option<ProfileInput>,
     /// 1/R*: structure of the super/subloading law, from 1 to μ_s/μ_k; that of the law unless given [-]
     pub structure: Option<ProfileInput>,
     /// Whether an initial stress of the bodies is in equilibrium with these tractions. Displacements and stresses of the
     /// run are then those that come on top of the initial stress
     #[serde(default)]
     pub balanced: bool,
-}
-
-/// How a quantity varies along a surface.
-#[derive(Clone, Debug, JsonSchema)]
-#[schemars(untagged)]
-pub enum ProfileInput {
-    /// The same everywhere
-    Constant(f64),
-    /// Expression in the reference position x, y
-    Expression(String),
-    /// Table by a coordinate
-    Table(ProfileTable),
-}
-
-impl Default for ProfileInput {
-    fn default() -> Self {
-        Self::Constant(0.0)
-    }
-}
-
-impl<'de> Deserialize<'de> for ProfileInput {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let expecting = "a number, an expression in x, y such as \"1 + 0.1*x\", or {\"x\": [[x, v], …]}";
-        Choice { expecting, number: Some(Self::Constant), text: Self::Expression, object: Self::Table }
-            .read(deserializer)
-    }
-}
-
-/// Values by a coordinate of the reference position: linear between, constant outside. The same coordinate twice is a
-/// jump.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ProfileTable {
-    /// Pairs of x and value, x ascending
-    X(Vec<[f64; 2]>),
-    /// Pairs of y and value, y ascending
-    Y(Vec<[f64; 2]>),
+    /// Instead of pressure and traction: those with which the `initial_stress` of the slave's body ends at the contact, p = −n·σn
+    /// (less the pressure of a fluid at the start) and q = s·σn, with the normal n and the tangent s of the master
+    #[serde(default)]
+    pub of_bodies: bool,
 }
 
 /// The master side.

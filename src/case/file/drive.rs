@@ -11,7 +11,9 @@ use crate::case::choice::Choice;
 pub enum DriveInput {
     /// Value at the end of the step, reached linearly
     Constant(f64),
-    /// Expression in the reference position x, y and the run time t
+    /// Expression in the reference position x, y and the run time t, with + - * / ^, brackets, pi, tau, e, and functions: abs, acos,
+    /// acosh, asin, asinh, atan, atanh, atan2(y, x), cbrt, ceil, cos, cosh, exp, floor, fract, ln, log (= ln), log10, log2,
+    /// max(a, b), min(a, b), round, signum, sin, sinh, sqrt, tan, tanh, trunc. -x^2 is -(x^2)
     Expression(String),
     /// Variation in time
     InTime(TimeInput),

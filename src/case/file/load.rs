@@ -15,6 +15,9 @@ pub struct LoadInput {
     /// Pressure on edges that follows the surface, positive toward the body [F/L²]
     #[serde(default, deserialize_with = "present")]
     pub pressure: Option<Option<DriveInput>>,
+    /// Pressure on edges that keeps the force and direction it has on the undeformed edges, positive toward the body [F/L²]
+    #[serde(default, deserialize_with = "present")]
+    pub dead_pressure: Option<Option<DriveInput>>,
     /// Traction on reference edges that keeps its direction [F/L²]
     #[serde(default, deserialize_with = "present")]
     pub traction: Option<Option<Components>>,
@@ -24,6 +27,13 @@ pub struct LoadInput {
     /// Force on every node of the group [F]
     #[serde(default, deserialize_with = "present")]
     pub force: Option<Option<Components>>,
+    /// Force on edges as a whole, spread over them as an even traction: a unit of depth in plane strain, the thickness of a
+    /// plate, the full turn of a ring. Its expressions depend on t alone [F]
+    #[serde(default, deserialize_with = "present")]
+    pub total_force: Option<Option<Components>>,
+    /// Moment on a plate that moves as a rigid body, counter-clockwise; it turns with the plate [F L]
+    #[serde(default, deserialize_with = "present")]
+    pub moment: Option<Option<DriveInput>>,
     /// Spring at every node of the group, to the ground or to a moving driver; what it does to the node counts as work
     /// from outside
     #[serde(default, deserialize_with = "present")]

@@ -1,10 +1,18 @@
 //! The case file as it is written: JSON types, with the text that the schema shows.
 
+mod along;
+mod blocks;
 mod contact;
+mod damping;
 mod drive;
+mod imposed;
 mod load;
 mod output;
 mod place;
+mod plate;
+mod probe;
+mod profile;
+mod section;
 mod step;
 
 use std::collections::BTreeMap;
@@ -12,15 +20,25 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer};
 
+pub use along::{AlongInput, LawChoiceInput};
+pub use blocks::{Amount, BlockInput, BlocksInput, GradingInput, MeshInPlace, MiddleInput};
 pub use contact::{
-    CircleInput, ContactInput, InitialInput, MasterInput, NormalInput, PlaneInput, PolylineInput, ProfileInput,
-    ProfileTable, RigidInput, SlidingInput,
+    CircleInput, ContactInput, DilatancyInput, InitialInput, MasterInput, NormalInput, PlaneInput, PolylineInput,
+    RadiationInput, RigidInput, SlidingInput,
 };
+pub use damping::DampingInput;
 pub use drive::{Components, DriveInput, TimeInput};
+pub use imposed::{
+    GeostaticInput, InitialStressInput, StressInput, TemperatureInput, TemperatureVariation, ThermalInput,
+};
 pub use load::{DashpotInput, LoadInput, SpringInput};
-pub use output::{FrontsInput, OutputInput};
-pub use place::{NodeInput, Place};
-pub use step::{IncrementsInput, RotationInput, RuptureInput, StepInput, SupportInput};
+pub use output::{ArrivalInput, FrontsInput, OutputInput};
+pub use place::{Place, SpotInput};
+pub use plate::{LoadingPlateInput, PlateMotion};
+pub use probe::ProbeInput;
+pub use profile::{ProfileInput, ProfileTable};
+pub use section::{PlateInput, SectionInput};
+pub use step::{IncrementsInput, RotationInput, RuptureInput, StepInput, SupportInput, UntilInput};
 
 use crate::case::choice::Choice;
 use crate::laws::bulk::MaterialParameters;
@@ -37,8 +55,12 @@ pub struct Case {
     /// Labels of the units used, for readers; any consistent set will do
     #[serde(default)]
     pub units: BTreeMap<String, String>,
-    /// Path of a gmsh MSH 4.1 file relative to the case file, or a small mesh given in place
+    /// Path of a gmsh MSH 4.1 file relative to the case file, or a mesh given in place: as blocks that are divided into elements, or
+    /// node by node
     pub mesh: MeshSource,
+    /// What the plane stands for in space: "plane_strain", a plate {"plane_stress": {"thickness": …}}, or "axisymmetric"
+    #[serde(default)]
+    pub section: SectionInput,
     /// Bodies by the name of their mesh group
     #[serde(default)]
     pub bodies: BTreeMap<String, BodyInput>,
@@ -49,6 +71,12 @@ pub struct Case {
     /// moves as its partner does, and what acts on one acts on both
     #[serde(default)]
     pub periodic: Vec<[String; 2]>,
+    /// Loading plates: groups whose nodes all move alike, as if glued to a rigid plate that does not turn. A support, force, spring
+    /// or dashpot on one of its nodes acts on the whole plate once, a `total_force` on its group as well. Its reaction counts in the
+    /// watched groups that all of the plate belongs to. In axisymmetry a plate keeps its radius, ux = 0. Other plates say how they
+    /// `moves`: only one component alike, or as a rigid body that turns
+    #[serde(default)]
+    pub plates: Vec<LoadingPlateInput>,
     /// Contacts by a name of your choice
     #[serde(default)]
     pub contacts: BTreeMap<String, ContactInput>,
@@ -64,6 +92,10 @@ pub struct Case {
     /// Groups whose mean displacement and reaction go to the history
     #[serde(default)]
     pub watch: Vec<String>,
+    /// Gauges by a name of your choice: displacement, velocity, strain and stress at points of the bodies, at every row of
+    /// the history (probes.csv)
+    #[serde(default)]
+    pub probes: BTreeMap<String, ProbeInput>,
     /// When Newton's method stops
     #[serde(default)]
     pub newton: NewtonInput,
@@ -78,14 +110,21 @@ pub struct Case {
 pub enum MeshSource {
     /// Path relative to the case file
     File(String),
-    /// Mesh in place
+    /// Blocks, divided into elements
+    Blocks(BlocksInput),
+    /// Node by node
     Inline(InlineMesh),
 }
 
 impl<'de> Deserialize<'de> for MeshSource {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let expecting = "the path of a mesh file, or a mesh {\"nodes\": …, \"elements\": …, \"edges\": …}";
-        Choice { expecting, number: None, text: Self::File, object: Self::Inline }.read(deserializer)
+        let expecting =
+            "the path of a mesh file, or a mesh {\"blocks\": …} or {\"nodes\": …, \"elements\": …, \"edges\": …}";
+        let object = |mesh| match mesh {
+            MeshInPlace::Inline(mesh) => Self::Inline(mesh),
+            MeshInPlace::Blocks(blocks) => Self::Blocks(blocks),
+        };
+        Choice { expecting, number: None, text: Self::File, object }.read(deserializer)
     }
 }
 
@@ -101,17 +140,10 @@ pub struct BodyInput {
     /// Damping of the body in dynamic steps; none unless given
     #[serde(default)]
     pub damping: DampingInput,
-}
-
-/// Rayleigh damping. A vibration of angular frequency w decays with the damping ratio (mass/w + stiffness w)/2.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct DampingInput {
-    /// Force per momentum: damps slow motions most, free flight included [1/T]
-    pub mass: f64,
-    /// Kelvin-Voigt: viscous stress, this time times the elastic stress of the rate of strain; damps fast vibrations most,
-    /// and makes explicit increments shorter [T]
-    pub stiffness: f64,
+    /// Stress of the undeformed body at the start; none unless given
+    pub initial_stress: Option<InitialStressInput>,
+    /// Thermal expansion; none unless given
+    pub thermal: Option<ThermalInput>,
 }
 
 /// How the elements of a body are integrated.

@@ -4,33 +4,72 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 /// What is written.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputInput {
-    /// Fields are written with every n-th row of the history, and at the end of each step
-    pub every: usize,
+    /// Fields are written with every n-th row of the history, and at the end of each step; with every row unless given, or
+    /// with none where `times` are
+    pub every: Option<usize>,
     /// Whether fields are written at all
     pub fields: bool,
     /// Explicit steps write a row of the history (and fields, every n-th time) at multiples of this since the start of the
-    /// step [T]; a hundredth of the step unless given. Implicit steps do so at every increment
+    /// step [T]; a hundredth of the step unless given. Implicit steps write every increment or, if this is given, rows that
+    /// are at least so far apart in time; where a contact point opens, closes, begins to slip or stops, the increments
+    /// before and after are always written, and so are the ends of steps
     pub interval: Option<f64>,
+    /// Times at which fields are written, ascending; increments end on them [T]
+    pub times: Vec<f64>,
+    /// Whether stresses at the integration points are written with the fields (points.pvd)
+    pub points: bool,
     /// Minutes of wall time between checkpoints (checkpoint.bin), from which `run --resume` goes on to the same bits after
     /// whatever has ended the run; the last one is written at the end. 5 unless given; null or 0 for none
     pub checkpoint: Option<f64>,
-    /// Slip over time and place (slip_map.csv), and the fronts that run along contacts with friction (fronts.csv)
+    /// The fronts that run along contacts with friction (fronts.csv), and the events of slip that they make (events.csv)
     pub fronts: Option<FrontsInput>,
+    /// Whether a run ends with report.html, one page to look at its results in a browser; `fecontact report` writes it at any
+    /// time
+    pub report: bool,
 }
 
 /// What counts as a front.
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FrontsInput {
-    /// Slip rate whose passage from below is the arrival of a front [L/T]
+    /// Slip rate whose passage from below is the arrival of a front; an event of slip lasts while a point of the contact
+    /// slips faster [L/T]
     pub slip_rate: f64,
+    /// What tells of arrivals instead of the slip rate
+    pub arrival: Option<ArrivalInput>,
+}
+
+/// What tells that a front arrives at a point.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+pub enum ArrivalInput {
+    /// R passes this value from below [-]
+    R(f64),
+    /// μ passes this value from above [-]
+    #[serde(rename = "mu")]
+    Mu(f64),
+}
+
+impl OutputInput {
+    /// Fields are written with every n-th row, if with any but those at times asked for.
+    pub fn every(&self) -> Option<usize> {
+        self.every.or(self.times.is_empty().then_some(1))
+    }
 }
 
 impl Default for OutputInput {
     fn default() -> Self {
-        Self { every: 1, fields: true, interval: None, checkpoint: Some(5.0), fronts: None }
+        Self {
+            every: None,
+            fields: true,
+            interval: None,
+            times: Vec::new(),
+            points: false,
+            checkpoint: Some(5.0),
+            fronts: None,
+            report: true,
+        }
     }
 }

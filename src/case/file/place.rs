@@ -12,31 +12,25 @@ pub enum Place {
     /// Group of the mesh
     Group(String),
     /// Single node
-    Node(NodeInput),
+    Spot(SpotInput),
 }
 
 impl<'de> Deserialize<'de> for Place {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let expecting = "the name of a group, or {\"node\": tag}";
-        Choice { expecting, number: None, text: Self::Group, object: Self::Node }.read(deserializer)
+        let expecting = "the name of a group, {\"node\": tag}, or {\"near\": [x, y]}";
+        Choice { expecting, number: None, text: Self::Group, object: Self::Spot }.read(deserializer)
     }
 }
 
 /// A single node.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct NodeInput {
+#[serde(rename_all = "snake_case")]
+pub enum SpotInput {
     /// Its tag in the mesh file (its number from 0 in a mesh given in place)
-    pub node: u64,
-}
-
-impl std::fmt::Display for Place {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        match self {
-            Self::Group(name) => f.write_str(name),
-            Self::Node(NodeInput { node }) => write!(f, "node {node}"),
-        }
-    }
+    Node(u64),
+    /// The node of the undeformed mesh that is nearest to this point [x, y]. It must be the only one, and no farther away than
+    /// the elements there are long [L]
+    Near([f64; 2]),
 }
 
 /// Tell a key that is `null` (Some(None)) from one that is absent (None, by default).

@@ -1,12 +1,15 @@
 //! Contacts, as `check` understood them.
 
+use std::collections::BTreeMap;
+
 use super::parameters::parameters;
 use crate::case::file::{
-    Case, CircleInput, ContactInput, InitialInput, MasterInput, PlaneInput, PolylineInput, RigidInput,
+    Case, CircleInput, ContactInput, DilatancyInput, InitialInput, MasterInput, PlaneInput, PolylineInput,
+    ProfileInput, RigidInput,
 };
 use crate::contact::pair::ContactPair;
 use crate::contact::small_sliding::LITTLE_TURN;
-use crate::laws::friction::observables;
+use crate::laws::friction::{Onset, observables};
 use crate::model::Model;
 use crate::model::method::{Chosen, Method};
 use crate::model::told::{count, number};
@@ -18,7 +21,7 @@ pub fn contacts(case: &Case, model: &Model) -> Vec<String> {
     let mut lines = Vec::new();
     for (pair, chosen) in model.contacts.iter().zip(&model.methods) {
         lines.push(pair.name.clone());
-        lines.extend(contact(case, pair, chosen.as_ref()).into_iter().map(|line| format!("  {line}")));
+        lines.extend(contact(case, model, pair, chosen.as_ref()).into_iter().map(|line| format!("  {line}")));
         let start = match &case.contacts[&pair.name].initial {
             Some(initial) => initial_tractions(initial, pair),
             None => gaps(model, pair, case.contacts[&pair.name].shrink_fit),
@@ -36,7 +39,11 @@ fn initial_tractions(initial: &InitialInput, pair: &ContactPair) -> String {
     let p = range(tractions.clone().map(|initial| initial.pressure));
     let q = range(tractions.map(|initial| initial.traction));
     let (structure, mu) = (range(observed("structure")), range(observed("mu")));
-    let balanced = if initial.balanced { ", balanced by an initial stress of the bodies" } else { "" };
+    let balanced = match (initial.balanced, initial.of_bodies) {
+        (true, _) => ", balanced by an initial stress of the bodies",
+        (false, true) => ", with which the initial stress of the slave's body ends",
+        (false, false) => "",
+    };
     format!("starts closed with the pressure {p} and the traction {q}{balanced}; mu {mu}, structure {structure}")
 }
 
@@ -48,6 +55,10 @@ pub fn pressed_too_hard(pair: &ContactPair) -> Option<String> {
     Some(format!("contact `{}`: {}", pair.name, several_answers(pressure, limit)))
 }
 
+fn three_digits(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
+}
+
 /// One number, or the range of several.
 fn range(values: impl Iterator<Item = f64> + Clone) -> String {
     let low = values.clone().fold(f64::INFINITY, f64::min);
@@ -55,7 +66,7 @@ fn range(values: impl Iterator<Item = f64> + Clone) -> String {
     if number(low) == number(high) { number(low) } else { format!("{} to {}", number(low), number(high)) }
 }
 
-fn contact(case: &Case, pair: &ContactPair, chosen: Option<&Chosen>) -> Vec<String> {
+fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chosen>) -> Vec<String> {
     let input = &case.contacts[&pair.name];
     let alpha_n = match input.normal.alpha_n {
         Some(_) => "given",
@@ -81,15 +92,68 @@ fn contact(case: &Case, pair: &ContactPair, chosen: Option<&Chosen>) -> Vec<Stri
         lines.push(format!("alpha_t {alpha_t} ({chosen})"));
     }
     lines.push(format!("friction {}", parameters(&input.friction, "law", &["alpha_t"])));
-    if !input.along.is_empty() {
-        let names: Vec<&str> = input.along.keys().map(String::as_str).collect();
-        lines.push(format!("along it vary {}", names.join(", ")));
+    let vary = |along: &BTreeMap<String, ProfileInput>| -> Option<String> {
+        let names: Vec<&str> = along.keys().map(String::as_str).collect();
+        (!names.is_empty()).then(|| format!("along it vary {}", names.join(", ")))
+    };
+    lines.extend(vary(&input.along.parameters));
+    for choice in &input.along.law {
+        lines.push(format!("on a part of it {}", parameters(&choice.friction, "law", &["alpha_t"])));
+        lines.extend(vary(&choice.along));
     }
+    lines.extend(onset(pair));
+    if pair.radiation > 0.0 {
+        lines.push(format!("slip radiates with η = {} in static steps", number(pair.radiation)));
+    }
+    lines.extend(moving(input, model, pair));
     if let Some(limit) = pair.laws.iter().filter_map(|law| law.uniqueness_limit()).reduce(f64::min) {
         let limit = number(limit);
         lines.push(format!(
             "one answer while the pressure stays below {limit}; above, slip may weaken faster than alpha_t"
         ));
+    }
+    lines
+}
+
+/// What a law with a peak means in the numbers of a test: a range where its parameters vary along the interface.
+fn onset(pair: &ContactPair) -> Option<String> {
+    let laws: Vec<Onset> = pair.laws.iter().filter_map(|law| law.onset()).collect();
+    if laws.is_empty() {
+        return None;
+    }
+    let over = |of: fn(&Onset) -> Option<f64>| {
+        let known: Vec<f64> = laws.iter().filter_map(of).map(three_digits).collect();
+        (!known.is_empty()).then(|| range(known.iter().copied()))
+    };
+    let of = |of: fn(&Onset) -> f64| range(laws.iter().map(of).map(three_digits));
+    let rises = match over(|law| law.rested.slip) {
+        Some(slip) => format!("peaks at {} after a plastic slip of {slip}", of(|law| law.rested.peak)),
+        None => format!("rises to {} without a peak", of(|law| law.rested.peak)),
+    };
+    let fresh = match laws.iter().all(|law| law.fresh == law.rested) {
+        true => String::new(),
+        false => format!(" (at the start of the run {})", of(|law| law.fresh.peak)),
+    };
+    let falls = over(|law| law.half_lost).map_or("does not weaken with slip".into(), |slip| {
+        format!("falls to {}, half of the way from mu_s within {slip} of slip", of(|law| law.residual))
+    });
+    let heals = over(|law| law.half_healed);
+    let heals = heals.map_or("rest does not heal it".into(), |time| format!("rest brings half back in {time}"));
+    Some(format!("in fast slip after long rest q/p {rises}{fresh}, {falls}; {heals}"))
+}
+
+/// Dilatancy, wear, and what fluid is between the surfaces.
+fn moving(input: &ContactInput, model: &Model, pair: &ContactPair) -> Vec<String> {
+    let mut lines = Vec::new();
+    if let Some(DilatancyInput { rate, limit }) = input.dilatancy {
+        let limit = limit.map_or("without limit".into(), |limit| format!("up to {}", number(limit)));
+        lines.push(format!("dilates with plastic slip by {}, {limit}", number(rate)));
+    }
+    lines.extend(input.wear.map(|wear| format!("wears by {} × pressure × plastic slip", number(wear))));
+    if pair.fluid.is_some() {
+        let x = model.mesh.undeformed();
+        let pressures = pair.points.iter().map(|point| pair.fluid_pressure(point, &x, 0.0));
+        lines.push(format!("a fluid pushes the surfaces apart, with the pressure {} at the start", range(pressures)));
     }
     lines
 }
@@ -128,6 +192,6 @@ fn evaluated(input: &ContactInput, chosen: Option<&Chosen>) -> String {
 
 /// Whether the case gives `alpha_t`; `None` for a law that has none.
 fn gives_alpha_t(input: &ContactInput) -> Option<bool> {
-    let law = serde_json::to_value(input.friction).ok()?;
+    let law = serde_json::to_value(&input.friction).ok()?;
     law.get("alpha_t").map(|given| !given.is_null())
 }

@@ -10,7 +10,10 @@ use contact::{contacts, pressed_too_hard};
 use parameters::parameters;
 use steps::steps;
 
-use super::file::{BodyInput, Case, DampingInput, Formulation, MeshSource};
+use super::file::{
+    ArrivalInput, BodyInput, Case, DampingInput, Formulation, GeostaticInput, InitialStressInput, LoadingPlateInput,
+    MeshSource, PlateMotion, ThermalInput,
+};
 use crate::mesh::Group;
 use crate::mesh::shape::ElementKind;
 use crate::model::told::{count, number};
@@ -24,18 +27,28 @@ pub fn report(case: &Case, model: &Model) -> String {
     if !model.title.is_empty() {
         text += &format!("{}\n\n", model.title);
     }
-    section(&mut text, "units", case.units.iter().map(|(of, unit)| format!("{of} in {unit}")).collect());
-    section(&mut text, "mesh", mesh(case, model));
-    section(&mut text, "groups", groups(model));
-    section(&mut text, "bodies", bodies(case));
-    section(&mut text, "periodic", periodic(case, model));
-    section(&mut text, "points", point_masses(case, model));
-    section(&mut text, "contacts", contacts(case, model));
-    section(&mut text, "steps", steps(case, model));
-    section(&mut text, "newton", vec![newton(case)]);
-    section(&mut text, "output", output(case));
+    understood(case, model).into_iter().for_each(|(heading, lines)| section(&mut text, &heading, lines));
     section(&mut text, "warnings", if warnings.is_empty() { vec!["none".into()] } else { warnings });
     text
+}
+
+/// The same by headings, without the warnings.
+pub fn understood(case: &Case, model: &Model) -> Vec<(String, Vec<String>)> {
+    let sections = [
+        ("units", case.units.iter().map(|(of, unit)| format!("{of} in {unit}")).collect()),
+        ("section", vec![model.mesh.section.to_string()]),
+        ("mesh", mesh(case, model)),
+        ("groups", groups(model)),
+        ("bodies", bodies(case)),
+        ("periodic", periodic(case, model)),
+        ("plates", plates(case, model)),
+        ("points", point_masses(case, model)),
+        ("contacts", contacts(case, model)),
+        ("steps", steps(case, model)),
+        ("newton", vec![newton(case)]),
+        ("output", output(case, model)),
+    ];
+    sections.into_iter().filter(|(_, lines)| !lines.is_empty()).map(|(name, lines)| (name.into(), lines)).collect()
 }
 
 /// Lines behind a heading in the margin; nothing if there are none.
@@ -55,8 +68,9 @@ fn aligned(rows: &[[String; 2]]) -> Vec<String> {
 
 fn mesh(case: &Case, model: &Model) -> Vec<String> {
     let source = match &case.mesh {
-        MeshSource::File(file) => file.as_str(),
-        MeshSource::Inline(_) => "given in the case file",
+        MeshSource::File(file) => file.clone(),
+        MeshSource::Inline(_) => "given in the case file".into(),
+        MeshSource::Blocks(blocks) => count(blocks.blocks.len(), "block"),
     };
     let mut kinds: Vec<(ElementKind, usize)> = Vec::new();
     for element in &model.mesh.elements {
@@ -69,7 +83,7 @@ fn mesh(case: &Case, model: &Model) -> Vec<String> {
     let [low, high] = model.mesh.bounding_box();
     let [x0, x1, y0, y1] = [low.x, high.x, low.y, high.y].map(number);
     vec![
-        source.into(),
+        source,
         format!(
             "{}, {}{}, {}",
             count(model.mesh.nodes.len(), "node"),
@@ -81,13 +95,36 @@ fn mesh(case: &Case, model: &Model) -> Vec<String> {
     ]
 }
 
+/// Every group with where it lies: a side that was given in the place of another is seen here.
 fn groups(model: &Model) -> Vec<String> {
-    let size = |group: &Group| match group {
-        Group::Elements(elements) => count(elements.len(), "element"),
-        Group::Edges(edges) => count(edges.len(), "edge"),
-        Group::Nodes(nodes) => count(nodes.len(), "point"),
+    let row = |(name, group): (&String, &Group)| {
+        let (size, nodes): (_, Vec<usize>) = match group {
+            Group::Elements(elements) => {
+                let nodes = elements.iter().flat_map(|&element| &model.mesh.elements[element].nodes);
+                (count(elements.len(), "element"), nodes.copied().collect())
+            }
+            Group::Edges(edges) => {
+                (count(edges.len(), "edge"), edges.iter().flat_map(|edge| &edge.nodes).copied().collect())
+            }
+            Group::Nodes(nodes) => (count(nodes.len(), "point"), nodes.clone()),
+        };
+        [name.clone(), format!("{size}, {}", extent(model, &nodes))]
     };
-    aligned(&model.mesh.groups.iter().map(|(name, group)| [name.clone(), size(group)]).collect::<Vec<_>>())
+    aligned(&model.mesh.groups.iter().map(row).collect::<Vec<_>>())
+}
+
+/// "x from 0 to 2, y = 1" of some nodes.
+fn extent(model: &Model, nodes: &[usize]) -> String {
+    let along = |name: &str, component: usize| {
+        let values = nodes.iter().map(|&node| model.mesh.nodes[node][component]);
+        let [low, high] = [values.clone().fold(f64::INFINITY, f64::min), values.fold(f64::NEG_INFINITY, f64::max)];
+        if low < high {
+            format!("{name} from {} to {}", number(low), number(high))
+        } else {
+            format!("{name} = {}", number(low))
+        }
+    };
+    format!("{}, {}", along("x", 0), along("y", 1))
 }
 
 fn bodies(case: &Case) -> Vec<String> {
@@ -98,7 +135,8 @@ fn bodies(case: &Case) -> Vec<String> {
             true => format!(", damping: mass {}, stiffness {}", number(mass), number(stiffness)),
             false => String::new(),
         };
-        [name.clone(), format!("{}{f_bar}{damping}", parameters(&input.material, "model", &[]))]
+        let imposed = imposed(input);
+        [name.clone(), format!("{}{f_bar}{damping}{imposed}", parameters(&input.material, "model", &[]))]
     };
     let mut lines = aligned(&case.bodies.iter().map(row).collect::<Vec<_>>());
     for (name, [vx, vy]) in &case.initial_velocity {
@@ -107,12 +145,41 @@ fn bodies(case: &Case) -> Vec<String> {
     lines
 }
 
+/// Initial stress and thermal expansion.
+fn imposed(input: &BodyInput) -> String {
+    let stress = match &input.initial_stress {
+        Some(InitialStressInput::Geostatic(GeostaticInput { surface, weight, k0 })) => {
+            format!(", geostatic stress: weight {} below y = {}, K0 {}", number(*weight), number(*surface), number(*k0))
+        }
+        Some(InitialStressInput::Components(_)) => ", initial stress by components".into(),
+        None => String::new(),
+    };
+    let thermal = input.thermal.map_or_else(String::new, |ThermalInput { expansion, reference }| {
+        format!(", thermal expansion {} from the temperature {} on", number(expansion), number(reference))
+    });
+    stress + &thermal
+}
+
 fn periodic(case: &Case, model: &Model) -> Vec<String> {
     let mut lines: Vec<String> = case.periodic.iter().map(|[a, b]| format!("{a} and {b}")).collect();
     if !lines.is_empty() {
         lines.push(format!("{} tied", count(model.ties.pairs().len(), "node")));
     }
     lines
+}
+
+fn plates(case: &Case, model: &Model) -> Vec<String> {
+    let told = |(name, moves): (&str, PlateMotion)| {
+        let nodes = model.mesh.group(name).map_or(0, |group| model.mesh.nodes_of(group).len());
+        let moves = match moves {
+            PlateMotion::AsOne => "that move as one",
+            PlateMotion::UxAlike => "alike in ux",
+            PlateMotion::UyAlike => "alike in uy",
+            PlateMotion::Rigid => "of a rigid plate, which turns",
+        };
+        format!("{name}: {} {moves}", count(nodes, "node"))
+    };
+    case.plates.iter().map(LoadingPlateInput::parts).map(told).collect()
 }
 
 fn point_masses(case: &Case, model: &Model) -> Vec<String> {
@@ -125,24 +192,58 @@ fn point_masses(case: &Case, model: &Model) -> Vec<String> {
     aligned(&model.point_masses.iter().map(row).collect::<Vec<_>>())
 }
 
+/// 2nd, 3rd, 11th
+fn ordinal(number: usize) -> String {
+    let ending = match (number % 10, number % 100) {
+        (_, 11..=13) => "th",
+        (1, _) => "st",
+        (2, _) => "nd",
+        (3, _) => "rd",
+        _ => "th",
+    };
+    format!("{number}{ending}")
+}
+
 fn newton(case: &Case) -> String {
     let newton = case.newton;
     format!("tolerance {}, at most {}", number(newton.tolerance), count(newton.max_iterations, "iteration"))
 }
 
-fn output(case: &Case) -> Vec<String> {
-    let fields = match (case.output.fields, case.output.every) {
+fn output(case: &Case, model: &Model) -> Vec<String> {
+    let fields = match (case.output.fields, case.output.every()) {
         (false, _) => "no fields".into(),
-        (true, 1) => "fields with every row of the history".into(),
-        (true, every) => format!("fields with every {every}th row of the history, and at the end of each step"),
+        (true, None) => "fields at the times asked for, and at the end of each step".into(),
+        (true, Some(1)) => "fields with every row of the history".into(),
+        (true, Some(every)) => {
+            format!("fields with every {} row of the history, and at the end of each step", ordinal(every))
+        }
     };
     let watched = if case.watch.is_empty() { "no group".into() } else { case.watch.join(", ") };
     let mut lines = vec![format!("history watches {watched}"), fields];
     if let Some(interval) = case.output.interval {
-        lines.push(format!("explicit steps write at multiples of {}", number(interval)));
+        let step = number(interval);
+        lines.push(format!("rows at least {step} apart, and at events; explicit steps write at multiples of {step}"));
+    }
+    if !case.output.times.is_empty() {
+        lines.push(format!(
+            "fields at {}",
+            case.output.times.iter().map(|time| number(*time)).collect::<Vec<_>>().join(", ")
+        ));
+    }
+    if !model.probes.is_empty() {
+        lines.push(format!("{} in probes.csv", count(model.probes.len(), "probe")));
     }
     if let Some(fronts) = case.output.fronts {
-        lines.push(format!("slip map, and fronts at the slip rate {}", number(fronts.slip_rate)));
+        let rate = number(fronts.slip_rate);
+        lines.push(match fronts.arrival {
+            None => format!("fronts at the slip rate {rate}"),
+            Some(ArrivalInput::R(value)) => {
+                format!("fronts where R passes {}, events at the slip rate {rate}", number(value))
+            }
+            Some(ArrivalInput::Mu(value)) => {
+                format!("fronts where mu passes {}, events at the slip rate {rate}", number(value))
+            }
+        });
     }
     lines
 }

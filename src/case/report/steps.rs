@@ -5,8 +5,13 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 
 use super::parameters::plain;
-use crate::case::file::{Case, Components, DashpotInput, DriveInput, LoadInput, SpringInput, StepInput, TimeInput};
+use crate::case::file::{
+    Case, Components, DampingInput, DashpotInput, DriveInput, LoadInput, Place, SpringInput, StepInput,
+    TemperatureInput, TemperatureVariation, TimeInput,
+};
+use crate::case::translate;
 use crate::model::told::{count, number};
+use crate::model::until::Until;
 use crate::model::{Model, Step};
 use crate::time::step_size::EVENT_LOCATION;
 
@@ -14,12 +19,25 @@ use crate::time::step_size::EVENT_LOCATION;
 pub fn steps(case: &Case, model: &Model) -> Vec<String> {
     let mut lines = Vec::new();
     let (mut supports, mut loads) = (InForce::new(), InForce::new());
+    let on = |place: &Place| on(place, model);
     for (step, input) in model.steps.iter().zip(&case.steps) {
         lines.push(step.name.clone());
         let mut told = step_lines(step);
+        told.extend(input.velocity.iter().map(|(name, velocity)| {
+            let [vx, vy] = velocity.map(number);
+            format!("{name} starts with the velocity ({vx}, {vy})")
+        }));
+        told.extend(input.damping.iter().map(|(name, DampingInput { mass, stiffness })| {
+            format!("damping of {name} from here on: mass {}, stiffness {}", number(*mass), number(*stiffness))
+        }));
+        told.extend(
+            input.temperature.iter().map(|(name, given)| format!("temperature of {name}: {}", temperature(given))),
+        );
         let freed = if step.scheme.is_dynamic() { "at once" } else { "its reaction fades over the step" };
-        told.extend(supports.step(written_supports(input)).map(|(on, kind)| format!("freed {on}: {kind}, {freed}")));
-        told.extend(loads.step(input.loads.iter().map(written_load)).map(|(on, kind)| {
+        told.extend(
+            supports.step(written_supports(input, on)).map(|(on, kind)| format!("freed {on}: {kind}, {freed}")),
+        );
+        told.extend(loads.step(input.loads.iter().map(|load| written_load(load, on))).map(|(on, kind)| {
             let ended = if ENDS_AT_ONCE.contains(&kind) { "at once" } else { "it fades over the step" };
             format!("ended {on}: {kind}, {ended}")
         }));
@@ -44,6 +62,11 @@ fn step_lines(step: &Step) -> Vec<String> {
     if !step.stabilization.is_empty() {
         lines.push("stabilized: dashpots that fade away hold bodies until contact does".into());
     }
+    lines.extend(step.until.as_ref().map(|until| {
+        let Until { on, part, value, tolerance, .. } = until;
+        let [value, tolerance] = [value, tolerance].map(|number_of| number(*number_of));
+        format!("ends when {} of {on} comes to {value}, met to {tolerance} of it", part.name())
+    }));
     let dynamic = step.scheme.is_dynamic();
     lines.extend(
         increments
@@ -106,11 +129,17 @@ impl InForce {
     }
 }
 
-fn written_supports(step: &StepInput) -> Vec<Entry> {
+/// A place in words, one of a single node by its tag.
+fn on(place: &Place, model: &Model) -> String {
+    let place = translate::place(place);
+    place.settled(&model.mesh).map_or_else(|_| place.to_string(), |settled| settled.to_string())
+}
+
+fn written_supports(step: &StepInput, on: impl Fn(&Place) -> String) -> Vec<Entry> {
     let mut entries: Vec<Entry> = Vec::new();
     for support in &step.supports {
-        let mut add = |kind, text| entries.push((support.on.to_string(), kind, text));
-        for (kind, given) in [("ux", &support.ux), ("uy", &support.uy)] {
+        let mut add = |kind, text| entries.push((on(&support.on), kind, text));
+        for (kind, given) in [("ux", &support.ux), ("uy", &support.uy), ("along its normal", &support.un)] {
             if let Some(given) = given {
                 add(kind, given.as_ref().map(drive));
             }
@@ -119,14 +148,34 @@ fn written_supports(step: &StepInput) -> Vec<Entry> {
             let turning = |about: [f64; 2], angle| format!("{angle} about ({})", about.map(number).join(", "));
             add("rotation", given.as_ref().map(|given| turning(given.about, drive(&given.angle))));
         }
+        if let (Some(direction), Some(given)) = (support.along, &support.u) {
+            let on = format!("{} along ({})", on(&support.on), direction.map(number).join(", "));
+            entries.push((on, "u", given.as_ref().map(drive)));
+        }
     }
     entries
 }
 
-fn written_load(load: &LoadInput) -> Entry {
-    let LoadInput { on, pressure, traction, gravity, force, spring, dashpot, absorbing } = load;
+fn written_load(load: &LoadInput, place: impl Fn(&Place) -> String) -> Entry {
+    let LoadInput {
+        on,
+        pressure,
+        dead_pressure,
+        traction,
+        gravity,
+        force,
+        total_force,
+        moment,
+        spring,
+        dashpot,
+        absorbing,
+    } = load;
     let (kind, text) = if let Some(pressure) = pressure {
         ("pressure", pressure.as_ref().map(drive))
+    } else if let Some(pressure) = dead_pressure {
+        ("dead pressure", pressure.as_ref().map(drive))
+    } else if let Some(moment) = moment {
+        ("moment", moment.as_ref().map(drive))
     } else if let Some(absorbing) = absorbing {
         ("absorbing side", absorbing.then(|| "rho c_p and rho c_s of its body".into()))
     } else if let Some(spring) = spring {
@@ -143,10 +192,12 @@ fn written_load(load: &LoadInput) -> Entry {
         ("traction", traction.as_ref().map(components))
     } else if let Some(gravity) = gravity {
         ("gravity", gravity.as_ref().map(components))
+    } else if let Some(force) = total_force {
+        ("total force", force.as_ref().map(components))
     } else {
         ("force", force.as_ref().and_then(Option::as_ref).map(components))
     };
-    (on.to_string(), kind, text)
+    (place(on), kind, text)
 }
 
 fn driven(how: &str, driver: &Option<Components>) -> String {
@@ -158,11 +209,27 @@ fn components(of: &Components) -> String {
     format!("({}, {})", part(&of.x), part(&of.y))
 }
 
+fn temperature(given: &TemperatureInput) -> String {
+    match given {
+        TemperatureInput::Constant(value) => number(*value),
+        TemperatureInput::Expression(text) => format!("\"{text}\""),
+        TemperatureInput::Varying(TemperatureVariation::Rate(rate)) => format!("at the rate {}", number(*rate)),
+        TemperatureInput::Varying(TemperatureVariation::Table(table)) => by_table(table, "time"),
+        TemperatureInput::Varying(TemperatureVariation::X(table) | TemperatureVariation::Y(table)) => {
+            by_table(table, "place")
+        }
+    }
+}
+
+fn by_table(table: &[[f64; 2]], of: &str) -> String {
+    format!("by a table of {}", count(table.len(), of))
+}
+
 fn drive(drive: &DriveInput) -> String {
     match drive {
         DriveInput::Constant(value) => number(*value),
         DriveInput::Expression(text) => format!("\"{text}\""),
         DriveInput::InTime(TimeInput::Rate(rate)) => format!("at the rate {}", number(*rate)),
-        DriveInput::InTime(TimeInput::Table(table)) => format!("by a table of {}", count(table.len(), "time")),
+        DriveInput::InTime(TimeInput::Table(table)) => by_table(table, "time"),
     }
 }

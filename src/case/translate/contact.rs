@@ -1,16 +1,19 @@
 //! Contacts as written.
 
+use std::collections::BTreeMap;
+
 use serde_json::Value;
 
 use super::drive::profile;
 use crate::case::error::{Checked, Complaint};
 use crate::case::explain::explain;
 use crate::case::file::{
-    CircleInput, ContactInput, InitialInput, MasterInput, PlaneInput, PolylineInput, RigidInput, SlidingInput,
+    CircleInput, ContactInput, DilatancyInput, InitialInput, LawChoiceInput, MasterInput, PlaneInput, PolylineInput,
+    ProfileInput, RadiationInput, RigidInput, SlidingInput,
 };
-use crate::laws::friction::FrictionParameters;
+use crate::laws::friction::{Dilatancy, FrictionParameters};
 use crate::model::boundary::Profile;
-use crate::model::builder::{Contact, Friction, InitialTractions, MasterSide, ModelError};
+use crate::model::builder::{Contact, Friction, InitialTractions, MasterSide, ModelError, Radiation};
 
 /// A contact of a name.
 pub fn contact(name: &str, input: &ContactInput) -> Checked<Contact> {
@@ -29,6 +32,18 @@ pub fn contact(name: &str, input: &ContactInput) -> Checked<Contact> {
         shrink_fit: input.shrink_fit,
         massless: input.massless,
         friction: friction(input, &place)?,
+        dilatancy: input.dilatancy.map(|DilatancyInput { rate, limit }| Dilatancy { rate, limit }),
+        wear: input.wear,
+        radiation: match input.radiation_damping {
+            RadiationInput::OfBodies(false) => None,
+            RadiationInput::OfBodies(true) => Some(Radiation::OfBodies),
+            RadiationInput::Given(damping) => Some(Radiation::Given(damping)),
+        },
+        fluid_pressure: input
+            .fluid_pressure
+            .as_ref()
+            .map(|pressure| profile(pressure, &format!("{place}.fluid_pressure")))
+            .transpose()?,
         initial: input.initial.as_ref().map(|initial| tractions(initial, &format!("{place}.initial"))).transpose()?,
     })
 }
@@ -47,40 +62,76 @@ fn master(input: &MasterInput) -> MasterSide {
 }
 
 fn tractions(input: &InitialInput, place: &str) -> Checked<InitialTractions> {
+    let InitialInput { pressure, traction, balanced, of_bodies, .. } = input;
+    let refused = |key: &str, message: &str| Err(Complaint::new(format!("{place}.{key}"), message));
+    match (of_bodies, pressure, traction) {
+        (true, Some(_), _) => return refused("pressure", "has no meaning together with of_bodies: leave one out"),
+        (true, _, Some(_)) => return refused("traction", "has no meaning together with of_bodies: leave one out"),
+        (false, None, _) => return refused("pressure", "is missing: give it, or \"of_bodies\": true"),
+        _ => {}
+    }
+    let given = |key: &str, input: &Option<ProfileInput>| match input {
+        Some(input) => profile(input, &format!("{place}.{key}")),
+        None => Ok(0.0.into()),
+    };
     Ok(InitialTractions {
-        pressure: profile(&input.pressure, &format!("{place}.pressure"))?,
-        traction: profile(&input.traction, &format!("{place}.traction"))?,
-        balanced: input.balanced,
+        pressure: given("pressure", pressure)?,
+        traction: given("traction", traction)?,
+        balanced: *balanced,
+        of_bodies: *of_bodies,
     })
 }
 
-/// The law, with those of its parameters replaced that vary along the slave; an initial structure is one of them.
+/// The laws, with those of their parameters replaced that vary along the slave; an initial structure is one of them.
 fn friction(input: &ContactInput, place: &str) -> Checked<Friction> {
-    let parameters = input.friction;
-    let mut varying = Vec::new();
-    for (name, input) in &input.along {
-        varying.push((name.clone(), format!("along.{name}"), profile(input, &format!("{place}.along.{name}"))?));
-    }
+    let mut varying = profiles(&input.along.parameters, "along", place)?;
     if let Some(structure) = input.initial.as_ref().and_then(|initial| initial.structure.as_ref()) {
         let place = format!("{place}.initial.structure");
-        if !parameters.has_structure() {
+        if !input.friction.has_structure() {
             return Err(Complaint::new(place, "this friction law has no structure: leave it out"));
         }
-        if input.along.contains_key("structure") {
+        if input.along.parameters.contains_key("structure") {
             return Err(Complaint::new(place, "is given by `along` already: leave one of them out"));
         }
         varying.push(("structure".into(), "initial.structure".into(), profile(structure, &place)?));
+    }
+    let mut friction = with_varying(input.friction.clone(), varying, place, "friction")?;
+    for (k, LawChoiceInput { place: positive, friction: law, along }) in input.along.law.iter().enumerate() {
+        let name = format!("along.law[{k}]");
+        let varying = profiles(along, &format!("{name}.along"), place)?;
+        let other = with_varying(law.clone(), varying, place, &format!("{name}.friction"))?;
+        friction = friction.but_where(&name, profile(positive, &format!("{place}.{name}.where"))?, other);
+    }
+    Ok(friction)
+}
+
+/// A parameter, where it stands in a contact, and how it varies.
+type Varying = (String, String, Profile);
+
+fn profiles(along: &BTreeMap<String, ProfileInput>, within: &str, place: &str) -> Checked<Vec<Varying>> {
+    let of = |(name, input): (&String, &ProfileInput)| {
+        let within = format!("{within}.{name}");
+        let profile = profile(input, &format!("{place}.{within}"))?;
+        Ok((name.clone(), within, profile))
+    };
+    along.iter().map(of).collect()
+}
+
+/// A law some of whose parameters vary; it stands at `own` in the contact.
+fn with_varying(parameters: FrictionParameters, varying: Vec<Varying>, place: &str, own: &str) -> Checked<Friction> {
+    if let Some(message) = parameters.unknown() {
+        return Err(Complaint::new(format!("{place}.{own}.name"), message));
     }
     if varying.is_empty() {
         return Ok(parameters.into());
     }
     // The numbers that are replaced must be good as well; any α_t will do for that.
-    parameters.build(1.0).map_err(|error| Complaint::new(format!("{place}.friction"), error))?;
+    parameters.build(1.0).map_err(|error| Complaint::new(format!("{place}.{own}"), error))?;
     let names: Vec<[String; 2]> =
         varying.iter().map(|(name, within, _)| [name.clone(), format!("{place}.{within}")]).collect();
     let profiles: Vec<(String, Profile)> = varying.into_iter().map(|(_, within, profile)| (within, profile)).collect();
     Ok(Friction::varying(profiles, move |values, alpha_t| {
-        let mut parameters = parameters;
+        let mut parameters = parameters.clone();
         for ([name, place], &value) in names.iter().zip(values) {
             parameters = with(&parameters, name, value).map_err(|message| ModelError::new(place, message))?;
         }

@@ -2,7 +2,8 @@
 
 use crate::case::error::{Checked, Complaint};
 use crate::case::file::{
-    Components as Written, DriveInput, NodeInput, Place as Where, ProfileInput, ProfileTable, TimeInput,
+    Components as Written, DriveInput, Place as Where, ProfileInput, ProfileTable, SpotInput, TemperatureInput,
+    TemperatureVariation, TimeInput,
 };
 use crate::model::boundary::{Drive, Expression, Profile};
 use crate::model::builder::{Components, Place};
@@ -14,6 +15,18 @@ pub fn drive(input: &DriveInput, place: &str) -> Checked<Drive> {
         DriveInput::Expression(text) => Drive::Expression(expression(text, place)?),
         DriveInput::InTime(TimeInput::Rate(rate)) => Drive::Rate(*rate),
         DriveInput::InTime(TimeInput::Table(table)) => Drive::Table(table.clone()),
+    })
+}
+
+/// How warm a body is; its expression is read.
+pub fn temperature(input: &TemperatureInput, place: &str) -> Checked<Drive> {
+    Ok(match input {
+        TemperatureInput::Constant(value) => Drive::Constant(*value),
+        TemperatureInput::Expression(text) => Drive::Expression(expression(text, place)?),
+        TemperatureInput::Varying(TemperatureVariation::Rate(rate)) => Drive::Rate(*rate),
+        TemperatureInput::Varying(TemperatureVariation::Table(table)) => Drive::Table(table.clone()),
+        TemperatureInput::Varying(TemperatureVariation::X(table)) => Drive::ByPlace(0, table.clone()),
+        TemperatureInput::Varying(TemperatureVariation::Y(table)) => Drive::ByPlace(1, table.clone()),
     })
 }
 
@@ -40,7 +53,8 @@ pub fn components(input: &Written, places: [String; 2]) -> Checked<Components> {
 pub fn place(on: &Where) -> Place {
     match on {
         Where::Group(name) => Place::Group(name.clone()),
-        Where::Node(NodeInput { node }) => Place::Node(*node),
+        Where::Spot(SpotInput::Node(tag)) => Place::Node(*tag),
+        Where::Spot(SpotInput::Near(point)) => Place::Near(*point),
     }
 }
 

@@ -5,9 +5,11 @@ use nalgebra::Vector2;
 use super::error::{Checked, ModelError};
 use super::groups::{group, kind};
 use super::limits::{check_not_negative, check_size};
+use super::{imposed, section};
 use crate::laws::bulk::Material;
 use crate::mesh::{Group, Mesh};
 use crate::model::element::{SolidElement, consistent_mass};
+use crate::model::imposed::{InitialStress, Thermal};
 use crate::model::{Body, Damping, PointMass};
 
 /// A body as it is given.
@@ -20,6 +22,10 @@ pub struct GivenBody {
     pub f_bar: bool,
     /// damping in dynamic steps
     pub damping: Damping,
+    /// stress at the start
+    pub initial_stress: Option<InitialStress>,
+    /// thermal expansion
+    pub thermal: Option<Thermal>,
 }
 
 /// A point mass as it is given.
@@ -36,8 +42,10 @@ pub struct GivenMass {
 pub fn bodies(given: Vec<GivenBody>, mesh: &Mesh) -> Checked<(Vec<Body>, Vec<usize>)> {
     let mut bodies = Vec::new();
     let mut body_of_element = vec![usize::MAX; mesh.elements.len()];
-    for GivenBody { name, material, damping, .. } in given {
+    for GivenBody { name, material, f_bar, damping, initial_stress, thermal } in given {
         let place = format!("bodies.{name}");
+        let material = imposed::material(material, initial_stress.as_ref(), thermal, &place)?;
+        let material = section::material(material, f_bar, mesh.section, &place)?;
         let group = group(mesh, &name, &place)?;
         let Group::Elements(elements) = group else {
             let message = format!("`{name}` is a group of {}, not of solid elements", kind(group));
@@ -47,7 +55,12 @@ pub fn bodies(given: Vec<GivenBody>, mesh: &Mesh) -> Checked<(Vec<Body>, Vec<usi
         check_damping(damping, &*material, &format!("{place}.damping"))?;
         elements.iter().for_each(|&element| body_of_element[element] = bodies.len());
         let (elements, nodes) = (elements.clone(), mesh.nodes_of(group));
-        bodies.push(Body { name, material, damping, elements, nodes });
+        if let Some(stress) = &initial_stress {
+            let place = format!("{place}.initial_stress");
+            imposed::check_stress(stress, &nodes, mesh, &place)?;
+            imposed::check_stiffness(stress, &*material, &nodes, mesh, &place)?;
+        }
+        bodies.push(Body { name, material, damping, initial_stress, thermal, elements, nodes });
     }
     match body_of_element.iter().position(|&body| body == usize::MAX) {
         Some(element) => {
@@ -61,7 +74,8 @@ pub fn bodies(given: Vec<GivenBody>, mesh: &Mesh) -> Checked<(Vec<Body>, Vec<usi
     }
 }
 
-fn check_damping(damping: Damping, material: &dyn Material, place: &str) -> Checked<()> {
+/// Damping that makes sense.
+pub fn check_damping(damping: Damping, material: &dyn Material, place: &str) -> Checked<()> {
     let Damping { mass, retardation } = damping;
     check_not_negative(&format!("{place}.mass"), mass)?;
     check_not_negative(&format!("{place}.stiffness"), retardation)?;

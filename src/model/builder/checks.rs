@@ -2,16 +2,24 @@
 
 use super::contact::Contact;
 use super::error::{Checked, ModelError};
+use super::increments::MOST_INCREMENTS;
 use crate::model::scheme::Scheme;
 use crate::model::{Model, NewtonSettings, Step};
 
 /// Largest number of Newton iterations that makes sense to allow.
 const MOST_ITERATIONS: usize = 1000;
 
+/// A looser tolerance leaves forces out of balance that a reader of the results would see.
+const LOOSEST: f64 = 1e-2;
+
 /// When Newton's method stops.
 pub fn checked_newton(newton: NewtonSettings) -> Checked<NewtonSettings> {
-    if !(newton.tolerance > 0.0 && newton.tolerance < 1.0) {
-        let message = format!("is {}: must be between 0 and 1 (1e-8 is the default)", newton.tolerance);
+    if !(newton.tolerance > 0.0 && newton.tolerance <= LOOSEST) {
+        let message = format!(
+            "is {}: must be above 0 and at most {LOOSEST}, the share of the forces that may be out of balance (1e-8 is the \
+             default)",
+            newton.tolerance
+        );
         return Err(ModelError::new("newton.tolerance", message));
     }
     if !(1..=MOST_ITERATIONS).contains(&newton.max_iterations) {
@@ -31,6 +39,38 @@ pub fn checked_interval(interval: Option<f64>) -> Checked<Option<f64>> {
         }
         None => Ok(interval),
     }
+}
+
+/// Explicit steps write a row of results an interval.
+pub fn check_rows(model: &Model) -> Checked<()> {
+    let Some(interval) = model.interval else { return Ok(()) };
+    let explicit = |step: &&Step| step.rupture.is_some() || matches!(step.scheme, Scheme::Explicit { .. });
+    let time: f64 = model.steps.iter().filter(explicit).map(|step| step.span.end - step.span.start).sum();
+    let rows = time / interval;
+    match rows <= MOST_INCREMENTS {
+        true => Ok(()),
+        false => {
+            let message =
+                format!("is {interval:e}: that makes {rows:.1e} rows of results, and {MOST_INCREMENTS:e} are the most");
+            Err(ModelError::new("output.interval", message))
+        }
+    }
+}
+
+/// Times at which fields are asked for: within the steps, in order.
+pub fn checked_times(times: Vec<f64>, steps: &[Step]) -> Checked<Vec<f64>> {
+    let (start, end) =
+        steps.first().zip(steps.last()).map_or((0.0, 0.0), |(first, last)| (first.span.start, last.span.end));
+    for (k, time) in times.iter().enumerate() {
+        let refused = |message: String| Err(ModelError::new(format!("output.times[{k}]"), message));
+        if !(*time > start && *time <= end) {
+            return refused(format!("is {time}: must be after {start} and not after {end}, the end of the last step"));
+        }
+        if k > 0 && *time <= times[k - 1] {
+            return refused(format!("is {time}, but {} comes before it: times must ascend", times[k - 1]));
+        }
+    }
+    Ok(times)
 }
 
 /// Explicit steps solve no equations, and so cannot raise pressures until penetrations are small, nor find where a node

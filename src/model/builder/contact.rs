@@ -1,6 +1,7 @@
 //! A contact as it is given.
 
 use super::friction::Friction;
+use crate::laws::friction::Dilatancy;
 use crate::model::boundary::Profile;
 use crate::model::method::Method;
 
@@ -10,7 +11,8 @@ pub struct Contact {
     pub name: String,
     /// Edge group whose points are kept out of the master, the finer or softer side; or a group of points, each with the `area`
     pub slave: String,
-    /// Area that each point of a slave group of points stands for [L, the thickness being 1]
+    /// Area that each point of a slave group of points stands for, with the thickness or the full turn [L, the thickness
+    /// being 1, or L²]
     pub area: Option<f64>,
     /// What the slave may touch
     pub master: MasterSide,
@@ -32,6 +34,14 @@ pub struct Contact {
     pub massless: bool,
     /// Friction
     pub friction: Friction,
+    /// How far the surfaces move apart with plastic slip
+    pub dilatancy: Option<Dilatancy>,
+    /// k: depth of wear per pressure and plastic slip (Archard's law) [L²/F]
+    pub wear: Option<f64>,
+    /// Radiation damping in static steps, if there is any
+    pub radiation: Option<Radiation>,
+    /// p_w of a fluid that pushes the surfaces apart, if there is one ([`crate::contact::fluid`]) [F/L²]
+    pub fluid_pressure: Option<Profile>,
     /// Tractions of a contact that starts closed
     pub initial: Option<InitialTractions>,
 }
@@ -67,6 +77,15 @@ impl From<&str> for MasterSide {
     }
 }
 
+/// Radiation damping of a contact in static steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Radiation {
+    /// η by the bodies' impedances, dashpots in series
+    OfBodies,
+    /// η [F T/L³]
+    Given(f64),
+}
+
 /// Tractions along the slave of a contact that starts closed; its gap is counted from where they act.
 #[derive(Clone, Debug)]
 pub struct InitialTractions {
@@ -76,6 +95,8 @@ pub struct InitialTractions {
     pub traction: Profile,
     /// Whether an initial stress of the bodies is in equilibrium with them
     pub balanced: bool,
+    /// Whether they are those with which the initial stress of the slave's body ends there, instead of p and q
+    pub of_bodies: bool,
 }
 
 impl Contact {
@@ -100,6 +121,10 @@ impl Contact {
             shrink_fit: false,
             massless: false,
             friction: friction.into(),
+            dilatancy: None,
+            wear: None,
+            radiation: None,
+            fluid_pressure: None,
             initial: None,
         }
     }
@@ -125,6 +150,26 @@ impl Contact {
         Self { small_sliding: true, ..self }
     }
 
+    /// With surfaces that move apart with plastic slip.
+    pub fn dilatancy(self, dilatancy: Dilatancy) -> Self {
+        Self { dilatancy: Some(dilatancy), ..self }
+    }
+
+    /// With surfaces that wear by k p per plastic slip [L²/F].
+    pub fn wear(self, k: f64) -> Self {
+        Self { wear: Some(k), ..self }
+    }
+
+    /// With radiation damping in static steps.
+    pub fn radiation(self, radiation: Radiation) -> Self {
+        Self { radiation: Some(radiation), ..self }
+    }
+
+    /// With a fluid of the pressure p_w, by reference position and time [F/L²].
+    pub fn fluid_pressure(self, pressure: impl Into<Profile>) -> Self {
+        Self { fluid_pressure: Some(pressure.into()), ..self }
+    }
+
     /// Of a group of points, each of which stands for an area [L].
     pub fn area(self, area: f64) -> Self {
         Self { area: Some(area), ..self }
@@ -132,8 +177,14 @@ impl Contact {
 
     /// Closed from the start under a pressure and a traction.
     pub fn initial(self, pressure: impl Into<Profile>, traction: impl Into<Profile>) -> Self {
-        let initial = InitialTractions { pressure: pressure.into(), traction: traction.into(), balanced: false };
-        Self { initial: Some(initial), ..self }
+        let (pressure, traction) = (pressure.into(), traction.into());
+        Self { initial: Some(InitialTractions { pressure, traction, balanced: false, of_bodies: false }), ..self }
+    }
+
+    /// Closed from the start under the tractions with which the initial stress of the slave's body ends there.
+    pub fn initial_of_bodies(self) -> Self {
+        let (pressure, traction) = (0.0.into(), 0.0.into());
+        Self { initial: Some(InitialTractions { pressure, traction, balanced: false, of_bodies: true }), ..self }
     }
 
     /// With bodies whose initial stress is in equilibrium with the tractions it starts with.

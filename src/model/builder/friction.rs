@@ -1,30 +1,33 @@
 //! Friction of a contact before the contact is known: the same everywhere, or varying along the slave.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use nalgebra::Vector2;
 
 use super::error::{Checked, ModelError};
+use super::in_time::{InTime, LawAt};
 use crate::contact::surface::SlavePoint;
 use crate::laws::friction::{
-    CoulombParameters, FrictionLaw, FrictionParameters, RateAndStateParameters, SlipWeakeningParameters,
-    SuperSubloadingParameters,
+    CoulombParameters, FrictionLaw, FrictionParameters, PrescribedSlipParameters, RateAndStateParameters,
+    SlipWeakeningParameters, SuperSubloadingParameters,
 };
 use crate::mesh::Mesh;
 use crate::model::boundary::Profile;
 
-/// The law of a point: from what varies along the slave there, and the α_t that serves where none is given.
-type LawAt = dyn Fn(&[f64], f64) -> Checked<Box<dyn FrictionLaw>>;
-
 /// Friction of a contact. A law is friction, and so are parameters of one, whose α_t is α_n/2 unless they give it.
 pub struct Friction {
+    /// Its own name within the contact, for messages
+    name: String,
     varying: Vec<(String, Profile)>,
-    law: Box<LawAt>,
+    law: Arc<LawAt>,
+    /// Other friction where a profile is positive, the first that is, with what stands before the profile in messages
+    elsewhere: Vec<(String, Profile, Self)>,
 }
 
 impl Friction {
-    /// Friction that varies along the slave by reference position: `law` gets the values of the profiles at a point, and the
-    /// α_t of a law that has none of its own. Messages name a profile by what stands before it, such as `along.mu`.
+    /// Friction that varies along the slave by reference position, and in time: `law` gets the values of the profiles at a point,
+    /// and the α_t of a law that has none of its own. Messages name a profile by what stands before it, such as `along.mu`.
     ///
     /// ```
     /// use fecontact::laws::friction::{Coulomb, CoulombParameters};
@@ -39,10 +42,19 @@ impl Friction {
     /// ```
     pub fn varying<N: Into<String>>(
         profiles: impl IntoIterator<Item = (N, Profile)>,
-        law: impl Fn(&[f64], f64) -> Checked<Box<dyn FrictionLaw>> + 'static,
+        law: impl Fn(&[f64], f64) -> Checked<Box<dyn FrictionLaw>> + Send + Sync + 'static,
     ) -> Self {
         let varying = profiles.into_iter().map(|(name, profile)| (name.into(), profile)).collect();
-        Self { varying, law: Box::new(law) }
+        Self { name: "friction".into(), varying, law: Arc::new(law), elsewhere: Vec::new() }
+    }
+
+    /// With other friction at the points where a profile is positive at the start; of several the first holds. Messages name
+    /// profile and friction by `name`, such as `along.law[0]`.
+    #[must_use]
+    pub fn but_where(mut self, name: &str, profile: Profile, friction: impl Into<Self>) -> Self {
+        let friction = Self { name: format!("{name}.friction"), ..friction.into() };
+        self.elsewhere.push((format!("{name}.where"), profile, friction));
+        self
     }
 
     /// The laws of a contact, and to every slave point the number of its own: one for all that have the same values.
@@ -53,30 +65,48 @@ impl Friction {
         mesh: &Mesh,
         default_alpha_t: Option<f64>,
     ) -> Checked<Vec<Box<dyn FrictionLaw>>> {
-        if self.varying.is_empty() {
-            return Ok(vec![self.law(&[], default_alpha_t, place, format!("{place}.friction"))?]);
+        for (name, profile, _) in &self.elsewhere {
+            check_profile(profile, &format!("{place}.{name}"))?;
         }
-        let places: Vec<String> = self.varying.iter().map(|(name, _)| format!("{place}.{name}")).collect();
-        for ((_, profile), place) in self.varying.iter().zip(&places) {
-            check_profile(profile, place)?;
+        let all = || std::iter::once(self).chain(self.elsewhere.iter().map(|(.., friction)| friction));
+        for (name, profile) in all().flat_map(|friction| &friction.varying) {
+            check_in_time(profile, &format!("{place}.{name}"))?;
         }
         let mut laws = Vec::new();
-        let mut numbers: BTreeMap<Vec<u64>, usize> = BTreeMap::new();
+        let mut numbers: BTreeMap<(usize, Vec<u64>), usize> = BTreeMap::new();
         for point in points {
             let at = position(point, mesh);
-            let profiles = self.varying.iter().zip(&places);
-            let values =
-                profiles.map(|((_, profile), place)| defined(profile, at, place)).collect::<Checked<Vec<_>>>()?;
-            let key: Vec<u64> = values.iter().map(|value| value.to_bits()).collect();
+            let mut chosen = (0, self);
+            for (k, (name, profile, friction)) in self.elsewhere.iter().enumerate().rev() {
+                if defined(profile, at, &format!("{place}.{name}"))? > 0.0 {
+                    chosen = (k + 1, friction);
+                }
+            }
+            let (number, friction) = chosen;
+            let value = |(name, profile): &(String, Profile)| defined(profile, at, &format!("{place}.{name}"));
+            let values = friction.varying.iter().map(value).collect::<Checked<Vec<_>>>()?;
+            let in_time = friction.varying.iter().any(|(_, profile)| profile.depends_on_time());
+            // In time, only points at one place are alike.
+            let place_of = [at.x, at.y].into_iter().filter(|_| in_time);
+            let key = (number, values.iter().copied().chain(place_of).map(f64::to_bits).collect());
             if let Some(&law) = numbers.get(&key) {
                 point.law = law;
                 continue;
             }
             point.law = laws.len();
             numbers.insert(key, laws.len());
-            laws.push(self.law(&values, default_alpha_t, place, format!("{} at ({}, {})", places[0], at.x, at.y))?);
+            let first = friction.varying.first().map(|(name, _)| format!("{place}.{name} at ({}, {})", at.x, at.y));
+            let law = friction.law(&values, default_alpha_t, place, first)?;
+            laws.push(if in_time { friction.in_time(law, at, default_alpha_t) } else { law });
         }
         Ok(laws)
+    }
+
+    /// The law that is this one at the start, and varies in time.
+    fn in_time(&self, start: Box<dyn FrictionLaw>, at: Vector2<f64>, alpha_t: Option<f64>) -> Box<dyn FrictionLaw> {
+        let profiles = Arc::new(self.varying.iter().map(|(_, profile)| profile.clone()).collect());
+        let alpha_t = alpha_t.unwrap_or(f64::NAN);
+        Box::new(InTime { profiles, at, law: self.law.clone(), alpha_t, start: start.into() })
     }
 
     fn law(
@@ -84,15 +114,17 @@ impl Friction {
         values: &[f64],
         default_alpha_t: Option<f64>,
         contact: &str,
-        place: String,
+        place: Option<String>,
     ) -> Checked<Box<dyn FrictionLaw>> {
         // NaN stands for none: a law that is good with another number lacks its own.
         let law = (self.law)(values, default_alpha_t.unwrap_or(f64::NAN));
         let lacks = law.is_err() && default_alpha_t.is_none() && (self.law)(values, 1.0).is_ok();
+        let own = format!("{contact}.{}", self.name);
         if lacks {
             let message = "is missing: a slave group of points has no default for it";
-            return Err(ModelError::new(format!("{contact}.friction.alpha_t"), message));
+            return Err(ModelError::new(format!("{own}.alpha_t"), message));
         }
+        let place = place.unwrap_or(own);
         law.map_err(|error| if error.place.is_empty() { ModelError { place, ..error } } else { error })
     }
 }
@@ -114,13 +146,22 @@ macro_rules! friction_from {
     )*};
 }
 
-friction_from!(CoulombParameters, SuperSubloadingParameters, SlipWeakeningParameters, RateAndStateParameters);
+friction_from!(
+    CoulombParameters,
+    SuperSubloadingParameters,
+    SlipWeakeningParameters,
+    RateAndStateParameters,
+    PrescribedSlipParameters
+);
 
 impl<L: FrictionLaw + Clone + 'static> From<L> for Friction {
     fn from(law: L) -> Self {
         Self::varying::<String>([], move |_, _| Ok(Box::new(law.clone())))
     }
 }
+
+/// Parameters that say how a point starts, and the stiffness in which it has stored energy.
+const OF_THE_START: [&str; 3] = ["alpha_t", "structure", "theta"];
 
 /// Reference position of a slave point.
 pub fn position(point: &SlavePoint, mesh: &Mesh) -> Vector2<f64> {
@@ -138,12 +179,22 @@ pub fn defined(profile: &Profile, at: Vector2<f64>, place: &str) -> Checked<f64>
 
 /// A profile must not depend on time, and the coordinates of a table must ascend.
 pub fn check_profile(profile: &Profile, place: &str) -> Checked<()> {
+    if profile.depends_on_time() {
+        return Err(ModelError::new(place, "the time t has no meaning here: the variables are x and y"));
+    }
+    check_in_time(profile, place)
+}
+
+/// The coordinates of a table must ascend, and a parameter that is for the start must not depend on time.
+pub fn check_in_time(profile: &Profile, place: &str) -> Checked<()> {
+    let parameter = place.rsplit('.').next().unwrap_or_default();
+    if profile.depends_on_time() && OF_THE_START.contains(&parameter) {
+        let message =
+            format!("{parameter} is one number a point from the start on: the variables are x and y, and not t");
+        return Err(ModelError::new(place, message));
+    }
     match profile {
-        Profile::Constant(_) => Ok(()),
-        Profile::Expression(expression) if expression.depends_on_time() => {
-            Err(ModelError::new(place, "the time t has no meaning here: the variables are x and y"))
-        }
-        Profile::Expression(_) => Ok(()),
+        Profile::Constant(_) | Profile::Expression(_) => Ok(()),
         Profile::Table(component, table) => {
             let name = ["x", "y"][*component];
             if table.is_empty() {

@@ -1,9 +1,14 @@
 //! Groups and nodes of the mesh by name.
 
+use std::collections::BTreeSet;
 use std::fmt::{Display, Formatter, Result as Written};
+
+use nalgebra::Vector2;
 
 use super::error::{Checked, ModelError};
 use crate::mesh::{Edge, Group, Mesh};
+use crate::model::told::number;
+use crate::model::{Model, WatchedSet};
 
 /// Where a support or load acts: a group or a single node.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,6 +17,52 @@ pub enum Place {
     Group(String),
     /// Single node, by its tag in the mesh file
     Node(u64),
+    /// Single node, the nearest to a point of the undeformed mesh [L]
+    Near([f64; 2]),
+}
+
+impl Place {
+    /// The same, with the tag of the node that is nearest to a point.
+    ///
+    /// # Errors
+    /// Where it is not one node, or far away.
+    pub fn settled(&self, mesh: &Mesh) -> Result<Self, String> {
+        match self {
+            Self::Near(point) => nearest(mesh, *point).map(|node| Self::Node(mesh.node_tags[node])),
+            _ => Ok(self.clone()),
+        }
+    }
+}
+
+/// Two nodes whose distances differ by less than this share of the model's size are equally near.
+const EQUALLY_NEAR: f64 = 1e-9;
+
+/// The one node nearest to a point, which the elements there must reach.
+fn nearest(mesh: &Mesh, point: [f64; 2]) -> Result<usize, String> {
+    let [x, y] = point.map(number);
+    if !point.iter().all(|coordinate| coordinate.is_finite()) {
+        return Err(format!("near ({x}, {y}) is no place: give finite numbers"));
+    }
+    let distance = |node: usize| (mesh.nodes[node] - Vector2::from(point)).norm();
+    let Some(node) = (0..mesh.nodes.len()).min_by(|a, b| distance(*a).total_cmp(&distance(*b))) else {
+        return Err("the mesh has no nodes".into());
+    };
+    let tag = mesh.node_tags[node];
+    let (near, round_off) = (distance(node), EQUALLY_NEAR * mesh.diagonal());
+    if let Some(other) = (0..mesh.nodes.len()).find(|other| *other != node && distance(*other) <= near + round_off) {
+        let other = mesh.node_tags[other];
+        return Err(format!("nodes {tag} and {other} are equally near to ({x}, {y}): name one as {{\"node\": {tag}}}"));
+    }
+    let beside = mesh.elements.iter().filter(|element| element.nodes.contains(&node));
+    let sides =
+        beside.flat_map(|element| element.nodes.iter().map(|other| (mesh.nodes[*other] - mesh.nodes[node]).norm()));
+    match near <= sides.fold(round_off, f64::max) {
+        true => Ok(node),
+        false => Err(format!(
+            "no node is near ({x}, {y}): the nearest, {tag}, lies {} away, farther than the elements there are long",
+            number(near)
+        )),
+    }
 }
 
 impl From<&str> for Place {
@@ -25,6 +76,7 @@ impl Display for Place {
         match self {
             Self::Group(name) => f.write_str(name),
             Self::Node(tag) => write!(f, "node {tag}"),
+            Self::Near([x, y]) => write!(f, "the node near ({x}, {y})"),
         }
     }
 }
@@ -60,6 +112,7 @@ pub fn node_lists(edges: &[Edge]) -> Vec<Vec<usize>> {
 pub fn nodes_at(mesh: &Mesh, on: &Place, place: &str) -> Checked<Vec<usize>> {
     match on {
         Place::Group(name) => Ok(mesh.nodes_of(group(mesh, name, place)?)),
+        Place::Near(point) => Ok(vec![nearest(mesh, *point).map_err(|message| ModelError::new(place, message))?]),
         Place::Node(node) => match mesh.node_tags.iter().position(|tag| tag == node) {
             Some(node) => Ok(vec![node]),
             None => Err(ModelError::new(place, format!("the mesh has no node {node}"))),
@@ -71,8 +124,28 @@ pub fn nodes_at(mesh: &Mesh, on: &Place, place: &str) -> Checked<Vec<usize>> {
 pub fn group_at<'p>(on: &'p Place, place: &str) -> Checked<&'p str> {
     match on {
         Place::Group(name) => Ok(name),
-        Place::Node(node) => {
-            Err(ModelError::new(format!("{place}.on"), format!("node {node} cannot carry this load: name a group")))
+        Place::Node(_) | Place::Near(_) => {
+            Err(ModelError::new(format!("{place}.on"), format!("{on} cannot carry this load: name a group")))
         }
     }
+}
+
+/// The nodes that some nodes move with, ascending.
+pub fn originals(model: &Model, nodes: &[usize]) -> Vec<usize> {
+    let originals: BTreeSet<usize> = nodes.iter().map(|&node| model.ties.original(node)).collect();
+    originals.into_iter().collect()
+}
+
+/// The watched groups.
+pub fn watched(names: &[String], model: &Model) -> Checked<Vec<WatchedSet>> {
+    names.iter().enumerate().map(|(k, name)| watched_set(model, k, name)).collect()
+}
+
+/// A watched group. The reactions of copies are with the nodes they move with; the displacement of a plate counts with every node.
+fn watched_set(model: &Model, k: usize, name: &str) -> Checked<WatchedSet> {
+    let group = group(&model.mesh, name, &format!("watch[{k}]"))?;
+    let nodes = model.mesh.nodes_of(group);
+    let held = [0, 1].map(|i| originals(model, &model.held(&nodes, i)));
+    let nodes = if model.plates.is_empty() { originals(model, &nodes) } else { nodes };
+    Ok(WatchedSet { name: name.into(), nodes, held })
 }

@@ -9,21 +9,35 @@ use crate::model::{Body, Increments, Model, Rupture, Step};
 /// Shortest increment as a share of the run time at its end: below it, round-off would swallow the increment.
 const SHORTEST_INCREMENT: f64 = 16.0 * f64::EPSILON;
 
+/// A run of more increments, or rows of results, is a slip of the keyboard: it would take days for a single point.
+pub const MOST_INCREMENTS: f64 = 1e8;
+
 /// The increments of a step, what is not given chosen by its first.
 pub fn increments(place: &str, given: Option<IncrementSettings>, span: Span, scheme: Scheme) -> Checked<Increments> {
     let duration = span.end - span.start;
     let given = given.unwrap_or(IncrementSettings::from(0.1 * duration));
     let least = SHORTEST_INCREMENT * span.end;
+    let quasi_dynamic = matches!(scheme, Scheme::QuasiDynamic { .. });
     let (default_min, default_max) = match given.error {
+        None if quasi_dynamic => (least, given.initial.max(0.1 * duration)),
         None => (1e-3 * given.initial, given.initial),
         Some(_) => ((1e-6 * given.initial).max(least), given.initial.max(0.1 * duration)),
     };
     let (min, max) = (given.min.unwrap_or(default_min), given.max.unwrap_or(default_max));
     let increments = Increments { initial: given.initial, min, max, error: given.error };
     check_lengths(place, increments, span.end, least)?;
+    let count = duration / max;
+    if count > MOST_INCREMENTS && !matches!(scheme, Scheme::Explicit { .. }) {
+        let message = format!(
+            "increments of at most {max:e} make {count:.1e} of them in a step of {duration:e}, and {MOST_INCREMENTS:e} are the \
+             most: make them longer"
+        );
+        return Err(ModelError::new(place, message));
+    }
     if given.error.is_some() && scheme != Scheme::Static && scheme.error_constant().is_none() {
         let message = match scheme {
             Scheme::Explicit { .. } => "explicit takes increments as long as they are stable: leave error out",
+            Scheme::QuasiDynamic { .. } => "quasi_dynamic has a tolerance of its own: leave error out",
             Scheme::Wilson { .. } => "wilson has no estimate of its error: take newmark, hht or generalized_alpha",
             _ => "newmark with beta near 1/6 has no estimate of its error: take another beta",
         };
@@ -85,8 +99,19 @@ pub fn rupture(place: &str, given: Option<RuptureSettings>, step: &Step, model: 
     if matches!(step.scheme, Scheme::Explicit { .. }) {
         return Err(ModelError::new(place, "is for static and implicit steps: this one is explicit throughout"));
     }
+    if matches!(step.scheme, Scheme::QuasiDynamic { .. }) {
+        return Err(ModelError::new(
+            place,
+            "is for static and implicit steps: this one follows slip at any rate by itself",
+        ));
+    }
     if model.contacts.is_empty() {
         return Err(ModelError::new(place, "needs a contact that may slip: leave it out"));
+    }
+    if model.bodies.is_empty() {
+        let cause = "needs a body: slip is over when it is slow over the time in which a shear wave crosses the bodies; use a \
+                     dynamic scheme under error control (`dt.error`)";
+        return Err(ModelError::new(place, cause));
     }
     let scheme = Scheme::Explicit { safety };
     scheme.check().map_err(|error| ModelError::new(place, error))?;

@@ -1,33 +1,28 @@
 //! How a run starts: velocities of bodies and point masses, and contacts that are closed from the beginning.
 
+use std::collections::BTreeSet;
+
+use nalgebra::{Matrix2, Vector2};
+
 use super::body::GivenMass;
 use super::contact::{Contact, InitialTractions};
 use super::error::{Checked, ModelError};
 use super::friction::{check_profile, defined, position};
 use super::limits::check_finite;
+use super::load_step::LoadStep;
+use super::section::check_velocities;
 use crate::contact::pair::{ContactPair, InitialTraction};
 use crate::laws::friction::observables;
+use crate::mesh::Group;
 use crate::model::Model;
+use crate::model::scheme::Scheme;
 
 /// An initial traction may pass the strength μ p by this share: numbers are written with a few digits.
 const ROUNDED: f64 = 1e-9;
 
 /// Initial velocity of every dof, from those of bodies and of point masses [L/T].
 pub fn velocities(of_bodies: &[(String, [f64; 2])], masses: &[GivenMass], model: &Model) -> Checked<Vec<f64>> {
-    let mut velocity: Vec<Option<[f64; 2]>> = vec![None; model.mesh.nodes.len()];
-    let mut give = |place: String, nodes: &[usize], value: [f64; 2]| {
-        check_finite(&place, value)?;
-        for &node in nodes {
-            let earlier = velocity[node].replace(value).filter(|earlier| *earlier != value);
-            if let Some([x, y]) = earlier {
-                let tag = model.mesh.node_tags[node];
-                let message =
-                    format!("node {tag} starts with the velocity [{x}, {y}] already: a node can have one only");
-                return Err(ModelError::new(place, message));
-            }
-        }
-        Ok(())
-    };
+    let mut given = Given { velocity: vec![None; model.mesh.nodes.len()], model };
     for (name, value) in of_bodies {
         let place = format!("initial_velocity.{name}");
         let Some(body) = model.bodies.iter().find(|body| body.name == *name) else {
@@ -35,26 +30,112 @@ pub fn velocities(of_bodies: &[(String, [f64; 2])], masses: &[GivenMass], model:
             let message = format!("there is no body `{name}`; the bodies are {}", known.join(", "));
             return Err(ModelError::new(place, message));
         };
-        give(place, &body.nodes, *value)?;
+        given.give(place, &body.nodes, *value)?;
     }
-    for (point, given) in model.point_masses.iter().zip(masses) {
-        if let Some(value) = given.velocity {
-            give(format!("point_masses.{}.velocity", point.name), &point.nodes, value)?;
+    for (point, mass) in model.point_masses.iter().zip(masses) {
+        if let Some(value) = mass.velocity {
+            given.give(format!("point_masses.{}.velocity", point.name), &point.nodes, value)?;
         }
     }
-    let velocity: Vec<[f64; 2]> = velocity.into_iter().map(Option::unwrap_or_default).collect();
-    let differ = |&&(copy, original): &&(usize, usize)| velocity[copy] != velocity[original];
-    if let Some((copy, original)) = model.ties.pairs().iter().find(differ) {
-        let [a, b] = [copy, original].map(|node| model.mesh.node_tags[*node]);
-        let message =
-            format!("nodes {a} and {b} of periodic sides start with different velocities: give them the same");
-        return Err(ModelError::new("initial_velocity", message));
-    }
+    let velocity: Vec<[f64; 2]> = given.velocity.into_iter().map(Option::unwrap_or_default).collect();
+    tied("initial_velocity", &velocity, model)?;
     Ok(velocity.into_iter().flatten().collect())
 }
 
+/// Velocities that nodes take when a step begins [L/T].
+pub fn launch(step: &LoadStep, scheme: Scheme, place: &str, model: &Model) -> Checked<Vec<(usize, [f64; 2])>> {
+    let place = format!("{place}.velocity");
+    if !step.velocities.is_empty() && !scheme.is_dynamic() {
+        return Err(ModelError::new(place, "is for dynamic and explicit steps: a static one knows no velocities"));
+    }
+    check_velocities(&place, &step.velocities, model)?;
+    let mut given = Given { velocity: vec![None; model.mesh.nodes.len()], model };
+    for (name, value) in &step.velocities {
+        let place = format!("{place}.{name}");
+        let body = model.bodies.iter().find(|body| body.name == *name).map(|body| &body.nodes);
+        let points = model.point_masses.iter().find(|point| point.name == *name).map(|point| &point.nodes);
+        let Some(nodes) = body.or(points) else {
+            let known = model.bodies.iter().map(|body| body.name.as_str());
+            let known: Vec<&str> = known.chain(model.point_masses.iter().map(|point| point.name.as_str())).collect();
+            let message = format!("there is no body or point mass `{name}`; there are {}", known.join(", "));
+            return Err(ModelError::new(place, message));
+        };
+        given.give(place, nodes, *value)?;
+    }
+    tied(&place, &given.velocity, model)?;
+    Ok(given.velocity.into_iter().enumerate().filter_map(|(node, velocity)| Some((node, velocity?))).collect())
+}
+
+/// Velocities given to nodes so far.
+struct Given<'m> {
+    velocity: Vec<Option<[f64; 2]>>,
+    model: &'m Model,
+}
+
+impl Given<'_> {
+    fn give(&mut self, place: String, nodes: &[usize], value: [f64; 2]) -> Checked<()> {
+        check_finite(&place, value)?;
+        for &node in nodes {
+            let earlier = self.velocity[node].replace(value).filter(|earlier| *earlier != value);
+            if let Some([x, y]) = earlier {
+                let tag = self.model.mesh.node_tags[node];
+                let message =
+                    format!("node {tag} starts with the velocity [{x}, {y}] already: a node can have one only");
+                return Err(ModelError::new(place, message));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Nodes that move as one must start as one.
+fn tied<V: PartialEq>(place: &str, velocity: &[V], model: &Model) -> Checked<()> {
+    let followers = model.linkage.followers.iter().map(|follower| (follower.node, follower.leaders[0].0));
+    let rigid = model.linkage.rigid.iter().map(|&[a, b]| (b, a));
+    let pairs: Vec<(usize, usize)> = model.ties.pairs().iter().copied().chain(followers).chain(rigid).collect();
+    let differ = |&&(copy, original): &&(usize, usize)| velocity[copy] != velocity[original];
+    let Some((copy, original)) = pairs.iter().find(differ) else { return Ok(()) };
+    let [a, b] = [copy, original].map(|node| model.mesh.node_tags[*node]);
+    let message =
+        format!("nodes {a} and {b} of periodic sides or a plate start with different velocities: give them the same");
+    Err(ModelError::new(place, message))
+}
+
 /// Start a contact closed, if its tractions and its law allow it.
-pub fn close(pair: &mut ContactPair, given: &InitialTractions, model: &Model, place: &str) -> Checked<()> {
+pub fn close(
+    pair: &mut ContactPair,
+    (given, slave): (&InitialTractions, &str),
+    model: &Model,
+    place: &str,
+) -> Checked<()> {
+    let initial = match given.of_bodies {
+        true => of_bodies(pair, (given, slave), model, place)?,
+        false => as_given(pair, given, model, place)?,
+    };
+    for (point, InitialTraction { pressure, traction }) in pair.points.iter().zip(&initial) {
+        let limit = pair.law(point).starting_limit(*pressure);
+        if traction.abs() > limit * (1.0 + ROUNDED) {
+            let law = pair.law(point);
+            let mu = observables::value(law, "mu", &law.initial_state());
+            let message = format!(
+                "is {traction}: the initial strength is exceeded already, which is mu p = {limit} with mu = {mu} and \
+                 p = {pressure}"
+            );
+            return Err(ModelError::new(format!("{place}.traction"), message));
+        }
+    }
+    let undeformed = model.mesh.undeformed();
+    let closed = pair.start_closed(initial, &undeformed);
+    closed.map_err(|point| faces_nothing(pair, point, model, place))
+}
+
+fn faces_nothing(pair: &ContactPair, point: usize, model: &Model, place: &str) -> ModelError {
+    let at = pair.points[point].at(&model.mesh.undeformed());
+    let message = format!("the slave point at ({}, {}) faces no part of the master: it cannot be pressed", at.x, at.y);
+    ModelError::new(place, message)
+}
+
+fn as_given(pair: &ContactPair, given: &InitialTractions, model: &Model, place: &str) -> Checked<Vec<InitialTraction>> {
     let [at_pressure, at_traction] = ["pressure", "traction"].map(|key| format!("{place}.{key}"));
     let InitialTractions { pressure: pressures, traction: tractions, .. } = given;
     check_profile(pressures, &at_pressure)?;
@@ -67,26 +148,52 @@ pub fn close(pair: &mut ContactPair, given: &InitialTractions, model: &Model, pl
             let message = format!("is {pressure}: must be zero or positive, which is compression");
             return Err(ModelError::new(at_pressure, message));
         }
-        let limit = pair.law(point).starting_limit(pressure);
-        if traction.abs() > limit * (1.0 + ROUNDED) {
-            let law = pair.law(point);
-            let mu = observables::value(law, "mu", &law.initial_state());
-            let message = format!(
-                "is {traction}: the initial strength is exceeded already, which is mu p = {limit} with mu = {mu} and \
-                 p = {pressure}"
-            );
-            return Err(ModelError::new(at_traction, message));
-        }
         initial.push(InitialTraction { pressure, traction });
     }
-    let undeformed = model.mesh.undeformed();
-    let closed = pair.start_closed(initial, &undeformed);
-    closed.map_err(|point| {
-        let at = pair.points[point].at(&undeformed);
-        let message =
-            format!("the slave point at ({}, {}) faces no part of the master: it cannot be pressed", at.x, at.y);
-        ModelError::new(place, message)
-    })
+    Ok(initial)
+}
+
+/// The tractions with which the initial stress of the slave's body ends at the contact.
+fn of_bodies(
+    pair: &ContactPair,
+    (given, slave): (&InitialTractions, &str),
+    model: &Model,
+    place: &str,
+) -> Checked<Vec<InitialTraction>> {
+    let place = format!("{place}.of_bodies");
+    let refused = |message: String| Err(ModelError::new(place.clone(), message));
+    if given.balanced {
+        return refused("counts the stress of the bodies, and balanced would count it again: leave one out".into());
+    }
+    let Some(Group::Edges(edges)) = model.mesh.groups.get(slave) else {
+        return refused("needs a slave of edges: give pressure and traction".into());
+    };
+    let bodies: BTreeSet<usize> = edges.iter().map(|edge| model.body_of_element[edge.element]).collect();
+    let stress = bodies.first().and_then(|&body| model.bodies[body].initial_stress.as_ref());
+    let Some(stress) = stress.filter(|_| bodies.len() == 1) else {
+        return refused(format!("needs a slave `{slave}` on one body, and that with an initial_stress"));
+    };
+    let tensor = |at: Vector2<f64>| {
+        let [xx, yy, xy, _] = stress.at(at, model.mesh.section.is_plate());
+        Matrix2::new(xx, xy, xy, yy)
+    };
+    let found = pair.tractions_under(tensor, &model.mesh.undeformed());
+    let largest = found.iter().flatten().map(|traction| traction.pressure).fold(0.0, f64::max);
+    let mut initial = Vec::with_capacity(found.len());
+    for (point, traction) in found.into_iter().enumerate() {
+        let Some(InitialTraction { pressure, traction }) = traction else {
+            return Err(faces_nothing(pair, point, model, &place));
+        };
+        if pressure < -ROUNDED * largest || largest == 0.0 && pressure < 0.0 {
+            let at = position(&pair.points[point], &model.mesh);
+            return refused(format!(
+                "gives the pressure {pressure} at ({}, {}): the stress pulls there, which a contact cannot",
+                at.x, at.y
+            ));
+        }
+        initial.push(InitialTraction { pressure: pressure.max(0.0), traction });
+    }
+    Ok(initial)
 }
 
 /// Nodal forces with which the initial stress of the bodies meets the initial tractions of balanced contacts; empty if

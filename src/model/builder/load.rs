@@ -18,18 +18,24 @@ pub struct Load {
 pub enum Action {
     /// Pressure on edges that follows the surface, positive toward the body [F/L²]
     Pressure(Change<Drive>),
+    /// Pressure on reference edges that keeps its force and direction, positive toward the body [F/L²]
+    DeadPressure(Change<Drive>),
     /// Traction on reference edges that keeps its direction [F/L²]
     Traction(Change<Components>),
     /// Acceleration of gravity on a body or on point masses [L/T²]
     Gravity(Change<Components>),
     /// Force on every node [F]
     Force(Change<Components>),
+    /// Force on edges as a whole, spread over them as an even traction [F]
+    TotalForce(Change<Components>),
     /// Spring at every node, to the ground or to a moving driver
     Spring(Change<Link>),
     /// Dashpot at every node, to the ground or to a moving driver
     Dashpot(Change<Link>),
     /// Dashpots that let waves out of a side of a body, as if it went on
     Absorbing(Change<()>),
+    /// Moment on a plate that turns, counter-clockwise [F L]
+    Moment(Change<Drive>),
 }
 
 /// Components of a vector; zero unless given.
@@ -82,6 +88,11 @@ impl Load {
         Self { on: on.into(), action: Action::Pressure(pressure.into()) }
     }
 
+    /// Pressure on reference edges that keeps its force and direction, positive toward the body [F/L²].
+    pub fn dead_pressure(on: impl Into<Place>, pressure: impl Into<Change<Drive>>) -> Self {
+        Self { on: on.into(), action: Action::DeadPressure(pressure.into()) }
+    }
+
     /// Traction on reference edges that keeps its direction [F/L²].
     pub fn traction(on: impl Into<Place>, traction: impl Into<Change<Components>>) -> Self {
         Self { on: on.into(), action: Action::Traction(traction.into()) }
@@ -95,6 +106,17 @@ impl Load {
     /// Force on every node [F].
     pub fn force(on: impl Into<Place>, force: impl Into<Change<Components>>) -> Self {
         Self { on: on.into(), action: Action::Force(force.into()) }
+    }
+
+    /// Force on edges as a whole, spread over them as an even traction: a unit of depth in plane strain, the thickness of a
+    /// plate, the full turn of a ring [F].
+    pub fn total_force(on: impl Into<Place>, force: impl Into<Change<Components>>) -> Self {
+        Self { on: on.into(), action: Action::TotalForce(force.into()) }
+    }
+
+    /// A moment on a plate that turns, counter-clockwise [F L].
+    pub fn moment(on: impl Into<Place>, moment: impl Into<Change<Drive>>) -> Self {
+        Self { on: on.into(), action: Action::Moment(moment.into()) }
     }
 
     /// Springs of the stiffnesses k_x, k_y at every node [F/L]; [`Change::End`] takes them away at once.

@@ -3,8 +3,13 @@
 use super::change::Change;
 use super::groups::Place;
 use super::load::Load;
+use crate::model::Damping;
 use crate::model::boundary::Drive;
 use crate::model::scheme::{Scheme, nine_tenths};
+use crate::model::until::Part;
+
+/// Share of a force within which it is met unless told otherwise.
+pub const MET: f64 = 1e-6;
 
 /// A load step: a time span with its scheme and increments, supports and loads.
 #[derive(Clone, Debug)]
@@ -21,6 +26,14 @@ pub struct LoadStep {
     pub stabilize: Option<f64>,
     /// When the step goes on explicitly
     pub rupture: Option<RuptureSettings>,
+    /// Damping of bodies from this step on
+    pub damping: Vec<(String, Damping)>,
+    /// A reaction that ends the step before its time
+    pub until: Option<UntilSettings>,
+    /// Velocities that bodies and point masses take when the step begins [L/T]
+    pub velocities: Vec<(String, [f64; 2])>,
+    /// Temperatures of bodies that are new in this step or change; all others stay [Θ]
+    pub temperatures: Vec<(String, Drive)>,
     /// Supports that are new in this step or change; all others stay
     pub supports: Vec<Support>,
     /// Loads that are new in this step or change; all others stay
@@ -55,6 +68,19 @@ pub struct RuptureSettings {
     pub safety: f64,
 }
 
+/// A reaction that ends a step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UntilSettings {
+    /// Where
+    pub on: Place,
+    /// Which part of the reaction
+    pub part: Part,
+    /// What it comes to [F]
+    pub value: f64,
+    /// Share of the value, or of the reaction at the start of the step if that is larger, within which it is met [-]
+    pub tolerance: f64,
+}
+
 /// Supports of the nodes at a place.
 #[derive(Clone, Debug)]
 pub struct Support {
@@ -64,7 +90,11 @@ pub struct Support {
     pub ux: Option<Change<Drive>>,
     /// Displacement in y [L]
     pub uy: Option<Change<Drive>>,
-    /// Rigid rotation, instead of both
+    /// Displacement along a direction [x, y], which need not be of unit length, toward it [L]
+    pub along: Option<([f64; 2], Change<Drive>)>,
+    /// Displacement along the normal of a side of the undeformed body, positive out of the body [L]
+    pub un: Option<Change<Drive>>,
+    /// Rigid rotation, instead of all others
     pub rotation: Option<Change<Rotation>>,
 }
 
@@ -80,7 +110,7 @@ pub struct Rotation {
 impl Support {
     /// Supports at a place, which prescribe nothing yet.
     pub fn on(place: impl Into<Place>) -> Self {
-        Self { on: place.into(), ux: None, uy: None, rotation: None }
+        Self { on: place.into(), ux: None, uy: None, along: None, un: None, rotation: None }
     }
 
     /// With a displacement in x: a value is reached at the end of the step, [`Change::End`] frees it [L].
@@ -91,6 +121,16 @@ impl Support {
     /// With a displacement in y [L].
     pub fn uy(self, uy: impl Into<Change<Drive>>) -> Self {
         Self { uy: Some(uy.into()), ..self }
+    }
+
+    /// With a displacement along a direction, which need not be of unit length [L].
+    pub fn along(self, direction: [f64; 2], u: impl Into<Change<Drive>>) -> Self {
+        Self { along: Some((direction, u.into())), ..self }
+    }
+
+    /// With a displacement along the normal of a side, positive out of the body [L].
+    pub fn un(self, un: impl Into<Change<Drive>>) -> Self {
+        Self { un: Some(un.into()), ..self }
     }
 
     /// With a rotation about a point, counter-clockwise [rad].
@@ -109,6 +149,10 @@ impl LoadStep {
             increments: None,
             stabilize: None,
             rupture: None,
+            damping: Vec::new(),
+            until: None,
+            velocities: Vec::new(),
+            temperatures: Vec::new(),
             supports: Vec::new(),
             loads: Vec::new(),
         }
@@ -133,6 +177,29 @@ impl LoadStep {
     /// Going on explicitly while a contact slips faster than this [L/T].
     pub fn rupture(self, slip_rate: f64) -> Self {
         Self { rupture: Some(RuptureSettings { slip_rate, safety: nine_tenths() }), ..self }
+    }
+
+    /// With another damping of a body from this step on.
+    pub fn damping(mut self, body: impl Into<String>, damping: Damping) -> Self {
+        self.damping.push((body.into(), damping));
+        self
+    }
+
+    /// Ending before its time when the reaction of a place comes to a value, met to a millionth of it [F].
+    pub fn until(self, on: impl Into<Place>, part: Part, value: f64) -> Self {
+        Self { until: Some(UntilSettings { on: on.into(), part, value, tolerance: MET }), ..self }
+    }
+
+    /// With a body, or point masses, that take a velocity when the step begins: a launch after settling [L/T].
+    pub fn launch(mut self, name: impl Into<String>, velocity: [f64; 2]) -> Self {
+        self.velocities.push((name.into(), velocity));
+        self
+    }
+
+    /// With a body whose temperature changes: a value is reached at the end of the step [Θ].
+    pub fn temperature(mut self, body: impl Into<String>, temperature: impl Into<Drive>) -> Self {
+        self.temperatures.push((body.into(), temperature.into()));
+        self
     }
 
     /// With a support.

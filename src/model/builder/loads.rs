@@ -5,42 +5,85 @@ use std::collections::BTreeMap;
 use super::error::{Checked, ModelError};
 use super::groups::{edges, group_at, node_lists, nodes_at};
 use super::limits::check_not_negative;
+use super::linkage::plate_of_moment;
 use super::load::{Action, Components, Link, Load};
-use super::shares::{Share, absorbers, edge_shares, mass_shares};
+use super::load_step::LoadStep;
+use super::section::check_gravity;
+use super::shares::{Share, absorbers, edge_shares, even_shares, mass_shares, pressure_shares};
 use super::supports::frees_nothing;
 use crate::model::Model;
-use crate::model::boundary::{Amplitude, Dashpot, DeadLoad, Drive, FollowerPressure, Loads, Span, Spring};
+use crate::model::boundary::{Amplitude, Dashpot, DeadLoad, Drive, FollowerPressure, Loads, PlateMoment, Span, Spring};
+
+/// The most changes of a load within its steps of which the last depends on the first, from place to place.
+const MOST_REMEMBERED: usize = 1000;
 
 /// Loads by place and kind, with the amplitudes that the next step takes over from.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct LoadsInForce(BTreeMap<(String, Kind), Loads>);
 
 /// A load replaces that of its own kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
     Pressure,
+    DeadPressure,
     Traction,
     Gravity,
     Force,
+    TotalForce,
     Spring,
     Dashpot,
     Absorbing,
+    Moment,
 }
 
 /// The kind of an action, and whether it ends the load.
 fn kind(action: &Action) -> (Kind, bool) {
     match action {
         Action::Pressure(change) => (Kind::Pressure, change.given().is_none()),
+        Action::DeadPressure(change) => (Kind::DeadPressure, change.given().is_none()),
         Action::Traction(change) => (Kind::Traction, change.given().is_none()),
         Action::Gravity(change) => (Kind::Gravity, change.given().is_none()),
         Action::Force(change) => (Kind::Force, change.given().is_none()),
+        Action::TotalForce(change) => (Kind::TotalForce, change.given().is_none()),
         Action::Spring(change) => (Kind::Spring, change.given().is_none()),
         Action::Dashpot(change) => (Kind::Dashpot, change.given().is_none()),
         Action::Absorbing(change) => (Kind::Absorbing, change.given().is_none()),
+        Action::Moment(change) => (Kind::Moment, change.given().is_none()),
     }
 }
 
 impl LoadsInForce {
+    /// Those of a step of a model: what it gave, and the steps before it.
+    ///
+    /// # Errors
+    /// None of a model that was built from these steps.
+    pub fn of_step(number: usize, given: &[LoadStep], model: &Model) -> Checked<Self> {
+        let mut in_force = Self::default();
+        for (k, (given, step)) in given.iter().zip(&model.steps).enumerate().take(number + 1) {
+            for (j, load) in given.loads.iter().enumerate() {
+                in_force.change(load, &format!("steps[{k}].loads[{j}]"), step.span, model)?;
+            }
+        }
+        Ok(in_force)
+    }
+
+    /// Give a load anew, or end it, from the start of a span within a step on.
+    ///
+    /// # Errors
+    /// As of a step.
+    pub fn change_within(&mut self, load: &Load, place: &str, span: Span, model: &Model) -> Checked<()> {
+        let key = (load.on.settled(&model.mesh).unwrap_or_else(|_| load.on.clone()).to_string(), kind(&load.action).0);
+        for before in self.0.get_mut(&key).into_iter().flat_map(Loads::amplitudes) {
+            *before = before.settled(span.start);
+            if before.chain().count() > MOST_REMEMBERED {
+                let message =
+                    "was changed too often for one that varies from place to place: give it as an expression in t";
+                return Err(ModelError::new(place, message));
+            }
+        }
+        self.change(load, place, span, model)
+    }
+
     /// Everything that acts.
     pub fn all(&self) -> Loads {
         let mut all = Loads::default();
@@ -50,6 +93,7 @@ impl LoadsInForce {
             all.springs.extend(load.springs.iter().cloned());
             all.dashpots.extend(load.dashpots.iter().cloned());
             all.absorbers.extend(load.absorbers.iter().cloned());
+            all.moments.extend(load.moments.iter().cloned());
         }
         all
     }
@@ -57,7 +101,8 @@ impl LoadsInForce {
     /// Give a load anew, or end it.
     pub fn change(&mut self, load: &Load, place: &str, span: Span, model: &Model) -> Checked<()> {
         let (kind, ends) = kind(&load.action);
-        let key = (load.on.to_string(), kind);
+        let on = load.on.settled(&model.mesh).map_err(|message| ModelError::new(format!("{place}.on"), message))?;
+        let key = (on.to_string(), kind);
         if ends && !self.0.contains_key(&key) {
             return Err(frees_nothing(place, &load.on));
         }
@@ -86,19 +131,32 @@ impl Changing<'_> {
         let at = format!("{place}.on");
         match action {
             Action::Pressure(change) => self.pressure(change.given()),
+            Action::DeadPressure(change) => {
+                let edges = edges(&model.mesh, group_at(on, place)?, &at)?;
+                self.dead_pressure(change.given(), pressure_shares(&model.mesh, edges))
+            }
             Action::Traction(change) => {
                 let edges = edges(&model.mesh, group_at(on, place)?, &at)?;
-                self.dead("traction", change.given(), edge_shares(&model.mesh, edges))
+                let shares = edge_shares(&model.mesh, edges);
+                self.dead("traction", change.given(), [shares.clone(), shares])
             }
             Action::Gravity(change) => {
+                check_gravity(change.given().and_then(|given| given.along(0)), place, model)?;
                 let shares = mass_shares(model, group_at(on, place)?, &at)?;
-                self.dead("gravity", change.given(), shares)
+                self.dead("gravity", change.given(), [shares.clone(), shares])
             }
             Action::Force(change) => {
                 let nodes = nodes_at(&model.mesh, on, &at)?;
-                let shares = nodes.into_iter().map(|node| (node, 1.0, model.mesh.nodes[node])).collect();
-                self.dead("force", change.given(), shares)
+                let shares: Vec<Share> = nodes.into_iter().map(|node| (node, 1.0, model.mesh.nodes[node])).collect();
+                self.dead("force", change.given(), [shares.clone(), shares])
             }
+            Action::TotalForce(change) => {
+                let edges = edges(&model.mesh, group_at(on, place)?, &at)?;
+                check_even(change.given(), place)?;
+                let shares = even_shares(&model.mesh, edges);
+                self.dead("total_force", change.given(), [shares.clone(), shares])
+            }
+            Action::Moment(change) => self.moment(change.given()),
             Action::Spring(change) => self.springs(change.given()),
             Action::Dashpot(change) => self.dashpots(change.given()),
             Action::Absorbing(change) => {
@@ -118,16 +176,35 @@ impl Changing<'_> {
         Ok(Loads { pressures, ..Loads::default() })
     }
 
-    fn dead(self, key: &str, given: Option<&Components>, shares: Vec<Share>) -> Checked<Loads> {
+    fn dead_pressure(self, given: Option<&Drive>, shares: [Vec<Share>; 2]) -> Checked<Loads> {
+        let Self { place, span, before, .. } = self;
+        let before = before.dead.into_iter().next().map(|load| load.amplitude);
+        let Some(amplitude) = amplitude(given, before, &format!("{place}.dead_pressure"), span)? else {
+            return Ok(Loads::default());
+        };
+        let along = |(component, shares)| DeadLoad { component, amplitude: amplitude.clone(), shares };
+        Ok(Loads { dead: shares.into_iter().enumerate().map(along).collect(), ..Loads::default() })
+    }
+
+    fn dead(self, key: &str, given: Option<&Components>, shares: [Vec<Share>; 2]) -> Checked<Loads> {
         let Self { place, span, before, .. } = self;
         let mut dead = Vec::new();
-        for (component, name) in ["x", "y"].into_iter().enumerate() {
+        for (component, (name, shares)) in ["x", "y"].into_iter().zip(shares).enumerate() {
             let given = given.and_then(|given| given.along(component));
             let before = before.dead.iter().find(|load| load.component == component).map(|load| load.amplitude.clone());
             let amplitude = amplitude(given, before, &format!("{place}.{key}.{name}"), span)?;
-            dead.extend(amplitude.map(|amplitude| DeadLoad { component, amplitude, shares: shares.clone() }));
+            dead.extend(amplitude.map(|amplitude| DeadLoad { component, amplitude, shares }));
         }
         Ok(Loads { dead, ..Loads::default() })
+    }
+
+    fn moment(self, given: Option<&Drive>) -> Checked<Loads> {
+        let Self { load, place, span, model, before } = self;
+        let plate = plate_of_moment(model, &load.on, place)?;
+        let before = before.moments.into_iter().next().map(|moment| moment.amplitude);
+        let amplitude = amplitude(given, before, &format!("{place}.moment"), span)?;
+        let moments = amplitude.map(|amplitude| PlateMoment { plate, amplitude }).into_iter().collect();
+        Ok(Loads { moments, ..Loads::default() })
     }
 
     fn springs(self, given: Option<&Link>) -> Checked<Loads> {
@@ -177,6 +254,18 @@ impl Changing<'_> {
         }
         Ok(links)
     }
+}
+
+/// A force on edges as a whole has one value.
+fn check_even(given: Option<&Components>, place: &str) -> Checked<()> {
+    for (component, name) in ["x", "y"].into_iter().enumerate() {
+        if given.and_then(|given| given.along(component)).is_some_and(Drive::depends_on_position) {
+            let message =
+                "is the force on the whole group, which does not vary from place to place: give it in t, or a traction";
+            return Err(ModelError::new(format!("{place}.total_force.{name}"), message));
+        }
+    }
+    Ok(())
 }
 
 /// The drive of this step on top of what was in force before; nothing if there is neither.

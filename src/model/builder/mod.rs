@@ -32,40 +32,59 @@ mod body;
 mod change;
 mod checks;
 mod contact;
+mod defined;
 mod error;
+mod fluid;
 mod friction;
 mod groups;
+mod imposed;
+mod in_time;
+mod inclined;
 mod increments;
 mod initial;
 mod limits;
+mod linkage;
 mod load;
 mod load_step;
 mod loads;
 mod names;
+mod normals;
+mod of_bodies;
 mod pair;
 mod penalty;
 mod periodic;
+mod plate;
+mod probes;
+mod quasi_dynamic;
+mod radiation;
 mod rigid;
 mod schedule;
+mod section;
 mod shares;
 mod supported;
 mod supports;
-
-use std::collections::BTreeSet;
+mod unseen;
+mod until;
 
 pub use change::Change;
-pub use contact::{Contact, InitialTractions, MasterSide};
+pub use contact::{Contact, InitialTractions, MasterSide, Radiation};
 pub use error::{Checked, ModelError};
 pub use friction::Friction;
 pub use groups::Place;
 pub use load::{Action, Components, Link, Load};
-pub use load_step::{IncrementSettings, LoadStep, Rotation, RuptureSettings, Support};
+pub use load_step::{IncrementSettings, LoadStep, MET, Rotation, RuptureSettings, Support, UntilSettings};
+pub use loads::LoadsInForce;
+pub use plate::Plate;
+pub use probes::Gauge;
 
 use crate::laws::bulk::Material;
 use crate::mesh::Mesh;
+use crate::mesh::section::Section;
 use crate::mesh::ties::Ties;
 use crate::model::aids::Aids;
-use crate::model::{Damping, Model, NewtonSettings, WatchedSet};
+use crate::model::imposed::{InitialStress, Thermal};
+use crate::model::linkage::Linkage;
+use crate::model::{Damping, Model, NewtonSettings};
 use body::{GivenBody, GivenMass};
 
 /// What a model is made of; [`Builder::build`] checks it and makes the model.
@@ -75,14 +94,19 @@ pub struct Builder {
     bodies: Vec<GivenBody>,
     f_bar: Vec<String>,
     damping: Vec<(String, Damping)>,
+    stresses: Vec<(String, InitialStress)>,
+    thermal: Vec<(String, Thermal)>,
     point_masses: Vec<GivenMass>,
     periodic: Vec<[String; 2]>,
+    plates: Vec<(String, Plate)>,
     contacts: Vec<Contact>,
     velocities: Vec<(String, [f64; 2])>,
     steps: Vec<LoadStep>,
     watch: Vec<String>,
     newton: NewtonSettings,
     interval: Option<f64>,
+    times: Vec<f64>,
+    gauges: Vec<Gauge>,
 }
 
 impl Model {
@@ -94,14 +118,19 @@ impl Model {
             bodies: Vec::new(),
             f_bar: Vec::new(),
             damping: Vec::new(),
+            stresses: Vec::new(),
+            thermal: Vec::new(),
             point_masses: Vec::new(),
             periodic: Vec::new(),
+            plates: Vec::new(),
             contacts: Vec::new(),
             velocities: Vec::new(),
             steps: Vec::new(),
             watch: Vec::new(),
             newton: NewtonSettings::default(),
             interval: None,
+            times: Vec::new(),
+            gauges: Vec::new(),
         }
     }
 }
@@ -112,10 +141,17 @@ impl Builder {
         Self { title: title.into(), ..self }
     }
 
+    /// What the plane stands for in space; that of the mesh, plane strain, unless given.
+    pub fn section(mut self, section: Section) -> Self {
+        self.mesh.section = section;
+        self
+    }
+
     /// A body: the material of a group of elements.
     pub fn body(mut self, name: impl Into<String>, material: impl Into<Box<dyn Material>>) -> Self {
         let (name, material) = (name.into(), material.into());
-        self.bodies.push(GivenBody { name, material, f_bar: false, damping: Damping::default() });
+        let damping = Damping::default();
+        self.bodies.push(GivenBody { name, material, f_bar: false, damping, initial_stress: None, thermal: None });
         self
     }
 
@@ -149,6 +185,19 @@ impl Builder {
         self
     }
 
+    /// A loading plate: all nodes of a group move alike, as if glued to a rigid plate that does not turn. What acts on one of them
+    /// acts on the plate.
+    pub fn plate(mut self, group: impl Into<String>) -> Self {
+        self.plates.push((group.into(), Plate::AsOne));
+        self
+    }
+
+    /// A loading plate that moves in another way than as one.
+    pub fn plate_that(mut self, group: impl Into<String>, moves: Plate) -> Self {
+        self.plates.push((group.into(), moves));
+        self
+    }
+
     /// A contact.
     pub fn contact(mut self, contact: Contact) -> Self {
         self.contacts.push(contact);
@@ -178,7 +227,19 @@ impl Builder {
         Self { newton, ..self }
     }
 
-    /// Time between the results of explicit steps; a hundredth of each unless given [T].
+    /// A point, or points along a line, at which motion, strain and stress are asked for.
+    pub fn probe(mut self, gauge: Gauge) -> Self {
+        self.gauges.push(gauge);
+        self
+    }
+
+    /// Times that increments end at, because fields are asked for then [T].
+    pub fn times(self, times: impl Into<Vec<f64>>) -> Self {
+        Self { times: times.into(), ..self }
+    }
+
+    /// Least time between two rows of the history of implicit steps, and the time between the results of explicit ones; all
+    /// increments, and a hundredth of each explicit step, unless given [T].
     pub fn interval(self, interval: f64) -> Self {
         Self { interval: Some(interval), ..self }
     }
@@ -190,6 +251,7 @@ impl Builder {
     pub fn build(mut self) -> Checked<Model> {
         self.check_names()?;
         let f_bar = self.settled()?;
+        section::check(&self.mesh)?;
         let (bodies, body_of_element) = body::bodies(std::mem::take(&mut self.bodies), &self.mesh)?;
         let solids = body::solids(&self.mesh, &bodies, &body_of_element, &f_bar)?;
         let mut model = Model {
@@ -199,6 +261,8 @@ impl Builder {
             mesh: self.mesh,
             bodies,
             ties: Ties::default(),
+            linkage: Linkage::default(),
+            plates: Vec::new(),
             point_masses: Vec::new(),
             body_of_element,
             solids,
@@ -210,58 +274,27 @@ impl Builder {
             newton: checks::checked_newton(self.newton)?,
             prestress: Vec::new(),
             interval: checks::checked_interval(self.interval)?,
+            times: Vec::new(),
+            probes: Vec::new(),
         };
         model.point_masses = body::point_masses(&self.point_masses, &model.mesh)?;
-        model.ties = periodic::ties(&self.periodic, &model.mesh)?;
+        model.plates = periodic::plates(&self.plates, &model.mesh)?;
+        model.ties = periodic::ties(&self.periodic, &model.plates, &model.mesh)?;
+        model.massless = pair::massless(&self.contacts, &model.mesh)?;
+        model.linkage = linkage::linkage(&self.plates, &self.steps, &model)?;
         model.contacts = self.contacts.iter().map(|contact| pair::pair(contact, &model)).collect::<Checked<_>>()?;
         model.methods = self.contacts.iter().map(|contact| pair::evaluation(contact, &model.mesh)).collect();
-        model.massless = pair::massless(&self.contacts, &model.mesh)?;
         model.prestress = initial::prestress(&self.contacts, &model);
         model.steps = schedule::steps(&self.steps, &model)?;
+        section::check_velocities("initial_velocity", &self.velocities, &model)?;
         model.initial_velocity = initial::velocities(&self.velocities, &self.point_masses, &model)?;
-        model.watch =
-            self.watch.iter().enumerate().map(|(k, name)| watched(&model, k, name)).collect::<Checked<_>>()?;
+        model.watch = groups::watched(&self.watch, &model)?;
+        model.times = checks::checked_times(self.times, &model.steps)?;
+        model.probes = probes::probes(&self.gauges, &model)?;
         checks::check_schemes(&self.contacts, &model)?;
+        checks::check_rows(&model)?;
+        quasi_dynamic::check(&model)?;
         supported::check(&self.steps, &model)?;
         Ok(model)
     }
-
-    /// Names must survive in results, and stand once.
-    fn check_names(&self) -> Checked<()> {
-        for (k, step) in self.steps.iter().enumerate() {
-            names::check_name(&format!("steps[{k}].name"), &step.name)?;
-        }
-        for contact in &self.contacts {
-            names::check_name("contacts", &contact.name)?;
-        }
-        names::check_watched(&self.watch)?;
-        names::check_once("contacts", self.contacts.iter().map(|contact| &contact.name))?;
-        names::check_once("bodies", self.bodies.iter().map(|body| &body.name))?;
-        names::check_once("point_masses", self.point_masses.iter().map(|mass| &mass.name))
-    }
-
-    /// Give the bodies what was said about them elsewhere; returns which of them take F-bar.
-    fn settled(&mut self) -> Checked<Vec<bool>> {
-        let known: Vec<String> = self.bodies.iter().map(|body| body.name.clone()).collect();
-        let number = |name: &String| {
-            known.iter().position(|known| known == name).ok_or_else(|| {
-                let message = format!("there is no body of this name; the bodies are {}", known.join(", "));
-                ModelError::new(format!("bodies.{name}"), message)
-            })
-        };
-        for (name, damping) in &self.damping {
-            self.bodies[number(name)?].damping = *damping;
-        }
-        for name in &self.f_bar {
-            self.bodies[number(name)?].f_bar = true;
-        }
-        Ok(self.bodies.iter().map(|body| body.f_bar).collect())
-    }
-}
-
-/// The reactions of copies are with the nodes they move with.
-fn watched(model: &Model, k: usize, name: &str) -> Checked<WatchedSet> {
-    let group = groups::group(&model.mesh, name, &format!("watch[{k}]"))?;
-    let nodes: BTreeSet<usize> = model.mesh.nodes_of(group).into_iter().map(|node| model.ties.original(node)).collect();
-    Ok(WatchedSet { name: name.into(), nodes: nodes.into_iter().collect() })
 }

@@ -1,9 +1,26 @@
 //! Names that go into the header and the rows of a CSV file, and names that may stand once only.
 
+use super::Builder;
 use super::error::{Checked, ModelError};
 
 /// Characters that would break a row apart, besides line breaks and other control characters.
 const BREAKING: [char; 2] = [',', '"'];
+
+impl Builder {
+    /// Names must survive in results, and stand once.
+    pub(super) fn check_names(&self) -> Checked<()> {
+        for (k, step) in self.steps.iter().enumerate() {
+            check_name(&format!("steps[{k}].name"), &step.name)?;
+        }
+        for contact in &self.contacts {
+            check_name("contacts", &contact.name)?;
+        }
+        check_watched(&self.watch)?;
+        check_once("contacts", self.contacts.iter().map(|contact| &contact.name))?;
+        check_once("bodies", self.bodies.iter().map(|body| &body.name))?;
+        check_once("point_masses", self.point_masses.iter().map(|mass| &mass.name))
+    }
+}
 
 /// A name by which results are found must survive in a CSV file.
 pub fn check_name(place: &str, name: &str) -> Checked<()> {

@@ -7,11 +7,17 @@ use super::error::{Checked, ModelError};
 use super::groups::{edges, group, node_lists};
 use super::limits::check_size;
 use super::penalty::{Penalty, depth_behind, penalty};
-use super::{initial, rigid};
+use super::radiation::radiation;
+use super::unseen::{modulus, unseen};
+use super::{fluid, initial, rigid};
 use crate::contact::master::Master;
 use crate::contact::mortar::{Mortar, mortar_points};
 use crate::contact::pair::{ContactPair, Reverse};
-use crate::contact::surface::{SlavePoint, Surface, gauss_points, in_order, lone_point, nodal_points};
+use crate::contact::surface::{
+    SlavePoint, Surface, gauss_points, in_order, lone_point, nodal_points, nodal_points_of_rings,
+};
+use crate::laws::friction::{FrictionLaw, Offset};
+use crate::laws::parameter::InvalidParameter;
 use crate::mesh::{Edge, Group, Mesh};
 use crate::model::Model;
 use crate::model::method::{Chosen, Method, choose};
@@ -25,26 +31,28 @@ pub fn pair(contact: &Contact, model: &Model) -> Checked<ContactPair> {
         points.iter_mut().flat_map(|point| &mut point.length).for_each(|length| length.factor *= surface.share());
     }
     let Penalty { alpha_n, alpha_t, compliance } = penalty(&place, contact, model)?;
-    if let Some(penetration) = contact.penetration.filter(|p| !(*p > 0.0 && p.is_finite())) {
-        let message = format!("is {penetration}: must be positive (leave it out for the plain penalty)");
-        return Err(ModelError::new(format!("{place}.normal.penetration"), message));
-    }
+    check_penetration(&place, contact, model)?;
     let laws = contact.friction.laws(&place, &mut points, &model.mesh, alpha_t)?;
+    let laws = laws.into_iter().map(|law| offset(law, contact, &place)).collect::<Checked<Vec<_>>>()?;
     for law in laws.iter().filter(|law| law.stiffness() > 0.0) {
         check_size(&format!("{place}.friction"), "alpha_t", law.stiffness())?;
     }
     let mut pair = ContactPair {
         name: contact.name.clone(),
         points,
-        master,
         mortar,
         alpha_n,
         compliance,
         penetration: contact.penetration,
+        radiation: radiation(&place, contact, model)?,
+        fluid: fluid::fluid(&place, contact)?,
         laws,
         initial: None,
+        unseen: unseen(contact, &master, model),
+        modulus: modulus(contact, model),
         reverse: reverse(contact, &model.mesh),
         small: None,
+        master,
     };
     if contact.small_sliding {
         if contact.is_own() {
@@ -54,14 +62,29 @@ pub fn pair(contact: &Contact, model: &Model) -> Checked<ContactPair> {
         }
         pair.slide_little(&model.mesh.undeformed());
     }
+    fluid::check(&pair, &place, model)?;
     start(&mut pair, contact, model, &place)?;
     Ok(pair)
+}
+
+/// A law with the dilatancy and the wear of the contact.
+fn offset(law: Box<dyn FrictionLaw>, contact: &Contact, place: &str) -> Checked<Box<dyn FrictionLaw>> {
+    let Contact { dilatancy, wear, .. } = *contact;
+    if dilatancy.is_none() && wear.is_none() {
+        return Ok(law);
+    }
+    match Offset::new(law, dilatancy, wear) {
+        Ok(law) => Ok(Box::new(law)),
+        Err(InvalidParameter { name, value, allowed }) => {
+            Err(ModelError::new(format!("{place}.{name}"), format!("is {value}: {allowed}")))
+        }
+    }
 }
 
 /// How the surfaces lie at the start: as they are, closed, or to be fitted.
 fn start(pair: &mut ContactPair, contact: &Contact, model: &Model, place: &str) -> Checked<()> {
     if let Some(initial) = &contact.initial {
-        initial::close(pair, initial, model, &format!("{place}.initial"))?;
+        initial::close(pair, (initial, &contact.slave), model, &format!("{place}.initial"))?;
     }
     if contact.shrink_fit {
         if contact.initial.is_some() {
@@ -71,6 +94,22 @@ fn start(pair: &mut ContactPair, contact: &Contact, model: &Model, place: &str) 
         pair.start_fitting(&model.mesh.undeformed());
     }
     Ok(())
+}
+
+/// Gaps are differences of positions and displacements; of these, round-off of the size of the model is left.
+const OF_SIZE: f64 = 8.0 * f64::EPSILON;
+
+fn check_penetration(place: &str, contact: &Contact, model: &Model) -> Checked<()> {
+    let Some(penetration) = contact.penetration else { return Ok(()) };
+    let least = OF_SIZE * model.mesh.diagonal();
+    let message = if !(penetration > 0.0 && penetration.is_finite()) {
+        format!("is {penetration}: must be positive (leave it out for the plain penalty)")
+    } else if penetration < least {
+        format!("is {penetration:e}: gaps of this model have round-off of {least:.1e}; allow more than that")
+    } else {
+        return Ok(());
+    };
+    Err(ModelError::new(format!("{place}.normal.penetration"), message))
 }
 
 /// Where a contact of edges is evaluated; that of a group of points is at the points.
@@ -125,6 +164,7 @@ fn slave_points(place: &str, contact: &Contact, mesh: &Mesh) -> Checked<(Vec<Sla
         return Err(ModelError::new(format!("{place}.points"), format!("is {points}: must be 2, 3 or 4")));
     }
     Ok(match method {
+        Method::NodeToSegment if mesh.section.is_axisymmetric() => (nodal_points_of_rings(&edges), None),
         Method::NodeToSegment => (nodal_points(&edges), None),
         Method::GaussToSegment => (gauss_points(&edges, points), None),
         Method::Mortar => {

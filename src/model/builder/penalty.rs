@@ -70,5 +70,5 @@ fn elastic_stiffness(place: &str, contact: &Contact, model: &Model) -> Checked<O
 /// Depth of the element behind an edge [L].
 pub fn depth_behind(edge: &Edge, model: &Model) -> f64 {
     let [a, b] = [0, 1].map(|end| model.mesh.nodes[edge.nodes[end]]);
-    model.solids[edge.element].volume() / (b - a).norm()
+    model.solids[edge.element].area() / (b - a).norm()
 }

@@ -1,20 +1,32 @@
-//! Periodic sides: which node is whose partner.
+//! Periodic sides and loading plates: which node moves with which.
 
 use nalgebra::Vector2;
 
 use super::error::ModelError;
+use super::plate::Plate;
 use crate::mesh::Mesh;
 use crate::mesh::ties::Ties;
 
 /// Partners may be off by this share of the distance between their sides.
 const ROUNDED: f64 = 1e-6;
 
-/// Ties between the nodes of pairs of sides.
-pub fn ties(periodic: &[[String; 2]], mesh: &Mesh) -> Result<Ties, ModelError> {
+/// The nodes of loading plates that move as one.
+pub fn plates(given: &[(String, Plate)], mesh: &Mesh) -> Result<Vec<Vec<usize>>, ModelError> {
+    let nodes = |(k, name): (usize, &String)| {
+        let group = mesh.group(name).map_err(|error| ModelError::new(format!("plates[{k}]"), error))?;
+        Ok(mesh.nodes_of(group))
+    };
+    let as_one = given.iter().enumerate().filter(|(_, (_, moves))| *moves == Plate::AsOne);
+    as_one.map(|(k, (name, _))| nodes((k, name))).collect()
+}
+
+/// Ties between the nodes of pairs of sides, and of plates.
+pub fn ties(periodic: &[[String; 2]], plates: &[Vec<usize>], mesh: &Mesh) -> Result<Ties, ModelError> {
     let mut joined = Vec::new();
     for (k, names) in periodic.iter().enumerate() {
         joined.extend(partners(names, mesh, &format!("periodic[{k}]"))?);
     }
+    joined.extend(plates.iter().flat_map(|nodes| nodes.windows(2).map(|pair| [pair[0], pair[1]])));
     Ok(Ties::new(mesh.nodes.len(), &joined))
 }
 
@@ -37,6 +49,9 @@ fn partners(names: &[String; 2], mesh: &Mesh, place: &str) -> Result<Vec<[usize;
         |nodes: &[usize]| nodes.iter().map(|&node| mesh.nodes[node]).sum::<Vector2<f64>>() / nodes.len() as f64;
     let period = middle(&second) - middle(&first);
     let near = ROUNDED * period.norm();
+    if mesh.section.is_axisymmetric() && period.x.abs() > near {
+        return Err(complain("the sides of axisymmetric bodies lie alike along y alone, the axis".into()));
+    }
     if let Some(shared) = first.iter().find(|node| second.binary_search(node).is_ok()) {
         let tag = mesh.node_tags[*shared];
         return Err(complain(format!("node {tag} is on both sides: periodic sides must have nodes of their own")));

@@ -14,6 +14,23 @@ pub type Share = (usize, f64, Vector2<f64>);
 
 /// Consistent nodal shares of a traction: ∫ N_a w |X'| dξ at the Gauss points.
 pub fn edge_shares(mesh: &Mesh, edges: &[Edge]) -> Vec<Share> {
+    along_edges(mesh, edges, |along| along.norm())
+}
+
+/// Those of a pressure along x and y: −∫ N_a w n̂ |X'| dξ with n̂ |X'| = (X'_y, −X'_x) out of the body, on the left of its edges.
+pub fn pressure_shares(mesh: &Mesh, edges: &[Edge]) -> [Vec<Share>; 2] {
+    [along_edges(mesh, edges, |along| -along.y), along_edges(mesh, edges, |along| along.x)]
+}
+
+/// Those of a force on all edges together, as an even traction: what a traction has, over ∫ w |X'| dξ.
+pub fn even_shares(mesh: &Mesh, edges: &[Edge]) -> Vec<Share> {
+    let shares = edge_shares(mesh, edges);
+    let total: f64 = shares.iter().map(|(_, share, _)| share).sum();
+    shares.into_iter().map(|(node, share, position)| (node, share / total, position)).collect()
+}
+
+/// ∫ N_a w f(X') dξ at the Gauss points.
+fn along_edges(mesh: &Mesh, edges: &[Edge], f: impl Fn(Vector2<f64>) -> f64) -> Vec<Share> {
     let mut shares = Vec::new();
     for Edge { nodes, .. } in edges {
         for (xi, weight) in shape::gauss(nodes.len()) {
@@ -23,7 +40,7 @@ pub fn edge_shares(mesh: &Mesh, edges: &[Edge]) -> Vec<Share> {
                 nodes.iter().zip(weights).map(|(&node, w)| mesh.nodes[node] * *w).sum::<Vector2<f64>>()
             };
             let position = sum(&values);
-            let stretch = sum(&slopes).norm() * mesh.section.weight(position);
+            let stretch = f(sum(&slopes)) * mesh.section.weight(position);
             shares.extend(nodes.iter().zip(&values).map(|(&node, n)| (node, weight * n * stretch, position)));
         }
     }

@@ -3,12 +3,13 @@
 
 use std::collections::BTreeSet;
 
-use nalgebra::{Matrix3, RowVector3, Vector2};
+use nalgebra::{Matrix3, RowVector3, Vector2, Vector3};
 
 use super::error::ModelError;
 use super::load_step::LoadStep;
 use crate::contact::master::Master;
 use crate::contact::surface::Surface;
+use crate::model::support::Direction;
 use crate::model::{Model, Step};
 
 /// Share of the stiffest rigid motion below which a motion counts as free.
@@ -35,7 +36,12 @@ fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Result<(), ModelErr
     // Whether contact holds a node that may part is left to the solver.
     let points = model.contacts.iter().flat_map(|pair| pair.points.iter().flat_map(|point| &point.position));
     points.for_each(|&(node, _)| held[2 * node..2 * node + 2].fill(true));
-    holding_dofs(step).for_each(|dof| held[dof] = true);
+    let follow = model.linkage.followers.iter().flat_map(|follower| follower.dofs());
+    follow.for_each(|(_, dof)| held[dof] = true);
+    for (node, d) in holding(step) {
+        // An inclined direction and what is across it are counted as the dofs that have their equations.
+        held[2 * node + usize::from(d.x.abs() < d.y.abs())] = true;
+    }
     match held.iter().position(|held| !held) {
         Some(dof) => Err(ModelError::new(
             format!("steps[{k}].supports"),
@@ -49,12 +55,13 @@ fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Result<(), ModelErr
     }
 }
 
-/// Dofs that supports, springs and dashpots hold.
-fn holding_dofs(step: &Step) -> impl Iterator<Item = usize> {
-    let supports = step.supports.iter().map(|support| support.dof);
+/// Nodes and directions that supports, springs and dashpots hold.
+fn holding(step: &Step) -> impl Iterator<Item = (usize, Vector2<f64>)> {
     let springs = step.loads.springs.iter().map(|spring| spring.dof);
     let absorbers = step.loads.absorbers.iter().flat_map(|absorber| [2 * absorber.node, 2 * absorber.node + 1]);
-    supports.chain(springs).chain(step.loads.dashpots.iter().map(|dashpot| dashpot.dof)).chain(absorbers)
+    let dofs = springs.chain(step.loads.dashpots.iter().map(|dashpot| dashpot.dof)).chain(absorbers);
+    let supports = step.supports.iter().map(|support| support.at);
+    supports.chain(dofs.map(Direction::from)).map(|at| (at.node(), at.vector()))
 }
 
 /// Accelerations follow from masses, so a node that may move needs one.
@@ -63,7 +70,7 @@ fn check_mass(k: usize, step: &Step, model: &Model) -> Result<(), ModelError> {
     let dense = model.bodies.iter().filter(|body| body.material.density() > 0.0).flat_map(|body| &body.nodes);
     let points = model.point_masses.iter().flat_map(|point| &point.nodes);
     dense.chain(points).for_each(|&node| carried[node] = true);
-    let prescribed = |dof: usize| step.supports.binary_search_by_key(&dof, |support| support.dof).is_ok();
+    let prescribed = |dof: usize| step.supports.binary_search_by_key(&dof, |support| support.at.dof).is_ok();
     let held = |node: usize| prescribed(2 * node) && prescribed(2 * node + 1);
     let massless = |node: &usize| !(carried[*node] || held(*node));
     let why = format!("the dynamic step `{}` (steps[{k}]) needs a mass", step.name);
@@ -131,13 +138,16 @@ fn free_motion(model: &Model, step: &Step, bodies: &[usize]) -> Option<String> {
     let centre = nodes.iter().map(|&n| model.mesh.nodes[n]).sum::<Vector2<f64>>() / nodes.len() as f64;
     let radius = nodes.iter().fold(f64::MIN_POSITIVE, |r, &n| r.max((model.mesh.nodes[n] - centre).norm()));
     let mut resistance = Matrix3::zeros();
-    for dof in holding_dofs(step) {
-        let node = dof / 2;
+    if model.mesh.section.is_axisymmetric() {
+        // Hoops resist all but the motion along the axis.
+        resistance = Matrix3::from_diagonal(&Vector3::new(1.0, 0.0, 1.0));
+    }
+    for (node, d) in holding(step) {
         if !bodies.iter().any(|&body| model.bodies[body].nodes.binary_search(&node).is_ok()) {
             continue;
         }
         let arm = (model.mesh.nodes[node] - centre) / radius;
-        let row = if dof % 2 == 0 { RowVector3::new(1.0, 0.0, -arm.y) } else { RowVector3::new(0.0, 1.0, arm.x) };
+        let row = RowVector3::new(d.x, d.y, d.y * arm.x - d.x * arm.y);
         resistance += row.transpose() * row;
     }
     // Periodic sides keep parallel.
@@ -145,6 +155,15 @@ fn free_motion(model: &Model, step: &Step, bodies: &[usize]) -> Option<String> {
         if [copy, original].iter().all(|node| nodes.contains(node)) {
             let apart = (model.mesh.nodes[copy] - model.mesh.nodes[original]).norm() / radius;
             resistance[(2, 2)] += apart * apart;
+        }
+    }
+    // Of plates that are alike in one component, the nodes keep their distance in it.
+    for follower in model.linkage.followers.iter().filter(|follower| follower.leaders.len() == 1) {
+        let leader = follower.leaders[0].0;
+        if [leader, follower.node].iter().all(|node| nodes.contains(node)) {
+            let apart = (model.mesh.nodes[follower.node] - model.mesh.nodes[leader]) / radius;
+            let turned = if follower.components[0] { apart.y } else { apart.x };
+            resistance[(2, 2)] += turned * turned;
         }
     }
     let eigen = resistance.symmetric_eigen();

@@ -26,11 +26,15 @@ impl SolidElement {
     pub fn evolve(
         &self,
         material: &dyn Material,
-        Memory { dt, old, new }: Memory,
+        memory: Memory,
         u: &[Vector2<f64>],
         force: &mut [f64],
         mut tangent: Option<&mut [f64]>,
     ) -> Result<[f64; 2], InvertedElement> {
+        if self.hoop.is_some() {
+            return self.ring(material, memory, u, force, tangent);
+        }
+        let Memory { dt, old, new } = memory;
         force.fill(0.0);
         if let Some(tangent) = tangent.as_deref_mut() {
             tangent.fill(0.0);
@@ -41,8 +45,7 @@ impl SolidElement {
             let deformation = deformation_gradient(gradients, u);
             let r = centre.as_ref().map_or(Ok(1.0), |centre| centre.stretch(&deformation))?;
             let own = k * count..(k + 1) * count;
-            let straining =
-                Straining { deformation: r * deformation, stretch: self.stretch, dt, old: &old[own.clone()] };
+            let straining = Straining { deformation: r * deformation, stretch: 1.0, dt, old: &old[own.clone()] };
             let Evolution { mut response, dissipation } = material.evolve(&straining, &mut new[own])?;
             response.stress /= r;
             energy += volume * response.energy;

@@ -1,17 +1,18 @@
 //! A solid element at large displacements: total Lagrangian, fully integrated, with F-bar for Q4.
 
 mod f_bar;
+mod geometry;
 mod memory;
+mod ring;
 mod stress;
 mod viscous;
 
 use nalgebra::{Matrix2, Matrix4, Vector2};
 
 pub use memory::Memory;
+use ring::Hoop;
 
-use super::{ElementError, gradients};
 use crate::laws::bulk::{InvertedElement, Material};
-use crate::mesh::section::Section;
 use crate::mesh::shape::ElementKind;
 
 /// A solid element: what its reference geometry says at the quadrature points.
@@ -37,7 +38,7 @@ use crate::mesh::shape::ElementKind;
 ///
 /// Source: de Souza Neto, Perić, Dutko & Owen (1996), Int. J. Solids Struct. 33, 3277,
 /// doi:10.1016/0020-7683(95)00259-6.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SolidElement {
     kind: ElementKind,
     /// ∂N_a/∂X of all nodes at the first quadrature point, then at the second, … [1/L]
@@ -46,71 +47,13 @@ pub struct SolidElement {
     volumes: Vec<f64>,
     /// Mean of w over the element
     mean_weight: f64,
-    /// F₃₃ of the section
-    stretch: f64,
     /// ∂N_a/∂X at the centre, for F-bar [1/L]
     centre: Option<Vec<Vector2<f64>>>,
+    /// Of rings, which are evaluated in a file of their own
+    hoop: Option<Hoop>,
 }
 
 impl SolidElement {
-    /// The element of `kind` on the reference `positions` of its nodes, in a section.
-    ///
-    /// # Errors
-    /// [`ElementError::Degenerate`] when det(∂X/∂ξ) is not positive at a quadrature point,
-    /// [`ElementError::FBarNeedsQ4`] when F-bar is asked of another kind.
-    pub fn new(
-        kind: ElementKind,
-        f_bar: bool,
-        section: Section,
-        positions: &[Vector2<f64>],
-    ) -> Result<Self, ElementError> {
-        debug_assert_eq!(positions.len(), kind.nodes());
-        if f_bar && kind != ElementKind::Q4 {
-            return Err(ElementError::FBarNeedsQ4 { kind });
-        }
-        let mut element = Self {
-            kind,
-            gradients: Vec::new(),
-            volumes: Vec::new(),
-            mean_weight: 1.0,
-            stretch: section.stretch(),
-            centre: None,
-        };
-        let mut area = 0.0;
-        for point in kind.quadrature() {
-            let (gradients, jacobian) = gradients(kind, point.at, positions)?;
-            element.gradients.extend(gradients);
-            let place = positions.iter().zip(kind.values(point.at)).map(|(x, n)| x * n).sum();
-            element.volumes.push(point.weight * jacobian * section.weight(place));
-            area += point.weight * jacobian;
-        }
-        element.mean_weight = element.volume() / area;
-        if f_bar {
-            element.centre = Some(gradients(kind, kind.centre(), positions)?.0);
-        }
-        Ok(element)
-    }
-
-    /// Whether it has the volume change of its centre everywhere.
-    pub fn is_f_bar(&self) -> bool {
-        self.centre.is_some()
-    }
-
-    /// Kind of the element.
-    pub fn kind(&self) -> ElementKind {
-        self.kind
-    }
-
-    /// Mean depth of the section over the element [-]
-    pub fn mean_weight(&self) -> f64 {
-        self.mean_weight
-    }
-
-    /// Reference volume: area times the mean depth of the section [L²]
-    pub fn volume(&self) -> f64 {
-        self.volumes.iter().sum()
-    }
-
     /// Writes the internal force (2) at nodal displacements `u` over `force`; returns the stored energy.
     ///
     /// # Errors
@@ -121,6 +64,9 @@ impl SolidElement {
         u: &[Vector2<f64>],
         force: &mut [f64],
     ) -> Result<f64, InvertedElement> {
+        if self.hoop.is_some() {
+            return self.ring_at_once(material, u, force, None);
+        }
         let mut forces = [Vector2::zeros(); 9];
         let energy = self.nodal_forces(material, u, &mut forces[..u.len()])?;
         force.chunks_exact_mut(2).zip(&forces).for_each(|(force, f)| force.copy_from_slice(f.as_slice()));
@@ -137,6 +83,12 @@ impl SolidElement {
         u: &[Vector2<f64>],
         forces: &mut [Vector2<f64>],
     ) -> Result<f64, InvertedElement> {
+        if self.hoop.is_some() {
+            let mut all = [0.0; 18];
+            let energy = self.ring_at_once(material, u, &mut all[..2 * u.len()], None)?;
+            forces.iter_mut().zip(all.chunks_exact(2)).for_each(|(force, own)| *force = Vector2::new(own[0], own[1]));
+            return Ok(energy);
+        }
         match self.kind {
             ElementKind::T3 => self.gathered::<3, 1>(material, u, forces),
             ElementKind::T6 => self.gathered::<6, 3>(material, u, forces),
@@ -196,6 +148,9 @@ impl SolidElement {
         force: &mut [f64],
         tangent: &mut [f64],
     ) -> Result<f64, InvertedElement> {
+        if self.hoop.is_some() {
+            return self.ring_at_once(material, u, force, Some(tangent));
+        }
         match self.kind {
             ElementKind::T3 => self.evaluate::<3>(material, u, force, tangent),
             ElementKind::T6 => self.evaluate::<6>(material, u, force, tangent),
@@ -203,11 +158,6 @@ impl SolidElement {
             ElementKind::Q8 => self.evaluate::<8>(material, u, force, tangent),
             ElementKind::Q9 => self.evaluate::<9>(material, u, force, tangent),
         }
-    }
-
-    /// Number of quadrature points.
-    pub fn quadrature_points(&self) -> usize {
-        self.volumes.len()
     }
 
     /// Force (2) and tangent (3). The number of nodes is known when this is compiled, so that the loops over them are

@@ -2,10 +2,11 @@
 
 use std::sync::OnceLock;
 
-use nalgebra::{DMatrix, Vector2};
+use nalgebra::{DMatrix, Matrix2, Vector2};
 
 use super::{SolidElement, deformation_gradient};
 use crate::laws::bulk::{CauchyStress, InvertedElement, Material};
+use crate::mesh::few::Few;
 use crate::mesh::shape::ElementKind;
 
 impl SolidElement {
@@ -18,7 +19,10 @@ impl SolidElement {
         material: &dyn Material,
         memory: &[f64],
         u: &[Vector2<f64>],
-    ) -> Result<Vec<CauchyStress>, InvertedElement> {
+    ) -> Result<Few<CauchyStress, 9>, InvertedElement> {
+        if self.hoop.is_some() {
+            return self.ring_stresses(material, memory, u);
+        }
         let (centre, count) = (self.centre(u)?, material.variables().len());
         self.points()
             .enumerate()
@@ -33,6 +37,29 @@ impl SolidElement {
             .collect()
     }
 
+    /// F at each quadrature point.
+    pub fn deformations(&self, u: &[Vector2<f64>]) -> Vec<Matrix2<f64>> {
+        self.points().map(|(gradients, _)| deformation_gradient(gradients, u)).collect()
+    }
+
+    /// F₃₃ at each quadrature point of a ring; none of other sections.
+    pub fn hoops(&self, u: &[Vector2<f64>]) -> Option<Vec<f64>> {
+        self.hoop.is_some().then(|| self.hoop_stretches(u))
+    }
+
+    /// The (bi)linear function nearest to values at the quadrature points, at the reference coordinates `at`.
+    pub fn fitted<const N: usize>(&self, values: &[[f64; N]], at: [f64; 2]) -> [f64; N] {
+        let fit = corner_fit(self.kind);
+        let corners = linear(self.kind).values(at);
+        let weight = |point: usize| corners.iter().enumerate().map(|(a, n)| n * fit[(a, point)]).sum::<f64>();
+        let mut sum = [0.0; N];
+        for (point, values) in values.iter().enumerate() {
+            let weight = weight(point);
+            sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
+        }
+        sum
+    }
+
     /// Cauchy stress at each node: the (bi)linear function nearest to the stresses at the quadrature points.
     ///
     /// # Errors
@@ -42,7 +69,7 @@ impl SolidElement {
         material: &dyn Material,
         memory: &[f64],
         u: &[Vector2<f64>],
-    ) -> Result<Vec<CauchyStress>, InvertedElement> {
+    ) -> Result<Few<CauchyStress, 9>, InvertedElement> {
         let stresses = self.stresses(material, memory, u)?;
         let fit = corner_fit(self.kind);
         let mut corners = [[0.0; 4]; 4];
@@ -58,14 +85,12 @@ impl SolidElement {
             CauchyStress { xx: mean(0), yy: mean(1), zz: mean(2), xy: mean(3) }
         };
         let n = self.kind.corners();
-        let mut nodal: Vec<_> = (0..n).map(|a| at(&[a])).collect();
-        if self.kind.nodes() > n {
-            nodal.extend((0..n).map(|edge| at(&self.kind.edge(edge).0)));
-        }
-        if self.kind == ElementKind::Q9 {
-            nodal.push(at(&[0, 1, 2, 3]));
-        }
-        Ok(nodal)
+        let node = |a: usize| match a {
+            8 => at(&[0, 1, 2, 3]),
+            a if a < n => at(&[a]),
+            a => at(&self.kind.edge(a - n).0),
+        };
+        Ok((0..self.kind.nodes()).map(node).collect())
     }
 }
 
@@ -73,10 +98,14 @@ impl SolidElement {
 fn corner_fit(kind: ElementKind) -> &'static DMatrix<f64> {
     static FITS: [OnceLock<DMatrix<f64>>; 5] = [const { OnceLock::new() }; 5];
     FITS[kind as usize].get_or_init(|| {
-        let linear = if kind.corners() == 3 { ElementKind::T3 } else { ElementKind::Q4 };
         let points = kind.quadrature();
-        let values = points.iter().flat_map(|point| linear.values(point.at));
+        let values = points.iter().flat_map(|point| linear(kind).values(point.at));
         let interpolation = DMatrix::from_row_iterator(points.len(), kind.corners(), values);
         interpolation.pseudo_inverse(1e-9).expect("1e-9 is not negative")
     })
+}
+
+/// The element with the same corners, and no other nodes.
+fn linear(kind: ElementKind) -> ElementKind {
+    if kind.corners() == 3 { ElementKind::T3 } else { ElementKind::Q4 }
 }

@@ -14,6 +14,9 @@ impl SolidElement {
         [u, v]: [&[Vector2<f64>]; 2],
         forces: &mut [Vector2<f64>],
     ) {
+        if self.hoop.is_some() {
+            return self.ring_viscous_forces((material, tau), [u, v], forces);
+        }
         forces.fill(Vector2::zeros());
         for (gradients, volume) in self.points() {
             let (deformation, rate) = (deformation_gradient(gradients, u), rate_gradient(gradients, v));
@@ -31,6 +34,9 @@ impl SolidElement {
         dvelocity: &[f64],
         tangent: &mut [f64],
     ) {
+        if self.hoop.is_some() {
+            return self.ring_viscous_tangent((material, tau), [u, v], dvelocity, tangent);
+        }
         tangent.fill(0.0);
         let n = 2 * u.len();
         for (gradients, volume) in self.points() {

@@ -1,0 +1,50 @@
+//! A panic is a defect of the program: it is told as one, with what to send, and nothing else is lost by it.
+
+use std::backtrace::{Backtrace, BacktraceStatus};
+use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
+use std::sync::Mutex;
+
+/// What panicked last, and where.
+static LAST: Mutex<Option<String>> = Mutex::new(None);
+
+/// Note panics instead of printing them.
+pub fn watch() {
+    panic::set_hook(Box::new(|panic| {
+        if let Ok(mut last) = LAST.lock() {
+            // What follows from the first one says less.
+            last.get_or_insert_with(|| described(panic));
+        }
+    }));
+}
+
+/// Do something that may turn out to be defective.
+///
+/// # Errors
+/// What panicked, and where, if [`watch`] was called.
+pub fn catch<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+    panic::catch_unwind(AssertUnwindSafe(work)).map_err(|payload| {
+        let noted = LAST.lock().ok().and_then(|mut last| last.take());
+        noted.unwrap_or_else(|| message(&*payload).into())
+    })
+}
+
+fn described(panic: &PanicHookInfo) -> String {
+    let place = panic.location().map_or_else(String::new, |place| format!(" at {place}"));
+    let trace = Backtrace::capture();
+    let trace = if trace.status() == BacktraceStatus::Captured { format!("\n{trace}") } else { String::new() };
+    format!("{}{place}{trace}", message(panic.payload()))
+}
+
+fn message(payload: &(dyn std::any::Any + Send)) -> &str {
+    let text = payload.downcast_ref::<&str>().copied();
+    text.or_else(|| payload.downcast_ref::<String>().map(String::as_str)).unwrap_or("it does not say why")
+}
+
+/// What the user is told.
+pub fn told(what: &str) -> String {
+    format!(
+        "defect: {what}\nThis is a defect of fecontact {}, not of your input. Please report it with this text, the command, the \
+         case file and its mesh; RUST_BACKTRACE=1 before the command adds where it came from. The results so far are kept.",
+        env!("CARGO_PKG_VERSION")
+    )
+}

@@ -1,0 +1,123 @@
+//! What happens between two increments: checkpoints, the end that a signal asks for, and whether the folder is still there.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use super::company::{Ends, Warn};
+use crate::case::again::Opened;
+use crate::model::Model;
+use crate::output::checkpoint::{self, Checkpoint, MeshPrint};
+use crate::output::lock::Lock;
+use crate::run::error::Error;
+use crate::run::observer::Observer;
+use crate::run::simulation::Pause;
+use crate::run::{Moment, RunBytes, SavedRun, Simulation};
+
+/// How often the folder is looked for.
+const LOOK: Duration = Duration::from_secs(1);
+
+/// When the next checkpoint is due; told to explicit increments, which pause for it.
+#[derive(Clone)]
+struct Due {
+    /// time between checkpoints; `None` for none
+    pause: Option<Duration>,
+    kept: Arc<Mutex<Instant>>,
+}
+
+impl Due {
+    fn is_now(&self) -> bool {
+        let kept = || self.kept.lock().unwrap_or_else(PoisonError::into_inner).elapsed();
+        self.pause.is_some_and(|pause| kept() >= pause)
+    }
+
+    fn restart(&self) {
+        *self.kept.lock().unwrap_or_else(PoisonError::into_inner) = Instant::now();
+    }
+}
+
+/// Keeps checkpoints.
+pub(super) struct Keeper {
+    folder: PathBuf,
+    due: Due,
+    ends: Ends,
+    warn: Warn,
+    looked: Instant,
+    case: String,
+    taken_over: usize,
+    mesh: MeshPrint,
+    /// why the last checkpoint could not be written, and when the first such was due
+    pub concern: Option<String>,
+}
+
+impl Keeper {
+    pub fn new(opened: &Opened, model: &Model, folder: &Path, warn: Warn, ends: Ends) -> Self {
+        let minutes = opened.case.output.checkpoint.filter(|minutes| *minutes > 0.0);
+        let pause = minutes.map(|minutes| Duration::try_from_secs_f64(60.0 * minutes).unwrap_or(Duration::MAX));
+        Self {
+            folder: folder.to_owned(),
+            due: Due { pause, kept: Arc::new(Mutex::new(Instant::now())) },
+            ends,
+            warn,
+            looked: Instant::now(),
+            case: opened.document.to_string(),
+            taken_over: opened.taken_over,
+            mesh: MeshPrint::of(&model.mesh),
+            concern: None,
+        }
+    }
+
+    /// When explicit increments are to pause: a checkpoint is due, or the end was asked for.
+    pub fn pause(&self) -> Pause {
+        let (ends, due) = (self.ends.clone(), self.due.clone());
+        Arc::new(move || ends().is_some() || due.is_now())
+    }
+
+    /// Before every attempt, after the last one, and where one stops the run.
+    pub fn look(
+        &mut self,
+        (simulation, observers): (&Simulation, &mut [&mut dyn Observer]),
+        moment: Moment,
+        lock: &Lock,
+    ) -> Result<(), Error> {
+        if self.looked.elapsed() >= LOOK {
+            self.looked = Instant::now();
+            if !lock.is_there() {
+                let cause = "the folder, or the lock in it, was taken away while the run went on".into();
+                return Err(Error::Output { path: self.folder.clone(), cause });
+            }
+        }
+        let ended = (self.ends)().filter(|_| !simulation.is_complete());
+        let ends = ended.is_some() || simulation.is_complete() || moment == Moment::Stops;
+        if self.due.pause.is_some() && (ends || self.due.is_now()) {
+            self.keep(simulation, observers)?;
+        }
+        match ended {
+            Some(ended) if moment == Moment::Between => Err(ended),
+            _ => Ok(()),
+        }
+    }
+
+    /// Write a checkpoint. A run that cannot keep one goes on all the same, and says so.
+    fn keep(&mut self, simulation: &Simulation, observers: &mut [&mut dyn Observer]) -> Result<(), Error> {
+        let saved = SavedRun::new(simulation, observers)?;
+        let (begun, complete) = (saved.simulation().begun(), saved.simulation().is_complete());
+        let written =
+            saved.bytes().and_then(|run| checkpoint::write(&self.folder, &self.checkpoint(begun, complete, run)));
+        if let Err(error) = written
+            && self.concern.is_none()
+        {
+            let concern = format!("no checkpoint at t = {}: {error}; the run goes on", simulation.state().time);
+            (self.warn)(&concern);
+            self.concern = Some(concern);
+        }
+        self.due.restart();
+        Ok(())
+    }
+
+    fn checkpoint(&self, begun: usize, complete: bool, run: RunBytes) -> Checkpoint {
+        let Self { case, taken_over, mesh, .. } = self;
+        let (case, program) = (case.clone(), env!("CARGO_PKG_VERSION").into());
+        Checkpoint { program, case, taken_over: *taken_over, begun, complete, mesh: *mesh, run }
+    }
+}

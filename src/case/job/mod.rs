@@ -1,0 +1,228 @@
+//! A case run into a folder of results: from its beginning, from the end of another, or from its last checkpoint.
+//!
+//! [`Job::open`] reads, checks and locks the folder; [`Job::run`] solves and leaves results behind however it ends. Who asked for
+//! it hears warnings, shows progress and may end it ([`Company`]).
+
+mod aloud;
+mod company;
+pub mod defect;
+mod keeper;
+mod outputs;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use thiserror::Error;
+
+use self::aloud::Aloud;
+pub use self::company::{Company, Ends, Warn};
+use self::keeper::Keeper;
+use self::outputs::{Outputs, files};
+use super::report::understood;
+use super::{CaseError, Opened};
+use crate::model::Model;
+use crate::output::checkpoint::{self, Checkpoint};
+use crate::output::folder::Folder;
+use crate::output::fronts::Fronts;
+use crate::output::summary::{self, About, Ending, Summary};
+use crate::output::wave_speeds;
+use crate::run::error::Error;
+use crate::run::report::RunReport;
+use crate::run::{SavedRun, Simulation, watch_with};
+
+/// Why a job cannot begin; nothing was written.
+#[derive(Debug, Error)]
+pub enum Refused {
+    /// The case is bad.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// Results cannot go there.
+    #[error("{}: --out: {}", .0.display(), .1)]
+    Folder(PathBuf, String),
+    /// There is nothing to go on from.
+    #[error("{}: --resume: {}", .0.display(), .1)]
+    Checkpoint(PathBuf, checkpoint::Unusable),
+    /// What is there cannot be gone on with.
+    #[error(transparent)]
+    Run(#[from] Error),
+}
+
+/// Why a job did not come to its end; what it has found is kept.
+#[derive(Debug)]
+pub enum Failed {
+    /// It stopped.
+    Stopped(Error),
+    /// The program itself is wrong.
+    Defect(String),
+}
+
+/// A case, checked, with the folder of its results locked.
+pub struct Job {
+    /// the case
+    pub opened: Opened,
+    /// its model
+    pub model: Arc<Model>,
+    /// where results go
+    pub folder: Folder,
+    /// from where it begins, unless at the beginning
+    pub saved: Option<SavedRun>,
+    /// what was wrong with a newer checkpoint
+    pub damage: Option<String>,
+}
+
+/// What became of a job.
+pub struct Outcome {
+    /// as in `summary.json`
+    pub summary: Summary,
+    /// the most energy that there was [F·L]
+    pub supplied: f64,
+    /// how it ended
+    pub ended: Result<(), Failed>,
+    /// whether the summary could be written
+    pub written: Result<(), Error>,
+}
+
+impl Outcome {
+    /// Whether the results can be read again.
+    pub fn is_readable(&self) -> bool {
+        let full = matches!(&self.ended, Err(Failed::Stopped(Error::Output { .. }) | Failed::Defect(_)));
+        !full && self.written.is_ok()
+    }
+}
+
+/// A case with the last checkpoint of the folder of its results, and what was wrong with a newer one; `warn` is told where
+/// another version has written it.
+///
+/// # Errors
+/// [`Refused`].
+pub fn last(
+    folder: &Path,
+    open: impl FnOnce(Checkpoint) -> Result<Opened, CaseError>,
+    warn: &dyn Fn(&str),
+) -> Result<(Opened, Option<String>), Refused> {
+    let (checkpoint, damage) = checkpoint::newest(folder).map_err(|(file, why)| Refused::Checkpoint(file, why))?;
+    let Checkpoint { program, .. } = &checkpoint;
+    if program != env!("CARGO_PKG_VERSION") {
+        warn(&format!(
+            "the checkpoint is of version {program}: the last digits may differ from those of a run in one go"
+        ));
+    }
+    Ok((open(checkpoint)?, damage))
+}
+
+impl Job {
+    /// Build the model of a case, and lock the folder of its results.
+    ///
+    /// # Errors
+    /// [`Refused`].
+    pub fn open(mut opened: Opened, damage: Option<String>, place: &Path) -> Result<Self, Refused> {
+        let (model, saved) = opened.build()?;
+        let inputs: Vec<PathBuf> = opened.inputs.iter().cloned().chain([opened.path.clone()]).collect();
+        let outputs = files(&opened.case, &model);
+        let folder = Folder::claim(place, &inputs, &outputs, opened.resumes());
+        let folder = folder.map_err(|(path, cause)| Refused::Folder(path, cause))?;
+        Ok(Self { opened, model, folder, saved, damage })
+    }
+
+    /// Run it.
+    ///
+    /// # Errors
+    /// [`Refused::Run`] where it cannot go on from its checkpoint; nothing has changed then.
+    pub fn run(&mut self, company: Company) -> Result<Outcome, Refused> {
+        let about = self.about();
+        let Self { opened, model, folder, saved, damage } = self;
+        let summary = |ending, report, warnings| Summary::new(ending, about.clone(), model, report, warnings);
+        let first = summary(Ending::running(&folder.files), RunReport::default(), model.warnings());
+        let mut work = Work { simulation: None, warnings: Vec::new(), chatter: None, supplied: 0.0 };
+        let result = defect::catch(|| work.go(opened, model, folder, saved.take(), &first, company));
+        let result = match (result, opened.resumes(), &work.simulation) {
+            (Ok(Err(error)), true, None) => return Err(error.into()),
+            (result, ..) => result,
+        };
+        folder.forget_what_never_came();
+        let ending = match &result {
+            Ok(result) => Ending::new(result.as_ref().err(), &folder.files),
+            Err(defect) => Ending::defect(defect, &folder.files),
+        };
+        if let Ok(result) = &result {
+            folder.make_room_after(result);
+        }
+        let report = work.simulation.map(|simulation| simulation.report()).unwrap_or_default();
+        work.warnings.extend(damage.take().map(|damage| format!("{damage}; the checkpoint before it was taken")));
+        let last = Summary { chatter: work.chatter, ..summary(ending, report, work.warnings) };
+        let written = summary::write(&last, &folder.path);
+        let ended = result.map_err(Failed::Defect).and_then(|ended| ended.map_err(Failed::Stopped));
+        Ok(Outcome { summary: last, supplied: work.supplied, ended, written })
+    }
+
+    /// What readers of the results need to know of the case.
+    fn about(&self) -> About {
+        let Opened { case, path, .. } = &self.opened;
+        About {
+            case: path.display().to_string(),
+            title: case.title.clone(),
+            section: Some(self.model.mesh.section.to_string()),
+            units: case.units.clone(),
+            friction: case.contacts.iter().map(|(name, contact)| (name.clone(), contact.friction.clone())).collect(),
+            wave_speeds: wave_speeds::wave_speeds(&self.model),
+            front_slip_rate: case.output.fronts.map(|fronts| fronts.slip_rate),
+            understood: understood(case, &self.model),
+        }
+    }
+}
+
+/// What is left of a run however it ends.
+struct Work {
+    /// `None` until it has begun
+    simulation: Option<Simulation>,
+    warnings: Vec<String>,
+    /// restarts of slip, if the case asks for fronts
+    chatter: Option<BTreeMap<String, f64>>,
+    /// the most energy that there was [F·L]
+    supplied: f64,
+}
+
+impl Work {
+    /// Begin or go on, to the end.
+    fn go(
+        &mut self,
+        opened: &Opened,
+        model: &Arc<Model>,
+        folder: &Folder,
+        saved: Option<SavedRun>,
+        first: &Summary,
+        Company { warn, ends, mut progress }: Company,
+    ) -> Result<(), Error> {
+        let resumes = opened.resumes();
+        let mut keeper = Keeper::new(opened, model, &folder.path, warn.clone(), ends);
+        // The summary tells whose the files are, and so it comes first; that of a run taken up is true until it goes on.
+        if !resumes {
+            summary::write(first, &folder.path)?;
+        }
+        let aloud = Aloud::new(model.warnings(), warn);
+        let mut outputs = Outputs::open(&folder.path, model, &opened.case, saved.as_ref(), aloud)?;
+        let mut observers = outputs.observers();
+        if let Some(progress) = &mut progress {
+            observers.push(&mut **progress);
+        }
+        let simulation = match saved {
+            Some(saved) => saved.resume(model, &mut observers)?,
+            None => Simulation::new(model.clone()),
+        };
+        let simulation = self.simulation.insert(simulation);
+        simulation.pause_when(keeper.pause());
+        if resumes {
+            summary::write(first, &folder.path)?;
+        }
+        let result = watch_with(simulation, &mut observers, &mut |simulation, observers, moment| {
+            keeper.look((simulation, observers), moment, &folder.lock)
+        });
+        drop(observers);
+        self.chatter = outputs.fronts.as_ref().map(Fronts::chatter);
+        self.supplied = outputs.aloud.warnings.audit.supplied;
+        self.warnings = std::mem::take(&mut outputs.aloud.warnings.list);
+        self.warnings.extend(keeper.concern);
+        result
+    }
+}

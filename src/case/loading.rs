@@ -1,0 +1,73 @@
+//! Loads as written, given between two increments of a run.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::error::{CaseError, Checked, Complaint};
+use super::file::{Case, LoadInput};
+use super::read;
+use super::translate;
+use crate::model::boundary::Span;
+use crate::model::builder::LoadsInForce;
+use crate::run::Simulation;
+
+/// The loads of a step under way, which its caller changes.
+#[derive(Clone)]
+pub struct Loading {
+    /// number of the step
+    step: usize,
+    in_force: LoadsInForce,
+}
+
+impl Loading {
+    /// The loads of a case in the step under way of its run, with what the caller has changed in it `before`.
+    fn of(case: &Case, simulation: &Simulation, before: Option<&Self>) -> Checked<Self> {
+        let model = simulation.model();
+        if simulation.has_ended_early() {
+            let message = "cannot be given after a step that `until` has ended before its time: give it in the steps";
+            return Err(Complaint::new("load", message));
+        }
+        let step = simulation.step_number();
+        if let Some(before) = before.filter(|before| before.step == step) {
+            return Ok(before.clone());
+        }
+        let given = case.steps.iter().enumerate();
+        let given: Checked<Vec<_>> = given.map(|(k, input)| translate::step(&format!("steps[{k}]"), input)).collect();
+        Ok(Self { step, in_force: LoadsInForce::of_step(step, &given?, model)? })
+    }
+}
+
+/// Give a load anew from now on, as a step would that begins now and ends at the time `by`; at once where that is now. It holds to
+/// the end of the step under way. `loading` is what was changed in it before.
+///
+/// # Errors
+/// [`CaseError`], with the place within the load.
+pub fn load(
+    (case, path): (&Case, &Path),
+    simulation: &mut Simulation,
+    loading: &mut Option<Loading>,
+    (document, by): (&Value, f64),
+) -> Result<(), CaseError> {
+    changed(case, simulation, loading, (document, by)).map_err(|complaint| complaint.in_file(path))
+}
+
+fn changed(
+    case: &Case,
+    simulation: &mut Simulation,
+    loading: &mut Option<Loading>,
+    (document, by): (&Value, f64),
+) -> Checked<()> {
+    let now = simulation.state().time;
+    if !(by >= now && by.is_finite()) {
+        return Err(Complaint::new("by", format!("is {by}: must be a time from now on, and now is {now}")));
+    }
+    let input: LoadInput = read::input(document)?;
+    let load = translate::load("load", &input)?;
+    let mut changed = Loading::of(case, simulation, loading.as_ref())?;
+    changed.in_force.change_within(&load, "load", Span { start: now, end: by }, simulation.model())?;
+    let loads = changed.in_force.all();
+    simulation.change(|step| step.loads = loads.clone());
+    *loading = Some(changed);
+    Ok(())
+}

@@ -1,0 +1,151 @@
+//! Whether bodies that are stressed at the start are at rest there.
+//!
+//! ```text
+//! r = f(σ₀) − loads − contact        at u = 0 and the start of the first step, where no support holds
+//! ```
+//! f(σ₀) are the forces of the initial stress, contact those of initial tractions and fluids. What of r is left sets the bodies in
+//! motion, or is taken up by them in the first static increment.
+
+use nalgebra::Vector2;
+
+use super::boundary::Loads;
+use super::element::Memory;
+use super::element::pressure::follower_pressure;
+use super::told::number;
+use super::{Body, Model, Step};
+
+/// Share of the forces on a body out of balance that is worth a word. Stresses and weights are written with a few digits.
+const OUT_OF_BALANCE: f64 = 1e-6;
+
+/// Share of a resultant that is round-off.
+const ROUND_OFF: f64 = 1e-9;
+
+/// Forces on every dof, and the sum of the magnitudes of their parts [F].
+struct Forces {
+    sum: Vec<f64>,
+    magnitude: Vec<f64>,
+}
+
+impl Forces {
+    fn add(&mut self, node: usize, force: Vector2<f64>) {
+        for i in 0..2 {
+            self.sum[2 * node + i] += force[i];
+            self.magnitude[2 * node + i] += force[i].abs();
+        }
+    }
+}
+
+/// What is out of balance on a body: the resultant, and the share of the forces at work.
+struct Imbalance {
+    resultant: Vector2<f64>,
+    share: f64,
+}
+
+/// What is to be said of each body whose initial stress is out of balance.
+pub(super) fn concerns(model: &Model) -> Vec<String> {
+    let stressed = || model.bodies.iter().filter(|body| body.initial_stress.is_some());
+    let Some(step) = model.steps.first().filter(|_| stressed().next().is_some()) else { return Vec::new() };
+    let [start, end] = [step.span.start, step.span.end].map(|time| forces(model, step, time));
+    let concern = |body: &Body| {
+        let found = imbalance(model, step, &start, body);
+        let later = imbalance(model, step, &end, body);
+        (found.share > OUT_OF_BALANCE).then(|| told(body, &found, &later, step))
+    };
+    stressed().filter_map(concern).collect()
+}
+
+fn told(body: &Body, found: &Imbalance, later: &Imbalance, step: &Step) -> String {
+    let rounded = |force: f64| if force.abs() < ROUND_OFF * found.resultant.norm() { 0.0 } else { force };
+    let [x, y, percent] = [rounded(found.resultant.x), rounded(found.resultant.y), 100.0 * found.share].map(number);
+    let cure = match later.share <= OUT_OF_BALANCE {
+        true => format!(
+            "it would be balanced at the end of the step `{}`, whose loads grow from zero: give them as expressions, such as \
+             \"-9.81\" for a gravity, which act from the start",
+            step.name
+        ),
+        false => "check initial_stress against gravity and the density, loads on free sides, and what contacts carry at the start \
+                  (initial, with of_bodies), or let it settle in a static step"
+            .into(),
+    };
+    format!(
+        "body `{}` is not at rest under its initial stress: {percent} % of the forces at work are out of balance, with the \
+         resultant ({x}, {y}); {cure}",
+        body.name
+    )
+}
+
+/// Forces of the bodies' initial stress, less what acts on them, at a time of the first step.
+fn forces(model: &Model, step: &Step, time: f64) -> Forces {
+    let mut forces = Forces { sum: vec![0.0; model.dofs()], magnitude: vec![0.0; model.dofs()] };
+    let (old, memories) = (model.initial_memory(), model.memories());
+    for (e, own) in memories.into_iter().enumerate() {
+        let body = &model.bodies[model.body_of_element[e]];
+        if body.initial_stress.is_none() {
+            continue;
+        }
+        let (old, nodes) = (&old[own], &model.mesh.elements[e].nodes);
+        let (mut new, mut force) = (old.to_vec(), vec![0.0; 2 * nodes.len()]);
+        let memory = Memory { dt: 0.0, old, new: &mut new };
+        let still = vec![Vector2::zeros(); nodes.len()];
+        // The undeformed body has an answer.
+        let _ = model.solids[e].evolve(&*body.material, memory, &still, &mut force, None);
+        nodes.iter().zip(force.chunks_exact(2)).for_each(|(&node, f)| forces.add(node, Vector2::new(f[0], f[1])));
+    }
+    add_loads(model, &step.loads, time, &mut forces);
+    let undeformed = model.mesh.undeformed();
+    for (node, force) in model.contacts.iter().flat_map(|pair| pair.initial_forces(&undeformed)) {
+        forces.add(node, -force);
+    }
+    for (node, force) in model.prestress.chunks_exact(2).enumerate() {
+        forces.add(node, -Vector2::new(force[0], force[1]));
+    }
+    model.ties.gather(2, &mut forces.sum);
+    model.ties.gather(2, &mut forces.magnitude);
+    forces
+}
+
+fn add_loads(model: &Model, loads: &Loads, time: f64, forces: &mut Forces) {
+    for load in &loads.dead {
+        for &(node, weight, position) in &load.shares {
+            let mut force = Vector2::zeros();
+            force[load.component] = -weight * load.amplitude.value(position, time);
+            forces.add(node, force);
+        }
+    }
+    let x = model.mesh.undeformed();
+    for (load, edge) in loads.pressures.iter().flat_map(|load| load.edges.iter().map(move |edge| (load, edge))) {
+        let middle = edge.iter().map(|&node| model.mesh.nodes[node]).sum::<Vector2<f64>>() / edge.len() as f64;
+        let pressure = follower_pressure(edge, load.amplitude.value(middle, time), &x);
+        for (a, &node) in edge.iter().enumerate() {
+            forces.add(node, Vector2::new(pressure.force[2 * a], pressure.force[2 * a + 1]));
+        }
+    }
+    for spring in &loads.springs {
+        let driver = spring.driver.as_ref().map_or(0.0, |d| d.value(model.mesh.nodes[spring.dof / 2], time));
+        let mut force = Vector2::zeros();
+        force[spring.dof % 2] = -spring.stiffness * driver;
+        forces.add(spring.dof / 2, force);
+    }
+}
+
+/// What of the forces on the free dofs of a body is out of balance.
+fn imbalance(model: &Model, step: &Step, forces: &Forces, body: &Body) -> Imbalance {
+    let (mut resultant, mut square, mut all) = (Vector2::zeros(), 0.0, 0.0);
+    let mut nodes: Vec<usize> = body.nodes.iter().map(|&node| model.ties.original(node)).collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    for node in nodes {
+        let mut free = Vector2::new(forces.sum[2 * node], forces.sum[2 * node + 1]);
+        for dof in [2 * node, 2 * node + 1] {
+            all += forces.magnitude[dof].powi(2);
+            if let Ok(k) = step.supports.binary_search_by_key(&dof, |support| support.at.dof) {
+                let held = step.supports[k].at.vector();
+                free -= held * held.dot(&free);
+            }
+        }
+        resultant += free;
+        square += free.norm_squared();
+    }
+    let share = if square > 0.0 { (square / all).sqrt() } else { 0.0 };
+    Imbalance { resultant: -resultant, share }
+}

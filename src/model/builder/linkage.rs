@@ -1,0 +1,133 @@
+//! Plates that turn, or of which one component is alike.
+
+use std::collections::BTreeSet;
+
+use nalgebra::Matrix2;
+
+use super::error::{Checked, ModelError};
+use super::groups::{Place, group, nodes_at};
+use super::load_step::{LoadStep, Support};
+use super::plate::Plate;
+use crate::mesh::Mesh;
+use crate::model::Model;
+use crate::model::linkage::{Linkage, alike, rigid};
+
+/// The nodes of plates that follow others.
+pub fn linkage(given: &[(String, Plate)], steps: &[LoadStep], model: &Model) -> Checked<Linkage> {
+    let mesh = &model.mesh;
+    let pairs = model.ties.pairs();
+    let tied = |node: usize| pairs.iter().any(|&(copy, original)| copy == node || original == node);
+    let mut linkage = Linkage::default();
+    let mut seen: BTreeSet<(usize, usize)> = BTreeSet::new();
+    for (k, (name, plate)) in given.iter().enumerate() {
+        let components = match plate {
+            Plate::AsOne => continue,
+            Plate::UxAlike => [true, false],
+            Plate::UyAlike => [false, true],
+            Plate::Rigid => [true, true],
+        };
+        let place = format!("plates[{k}]");
+        let refused = |message: String| Err(ModelError::new(&place, message));
+        let nodes = mesh.nodes_of(group(mesh, name, &place)?);
+        let dofs = || nodes.iter().flat_map(|node| (0..2).filter(|i| components[*i]).map(|i| (*node, i)));
+        if let Some((node, _)) = dofs().find(|dof| tied(dof.0) || seen.contains(dof)) {
+            return refused(format!(
+                "node {} moves with others already, a periodic side or another plate: leave it out of one of the two",
+                mesh.node_tags[node]
+            ));
+        }
+        seen.extend(dofs());
+        if mesh.section.is_axisymmetric() && components[0] {
+            return refused(
+                "x is the radius of axisymmetric bodies: plates there are alike in uy, or move as one".into(),
+            );
+        }
+        match plate {
+            Plate::Rigid => {
+                let leaders = leaders(&nodes, steps, mesh, &place)?;
+                linkage.followers.extend(rigid(&nodes, leaders, |node| mesh.nodes[node]));
+                linkage.rigid.push(leaders);
+            }
+            _ => linkage.followers.extend(alike(&nodes, usize::from(components[1]))),
+        }
+        linkage.plates.push((nodes, components));
+    }
+    linkage.followers.sort_by_key(|follower| follower.node);
+    linkage.centers = centers(&linkage, model);
+    Ok(linkage)
+}
+
+/// G of the centers of mass of rigid plates. A node has the sum of its row of the mass matrix: with these shares the momentum of a
+/// body is that of its nodes.
+fn centers(linkage: &Linkage, model: &Model) -> Vec<Matrix2<f64>> {
+    let mut mass = vec![0.0; model.mesh.nodes.len()];
+    if !linkage.rigid.is_empty() {
+        for (e, element) in model.mesh.elements.iter().enumerate() {
+            let sums = model.element_mass(e).column_sum();
+            element.nodes.iter().zip(&sums).for_each(|(&node, share)| mass[node] += share);
+        }
+        model.point_masses.iter().for_each(|point| point.nodes.iter().for_each(|&node| mass[node] += point.mass));
+    }
+    let center = |&[a, b]: &[usize; 2]| {
+        let own = || linkage.turning().filter(|follower| follower.leaders[0].0 == a);
+        let moment = own().fold(Matrix2::identity() * mass[b], |sum, f| sum + f.leaders[1].1 * mass[f.node]);
+        let total = mass[a] + mass[b] + own().map(|follower| mass[follower.node]).sum::<f64>();
+        if total > 0.0 { moment / total } else { Matrix2::zeros() }
+    };
+    linkage.rigid.iter().map(center).collect()
+}
+
+/// A and B of the rigid plate that a moment acts on.
+pub fn plate_of_moment(model: &Model, on: &Place, place: &str) -> Checked<[usize; 2]> {
+    let nodes = nodes_at(&model.mesh, on, &format!("{place}.on"))?;
+    let is_plate = model.linkage.plates.iter().any(|(plate, components)| *components == [true; 2] && *plate == nodes);
+    let leaders = model.linkage.rigid.iter().find(|plate| plate.iter().all(|node| nodes.contains(node)));
+    leaders.filter(|_| is_plate).copied().ok_or_else(|| {
+        let message =
+            format!("{on} is no plate that turns, on which a moment acts: give it in plates, moving as rigid");
+        ModelError::new(format!("{place}.on"), message)
+    })
+}
+
+/// The node by which a rigid plate is held, or its first one, and the one farthest from it.
+fn leaders(nodes: &[usize], steps: &[LoadStep], mesh: &Mesh, place: &str) -> Checked<[usize; 2]> {
+    let mut held = BTreeSet::new();
+    for support in steps.iter().flat_map(|step| &step.supports) {
+        let on: BTreeSet<usize> = nodes_at(mesh, &support.on, place)?.into_iter().collect();
+        held.extend(nodes.iter().copied().filter(|node| on.contains(node)));
+    }
+    if held.len() > 1 {
+        let tags: Vec<u64> = held.iter().take(2).map(|node| mesh.node_tags[*node]).collect();
+        let message = format!(
+            "turns, but supports hold more than one of its nodes, {} and {}: hold it by one, load it by forces, springs and a \
+             moment, or prescribe the rotation of the side and leave the plate out",
+            tags[0], tags[1]
+        );
+        return Err(ModelError::new(place, message));
+    }
+    let (Some(&first), Some(&last)) = (nodes.first(), nodes.last()) else {
+        return Err(ModelError::new(place, "has no nodes"));
+    };
+    let a = held.first().copied().unwrap_or(first);
+    let distance = |node: usize| (mesh.nodes[node] - mesh.nodes[a]).norm();
+    let b = nodes.iter().copied().fold(last, |b, node| if distance(node) > distance(b) { node } else { b });
+    match distance(b) > 0.0 {
+        true => Ok([a, b]),
+        false => Err(ModelError::new(place, "is one point, which does not turn: leave it out")),
+    }
+}
+
+/// Whether a support can be on nodes of plates that follow others.
+pub fn check_support(support: &Support, nodes: &[usize], model: &Model, place: &str) -> Checked<()> {
+    let inclined = support.along.is_some() || support.un.is_some();
+    for (plate, components) in &model.linkage.plates {
+        let Some(node) = nodes.iter().find(|node| plate.binary_search(node).is_ok()) else { continue };
+        let tag = model.mesh.node_tags[*node];
+        let whole = components[0] && components[1];
+        if support.rotation.is_some() || inclined && !whole {
+            let message = format!("node {tag} is one of a plate that moves alike: give ux and uy");
+            return Err(ModelError::new(place, message));
+        }
+    }
+    Ok(())
+}

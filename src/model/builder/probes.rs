@@ -1,0 +1,172 @@
+//! Probes: from places to elements.
+
+use std::collections::BTreeSet;
+
+use nalgebra::{Matrix2, Vector2};
+
+use super::error::{Checked, ModelError};
+use super::names;
+use crate::mesh::shape::ElementKind;
+use crate::model::Model;
+use crate::model::probe::Probe;
+
+/// A point, or points along a line, at which motion, strain and stress are asked for; places are undeformed ones.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gauge {
+    /// name in results
+    name: String,
+    /// the points: one, or both ends and how many from one to the other
+    places: Places,
+    /// the body, where bodies touch
+    body: Option<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Places {
+    One([f64; 2]),
+    Line { from: [f64; 2], to: [f64; 2], number: usize },
+}
+
+/// How far outside of an element round-off may put a point, in its coordinates.
+const OUTSIDE: f64 = 1e-6;
+
+/// Newton iterations from a place to its coordinates.
+const ITERATIONS: usize = 30;
+
+/// Share of its size by which a curved side may lie outside of the box of an element's nodes.
+const BULGE: f64 = 0.3;
+
+/// Points of a line at most.
+const MOST: usize = 100_000;
+
+impl Gauge {
+    /// A point.
+    pub fn at(name: impl Into<String>, place: [f64; 2]) -> Self {
+        Self { name: name.into(), places: Places::One(place), body: None }
+    }
+
+    /// Points at equal distances from one place to another, both included; the k-th is called `name.k`, from 1.
+    pub fn line(name: impl Into<String>, from: [f64; 2], to: [f64; 2], number: usize) -> Self {
+        Self { name: name.into(), places: Places::Line { from, to, number }, body: None }
+    }
+
+    /// The body it is in, for places where two bodies touch.
+    #[must_use]
+    pub fn of(self, body: impl Into<String>) -> Self {
+        Self { body: Some(body.into()), ..self }
+    }
+
+    /// Names and places of all points.
+    fn points(&self) -> Checked<Vec<(String, Vector2<f64>)>> {
+        let Places::Line { from, to, number } = self.places else {
+            let Places::One(at) = self.places else { return Ok(Vec::new()) };
+            return Ok(vec![(self.name.clone(), at.into())]);
+        };
+        if !(2..=MOST).contains(&number) {
+            let message = format!("is {number}: a line has 2 to {MOST} points (one alone is given by `at`)");
+            return Err(ModelError::new(format!("probes.{}.number", self.name), message));
+        }
+        let [from, to] = [Vector2::from(from), Vector2::from(to)];
+        if from == to {
+            let message = format!("is ({}, {}), where the line begins: its points would be one", to.x, to.y);
+            return Err(ModelError::new(format!("probes.{}.to", self.name), message));
+        }
+        let share = |k: usize| k as f64 / (number - 1) as f64;
+        let at = |k: usize| from * (1.0 - share(k)) + to * share(k);
+        Ok((0..number).map(|k| (format!("{}.{}", self.name, k + 1), at(k))).collect())
+    }
+}
+
+/// The probes of a model.
+///
+/// # Errors
+/// A place that lies in no body, or in two without saying which is meant.
+pub fn probes(gauges: &[Gauge], model: &Model) -> Checked<Vec<Probe>> {
+    let mut probes: Vec<Probe> = Vec::new();
+    for gauge in gauges {
+        let place = format!("probes.{}", gauge.name);
+        names::check_name(&place, &gauge.name)?;
+        let elements = candidates(gauge, model)?;
+        for (name, at) in gauge.points()? {
+            if probes.iter().any(|probe| probe.name == name) {
+                return Err(ModelError::new(place, format!("there is a probe `{name}` already: rename one")));
+            }
+            let within = |&e: &usize| Some((e, coordinates(model, e, at)?));
+            let found: Vec<(usize, [f64; 2])> = elements.iter().filter_map(within).collect();
+            let bodies: BTreeSet<usize> = found.iter().map(|(e, _)| model.body_of_element[*e]).collect();
+            let Some(&(element, coordinates)) = found.first() else {
+                return Err(ModelError::new(place, outside(model, at, gauge.body.as_deref())));
+            };
+            if bodies.len() > 1 {
+                let names: Vec<String> = bodies.iter().map(|&body| format!("`{}`", model.bodies[body].name)).collect();
+                let message = format!("({}, {}) lies in {}: say which by \"body\"", at.x, at.y, names.join(" and in "));
+                return Err(ModelError::new(place, message));
+            }
+            probes.push(Probe { name, element, at: coordinates });
+        }
+    }
+    Ok(probes)
+}
+
+/// Elements in which the points of a gauge may lie.
+fn candidates(gauge: &Gauge, model: &Model) -> Checked<Vec<usize>> {
+    let Some(name) = &gauge.body else { return Ok((0..model.solids.len()).collect()) };
+    match model.bodies.iter().find(|body| body.name == *name) {
+        Some(body) => Ok(body.elements.clone()),
+        None => {
+            let known: Vec<&str> = model.bodies.iter().map(|body| body.name.as_str()).collect();
+            let message = format!("there is no body `{name}`; the bodies are {}", known.join(", "));
+            Err(ModelError::new(format!("probes.{}.body", gauge.name), message))
+        }
+    }
+}
+
+/// (ξ, η) of a place in an element, if it lies there.
+///
+/// ```text
+/// Σ N_a(ξ, η) X_a = X                     Newton's method from the centre; places count from the first node
+/// ```
+fn coordinates(model: &Model, element: usize, place: Vector2<f64>) -> Option<[f64; 2]> {
+    let element = &model.mesh.elements[element];
+    let (kind, origin) = (element.kind, model.mesh.nodes[element.nodes[0]]);
+    let nodes: Vec<Vector2<f64>> = element.nodes.iter().map(|&node| model.mesh.nodes[node] - origin).collect();
+    let place = place - origin;
+    let (mut low, mut high) = (Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY));
+    nodes.iter().for_each(|x| (low, high) = (low.inf(x), high.sup(x)));
+    let size = (high - low).max();
+    if (0..2).any(|i| place[i] < low[i] - BULGE * size || place[i] > high[i] + BULGE * size) {
+        return None;
+    }
+    let mut at = Vector2::from(kind.centre());
+    for _ in 0..ITERATIONS {
+        let x: Vector2<f64> = nodes.iter().zip(kind.values(at.into())).map(|(x, n)| x * n).sum();
+        let slopes = kind.derivatives(at.into());
+        let map: Matrix2<f64> = nodes.iter().zip(slopes).map(|(x, d)| x * Vector2::from(d).transpose()).sum();
+        let step = map.try_inverse()? * (place - x);
+        at += step;
+        if step.norm() < 1e-3 * OUTSIDE {
+            return is_inside(kind, at).then_some(at.into());
+        }
+    }
+    None
+}
+
+fn is_inside(kind: ElementKind, at: Vector2<f64>) -> bool {
+    match kind.corners() {
+        3 => at.x >= -OUTSIDE && at.y >= -OUTSIDE && at.x + at.y <= 1.0 + OUTSIDE,
+        _ => at.amax() <= 1.0 + OUTSIDE,
+    }
+}
+
+fn outside(model: &Model, at: Vector2<f64>, body: Option<&str>) -> String {
+    let bodies = model.bodies.iter().filter(|other| body.is_none_or(|body| other.name == body));
+    let nodes = bodies.flat_map(|body| body.nodes.iter().map(move |&node| (model.mesh.nodes[node], &body.name)));
+    let nearest = nodes.min_by(|(a, _), (b, _)| (a - at).norm().total_cmp(&(b - at).norm()));
+    let of = body.map_or("in no body".into(), |body| format!("outside of `{body}`"));
+    match nearest {
+        Some((x, name)) => {
+            format!("({}, {}) lies {of}; the nearest node is at ({}, {}), in `{name}`", at.x, at.y, x.x, x.y)
+        }
+        None => format!("({}, {}) lies {of}: there is none", at.x, at.y),
+    }
+}

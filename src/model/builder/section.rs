@@ -1,0 +1,119 @@
+//! What a section asks of mesh, bodies, supports and loads, and what it has no meaning for.
+
+use std::collections::BTreeMap;
+
+use super::error::{Checked, ModelError};
+use super::limits::check_size;
+use crate::laws::bulk::Material;
+use crate::mesh::Mesh;
+use crate::mesh::section::Section;
+use crate::model::Model;
+use crate::model::boundary::{Drive, Span};
+use crate::model::support::{Motion, Prescribed};
+use crate::model::told::number;
+
+/// Share of the model's size within which a node counts as one on the axis.
+const ON_AXIS: f64 = 1e-12;
+
+/// A thickness must be positive, and rings lie beside the axis.
+pub fn check(mesh: &Mesh) -> Checked<()> {
+    match mesh.section {
+        Section::PlaneStress { thickness } => {
+            let place = "section.plane_stress.thickness";
+            if thickness <= 0.0 || !thickness.is_finite() {
+                return Err(ModelError::new(place, format!("is {thickness}: must be positive")));
+            }
+            check_size("section.plane_stress", "thickness", thickness)
+        }
+        Section::Axisymmetric => {
+            let inside = -ON_AXIS * mesh.diagonal();
+            let Some(node) = (0..mesh.nodes.len()).find(|&node| mesh.nodes[node].x < inside) else { return Ok(()) };
+            let (tag, at) = (mesh.node_tags[node], mesh.nodes[node]);
+            let message = format!(
+                "is axisymmetric about x = 0, and node {tag} lies at x = {}: x is the radius, so move the mesh to x >= 0 and \
+                 model one side of the axis",
+                number(at.x)
+            );
+            Err(ModelError::new("section", message))
+        }
+        Section::PlaneStrain | Section::Graded { .. } => Ok(()),
+    }
+}
+
+/// The law of a body in a section.
+pub fn material(given: Box<dyn Material>, f_bar: bool, section: Section, place: &str) -> Checked<Box<dyn Material>> {
+    let refused = |key: &str, message: &str| Err(ModelError::new(format!("{place}.{key}"), message));
+    match section {
+        Section::PlaneStress { .. } if f_bar => refused(
+            "element",
+            "f_bar has nothing to cure in plane stress, where the thickness gives way and elements do not lock for nu near \
+             1/2: leave it out",
+        ),
+        Section::PlaneStress { .. } => match given.plane_stress() {
+            Some(law) => Ok(law),
+            None => refused("material", "does not know plane stress: take another law, or plane strain"),
+        },
+        Section::Axisymmetric if given.spatial().is_none() => {
+            refused("material", "does not know the hoop stretch of axisymmetric bodies: take another law")
+        }
+        Section::Axisymmetric | Section::PlaneStrain | Section::Graded { .. } => Ok(given),
+    }
+}
+
+/// Nodes of rings on the axis, which cannot leave it.
+fn on_axis(model: &Model) -> impl Iterator<Item = usize> {
+    let mesh = &model.mesh;
+    let near = ON_AXIS * mesh.diagonal();
+    (0..mesh.nodes.len()).filter(move |&node| mesh.section.is_axisymmetric() && mesh.nodes[node].x <= near)
+}
+
+/// Hold the nodes on the axis and the plates, whose radii do not change, and refuse what would move them along the radius, or turn
+/// a ring.
+pub fn hold_axis(in_force: &mut BTreeMap<usize, Prescribed>, place: &str, span: Span, model: &Model) -> Checked<()> {
+    if !model.mesh.section.is_axisymmetric() {
+        return Ok(());
+    }
+    let turns = |support: &&Prescribed| matches!(support.motion, Motion::Rotation { .. });
+    if in_force.values().any(|support| turns(&support)) {
+        let message = "a rotation in the plane is no motion of axisymmetric bodies: prescribe ux and uy";
+        return Err(ModelError::new(format!("{place}.supports"), message));
+    }
+    for node in on_axis(model).chain(model.plates.iter().flatten().copied()) {
+        let dof = 2 * model.ties.original(node);
+        let held = Prescribed::displacement(dof, Drive::Constant(0.0), span);
+        let given = in_force.entry(dof).or_insert(held);
+        let rests = |drive: &Drive| matches!(drive, Drive::Constant(0.0) | Drive::Rate(0.0));
+        if !matches!(&given.motion, Motion::Displacement(drive, _) if rests(drive)) {
+            let message = format!(
+                "node {} lies on the axis or on a plate, and keeps its radius: ux is 0 there; leave it out of the group that is \
+                 moved",
+                model.mesh.node_tags[node]
+            );
+            return Err(ModelError::new(format!("{place}.supports"), message));
+        }
+    }
+    Ok(())
+}
+
+/// Rings have no weight along their radius.
+pub fn check_gravity(radial: Option<&Drive>, place: &str, model: &Model) -> Checked<()> {
+    let none = matches!(radial, None | Some(Drive::Constant(0.0)));
+    if !none && model.mesh.section.is_axisymmetric() {
+        let message = "x is the radius of axisymmetric bodies, and gravity has no such direction: give y alone";
+        return Err(ModelError::new(format!("{place}.gravity.x"), message));
+    }
+    Ok(())
+}
+
+/// No ring flies off as a whole along its radius.
+pub fn check_velocities(place: &str, given: &[(String, [f64; 2])], model: &Model) -> Checked<()> {
+    let radial = |(_, velocity): &&(String, [f64; 2])| velocity[0] != 0.0;
+    match given.iter().find(radial).filter(|_| model.mesh.section.is_axisymmetric()) {
+        Some((name, _)) => {
+            let message =
+                "x is the radius of axisymmetric bodies, along which they cannot move as a whole: give [0, vy]";
+            Err(ModelError::new(format!("{place}.{name}"), message))
+        }
+        None => Ok(()),
+    }
+}

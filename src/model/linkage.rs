@@ -1,0 +1,137 @@
+//! Nodes that follow others by fixed shares: plates of which one component is alike, and plates that move as a rigid body.
+//!
+//! ```text
+//! u_c = Σ G_k u_k                                           c follows the leaders k
+//! one component i alike     (u_c)_i = (u_1)_i
+//! rigid                     x_c = x_A + α e + β J e,   e = x_B − x_A,   |e| = L            J: turned by 90°
+//! ```
+//!
+//! α and β follow from the places at the start, so that a rigid plate is linear in the displacements of two of its nodes but for the
+//! length between them. Forces on c go to its leaders by Gᵀ: the work is the same.
+
+use nalgebra::{Matrix2, Vector2};
+
+/// A node that follows others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Follower {
+    /// the node c
+    pub node: usize,
+    /// which of its components follow
+    pub components: [bool; 2],
+    /// the leaders and their G
+    pub leaders: Vec<(usize, Matrix2<f64>)>,
+}
+
+/// All nodes that follow others.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Linkage {
+    /// ascending by their nodes; a node whose components follow different ones is there twice
+    pub followers: Vec<Follower>,
+    /// A and B of each rigid plate
+    pub rigid: Vec<[usize; 2]>,
+    /// G of the center of mass of each, x_C = x_A + G e; that of A if it has no mass
+    pub centers: Vec<Matrix2<f64>>,
+    /// nodes of each plate, ascending, and which components move with it
+    pub plates: Vec<(Vec<usize>, [bool; 2])>,
+}
+
+impl Follower {
+    /// Its component i as its leaders have it.
+    pub fn led(&self, i: usize, values: &[f64]) -> f64 {
+        self.led_by(i, |dof| values[dof])
+    }
+
+    /// The same of values by their dofs.
+    pub fn led_by(&self, i: usize, value: impl Fn(usize) -> f64) -> f64 {
+        self.leaders.iter().map(|(node, g)| g[(i, 0)] * value(2 * node) + g[(i, 1)] * value(2 * node + 1)).sum()
+    }
+
+    /// Its dofs that follow.
+    pub fn dofs(&self) -> impl Iterator<Item = (usize, usize)> + use<'_> {
+        (0..2).filter(|&i| self.components[i]).map(|i| (i, 2 * self.node + i))
+    }
+}
+
+impl Linkage {
+    /// Whether nothing follows.
+    pub fn is_empty(&self) -> bool {
+        self.followers.is_empty()
+    }
+
+    /// Give leaders what their followers have, by Gᵀ, and leave these nothing.
+    pub fn gather(&self, values: &mut [f64]) {
+        self.move_by(values, |g| g);
+    }
+
+    /// The same of magnitudes, which do not cancel.
+    pub fn gather_magnitudes(&self, values: &mut [f64]) {
+        self.move_by(values, f64::abs);
+    }
+
+    fn move_by(&self, values: &mut [f64], share: impl Fn(f64) -> f64) {
+        for follower in &self.followers {
+            for (i, dof) in follower.dofs() {
+                let own = std::mem::take(&mut values[dof]);
+                for (leader, g) in &follower.leaders {
+                    (0..2).for_each(|j| values[2 * leader + j] += share(g[(i, j)]) * own);
+                }
+            }
+        }
+    }
+
+    /// The followers of rigid plates.
+    pub fn turning(&self) -> impl Iterator<Item = &Follower> {
+        self.followers.iter().filter(|follower| follower.leaders.len() == 2)
+    }
+
+    /// Give followers what their leaders have.
+    pub fn spread(&self, values: &mut [f64]) {
+        for follower in &self.followers {
+            for (i, dof) in follower.dofs() {
+                values[dof] = follower.led(i, values);
+            }
+        }
+    }
+
+    /// The dof that leads a dof alone: itself unless it follows.
+    pub fn leading(&self, dof: usize) -> usize {
+        let first = self.followers.partition_point(|follower| follower.node < dof / 2);
+        let own = self.followers[first..].iter().take_while(|follower| follower.node == dof / 2);
+        match own.into_iter().find(|follower| follower.components[dof % 2]) {
+            Some(Follower { leaders, .. }) if leaders.len() == 1 => 2 * leaders[0].0 + dof % 2,
+            _ => dof,
+        }
+    }
+
+    /// All nodes that follow or lead, ascending.
+    pub fn nodes(&self) -> Vec<usize> {
+        let followers = self.followers.iter();
+        let mut nodes: Vec<usize> =
+            followers.flat_map(|f| f.leaders.iter().map(|(leader, _)| *leader).chain([f.node])).collect();
+        nodes.extend(self.rigid.iter().flatten());
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
+    }
+}
+
+/// The followers of a plate of which one component is alike; its first node leads.
+pub fn alike(nodes: &[usize], component: usize) -> Vec<Follower> {
+    let Some((&first, others)) = nodes.split_first() else { return Vec::new() };
+    let components = [component == 0, component == 1];
+    let mut g = Matrix2::zeros();
+    g[(component, component)] = 1.0;
+    others.iter().map(|&node| Follower { node, components, leaders: vec![(first, g)] }).collect()
+}
+
+/// The followers of a rigid plate that A and B lead.
+pub fn rigid(nodes: &[usize], [a, b]: [usize; 2], place: impl Fn(usize) -> Vector2<f64>) -> Vec<Follower> {
+    let e = place(b) - place(a);
+    let follower = |&node: &usize| {
+        let arm = place(node) - place(a);
+        let (along, across) = (arm.dot(&e) / e.norm_squared(), e.perp(&arm) / e.norm_squared());
+        let of_b = Matrix2::new(along, -across, across, along);
+        Follower { node, components: [true; 2], leaders: vec![(a, Matrix2::identity() - of_b), (b, of_b)] }
+    };
+    nodes.iter().filter(|node| **node != a && **node != b).map(follower).collect()
+}
