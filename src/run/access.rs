@@ -5,8 +5,11 @@ use thiserror::Error;
 
 use super::simulation::Simulation;
 use crate::contact::fields;
+use crate::contact::force::ContactState;
+use crate::contact::pair::ContactPair;
 use crate::mesh::UnknownGroup;
-use crate::model::boundary::{Drive, Motion};
+use crate::model::boundary::Drive;
+use crate::model::support::{Direction, Motion, Prescribed};
 
 /// A name that a run does not know.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -52,12 +55,25 @@ pub enum Axis {
 }
 
 impl Simulation {
+    /// Number of the step of the next increment.
+    pub fn step_number(&self) -> usize {
+        self.control.step
+    }
+
+    /// Whether a reaction has ended a step before its time, so that those after it begin earlier than the model says.
+    pub fn has_ended_early(&self) -> bool {
+        !self.control.ended.is_empty()
+    }
+
     /// Sum of what the supports of a group put on its nodes [F].
     ///
     /// # Errors
     /// [`Unknown::Group`].
     pub fn reaction(&self, group: &str) -> Result<Vector2<f64>, Unknown> {
-        Ok(self.nodes(group)?.iter().map(|&node| vector(&self.state().reaction, node)).sum())
+        let nodes = self.nodes(group)?;
+        let sum =
+            |i: usize| self.model().held(&nodes, i).into_iter().map(|node| self.state().reaction[2 * node + i]).sum();
+        Ok(Vector2::new(sum(0), sum(1)))
     }
 
     /// Mean displacement of the nodes of a group [L].
@@ -75,18 +91,42 @@ impl Simulation {
     /// # Errors
     /// [`Unknown::Contact`], [`Unknown::Field`].
     pub fn contact_field(&self, contact: &str, field: &str) -> Result<Vec<f64>, Unknown> {
-        let contacts = &self.model().contacts;
-        let Some(k) = contacts.iter().position(|pair| pair.name == contact) else {
-            let known = contacts.iter().map(|pair| pair.name.as_str()).collect::<Vec<_>>().join(", ");
-            return Err(Unknown::Contact { name: contact.into(), known });
-        };
-        let names = fields::names(contacts);
+        let (pair, states) = self.contact(contact)?;
+        let names = fields::names(&self.model().contacts);
         if !names.contains(&field) {
             return Err(Unknown::Field { name: field.into(), known: names.join(", ") });
         }
-        let (pair, state) = (&contacts[k], self.state());
-        let points = pair.points.iter().zip(&state.contacts[k]);
-        Ok(points.map(|(slave, point)| fields::value(pair, slave, point, state.dt, field)).collect())
+        let points = pair.points.iter().zip(states);
+        Ok(points.map(|(slave, point)| fields::value(pair, slave, point, self.state().dt, field)).collect())
+    }
+
+    /// Where the slave points of a contact are, in their order [L].
+    ///
+    /// # Errors
+    /// [`Unknown::Contact`].
+    pub fn contact_positions(&self, contact: &str) -> Result<Vec<Vector2<f64>>, Unknown> {
+        let (pair, _) = self.contact(contact)?;
+        let x = self.model().configuration(&self.state().displacement);
+        Ok(pair.points.iter().map(|point| point.at(&x)).collect())
+    }
+
+    /// What the master of a contact puts on its slave, as `force_x` and `force_y` of the history [F].
+    ///
+    /// # Errors
+    /// [`Unknown::Contact`].
+    pub fn contact_force(&self, contact: &str) -> Result<Vector2<f64>, Unknown> {
+        let (pair, states) = self.contact(contact)?;
+        let x = self.model().configuration(&self.state().displacement);
+        Ok(pair.resultant(states, &x, Vector2::zeros()).force)
+    }
+
+    fn contact(&self, name: &str) -> Result<(&ContactPair, &[ContactState]), Unknown> {
+        let contacts = &self.model().contacts;
+        let Some(k) = contacts.iter().position(|pair| pair.name == name) else {
+            let known = contacts.iter().map(|pair| pair.name.as_str()).collect::<Vec<_>>().join(", ");
+            return Err(Unknown::Contact { name: name.into(), known });
+        };
+        Ok((&contacts[k], &self.state().contacts[k]))
     }
 
     /// Lead the supports of a group from where they are to a displacement at a time, evenly, and hold them there: what the
@@ -95,8 +135,19 @@ impl Simulation {
     /// # Errors
     /// [`Unknown::Group`], and [`Unknown::Support`] where a node is not supported in this direction.
     pub fn lead(&mut self, group: &str, axis: Axis, to: f64, by: f64) -> Result<(), Unknown> {
-        let dofs: Vec<usize> = self.nodes(group)?.iter().map(|&node| 2 * node + axis as usize).collect();
-        let held = |dof: &usize| self.step().supports.iter().any(|support| support.dof == *dof);
+        let model = self.model();
+        let dofs: Vec<usize> = self
+            .nodes(group)?
+            .iter()
+            .map(|&node| model.linkage.leading(2 * model.ties.original(node) + axis as usize))
+            .collect();
+        let held = |dof: &usize| {
+            let of_node = |support: &&Prescribed| support.at.node() == dof / 2;
+            let mut all = self.step().supports.iter().filter(of_node);
+            let straight = all.clone().any(|support| support.at == Direction::from(*dof));
+            // What inclined supports say of a node does not follow one of its components.
+            straight && !all.any(|support| matches!(support.motion, Motion::Inclined(_)))
+        };
         if !dofs.iter().all(held) {
             let axis = if axis == Axis::X { 'x' } else { 'y' };
             return Err(Unknown::Support { group: group.into(), axis, step: self.step().name.clone() });
@@ -106,7 +157,7 @@ impl Simulation {
         self.change(|step| {
             let span = step.span;
             for support in &mut step.supports {
-                if let Some(k) = dofs.iter().position(|dof| *dof == support.dof) {
+                if let Some(k) = dofs.iter().position(|dof| *dof == support.at.dof) {
                     support.motion = Motion::Displacement(Drive::Table(vec![[now, from[k]], [by, to]]), span);
                 }
             }

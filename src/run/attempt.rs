@@ -1,16 +1,21 @@
 //! One attempt: the next implicit increment, or explicit ones up to the next output.
 
 use std::sync::Arc;
+use std::time::Instant;
 
-use super::control::{Candidate, Outcome, Outputs, Phase, RESULTS};
+use super::control::{Candidate, Midway, Outcome, Outputs, Phase, RESULTS};
 use super::error::Error;
+use super::observer::Verdict;
 use super::simulation::Simulation;
 use crate::model::Step;
 use crate::model::state::State;
+use crate::model::until::{Course, Until};
 use crate::solve::IterationRecord;
 use crate::solve::failure::IncrementFailure;
+use crate::solve::suspect::suspicion;
 use crate::time::increment::advance;
 use crate::time::ladder::on_ladder;
+use crate::time::quasi_dynamic::Gone;
 use crate::time::step_size::{Judgement, bounded, fastest_slip, judge};
 use crate::time::touching::Touching;
 
@@ -21,7 +26,8 @@ impl Simulation {
     /// An implicit or static increment.
     pub(super) fn implicit(&mut self, dt: f64, number: usize, mut touching: Touching) -> Candidate {
         let Self { model, step, state: old, work, .. } = self;
-        let dt = bounded(step, old.time, dt);
+        let wanted = bounded(step, old.time, dt, None);
+        let dt = bounded(step, old.time, dt, model.next_output_time(old.time));
         let (iterations, solved) = advance(model, step, old, dt, work);
         let (mut local_error, mut doubt, mut accepted) = (None, None, None);
         let again = |dt: f64, touching| Phase::Implicit { dt, attempt: number + 1, touching };
@@ -29,6 +35,7 @@ impl Simulation {
         let outcome = match solved {
             Ok(mut new) => {
                 let mut judgement = judge(model, step, [old, &new], hardest_pass(&iterations), number > 1);
+                let why = if judgement.accepted { Verdict::Touch } else { Verdict::Error };
                 if judgement.accepted && !step.scheme.is_dynamic() {
                     let judged = touching.judge(model, step, old, &mut new, &work.foreseen, judgement);
                     (judgement, doubt) = (judged.0, Some(judged.1));
@@ -36,34 +43,32 @@ impl Simulation {
                     touching.give_up();
                 }
                 local_error = judgement.error;
+                judgement = judgement.after_output(number, [dt, wanted]);
                 judgement.next = on_ladder(step, judgement.next, work);
                 let ruptures = step.rupture.as_ref().is_some_and(|r| fastest_slip(model, old, &new) > r.slip_rate);
                 match judgement {
-                    _ if ruptures && shortest => Outcome::Rejected(self.rupture()),
-                    _ if ruptures => Outcome::Rejected(again(CUT * dt, Touching::default())),
-                    Judgement { accepted: true, next, .. } => {
-                        accepted = Some(Arc::new(new));
-                        Outcome::Accepted(Phase::Implicit { dt: next, attempt: 1, touching })
-                    }
-                    Judgement { next, .. } => Outcome::Rejected(again(next, touching)),
+                    _ if ruptures && shortest => Outcome::Rejected(Verdict::Rupture, self.rupture()),
+                    _ if ruptures => Outcome::Rejected(Verdict::Rupture, again(CUT * dt, Touching::default())),
+                    Judgement { accepted: true, next, .. } => match course(step, [old, &new]) {
+                        Some(Course::Passed(dt)) => {
+                            let dt = Until::shorter(dt, new.dt, number);
+                            Outcome::Rejected(Verdict::Passed, again(dt, Touching::default()))
+                        }
+                        course => {
+                            let phase = after(step, &new, course, (next, touching));
+                            accepted = Some(Arc::new(new));
+                            Outcome::Accepted(phase)
+                        }
+                    },
+                    Judgement { next, .. } => Outcome::Rejected(why, again(next, touching)),
                 }
             }
             Err(cause) => self.unsolved(cause, dt, number, touching),
         };
         let increments = usize::from(accepted.is_some());
         let coupling = self.work.assembler.coupling();
-        Candidate {
-            number,
-            dt,
-            iterations,
-            accepted,
-            local_error,
-            doubt,
-            increments,
-            outcome,
-            coupling,
-            explicit: None,
-        }
+        let explicit = None;
+        Candidate { number, dt, iterations, accepted, local_error, doubt, increments, outcome, coupling, explicit }
     }
 
     /// What becomes of an increment that could not be solved.
@@ -74,13 +79,14 @@ impl Simulation {
         }
         if CUT * dt >= increments.min {
             touching.cut();
-            return Outcome::Cut(Phase::Implicit { dt: CUT * dt, attempt: number + 1, touching });
+            return Outcome::Cut(cause, Phase::Implicit { dt: CUT * dt, attempt: number + 1, touching });
         }
         if rupture.is_some() {
-            return Outcome::Cut(self.rupture());
+            return Outcome::Cut(cause, self.rupture());
         }
         let (step, time, min) = (name.clone(), self.state.time, increments.min);
-        Outcome::Stopped(Error::IncrementTooSmall { step, time, dt, min, cause })
+        let (suspicion, cause) = (suspicion(&self.model, &self.step, &self.work, &cause), Box::new(cause));
+        Outcome::Stopped(Error::IncrementTooSmall { step, time, dt, min, cause, suspicion })
     }
 
     /// Where explicit increments begin within an implicit step.
@@ -92,14 +98,19 @@ impl Simulation {
 
     /// Explicit increments to the next output; `before` is the state since which slip is watched, in a rupture.
     pub(super) fn explicit(&mut self, outputs: Outputs, before: Option<Arc<State>>) -> Candidate {
-        let time = outputs.time(self.step.span);
-        let (mut state, mut explicit) = (State::clone(&self.state), self.explicit.clone());
-        let gone = explicit.as_mut().map_or(Ok(0), |one| one.go_to(time, &mut state, &mut self.work.assembler));
+        let (time, following) = outputs.next(self.step.span, self.model.next_output_time(self.state.time));
+        let (from, before_pause) =
+            self.midway.as_ref().map_or((&self.state, 0), |midway| (&midway.state, midway.increments));
+        let (mut state, mut explicit) = (State::clone(from), self.explicit.clone());
+        let (assembler, pause) = (&mut self.work.assembler, &*self.pause);
+        let gone = explicit.as_mut().map_or(Ok(0), |one| one.go_to(time, &mut state, assembler, pause));
         let state = Arc::new(state);
-        let increments = *gone.as_ref().unwrap_or(&0);
-        let accepted = gone.is_ok().then(|| state.clone());
+        let increments = before_pause + *gone.as_ref().unwrap_or(&0);
+        let arrived = state.time >= time;
+        let accepted = (gone.is_ok() && arrived).then(|| state.clone());
         let outcome = match gone {
-            Ok(_) => Outcome::Accepted(self.after_output(outputs.following(), before, &state)),
+            Ok(_) if !arrived => Outcome::Paused(Midway { state, increments }),
+            Ok(_) => Outcome::Accepted(self.after_output(following, before, &state)),
             Err(cause) if cause.is_collapse() => Outcome::Collapsed(state, cause),
             Err(cause) => Outcome::Stopped(self.unsolvable(cause)),
         };
@@ -117,6 +128,36 @@ impl Simulation {
         }
     }
 
+    /// Quasi-dynamic steps to the next result.
+    pub(super) fn quasi_dynamic(&mut self, dt: f64) -> Candidate {
+        let mut state = State::clone(&self.state);
+        let clock = Instant::now();
+        let gone = self.quasi_dynamic.as_mut().map_or(Ok(Gone { steps: 0, next: dt }), |one| one.go(dt, &mut state));
+        self.work.assembler.seconds.contact += clock.elapsed().as_secs_f64();
+        let (length, increments) = (state.time - self.state.time, gone.as_ref().map_or(0, |gone| gone.steps));
+        let (accepted, outcome) = match gone {
+            Ok(Gone { next, .. }) => (Some(Arc::new(state)), Outcome::Accepted(Phase::QuasiDynamic { dt: next })),
+            Err(cause) => {
+                let Step { name, increments, .. } = &*self.step;
+                let (step, time, min) = (name.clone(), self.state.time, increments.min);
+                let (cause, suspicion) = (Box::new(cause), String::new());
+                (None, Outcome::Stopped(Error::IncrementTooSmall { step, time, dt: min, min, cause, suspicion }))
+            }
+        };
+        Candidate {
+            number: 1,
+            dt: length,
+            iterations: Vec::new(),
+            accepted,
+            local_error: None,
+            doubt: None,
+            increments,
+            outcome,
+            coupling: self.work.assembler.coupling(),
+            explicit: None,
+        }
+    }
+
     /// A rupture is over when no point has slipped fast over the time of calm.
     fn after_output(&self, outputs: Outputs, before: Option<Arc<State>>, state: &Arc<State>) -> Phase {
         let (Some(before), Some(rupture)) = (before, &self.step.rupture) else { return Phase::Explicit(outputs) };
@@ -128,6 +169,22 @@ impl Simulation {
             false => Phase::Rupture { outputs, before: state.clone() },
         }
     }
+}
+
+/// How an increment lies to the reaction that ends the step, if one does.
+fn course(step: &Step, states: [&State; 2]) -> Option<Course> {
+    step.until.as_ref().map(|until| until.course(step.span, states))
+}
+
+/// How it goes on after an accepted increment.
+fn after(step: &Step, new: &State, course: Option<Course>, (next, touching): (f64, Touching)) -> Phase {
+    let dt = match course {
+        Some(Course::Met) => return Phase::Met,
+        Some(_) if new.time >= step.span.end => return Phase::Missed,
+        Some(Course::Before(Some(left))) => next.min(left),
+        _ => next,
+    };
+    Phase::Implicit { dt, attempt: 1, touching }
 }
 
 /// Tangents of the pass that took most: the augmented Lagrangian solves an increment several times.

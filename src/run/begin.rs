@@ -1,4 +1,4 @@
-//! What the next attempt needs first: a step that begins, explicit increments, or implicit ones again after them.
+//! What the next attempt needs first: a step that begins, explicit or quasi-dynamic increments, or implicit ones again.
 
 use std::sync::Arc;
 
@@ -10,14 +10,21 @@ use crate::model::state::State;
 use crate::solve::failure::IncrementFailure;
 use crate::time::explicit::Explicit;
 use crate::time::increment::{begin, go_on};
+use crate::time::quasi_dynamic::QuasiDynamic;
 use crate::time::touching::Touching;
 
 impl Simulation {
     /// Begin what the next attempt needs: a step, explicit increments, or implicit ones again after them.
     pub(super) fn begin(&mut self) -> Result<(), Error> {
+        if let Phase::Missed = self.control.phase {
+            return Err(self.not_reached());
+        }
         let is_explicit = matches!(self.step.scheme, Scheme::Explicit { .. });
+        let is_quasi_dynamic = matches!(self.step.scheme, Scheme::QuasiDynamic { .. });
         let begun = match self.control.phase {
             Phase::Begin if is_explicit => self.begin_explicit(true),
+            Phase::Begin if is_quasi_dynamic => self.begin_quasi_dynamic(true),
+            Phase::QuasiDynamic { .. } if self.quasi_dynamic.is_none() => self.begin_quasi_dynamic(false),
             Phase::Explicit(_) | Phase::Rupture { .. } if self.explicit.is_none() => self.begin_explicit(false),
             Phase::Begin | Phase::Resume => self.begin_implicit(),
             _ => Ok(()),
@@ -25,16 +32,48 @@ impl Simulation {
         begun.map_err(|cause| self.unsolvable(cause))
     }
 
+    /// The error of a step whose reaction has not come to its value.
+    fn not_reached(&self) -> Error {
+        let (step, state) = (&*self.step, &*self.state);
+        let Some(until) = &step.until else { return Error::Ended("the step ended".into()) };
+        Error::NotReached {
+            step: step.name.clone(),
+            time: state.time,
+            part: until.part.name(),
+            on: until.on.clone(),
+            value: until.value,
+            reached: until.force(&state.reaction),
+        }
+    }
+
     fn begin_explicit(&mut self, step_begins: bool) -> Result<(), IncrementFailure> {
         let step = Arc::new(self.step_now().clone());
         let mut state = State::clone(&self.state);
         if step_begins {
             state.begin_step();
-            let interval = self.model.interval.unwrap_or((step.span.end - step.span.start) / RESULTS);
-            self.control.phase = Phase::Explicit(Outputs::new(step.span.start, interval));
+            Explicit::launch(&self.model, &step, &mut state);
         }
         self.explicit = Some(Explicit::begin(&self.model, &step, &mut state, &mut self.work.assembler)?);
         self.state = Arc::new(state);
+        if step_begins {
+            let interval = self.model.interval.unwrap_or((step.span.end - step.span.start) / RESULTS);
+            self.control.phase = Phase::Explicit(Outputs::new(step.span.start, interval));
+        }
+        Ok(())
+    }
+
+    fn begin_quasi_dynamic(&mut self, step_begins: bool) -> Result<(), IncrementFailure> {
+        if step_begins {
+            self.state = Arc::new(begin(&self.model, &self.step, &self.state, &mut self.work)?);
+        }
+        let mut bodies = QuasiDynamic::new(&self.model, &self.step, &self.state)?;
+        if step_begins {
+            let mut state = State::clone(&self.state);
+            bodies.settle(&mut state);
+            self.state = Arc::new(state);
+            self.control.phase = Phase::QuasiDynamic { dt: self.step.increments.initial };
+        }
+        self.quasi_dynamic = Some(bodies);
         Ok(())
     }
 

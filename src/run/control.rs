@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::error::Error;
+use super::observer::Verdict;
 use crate::contact::force::ContactState;
 use crate::contact::master::Master;
 use crate::contact::pair::ContactPair;
@@ -32,9 +33,25 @@ pub(super) struct Control {
     pub phase: Phase,
     /// which nodes the equations couple, and so the order of their elimination
     pub coupling: Arc<Coupling>,
+    /// ends of steps that a reaction has ended, as they were planned and as they came [T]
+    pub ended: Vec<[f64; 2]>,
 }
 
 impl Control {
+    /// The step that it is in, moved to when it began if one before has ended early.
+    pub(super) fn step_of(&self, model: &Model) -> Option<Step> {
+        let step = model.steps.get(self.step)?.clone();
+        if self.ended.is_empty() {
+            return Some(step);
+        }
+        let moved = |span: Span| {
+            let before = self.ended.iter().rev().find(|[planned, _]| *planned <= span.start);
+            let at = |time: f64| before.map_or(time, |[planned, came]| came + (time - planned));
+            Span { start: at(span.start), end: at(span.end) }
+        };
+        Some(step.moved(&moved))
+    }
+
     /// Whether it is one of this model; steps may have come since.
     pub(super) fn fits(&self, model: &Model) -> bool {
         let exists = match &self.phase {
@@ -88,10 +105,19 @@ pub(super) enum Phase {
         /// the state since which slip is watched
         before: Arc<State>,
     },
-    /// After them, before the next implicit increment
+    /// Quasi-dynamic steps, some at a time
+    QuasiDynamic {
+        /// length of the next [T]
+        dt: f64,
+    },
+    /// After explicit increments, before the next implicit one
     Resume,
     /// After the last step
     Complete,
+    /// With the reaction that ends the step
+    Met,
+    /// At the end of a step whose reaction has not come to its value
+    Missed,
 }
 
 impl Phase {
@@ -119,14 +145,33 @@ impl Outputs {
         Self { start, interval, next: 1, attempt: 1 }
     }
 
-    pub(super) fn time(&self, span: Span) -> f64 {
+    /// The next time of output, or a time asked for that comes before, and the outputs that follow.
+    pub(super) fn next(self, span: Span, asked: Option<f64>) -> (f64, Self) {
+        let (time, near) = (self.time(span), NEAR_END * self.interval);
+        match asked.filter(|asked| *asked <= span.end && *asked <= time + near) {
+            Some(asked) if asked < time - near => (asked, Self { attempt: 1, ..self }),
+            Some(asked) => (asked, self.following()),
+            None => (time, self.following()),
+        }
+    }
+
+    fn time(&self, span: Span) -> f64 {
         let time = self.start + f64::from(self.next) * self.interval;
         if time > span.end - NEAR_END * self.interval { span.end } else { time }
     }
 
-    pub(super) fn following(self) -> Self {
+    fn following(self) -> Self {
         Self { next: self.next + 1, attempt: 1, ..self }
     }
+}
+
+/// Explicit increments on their way to an output.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Midway {
+    /// the state they have come to
+    pub state: Arc<State>,
+    /// their number
+    pub increments: usize,
 }
 
 /// An attempt at one increment, or at explicit ones up to the next output. Nothing has changed yet.
@@ -148,10 +193,12 @@ pub struct Candidate {
 pub(super) enum Outcome {
     /// A new state, and how it goes on
     Accepted(Phase),
-    /// Solved, and repeated for its error or an event
-    Rejected(Phase),
-    /// Not solved; a shorter one may be
-    Cut(Phase),
+    /// Solved, but repeated: why, and how it goes on
+    Rejected(Verdict, Phase),
+    /// Not solved, and why; a shorter one may be
+    Cut(IncrementFailure, Phase),
+    /// Explicit increments paused on their way to an output
+    Paused(Midway),
     /// Explicit increments collapsed at this state; shorter ones may not
     Collapsed(Arc<State>, IncrementFailure),
     /// No other attempt can help
@@ -171,6 +218,38 @@ pub struct Increment {
 }
 
 impl Candidate {
+    /// Whether it only paused on its way.
+    pub fn is_paused(&self) -> bool {
+        matches!(self.outcome, Outcome::Paused(_))
+    }
+
+    /// Whether no attempt follows it.
+    pub fn stops(&self) -> bool {
+        match &self.outcome {
+            Outcome::Stopped(_) => true,
+            Outcome::Collapsed(..) => self.explicit.as_ref().is_none_or(Explicit::is_most_careful),
+            _ => false,
+        }
+    }
+
+    /// What became of it.
+    pub fn verdict(&self) -> Verdict {
+        match &self.outcome {
+            Outcome::Accepted(_) | Outcome::Paused(_) => Verdict::Accepted,
+            Outcome::Rejected(why, _) => *why,
+            Outcome::Cut(..) | Outcome::Collapsed(..) | Outcome::Stopped(_) => Verdict::Unsolved,
+        }
+    }
+
+    /// Why no equilibrium was found, if none was.
+    pub fn cause(&self) -> Option<&IncrementFailure> {
+        match &self.outcome {
+            Outcome::Cut(cause, _) | Outcome::Collapsed(_, cause) => Some(cause),
+            Outcome::Stopped(error) => error.cause(),
+            Outcome::Accepted(_) | Outcome::Paused(_) | Outcome::Rejected(..) => None,
+        }
+    }
+
     /// Whether it leads to a new state.
     pub fn is_accepted(&self) -> bool {
         self.accepted.is_some()
@@ -179,6 +258,11 @@ impl Candidate {
     /// The state it leads to, if it does.
     pub fn state(&self) -> Option<&State> {
         self.accepted.as_deref()
+    }
+
+    /// The same, to be kept.
+    pub fn shared_state(&self) -> Option<Arc<State>> {
+        self.accepted.clone()
     }
 
     /// Its length [T].

@@ -10,7 +10,7 @@ use crate::solve::failure::IncrementFailure;
 #[derive(Debug, Error)]
 pub enum Error {
     /// An increment cannot be made small enough.
-    #[error("step `{step}` stopped at time {}: {cause} (increment {dt:.3e}, smallest allowed {min:.3e})", told(*time))]
+    #[error("step `{step}` stopped at time {}: {cause} (increment {dt:.3e}, smallest allowed {min:.3e}){suspicion}", told(*time))]
     IncrementTooSmall {
         /// step
         step: String,
@@ -21,7 +21,9 @@ pub enum Error {
         /// smallest allowed increment
         min: f64,
         /// why it failed
-        cause: IncrementFailure,
+        cause: Box<IncrementFailure>,
+        /// what may be to blame, behind a semicolon; empty if nothing is suspected
+        suspicion: String,
     },
     /// No smaller increment can help.
     #[error("step `{step}` stopped at time {}: {cause}", told(*time))]
@@ -32,6 +34,26 @@ pub enum Error {
         time: f64,
         /// why
         cause: IncrementFailure,
+    },
+    /// The reaction that was to end a step has not come to its value.
+    #[error(
+        "step `{step}` came to its end at time {} before {part} of `{on}` reached {value}: it is {reached:.6e}; give the step \
+         longer, or move farther (until)",
+        told(*time)
+    )]
+    NotReached {
+        /// step
+        step: String,
+        /// time reached
+        time: f64,
+        /// which part of the reaction
+        part: &'static str,
+        /// its group
+        on: String,
+        /// what it was to reach [F]
+        value: f64,
+        /// what it is [F]
+        reached: f64,
     },
     /// A friction law driven alone could not answer.
     #[error("the law stopped after time {}: {cause}", told(*time))]
@@ -53,6 +75,9 @@ pub enum Error {
     /// The user, or the system, asked for the end.
     #[error("interrupted")]
     Interrupted,
+    /// Whoever watches the run had it end.
+    #[error("{0}")]
+    Ended(String),
     /// A result file could not be written.
     #[error("{path}: {cause}")]
     Output {
@@ -61,4 +86,15 @@ pub enum Error {
         /// what the system said
         cause: String,
     },
+}
+
+impl Error {
+    /// Why the last increment failed, if the run stopped for that.
+    pub fn cause(&self) -> Option<&IncrementFailure> {
+        match self {
+            Self::IncrementTooSmall { cause, .. } => Some(cause),
+            Self::Unsolvable { cause, .. } => Some(cause),
+            _ => None,
+        }
+    }
 }

@@ -9,6 +9,7 @@ pub mod law;
 pub mod law_path;
 pub mod law_report;
 pub mod observer;
+mod reason;
 pub mod report;
 pub mod saved;
 pub mod simulation;
@@ -43,12 +44,21 @@ pub fn run(model: &Arc<Model>, observers: &mut [&mut dyn Observer]) -> (RunRepor
 /// # Errors
 /// As [`run`].
 pub fn watch(simulation: &mut Simulation, observers: &mut [&mut dyn Observer]) -> Result<(), Error> {
-    watch_with(simulation, observers, &mut |_, _| Ok(()))
+    watch_with(simulation, observers, &mut |_, _, _| Ok(()))
 }
 
-/// What is done before every attempt, and after the last one: there the run and its observers can be saved, or ended by an
-/// error.
-pub type Between<'a> = dyn FnMut(&Simulation, &mut [&mut dyn Observer]) -> Result<(), Error> + 'a;
+/// Where a run is when something is done between its attempts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Moment {
+    /// Before an attempt, or after the last one
+    Between,
+    /// After an attempt that stops the run, as before it: what is saved here makes that attempt again
+    Stops,
+}
+
+/// What is done before every attempt, after the last one, and where one stops the run: there the run and its observers can be
+/// saved, or ended by an error.
+pub type Between<'a> = dyn FnMut(&Simulation, &mut [&mut dyn Observer], Moment) -> Result<(), Error> + 'a;
 
 /// As [`watch`], and do something between the attempts.
 ///
@@ -75,10 +85,24 @@ fn attempts(
 ) -> Result<(), Error> {
     loop {
         let clock = Instant::now();
-        between(simulation, observers)?;
+        between(simulation, observers, Moment::Between)?;
         simulation.observed(clock.elapsed().as_secs_f64());
-        let Some(candidate) = simulation.attempt()? else { return Ok(()) };
+        let candidate = match simulation.attempt() {
+            Ok(Some(candidate)) => candidate,
+            Ok(None) => return Ok(()),
+            Err(error) => {
+                between(simulation, observers, Moment::Stops)?;
+                return Err(error);
+            }
+        };
         let clock = Instant::now();
+        if candidate.is_paused() {
+            simulation.follow(candidate)?;
+            continue;
+        }
+        if candidate.stops() {
+            between(simulation, observers, Moment::Stops)?;
+        }
         let told = simulation.told(&candidate);
         observers.iter_mut().try_for_each(|observer| observer.record(simulation.model(), &told))?;
         simulation.observed(clock.elapsed().as_secs_f64());

@@ -1,7 +1,10 @@
 //! Counts and times of a run.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
+use super::control::Outcome;
 use crate::model::state::Energy;
 
 /// Counts and times of a run.
@@ -13,6 +16,8 @@ pub struct RunReport {
     pub cutbacks: usize,
     /// attempts that were solved, and repeated because their error was too large or they met an event of contact
     pub rejected: usize,
+    /// the same attempts, solved or not, by why they were given up
+    pub given_up: BTreeMap<String, usize>,
     /// times that a step turned to explicit increments because a contact slipped fast
     pub ruptures: usize,
     /// linear solves, those of failed attempts included
@@ -25,6 +30,19 @@ pub struct RunReport {
     pub stabilization_work: f64,
     /// wall time by phase
     pub wall_s: WallSeconds,
+}
+
+impl RunReport {
+    /// Count an attempt if it was given up.
+    pub(super) fn note(&mut self, outcome: &Outcome) {
+        let (count, kind) = match outcome {
+            Outcome::Rejected(why, _) => (&mut self.rejected, why.kind()),
+            Outcome::Cut(cause, _) | Outcome::Collapsed(_, cause) => (&mut self.cutbacks, cause.kind()),
+            Outcome::Accepted(_) | Outcome::Paused(_) | Outcome::Stopped(_) => return,
+        };
+        *count += 1;
+        *self.given_up.entry(kind.into()).or_default() += 1;
+    }
 }
 
 /// Wall time by phase [s].

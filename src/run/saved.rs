@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::control::{Control, Phase, is_of};
+use super::control::{Control, Midway, Phase, is_of};
 use super::error::Error;
 use super::report::RunReport;
 use crate::model::state::{Energy, State};
@@ -17,13 +17,14 @@ pub struct Saved {
     pub(super) state: Arc<State>,
     pub(super) control: Control,
     pub(super) explicit: Option<Explicit>,
+    pub(super) midway: Option<Midway>,
     pub(super) report: RunReport,
     /// Whether its caller has changed the step under way
     pub(super) led: bool,
 }
 
 /// What goes to a file.
-type Written = (State, Control, Option<ExplicitMemory>, RunReport);
+type Written = (State, Control, Option<ExplicitMemory>, Option<Midway>, RunReport);
 
 impl Saved {
     /// The accepted state.
@@ -46,12 +47,13 @@ impl Saved {
     /// # Errors
     /// [`Error::Led`] where its caller has changed the step under way, which no file holds.
     pub fn bytes(&self) -> Result<Vec<u8>, Error> {
-        let Self { step, state, control, explicit, report, led } = self;
+        let Self { step, state, control, explicit, midway, report, led } = self;
         if *led {
             return Err(Error::Led { step: step.name.clone() });
         }
         let memory = explicit.as_ref().map(Explicit::memory);
-        postcard::to_allocvec(&(&**state, control, memory, report)).map_err(|cause| Error::NotSaved(cause.to_string()))
+        let run = (&**state, control, memory, midway, report);
+        postcard::to_allocvec(&run).map_err(|cause| Error::NotSaved(cause.to_string()))
     }
 
     /// The run that the bytes tell of. Steps that had not begun may have changed since, or have come after the last one.
@@ -60,18 +62,19 @@ impl Saved {
     /// Why they tell of no run of this model.
     pub fn from_bytes(bytes: &[u8], model: &Arc<Model>) -> Result<Self, String> {
         let written: Written = postcard::from_bytes(bytes).map_err(|cause| cause.to_string())?;
-        let (state, mut control, memory, report) = written;
+        let (state, mut control, memory, midway, report) = written;
         let fits = |memory: &ExplicitMemory| memory.fits(model);
-        if !(is_of(&state, model) && control.fits(model) && memory.as_ref().is_none_or(fits)) {
+        let on_its_way = midway.as_ref().is_none_or(|midway| is_of(&midway.state, model) && memory.is_some());
+        if !(is_of(&state, model) && control.fits(model) && memory.as_ref().is_none_or(fits) && on_its_way) {
             return Err("it is not of this model".into());
         }
         if matches!(control.phase, Phase::Complete) && control.step < model.steps.len() {
             control.phase = Phase::Begin;
         }
-        let step = Arc::new(model.steps.get(control.step).cloned().unwrap_or_default());
+        let step = Arc::new(control.step_of(model).unwrap_or_default());
         let under_way = control.phase.of(&step);
         let explicit = memory.map(|memory| Explicit::again(model, &Arc::new(under_way.clone()), memory));
-        Ok(Self { step, state: Arc::new(state), control, explicit, report, led: false })
+        Ok(Self { step, state: Arc::new(state), control, explicit, midway, report, led: false })
     }
 
     /// The same place, from where another run begins: it counts its increments, and the energies that come and go, from here.

@@ -3,6 +3,7 @@
 //! ```text
 //! Begin → Implicit → Complete                     a static or implicit step
 //! Begin → Explicit → Complete                     an explicit one; increments go from output to output
+//! Begin → QuasiDynamic → Complete                 a quasi-dynamic one; an increment is some steps of the interface
 //!         Implicit ⇄ Rupture                      where a contact slips too fast for implicit increments
 //! ```
 //!
@@ -13,7 +14,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::control::{Candidate, Control, Increment, Outcome, Phase};
+use super::control::{Candidate, Control, Increment, Midway, Outcome, Phase};
 use super::error::Error;
 use super::observer::Attempt;
 use super::report::{RunReport, WallSeconds};
@@ -24,6 +25,10 @@ use crate::model::{Model, Step};
 use crate::solve::Workspace;
 use crate::solve::failure::IncrementFailure;
 use crate::time::explicit::Explicit;
+use crate::time::quasi_dynamic::QuasiDynamic;
+
+/// Whether explicit increments are to pause.
+pub type Pause = Arc<dyn Fn() -> bool + Send + Sync>;
 
 /// A run under way; see the example at the head of the library. To have an increment that is rejected made shorter, drop its
 /// candidate and set `increments.max` of the step by [`Simulation::change`]: dropped alone it is found again, to the same bits.
@@ -37,6 +42,12 @@ pub struct Simulation {
     pub(super) control: Control,
     /// What explicit increments need besides the state, while there are any
     pub(super) explicit: Option<Explicit>,
+    /// Where explicit increments have come to since the last output, if they paused
+    pub(super) midway: Option<Midway>,
+    /// Whether explicit increments are to pause on their way to an output
+    pub(super) pause: Pause,
+    /// What quasi-dynamic steps need besides the state, while there are any
+    pub(super) quasi_dynamic: Option<QuasiDynamic>,
     pub(super) work: Workspace,
     report: RunReport,
     started: Instant,
@@ -54,8 +65,11 @@ impl Simulation {
             step: Arc::new(model.steps.first().cloned().unwrap_or_default()),
             led: false,
             state: Arc::new(model.initial_state()),
-            control: Control { step: 0, phase, coupling: work.assembler.coupling() },
+            control: Control { step: 0, phase, coupling: work.assembler.coupling(), ended: Vec::new() },
             explicit: None,
+            midway: None,
+            pause: Arc::new(|| false),
+            quasi_dynamic: None,
             work,
             report: RunReport::default(),
             started: Instant::now(),
@@ -71,6 +85,7 @@ impl Simulation {
             state: self.state.clone(),
             control: self.control.clone(),
             explicit: self.explicit.clone(),
+            midway: self.midway.clone(),
             report: self.report(),
             led: self.led,
         }
@@ -78,9 +93,9 @@ impl Simulation {
 
     /// A run as it was, of the same model.
     pub fn resume(model: impl Into<Arc<Model>>, saved: Saved) -> Self {
-        let Saved { step, state, control, explicit, report, led } = saved;
+        let Saved { step, state, control, explicit, midway, report, led } = saved;
         let earlier = report.wall_s;
-        Self { step, led, state, control, explicit, report, earlier, ..Self::new(model) }
+        Self { step, led, state, control, explicit, midway, report, earlier, ..Self::new(model) }
     }
 
     /// The model.
@@ -126,6 +141,8 @@ impl Simulation {
             dt: candidate.dt,
             iterations: &candidate.iterations,
             accepted: candidate.accepted.as_deref(),
+            verdict: candidate.verdict(),
+            cause: candidate.cause(),
             local_error: candidate.local_error,
             doubt: candidate.doubt,
         }
@@ -140,9 +157,10 @@ impl Simulation {
         self.work.assembler.couple(&self.control.coupling);
         self.begin()?;
         Ok(match self.control.phase.clone() {
-            Phase::Complete | Phase::Begin | Phase::Resume => None,
+            Phase::Complete | Phase::Begin | Phase::Resume | Phase::Met | Phase::Missed => None,
             Phase::Implicit { dt, attempt, touching } => Some(self.implicit(dt, attempt, touching)),
             Phase::Explicit(outputs) => Some(self.explicit(outputs, None)),
+            Phase::QuasiDynamic { dt } => Some(self.quasi_dynamic(dt)),
             Phase::Rupture { outputs, before } => Some(self.explicit(outputs, Some(before))),
         })
     }
@@ -153,31 +171,33 @@ impl Simulation {
     /// [`Error`] when no other attempt can help.
     pub fn follow(&mut self, candidate: Candidate) -> Result<(), Error> {
         let Candidate { iterations, accepted, increments, outcome, coupling, explicit, .. } = candidate;
+        if let Outcome::Paused(midway) = outcome {
+            (self.control.coupling, self.explicit, self.midway) = (coupling, explicit, Some(midway));
+            return Ok(());
+        }
+        self.midway = None;
         self.report.newton_iterations += iterations.len();
         self.report.factorizations += iterations.iter().filter(|iteration| iteration.newton.factorized).count();
         self.report.increments += increments;
+        self.report.note(&outcome);
         self.control.coupling = coupling;
         if let Some(state) = accepted {
             self.state = state;
             self.explicit = explicit;
         }
         match outcome {
-            Outcome::Accepted(phase) => self.enter(phase),
-            Outcome::Rejected(phase) => {
-                self.report.rejected += 1;
-                self.enter(phase);
-            }
-            Outcome::Cut(phase) => {
-                self.report.cutbacks += 1;
-                self.enter(phase);
-            }
-            Outcome::Collapsed(collapsed, cause) => {
-                self.report.cutbacks += 1;
-                return self.more_carefully(collapsed, cause);
-            }
+            Outcome::Accepted(phase) | Outcome::Rejected(_, phase) | Outcome::Cut(_, phase) => self.enter(phase),
+            Outcome::Collapsed(collapsed, cause) => return self.more_carefully(collapsed, cause),
             Outcome::Stopped(error) => return Err(error),
+            Outcome::Paused(_) => {}
         }
         Ok(())
+    }
+
+    /// Have explicit increments pause on their way to an output whenever this says so: the candidate is then neither accepted nor
+    /// rejected, and what follows it has the same bits as if it had not paused.
+    pub fn pause_when(&mut self, pause: Pause) {
+        self.pause = pause;
     }
 
     /// Attempts until one is accepted; `None` after the last increment.
@@ -215,8 +235,9 @@ impl Simulation {
         if let Some(rupture) = &mut step.rupture {
             change(&mut rupture.explicit);
         }
-        // Explicit increments keep what follows from the step.
-        self.explicit = None;
+        // Explicit increments and quasi-dynamic ones keep what follows from the step.
+        (self.explicit, self.midway) = (None, None);
+        self.quasi_dynamic = None;
     }
 
     pub(super) fn unsolvable(&self, cause: IncrementFailure) -> Error {
@@ -236,13 +257,19 @@ impl Simulation {
         if implicit(&phase) || matches!(phase, Phase::Resume) {
             self.explicit = None;
         }
+        let ends = self.state.time >= self.step.span.end || matches!(phase, Phase::Met);
+        if self.state.time < self.step.span.end && ends {
+            let planned = self.model.steps[self.control.step].span.end;
+            self.control.ended.push([planned, self.state.time]);
+        }
         self.control.phase = phase;
-        if self.state.time >= self.step.span.end {
+        if ends && !matches!(self.control.phase, Phase::Missed) {
             self.explicit = None;
+            self.quasi_dynamic = None;
             self.control.step += 1;
             self.control.phase = Phase::Complete;
-            if let Some(step) = self.model.steps.get(self.control.step) {
-                self.step = Arc::new(step.clone());
+            if let Some(step) = self.control.step_of(&self.model) {
+                self.step = Arc::new(step);
                 self.led = false;
                 self.control.phase = Phase::Begin;
             }

@@ -4,15 +4,15 @@ use super::acted::Acted;
 use super::contact_iteration::flips::Flips;
 use super::failure::IncrementFailure;
 use super::floating::null_motion;
-use super::interface::{Interface, Round};
+use super::interface::{Interface, Round, Rung};
 use super::newton::{self, NewtonFailure};
 use super::start::start_value;
 use super::{IterationRecord, Workspace};
 use crate::contact::force::ContactState;
 use crate::equations::failure::TrialFailure;
-use crate::equations::{Assembler, ContactCounts, Evaluation, Trial};
+use crate::equations::{Assembler, ContactCounts, Trial};
 use crate::linear::system::Request;
-use crate::linear::{Condensed, SparseMatrix};
+use crate::linear::{LinearFailure, SparseMatrix};
 use crate::model::Model;
 use crate::model::state::State;
 
@@ -73,7 +73,7 @@ fn on_contacts(
     watch: &mut Watch,
     work: &mut Workspace,
 ) -> Option<Result<Vec<f64>, NewtonFailure<TrialFailure>>> {
-    let bodies = work.interface.as_mut()?.bodies(model, trial).ok()??;
+    let rung = work.interface.as_mut()?.bodies(model, trial).ok()??;
     let mut u = start.to_vec();
     if watch.begins && is_unaided(trial) {
         assemble_all(trial, &u, work)?;
@@ -83,7 +83,7 @@ fn on_contacts(
         work.iteration.start_increment();
     }
     for _ in 0..MOST_ROUNDS {
-        if let Err(failure) = round(model, trial, &bodies, &mut u, watch, work)? {
+        if let Err(failure) = round(model, trial, &rung, &mut u, watch, work)? {
             return Some(Err(failure));
         }
         let Workspace { assembler, system, .. } = work;
@@ -102,17 +102,21 @@ fn on_contacts(
 fn round(
     model: &Model,
     trial: Trial,
-    bodies: &Condensed,
+    rung: &Rung,
     u: &mut [f64],
     watch: &mut Watch,
     work: &mut Workspace,
 ) -> Option<Result<(), NewtonFailure<TrialFailure>>> {
     let Workspace { assembler, iteration, system, foreseen, interface, .. } = work;
-    let Interface { nodes, solver, condensed, .. } = interface.as_mut()?;
-    let round = Round::begin((nodes, bodies), trial, u, assembler, system).ok()?;
+    let Interface { nodes, whole, solver, condensed, .. } = interface.as_mut()?;
+    let round = Round::begin((nodes, &rung.bodies), trial, u, assembler, system).ok()?;
     let mut all = u.to_vec();
-    let (iterations, result) =
-        newton::solve(nodes.gather(u), settings(model), solver, condensed, |x, request, system| {
+    let (iterations, result) = newton::solve(
+        nodes.gather(u),
+        settings(model),
+        &mut solver.with(rung.eliminated.as_ref(), *whole),
+        condensed,
+        |x, request, system| {
             nodes.scatter(x, &mut all);
             iteration.evaluate(assembler, trial, &all, request, |assembler, responses| {
                 round.equations.assemble(assembler, trial, x, responses, request, system);
@@ -121,10 +125,12 @@ fn round(
             let acted = Acted { stiffening: usize::from(trial.stiffening > 1.0), condense: 1, ..iteration.acted };
             watch.note(request, assembler, system.forces, acted, foreseen);
             Ok::<(), TrialFailure>(())
-        });
+        },
+    );
     watch.record(iterations);
     match result {
         Ok(x) => round.follow(nodes, u, &x),
+        Err(NewtonFailure::Linear(LinearFailure::Varies)) => return None,
         Err(failure) => {
             // What floats is told from the tangent of everything.
             assemble_all(trial, &all, work)?;
@@ -183,7 +189,7 @@ impl Watch {
             self.tangents += 1;
         } else if self.tangents > 0 && request == Request::Residual {
             let acted = std::mem::take(&mut self.acted);
-            self.seen.push(look(&assembler.evaluation, &mut self.flips, forces, acted));
+            self.seen.push(look(assembler, &mut self.flips, forces, acted));
         }
     }
 
@@ -233,9 +239,10 @@ fn is_unaided(trial: Trial) -> bool {
 /// What was seen after a correction: contacts, their flips, the share of stabilization in the forces, and what acted.
 type Seen = (ContactCounts, usize, f64, Acted);
 
-fn look(evaluation: &Evaluation, flips: &mut Flips, forces: f64, acted: Acted) -> Seen {
+fn look(assembler: &Assembler, flips: &mut Flips, forces: f64, acted: Acted) -> Seen {
+    let evaluation = &assembler.evaluation;
     let share = evaluation.stabilization / forces.max(f64::MIN_POSITIVE);
-    (ContactCounts::of(&evaluation.contacts), flips.count(&evaluation.contacts), share, acted)
+    (assembler.contact_counts(), flips.count(&evaluation.contacts), share, acted)
 }
 
 /// The iterations with what was seen after each.

@@ -13,7 +13,7 @@ pub enum IncrementFailure {
     #[error(transparent)]
     Newton(#[from] NewtonFailure<TrialFailure>),
     /// The mass matrix of the initial acceleration is singular.
-    #[error("initial acceleration: {0} (does every body have a density?)")]
+    #[error("initial acceleration: {0}{hint}", hint = density_hint(.0))]
     Mass(LinearFailure),
     /// The state at the start of a dynamic step, or in an explicit increment, cannot be evaluated.
     #[error(transparent)]
@@ -38,6 +38,21 @@ pub enum IncrementFailure {
          hencky)"
     )]
     Collapsed(TrialFailure),
+    /// The bodies could not be condensed on an interface.
+    #[error("the bodies cannot be condensed on the contacts: {0}; hold every body by a support or a spring")]
+    Interface(LinearFailure),
+    /// The differential equations of an interface could not be integrated.
+    #[error("contact `{contact}` at ({x:.6}, {y:.6}): {why}")]
+    Slip {
+        /// contact pair
+        contact: String,
+        /// place of the point
+        x: f64,
+        /// place of the point
+        y: f64,
+        /// what is wrong there
+        why: String,
+    },
     /// A body is held by nothing.
     #[error(
         "{0}; give it a support, a spring, or contact that is closed at the start, or `stabilize` the step (a stabilized one: by more)"
@@ -46,6 +61,10 @@ pub enum IncrementFailure {
     /// A trial state lost the contact that held a body.
     #[error("the iterations lost contact: {0}")]
     ContactLost(String),
+}
+
+fn density_hint(cause: &LinearFailure) -> &'static str {
+    if matches!(cause, LinearFailure::Singular(_)) { " (does every body have a density?)" } else { "" }
 }
 
 impl IncrementFailure {
@@ -65,11 +84,39 @@ impl IncrementFailure {
         }
     }
 
+    /// What failed, in so few words that failures can be counted.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Newton(NewtonFailure::Evaluation(failure)) | Self::Start(failure) | Self::Collapsed(failure) => {
+                kind_of_trial(failure)
+            }
+            Self::Newton(NewtonFailure::Linear(_)) | Self::Mass(_) | Self::Interface(_) => "singular equations",
+            Self::Newton(NewtonFailure::Overflow) => "forces beyond double precision",
+            Self::Newton(NewtonFailure::Diverged { .. }) => "divergence",
+            Self::Newton(NewtonFailure::TooManyIterations { .. }) => "too many iterations",
+            Self::Penetration { .. } => "penetration",
+            Self::Unbounded => "unbounded motion",
+            Self::Slip { .. } => "slip equations",
+            Self::Floating(_) => "floating body",
+            Self::ContactLost(_) => "contact lost",
+        }
+    }
+
     /// Whether a smaller increment has a chance.
     pub fn is_retryable(&self) -> bool {
         match self {
             Self::Newton(NewtonFailure::Linear(LinearFailure::TooLarge { .. })) => false,
             _ => matches!(self, Self::Newton(_) | Self::Penetration { .. } | Self::ContactLost(_)),
         }
+    }
+}
+
+fn kind_of_trial(failure: &TrialFailure) -> &'static str {
+    match failure {
+        TrialFailure::Inverted { .. } => "element inside out",
+        TrialFailure::Crushed { .. } => "element crushed",
+        TrialFailure::Friction { .. } => "friction law",
+        TrialFailure::FluidPressure { .. } => "fluid pressure",
+        TrialFailure::Undefined { .. } => "expression without a value",
     }
 }

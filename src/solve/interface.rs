@@ -7,20 +7,24 @@
 //!
 //! That way is taken where it costs less: where a dense LU of the nodes at contacts takes no more than
 //! three times the operations of a factorization of the bodies: they are that much faster; and where most nodes are not
-//! at contacts. It follows from the model and the step, never from what is kept. Condensed matrices are kept
+//! at contacts. Where only half of the equations on the contacts vary, it may be that LU which takes so little, and an increment
+//! in which more of them vary is left to all equations if LU of the whole takes too much.
+//! All this follows from the model, the step and the iterates, never from what is kept. Condensed matrices are kept
 //! for all lengths as long as they take no more than [`MOST_MEMORY`] and half of what is free; those that were used last stay.
 
 use std::sync::Arc;
 
-use crate::equations::condensed::{CondensedEquations, ContactNodes, is_linear};
+use crate::equations::condensed::{CondensedEquations, is_linear};
+use crate::equations::contact_nodes::ContactNodes;
 use crate::equations::failure::TrialFailure;
-use crate::equations::{Assembler, Coupling, Trial};
+use crate::equations::{Assembler, Trial};
 use crate::linear::memory::available_memory;
 use crate::linear::system::{Request, System};
-use crate::linear::{Condensation, Condensed, DenseLu};
+use crate::linear::{Condensation, Condensed, Eliminated, Forwarded, HalvedLu, Pattern};
 use crate::model::boundary::{Absorber, Dashpot, Spring};
 use crate::model::scheme::Scheme;
-use crate::model::{Model, Step};
+use crate::model::support::Direction;
+use crate::model::{Damping, Model, Step};
 
 /// Most bytes that condensed matrices of all lengths of increments take.
 pub const MOST_MEMORY: usize = 2 << 30;
@@ -32,40 +36,54 @@ const DENSE: f64 = 3.0;
 pub struct Interface {
     /// the nodes
     pub nodes: ContactNodes,
-    /// The equations without contact, all contact nodes coupled
+    /// Whether LU of all their equations is worth it, not only of the half that varies while nothing opens
+    pub whole: bool,
+    /// The equations without contact
     bodies: Assembler,
     system: System,
+    /// The same with all contact nodes coupled
+    pattern: Arc<Pattern>,
     condensation: Condensation,
     /// What the condensed matrices follow from but for the length of increments
     constants: Option<Constants>,
     /// Condensed matrices by the bits of Δt, the last used last; none where a pivot vanished
-    rungs: Vec<(u64, Option<Arc<Condensed>>)>,
+    rungs: Vec<(u64, Option<Arc<Rung>>)>,
     /// solves the condensed equations
-    pub solver: DenseLu,
+    pub solver: HalvedLu,
     /// these equations
     pub condensed: System,
+}
+
+/// The bodies condensed for one length of increments.
+pub struct Rung {
+    /// on the nodes at contacts
+    pub bodies: Condensed,
+    /// on what varies there
+    pub eliminated: Option<Eliminated>,
 }
 
 /// Everything that a step says of the constant part of its equations.
 #[derive(PartialEq)]
 struct Constants {
     scheme: Scheme,
-    supports: Vec<usize>,
+    supports: Vec<Direction>,
     /// Stiffnesses of springs, and coefficients of dashpots
     at_dofs: [Vec<(usize, f64)>; 2],
     absorbers: Vec<(usize, [f64; 4])>,
+    damping: Vec<Damping>,
 }
 
 impl Constants {
-    fn of(step: &Step) -> Self {
+    fn of(model: &Model, step: &Step) -> Self {
         let springs = step.loads.springs.iter().map(|&Spring { dof, stiffness, .. }| (dof, stiffness)).collect();
         let dashpots = step.loads.dashpots.iter().map(|&Dashpot { dof, coefficient, .. }| (dof, coefficient)).collect();
         let absorber = |Absorber { node, coefficients: c }: &Absorber| (*node, [c[0], c[1], c[2], c[3]]);
         Self {
             scheme: step.scheme,
-            supports: step.supports.iter().map(|support| support.dof).collect(),
+            supports: step.supports.iter().map(|support| support.at).collect(),
             at_dofs: [springs, dashpots],
             absorbers: step.loads.absorbers.iter().map(absorber).collect(),
+            damping: model.dampings(step),
         }
     }
 }
@@ -77,19 +95,20 @@ impl Interface {
             return None;
         }
         let nodes = ContactNodes::new(model);
-        let mut bodies = Assembler::new(model);
-        let size = 2.0 * nodes.nodes.len() as f64;
-        let elimination = Condensation::new(bodies.system().tangent.pattern, &[]).ok()?.work();
+        let bodies = Assembler::new(model);
+        let system = bodies.system();
+        let elimination = Condensation::new(system.tangent.pattern.clone(), &[]).ok()?.work();
         let most = 2 * nodes.nodes.len() > model.mesh.nodes.len();
-        if most || 2.0 / 3.0 * size.powi(3) > DENSE * elimination {
+        let pays = |equations: usize| 2.0 / 3.0 * (equations as f64).powi(3) <= DENSE * elimination;
+        let whole = pays(2 * nodes.nodes.len());
+        if most || !(whole || nodes.halves() && pays(nodes.nodes.len())) {
             return None;
         }
-        bodies.couple(&Arc::new(Coupling::of(nodes.nodes.clone())));
-        let system = bodies.system();
-        let condensation = Condensation::new(system.tangent.pattern.clone(), &nodes.nodes).ok()?;
+        let pattern = nodes.around(&system.tangent.pattern);
+        let condensation = Condensation::new(pattern.clone(), &nodes.nodes).ok()?;
         let condensed = nodes.system();
-        let (constants, rungs, solver) = (None, Vec::new(), DenseLu::default());
-        Some(Self { nodes, bodies, system, condensation, constants, rungs, solver, condensed })
+        let (constants, rungs, solver) = (None, Vec::new(), HalvedLu::default());
+        Some(Self { nodes, whole, bodies, system, pattern, condensation, constants, rungs, solver, condensed })
     }
 
     /// The bodies condensed for an increment; none if the step is not linear but for contact, or a pivot vanished: nothing but
@@ -97,11 +116,11 @@ impl Interface {
     ///
     /// # Errors
     /// [`TrialFailure`] when a load has no value.
-    pub fn bodies(&mut self, model: &Model, trial: Trial) -> Result<Option<Arc<Condensed>>, TrialFailure> {
+    pub fn bodies(&mut self, model: &Model, trial: Trial) -> Result<Option<Arc<Rung>>, TrialFailure> {
         if !is_linear(model, trial.step) {
             return Ok(None);
         }
-        let constants = Constants::of(trial.step);
+        let constants = Constants::of(model, trial.step);
         if self.constants.as_ref() != Some(&constants) {
             self.constants = Some(constants);
             self.rungs.clear();
@@ -117,16 +136,21 @@ impl Interface {
     }
 
     /// Condense the bodies, in place of those lengths of increments that were used longest ago if memory asks for it.
-    fn condense(&mut self, trial: Trial) -> Result<Option<Arc<Condensed>>, TrialFailure> {
-        let one = self.condensation.memory();
+    fn condense(&mut self, trial: Trial) -> Result<Option<Arc<Rung>>, TrialFailure> {
+        let one = self.condensation.memory() + Eliminated::memory(self.nodes.nodes.len());
         let free = available_memory().map_or(MOST_MEMORY, |free| (free / 2).min(MOST_MEMORY));
         let held = self.rungs.len() * one;
         // What is held counts as used already.
         let most = (held + free).min(MOST_MEMORY) / one.max(1);
         self.rungs.drain(..(self.rungs.len() + 1).saturating_sub(most.max(1)));
-        let Self { bodies, system, condensation, .. } = self;
+        let Self { nodes, bodies, system, pattern, condensation, .. } = self;
         bodies.assemble(trial, &trial.old.displacement, &[], Request::Tangent, system)?;
-        Ok(condensation.condense(&system.tangent).map(Arc::new))
+        let matrix = nodes.counted((bodies.model(), trial.step), &system.tangent, pattern);
+        let rung = |condensed| {
+            let eliminated = nodes.eliminated((bodies.model(), trial.step), &condensed);
+            Arc::new(Rung { bodies: condensed, eliminated })
+        };
+        Ok(condensation.condense(&matrix).map(rung))
     }
 }
 
@@ -142,7 +166,7 @@ pub struct Round<'a> {
     /// ρ
     pub equations: CondensedEquations<'a>,
     bodies: &'a Condensed,
-    forwarded: crate::linear::Forwarded,
+    forwarded: Forwarded,
 }
 
 impl<'a> Round<'a> {
@@ -158,7 +182,7 @@ impl<'a> Round<'a> {
         system: &mut System,
     ) -> Result<Self, TrialFailure> {
         assembler.assemble(trial, u, &[], Request::Residual, system)?;
-        let forwarded = bodies.forward(&system.residual);
+        let forwarded = bodies.forward(&nodes.balanced((assembler.model(), trial.step), &system.residual));
         let constant = forwarded.right.clone();
         let equations = CondensedEquations::new((nodes, bodies), trial, u, constant, (assembler, system));
         Ok(Self { equations, bodies, forwarded })
@@ -167,7 +191,7 @@ impl<'a> Round<'a> {
     /// All displacements that go with those of the nodes at contacts: A (u − u₀) = −r but for these.
     pub fn follow(&self, nodes: &ContactNodes, u: &mut [f64], x: &[f64]) {
         let way: Vec<f64> = nodes.gather(u).iter().zip(x).map(|(start, x)| start - x).collect();
-        let all = self.bodies.backward(&self.forwarded, &way);
+        let all = nodes.resolved(self.bodies.backward(&self.forwarded, &way));
         u.iter_mut().zip(all).for_each(|(u, way)| *u -= way);
         nodes.scatter(x, u);
     }

@@ -11,6 +11,7 @@ pub mod floating;
 pub mod interface;
 pub mod newton;
 pub mod start;
+pub mod suspect;
 
 use std::sync::Arc;
 

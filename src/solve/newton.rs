@@ -30,6 +30,7 @@ use thiserror::Error;
 use super::downhill::downhill;
 use crate::linear::system::{Request, System};
 use crate::linear::{self, LinearFailure, LinearSolver, Solution, norm};
+use crate::model::told::count;
 
 /// When Newton's method stops, and what it may do on its way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,7 +77,7 @@ pub enum NewtonFailure<E> {
     #[error("the forces are too large for double precision; check the stiffnesses, loads and units")]
     Overflow,
     /// The residual grows.
-    #[error("Newton's method diverges (relative residual {residual:.1e} after {iterations} iterations)")]
+    #[error("Newton's method diverges (relative residual {residual:.1e} after {})", count(*iterations, "iteration"))]
     Diverged {
         /// last relative residual
         residual: f64,
@@ -84,7 +85,7 @@ pub enum NewtonFailure<E> {
         iterations: usize,
     },
     /// The iterations are used up.
-    #[error("no equilibrium within {iterations} iterations (relative residual {residual:.1e})")]
+    #[error("no equilibrium within {} (relative residual {residual:.1e})", count(*iterations, "iteration"))]
     TooManyIterations {
         /// last relative residual
         residual: f64,

@@ -12,14 +12,15 @@ use crate::model::{Model, Step};
 /// buffers are exchanged: `u` and `found` are left with the values of before.
 pub fn accept(model: &Model, step: &Step, time: f64, u: &mut Vec<f64>, found: &mut Evaluation, state: &mut State) {
     for (support, reaction) in step.supports.iter().zip(&found.reactions) {
-        found.loads[support.dof] += reaction;
-        state.reaction[support.dof] = *reaction;
+        support.at.add(*reaction, &mut found.loads);
+        support.at.put(*reaction, &mut state.reaction);
     }
     let flows = Flows::between(model, step, (state, time), u, found);
-    state.energy.external_work += flows.work;
+    state.energy.external_work += flows.work + found.heating;
     state.energy.damping_dissipation += flows.damping + found.dissipated;
     state.energy.stabilization += flows.stabilization;
     state.energy.friction_dissipation += flows.friction;
+    state.energy.radiated += flows.radiated;
     state.energy.strain = found.strain_energy;
     std::mem::swap(&mut state.displacement, u);
     std::mem::swap(&mut state.force, &mut found.force);

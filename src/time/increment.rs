@@ -2,11 +2,13 @@
 
 use super::accept::{accept, take_stock};
 use crate::equations::inertia::kinetic_energy;
-use crate::equations::supports::tie;
+use crate::equations::supports::{hold, tie, turn};
 use crate::equations::{Evaluation, Trial};
+use crate::equations::{links, turning};
 use crate::linear;
 use crate::model::scheme::{Scheme, start_acceleration};
 use crate::model::state::{LastIncrement, State};
+use crate::model::support::Direction;
 use crate::model::{Model, Step};
 use crate::solve::augmented::augment;
 use crate::solve::failure::IncrementFailure;
@@ -24,13 +26,17 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
     // Explicit increments leave the forces of copies with them.
     model.ties.gather(2, &mut state.force);
     // The reaction of a freed support has become a load.
-    step.released.iter().for_each(|&dof| state.force[dof] -= old.reaction[dof]);
+    step.released.iter().for_each(|at| at.add(-at.of(&old.reaction), &mut state.force));
+    let before = if step.launch.is_empty() { 0.0 } else { kinetic(step, &state, work) };
+    launch(model, step, &mut state);
     match step.scheme.is_dynamic() {
-        true if rests(old) || frees(step, old) => start_dynamics(model, step, &mut state, work)?,
+        true if rests(old) || frees(step, old) || step.damps_anew || !step.launch.is_empty() => {
+            start_dynamics(model, step, &mut state, work)?
+        }
         true => {}
         false => {
             state.stop();
-            if old.increment == 0 && model.contacts.iter().any(|pair| pair.initial.is_some()) {
+            if old.increment == 0 && model.starts_loaded() {
                 start_loaded(step, &mut state, work)?;
             }
         }
@@ -38,8 +44,26 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
     if state.increment == 0 {
         let kinetic = kinetic(step, &state, work);
         take_stock(model, kinetic, &mut state);
+    } else if !step.launch.is_empty() {
+        state.energy.external_work += kinetic(step, &state, work) - before;
     }
     Ok(state)
+}
+
+/// Give nodes the velocities that they take when a step begins, where no support says how they move.
+pub fn launch(model: &Model, step: &Step, state: &mut State) {
+    let inclined = step.supports.iter().map(|support| support.at).filter(|at| at.inclined.is_some());
+    let held: Vec<(Direction, f64)> = inclined.map(|at| (at, at.of(&state.velocity))).collect();
+    for (dof, velocity) in step.launch.iter().flat_map(|&(node, [x, y])| [(2 * node, x), (2 * node + 1, y)]) {
+        if step.support_at(dof).is_none_or(|support| support.at.inclined.is_some()) {
+            state.velocity[dof] = velocity;
+        }
+    }
+    held.into_iter().for_each(|(at, velocity)| at.set(velocity, &mut state.velocity));
+    if !step.launch.is_empty() {
+        model.ties.spread(2, &mut state.velocity);
+        links::stiffen_velocities(model, &state.displacement, &mut state.velocity);
+    }
 }
 
 /// Whether nothing accelerates.
@@ -47,10 +71,18 @@ fn rests(state: &State) -> bool {
     state.acceleration.iter().all(|a| *a == 0.0)
 }
 
+/// Share of a reaction along a direction that round-off may leave across.
+const ROUNDED: f64 = 1e-12;
+
 /// Whether a dof with a reaction is free from now on: without it, accelerations jump.
 fn frees(step: &Step, old: &State) -> bool {
-    let held = |dof: &usize| step.supports.binary_search_by_key(dof, |support| support.dof).is_ok();
-    (0..old.reaction.len()).any(|dof| old.reaction[dof] != 0.0 && !held(&dof))
+    let reaction = |at: Direction| at.of(&old.reaction).abs();
+    let held = |dof: usize| {
+        let at = step.support_at(dof)?.at;
+        // Along an inclined direction the components are rounded.
+        Some(at.across().is_none_or(|across| reaction(across) <= ROUNDED * reaction(at)))
+    };
+    (0..old.reaction.len()).any(|dof| old.reaction[dof] != 0.0 && !held(dof).unwrap_or(false))
 }
 
 /// Take up a step again after explicit increments within it.
@@ -78,6 +110,8 @@ fn start_dynamics(model: &Model, step: &Step, state: &mut State, work: &mut Work
     let force = &state.force;
     let mut right: Vec<f64> = force.iter().map(|f| -f).collect();
     let mut mass = work.assembler.mass().clone();
+    links::gather_rows(model, &mut mass);
+    links::gather_residual(model, &mut right);
     let scale = mass.diagonal().into_iter().fold(0.0, f64::max);
     let dt = step.increments.initial;
     let first = Trial::new(state, step, state.time + dt, dt);
@@ -88,22 +122,27 @@ fn start_dynamics(model: &Model, step: &Step, state: &mut State, work: &mut Work
         right[dof] = 0.0;
     }
     for support in &step.supports {
-        mass.replace_row(support.dof, scale);
-        right[support.dof] = scale * start_acceleration(first.thirds(support, model), dt);
+        hold(support.at, scale, &mut mass);
+        turn(support.at, scale * start_acceleration(first.thirds(support, model), dt), &mut right);
     }
     tie(model, &mut mass, scale);
+    links::begin(model, scale, state, &mut mass, &mut right);
     state.acceleration = linear::solve(&mut *work.solver, &mass, &right).map_err(IncrementFailure::Mass)?.x;
-    let inertia = work.assembler.mass().multiply(&state.acceleration);
+    let mut inertia = work.assembler.mass().multiply(&state.acceleration);
+    model.linkage.gather(&mut inertia);
+    let [force, inertia] = [force, &inertia].map(|forces| links::relieved(model, &state.displacement, forces));
     for support in &step.supports {
-        state.external[support.dof] += force[support.dof] + inertia[support.dof];
+        support.at.add(support.at.of(&force) + support.at.of(&inertia), &mut state.external);
     }
     Ok(())
 }
 
-/// The forces at the start of a static run whose contacts are closed already: loads and reactions balance them.
+/// The forces at the start of a static run whose bodies are stressed or contacts closed already: loads and reactions balance
+/// them.
 fn start_loaded(step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), IncrementFailure> {
     evaluate_forces(step, state, work)?;
-    step.supports.iter().for_each(|support| state.external[support.dof] += state.force[support.dof]);
+    let force = links::relieved(work.assembler.model(), &state.displacement, &state.force);
+    step.supports.iter().for_each(|support| support.at.add(support.at.of(&force), &mut state.external));
     Ok(())
 }
 
@@ -140,19 +179,21 @@ pub fn advance(
 
 /// Displacement at the end of an increment from the equilibrium `u` that was just found ahead of it, and everything
 /// else evaluated there; `u` itself unless the scheme looks beyond the end.
-fn reach_end(model: &Model, end: Trial, u: Vec<f64>, work: &mut Workspace) -> Result<Vec<f64>, IncrementFailure> {
+fn reach_end(model: &Model, end: Trial, beyond: Vec<f64>, work: &mut Workspace) -> Result<Vec<f64>, IncrementFailure> {
     let Trial { old, step, dt, .. } = end;
     let theta = step.scheme.theta();
-    let Some(scheme) = step.scheme.coefficients().filter(|_| theta > 1.0) else { return Ok(u) };
+    let Some(scheme) = step.scheme.coefficients().filter(|_| theta > 1.0) else { return Ok(beyond) };
     let ahead = &work.assembler.evaluation.acceleration;
     let reach = |dof: usize| {
         let (v, a) = (old.velocity[dof], old.acceleration[dof]);
         old.displacement[dof] + scheme.increment((v, a), a + (ahead[dof] - a) / theta, dt)
     };
-    let mut u: Vec<f64> = (0..u.len()).map(reach).collect();
+    let mut u: Vec<f64> = (0..beyond.len()).map(reach).collect();
     for support in &step.supports {
-        u[support.dof] = end.prescribed(support, model);
+        support.at.set(end.prescribed(support, model), &mut u);
     }
+    model.ties.spread(2, &mut u);
+    turning::reach_end(model, end, [&beyond, ahead], scheme, &mut u);
     let evaluated = work.assembler.residual(end, &u, &mut work.system);
     evaluated.map_err(|failure| IncrementFailure::Newton(NewtonFailure::Evaluation(failure)))?;
     Ok(u)

@@ -4,5 +4,6 @@ mod accept;
 pub mod explicit;
 pub mod increment;
 pub mod ladder;
+pub mod quasi_dynamic;
 pub mod step_size;
 pub mod touching;

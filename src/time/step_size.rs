@@ -66,13 +66,24 @@ pub struct Judgement {
     pub error: Option<f64>,
 }
 
+impl Judgement {
+    /// The same after an increment that is shorter than it was wanted only because it ends at a time of output: that is no
+    /// reason for the next one to be.
+    pub fn after_output(self, attempt: usize, [dt, wanted]: [f64; 2]) -> Self {
+        let shortened = attempt == 1 && self.accepted && dt < wanted && self.next >= dt;
+        Self { next: if shortened { self.next.max(wanted) } else { self.next }, ..self }
+    }
+}
+
 /// Δt of the next attempt within the bounds of the step. The last increment ends on the end of the step; under error
-/// control the last two share what is left, so that none is much shorter than the one before.
-pub fn bounded(step: &Step, time: f64, dt: f64) -> f64 {
-    let remaining = step.span.end - time;
+/// control the last two share what is left, so that none is much shorter than the one before. The same where an increment
+/// must end on the way there, at a time of `output`.
+pub fn bounded(step: &Step, time: f64, dt: f64, output: Option<f64>) -> f64 {
+    let output = output.filter(|output| *output < step.span.end);
+    let remaining = output.unwrap_or(step.span.end) - time;
     let dt = dt.min(step.increments.max);
     let left = (remaining / dt - ROUND_OFF).ceil().max(1.0);
-    let shared = if step.increments.error.is_some() { 2.0 } else { 1.0 };
+    let shared = if step.increments.error.is_some() || output.is_some() { 2.0 } else { 1.0 };
     if left <= shared { remaining / left } else { dt }
 }
 
@@ -138,8 +149,11 @@ fn local_error(model: &Model, step: &Step, old: &State, new: &State) -> f64 {
     let constant = step.scheme.error_constant().unwrap_or(0.0);
     let rates = new.acceleration.iter().zip(&old.acceleration).enumerate();
     let heavy = rates.filter(|(dof, _)| !model.massless[dof / 2]);
-    let free = heavy.filter(|(dof, _)| step.supports.binary_search_by_key(dof, |support| support.dof).is_err());
+    let free = heavy.filter(|(dof, _)| step.support_at(*dof).is_none());
     let change = free.fold(0.0, |largest: f64, (_, (new, old))| largest.max((new - old).abs()));
+    let across = step.supports.iter().filter_map(|support| support.at.across());
+    let across = across.filter(|at| !model.massless[at.node()]);
+    let change = across.fold(change, |most, at| most.max((at.of(&new.acceleration) - at.of(&old.acceleration)).abs()));
     constant * new.dt.powi(2) * change
 }
 

@@ -125,6 +125,16 @@ fn ruptures_are_checked() {
     refused(&|case| case["steps"][0]["rupture"] = json!({"slip_rate": 0.0}), "steps[0].rupture.slip_rate: is 0");
     refused(&|case| case["steps"][0]["rupture"] = json!({"slip_rate": 1.0, "safety": 2.0}), "at most 1");
     refused(&|case| case["steps"][0]["scheme"] = json!({"explicit": {}}), "explicit throughout");
+    // A mass on a plane: no wave crosses it.
+    let massive = |case: &mut Value| {
+        case["mesh"] = json!({"nodes": [[0, 0]], "points": {"mass": [0]}});
+        case["bodies"] = json!({});
+        case["point_masses"] = json!({"mass": {"mass": 1}});
+        case["contacts"] = json!({"base": {"slave": "mass", "area": 1, "normal": {"alpha_n": 1e3},
+            "master": {"plane": {"point": [0, 0], "normal": [0, 1]}}, "friction": {"law": "coulomb", "mu": 0.3, "alpha_t": 1e3}}});
+        case["steps"][0]["supports"] = json!([{"on": "mass", "uy": 0}]);
+    };
+    refused(&massive, "needs a body");
     refused(&|case| case["bodies"]["slab"]["material"]["density"] = json!(0.0), "give a density");
     refused(&|case| case["contacts"]["base"]["normal"]["penetration"] = json!(1e-9), "takes the plain penalty");
 }

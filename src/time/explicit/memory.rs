@@ -7,9 +7,8 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::Explicit;
-use super::motion::masses;
-use super::stability::{Element, Stability, filled};
-use crate::equations::dampers;
+use super::element::Element;
+use super::stability::{Stability, filled, heated};
 use crate::model::{Model, Step};
 
 /// What explicit increments remember.
@@ -53,6 +52,7 @@ impl Explicit {
         let stride = stride(model);
         let stability = Stability {
             model: model.clone(),
+            retardation: model.retardations(step),
             elements,
             nodes: model.mesh.elements.iter().flat_map(|element| filled(&element.nodes, stride)).collect(),
             seen: seen.into_iter().map(Vector2::from).collect(),
@@ -62,20 +62,9 @@ impl Explicit {
             since,
             relooked,
             margin,
+            heated: heated(model),
         };
-        Self {
-            model: model.clone(),
-            step: step.clone(),
-            mass: masses(model),
-            dampers: dampers::by_node(model, step),
-            pulls: Vec::new(),
-            mean_velocity: vec![0.0; if model.is_viscous() { model.dofs() } else { 0 }],
-            stability,
-            care,
-            stable,
-            displacement: vec![0.0; model.dofs()],
-            places: Vec::new(),
-        }
+        Self { stable, ..Self::of(model, step, stability, care) }
     }
 }
 

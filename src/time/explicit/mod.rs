@@ -23,8 +23,12 @@
 //! Source: Irons & Treharne (1971), Proc. 3rd Conf. Matrix Methods in Struct. Mech., WPAFB; Belytschko, Liu, Moran &
 //! Elkhodary (2014), Nonlinear Finite Elements for Continua and Structures, §6.2.
 
+mod alike;
+mod element;
 mod memory;
 mod motion;
+mod plates;
+mod rigid;
 mod stability;
 
 use std::sync::Arc;
@@ -36,12 +40,13 @@ use super::accept::take_stock;
 use crate::equations::dampers::{self, NodeDamper};
 use crate::equations::failure::TrialFailure;
 use crate::equations::{Assembler, Trial};
-use crate::model::scheme::start_acceleration;
 use crate::model::state::State;
+use crate::model::support::Prescribed;
 use crate::model::{Model, Step};
 use crate::solve::failure::IncrementFailure;
 pub use memory::ExplicitMemory;
-use motion::{kinetic_energy, masses};
+use motion::masses;
+use plates::Plates;
 use stability::Stability;
 
 /// Share of its size that no element changes by more than in an increment: what strikes it is stopped by its stiffness
@@ -64,6 +69,8 @@ pub struct Explicit {
     step: Arc<Step>,
     /// Mass of every node, that of copies with the nodes they move with and with the copies as well [M]
     mass: Vec<f64>,
+    /// Plates of which one component is alike, and rigid ones
+    plates: Plates,
     /// Dashpots, absorbing sides and damping by the masses, one entry a node
     dampers: Vec<NodeDamper>,
     /// Their forces [F]
@@ -99,13 +106,18 @@ impl Explicit {
         Self::with_care(1.0, model, step, state, assembler)
     }
 
+    /// Whether increments are as short as it makes sense.
+    pub fn is_most_careful(&self) -> bool {
+        self.care <= MOST_CAREFUL
+    }
+
     /// Shorter increments, from the state before others in which the mesh collapsed or the motion grew without bounds;
     /// `false` if they are as short as it makes sense.
     ///
     /// # Errors
     /// As [`Explicit::begin`].
     pub fn more_carefully(&mut self, state: &mut State, assembler: &mut Assembler) -> Result<bool, IncrementFailure> {
-        if self.care <= MOST_CAREFUL {
+        if self.is_most_careful() {
             return Ok(false);
         }
         *self = Self::with_care(CUT * self.care, &self.model.clone(), &self.step.clone(), state, assembler)?;
@@ -119,54 +131,30 @@ impl Explicit {
         state: &mut State,
         assembler: &mut Assembler,
     ) -> Result<Self, IncrementFailure> {
-        let mut explicit = Self {
-            model: model.clone(),
-            step: step.clone(),
-            mass: masses(model),
-            dampers: dampers::by_node(model, step),
-            pulls: Vec::new(),
-            mean_velocity: vec![0.0; if model.is_viscous() { model.dofs() } else { 0 }],
-            stability: Stability::new(model, state)?,
-            care,
-            stable: 0.0,
-            displacement: state.displacement.clone(),
-            places: Vec::new(),
-        };
+        let mut explicit = Self::of(model, step, Stability::new(model, step, state)?, care);
+        explicit.displacement.clone_from(&state.displacement);
         explicit.stable = explicit.stable_increment(state);
         explicit.start(state, assembler)?;
         Ok(explicit)
     }
 
-    /// The forces and accelerations at the start of the step.
-    fn start(&mut self, state: &mut State, assembler: &mut Assembler) -> Result<(), IncrementFailure> {
-        let (model, step) = (&*self.model.clone(), &*self.step.clone());
-        let still = Trial::new(state, step, state.time, 0.0);
-        assembler.evaluation.damping.fill(0.0);
-        let velocity = model.is_viscous().then_some(&state.velocity[..]);
-        assembler.forces(still, &state.displacement, velocity).map_err(IncrementFailure::Start)?;
-        let found = &mut assembler.evaluation;
-        self.add_pulls(state.time, &state.velocity, found);
-        let accelerations = found.force.iter().enumerate().map(|(dof, force)| -force / self.mass[dof / 2]);
-        state.acceleration = accelerations.collect();
-        state.force.clone_from(&found.force);
-        state.damping.clone_from(&found.damping);
-        state.external.clone_from(&found.loads);
-        let first = Trial::new(state, step, state.time + self.stable, self.stable);
-        let starts: Vec<f64> =
-            step.supports.iter().map(|support| start_acceleration(first.thirds(support, model), self.stable)).collect();
-        // A freed support has no reaction any more.
-        state.reaction.fill(0.0);
-        for (support, start) in step.supports.iter().zip(starts) {
-            let dof = support.dof;
-            state.acceleration[dof] = start;
-            state.reaction[dof] = state.force[dof] + self.mass[dof / 2] * start;
-            state.external[dof] += state.reaction[dof];
+    /// Increments that have not begun yet.
+    fn of(model: &Arc<Model>, step: &Arc<Step>, stability: Stability, care: f64) -> Self {
+        let mass = masses(model);
+        Self {
+            model: model.clone(),
+            step: step.clone(),
+            plates: Plates::new(model, step, &mass),
+            mass,
+            dampers: dampers::by_node(model, step),
+            pulls: Vec::new(),
+            mean_velocity: vec![0.0; if model.is_viscous(step) { model.dofs() } else { 0 }],
+            stability,
+            care,
+            stable: 0.0,
+            displacement: vec![0.0; model.dofs()],
+            places: Vec::new(),
         }
-        model.ties.spread(2, &mut state.acceleration);
-        if state.increment == 0 {
-            take_stock(model, kinetic_energy(model, &self.mass, state, self.stable), state);
-        }
-        Ok(())
     }
 
     /// The safe share of (1), but no more than the step allows [T].
@@ -180,7 +168,8 @@ impl Explicit {
     }
 
     /// Equal increments to a time, none longer than is stable. What is stored in motion and contacts is told at the end only,
-    /// the work and dissipation in between having been summed.
+    /// the work and dissipation in between having been summed. A `pause` that is asked for ends it after an increment short of
+    /// that time; going on from there leads to the same bits.
     ///
     /// # Errors
     /// [`IncrementFailure`] when an element inverts, a friction law fails, a load has no value, or the motion has none.
@@ -189,14 +178,18 @@ impl Explicit {
         time: f64,
         state: &mut State,
         assembler: &mut Assembler,
+        pause: &dyn Fn() -> bool,
     ) -> Result<usize, IncrementFailure> {
         let mut increments = 0;
         while state.time < time {
             let end = self.next(time, state)?;
             self.advance(end, state, assembler).map_err(IncrementFailure::Start)?;
             increments += 1;
+            if state.time < time && pause() {
+                return Ok(increments);
+            }
         }
-        take_stock(&self.model, kinetic_energy(&self.model, &self.mass, state, state.dt), state);
+        take_stock(&self.model, self.kinetic_energy(state, state.dt), state);
         match state.energy.kinetic.is_finite() {
             true => Ok(increments),
             false => Err(IncrementFailure::Unbounded),
@@ -215,7 +208,7 @@ impl Explicit {
             true => self.stable = self.stable_increment(state),
             false if changed.is_empty() => return Ok(end),
             // What became longer waits for the next look at all.
-            false => self.stable = self.safe(self.stability.longest_of(&changed)).min(self.stable),
+            false => self.stable = self.safe(self.stability.longest_of(changed.iter().copied())).min(self.stable),
         }
         let end = part(state.time, time, self.stable);
         self.predict(end, state)?;
@@ -252,18 +245,22 @@ impl Explicit {
         });
         let trial = Trial::new(state, step, time, dt);
         self.places.clear();
-        let places = |support| (trial.thirds(support, model), state.velocity[support.dof]);
+        let places = |support: &Prescribed| (trial.thirds(support, model), support.at.of(&state.velocity));
         self.places.extend(step.supports.iter().map(places));
         for (support, (places, _)) in step.supports.iter().zip(&self.places) {
             if !places.iter().all(|place| place.is_finite()) {
-                let node = model.mesh.node_tags[support.dof / 2];
+                let node = model.mesh.node_tags[support.at.node()];
                 return Err(IncrementFailure::Start(TrialFailure::Undefined { node, time }));
             }
-            self.displacement[support.dof] = places[3];
-            let (i, way) = (support.dof % 2, places[3] - state.displacement[support.dof]);
-            (low[i], high[i]) = (low[i].min(way), high[i].max(way));
+            support.at.set(places[3], &mut self.displacement);
+            let first = support.at.dof & !1;
+            for i in (0..2).filter(|i| support.at.inclined.is_some() || first + i == support.at.dof) {
+                let way = self.displacement[first + i] - state.displacement[first + i];
+                (low[i], high[i]) = (low[i].min(way), high[i].max(way));
+            }
         }
         model.ties.spread(2, &mut self.displacement);
+        self.plates.turn(model, dt, state, &mut self.displacement);
         Ok((high[0] - low[0]).hypot(high[1] - low[1]))
     }
 }

@@ -7,12 +7,78 @@ use super::{CHUNK, Explicit};
 use crate::equations::dampers::{self, NodeDamper};
 use crate::equations::failure::TrialFailure;
 use crate::equations::{Assembler, Evaluation, Trial};
-use crate::model::Model;
-use crate::model::scheme::supported_rates;
+use crate::model::scheme::{start_acceleration, supported_rates};
 use crate::model::state::State;
-use crate::time::accept::accept;
+use crate::model::support::Direction;
+use crate::model::{Model, Step};
+use crate::solve::failure::IncrementFailure;
+use crate::time::accept::{accept, take_stock};
+use crate::time::increment::launch;
 
 impl Explicit {
+    /// Give nodes the velocities that they take when the step begins; what that changes of ½ Σ m v² is work from outside.
+    pub fn launch(model: &Model, step: &Step, state: &mut State) {
+        if step.launch.is_empty() {
+            return;
+        }
+        let mass = masses(model);
+        let before = energy_of_motion(model, &mass, &state.velocity);
+        launch(model, step, state);
+        // The audit of a run begins with what moves then.
+        if state.increment > 0 {
+            state.energy.external_work += energy_of_motion(model, &mass, &state.velocity) - before;
+        }
+    }
+
+    /// The forces and accelerations at the start of the step.
+    pub(super) fn start(&mut self, state: &mut State, assembler: &mut Assembler) -> Result<(), IncrementFailure> {
+        let (model, step) = (&*self.model.clone(), &*self.step.clone());
+        let still = Trial::new(state, step, state.time, 0.0);
+        assembler.evaluation.damping.fill(0.0);
+        let velocity = model.is_viscous(step).then_some(&state.velocity[..]);
+        assembler.forces(still, &state.displacement, velocity).map_err(IncrementFailure::Start)?;
+        let found = &mut assembler.evaluation;
+        self.add_pulls(state.time, &state.velocity, found);
+        let accelerations = found.force.iter().enumerate().map(|(dof, force)| -force / self.mass[dof / 2]);
+        state.acceleration = accelerations.collect();
+        state.force.clone_from(&found.force);
+        state.damping.clone_from(&found.damping);
+        state.external.clone_from(&found.loads);
+        let first = Trial::new(state, step, state.time + self.stable, self.stable);
+        let starts: Vec<f64> =
+            step.supports.iter().map(|support| start_acceleration(first.thirds(support, model), self.stable)).collect();
+        // A freed support has no reaction any more.
+        state.reaction.fill(0.0);
+        self.plates.begin(0.0, state);
+        self.plates.accelerate((model, 0.0), (&self.displacement, &found.force), |k| starts[k], state);
+        step.supports.iter().zip(&starts).for_each(|(support, start)| support.at.set(*start, &mut state.acceleration));
+        self.plates.spread(model, &self.displacement, state);
+        for (support, start) in step.supports.iter().zip(starts) {
+            let at = support.at;
+            let of_plate = self.plates.reaction(at, &state.force, &state.acceleration);
+            let reaction = of_plate.unwrap_or_else(|| at.of(&state.force) + self.mass[at.node()] * start);
+            at.put(reaction, &mut state.reaction);
+            at.add(reaction, &mut state.external);
+        }
+        model.ties.spread(2, &mut state.acceleration);
+        if state.increment == 0 {
+            take_stock(model, self.kinetic_energy(state, self.stable), state);
+        }
+        Ok(())
+    }
+
+    /// ½ v₋ᵀ M v₊ of the velocities half an increment before and after: by (7) and (8) its change is exactly the mean force
+    /// times the way, so that what the audit of energies leaves is not the scheme's own swing, ⅛ Δt² aᵀ M a [F·L].
+    pub(super) fn kinetic_energy(&self, state: &State, dt: f64) -> f64 {
+        let square = |v: &[f64]| v[0] * v[0] + v[1] * v[1];
+        let of = |node: usize| {
+            let [v, a] = [&state.velocity, &state.acceleration].map(|rates| &rates[2 * node..2 * node + 2]);
+            0.5 * self.mass[node] * (square(v) - 0.25 * dt * dt * square(a))
+        };
+        let copies: f64 = self.model.ties.pairs().iter().map(|&(copy, _)| of(copy)).sum();
+        (0..self.mass.len()).map(of).sum::<f64>() - copies + self.plates.turning_energy(state, dt)
+    }
+
     /// One increment to the displacements predicted.
     pub(super) fn advance(
         &mut self,
@@ -22,11 +88,12 @@ impl Explicit {
     ) -> Result<(), TrialFailure> {
         let (model, step) = (&*self.model.clone(), &*self.step.clone());
         let dt = time - state.time;
-        if model.is_viscous() {
+        let is_viscous = model.is_viscous(step);
+        if is_viscous {
             let ways = self.displacement.iter().zip(&state.displacement);
             self.mean_velocity.iter_mut().zip(ways).for_each(|(velocity, (new, old))| *velocity = (new - old) / dt);
         }
-        let velocity = model.is_viscous().then_some(&self.mean_velocity[..]);
+        let velocity = is_viscous.then_some(&self.mean_velocity[..]);
         assembler.forces(
             Trial { settles: false, ..Trial::new(state, step, time, dt) },
             &self.displacement,
@@ -36,18 +103,27 @@ impl Explicit {
             assembler.evaluation.damping.fill(0.0);
         }
         let found = &mut assembler.evaluation;
+        self.plates.begin(dt, state);
         self.accelerate(dt, state, &found.force);
+        let (places, supported) = (&self.places, |(places, before)| supported_rates(places, before, dt).1);
+        let there = (&self.displacement[..], &found.force[..]);
+        self.plates.accelerate((model, dt), there, |k| supported(places[k]), state);
         self.damp(time, dt, state);
         for (support, &(places, before)) in step.supports.iter().zip(&self.places) {
-            let dof = support.dof;
-            (state.velocity[dof], state.acceleration[dof]) = supported_rates(places, before, dt);
+            let (velocity, acceleration) = supported_rates(places, before, dt);
+            support.at.set(velocity, &mut state.velocity);
+            support.at.set(acceleration, &mut state.acceleration);
         }
         model.ties.spread(2, &mut state.velocity);
         model.ties.spread(2, &mut state.acceleration);
+        self.plates.spread(model, &self.displacement, state);
         self.add_pulls(time, &state.velocity, found);
-        let reaction = |dof: usize| found.force[dof] + self.mass[dof / 2] * state.acceleration[dof];
+        let reaction = |at: Direction| {
+            let of_plate = self.plates.reaction(at, &found.force, &state.acceleration);
+            of_plate.unwrap_or_else(|| at.of(&found.force) + self.mass[at.node()] * at.of(&state.acceleration))
+        };
         found.reactions.clear();
-        found.reactions.extend(step.supports.iter().map(|support| reaction(support.dof)));
+        found.reactions.extend(step.supports.iter().map(|support| reaction(support.at)));
         accept(model, step, time, &mut self.displacement, found, state);
         Ok(())
     }
@@ -73,7 +149,8 @@ impl Explicit {
     /// − v_free) with what it found.
     fn damp(&mut self, time: f64, dt: f64, state: &mut State) {
         dampers::pull(&self.model, &self.step, &self.dampers, time, &state.velocity, &mut self.pulls);
-        for (NodeDamper { node, coefficients }, pull) in self.dampers.iter().zip(&self.pulls) {
+        let alone = self.dampers.iter().zip(&self.pulls).filter(|(damper, _)| !self.plates.has(damper.node));
+        for (NodeDamper { node, coefficients }, pull) in alone {
             let inertia = Matrix2::identity() * self.mass[*node] + coefficients * (0.5 * dt);
             let Some(inverse) = inertia.try_inverse() else { continue };
             let change = inverse * pull;
@@ -82,6 +159,8 @@ impl Explicit {
                 state.velocity[2 * node + i] += 0.5 * dt * change[i];
             }
         }
+        let (dampers, there) = ((&self.dampers[..], &self.pulls[..]), (&self.displacement[..], &self.mass[..]));
+        self.plates.damp((&self.model, dt), dampers, there, state);
     }
 
     /// Subtract the forces of the dampers at a velocity from what was found, and count them as damping.
@@ -93,6 +172,7 @@ impl Explicit {
                 found.damping[2 * damper.node + i] += pull[i];
             }
         }
+        [&mut found.force, &mut found.damping].into_iter().for_each(|forces| self.model.linkage.gather(forces));
     }
 }
 
@@ -112,14 +192,9 @@ pub(super) fn masses(model: &Model) -> Vec<f64> {
     mass
 }
 
-/// ½ v₋ᵀ M v₊ of the velocities half an increment before and after: by (7) and (8) its change is exactly the mean force
-/// times the way, so that what the audit of energies leaves is not the scheme's own swing, ⅛ Δt² aᵀ M a [F·L].
-pub(super) fn kinetic_energy(model: &Model, mass: &[f64], state: &State, dt: f64) -> f64 {
-    let square = |v: &[f64]| v[0] * v[0] + v[1] * v[1];
-    let of = |node: usize| {
-        let [v, a] = [&state.velocity, &state.acceleration].map(|rates| &rates[2 * node..2 * node + 2]);
-        0.5 * mass[node] * (square(v) - 0.25 * dt * dt * square(a))
-    };
+/// ½ Σ m v² [F·L].
+fn energy_of_motion(model: &Model, mass: &[f64], velocity: &[f64]) -> f64 {
+    let of = |node: usize| 0.5 * mass[node] * (velocity[2 * node].powi(2) + velocity[2 * node + 1].powi(2));
     let copies: f64 = model.ties.pairs().iter().map(|&(copy, _)| of(copy)).sum();
     (0..mass.len()).map(of).sum::<f64>() - copies
 }

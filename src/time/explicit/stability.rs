@@ -5,16 +5,18 @@
 //! happens, from the displacements at its end, which are known. All elements are compared as soon as nodes may have moved
 //! so far against each other that one has changed by [`LATEST`]. What contacts add is found again when a point meets another segment.
 
-use nalgebra::{DMatrix, DVector, Vector2};
-use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
-
 use std::sync::Arc;
 
+use nalgebra::Vector2;
+use rayon::prelude::*;
+
+use super::alike::alike;
+use super::element::Element;
 use crate::contact::master::Master;
+use crate::contact::surface::SegmentWeights;
 use crate::equations::failure::TrialFailure;
 use crate::model::state::State;
-use crate::model::{Model, Step};
+use crate::model::{Body, Model, Step};
 use crate::solve::failure::IncrementFailure;
 
 /// Share of its size by which an element may change before it is looked at again: its bound is exact to about as much.
@@ -22,9 +24,6 @@ const CHANGED: f64 = 0.04;
 
 /// Share of its size by which an element may have changed before it is compared.
 const LATEST: f64 = 0.06;
-
-/// Share of its size to which an element may be crushed: increments would become shorter without end.
-const CRUSHED: f64 = 1e-3;
 
 /// Increments after which what contacts and springs add is looked at in any case.
 const LOOK_AGAIN: usize = 200;
@@ -36,6 +35,7 @@ const FEW: usize = 2048;
 #[derive(Clone)]
 pub(super) struct Stability {
     pub(super) model: Arc<Model>,
+    pub(super) retardation: Vec<f64>,
     pub(super) elements: Vec<Element>,
     /// Nodes of the elements, `stride` places an element, filled up with the first one
     pub(super) nodes: Vec<usize>,
@@ -52,24 +52,18 @@ pub(super) struct Stability {
     pub(super) relooked: bool,
     /// How far nodes may move against each other until an element may have changed [L]
     pub(super) margin: f64,
-}
-
-/// One element, as last looked at.
-#[derive(Clone, Copy, Serialize, Deserialize)]
-pub(super) struct Element {
-    /// λ_e and c [1/T², 1/T]
-    bounds: [f64; 2],
-    /// Area over diagonal; infinite where the law is linear, and the bounds depend on no displacement [L]
-    size: f64,
+    /// Elements whose stiffness depends on a temperature
+    pub(super) heated: Vec<usize>,
 }
 
 impl Stability {
     /// Look at all elements.
-    pub(super) fn new(model: &Arc<Model>, state: &State) -> Result<Self, IncrementFailure> {
+    pub(super) fn new(model: &Arc<Model>, step: &Step, state: &State) -> Result<Self, IncrementFailure> {
         let count = model.mesh.elements.len();
         let stride = model.mesh.elements.iter().map(|element| element.nodes.len()).max().unwrap_or(0);
         let mut stability = Self {
             model: model.clone(),
+            retardation: model.retardations(step),
             elements: vec![Element { bounds: [0.0; 2], size: 0.0 }; count],
             nodes: model.mesh.elements.iter().flat_map(|element| filled(&element.nodes, stride)).collect(),
             seen: vec![Vector2::zeros(); stride * count],
@@ -79,8 +73,12 @@ impl Stability {
             since: 0,
             relooked: false,
             margin: 0.0,
+            heated: heated(model),
         };
-        stability.look(&(0..count).collect::<Vec<_>>(), state)?;
+        let first = alike(model);
+        let distinct: Vec<usize> = (0..count).filter(|&e| first[e] == e).collect();
+        stability.look(&distinct, state)?;
+        (0..count).for_each(|e| stability.elements[e] = stability.elements[first[e]]);
         Ok(stability)
     }
 
@@ -96,8 +94,20 @@ impl Stability {
         stale || segments(state).zip(&self.segments).any(|(now, seen)| now != *seen)
     }
 
-    /// Elements that changed by more than [`CHANGED`] at the displacements `u`; all are compared, unless none can have.
+    /// Elements that changed by more than [`CHANGED`] at the displacements `u`, and now and then those that may be heated.
     pub(super) fn changed(&mut self, u: &[f64]) -> Vec<usize> {
+        let mut changed = self.deformed(u);
+        if self.since > LOOK_AGAIN && !self.heated.is_empty() {
+            changed.extend(&self.heated);
+            changed.sort_unstable();
+            changed.dedup();
+        }
+        self.relooked |= !changed.is_empty();
+        changed
+    }
+
+    /// Elements that changed by their nodes' motion; all are compared, unless none can have.
+    fn deformed(&mut self, u: &[f64]) -> Vec<usize> {
         if self.margin >= 0.0 {
             return Vec::new();
         }
@@ -122,7 +132,6 @@ impl Stability {
             },
         );
         self.margin = margin;
-        self.relooked |= !changed.is_empty();
         changed
     }
 
@@ -149,9 +158,11 @@ impl Stability {
 
     /// Look at some elements again.
     pub(super) fn look(&mut self, elements: &[usize], state: &State) -> Result<(), IncrementFailure> {
-        let (model, u) = (&self.model, &state.displacement);
-        let found: Vec<Result<Element, TrialFailure>> =
-            elements.par_iter().with_min_len(64).map(|&e| Element::at(model, e, u)).collect();
+        let (model, retardation, u) = (&self.model, &self.retardation, &state.displacement);
+        let memories = if model.bodies.iter().any(Body::is_imposed) { model.memories() } else { Vec::new() };
+        let memory = |e: usize| memories.get(e).map_or(&[][..], |own| &state.memory[own.clone()]);
+        let look = |&e: &usize| Element::at(model, retardation[model.body_of_element[e]], e, (u, memory(e)));
+        let found: Vec<Result<Element, TrialFailure>> = elements.par_iter().with_min_len(64).map(look).collect();
         for (&e, element) in elements.iter().zip(found) {
             self.elements[e] = element.map_err(IncrementFailure::Start)?;
             let places = self.stride * e..self.stride * (e + 1);
@@ -169,45 +180,52 @@ impl Stability {
         self.segments.clear();
         self.segments.extend(segments(state));
         (self.since, self.relooked) = (0, false);
-        let added = self.added_stiffness(step, state);
-        let softness = added.iter().zip(mass).map(|(added, mass)| if *mass > 0.0 { added / mass } else { 0.0 });
-        self.softness = softness.collect();
+        self.add_stiffness(step, state);
+        let softness = self.softness.iter_mut().zip(mass);
+        softness.for_each(|(added, mass)| *added = if *mass > 0.0 { *added / mass } else { 0.0 });
         let lone = self.softness.iter().map(|softness| longest(*softness, 0.0)).fold(f64::INFINITY, f64::min);
-        self.longest_of(&(0..self.elements.len()).collect::<Vec<_>>()).min(lone)
+        self.longest_of(0..self.elements.len()).min(lone)
     }
 
     /// (1) or (4) of some elements, with what contacts add as last looked at [T].
-    pub(super) fn longest_of(&self, elements: &[usize]) -> f64 {
-        let of_element = |&e: &usize| {
+    pub(super) fn longest_of(&self, elements: impl Iterator<Item = usize>) -> f64 {
+        let of_element = |e: usize| {
             let [elastic, viscous] = self.elements[e].bounds;
             let nodes = self.model.mesh.elements[e].nodes.iter();
             longest(elastic + nodes.map(|&node| self.softness[node]).fold(0.0, f64::max), viscous)
         };
-        elements.iter().map(of_element).fold(f64::INFINITY, f64::min)
+        elements.map(of_element).fold(f64::INFINITY, f64::min)
     }
 
-    /// k of (3) at every node [F/L].
-    fn added_stiffness(&self, step: &Step, state: &State) -> Vec<f64> {
-        let model = &*self.model.clone();
+    /// Write k of (3) at every node over its softness [F/L].
+    fn add_stiffness(&mut self, step: &Step, state: &State) {
+        let Self { model, softness: added, .. } = self;
         let x = model.configuration(&state.displacement);
-        let mut added = vec![0.0; model.mesh.nodes.len()];
+        added.clear();
+        added.resize(model.mesh.nodes.len(), 0.0);
         for (pair, states) in model.contacts.iter().zip(&state.contacts) {
             for (slave, state) in pair.points.iter().zip(states) {
                 let Some(foot) = state.foot else { continue };
-                let stiffness = pair.alpha_n.max(pair.law(slave).stiffness()) * slave.current_length(&x);
-                let mut weights = slave.position.clone();
-                if let Master::Mesh(surface) = &pair.master {
-                    weights.extend(surface.segments[foot.segment].position(foot.xi));
-                }
-                let total: f64 = weights.iter().map(|(_, w)| w.abs()).sum();
-                weights.iter().for_each(|(node, w)| added[*node] += stiffness * w.abs() * total);
+                let stiffness = pair.stiffest(slave) * slave.current_length(&x);
+                let faced = match &pair.master {
+                    Master::Mesh(surface) => surface.segments[foot.segment].position(foot.xi),
+                    Master::Rigid(_) => SegmentWeights::default(),
+                };
+                let weights = || slave.position.iter().chain(&faced);
+                let total: f64 = weights().map(|(_, w)| w.abs()).sum();
+                weights().for_each(|(node, w)| added[*node] += stiffness * w.abs() * total);
             }
         }
         step.loads.springs.iter().for_each(|spring| added[spring.dof / 2] += spring.stiffness);
-        model.ties.gather(1, &mut added);
-        model.ties.spread(1, &mut added);
-        added
+        model.ties.gather(1, added);
+        model.ties.spread(1, added);
     }
+}
+
+/// Elements of bodies that expand when they are heated; those of a linear law are as stiff as before.
+pub(super) fn heated(model: &Model) -> Vec<usize> {
+    let bodies = model.bodies.iter().filter(|body| body.thermal.is_some() && !body.material.is_linear());
+    bodies.flat_map(|body| body.elements.iter().copied()).collect()
 }
 
 /// The nodes of an element and as often the first one as it takes to fill `stride` places.
@@ -224,69 +242,4 @@ fn segments(state: &State) -> impl Iterator<Item = Option<usize>> {
 /// (4) from ω² and c [T].
 fn longest(square: f64, viscous: f64) -> f64 {
     4.0 / (viscous + (viscous * viscous + 4.0 * square).sqrt())
-}
-
-impl Element {
-    /// Look at an element at the displacement `u`.
-    fn at(model: &Model, e: usize, u: &[f64]) -> Result<Self, TrialFailure> {
-        let nodes = &model.mesh.elements[e].nodes;
-        let body = &model.bodies[model.body_of_element[e]];
-        let local: Vec<Vector2<f64>> = nodes.iter().map(|&node| Vector2::new(u[2 * node], u[2 * node + 1])).collect();
-        let size = if body.material.is_linear() { f64::INFINITY } else { size(model, e, &local) };
-        let undeformed = size_at_rest(model, e);
-        if size < CRUSHED * undeformed {
-            let (element, body) = (model.mesh.element_tags[e], body.name.clone());
-            return Err(TrialFailure::Crushed { element, body, share: size / undeformed });
-        }
-        Ok(Self { bounds: bounds(model, e, &local)?, size })
-    }
-}
-
-fn size_at_rest(model: &Model, e: usize) -> f64 {
-    size(model, e, &vec![Vector2::zeros(); model.mesh.elements[e].nodes.len()])
-}
-
-/// Area of the polygon of an element's corners over its longest diagonal or side, at nodal displacements [L].
-fn size(model: &Model, e: usize, u: &[Vector2<f64>]) -> f64 {
-    let element = &model.mesh.elements[e];
-    let corners = element.kind.corners();
-    let place = |a: usize| model.mesh.nodes[element.nodes[a]] - model.mesh.nodes[element.nodes[0]] + (u[a] - u[0]);
-    let places: Vec<Vector2<f64>> = (0..corners).map(place).collect();
-    let area: f64 = (0..corners).map(|a| 0.5 * places[a].perp(&places[(a + 1) % corners])).sum();
-    let pairs = (0..corners).flat_map(|a| (0..a).map(move |b| (a, b)));
-    area.abs() / pairs.map(|(a, b)| (places[a] - places[b]).norm()).fold(f64::MIN_POSITIVE, f64::max)
-}
-
-/// λ_e and c of an element at nodal displacements [1/T², 1/T].
-fn bounds(model: &Model, e: usize, local: &[Vector2<f64>]) -> Result<[f64; 2], TrialFailure> {
-    let body = &model.bodies[model.body_of_element[e]];
-    let n = 2 * local.len();
-    let (mut force, mut tangent) = (vec![0.0; n], DMatrix::zeros(n, n));
-    let answer = model.solids[e].force_and_tangent(&*body.material, local, &mut force, tangent.as_mut_slice());
-    answer.map_err(|inverted| TrialFailure::Inverted {
-        element: model.mesh.element_tags[e],
-        body: body.name.clone(),
-        jacobian: inverted.jacobian,
-    })?;
-    let mass = model.element_lumped_mass(e);
-    let elastic = largest_eigenvalue(&tangent, &mass);
-    if body.damping.retardation == 0.0 {
-        return Ok([elastic, 0.0]);
-    }
-    // What remains of the viscous tangent at rest is its derivative with respect to the velocities.
-    let (law, still) = ((&*body.material, body.damping.retardation), vec![Vector2::zeros(); local.len()]);
-    model.solids[e].viscous_tangent(law, [local, &still], &vec![1.0; n], tangent.as_mut_slice());
-    Ok([elastic, largest_eigenvalue(&tangent, &mass)])
-}
-
-/// The bound (2) of a matrix and the lumped masses of its nodes.
-fn largest_eigenvalue(matrix: &DMatrix<f64>, mass: &DVector<f64>) -> f64 {
-    let n = matrix.nrows();
-    let scaled = DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] / (mass[i / 2] * mass[j / 2]).sqrt());
-    let largest = scaled.amax();
-    if largest == 0.0 {
-        return 0.0;
-    }
-    let square = (&scaled / largest).pow(2);
-    largest * (&square * &square).norm().powf(0.25)
 }

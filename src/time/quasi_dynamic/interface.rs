@@ -1,0 +1,109 @@
+//! The differential equations of an interface on linear bodies, point by point.
+//!
+//! ```text
+//! ṡ = V,   ẋ = ẋ(V, x)                         s: slip, x: state of the law                                         (1)
+//! τ = q(V, x, p) + η V                          solved for V at every point                                          (2)
+//! (p, −τ) = (p, −τ)₀ + Y s + ẏ (t − t₀)         bodies and springs of the contact, ẏ: loading ([`crate::equations::slip_operator`])   (3)
+//! ```
+//! The contact's spring α_t is in series with the slider and its damper, as they both are with the bodies.
+
+use rayon::prelude::*;
+
+use crate::contact::force::ContactState;
+use crate::contact::pair::ContactPair;
+use crate::contact::surface::SlavePoint;
+use crate::laws::friction::RateLaw;
+use crate::laws::friction::rate_law::Loading;
+
+/// Points that one thread takes at a time; their order does not matter to any sum.
+const PART: usize = 32;
+
+/// What a point does at a time.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Rates {
+    /// V [L/T]
+    pub slip_rate: f64,
+    /// ẋ [1/T]
+    pub evolution: f64,
+    /// q, p and η V [F/L²]
+    pub traction: f64,
+    /// p [F/L²]
+    pub pressure: f64,
+    /// η V [F/L²]
+    pub radiation: f64,
+}
+
+impl Rates {
+    /// Whether the point is pressed and slips at some rate.
+    pub fn is_good(&self) -> bool {
+        self.pressure > 0.0 && self.slip_rate.is_finite() && self.evolution.is_finite()
+    }
+
+    /// Power that friction takes, and that is radiated, per area [F/(L T)].
+    pub fn powers(&self) -> [f64; 2] {
+        [self.traction * self.slip_rate, self.radiation * self.slip_rate]
+    }
+}
+
+/// The points of all contacts from one state on.
+pub struct Interface<'a> {
+    /// contact, point and state at t₀ of each
+    pub points: Vec<(&'a ContactPair, &'a SlavePoint, &'a ContactState)>,
+    /// Y of (3), row by row
+    pub by_slip: &'a [f64],
+    /// ẏ [F/(L² T)]
+    pub loading: &'a [f64],
+}
+
+impl Interface<'_> {
+    /// All rates at a time after t₀, from the slips since then and the states, both in one list; `now` is the run time.
+    pub fn rates(&self, (now, since): (f64, f64), z: &[f64], rates: &mut Vec<Rates>) {
+        let points = 0..self.points.len();
+        let all = points.into_par_iter().with_min_len(PART).map(|k| self.point(k, now, since, z));
+        all.collect_into_vec(rates);
+    }
+
+    fn point(&self, k: usize, now: f64, since: f64, z: &[f64]) -> Rates {
+        let n = self.points.len();
+        let (pair, slave, start) = self.points[k];
+        let change = |row: usize| dot(&self.by_slip[row * n..(row + 1) * n], &z[..n]) + self.loading[row] * since;
+        let pressure = start.friction.pressure + change(k);
+        let traction = start.friction.traction + start.radiation - change(n + k);
+        let loading = Loading { traction, pressure, damping: pair.radiation };
+        let answer = with_rates(pair, slave, now, |law| {
+            let slip_rate = law.slip_rate(z[n + k], loading);
+            (slip_rate, law.evolution(z[n + k], slip_rate))
+        });
+        let (slip_rate, evolution) = answer.unwrap_or((f64::NAN, f64::NAN));
+        let radiation = pair.radiation * slip_rate;
+        Rates { slip_rate, evolution, traction: traction - radiation, pressure, radiation }
+    }
+
+    /// p and −τ at t₀ + `since`, less those at t₀.
+    pub fn tractions(&self, since: f64, slips: &[f64]) -> Vec<f64> {
+        let rows = self.by_slip.chunks_exact(slips.len().max(1));
+        rows.zip(self.loading).map(|(row, loading)| dot(row, slips) + loading * since).collect()
+    }
+}
+
+/// Ask the law of a point, as it is at a time; none where it has no good parameters then.
+pub fn with_rates<T>(pair: &ContactPair, slave: &SlavePoint, now: f64, ask: impl Fn(&dyn RateLaw) -> T) -> Option<T> {
+    match pair.law(slave).rates() {
+        Some(law) => Some(ask(law)),
+        None => pair.law(slave).during([now, now]).ok()??.rates().map(ask),
+    }
+}
+
+/// Σ a b, several at a time and always in the same order.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    const LANES: usize = 8;
+    let mut sums = [0.0; LANES];
+    let (a_parts, b_parts) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
+    let rest: f64 = a_parts.remainder().iter().zip(b_parts.remainder()).map(|(a, b)| a * b).sum();
+    for (a, b) in a_parts.zip(b_parts) {
+        for lane in 0..LANES {
+            sums[lane] += a[lane] * b[lane];
+        }
+    }
+    sums.iter().sum::<f64>() + rest
+}

@@ -1,0 +1,242 @@
+//! Quasi-dynamic steps: linear bodies without inertia, radiation damping, and friction whose slip rate follows from traction
+//! and state. The interface alone is integrated, explicitly and with error control (`steps.rs`), by the differential equations of
+//! `interface.rs`; the bodies are condensed on it once a step ([`crate::equations::slip_operator`]), and follow where a result is asked
+//! for. Rates of slip may change by ten decades and more in one run, and lengths of steps with them.
+//!
+//! Source: Rice (1993), J. Geophys. Res. 98, 9885; Erickson et al. (2023), Bull. Seismol. Soc. Am. 113, 499 (how the community
+//! compares such runs).
+
+mod interface;
+mod steps;
+mod tableau;
+
+use std::sync::Arc;
+
+use self::interface::{Interface, Rates, with_rates};
+use self::steps::{Steps, Tried};
+use super::accept::{accept, take_stock};
+use crate::contact::force::ContactState;
+use crate::equations::slip_operator::{NoSlipOperator, Shift, SlipOperator};
+use crate::equations::supports::turn;
+use crate::equations::{Evaluation, Trial};
+use crate::linear::system::Request;
+use crate::model::scheme::Scheme;
+use crate::model::state::State;
+use crate::model::{Model, Step};
+use crate::solve::failure::IncrementFailure;
+
+/// Share of the length of a step within which it ends on the end of the load step.
+const NEAR_END: f64 = 1e-9;
+
+/// What quasi-dynamic steps need besides the state: it follows from the model and the load step.
+pub struct QuasiDynamic {
+    model: Arc<Model>,
+    step: Arc<Step>,
+    jumps: SlipOperator,
+    /// What supports and loads do to tractions and displacements in a unit of time where nothing slips
+    loading: Shift,
+}
+
+/// What became of some steps.
+pub struct Gone {
+    /// steps taken
+    pub steps: usize,
+    /// length of the next one [T]
+    pub next: f64,
+}
+
+impl QuasiDynamic {
+    /// Condense the bodies for a load step; `state` is any of its states.
+    ///
+    /// # Errors
+    /// [`IncrementFailure`] where something is held by contact alone.
+    pub fn new(model: &Arc<Model>, step: &Arc<Step>, state: &State) -> Result<Self, IncrementFailure> {
+        let duration = step.span.end - step.span.start;
+        let [first, last] = [step.span.start, step.span.end].map(|time| Trial::new(state, step, time, duration));
+        let mut jumps = SlipOperator::new(model, first).map_err(|cause| match cause {
+            NoSlipOperator::Assembly(failure) => IncrementFailure::Start(failure),
+            NoSlipOperator::Linear(failure) => IncrementFailure::Interface(failure),
+        })?;
+        let nothing = vec![0.0; model.dofs()];
+        let mut residual = |trial: Trial| {
+            let SlipOperator { bodies, system, .. } = &mut jumps;
+            bodies.assemble(trial, &nothing, &[], Request::Residual, system).map_err(IncrementFailure::Start)?;
+            Ok::<_, IncrementFailure>(system.residual.clone())
+        };
+        let (before, mut after) = (residual(first)?, residual(last)?);
+        after.iter_mut().zip(before).for_each(|(after, before)| *after = (*after - before) / duration);
+        let loading = jumps.shift(&after);
+        Ok(Self { model: model.clone(), step: step.clone(), jumps, loading })
+    }
+
+    /// Bring a state that a load step begins with to rest: what motion before has left out of balance moves the bodies at once,
+    /// and its work counts as damped.
+    pub fn settle(&mut self, state: &mut State) {
+        let mut residual = state.force.clone();
+        self.step.supports.iter().for_each(|support| support.at.set(0.0, &mut residual));
+        let mut equations = residual.clone();
+        self.step.supports.iter().for_each(|support| turn(support.at, 0.0, &mut equations));
+        let Shift { tractions, displacement } = self.jumps.shift(&equations);
+        let work: f64 = residual.iter().zip(&displacement).map(|(force, u)| force * u).sum();
+        state.energy.damping_dissipation -= 0.5 * work;
+        state.energy.external_work += state.external.iter().zip(&displacement).map(|(force, u)| force * u).sum::<f64>();
+        state.force.iter_mut().zip(&residual).for_each(|(force, residual)| *force -= residual);
+        let n = self.jumps.count();
+        let jumps = self.jumps.jumps(&vec![0.0; n], &tractions);
+        for (k, contact) in state.contacts.iter_mut().flatten().enumerate() {
+            contact.friction.pressure += tractions[k];
+            contact.friction.traction -= tractions[n + k];
+            contact.gap += jumps[k];
+        }
+        state.displacement.iter_mut().zip(displacement).for_each(|(u, way)| *u += way);
+        self.model.ties.spread(2, &mut state.displacement);
+    }
+
+    /// Some steps from a state on, the first of length `dt`; the state moves on with them.
+    ///
+    /// # Errors
+    /// [`IncrementFailure::Slip`] where no step is short enough.
+    pub fn go(&mut self, dt: f64, state: &mut State) -> Result<Gone, IncrementFailure> {
+        let Scheme::QuasiDynamic { tolerance, every } = self.step.scheme else {
+            return Ok(Gone { steps: 0, next: dt });
+        };
+        let old = state.clone();
+        let interface = self.interface(&old);
+        let mut steps = Steps::new(interface, old.time, tolerance);
+        let (mut gone, mut next, mut last, mut ended) = (0, dt, 0.0, false);
+        if let Some(worst) = steps.now().iter().position(|rates| !rates.is_good()) {
+            return Err(self.failure(&old, worst, &steps.now()[worst]));
+        }
+        while gone < every && !ended {
+            let left = self.step.span.end - old.time - steps.since;
+            let h = next.clamp(self.step.increments.min, self.step.increments.max);
+            ended = h > left * (1.0 - NEAR_END);
+            let h = if ended { left } else { h };
+            match steps.attempt(h) {
+                Tried::Taken(share) => {
+                    (gone, last) = (gone + 1, h);
+                    next = if ended { next } else { share * h };
+                }
+                Tried::Refused { share, worst, rates } => {
+                    ended = false;
+                    if h <= self.step.increments.min * (1.0 + NEAR_END) {
+                        // Where some steps were taken, the next attempt begins with what they have come to.
+                        if gone > 0 {
+                            break;
+                        }
+                        return Err(self.failure(&old, worst, &rates));
+                    }
+                    next = share * h;
+                }
+            }
+        }
+        let time = if ended { self.step.span.end } else { old.time + steps.since };
+        let (contacts, jumps) = self.contacts(&old, &steps, time);
+        let since = steps.since;
+        self.follow(&old, time, since, contacts, &jumps, state)?;
+        state.dt = last;
+        Ok(Gone { steps: gone, next })
+    }
+
+    fn interface<'a>(&'a self, state: &'a State) -> Interface<'a> {
+        let states = self.model.contacts.iter().zip(&state.contacts);
+        let points = states.flat_map(|(pair, states)| pair.points.iter().zip(states).map(move |(p, s)| (pair, p, s)));
+        Interface { points: points.collect(), by_slip: self.jumps.by_slip(), loading: &self.loading.tractions }
+    }
+
+    /// The contact states that steps have come to, and the jumps since they began.
+    fn contacts(&self, old: &State, steps: &Steps, time: f64) -> (Vec<Vec<ContactState>>, Vec<f64>) {
+        let n = steps.last.len();
+        let jumps = self.jumps.jumps(&steps.z[..n], &steps.tractions());
+        let mut numbers = 0..n;
+        let mut state = |pair, slave, old: &ContactState| {
+            let k = numbers.next().unwrap_or_default();
+            let Rates { slip_rate, traction, pressure, radiation, .. } = steps.now()[k];
+            let mut new = *old;
+            new.friction.traction = traction;
+            new.friction.pressure = pressure;
+            new.friction.plastic_slip += steps.z[k];
+            new.friction.plastic_increment = steps.last[k];
+            new.friction.dissipation += steps.works[k][0];
+            let remembered = with_rates(pair, slave, time, |law| {
+                let x = steps.z[n + k];
+                let friction = law.remember(x, new.friction);
+                crate::laws::friction::FrictionState { regime: law.regime(x, slip_rate), ..friction }
+            });
+            new.friction = remembered.unwrap_or(new.friction);
+            new.gap += jumps[k];
+            new.slip = jumps[n + k];
+            new.radiation = radiation;
+            new.radiated += steps.works[k][1];
+            new
+        };
+        let pairs = self.model.contacts.iter().zip(&old.contacts);
+        let contacts = pairs
+            .map(|(pair, old)| pair.points.iter().zip(old).map(|(slave, old)| state(pair, slave, old)).collect())
+            .collect();
+        (contacts, jumps)
+    }
+
+    /// The bodies follow: their displacements, forces and energies.
+    fn follow(
+        &mut self,
+        old: &State,
+        time: f64,
+        since: f64,
+        contacts: Vec<Vec<ContactState>>,
+        jumps: &[f64],
+        state: &mut State,
+    ) -> Result<(), IncrementFailure> {
+        let Self { model, step, jumps: bodies, loading } = self;
+        let at_rest: Vec<f64> = loading.tractions.iter().map(|rate| rate * since).collect();
+        let shifted = bodies.jumps(&vec![0.0; bodies.count()], &at_rest);
+        let own: Vec<f64> = jumps.iter().zip(shifted).map(|(jump, shifted)| jump - shifted).collect();
+        let way = bodies.displacement(&own);
+        let ways = way.iter().zip(&loading.displacement).map(|(own, rate)| own + since * rate);
+        let mut u: Vec<f64> = old.displacement.iter().zip(ways).map(|(u, way)| u + way).collect();
+        let trial = Trial::new(old, step, time, time - old.time);
+        for support in &step.supports {
+            support.at.set(trial.prescribed(support, model), &mut u);
+        }
+        model.ties.spread(2, &mut u);
+        let SlipOperator { bodies, system, .. } = bodies;
+        bodies.assemble(trial, &u, &[], Request::Residual, system).map_err(IncrementFailure::Start)?;
+        let found = &mut bodies.evaluation;
+        pull(model, &contacts, found);
+        found.contacts = contacts;
+        accept(model, step, time, &mut u, found, state);
+        take_stock(model, 0.0, state);
+        state.last_increment = None;
+        Ok(())
+    }
+
+    fn failure(&self, state: &State, number: usize, rates: &Rates) -> IncrementFailure {
+        let (pair, slave, _) = self.interface(state).points[number];
+        let at = slave.at(&self.model.configuration(&state.displacement));
+        let why = if rates.pressure <= 0.0 {
+            format!("the pressure is {:e}, and quasi_dynamic steps keep every point closed", rates.pressure)
+        } else if !rates.is_good() {
+            format!("the law has no slip rate under the traction {:e}", rates.traction)
+        } else {
+            let Rates { slip_rate, pressure, .. } = rates;
+            format!(
+                "at the slip rate {slip_rate:e} and the pressure {pressure:e} no step is short enough for the tolerance"
+            )
+        };
+        IncrementFailure::Slip { contact: pair.name.clone(), x: at.x, y: at.y, why }
+    }
+}
+
+/// Add what the contacts put on the nodes.
+fn pull(model: &Model, contacts: &[Vec<ContactState>], found: &mut Evaluation) {
+    for (pair, states) in model.contacts.iter().zip(contacts) {
+        for (point, state) in pair.small.iter().flat_map(|small| small.points.iter().flatten()).zip(states) {
+            let ContactState { friction, radiation, length, .. } = state;
+            let traction = point.normal * friction.pressure - point.tangent * (friction.traction + radiation);
+            for (&node, w) in point.nodes.iter().zip(&point.weights) {
+                let node = model.ties.original(node);
+                (0..2).for_each(|i| found.force[2 * node + i] -= w * traction[i] * length);
+            }
+        }
+    }
+}

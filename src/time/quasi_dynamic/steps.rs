@@ -1,0 +1,136 @@
+//! Steps of the differential equations, as long as their error allows.
+//!
+//! ```text
+//! e = max over the points of w |e_x|  and  |∂τ/∂s| |e_s|/p          both in the coefficient of friction; w = |∂(q/p)/∂x|
+//! h ← h × 0.9 (tolerance/e)^⅕                                       within a fifth and five times
+//! ```
+
+use super::interface::{Interface, Rates, with_rates};
+use super::tableau::{A, C, E, STAGES};
+
+/// Part of the length that the error allows which is taken.
+const SAFETY: f64 = 0.9;
+
+/// Least and most that one step changes the length of the next.
+const SHARES: [f64; 2] = [0.2, 5.0];
+
+/// An accepted step, or the point that was worst in one that is repeated.
+pub enum Tried {
+    /// Taken; the next may be this many times as long
+    Taken(f64),
+    /// Its error was too large, or a point had no rate: this one, and what it did
+    Refused { share: f64, worst: usize, rates: Rates },
+}
+
+/// The integration from one state on.
+pub struct Steps<'a> {
+    interface: Interface<'a>,
+    /// w, and |∂τ/∂s|/p [-], [1/L]
+    weights: Vec<[f64; 2]>,
+    tolerance: f64,
+    /// t₀ [T]
+    start: f64,
+    /// t − t₀ [T]
+    pub since: f64,
+    /// Slips since t₀, and states of the laws
+    pub z: Vec<f64>,
+    /// Slips of the last step [L]
+    pub last: Vec<f64>,
+    /// Taken by friction and radiated since t₀, per area [F/L]
+    pub works: Vec<[f64; 2]>,
+    /// At the stages; the first are those of the present
+    rates: Vec<Vec<Rates>>,
+    trial: Vec<f64>,
+}
+
+impl<'a> Steps<'a> {
+    /// Begin at a time.
+    pub fn new(interface: Interface<'a>, start: f64, tolerance: f64) -> Self {
+        let n = interface.points.len();
+        let state = |&(pair, slave, state): &(_, _, &crate::contact::force::ContactState)| {
+            with_rates(pair, slave, start, |law| law.evolving(&state.friction)).unwrap_or(f64::NAN)
+        };
+        let z = std::iter::repeat_n(0.0, n).chain(interface.points.iter().map(state)).collect::<Vec<f64>>();
+        let weight = |(k, &(pair, slave, state)): (usize, &(_, _, &crate::contact::force::ContactState))| {
+            let of_state = with_rates(pair, slave, start, |law| law.weight()).unwrap_or(0.0);
+            [of_state, interface.by_slip[(n + k) * n + k].abs() / state.friction.pressure]
+        };
+        let weights = interface.points.iter().enumerate().map(weight).collect();
+        let mut rates = vec![Vec::new(); STAGES];
+        interface.rates((start, 0.0), &z, &mut rates[0]);
+        let (trial, last, works) = (z.clone(), vec![0.0; n], vec![[0.0; 2]; n]);
+        Self { interface, weights, tolerance, start, since: 0.0, z, last, works, rates, trial }
+    }
+
+    /// The rates of the present.
+    pub fn now(&self) -> &[Rates] {
+        &self.rates[0]
+    }
+
+    /// p and −τ of the present, less those at t₀.
+    pub fn tractions(&self) -> Vec<f64> {
+        self.interface.tractions(self.since, &self.z[..self.last.len()])
+    }
+
+    /// Try a step of length `h`.
+    pub fn attempt(&mut self, h: f64) -> Tried {
+        for stage in 1..STAGES {
+            self.advance(A[stage], h);
+            let since = self.since + C[stage] * h;
+            let mut rates = std::mem::take(&mut self.rates[stage]);
+            self.interface.rates((self.start + since, since), &self.trial, &mut rates);
+            self.rates[stage] = rates;
+            if let Some(worst) = self.rates[stage].iter().position(|rates| !rates.is_good()) {
+                return Tried::Refused { share: SHARES[0], worst, rates: self.rates[stage][worst] };
+            }
+        }
+        let (error, worst) = self.error(h);
+        let share = (SAFETY * (self.tolerance / error).powf(0.2)).clamp(SHARES[0], SHARES[1]);
+        if error > self.tolerance {
+            return Tried::Refused { share, worst, rates: self.rates[0][worst] };
+        }
+        self.accept(h);
+        Tried::Taken(share)
+    }
+
+    /// z + h Σ a_j k_j.
+    fn advance(&mut self, a: &[f64], h: f64) {
+        let Self { z, trial, rates, last, .. } = self;
+        let n = last.len();
+        for k in 0..n {
+            let sum = |of: fn(&Rates) -> f64| a.iter().zip(&*rates).map(|(a, rates)| a * of(&rates[k])).sum::<f64>();
+            trial[k] = z[k] + h * sum(|rates| rates.slip_rate);
+            trial[n + k] = z[n + k] + h * sum(|rates| rates.evolution);
+        }
+    }
+
+    /// e, and the point where it is.
+    fn error(&self, h: f64) -> (f64, usize) {
+        let mut largest = (0.0f64, 0);
+        for (k, [of_state, of_slip]) in self.weights.iter().enumerate() {
+            let sum =
+                |of: fn(&Rates) -> f64| E.iter().zip(&self.rates).map(|(e, rates)| e * of(&rates[k])).sum::<f64>();
+            let (slip, state) = (h * sum(|rates| rates.slip_rate), h * sum(|rates| rates.evolution));
+            let error = (of_state * state.abs()).max(of_slip * slip.abs());
+            if error > largest.0 {
+                largest = (error, k);
+            }
+        }
+        largest
+    }
+
+    /// The last stage is the state at the end of the step.
+    fn accept(&mut self, h: f64) {
+        let Self { z, trial, last, works, rates, .. } = self;
+        for (k, (last, work)) in last.iter_mut().zip(works).enumerate() {
+            *last = trial[k] - z[k];
+            for (b, rates) in A[STAGES - 1].iter().zip(&*rates) {
+                let powers = rates[k].powers();
+                (0..2).for_each(|i| work[i] += h * b * powers[i]);
+            }
+        }
+        std::mem::swap(z, trial);
+        rates.swap(0, STAGES - 1);
+        self.since += h;
+    }
+}

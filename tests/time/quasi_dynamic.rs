@@ -1,0 +1,404 @@
+//! Quasi-dynamic steps: an interface that is integrated by itself, against differential equations and static increments.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use crate::common::{Blocks, Finished, close, finish, finish_at, model, turned};
+use fecontact::model::Model;
+use fecontact::run::{Saved, Simulation};
+use serde_json::{Value, json};
+
+const YEAR: f64 = 365.0 * 86400.0;
+
+/// The spring-slider of `spring_slider.py`: a point on a plane, in MPa and m, with a contact spring of 10⁶ beside the one of 10.
+fn slider(evolution: &str, years: f64, scheme: &Value) -> Value {
+    json!({
+        "mesh": {"nodes": [[0, 0]], "points": {"block": [0]}},
+        "point_masses": {"block": {"mass": 1}},
+        "contacts": {"base": {
+            "slave": "block", "area": 1, "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+            "normal": {"alpha_n": 1e6}, "radiation_damping": 4.62, "sliding": "small",
+            "friction": {"law": "rate_and_state", "f_0": 0.6, "V_0": 1e-6, "a": 0.01, "b": 0.015, "D_c": 0.008,
+                         "evolution": evolution, "theta": 0.5 * 0.008 / 1e-9, "alpha_t": 1e6},
+            "initial": {"pressure": 50, "traction": 30},
+        }},
+        "steps": [{"name": "load", "duration": years * YEAR, "scheme": scheme, "dt": {"initial": 1e4}, "loads": [
+            {"on": "block", "force": {"y": "-50", "x": "30"}},
+            {"on": "block", "spring": {"kx": 10, "driver": {"x": {"rate": 1e-9}}}},
+        ]}],
+    })
+}
+
+fn quasi_dynamic(tolerance: f64, every: usize) -> Value {
+    json!({"quasi_dynamic": {"tolerance": tolerance, "every": every}})
+}
+
+/// Times at which the first point comes to slip faster than a rate, its slip then and its fastest rate in the event.
+fn events(run: &Finished, rate: f64) -> Vec<[f64; 3]> {
+    let mut events: Vec<[f64; 3]> = Vec::new();
+    let mut before = 0.0;
+    for state in &run.states {
+        let friction = &state.contacts[0][0].friction;
+        let now = state.contacts[0][0].radiation / 4.62;
+        if now > rate && before <= rate {
+            events.push([state.time / YEAR, friction.plastic_slip, now]);
+        }
+        if let Some(last) = events.last_mut().filter(|_| now > rate) {
+            last[2] = last[2].max(now);
+        }
+        before = now;
+    }
+    events
+}
+
+/// Ten decades of slip rate in one run, against LSODA at 1e-10 (`spring_slider.py`): slip and rate at the end, the times of the
+/// events, their slip and their fastest rate. The errors fall with the tolerance.
+#[test]
+fn a_spring_slider_follows_its_differential_equation() {
+    for (evolution, end, times, fastest) in [
+        ("ageing", [3.415499422, 2.028843598e-14], [10.971917, 32.969380, 54.966843, 76.964306, 98.961769], 1.115_18),
+        ("slip", [3.072944438, 3.364094051e-11], [9.108962, 28.576221, 48.043480, 67.510739, 86.977999], 1.151_29),
+    ] {
+        let mut errors = Vec::new();
+        for tolerance in [1e-4, 1e-6, 1e-8] {
+            let run = finish(&slider(evolution, 100.0, &quasi_dynamic(tolerance, 1)));
+            let events = events(&run, 1e-3);
+            let last = run.last();
+            println!("{evolution}, {tolerance:e}: {} steps, {events:?}", run.report.increments);
+            assert_eq!(events.len(), times.len());
+            let error = |k: usize| (events[k][0] - times[k]).abs();
+            errors.push((0..times.len()).map(error).fold(0.0, f64::max));
+            if tolerance == 1e-8 {
+                close("fastest", events[4][2], fastest, 5e-4);
+                close("slip at the end", last.contacts[0][0].friction.plastic_slip, end[0], 1e-5);
+                close("rate at the end", last.contacts[0][0].radiation / 4.62 / end[1], 1.0, 1e-3);
+            }
+            // The way of the spring follows: k (V t − u) = τ − τ₀.
+            let contact = &last.contacts[0][0];
+            let pulled = 10.0 * (1e-9 * last.time - last.displacement[0]);
+            close("spring", pulled, contact.friction.traction + contact.radiation - 30.0, 1e-9);
+            let energy = &last.energy;
+            close("energy", energy.error(), 0.0, 1e-3 * energy.friction_dissipation);
+            assert!(energy.radiated > 1e-3 * energy.friction_dissipation, "{energy:?}");
+        }
+        assert!(
+            errors[2] < 2e-4 && errors[2] < 0.2 * errors[1] && errors[1] < 0.2 * errors[0],
+            "{evolution}: {errors:?}"
+        );
+    }
+}
+
+/// Static increments with radiation damping come to the same: backward Euler's, of the first order.
+#[test]
+fn static_increments_come_to_the_same() {
+    let mut case = slider("ageing", 12.0, &json!("static"));
+    case["newton"] = json!({"tolerance": 1e-11});
+    let duration = 12.0 * YEAR;
+    let off = [2e-5, 5e-6].map(|error| {
+        case["steps"][0]["dt"] = json!({"initial": 1e3, "min": 1e-5, "max": 0.02 * duration, "error": error});
+        let run = finish(&case);
+        let events = events(&run, 1e-3);
+        println!(
+            "{error:e}: {} increments, {events:?}, slip {}",
+            run.report.increments,
+            run.last().contacts[0][0].friction.plastic_slip
+        );
+        assert_eq!(events.len(), 1);
+        // 10.971917 yr and 0.998812 m/s, as above; LSODA
+        close("fastest", events[0][2], 0.998_812, 0.02);
+        events[0][0] - 10.971_917
+    });
+    // An increment is as long as the root of its error: of the first order, half of the error is left.
+    close("order", off[0] / off[1], 2.0, 0.25);
+    close("extrapolated", 2.0 * off[1] - off[0], 0.0, 0.01);
+}
+
+/// Two slabs with a fault between them, node facing node, the upper one twice as fine in height; it slips under a rate-and-state
+/// law but for its ends, which creep.
+fn slabs(scheme: &Value, duration: f64) -> Value {
+    let mesh = Blocks::default().rectangle("lower", [12, 3], [0.0, -1.5], [6.0, 0.0]).rectangle(
+        "upper",
+        [12, 4],
+        [0.0, 0.0],
+        [6.0, 1.0],
+    );
+    let body = |young: f64| json!({"material": {"model": "linear", "E": young, "nu": 0.25, "density": 1e-6}});
+    json!({
+        "mesh": mesh.json(),
+        "bodies": {"lower": body(200.0), "upper": body(120.0)},
+        "contacts": {"fault": {
+            "slave": "upper_bottom", "master": "lower_top", "method": "node_to_segment", "sliding": "small",
+            "normal": {"alpha_n": 4000}, "radiation_damping": 0.02,
+            "friction": {"law": "rate_and_state", "f_0": 0.6, "V_0": 1e-3, "a": 0.01, "b": 0.016, "D_c": 2e-3, "theta": 20,
+                         "alpha_t": 4000},
+            "along": {"a": "0.01 + 0.002*(x - 3)^2",
+                      "law": [{"where": "abs(x - 3) - 2.6", "friction": {"law": "prescribed", "slip_rate": 1e-3, "alpha_t": 4000}}]},
+            "initial": {"pressure": "2 + 0.1*x", "traction": 1.1, "balanced": true},
+        }},
+        "newton": {"tolerance": 1e-12},
+        "steps": [{"name": "shear", "duration": duration, "scheme": scheme, "dt": {"initial": 1e-3}, "supports": [
+            {"on": "lower_bottom", "ux": 0, "uy": 0}, {"on": "upper_top", "ux": {"rate": 1e-3}, "uy": {"rate": -1e-5}},
+        ]}],
+    })
+}
+
+/// Slip, traction and pressure of every point of the fault.
+fn fault(run: &Finished) -> Vec<[f64; 3]> {
+    let of = |state: &fecontact::contact::force::ContactState| {
+        [state.friction.plastic_slip, state.friction.traction + state.radiation, state.friction.pressure]
+    };
+    run.last().contacts[0].iter().map(of).collect()
+}
+
+/// Largest difference of two faults in each of the three, over the largest value.
+fn apart(a: &[[f64; 3]], b: &[[f64; 3]]) -> [f64; 3] {
+    [0, 1, 2].map(|i| {
+        let largest = a.iter().fold(0.0f64, |most, a| most.max(a[i].abs()));
+        a.iter().zip(b).fold(0.0f64, |most, (a, b)| most.max((a[i] - b[i]).abs())) / largest
+    })
+}
+
+/// A whole interface: static increments come nearer and nearer to it as they are shorter, in slip, traction and pressure, and the
+/// bodies' displacements are those of equilibrium.
+#[test]
+fn an_interface_between_bodies() {
+    let exact = finish(&slabs(&quasi_dynamic(1e-8, 20), 30.0));
+    let errors = [0.2, 0.1].map(|dt| {
+        let mut case = slabs(&json!("static"), 30.0);
+        case["steps"][0]["dt"] = json!({"initial": dt, "min": 1e-6, "max": dt});
+        let run = finish(&case);
+        let (one, other) = (&run.last().displacement, &exact.last().displacement);
+        let far = one.iter().zip(other).fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
+        let largest = other.iter().fold(0.0f64, |most, u| most.max(u.abs()));
+        println!("{dt}: {:?}, displacement {}", apart(&fault(&exact), &fault(&run)), far / largest);
+        let [slip, traction, pressure] = apart(&fault(&exact), &fault(&run));
+        [slip, traction, pressure, far / largest]
+    });
+    for (coarse, fine) in errors[0].iter().zip(errors[1]) {
+        assert!(fine < 2e-3 && fine < 0.7 * coarse, "{errors:?}");
+    }
+    let energy = &exact.last().energy;
+    close("energy", energy.error(), 0.0, 1e-3 * energy.external_work);
+}
+
+/// A static step goes on from where a quasi-dynamic one has ended, and the other way round, with no jump: in a static increment of
+/// hardly any length nothing moves, and all is in equilibrium.
+#[test]
+fn steps_of_other_schemes_follow_and_precede() {
+    let mut case = slabs(&json!("static"), 5.0);
+    case["steps"][0]["dt"] = json!({"initial": 0.1, "min": 1e-6, "max": 0.1});
+    let go_on = json!({"name": "go on", "duration": 10, "scheme": quasi_dynamic(1e-6, 10), "dt": {"initial": 1e-3}});
+    let rest = json!({"name": "rest", "duration": 1e-5, "scheme": "static", "dt": {"initial": 1e-5}});
+    case["steps"] = json!([case["steps"][0], go_on, rest]);
+    let run = finish(&case);
+    let before = run.at(15.0);
+    let last = run.last();
+    let moved = before.displacement.iter().zip(&last.displacement).fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
+    assert!(moved < 1e-7, "{moved:e}");
+    for (before, after) in before.contacts[0].iter().zip(&last.contacts[0]) {
+        close("q", after.friction.traction + after.radiation, before.friction.traction + before.radiation, 1e-4);
+        close("p", after.friction.pressure, before.friction.pressure, 1e-6);
+    }
+    // All in one go is the same but for the error of static increments in the first step.
+    let whole = finish(&slabs(&quasi_dynamic(1e-6, 10), 15.0));
+    let slip = |state: &fecontact::model::state::State| state.contacts[0][6].friction.plastic_slip;
+    close("slip", slip(before) / slip(whole.last()), 1.0, 0.01);
+}
+
+/// After a dynamic step what was left out of balance moves the bodies at once, and the audit knows of it.
+#[test]
+fn motion_before_comes_to_rest() {
+    let mut case = slabs(&json!({"newmark": {}}), 1e-3);
+    case["steps"][0]["dt"] = json!({"initial": 5e-5});
+    case["steps"][0]["supports"][1]["ux"] = json!({"rate": 1.0});
+    let go_on = json!({"name": "go on", "duration": 10, "scheme": quasi_dynamic(1e-6, 10), "dt": {"initial": 1e-3},
+        "supports": [{"on": "upper_top", "ux": {"rate": 1e-3}}]});
+    case["steps"] = json!([case["steps"][0], go_on]);
+    let run = finish(&case);
+    let last = run.last();
+    let free = |dof: &usize| last.reaction[*dof] == 0.0;
+    let out = (0..last.force.len()).filter(free).fold(0.0f64, |most, dof| most.max(last.force[dof].abs()));
+    assert!(out < 1e-9, "{out:e} is out of balance");
+    close("energy", last.energy.error(), 0.0, 0.01 * last.energy.external_work);
+}
+
+/// The slabs on rollers, turned by an angle, moved first with inertia and then without it: supports along coordinates and along
+/// inclined directions, which leave free what is across, come to the same.
+#[test]
+fn what_is_turned_slips_alike() {
+    let run = |angle: f64| {
+        let mut case = slabs(&json!({"newmark": {}}), 1e-3);
+        let mesh = Blocks::default().rectangle("lower", [12, 3], [0.0, -1.5], [6.0, 0.0]).rectangle(
+            "upper",
+            [12, 4],
+            [0.0, 0.0],
+            [6.0, 1.0],
+        );
+        case["mesh"] = mesh.turned(angle).json();
+        let own = format!("(x*{:.17} + y*{:.17})", angle.cos(), angle.sin());
+        let fault = &mut case["contacts"]["fault"];
+        for key in ["/along/a", "/along/law/0/where", "/initial/pressure"] {
+            let place = fault.pointer_mut(key).expect("an expression");
+            *place = json!(place.as_str().expect("a text").replace('x', &own));
+        }
+        let along = |on: Value, [sx, sy]: [f64; 2], u: Value| match angle == 0.0 {
+            true if sy == 0.0 => json!({"on": on, "ux": u}),
+            true => json!({"on": on, "uy": u}),
+            false => json!({"on": on, "along": turned([sx, sy], angle), "u": u}),
+        };
+        let supports = |rate: f64| {
+            json!([
+                along(json!("lower_bottom"), [0.0, 1.0], json!(0)),
+                along(json!({"near": turned([3.0, -1.5], angle)}), [1.0, 0.0], json!(0)),
+                along(json!("upper_top"), [1.0, 0.0], json!({"rate": rate})),
+            ])
+        };
+        case["steps"][0]["dt"] = json!({"initial": 5e-5});
+        case["steps"][0]["supports"] = supports(1.0);
+        let go_on = json!({"name": "go on", "duration": 10, "scheme": quasi_dynamic(1e-6, 10), "dt": {"initial": 1e-3},
+            "supports": [supports(1e-3)[2]]});
+        case["steps"] = json!([case["steps"][0], go_on]);
+        finish(&case)
+    };
+    let [plain, other] = [0.0, 0.5].map(run);
+    let apart = apart(&fault(&plain), &fault(&other));
+    assert!(apart.iter().all(|apart| *apart < 1e-6), "{apart:?}");
+    let largest = plain.last().displacement.iter().fold(0.0f64, |most, u| most.max(u.abs()));
+    for (u, v) in plain.last().displacement.chunks(2).zip(other.last().displacement.chunks(2)) {
+        let u = turned([u[0], u[1]], 0.5);
+        (0..2).for_each(|i| close("u", v[i], u[i], 1e-6 * largest));
+    }
+    close("energy", other.last().energy.error(), 0.0, 0.01 * other.last().energy.external_work);
+}
+
+/// A run that was stopped goes on to the same bits; so does one on another number of threads, and one in other units.
+#[test]
+fn bits() {
+    let case = slabs(&quasi_dynamic(1e-5, 7), 20.0);
+    let whole = finish(&case);
+    let shared: Arc<Model> = model(&case).into();
+    let mut run = Simulation::new(shared.clone());
+    for _ in 0..whole.states.len() / 2 {
+        run.next_increment().expect("it runs");
+    }
+    let bytes = run.save().bytes().expect("it can be written");
+    let mut run = Simulation::resume(shared.clone(), Saved::from_bytes(&bytes, &shared).expect("it can be read"));
+    while run.next_increment().expect("it runs").is_some() {}
+    assert!(run.state() == whole.last(), "a resumed run has other bits");
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().expect("a pool of threads");
+    assert!(pool.install(|| finish(&case)).last() == whole.last(), "three threads have other bits");
+    let scaled = |units: [f64; 3]| {
+        let [l, f, t] = units;
+        let (stress, time) = (f / (l * l), t);
+        let mut case = slabs(&quasi_dynamic(1e-5, 7), 20.0 * time);
+        let scale = |value: &mut Value, by: f64| *value = json!(value.as_f64().expect("a number") * by);
+        for node in case["mesh"]["nodes"].as_array_mut().expect("nodes") {
+            (0..2).for_each(|i| scale(&mut node[i], l));
+        }
+        for body in ["lower", "upper"] {
+            scale(&mut case["bodies"][body]["material"]["E"], stress);
+            scale(&mut case["bodies"][body]["material"]["density"], f * t * t / l.powi(4));
+        }
+        let fault = &mut case["contacts"]["fault"];
+        scale(&mut fault["normal"]["alpha_n"], stress / l);
+        scale(&mut fault["radiation_damping"], stress * t / l);
+        for (name, by) in [("V_0", l / t), ("D_c", l), ("theta", t), ("alpha_t", stress / l)] {
+            scale(&mut fault["friction"][name], by);
+        }
+        fault["along"] = json!({"a": {"x": [[0.0, 0.03], [3.0 * l, 0.01], [6.0 * l, 0.03]]}});
+        fault["initial"]["pressure"] = json!({"x": [[0.0, 2.0 * stress], [6.0 * l, 2.5 * stress]]});
+        scale(&mut fault["initial"]["traction"], stress);
+        scale(&mut case["steps"][0]["dt"]["initial"], t);
+        scale(&mut case["steps"][0]["supports"][1]["ux"]["rate"], l / t);
+        scale(&mut case["steps"][0]["supports"][1]["uy"]["rate"], l / t);
+        let run = finish(&case);
+        let of = |state: &fecontact::model::state::State| -> Vec<f64> {
+            let point = |contact: &fecontact::contact::force::ContactState| {
+                [
+                    contact.friction.plastic_slip / l,
+                    contact.friction.traction / stress,
+                    contact.friction.variables[0] / t,
+                ]
+            };
+            std::iter::once(state.time / t).chain(state.contacts[0].iter().flat_map(point)).collect()
+        };
+        run.states.iter().map(of).collect::<Vec<_>>()
+    };
+    let other = [2f64.powi(-10), 2f64.powi(20), 2f64.powi(-6)];
+    assert!(scaled([1.0; 3]) == scaled(other), "a number with a unit of its own is in the program");
+}
+
+/// What such a step cannot do is refused with its place, before anything is solved.
+#[test]
+fn what_it_cannot_do_is_refused() {
+    let refused = |change: &dyn Fn(&mut Value)| {
+        let mut case = slabs(&quasi_dynamic(1e-5, 10), 1.0);
+        change(&mut case);
+        let case = serde_json::from_value(case).unwrap_or_else(|error| panic!("{error}"));
+        fecontact::case::build(&case, Path::new("test.json")).expect_err("it is refused").to_string()
+    };
+    type Change = fn(&mut Value);
+    let changes: [(Change, &str, &str); 12] = [
+        (|c| c["contacts"]["fault"]["sliding"] = json!("finite"), "contacts.fault.sliding", "need small"),
+        (|c| c["contacts"]["fault"]["radiation_damping"] = json!(false), "contacts.fault.radiation_damping", "missing"),
+        (|c| c["contacts"]["fault"]["method"] = json!("gauss_to_segment"), "contacts.fault", "meet in one point"),
+        (
+            |c| c["contacts"]["fault"]["along"]["law"][0]["friction"] = json!({"law": "coulomb", "mu": 0.7}),
+            "contacts.fault.friction",
+            "rate_and_state or prescribed",
+        ),
+        (
+            |c| c["contacts"]["fault"]["normal"]["penetration"] = json!(1e-3),
+            "contacts.fault.normal.penetration",
+            "leave it out",
+        ),
+        (|c| c["bodies"]["lower"]["material"]["model"] = json!("neo_hookean"), "steps[0].scheme", "`lower`"),
+        (|c| c["steps"][0]["supports"][1]["ux"] = json!("0.001*t^2"), "steps[0].supports", "evenly"),
+        (
+            |c| c["steps"][0]["supports"][1]["ux"] = json!({"table": [[0, 0], [0.5, 1], [1, 1]]}),
+            "steps[0].supports",
+            "evenly",
+        ),
+        (|c| c["steps"][0]["supports"][0]["on"] = json!("lower"), "steps[0].supports", "no node of a contact"),
+        (
+            |c| c["steps"][0]["loads"] = json!([{"on": "upper_right", "pressure": 1}]),
+            "steps[0].loads",
+            "take a dead_pressure or a traction",
+        ),
+        (|c| c["steps"][0]["scheme"]["quasi_dynamic"]["tolerance"] = json!(0), "steps[0].scheme", "tolerance"),
+        (|c| c["steps"][0]["rupture"] = json!({"slip_rate": 1}), "steps[0].rupture", "by itself"),
+    ];
+    for (change, place, what) in changes {
+        let told = refused(&change);
+        assert!(told.contains(place) && told.contains(what), "{place}, {what}: {told}");
+    }
+}
+
+/// Where the interface opens, the run stops with the place and the reason.
+#[test]
+fn an_interface_that_opens_stops_the_run() {
+    let mut case = slabs(&quasi_dynamic(1e-5, 10), 100.0);
+    case["steps"][0]["supports"][1]["uy"] = json!({"rate": 1e-3});
+    let mut run = Simulation::new(model(&case));
+    let told = loop {
+        match run.next_increment() {
+            Ok(Some(_)) => {}
+            Ok(None) => panic!("it ended"),
+            Err(error) => break error.to_string(),
+        }
+    };
+    assert!(told.contains("contact `fault` at (") && told.contains("keep every point closed"), "{told}");
+    let pressure =
+        run.state().contacts[0].iter().map(|contact| contact.friction.pressure).fold(f64::INFINITY, f64::min);
+    assert!((0.0..0.1).contains(&pressure), "{pressure}");
+}
+
+/// Strength that varies in time acts at its time in the middle of steps: a given rate is integrated by the scheme itself.
+#[test]
+fn given_rates_may_vary_in_time() {
+    let mut case = slabs(&quasi_dynamic(1e-7, 10), 10.0);
+    case["contacts"]["fault"]["along"]["law"][0]["along"] = json!({"slip_rate": "1e-3*(1 + sin(t))"});
+    let run = finish_at(&case, Path::new("test.json"));
+    let slip = run.last().contacts[0][0].friction.plastic_slip;
+    close("slip", slip, 1e-3 * (10.0 + 1.0 - 10f64.cos()), 1e-8);
+}

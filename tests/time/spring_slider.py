@@ -1,0 +1,56 @@
+"""Spring-slider of rate-and-state friction with radiation damping: the numbers of `quasi_dynamic.rs`.
+
+    python3 tests/time/spring_slider.py
+
+q = a p arsinh(V/(2 V0) exp(psi/a)),  tau = q + eta V = tau0 + k (Vp t - s),  theta' = 1 - V theta/D or the slip law, by
+LSODA at 1e-10 on (s, ln theta), with V found to the last digits by Newton's method in arsinh's argument.
+"""
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+a, b, f0, V0, D = 0.010, 0.015, 0.6, 1e-6, 0.008
+p, eta, Vp = 50.0, 4.62, 1e-9
+k = 1.0 / (1.0 / 10.0 + 1.0 / 1e6)  # of the spring and the contact's
+year = 365 * 86400.0
+tau0 = 30.0
+
+
+def rate(tau, x):
+    psi = f0 + b * x
+    z = min(np.arcsinh(tau / (2 * V0 * eta) * np.exp(psi / a)), tau / (a * p))
+    scale = 2 * V0 * np.exp(-psi / a)
+    for _ in range(100):
+        step = (a * p * z + eta * scale * np.sinh(z) - tau) / (a * p + eta * scale * np.cosh(z))
+        z -= step
+        if abs(step) < 1e-15 * z:
+            break
+    return scale * np.sinh(z)
+
+
+def run(law, years):
+    # State x = ln(V0 theta/D), half of that of steady sliding at Vp
+    x0 = np.log(V0 * 0.5 * D / Vp / D)
+
+    def of(t, z):
+        V = rate(tau0 + k * (Vp * t - z[0]), z[1])
+        if law == "ageing":
+            return [V, (V0 * np.exp(-z[1]) - V) / D]
+        return [V, -V / D * (z[1] + np.log(V / V0))]
+
+    def fast(t, z):
+        return np.log(rate(tau0 + k * (Vp * t - z[0]), z[1]) / 1e-3)
+
+    solution = solve_ivp(of, [0, years * year], [0, x0], method="LSODA", rtol=1e-10, atol=[1e-12, 1e-10], events=fast)
+    V = np.array([rate(tau0 + k * (Vp * t - s), x) for t, s, x in zip(solution.t, *solution.y)])
+    print(law, solution.message)
+    print("  s, x, V at the end:", *(f"{v:.9e}" for v in (*solution.y[:, -1], V[-1])))
+    for t, z in zip(solution.t_events[0], solution.y_events[0]):
+        print(f"  V passes 1e-3 at {t / year:.6f} yr, s = {z[0]:.8f}")
+    for begin, end in zip(solution.t_events[0][::2], solution.t_events[0][1::2]):
+        inside = (solution.t >= begin) & (solution.t <= end)
+        print(f"  largest V {V[inside].max():.6f} in {end - begin:.4f} s")
+
+
+run("ageing", 100)
+run("slip", 100)
