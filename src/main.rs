@@ -55,6 +55,15 @@ enum Command {
         #[arg(long)]
         out: Option<PathBuf>,
     },
+    /// Write one page (HTML) to look at results in a browser; several folders are overlaid
+    Report {
+        /// Folders of results, finished or still growing
+        #[arg(required = true)]
+        folders: Vec<PathBuf>,
+        /// The page [default: report.html in the folder of the results, out/report.html for several]
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
     /// Print the JSON Schema of the case file, or of the test of a law
     Schema {
         /// Of which file
@@ -83,6 +92,7 @@ fn run() -> Result<(), Failure> {
         Command::Check { case } => cli::check(&case),
         Command::Law { test, out } => cli::law(&test, out),
         Command::Plot { folders, out } => cli::plot(&folders, out),
+        Command::Report { folders, out } => cli::report(&folders, out),
         Command::Schema { of } => cli::schema(of),
     }
 }

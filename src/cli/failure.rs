@@ -1,7 +1,7 @@
 //! Why a command did not end well, and what is said of it.
 
-use super::defect;
 use crate::case::CaseError;
+use crate::case::job::{Failed, Refused, defect};
 use crate::output::plot::PlotError;
 use crate::run::error::Error;
 
@@ -38,6 +38,21 @@ impl From<PlotError> for Failure {
         match error {
             PlotError::Output(error) => error.into(),
             PlotError::Unreadable { .. } => Self::BadInput(error.to_string()),
+        }
+    }
+}
+
+impl From<Refused> for Failure {
+    fn from(refused: Refused) -> Self {
+        Self::BadInput(refused.to_string())
+    }
+}
+
+impl From<Failed> for Failure {
+    fn from(failed: Failed) -> Self {
+        match failed {
+            Failed::Stopped(error) => error.into(),
+            Failed::Defect(defect) => Self::Defect(defect),
         }
     }
 }

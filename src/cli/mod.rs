@@ -2,7 +2,6 @@
 
 #[macro_use]
 mod say;
-pub mod defect;
 mod failure;
 mod interrupt;
 mod place;
@@ -19,9 +18,11 @@ use self::place::{claim, default_folder};
 pub use self::run::{Options, run};
 pub use self::say::{print, say};
 use self::threads::use_threads;
-use crate::case::{self, Opened, law_test};
+pub use crate::case::job::defect;
+use crate::case::{self, Opened, Written, law_test};
 use crate::output::law::LawTable;
 use crate::output::plot;
+use crate::output::report;
 use crate::output::summary::{self, About, Ending, LawSummary};
 use crate::run::law_report::{Hold, LawReport, PathPoint};
 
@@ -40,7 +41,7 @@ pub enum Input {
 /// [`Failure::BadInput`].
 pub fn check(path: &Path) -> Result<(), Failure> {
     use_threads(None)?;
-    let mut opened = Opened::open(path)?;
+    let mut opened = Opened::begin(Written::read(path)?)?;
     let (model, _) = opened.build()?;
     print(&case::report(&opened.case, &model))
 }
@@ -59,9 +60,11 @@ pub fn law(path: &Path, out: Option<PathBuf>) -> Result<(), Failure> {
         case: path.display().to_string(),
         title: input.title,
         units: input.units,
+        section: None,
         friction: [("law".into(), input.friction)].into(),
         wave_speeds: [0.0; 3],
         front_slip_rate: None,
+        understood: Vec::new(),
     };
     let begun =
         LawSummary { ending: Ending::running(&folder.files), about: about.clone(), report: LawReport::default() };
@@ -108,6 +111,20 @@ pub fn plot(folders: &[PathBuf], out: Option<PathBuf>) -> Result<(), Failure> {
     });
     let figures = plot::draw(folders, &folder)?;
     figures.iter().try_for_each(|figure| print(&format!("{}\n", figure.display())))
+}
+
+/// `fecontact report`.
+///
+/// # Errors
+/// [`Failure`].
+pub fn report(folders: &[PathBuf], out: Option<PathBuf>) -> Result<(), Failure> {
+    use_threads(None)?;
+    let file = out.unwrap_or_else(|| match folders {
+        [folder] => folder.join(report::FILE),
+        _ => Path::new("out").join(report::FILE),
+    });
+    report::write(folders, &file)?;
+    print(&format!("{}\n", file.display()))
 }
 
 /// `fecontact schema`.

@@ -1,30 +1,72 @@
-//! Progress on stderr: a bar on a terminal, plain lines elsewhere.
+//! Progress on stderr: one line that is kept up to date on a terminal, plain lines elsewhere; warnings as they come.
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::equations::ContactCounts;
+use crate::mesh::names::in_line;
 use crate::model::Model;
+use crate::model::told::count;
 use crate::run::error::Error;
-use crate::run::observer::{Attempt, Observer};
+use crate::run::observer::{Attempt, Observer, Verdict};
+use crate::solve::failure::IncrementFailure;
+
+/// Where progress and warnings go.
+#[derive(Clone, Debug)]
+pub enum Voice {
+    /// Nowhere
+    Silent,
+    /// Lines on stderr
+    Lines,
+    /// A terminal, above the line that is kept up to date
+    Terminal(ProgressBar),
+}
+
+impl Voice {
+    /// The voice of a run.
+    pub fn new(quiet: bool) -> Self {
+        match (quiet, std::io::stderr().is_terminal()) {
+            (true, _) => Self::Silent,
+            (false, false) => Self::Lines,
+            (false, true) => {
+                // It is drawn where there is something new, and not more often than a frame.
+                let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+                let style = ProgressStyle::with_template("{wide_msg}");
+                Self::Terminal(bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())))
+            }
+        }
+    }
+
+    /// Tell a line.
+    pub fn say(&self, line: &str) {
+        match self {
+            Self::Silent => {}
+            Self::Lines => say!("{line}"),
+            Self::Terminal(bar) => bar.suspend(|| say!("{line}")),
+        }
+    }
+
+    /// Tell a warning.
+    pub fn warn(&self, warning: &str) {
+        self.say(&format!("warning: {warning}"));
+    }
+}
 
 /// Shows progress.
 #[derive(Debug)]
 pub struct Progress {
-    /// `None` where stderr is no terminal
-    bar: Option<ProgressBar>,
+    voice: Voice,
     start: Instant,
+    /// Share of the run that was done at the start; `None` before the first attempt
+    done_before: Option<f64>,
     /// when to speak again, after the start
     next: Duration,
     lines: u32,
 }
 
-/// Ticks of a full bar.
-const FULL: u64 = 1000;
-
-/// A bar is drawn no more often than this.
+/// The line is drawn no more often than this.
 const FRAME: Duration = Duration::from_millis(100);
 
 /// Every increment has a line up to this many, ...
@@ -33,34 +75,22 @@ const LINES: u32 = 100;
 /// ... and later there is one in this time.
 const PAUSE: Duration = Duration::from_millis(500);
 
+/// Before this nobody knows how long it will take.
+const TOO_EARLY: Duration = Duration::from_secs(1);
+
 impl Progress {
-    /// A bar if stderr is a terminal, lines otherwise.
-    pub fn new() -> Self {
-        let bar = std::io::stderr().is_terminal().then(|| {
-            let style = ProgressStyle::with_template("{bar:30} {percent:>3}% {elapsed} {msg}");
-            ProgressBar::new(FULL).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
-        });
-        Self { bar, start: Instant::now(), next: Duration::ZERO, lines: 0 }
-    }
-
-    fn line(&mut self, message: &str) {
-        say!("{message}");
-        self.lines += 1;
-        if self.lines == LINES {
-            say!("… from here on not every increment has a line");
+    /// Progress with this voice.
+    pub fn new(voice: Voice) -> Self {
+        if let Voice::Terminal(bar) = &voice {
+            bar.set_message("the first increment is under way");
         }
-    }
-}
-
-impl Default for Progress {
-    fn default() -> Self {
-        Self::new()
+        Self { voice, start: Instant::now(), done_before: None, next: Duration::ZERO, lines: 0 }
     }
 }
 
 impl Drop for Progress {
     fn drop(&mut self) {
-        if let Some(bar) = &self.bar {
+        if let Voice::Terminal(bar) = &self.voice {
             bar.finish_and_clear();
         }
     }
@@ -69,19 +99,27 @@ impl Drop for Progress {
 impl Observer for Progress {
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let now = self.start.elapsed();
+        let end = model.steps.last().map_or(1.0, |step| step.span.end);
+        let before = *self.done_before.get_or_insert(attempt.old.time / end);
         if now < self.next {
             return Ok(());
         }
-        match &self.bar {
-            Some(bar) => {
-                let end = model.steps.last().map_or(1.0, |step| step.span.end);
-                let reached = attempt.accepted.map_or(attempt.old.time, |state| state.time);
-                bar.set_position((FULL as f64 * reached / end) as u64);
-                bar.set_message(message(attempt));
+        let share = attempt.accepted.map_or(attempt.old.time, |state| state.time) / end;
+        match &self.voice {
+            Voice::Silent => {}
+            Voice::Terminal(bar) => {
+                let left = left(now, share - before, 1.0 - share);
+                bar.set_message(
+                    in_line(&format!("{:.1} %{left}  {}", 100.0 * share, message(model, attempt, true))).into_owned(),
+                );
                 self.next = now + FRAME;
             }
-            None => {
-                self.line(&message(attempt));
+            Voice::Lines => {
+                say!("{}", message(model, attempt, false));
+                self.lines += 1;
+                if self.lines == LINES {
+                    say!("… from here on not every increment has a line");
+                }
                 self.next = if self.lines < LINES { now } else { now + PAUSE };
             }
         }
@@ -89,17 +127,59 @@ impl Observer for Progress {
     }
 }
 
-fn message(attempt: &Attempt) -> String {
-    let solves = attempt.iterations.len();
-    let (time, dt, step) = (attempt.old.time, attempt.dt, &attempt.step.name);
+/// How long the rest takes if it goes on as it has gone until now.
+fn left(spent: Duration, done: f64, rest: f64) -> String {
+    if spent < TOO_EARLY || done <= 0.0 {
+        return String::new();
+    }
+    let seconds = (spent.as_secs_f64() * rest / done).min(1e9) as u64;
+    let (hours, minutes) = (seconds / 3600, seconds / 60 % 60);
+    format!(", {hours}:{minutes:02}:{:02} left", seconds % 60)
+}
+
+/// A line about an attempt; a `terse` one has room on a terminal of eighty columns.
+fn message(model: &Model, attempt: &Attempt, terse: bool) -> String {
+    let (gap, iterations) = if terse { (" ", "iter") } else { ("  ", "iterations") };
+    let solves = match attempt.iterations.len() {
+        0 => String::new(),
+        solves => format!("  {solves} {iterations}"),
+    };
+    let dt = if terse { format!("{:.2e}", attempt.dt) } else { format!("{:.3e}", attempt.dt) };
+    let at = |time: f64| format!("{}{gap}t {}{gap}dt {dt}", attempt.step.name, significant(time, attempt.dt));
     match attempt.accepted {
         Some(state) => {
-            let counts = ContactCounts::of(&state.contacts);
-            format!(
-                "{step}  t {:.6}  dt {dt:.3e}  {solves} iterations  open {} stick {} slip {}",
-                state.time, counts.open, counts.stick, counts.slip
-            )
+            let ContactCounts { open, stick, slip } = ContactCounts::of(&model.contacts, &state.contacts);
+            let points = open + stick + slip;
+            let contacts = if points > 0 { format!("  open {open} stick {stick} slip {slip}") } else { String::new() };
+            format!("{}{solves}{contacts}", at(state.time))
         }
-        None => format!("{step}  t {time:.6}  dt {dt:.3e}  repeated after {solves} iterations"),
+        None => format!("{}  {}", at(attempt.old.time), given_up(attempt, terse)),
+    }
+}
+
+/// That an attempt was given up, and why; in a `terse` line what it failed by.
+fn given_up(attempt: &Attempt, terse: bool) -> String {
+    let what = if attempt.verdict == Verdict::Unsolved { "given up" } else { "repeated" };
+    let when = match attempt.iterations.len() {
+        0 => "before a solve".into(),
+        solves => format!("after {}", count(solves, "iteration")),
+    };
+    let why = match attempt.cause.map_or(attempt.verdict.kind(), IncrementFailure::kind) {
+        kind if terse => kind.into(),
+        kind => attempt.reason().unwrap_or_else(|| kind.into()),
+    };
+    format!("{what} {when}: {why}")
+}
+
+/// A time to so many digits that an increment shows.
+fn significant(time: f64, dt: f64) -> String {
+    const FEWEST: f64 = 6.0;
+    const MOST: f64 = 15.0;
+    let digits = ((time / dt).abs().log10() + 3.0).clamp(FEWEST, MOST) as usize;
+    let rounded = format!("{time:.*e}", digits - 1).parse().unwrap_or(time);
+    match rounded {
+        0.0 => "0".into(),
+        value if (1e-4..1e7).contains(&f64::abs(value)) => format!("{value}"),
+        value => format!("{value:e}"),
     }
 }

@@ -73,19 +73,19 @@ impl Audit {
 /// Round-off of the forces on a model [F].
 fn round_off(model: &Model, state: &State) -> f64 {
     let reach = state.displacement.iter().fold(model.mesh.diagonal(), |most, u| most.max(u.abs()));
-    let solids = model.bodies.iter().map(|body| body.material.p_wave_modulus()).fold(0.0, f64::max);
     let contacts = model
         .contacts
         .iter()
         .zip(&state.contacts)
         .flat_map(|(pair, states)| states.iter().map(move |contact| pair.alpha_n * contact.length));
-    f64::EPSILON * contacts.fold(solids, f64::max) * reach * (model.mesh.nodes.len() as f64).sqrt()
+    f64::EPSILON * contacts.fold(model.stiffness(), f64::max) * reach * (model.mesh.nodes.len() as f64).sqrt()
 }
 
 /// What may bring the energies of a step into balance.
 fn remedy(model: &Model, step: &Step) -> &'static str {
     let keeps_all = match step.scheme {
-        Scheme::Static => return "take shorter increments (dt.max)",
+        Scheme::Static => return "take shorter increments (dt.max, dt.min)",
+        Scheme::QuasiDynamic { .. } => return "take fewer steps from one result to the next (quasi_dynamic.every)",
         Scheme::Explicit { .. } => {
             return "lower the safety of the explicit scheme, or give the bodies viscosity (damping.stiffness)";
         }

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::files;
+use super::rows::Row;
 use crate::run::error::Error;
 
 /// Rows written within this time of each other go to the system together: the call would cost as much as the row.
@@ -25,6 +26,8 @@ pub struct Table {
     rows: Vec<u8>,
     /// the row so far, a comma behind every cell
     row: Vec<u8>,
+    /// a whole row that is written if an event follows
+    held: Vec<u8>,
     flushed: Instant,
 }
 
@@ -50,7 +53,7 @@ impl Table {
 
     fn of(path: &Path, file: File, header: &[String]) -> Self {
         let (path, header) = (path.to_owned(), header.to_vec());
-        Self { path, file, header, rows: Vec::new(), row: Vec::new(), flushed: Instant::now() }
+        Self { path, file, header, rows: Vec::new(), row: Vec::new(), held: Vec::new(), flushed: Instant::now() }
     }
 
     /// Add a cell.
@@ -72,11 +75,33 @@ impl Table {
 
     /// Write the row.
     pub fn end_row(&mut self) -> Result<(), Error> {
+        self.end_row_as(Row::Written)
+    }
+
+    /// Write the row, with the one that was held or without, or hold it.
+    pub fn end_row_as(&mut self, row: Row) -> Result<(), Error> {
         if let Some(comma) = self.row.last_mut() {
             *comma = b'\n';
         }
-        self.rows.append(&mut self.row);
+        if row == Row::AfterTheHeld {
+            self.rows.append(&mut self.held);
+        }
+        self.held.clear();
+        match row {
+            Row::Held => self.held.append(&mut self.row),
+            Row::Written | Row::AfterTheHeld => self.rows.append(&mut self.row),
+        }
         if self.rows.len() < MANY { Ok(()) } else { self.flush() }
+    }
+
+    /// The row that is held.
+    pub fn held(&self) -> &[u8] {
+        &self.held
+    }
+
+    /// Hold a row of an earlier run.
+    pub fn hold(&mut self, row: Vec<u8>) {
+        self.held = row;
     }
 
     /// Hand the rows so far to the system, so that a killed run loses nothing, unless that was done a blink ago.
@@ -96,6 +121,7 @@ impl Table {
     pub fn cut(&mut self, length: u64) -> Result<(), Error> {
         self.rows.clear();
         self.row.clear();
+        self.held.clear();
         let path = self.path.clone();
         self.cut_to(length).map_err(|cause| failed(&path, &cause))
     }

@@ -1,32 +1,31 @@
-//! `solid.pvd` and `contact.pvd`: what ParaView shows, one VTU file a frame.
+//! `solid.pvd`, `contact.pvd` and `points.pvd`: what ParaView shows, one VTU file a frame. A frame is listed soon after it is
+//! whole, and no longer listed before it is taken back: a list is valid at any moment of a run.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
 
 use super::csv::failed;
 use super::files;
+use super::frames::{Shown, contact_frame, points_frame, solid_frame};
 use super::memory;
-use super::vtu::{CellType, Grid};
-use crate::contact::fields;
-use crate::contact::force::ContactState;
-use crate::contact::pair::ContactPair;
-use crate::contact::surface::SlavePoint;
-use crate::laws::bulk::CauchyStress;
-use crate::mesh::configuration::Configuration;
+use super::room::Room;
+use super::rows::{Row, Rows};
+use super::vtu::Grid;
 use crate::model::Model;
 use crate::model::state::State;
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};
-use nalgebra::Vector2;
 
 /// Writes frames of the solids and of the interfaces, in the background while the run goes on.
 #[derive(Debug)]
 pub struct Fields {
-    every: usize,
-    /// Rows of the history so far
-    rows: usize,
+    room: Room,
+    frames_of: Frames,
+    /// Which increments are rows of the history, and how many there are so far
+    rows: (Rows, usize),
     /// Times of the frames so far [T]
     times: Vec<f64>,
     /// What the writer is to do; `None` when there is no more
@@ -35,10 +34,25 @@ pub struct Fields {
     writer: Option<JoinHandle<Result<(), Error>>>,
 }
 
+/// Which frames are written, and of what.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Frames {
+    /// Frames with every n-th row of the history; `None` for those at times that the model names alone
+    pub every: Option<usize>,
+    /// Whether the integration points have frames
+    pub points: bool,
+}
+
+impl From<usize> for Frames {
+    fn from(every: usize) -> Self {
+        Self { every: Some(every), points: false }
+    }
+}
+
 /// What the writer of frames is asked for.
 enum Task {
     /// Write this state
-    Show(Box<State>),
+    Show(Box<Shown>),
     /// Take back all frames but those of these times
     Keep(Vec<f64>),
     /// Say when all is written
@@ -48,23 +62,29 @@ enum Task {
 /// Frames that may wait for the writer; a run that is faster waits, so that memory stays bounded.
 const WAITING: usize = 1;
 
+/// The longest that a frame waits to be listed: a list is written as a whole.
+const UNLISTED: Duration = Duration::from_millis(200);
+
 /// A time series of VTU files and the `.pvd` that lists them.
 #[derive(Debug)]
 struct Collection {
     folder: PathBuf,
     name: &'static str,
     times: Vec<f64>,
+    /// How many of them are listed, and since when
+    listed: (usize, Option<Instant>),
+    grid: Grid,
 }
 
 impl Fields {
     /// Start the series in `folder`, with the state at rest as the first frame; then that of every n-th row of
-    /// the history and the last of each step are written.
+    /// the history, those at the times that the model names, and the last of each step are written.
     ///
     /// # Errors
     /// [`Error::Output`] when a file cannot be written.
-    pub fn create(folder: &Path, model: Arc<Model>, start: &State, every: usize) -> Result<Self, Error> {
-        let mut fields = Self::reopen(folder, model, every)?;
-        fields.write(start)?;
+    pub fn create(folder: &Path, model: Arc<Model>, start: &State, frames: impl Into<Frames>) -> Result<Self, Error> {
+        let mut fields = Self::reopen(folder, model.clone(), frames)?;
+        fields.write(&model, start)?;
         Ok(fields)
     }
 
@@ -72,20 +92,29 @@ impl Fields {
     ///
     /// # Errors
     /// [`Error::Output`] when there is no place for it.
-    pub fn reopen(folder: &Path, model: Arc<Model>, every: usize) -> Result<Self, Error> {
-        let names = if model.contacts.is_empty() { &["solid"][..] } else { &["solid", "contact"] };
-        let collections = names.iter().map(|name| Collection::create(folder, name)).collect::<Result<_, _>>()?;
+    pub fn reopen(folder: &Path, model: Arc<Model>, frames: impl Into<Frames>) -> Result<Self, Error> {
+        let (frames_of, rows) = (frames.into(), (Rows::default(), 0));
+        let names = [("solid", true), ("contact", !model.contacts.is_empty()), ("points", frames_of.points)];
+        let names = names.into_iter().filter(|(_, asked)| *asked);
+        let collections = names.map(|(name, _)| Collection::create(folder, name)).collect::<Result<_, _>>()?;
         let (frames, arriving): (_, Receiver<Task>) = sync_channel(WAITING);
-        let writer = std::thread::Builder::new().name("frames".into());
-        let writer = writer.spawn(move || written(&model, collections, arriving));
+        let (room, writer) = (Room::of(folder, &model), std::thread::Builder::new().name("frames".into()));
+        let writer = writer.spawn(move || {
+            // What it computes, it computes itself: the threads of the run may be waiting for it.
+            let alone = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
+            alone
+                .map_err(|cause| failed(Path::new("frames"), &cause))
+                .and_then(|_alone| written(&model, collections, arriving))
+        });
         let writer = writer.map_err(|cause| failed(&folder.join("solid"), &cause))?;
-        Ok(Self { every, rows: 0, times: Vec::new(), frames: Some(frames), writer: Some(writer) })
+        Ok(Self { room, frames_of, rows, times: Vec::new(), frames: Some(frames), writer: Some(writer) })
     }
 
     /// Hand a state to the writer. One that has ended has failed, and says why.
-    fn write(&mut self, state: &State) -> Result<(), Error> {
+    fn write(&mut self, model: &Model, state: &State) -> Result<(), Error> {
+        self.room.check()?;
         self.times.push(state.time);
-        self.ask(Task::Show(Box::new(state.clone())))
+        self.ask(Task::Show(Box::new(Shown::new(model, state))))
     }
 
     fn ask(&mut self, task: Task) -> Result<(), Error> {
@@ -102,36 +131,45 @@ impl Fields {
     }
 }
 
-/// What the writer does.
+/// What the writer does; what is whole is listed also where it fails.
 fn written(model: &Model, mut collections: Vec<Collection>, tasks: Receiver<Task>) -> Result<(), Error> {
-    let mut grid = Grid::default();
-    for task in tasks {
-        match task {
-            Task::Show(state) => {
-                for collection in &mut collections {
-                    match collection.name {
-                        "solid" => solid_frame(model, &state, &mut grid),
-                        _ => contact_frame(model, &state, &mut grid),
-                    }
-                    collection.write(state.time, &grid)?;
-                }
+    let done = followed(model, &mut collections, tasks);
+    done.and(listed(&mut collections))
+}
+
+/// Do what is asked for, until there is no more.
+fn followed(model: &Model, collections: &mut [Collection], tasks: Receiver<Task>) -> Result<(), Error> {
+    loop {
+        match tasks.recv_timeout(UNLISTED) {
+            Ok(Task::Show(shown)) => {
+                collections.iter_mut().try_for_each(|collection| collection.show(model, &shown))?
             }
-            Task::Keep(times) => collections.iter_mut().try_for_each(|collection| collection.keep(&times))?,
-            // Whoever has asked may have gone.
-            Task::Tell(done) => drop(done.send(())),
+            Ok(Task::Keep(times)) => collections.iter_mut().try_for_each(|collection| collection.keep(&times))?,
+            Ok(Task::Tell(done)) => {
+                listed(collections)?;
+                // Whoever has asked may have gone.
+                let _ = done.send(());
+            }
+            Err(RecvTimeoutError::Timeout) => listed(collections)?,
+            Err(RecvTimeoutError::Disconnected) => return Ok(()),
         }
     }
-    Ok(())
+}
+
+fn listed(collections: &mut [Collection]) -> Result<(), Error> {
+    collections.iter_mut().try_for_each(Collection::list)
 }
 
 impl Observer for Fields {
-    fn record(&mut self, _: &Model, attempt: &Attempt) -> Result<(), Error> {
+    fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
-        self.rows += 1;
-        if self.rows.is_multiple_of(self.every) || state.time >= attempt.step.span.end {
-            self.write(state)
-        } else {
-            Ok(())
+        let (rows, count) = &mut self.rows;
+        let is_row = rows.judge(model, attempt, state) != Row::Held;
+        *count += usize::from(is_row);
+        let is_due = self.frames_of.every.is_some_and(|every| is_row && count.is_multiple_of(every));
+        match is_due || attempt.ends_step(state) || model.is_output_time(state.time) {
+            true => self.write(model, state),
+            false => Ok(()),
         }
     }
 
@@ -141,7 +179,7 @@ impl Observer for Fields {
 
     fn save(&mut self) -> Result<Vec<u8>, Error> {
         self.settle()?;
-        memory::written(&(self.rows, &self.times))
+        memory::written(&(&self.rows, &self.times))
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
@@ -164,7 +202,7 @@ impl Collection {
     fn create(folder: &Path, name: &'static str) -> Result<Self, Error> {
         let frames = folder.join(name);
         files::folder(&frames).map_err(|cause| failed(&frames, &cause))?;
-        Ok(Self { folder: folder.to_owned(), name, times: Vec::new() })
+        Ok(Self { folder: folder.to_owned(), name, times: Vec::new(), listed: (0, None), grid: Grid::default() })
     }
 
     fn file(&self, number: usize) -> String {
@@ -172,16 +210,22 @@ impl Collection {
     }
 
     /// Write one frame and list it, so that a running or killed run can be looked at.
-    fn write(&mut self, time: f64, grid: &Grid) -> Result<(), Error> {
+    fn show(&mut self, model: &Model, shown: &Shown) -> Result<(), Error> {
         let path = self.folder.join(self.file(self.times.len()));
-        let written = grid.write(&path);
+        let frame = match self.name {
+            "solid" => solid_frame,
+            "points" => points_frame,
+            _ => contact_frame,
+        };
+        let written = frame(model, shown, &mut self.grid).and_then(|()| self.grid.write(&path));
         if written.is_err() {
             // Half a frame is of no use.
             let _ = files::remove(&path);
         }
         written.map_err(|cause| failed(&path, &cause))?;
-        self.times.push(time);
-        self.list()
+        self.times.push(shown.state.time);
+        let is_early = self.listed.1.is_some_and(|last| last.elapsed() < UNLISTED);
+        if is_early { Ok(()) } else { self.list() }
     }
 
     /// The frames of these times are kept, and those after them taken back.
@@ -191,6 +235,9 @@ impl Collection {
         if let Some(path) = missing {
             return Err(failed(&path, &"was there when the checkpoint was written, and is gone"));
         }
+        // What is taken back is no longer listed when it goes.
+        self.listed.0 = usize::MAX;
+        self.list()?;
         for number in times.len().. {
             let path = self.folder.join(self.file(number));
             if path.symlink_metadata().is_err() {
@@ -198,10 +245,14 @@ impl Collection {
             }
             files::remove(&path).map_err(|cause| failed(&path, &cause))?;
         }
-        self.list()
+        Ok(())
     }
 
-    fn list(&self) -> Result<(), Error> {
+    /// List the frames, unless all are.
+    fn list(&mut self) -> Result<(), Error> {
+        if self.listed.0 == self.times.len() {
+            return Ok(());
+        }
         let mut text =
             String::from("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n");
         for (number, time) in self.times.iter().enumerate() {
@@ -209,91 +260,7 @@ impl Collection {
         }
         text += "</Collection>\n</VTKFile>\n";
         let path = self.folder.join(format!("{}.pvd", self.name));
+        self.listed = (self.times.len(), Some(Instant::now()));
         files::replace(&path, text.as_bytes()).map_err(|cause| failed(&path, &cause))
     }
-}
-
-fn solid_frame(model: &Model, state: &State, grid: &mut Grid) {
-    let stresses = nodal_stresses(model, state);
-    // A body has one material, and a material serves one body: the two ids agree.
-    let body = || model.body_of_element.iter().map(|&body| body as i32);
-    let elements = model.mesh.elements.iter();
-    grid.restart(&model.mesh.nodes, elements.map(|element| (element.kind.into(), &element.nodes[..])));
-    grid.vectors("displacement", &state.displacement);
-    grid.vectors("velocity", &state.velocity);
-    grid.vectors("acceleration", &state.acceleration);
-    grid.vectors("reaction", &state.reaction);
-    grid.at_points("stress", 4, stresses.iter().flat_map(|s| [s.xx, s.yy, s.zz, s.xy]));
-    grid.at_points("von_mises", 1, stresses.iter().map(CauchyStress::von_mises));
-    grid.at_points("pressure", 1, stresses.iter().map(CauchyStress::pressure));
-    grid.at_cells("body", body());
-    grid.at_cells("material", body());
-}
-
-/// Cauchy stress at the nodes, averaged over the elements that meet there. An element that the
-/// material law cannot answer leaves no trace: it never occurs in an accepted state.
-fn nodal_stresses(model: &Model, state: &State) -> Vec<CauchyStress> {
-    let (elements, memories) = (&model.mesh.elements, model.memories());
-    let stresses_of = |e: usize| {
-        let mut u = [Vector2::zeros(); 9];
-        for (u, &node) in u.iter_mut().zip(&elements[e].nodes) {
-            *u = Vector2::new(state.displacement[2 * node], state.displacement[2 * node + 1]);
-        }
-        let material = &*model.bodies[model.body_of_element[e]].material;
-        model.solids[e].nodal_stresses(material, &state.memory[memories[e].clone()], &u[..elements[e].nodes.len()])
-    };
-    let mut sums = vec![([0.0; 4], 0.0); model.mesh.nodes.len()];
-    for (element, stresses) in elements.iter().zip((0..elements.len()).map(stresses_of)) {
-        for (stress, &node) in stresses.iter().flatten().zip(&element.nodes) {
-            let (sum, count) = &mut sums[node];
-            for (sum, part) in sum.iter_mut().zip([stress.xx, stress.yy, stress.zz, stress.xy]) {
-                *sum += part;
-            }
-            *count += 1.0;
-        }
-    }
-    let mean = |(sum, count): ([f64; 4], f64)| {
-        let [xx, yy, zz, xy] = sum.map(|s| if count > 0.0 { s / count } else { 0.0 });
-        CauchyStress { xx, yy, zz, xy }
-    };
-    sums.into_iter().map(mean).collect()
-}
-
-/// A contact point.
-struct Place<'a> {
-    pair: &'a ContactPair,
-    slave: &'a SlavePoint,
-}
-
-fn contact_frame(model: &Model, state: &State, grid: &mut Grid) {
-    let points_of = |pair: &ContactPair, x: &Configuration| pair.points.iter().map(|p| p.at(x)).collect::<Vec<_>>();
-    let undeformed = model.mesh.undeformed();
-    let reference: Vec<Vector2<f64>> = model.contacts.iter().flat_map(|pair| points_of(pair, &undeformed)).collect();
-    let x = model.configuration(&state.displacement);
-    let current: Vec<Vector2<f64>> = model.contacts.iter().flat_map(|pair| points_of(pair, &x)).collect();
-    let displacement: Vec<f64> = reference.iter().zip(&current).flat_map(|(a, b)| [b.x - a.x, b.y - a.y]).collect();
-
-    let mut lines: Vec<(CellType, Vec<usize>)> = Vec::new();
-    let mut contact_id: Vec<i32> = Vec::new();
-    let mut first = 0;
-    for (number, pair) in model.contacts.iter().enumerate() {
-        for line in pair.lines() {
-            let kind = if line.len() == 1 { CellType::VERTEX } else { CellType::POLY_LINE };
-            lines.push((kind, line.map(|k| first + k).collect()));
-            contact_id.push(number as i32);
-        }
-        first += pair.points.len();
-    }
-    let states = model.contacts.iter().zip(&state.contacts).flat_map(|(pair, states)| {
-        let points = pair.points.iter().zip(states);
-        points.map(move |(slave, state)| (Place { pair, slave }, state))
-    });
-    let all: Vec<(Place, &ContactState)> = states.collect();
-    grid.restart(&reference, lines.iter().map(|(kind, nodes)| (*kind, &nodes[..])));
-    grid.vectors("displacement", &displacement);
-    for name in fields::names(&model.contacts) {
-        let value = |(place, s): &(Place, &ContactState)| fields::value(place.pair, place.slave, s, state.dt, name);
-        grid.at_points(name, 1, all.iter().map(value));
-    }
-    grid.at_cells("contact", contact_id.into_iter());
 }

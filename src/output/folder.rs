@@ -9,24 +9,35 @@ use serde_json::Value;
 
 use super::checkpoint;
 use super::files;
+use super::interface;
 use super::lock::Lock;
 use super::plot;
+use super::report;
 use crate::run::error::Error;
 
 /// What commands write beside figures; a folder ends in `/` and holds numbered frames.
-const KNOWN: [&str; 11] = [
+const KNOWN: [&str; 17] = [
     "history.csv",
     "newton.csv",
     "slip_map.csv",
     "fronts.csv",
+    "events.csv",
     "law.csv",
     "solid.pvd",
     "solid/",
+    "points.pvd",
+    "points/",
+    "probes.csv",
+    INTERFACE,
     "contact.pvd",
     "contact/",
     checkpoint::NEWEST,
     checkpoint::PREVIOUS,
+    report::FILE,
 ];
+
+/// The store of the interfaces, a folder of its own kind.
+pub const INTERFACE: &str = "interface.zarr/";
 
 /// What every folder of results has.
 pub const SUMMARY: &str = "summary.json";
@@ -74,6 +85,11 @@ impl Folder {
         claimed
     }
 
+    /// The files of a run that has ended: a short one has kept no second checkpoint.
+    pub fn forget_what_never_came(&mut self) {
+        self.files.retain(|name| name != checkpoint::PREVIOUS || self.path.join(name).exists());
+    }
+
     /// Where a run could not write, give it the room that was kept to say so.
     pub fn make_room_after(&mut self, result: &Result<(), Error>) {
         if matches!(result, Err(Error::Output { .. })) {
@@ -87,6 +103,7 @@ fn is_written(input: &Path, folder: &Path, outputs: &[&str]) -> bool {
     let (Ok(input), Ok(folder)) = (input.canonicalize(), folder.canonicalize()) else { return false };
     let Ok(below) = input.strip_prefix(folder) else { return false };
     outputs.iter().chain([&SUMMARY]).any(|name| match name.strip_suffix('/') {
+        Some(_) if *name == INTERFACE => below.starts_with(interface::STORE) && interface::is_own(&input),
         Some(frames) => below.parent() == Some(Path::new(frames)) && is_frame(&input),
         None => below == Path::new(name),
     })
@@ -120,12 +137,12 @@ fn in_the_way(folder: &Path, outputs: &[&str], earlier: &[String]) -> Result<(),
         if !is_right {
             return strange(path);
         }
-        if earlier.iter().any(|file| file == name) {
+        if earlier.iter().any(|file| file == name) || (*name == report::FILE && report::is_page(&path)) {
             continue;
         }
         match name.ends_with('/') {
             false => return strange(path),
-            true => frames(&path).into_iter().next().map_or(Ok(()), strange)?,
+            true => parts(&path, name).into_iter().next().map_or(Ok(()), strange)?,
         }
     }
     Ok(())
@@ -137,7 +154,10 @@ fn clear(folder: &Path, earlier: &[String]) -> Result<(), (PathBuf, std::io::Err
     for name in earlier {
         let path = folder.join(name.trim_end_matches('/'));
         match name.ends_with('/') {
-            true => frames(&path).into_iter().try_for_each(remove)?,
+            true => {
+                parts(&path, name).into_iter().try_for_each(remove)?;
+                interface::forget(&path);
+            }
             false => {
                 remove(files::aside(&path))?;
                 remove(path)?;
@@ -145,7 +165,14 @@ fn clear(folder: &Path, earlier: &[String]) -> Result<(), (PathBuf, std::io::Err
         }
     }
     let figures = plot::FIGURES.iter().map(|name| folder.join(name));
-    figures.filter(|path| plot::is_figure(path)).try_for_each(remove)
+    figures.filter(|path| plot::is_figure(path)).try_for_each(remove)?;
+    Some(folder.join(report::FILE)).filter(|path| report::is_page(path)).map_or(Ok(()), remove)
+}
+
+/// The files of ours in a folder of a kind.
+fn parts(folder: &Path, name: &str) -> Vec<PathBuf> {
+    // A folder that cannot be read has nothing that could be taken away.
+    if name == INTERFACE { interface::files_of(folder).unwrap_or_default() } else { frames(folder) }
 }
 
 /// The frames in a folder of its own; nothing where it is a link.

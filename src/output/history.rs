@@ -1,12 +1,21 @@
-//! `history.csv`: a row per accepted increment.
+//! `history.csv`: a row per accepted increment, or those that an interval leaves (`rows.rs`).
 
 use std::path::Path;
+use std::slice;
 
+use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
+
+use super::bodies::{BodyMeans, Motion};
 use super::csv::{Opening, Table};
 use super::memory;
+use super::rows::Rows;
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
+use crate::contact::resultant::Resultant;
+use crate::equations::interfaces;
 use crate::laws::friction::{Regime, observables};
+use crate::mesh::{Group, shape};
 use crate::model::state::{Energy, State};
 use crate::model::{Model, WatchedSet};
 use crate::run::error::Error;
@@ -18,7 +27,30 @@ pub struct History {
     table: Table,
     /// Observables of each contact whose means are written
     observed: Vec<Vec<&'static str>>,
+    /// Middle of each undeformed slave surface, about which the moments are
+    middles: Vec<Vector2<f64>>,
+    bodies: Vec<BodyMeans>,
+    /// ∫ N_a ds of the watched sets that are edges
+    edges: Vec<EdgeMeans>,
+    /// Which contacts have a column for the force of their fluid
+    fluids: Vec<bool>,
+    /// Whether slip radiates, and the energies have a column for it
+    radiates: bool,
+    memory: Memory,
 }
+
+/// What is remembered from row to row.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Memory {
+    rows: Rows,
+    /// Rotation of each body, turns counted; none before the first increment [rad]
+    rotations: Vec<f64>,
+    /// Frictional heat of each contact so far [F·L]
+    heat: Vec<f64>,
+}
+
+/// A watched set of edges: its name, and the share of its length that each node stands for.
+type EdgeMeans = (String, Vec<(usize, f64)>);
 
 const INCREMENT: [&str; 4] = ["time", "dt", "step", "iterations"];
 const ENERGIES: [&str; 7] = [
@@ -41,6 +73,13 @@ const CONTACT: [&str; 8] = [
     "mean_elastic_slip",
 ];
 const WATCHED: [&str; 4] = ["ux", "uy", "fx", "fy"];
+/// Resultant of a contact on its slave, the moment about the middle of the undeformed slave.
+const RESULTANT: [&str; 3] = ["force_x", "force_y", "moment"];
+const BODY: [&str; 6] = ["momentum_x", "momentum_y", "angular_momentum", "centre_x", "centre_y", "rotation"];
+/// Heat of a contact so far, ∫ q v^p ds dt, and its rate over the last increment.
+const HEAT: [&str; 2] = ["frictional_heat", "frictional_power"];
+/// Means by length of a watched set of edges.
+const EDGES: [&str; 2] = ["edge_ux", "edge_uy"];
 
 impl History {
     /// Create `history.csv` in `folder`.
@@ -64,19 +103,40 @@ impl History {
         let mut header: Vec<String> = INCREMENT.iter().chain(&ENERGIES).map(|c| (*c).into()).collect();
         header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &CONTACT)));
         header.extend(model.watch.iter().flat_map(|set| of(&set.name, &WATCHED)));
+        let radiates = model.contacts.iter().any(|pair| pair.radiation > 0.0);
+        header.extend(radiates.then(|| "radiated".into()));
         let further = |pair: &ContactPair| observables::further(pair.laws.iter().map(|law| &**law));
         let observed: Vec<Vec<&str>> = model.contacts.iter().map(further).collect();
         for (pair, names) in model.contacts.iter().zip(&observed) {
             header.extend(names.iter().map(|name| format!("{}.mean_{name}", pair.name)));
         }
-        Ok(Self { table: open(&folder.join("history.csv"), &header)?, observed })
+        let edges: Vec<EdgeMeans> = model.watch.iter().filter_map(|set| edge_means(model, set)).collect();
+        header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &RESULTANT)));
+        header.extend(model.bodies.iter().flat_map(|body| of(&body.name, &BODY)));
+        header.extend(edges.iter().flat_map(|(name, _)| of(name, &EDGES)));
+        let fluids: Vec<bool> = model.contacts.iter().map(|pair| pair.fluid.is_some()).collect();
+        let in_fluid = model.contacts.iter().filter(|pair| pair.fluid.is_some());
+        header.extend(in_fluid.map(|pair| format!("{}.fluid_force", pair.name)));
+        header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &HEAT)));
+        let undeformed = model.mesh.undeformed();
+        Ok(Self {
+            table: open(&folder.join("history.csv"), &header)?,
+            observed,
+            middles: model.contacts.iter().map(|pair| pair.middle(&undeformed)).collect(),
+            bodies: model.bodies.iter().map(|body| BodyMeans::new(model, body)).collect(),
+            edges,
+            fluids,
+            radiates,
+            memory: Memory { rows: Rows::default(), rotations: Vec::new(), heat: vec![0.0; model.contacts.len()] },
+        })
     }
 }
 
 impl Observer for History {
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
-        let Self { table, observed } = self;
+        let Self { table, observed, middles, bodies, edges, fluids, radiates, memory } = self;
+        let row = memory.rows.judge(model, attempt, state);
         table.number(state.time);
         table.number(state.dt);
         table.text(&attempt.step.name);
@@ -88,10 +148,39 @@ impl Observer for History {
         for set in &model.watch {
             watched_row(set, state).into_iter().for_each(|number| table.number(number));
         }
+        if *radiates {
+            table.number(state.energy.radiated);
+        }
         for ((pair, states), names) in model.contacts.iter().zip(&state.contacts).zip(observed) {
             names.iter().for_each(|name| table.number(mean(pair, states, name)));
         }
-        table.end_row()?;
+        let x = model.configuration(&state.displacement);
+        for ((pair, states), middle) in model.contacts.iter().zip(&state.contacts).zip(middles) {
+            let Resultant { force, moment } = pair.resultant(states, &x, *middle);
+            [force.x, force.y, moment].into_iter().for_each(|number| table.number(number));
+        }
+        if memory.rotations.is_empty() {
+            memory.rotations = bodies.iter().map(|body| body.motion(model, attempt.old).rotation).collect();
+        }
+        for (body, rotation) in bodies.iter().zip(&mut memory.rotations) {
+            let motion = body.motion(model, state);
+            *rotation = nearest_turn(*rotation, motion.rotation);
+            let Motion { momentum: p, angular_momentum, centre: c, .. } = motion;
+            [p.x, p.y, angular_momentum, c.x, c.y, *rotation].into_iter().for_each(|number| table.number(number));
+        }
+        for (_, shares) in edges {
+            let mean = |i: usize| shares.iter().map(|(node, share)| share * state.displacement[2 * node + i]).sum();
+            [mean(0), mean(1)].into_iter().for_each(|number| table.number(number));
+        }
+        for (states, _) in state.contacts.iter().zip(fluids).filter(|(_, has)| **has) {
+            table.number(states.iter().map(|state| state.length * state.fluid).sum());
+        }
+        for (heat, (old, new)) in memory.heat.iter_mut().zip(attempt.old.contacts.iter().zip(&state.contacts)) {
+            let more = interfaces::dissipated(slice::from_ref(old), slice::from_ref(new));
+            *heat += more;
+            [*heat, more / (state.time - attempt.old.time)].into_iter().for_each(|number| table.number(number));
+        }
+        table.end_row_as(row)?;
         table.share()
     }
 
@@ -100,11 +189,15 @@ impl Observer for History {
     }
 
     fn save(&mut self) -> Result<Vec<u8>, Error> {
-        memory::of_table(&mut self.table)
+        memory::written(&(self.table.length()?, self.table.held(), &self.memory))
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        memory::cut_table(&mut self.table, memory)
+        let (length, held);
+        (length, held, self.memory) = memory::read(memory)?;
+        self.table.cut(length)?;
+        self.table.hold(held);
+        Ok(())
     }
 
     fn finish(&mut self) -> Result<(), Error> {
@@ -124,7 +217,7 @@ fn energy_row(energy: &Energy) -> [f64; ENERGIES.len()] {
     ]
 }
 
-/// The columns of one contact: forces are ∫ p ds and ∫ q ds, means are taken over the closed length.
+/// The columns of one contact: forces are ∫ p ds and ∫ q ds, with what slip radiates, ∫ (q + η v) ds, means are taken over the closed length.
 fn contact_row(pair: &ContactPair, states: &[ContactState]) -> [f64; CONTACT.len()] {
     let (mut normal, mut tangential, mut closed, mut slipping, mut slip) = (0.0, 0.0, 0.0, 0.0, 0.0);
     let (mut penetration, mut largest_elastic, mut elastic) = (0.0f64, 0.0f64, 0.0);
@@ -134,9 +227,9 @@ fn contact_row(pair: &ContactPair, states: &[ContactState]) -> [f64; CONTACT.len
             continue;
         }
         normal += length * friction.pressure;
-        tangential += length * friction.traction;
+        tangential += length * (friction.traction + state.radiation);
         closed += length;
-        slipping += if state.regime() == Regime::Slip { length } else { 0.0 };
+        slipping += if pair.regime(point, state) == Regime::Slip { length } else { 0.0 };
         slip += length * friction.plastic_slip;
         penetration = penetration.max(-state.clearance());
         largest_elastic = largest_elastic.max(pair.elastic_slip(point, friction).abs());
@@ -158,7 +251,36 @@ fn mean(pair: &ContactPair, states: &[ContactState], name: &str) -> f64 {
 
 /// Mean displacement and total reaction of a watched set.
 fn watched_row(set: &WatchedSet, state: &State) -> [f64; WATCHED.len()] {
-    let total = |values: &[f64], i: usize| set.nodes.iter().map(|&node| values[2 * node + i]).sum::<f64>();
-    let mean = |i| total(&state.displacement, i) / set.nodes.len() as f64;
-    [mean(0), mean(1), total(&state.reaction, 0), total(&state.reaction, 1)]
+    let total = |nodes: &[usize], values: &[f64], i: usize| nodes.iter().map(|&node| values[2 * node + i]).sum::<f64>();
+    let mean = |i| total(&set.nodes, &state.displacement, i) / set.nodes.len() as f64;
+    [mean(0), mean(1), total(&set.held[0], &state.reaction, 0), total(&set.held[1], &state.reaction, 1)]
+}
+
+/// The shares of a watched set of edges; none where it has no length of its own.
+///
+/// ```text
+/// ū = ∫ u ds/∫ ds                         along the undeformed edges, over the area of rings
+/// ```
+fn edge_means(model: &Model, set: &WatchedSet) -> Option<EdgeMeans> {
+    let Ok(Group::Edges(edges)) = model.mesh.group(&set.name) else { return None };
+    let x = model.mesh.undeformed();
+    let mut shares: Vec<(usize, f64)> = Vec::new();
+    for edge in edges {
+        let count = edge.nodes.len();
+        for (xi, weight) in shape::gauss(3) {
+            let slope: Vec<(usize, f64)> = edge.nodes.iter().copied().zip(shape::edge_derivatives(count, xi)).collect();
+            let at: Vec<(usize, f64)> = edge.nodes.iter().copied().zip(shape::edge_values(count, xi)).collect();
+            let length = weight * x.combine(&slope).norm() * x.weight(&at);
+            shares.extend(at.into_iter().map(|(node, n)| (node, n * length)));
+        }
+    }
+    let length: f64 = shares.iter().map(|(_, share)| share).sum();
+    shares.iter_mut().for_each(|(_, share)| *share /= length);
+    Some((set.name.clone(), shares))
+}
+
+/// An angle with the turns that bring it nearest to the one before.
+fn nearest_turn(before: f64, angle: f64) -> f64 {
+    let turn = std::f64::consts::TAU;
+    angle + turn * ((before - angle) / turn).round()
 }

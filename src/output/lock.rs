@@ -81,6 +81,12 @@ impl Lock {
     }
 }
 
+/// Whether a process of this computer writes into a folder, as far as can be seen without disturbing it.
+pub fn at_work(folder: &Path) -> bool {
+    let holder = File::open(folder.join(LOCK)).ok().and_then(|mut file| Holder::read(&mut file));
+    holder.is_some_and(|holder| holder.lives(&Holder::this()))
+}
+
 impl Drop for Lock {
     fn drop(&mut self) {
         if self.is_there() {

@@ -1,19 +1,31 @@
 //! What a run leaves behind: observers of every attempt, and the files they write.
 
 pub mod audit;
+pub mod bodies;
 pub mod checkpoint;
+mod concerns;
 mod csv;
+mod events;
 pub mod fields;
 pub mod files;
 pub mod folder;
+mod frames;
 pub mod fronts;
+pub mod gauge;
 pub mod history;
+pub mod interface;
 pub mod law;
 pub mod lock;
+mod measures;
 mod memory;
 pub mod newton_log;
 mod passages;
 pub mod plot;
+pub mod probes;
+pub mod report;
+mod results;
+mod room;
+mod rows;
 pub mod summary;
 pub mod vtu;
 pub mod warnings;

@@ -1,13 +1,15 @@
-//! `newton.csv`: a row per linear solve, those of failed attempts included. On how many contact points each
-//! aid acted in its tangent ([`Acted`]) stands at the end.
+//! `newton.csv`: a row per linear solve, those of failed attempts included; an attempt that was given up before its first
+//! solve has a row as well, its `iteration` 0. On how many contact points each aid acted in its tangent ([`Acted`]), what became
+//! of the attempt ([`crate::run::observer::Verdict`]) and why it was given up ([`Attempt::reason`]) stand at the end.
 
 use std::path::Path;
 
 use super::csv::{Opening, Table};
 use super::memory;
+use crate::mesh::names::in_line;
 use crate::model::Model;
 use crate::run::error::Error;
-use crate::run::observer::{Attempt, Observer};
+use crate::run::observer::{Attempt, Observer, Verdict};
 use crate::solve::IterationRecord;
 use crate::solve::acted::Acted;
 
@@ -33,6 +35,9 @@ const COLUMNS: [&str; 15] = [
     "pass",
 ];
 
+/// Cells of an attempt without a solve, from `residual` to `pass`.
+const NOTHING: [&str; 10] = ["NaN", "NaN", "0", "0", "0", "NaN", "0", "NaN", "0", "0"];
+
 impl NewtonLog {
     /// Create `newton.csv` in `folder`.
     ///
@@ -50,21 +55,37 @@ impl NewtonLog {
         Self::with(Table::reopen, folder)
     }
 
+    /// The first cells of a row: whose it is.
+    fn begin_row(&mut self, attempt: &Attempt, iteration: usize) {
+        let Self(table) = self;
+        table.text(&attempt.step.name);
+        [attempt.old.increment + 1, attempt.number, iteration].into_iter().for_each(|count| table.count(count));
+        table.number(attempt.old.time + attempt.dt);
+    }
+
+    /// The last cells: what became of the attempt. A comma would end the cell.
+    fn end_row(&mut self, attempt: &Attempt, reason: &str) -> Result<(), Error> {
+        let Self(table) = self;
+        table.text(attempt.verdict.name());
+        table.text(reason);
+        table.end_row()
+    }
+
     fn with(open: Opening, folder: &Path) -> Result<Self, Error> {
-        let header: Vec<String> = COLUMNS.iter().chain(&Acted::COLUMNS).map(|name| (*name).into()).collect();
+        let header: Vec<String> =
+            COLUMNS.iter().chain(&Acted::COLUMNS).chain(&["verdict", "reason"]).map(|name| (*name).into()).collect();
         Ok(Self(open(&folder.join("newton.csv"), &header)?))
     }
 }
 
 impl Observer for NewtonLog {
     fn record(&mut self, _model: &Model, attempt: &Attempt) -> Result<(), Error> {
-        let Self(table) = self;
-        let time = attempt.old.time + attempt.dt;
+        let reason = attempt.reason().map_or_else(String::new, |reason| in_line(&reason).replace(',', ";"));
         for (k, iteration) in attempt.iterations.iter().enumerate() {
             let IterationRecord { newton, contacts, flips, pass, stabilization, acted } = iteration;
-            table.text(&attempt.step.name);
-            [attempt.old.increment + 1, attempt.number, k + 1].into_iter().for_each(|count| table.count(count));
-            [time, newton.residual, newton.correction].into_iter().for_each(|number| table.number(number));
+            self.begin_row(attempt, k + 1);
+            let Self(table) = self;
+            [newton.residual, newton.correction].into_iter().for_each(|number| table.number(number));
             [contacts.open, contacts.stick, contacts.slip].into_iter().for_each(|count| table.count(count));
             table.number(newton.linear_residual);
             table.count(usize::from(newton.factorized));
@@ -72,9 +93,14 @@ impl Observer for NewtonLog {
             table.count(*flips);
             table.count(*pass);
             acted.counts().into_iter().for_each(|count| table.count(count));
-            table.end_row()?;
+            self.end_row(attempt, &reason)?;
         }
-        table.share()
+        if attempt.iterations.is_empty() && attempt.verdict != Verdict::Accepted {
+            self.begin_row(attempt, 0);
+            NOTHING.iter().chain(&["0"; Acted::COLUMNS.len()]).for_each(|cell| self.0.text(cell));
+            self.end_row(attempt, &reason)?;
+        }
+        self.0.share()
     }
 
     fn name(&self) -> &'static str {

@@ -2,9 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::events::{Energies, Mark, SlipEvent};
 use super::wave_speeds::WaveSpeeds;
+use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
+use crate::laws::friction::observables;
 use crate::model::Model;
+use crate::model::state::State;
 
 /// A point of the slave surface: where it is, and what it did so far.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -18,8 +22,11 @@ pub(super) struct Point {
     pub length: f64,
     /// Whether it has friction: what slides freely has no fronts
     pub rubs: bool,
-    pub slip: f64,
+    /// What it was left with by the last increment
+    pub mark: Mark,
+    /// Slip rate of that increment [L/T], and what an arrival is told by (see [`Arrive`])
     pub rate: f64,
+    pub signal: f64,
     pub arrivals: Vec<Arrival>,
 }
 
@@ -28,7 +35,7 @@ pub(super) struct Point {
 pub(super) struct Arrival {
     /// [T]
     pub time: f64,
-    /// Number of the event of the contact, from 1
+    /// Number of the event of the contact, from 1; 0 outside of events
     pub event: usize,
     /// What loads and stored energies had given since the start of the run [F·L]
     pub given: f64,
@@ -40,10 +47,31 @@ pub(super) struct Interface {
     pub name: String,
     pub speeds: Option<WaveSpeeds>,
     pub points: Vec<Point>,
-    /// Events so far
-    pub events: usize,
-    /// Whether a point slipped faster than the threshold in the last row
-    pub slipping: bool,
+    /// Events so far; the last one may not be over
+    pub events: Vec<SlipEvent>,
+}
+
+/// What tells that a front arrives at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Arrive {
+    /// The slip rate passes that of a front from below.
+    Rate,
+    /// R passes a value from below.
+    R(f64),
+    /// μ passes a value from above.
+    Mu(f64),
+}
+
+/// An increment as fronts see it.
+#[derive(Clone, Copy)]
+pub(super) struct Passing<'a> {
+    /// Slip rate of a front [L/T]
+    pub threshold: f64,
+    pub arrive: Arrive,
+    /// Time and energies of the model at the ends of the last two increments
+    pub last: [(f64, Energies); 2],
+    /// State at the end of this one
+    pub after: &'a State,
 }
 
 /// An event of a contact: its arrivals in order of time, each with the length that it had broken by then.
@@ -61,6 +89,39 @@ impl Event {
     }
 }
 
+impl Passing<'_> {
+    /// The arrival of a front at a point in this increment, told by the signal at its end. Slip rates are those of the middles
+    /// of increments, other signals those of their ends.
+    fn arrival(&self, point: &Point, signal: f64, event: usize) -> Option<Arrival> {
+        let (level, mean) = match self.arrive {
+            Arrive::Rate => (self.threshold, true),
+            Arrive::R(level) => (level, false),
+            Arrive::Mu(level) => (-level, false),
+        };
+        if !(point.rubs && point.signal <= level && signal > level) {
+            return None;
+        }
+        let [(earlier, _), (then, _)] = self.last;
+        let (old_dt, dt) = (then - earlier, self.after.time - then);
+        let share = if point.signal.is_finite() { (level - point.signal) / (signal - point.signal) } else { 1.0 };
+        let time = match mean {
+            true => then - 0.5 * old_dt + share * 0.5 * (old_dt + dt),
+            false => then + share * dt,
+        };
+        Some(Arrival { time, event, given: self.given_at(time) })
+    }
+
+    /// What loads and stored energies had given at a time, linear over each increment [F·L].
+    fn given_at(&self, time: f64) -> f64 {
+        let [(t0, e0), (t1, e1)] = self.last;
+        let (t2, e2) = (self.after.time, Energies::of(self.after));
+        match time < t1 {
+            true => e1.given + (e1.given - e0.given) * (time - t1) / (t1 - t0),
+            false => e1.given + (e2.given - e1.given) * (time - t1) / (t2 - t1),
+        }
+    }
+}
+
 impl Interface {
     pub fn new(model: &Model, pair: &ContactPair) -> Self {
         let x = model.mesh.undeformed();
@@ -75,19 +136,61 @@ impl Interface {
                 let length = pair.points[k].current_length(&x);
                 let rubs = !pair.law(&pair.points[k]).is_frictionless();
                 let (at, arrivals) = (at.into(), Vec::new());
-                points.push(Point { line, position, at, length, rubs, slip: 0.0, rate: 0.0, arrivals });
+                let (mark, rate, signal) = (Mark::default(), 0.0, f64::NEG_INFINITY);
+                points.push(Point { line, position, at, length, rubs, mark, rate, signal, arrivals });
             }
         }
         let speeds = WaveSpeeds::behind(model, pair);
-        Self { name: pair.name.clone(), speeds, points, events: 0, slipping: false }
+        Self { name: pair.name.clone(), speeds, points, events: Vec::new() }
+    }
+
+    /// The contact after an increment.
+    pub fn pass(&mut self, pair: &ContactPair, passing: &Passing, states: &[ContactState]) {
+        let Passing { threshold, after, last: [_, before], .. } = *passing;
+        let dt = after.time - before.0;
+        let marks: Vec<Mark> = states.iter().map(Mark::of).collect();
+        let rate = |(point, mark): (&Point, &Mark)| (mark.slip - point.mark.slip) / dt;
+        let rates: Vec<f64> = self.points.iter().zip(&marks).map(rate).collect();
+        let slipping = self.points.iter().zip(&rates).any(|(point, rate)| point.rubs && rate.abs() > threshold);
+        let goes_on = self.events.last().is_some_and(|event| !event.over);
+        if slipping && !goes_on {
+            self.events.push(SlipEvent::begin(
+                self.events.len() + 1,
+                self.points.iter().map(|point| point.mark),
+                before,
+            ));
+        }
+        let event = if slipping || goes_on { self.events.len() } else { 0 };
+        if let Some(last) = self.events.last_mut().filter(|event| !event.over) {
+            last.go_on(after, marks.iter().copied().zip(rates.iter().copied()), !slipping);
+        }
+        let points = self.points.iter_mut().zip(marks.iter().zip(&rates)).zip(pair.points.iter().zip(states));
+        for ((point, (mark, rate)), (slave, state)) in points {
+            let observed = |name| observables::value(pair.law(slave), name, &state.friction);
+            let signal = match passing.arrive {
+                Arrive::Rate => rate.abs(),
+                Arrive::R(_) => observed("R"),
+                Arrive::Mu(_) => -observed("mu"),
+            };
+            point.arrivals.extend(passing.arrival(point, signal, event));
+            (point.mark, point.rate, point.signal) = (*mark, *rate, signal);
+        }
+    }
+
+    /// How often a point set out again within an event, a point and time.
+    pub fn chatter(&self, time: f64) -> f64 {
+        let again = |point: &Point| point.arrivals.windows(2).filter(|pair| pair[0].event == pair[1].event).count();
+        let rubbing = self.points.iter().filter(|point| point.rubs).count();
+        let restarts: usize = self.points.iter().map(again).sum();
+        if restarts == 0 { 0.0 } else { restarts as f64 / (rubbing as f64 * time) }
     }
 
     /// What each event had reached by when.
-    pub fn events(&self) -> Vec<Event> {
-        let mut events = vec![Event::default(); self.events];
+    pub fn reached(&self) -> Vec<Event> {
+        let mut events = vec![Event::default(); self.events.len()];
         for point in &self.points {
             let mut last = 0;
-            for arrival in point.arrivals.iter() {
+            for arrival in point.arrivals.iter().filter(|arrival| arrival.event > 0) {
                 // A point that stops and sets out again within an event has broken once.
                 let length = if arrival.event == last { 0.0 } else { point.length };
                 last = arrival.event;

@@ -23,12 +23,17 @@ pub struct About {
     pub title: String,
     /// labels of the units
     pub units: BTreeMap<String, String>,
+    /// section of the model, and what forces and energies are counted by; nothing for a law alone
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub section: Option<String>,
     /// friction law of each contact
     pub friction: BTreeMap<String, FrictionParameters>,
     /// Rayleigh, shear and pressure wave speeds of the first contact's slave body [L/T]
     pub wave_speeds: [f64; 3],
     /// slip rate that makes a front, if the case asks for fronts [L/T]
     pub front_slip_rate: Option<f64>,
+    /// the case as `check` tells it: headings with their lines
+    pub understood: Vec<(String, Vec<String>)>,
 }
 
 /// How it ended: the first lines of every `summary.json`.
@@ -102,6 +107,10 @@ pub struct Summary {
     /// counts and times
     #[serde(flatten)]
     pub report: RunReport,
+    /// how often a point set out again within an event of its contact, a point and time, by contact, if the case asks for
+    /// fronts [1/T]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub chatter: Option<BTreeMap<String, f64>>,
     /// largest resident memory of the process, where the system tells [MiB]
     pub peak_memory_mib: Option<f64>,
     /// warnings
@@ -120,6 +129,7 @@ impl Summary {
             point_masses: model.point_masses.iter().map(|point| point.nodes.len()).sum(),
             contact_points: model.contacts.iter().map(|pair| pair.points.len()).sum(),
             report,
+            chatter: None,
             peak_memory_mib: peak_memory_mib(),
             warnings,
         }

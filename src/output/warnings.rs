@@ -1,26 +1,29 @@
 //! Things a user should know about a result: deep penetration, pressure past the law's uniqueness bound, errors in time
-//! larger than allowed, and energy that came from nowhere or is lost.
+//! larger than allowed, fronts that the mesh does not resolve, contacts that never close, and energy that came from nowhere or is lost.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
 use super::audit::Audit;
+pub use super::concerns::several_answers;
+use super::concerns::{DEEP, Kind, concerns, left};
 use super::memory;
 use crate::contact::force::ContactState;
+use crate::contact::master::Master;
 use crate::contact::pair::ContactPair;
-use crate::contact::small_sliding::{Departure, LITTLE_SLIP, LITTLE_TURN, SmallSliding};
-use crate::contact::surface::SlavePoint;
+use crate::contact::small_sliding::SmallSliding;
 use crate::mesh::configuration::Configuration;
-use crate::model::Model;
 use crate::model::scheme::{Scheme, told};
 use crate::model::state::State;
+use crate::model::until::Until;
+use crate::model::{Model, Step};
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};
 use crate::time::touching::DOUBT;
 
-/// Penetration, as a share of the slave's edge, that is worth a warning.
-const DEEP: f64 = 0.01;
+/// How deep a node that the contact does not see must lie in a rigid master, as a share of the slave's longest edge.
+const UNSEEN: f64 = 0.05;
 
 /// Collects warnings; each kind once a contact or step, where it is met first.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -34,18 +37,12 @@ pub struct Warnings {
     doubtful: BTreeSet<String>,
     /// Steps whose linear systems have been warned about
     perturbed: BTreeSet<String>,
+    /// Contacts that have not closed yet, with name and least gap
+    open: BTreeMap<usize, (String, Option<f64>)>,
+    /// Contacts that have closed once
+    closed: BTreeSet<usize>,
     /// The balance of energies so far
     pub audit: Audit,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-enum Kind {
-    DeepPenetration,
-    DeepMasterNode,
-    SeveralAnswers,
-    SlidFar,
-    TurnedFar,
-    StretchedFar,
 }
 
 impl Observer for Warnings {
@@ -67,6 +64,7 @@ impl Observer for Warnings {
         self.error_in_time(attempt);
         self.error_of_touch(attempt);
         self.lost_pivots(attempt);
+        self.passed(attempt, state);
         self.audit.record(model, attempt.step, attempt.old, state);
         let x = model.configuration(&state.displacement);
         for (number, (pair, states)) in model.contacts.iter().zip(&state.contacts).enumerate() {
@@ -85,6 +83,10 @@ impl Observer for Warnings {
             }
             let fading = model.steps[0].span.share(state.time) < 1.0 && pair.points.iter().any(|p| p.overlap > 0.0);
             let explicit = matches!(attempt.step.scheme, Scheme::Explicit { .. });
+            self.never_closed(number, pair, states);
+            if !explicit || attempt.ends_step(state) {
+                self.deep_unseen(number, pair, state.time, &x);
+            }
             if !(fading || explicit || pair.initial.is_some()) {
                 self.deep_master_node(number, pair, state, &x);
             }
@@ -93,17 +95,15 @@ impl Observer for Warnings {
     }
 
     fn finish(&mut self) -> Result<(), Error> {
+        for (name, gap) in self.open.values() {
+            let near = gap.map_or("no part of its surfaces has faced the other".into(), |gap| {
+                format!("its surfaces came no nearer than {gap:.3e}")
+            });
+            self.list.push(format!("contact `{name}` has never closed: {near}"));
+        }
         self.list.extend(self.audit.concern());
         Ok(())
     }
-}
-
-/// What is to be said of a pressure past the bound of uniqueness.
-pub fn several_answers(pressure: f64, limit: f64) -> String {
-    format!(
-        "the pressure {pressure:.6e} passes {limit:.6e}, above which weakening may outrun the contact stiffness and the \
-         answer snaps; raise alpha_t"
-    )
 }
 
 impl Warnings {
@@ -149,6 +149,58 @@ impl Warnings {
         ));
     }
 
+    /// Whether a contact is still one of those that have never closed. (A surface that may meet itself need not.)
+    fn never_closed(&mut self, number: usize, pair: &ContactPair, states: &[ContactState]) {
+        if self.closed.contains(&number) || pair.is_own() {
+            return;
+        }
+        if states.iter().any(|state| state.friction.pressure > 0.0) {
+            self.closed.insert(number);
+            self.open.remove(&number);
+            return;
+        }
+        let gaps = states.iter().filter(|state| state.foot.is_some()).map(ContactState::clearance);
+        let (_, least) = self.open.entry(number).or_insert_with(|| (pair.name.clone(), None));
+        *least = gaps.chain(*least).min_by(f64::total_cmp);
+    }
+
+    /// The points of the slave are all that a rigid master holds back.
+    fn deep_unseen(&mut self, number: usize, pair: &ContactPair, time: f64, x: &Configuration) {
+        let Master::Rigid(rigid) = &pair.master else { return };
+        if pair.unseen.is_empty() || self.given.contains(&(number, Kind::DeepUnseen)) {
+            return;
+        }
+        let depths = pair.unseen.iter().filter_map(|node| Some((node, -rigid.project(node, x)?.gap)));
+        let Some((node, depth)) = depths.max_by(|a, b| a.1.total_cmp(&b.1)) else { return };
+        let longest = pair.points.iter().filter_map(|point| point.edge_length(x)).fold(0.0, f64::max);
+        if depth > UNSEEN * longest {
+            self.given.insert((number, Kind::DeepUnseen));
+            let at = node.at(x);
+            self.list.push(format!(
+                "contact `{}` at ({:.6}, {:.6}), t = {}: a node that is not on the slave lies {depth:.3e} deep in the rigid master, which \
+                 holds the slave alone back; put the sides that come down on it into the group of the slave",
+                pair.name,
+                at.x,
+                at.y,
+                told(time)
+            ));
+        }
+    }
+
+    /// A reaction that jumps past the value that ends its step never has it.
+    fn passed(&mut self, attempt: &Attempt, state: &State) {
+        let Step { name, until: Some(until), .. } = attempt.step else { return };
+        if state.time < attempt.step.span.end && attempt.ends_step(state) && !until.is_met(state) {
+            let [before, after] = [attempt.old, state].map(|state| until.force(&state.reaction));
+            let Until { part, on, value, .. } = until;
+            self.list.push(format!(
+                "step `{name}`, t = {}: {} of `{on}` jumps from {before:.6e} to {after:.6e}, past {value}, where the step ends",
+                told(state.time),
+                part.name()
+            ));
+        }
+    }
+
     /// A matrix that is singular or nearly so may still have given an answer.
     fn lost_pivots(&mut self, attempt: &Attempt) {
         let solves = || attempt.iterations.iter().map(|iteration| iteration.newton);
@@ -188,56 +240,4 @@ impl Warnings {
             self.list.push(format!("{start}, and {found}; lower dt.min"));
         }
     }
-}
-
-/// What is worth a warning at one closed point.
-fn concerns(
-    pair: &ContactPair,
-    point: &SlavePoint,
-    contact: &ContactState,
-    x: &Configuration,
-) -> impl Iterator<Item = (Kind, String)> {
-    let (gap, pressure) = (contact.clearance(), contact.friction.pressure);
-    let share = point.edge_length(x).map(|edge| -gap / edge);
-    let deep = share.filter(|share| *share > DEEP).map(|share| {
-        let percent = 100.0 * share;
-        format!("the penetration {:.3e} is {percent:.1} % of the slave's edge; raise alpha_n", -gap)
-    });
-    let limit = pair.law(point).uniqueness_limit().filter(|limit| pressure > *limit);
-    let several = limit.map(|limit| several_answers(pressure, limit));
-    let deep = deep.map(|message| (Kind::DeepPenetration, message));
-    deep.into_iter().chain(several.map(|message| (Kind::SeveralAnswers, message)))
-}
-
-/// What is to be said of a point that has left what small sliding keeps.
-fn left(departure: Option<Departure>) -> impl Iterator<Item = (Kind, String)> {
-    let Some(Departure { slid, share, turned, stretched }) = departure else {
-        let message = "the surface has slid past the end of the rigid master, and small sliding holds it there";
-        return [Some((Kind::SlidFar, message.into())), None, None].into_iter().flatten();
-    };
-    let far = (share > LITTLE_SLIP).then(|| {
-        let message = format!(
-            "the surfaces have slid by {slid:.3e} since the start, {:.1} % of the distance between nodes, and small sliding keeps what faced \
-             what: tractions that vary from node to node are off by about as much",
-            100.0 * share
-        );
-        (Kind::SlidFar, message)
-    });
-    let turned = (turned > LITTLE_TURN).then(|| {
-        let message = format!(
-            "a surface has turned by {turned:.3} rad since the start, and small sliding keeps its direction: tractions are \
-             off by about {:.1} % of the pressure",
-            100.0 * turned
-        );
-        (Kind::TurnedFar, message)
-    });
-    let stretched = (stretched > LITTLE_TURN).then(|| {
-        let message = format!(
-            "an edge of the slave has become {:.1} % longer or shorter since the start, and small sliding keeps its length: \
-             tractions are off by as much",
-            100.0 * stretched
-        );
-        (Kind::StretchedFar, message)
-    });
-    [far, turned, stretched].into_iter().flatten()
 }

@@ -1,46 +1,43 @@
 //! What stderr is told at the start and at the end of a run.
 
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
 use std::path::Path;
 
+use crate::case::job::{Job, Outcome};
+use crate::cli::progress::Voice;
 use crate::model::Model;
 use crate::model::scheme::told;
 use crate::model::state::Energy;
 use crate::output::summary::Summary;
-use crate::run::SavedRun;
 
-/// What has been told so far.
-pub(super) struct Told {
-    /// whether nothing is to be told
-    quiet: bool,
-    /// warnings so far
-    warnings: usize,
-}
+/// What is told at the start and at the end, and where.
+pub(super) struct Told(Voice);
 
 impl Told {
-    /// Before the first increment: warnings and choices, or from where a run goes on. Damage is told in any case.
-    pub fn start(model: &Model, damage: Option<&str>, saved: Option<&SavedRun>, quiet: bool) -> Self {
+    /// Before the first increment: warnings and choices, or from where a run goes on.
+    pub fn start(Job { opened, model, saved, damage, .. }: &Job, voice: &Voice) -> Self {
+        let saved = saved.as_ref().filter(|_| opened.resumes());
         if let Some(damage) = damage {
-            say!("warning: {damage}; the checkpoint before it is taken");
+            voice.warn(&format!("{damage}; the checkpoint before it is taken"));
         }
-        let warnings = model.warnings();
         match saved.map(|saved| saved.simulation().state()) {
-            _ if quiet => {}
-            Some(state) => say!("going on from t = {} after {} increments", told(state.time), state.increment),
+            Some(state) => {
+                voice.say(&format!("going on from t = {} after {} increments", told(state.time), state.increment));
+            }
             None => {
-                warnings.iter().for_each(|warning| say!("warning: {warning}"));
-                model.choices().iter().for_each(|choice| say!("{choice}"));
+                model.warnings().iter().for_each(|warning| voice.warn(warning));
+                model.choices().iter().for_each(|choice| voice.say(choice));
             }
         }
-        Self { quiet, warnings: warnings.len() }
+        Self(voice.clone())
     }
 
     /// After the last one.
-    pub fn end(&self, summary: &Summary, model: &Model, folder: &Path, supplied: f64) {
-        if self.quiet {
-            return;
+    pub fn end(&self, Outcome { summary, supplied, .. }: &Outcome, job: &Job) {
+        if !matches!(self.0, Voice::Silent) {
+            conclude(summary, &job.model, &job.folder.path, *supplied);
         }
-        summary.warnings.iter().skip(self.warnings).for_each(|warning| say!("warning: {warning}"));
-        conclude(summary, model, folder, supplied);
     }
 }
 
@@ -57,14 +54,25 @@ fn conclude(summary: &Summary, model: &Model, folder: &Path, supplied: f64) {
         report.wall_s.total,
         folder.display()
     );
+    if !report.given_up.is_empty() {
+        say!("given up: {}; `reason` in newton.csv tells of each", most_first(&report.given_up));
+    }
     if model.steps.iter().any(|step| step.scheme.is_dynamic() || step.rupture.is_some()) {
         audit(&report.energy, supplied);
     }
 }
 
+/// Why attempts were given up, the most frequent reason first.
+fn most_first(given_up: &BTreeMap<String, usize>) -> String {
+    let mut reasons: Vec<_> = given_up.iter().collect();
+    reasons.sort_by_key(|(_, count)| Reverse(**count));
+    reasons.iter().map(|(reason, count)| format!("{count} × {reason}")).collect::<Vec<_>>().join(", ")
+}
+
 /// Where the energy of a dynamic run came from and went; `supplied` is the most that there was.
 fn audit(energy: &Energy, supplied: f64) {
     let share = if supplied > 0.0 { 100.0 * energy.error() / supplied } else { 0.0 };
+    let radiated = if energy.radiated > 0.0 { format!(", {:.6e} radiated", energy.radiated) } else { String::new() };
     say!("energy: {:.6e} at the start, {:.6e} from outside", energy.initial, energy.external_work);
     say!(
         "        {:.6e} kinetic, {:.6e} strain, {:.6e} in contacts",
@@ -73,7 +81,7 @@ fn audit(energy: &Energy, supplied: f64) {
         energy.contact_elastic
     );
     say!(
-        "        {:.6e} taken by friction, {:.6e} by damping, {:.1e} ({share:.4} %) unaccounted for",
+        "        {:.6e} taken by friction, {:.6e} by damping{radiated}, {:.1e} ({share:.4} %) unaccounted for",
         energy.friction_dissipation,
         energy.damping_dissipation,
         energy.error()

@@ -67,6 +67,10 @@ pub struct Tick {
 /// Spread of data, relative to their size, that is round-off.
 const NOISE: f64 = 1e-9;
 
+/// Sizes with which an axis can still be reckoned; what is larger has no place on it, and what spreads less is one value.
+const LARGEST: f64 = 1e300;
+const SMALLEST: f64 = 1e-290;
+
 /// Powers of ten that go into the axis' name: outside of these, numbers have too many digits.
 const PLAIN: std::ops::RangeInclusive<i32> = -2..=4;
 
@@ -77,17 +81,17 @@ impl Range {
         let places = values
             .chain(axis.include.iter().copied())
             .map(|value| scale.place(value))
-            .filter(|place| place.is_finite());
+            .filter(|place| place.abs() <= LARGEST);
         let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
         if low > high {
             return Self { low: 0.0, high: 1.0, scale };
         }
         let size = low.abs().max(high.abs());
-        if high - low > NOISE * size {
+        if high - low > (NOISE * size).max(SMALLEST) {
             let beyond = margin * (high - low);
             return Self { low: low - beyond, high: high + beyond, scale };
         }
-        let around = if size > 0.0 { 0.1 * size } else { 1.0 };
+        let around = if size > SMALLEST { 0.1 * size } else { 1.0 };
         Self { low: low - around, high: high + around, scale }
     }
 

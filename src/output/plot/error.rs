@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
+use crate::output::interface::read::Unreadable;
 use crate::run::error::Error;
 
 /// Why there are no figures.
@@ -20,4 +21,10 @@ pub enum PlotError {
     /// A figure cannot be written.
     #[error(transparent)]
     Output(#[from] Error),
+}
+
+impl From<Unreadable> for PlotError {
+    fn from(Unreadable { path, cause }: Unreadable) -> Self {
+        Self::Unreadable { path, cause }
+    }
 }

@@ -1,13 +1,17 @@
-//! What an interface did over time and place, as `slip_map.csv` tells it, and its events.
+//! What an interface did over time and place, as `interface.zarr` tells it, and its events.
 
 use std::ops::Range;
 use std::path::Path;
 
 use super::error::PlotError;
-use super::read::Columns;
+use crate::output::interface::STORE;
+use crate::output::interface::read::{self, StoredContact};
 
-/// Columns that are read.
-const WANTED: [&str; 8] = ["time", "number", "position", "slip", "slip_rate", "mu", "traction", "pressure"];
+/// Quantities that are read.
+const WANTED: [&str; 5] = ["slip", "slip_rate", "mu", "q", "p"];
+
+/// Mean slip of an event worth showing, over the largest slip of a point.
+const LITTLE: f64 = 1e-3;
 
 /// Where no slip rate is given that makes a front: this share of the highest.
 const FAST: f64 = 0.01;
@@ -34,59 +38,52 @@ pub struct Event {
 }
 
 impl Interface {
-    /// The interfaces of a folder with the numbers of their contacts; none if it has no slip map.
+    /// The interfaces of a folder with the names of their contacts; none where nothing was written yet.
     ///
     /// # Errors
     /// [`PlotError::Unreadable`].
-    pub fn read(folder: &Path) -> Result<Vec<(usize, Self)>, PlotError> {
-        let path = folder.join("slip_map.csv");
-        if !path.is_file() {
-            return Ok(Vec::new());
-        }
-        let columns = Columns::read(&path, |name| WANTED.contains(&name))?;
-        let [times, numbers, positions, slips, rates, mu, tractions, pressures] = {
-            let mut all = [&[][..]; WANTED.len()];
-            for (values, name) in all.iter_mut().zip(WANTED) {
-                *values = columns.get(name)?;
-            }
-            all
-        };
-        let last = numbers.iter().fold(0.0, |most: f64, number| most.max(*number)) as usize;
-        let of = |number: usize| {
-            let rows: Vec<usize> = (0..numbers.len()).filter(|&row| numbers[row] as usize == number).collect();
-            let points = rows.iter().take_while(|&&row| times[row] == times[rows[0]]).count();
-            // The last row may not be finished yet.
-            let rows = &rows[..rows.len() - rows.len().checked_rem(points).unwrap_or(0)];
-            let pick = |value: &dyn Fn(usize) -> f64| rows.iter().map(|&row| value(row)).collect::<Vec<f64>>();
-            let interface = Self {
-                times: rows.iter().step_by(points.max(1)).map(|&row| times[row]).collect(),
-                positions: rows.iter().take(points).map(|&row| positions[row]).collect(),
-                slips: pick(&|row| slips[row]),
-                rates: pick(&|row| rates[row].abs()),
-                tractions: pick(&|row| tractions[row]),
-                strengths: pick(&|row| mu[row] * pressures[row]),
+    pub fn read(folder: &Path) -> Result<Vec<(String, Self)>, PlotError> {
+        let contacts = read::contacts(folder, |name| WANTED.contains(&name))?;
+        contacts
+            .into_iter()
+            .filter(|contact| !contact.times.is_empty())
+            .map(|contact| Self::of_contact(contact, folder))
+            .collect()
+    }
+
+    fn of_contact(mut contact: StoredContact, folder: &Path) -> Result<(String, Self), PlotError> {
+        let mut all = [const { Vec::new() }; WANTED.len()];
+        for (values, name) in all.iter_mut().zip(WANTED) {
+            let missing = || PlotError::Unreadable {
+                path: folder.join(STORE),
+                cause: format!("has no `{name}` of {}: was it written by another version?", contact.name),
             };
-            (number, interface)
-        };
-        Ok((0..=last).map(of).filter(|(_, interface)| !interface.times.is_empty()).collect())
+            let found = contact.quantities.remove(name).ok_or_else(missing)?;
+            *values = found.into_iter().map(f64::from).collect();
+        }
+        let [slips, mut rates, mu, tractions, mut strengths] = all;
+        rates.iter_mut().for_each(|rate| *rate = rate.abs());
+        strengths.iter_mut().zip(mu).for_each(|(strength, mu)| *strength *= mu);
+        let StoredContact { name, times, positions, .. } = contact;
+        Ok((name, Self { times, positions, slips, rates, tractions, strengths }))
     }
 
     /// Sizes of the slip rates of a row: means since the row before [L/T].
     pub fn rates(&self, row: usize) -> &[f64] {
-        self.of(&self.rates, row)
+        self.row_of(&self.rates, row)
     }
 
     /// Tractions q of a row [F/L²].
     pub fn tractions(&self, row: usize) -> &[f64] {
-        self.of(&self.tractions, row)
+        self.row_of(&self.tractions, row)
     }
 
     /// Peak tractions μ p of a row [F/L²].
     pub fn strengths(&self, row: usize) -> &[f64] {
-        self.of(&self.strengths, row)
+        self.row_of(&self.strengths, row)
     }
 
-    fn of<'a>(&self, values: &'a [f64], row: usize) -> &'a [f64] {
+    fn row_of<'a>(&self, values: &'a [f64], row: usize) -> &'a [f64] {
         let points = self.positions.len();
         &values[row * points..(row + 1) * points]
     }
@@ -123,10 +120,19 @@ impl Interface {
                 None => runs.push(row..row + 1),
             }
         }
-        let mean = |row: usize| self.of(&self.slips, row).iter().sum::<f64>() / self.positions.len() as f64;
+        let mean = |row: usize| self.row_of(&self.slips, row).iter().sum::<f64>() / self.positions.len() as f64;
         let before = |row: usize| row.checked_sub(1).map_or(0.0, mean);
         let event = |rows: Range<usize>| Event { slip: (mean(rows.end - 1) - before(rows.start)).abs(), rows };
         runs.into_iter().map(event).collect()
+    }
+
+    /// The columns of a map in which the points lie and, of each column, the nearest that has a point: its own where the points are
+    /// close, another's where a mesh is coarser than the map.
+    pub fn columns(&self, column: impl Fn(f64) -> usize, count: usize) -> (Vec<usize>, Vec<usize>) {
+        let own: Vec<usize> = self.positions.iter().map(|s| column(*s)).collect();
+        let nearest = |column: usize| own.iter().copied().min_by_key(|other| other.abs_diff(column)).unwrap_or(column);
+        let nearest = (0..count).map(nearest).collect();
+        (own, nearest)
     }
 
     /// How long so many rows last.
@@ -134,9 +140,11 @@ impl Interface {
         self.times[rows.end - 1] - self.start(rows.start)
     }
 
-    /// The largest events, in order of time.
+    /// The largest events, in order of time; those whose slip is next to nothing are none.
     pub fn largest_events(&self, fast: f64, most: usize) -> Vec<Event> {
         let mut events = self.events(fast);
+        let largest = self.slips.iter().fold(0.0, |most: f64, slip| most.max(slip.abs()));
+        events.retain(|event| event.slip > LITTLE * largest);
         events.sort_by(|a, b| b.slip.total_cmp(&a.slip));
         events.truncate(most);
         events.sort_by_key(|event| event.rows.start);

@@ -5,14 +5,14 @@
 mod axis;
 mod chart;
 mod colours;
-mod convergence;
+pub(super) mod convergence;
 pub mod error;
 mod interface;
 mod law;
-mod read;
+pub(super) mod read;
 mod run;
 mod snapshots;
-mod source;
+pub(super) mod source;
 mod space_time;
 mod svg;
 mod thin;
@@ -65,6 +65,8 @@ pub fn draw(folders: &[PathBuf], out: &Path) -> Result<Vec<PathBuf>, PlotError> 
         return Err(unreadable(folder, "has neither history.csv nor law.csv: it is no folder of results"));
     }
     let sources = sources(folders)?;
+    // What cannot be read is told before anything is drawn.
+    let interfaces = if let [source] = &sources[..] { Interface::read(&source.folder)? } else { Vec::new() };
     let mut written = Vec::new();
     let mut write = |name: &str, svg: String| {
         std::fs::create_dir_all(out).map_err(|cause| failed(out, &cause))?;
@@ -85,10 +87,8 @@ pub fn draw(folders: &[PathBuf], out: &Path) -> Result<Vec<PathBuf>, PlotError> 
         laws if laws == folders.len() => write("law.svg", law::figure(&sources)?.svg())?,
         _ => return Err(unreadable(&folders[0], "runs and laws driven alone cannot be drawn over each other")),
     }
-    if let [source] = &sources[..] {
-        for (number, interface) in Interface::read(&source.folder)? {
-            draw_interface(&interface, number, source, &mut write)?;
-        }
+    for (number, (name, interface)) in interfaces.iter().enumerate() {
+        draw_interface(interface, (number, name), &sources[0], &mut write)?;
     }
     Ok(written)
 }
@@ -97,11 +97,10 @@ pub fn draw(folders: &[PathBuf], out: &Path) -> Result<Vec<PathBuf>, PlotError> 
 /// apart by their numbers.
 fn draw_interface(
     interface: &Interface,
-    number: usize,
+    (number, name): (usize, &str),
     source: &Source,
     mut write: impl FnMut(&str, String) -> Result<(), PlotError>,
 ) -> Result<(), PlotError> {
-    let name = source.about.friction.keys().nth(number).map_or("the interface", String::as_str);
     let file = |what: &str| if number == 0 { format!("{what}.svg") } else { format!("{what}_{number}.svg") };
     let map = Map { interface, name, source };
     write(&file("slip_rate"), map.whole())?;

@@ -2,20 +2,21 @@
 
 use super::axis::Axis;
 use super::chart::{Curve, Figure, Look, Panel};
-use super::convergence::{HARDEST, increments, residuals};
+use super::convergence::{HARDEST, increments, residuals, solves};
 use super::error::PlotError;
 use super::read::Columns;
 use super::source::{Source, Units, subtitle};
 use crate::laws::friction::FrictionParameters;
 
 /// Columns of `history.csv` that are drawn: these, ...
-const ENERGIES: [(&str, &str); 7] = [
+const ENERGIES: [(&str, &str); 8] = [
     ("external_work", "external work"),
     ("kinetic", "kinetic"),
     ("strain", "strain"),
     ("contact_elastic", "contact, elastic"),
     ("friction_dissipation", "friction"),
     ("damping_dissipation", "damping"),
+    ("radiated", "radiated"),
     ("energy_error", "error"),
 ];
 /// ... these of every contact, ...
@@ -196,7 +197,7 @@ impl Runs<'_> {
         let mut panels = Vec::new();
         for contact in self.owners("slip_fraction") {
             let curves = self.curves("time", &format!("{contact}.slip_fraction"), "")?;
-            let y = Axis::new("slipping/closed length", "").including(0.0).including(1.0);
+            let y = Axis::new("slipping share of the closed surface", "").including(0.0).including(1.0);
             panels.push(Panel { title: contact, x: self.time(), y, curves });
         }
         Ok(panels)
@@ -249,8 +250,7 @@ impl Runs<'_> {
                 y: Axis::new("‖r‖/‖forces at work‖", "").logarithmic(),
                 curves: curve(residuals(newton, &increments)?, Look::Pale(k)),
             });
-            let time = newton.get("time")?;
-            let solves = increments.iter().map(|rows| [time[rows.end - 1], rows.len() as f64]).collect();
+            let solves = increments.iter().map(|rows| solves(newton, rows)).collect::<Result<_, _>>()?;
             panels.push(Panel {
                 title: title("linear solves of every increment, failed attempts included".into()),
                 x: self.time(),

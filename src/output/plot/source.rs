@@ -22,6 +22,15 @@ pub struct Source {
 /// # Errors
 /// [`PlotError::Unreadable`], also where two folders have different units.
 pub fn sources(folders: &[PathBuf]) -> Result<Vec<Source>, PlotError> {
+    folders.iter().try_for_each(|folder| about(folder).map(drop))?;
+    sources_of(folders)
+}
+
+/// As [`sources`], nothing being known about a folder whose `summary.json` cannot be understood.
+///
+/// # Errors
+/// [`PlotError::Unreadable`] where two folders have different units.
+pub fn sources_of(folders: &[PathBuf]) -> Result<Vec<Source>, PlotError> {
     let last = |folder: &PathBuf| {
         let whole = folder.canonicalize().unwrap_or_else(|_| folder.clone());
         whole.file_name().map_or_else(|| folder.display().to_string(), |name| name.to_string_lossy().into_owned())
@@ -30,9 +39,9 @@ pub fn sources(folders: &[PathBuf]) -> Result<Vec<Source>, PlotError> {
     let source = |(folder, name): (&PathBuf, &String)| {
         let unique = names.iter().filter(|other| *other == name).count() == 1;
         let name = if unique { name.clone() } else { folder.display().to_string() };
-        Ok(Source { folder: folder.clone(), name, about: about(folder)? })
+        Source { folder: folder.clone(), name, about: about(folder).unwrap_or_default() }
     };
-    let sources = folders.iter().zip(&names).map(source).collect::<Result<Vec<_>, PlotError>>()?;
+    let sources: Vec<Source> = folders.iter().zip(&names).map(source).collect();
     for pair in sources.windows(2) {
         check_units(&pair[0], &pair[1])?;
     }

@@ -164,7 +164,8 @@ impl Map<'_> {
         let count = [0, 1].map(|i| CELLS[i].min(size[i] as usize / 3));
         let columns = count[0].min(interface.positions.len());
         let mut rates = vec![0.0f64; columns * count[1]];
-        let bin = |share: f64, count: usize| ((share * count as f64) as usize).min(count - 1);
+        let column = |s: f64| ((window.place.share(s) * columns as f64) as usize).min(columns - 1);
+        let (own, nearest) = interface.columns(column, columns);
         for row in 0..interface.times.len() {
             let (from, to) = (interface.start(row), interface.times[row]);
             if to <= window.times[0] || from >= window.times[1] {
@@ -174,8 +175,7 @@ impl Map<'_> {
             // next one.
             let [first, last] = [from, to].map(|t| window.time.share(t - window.zero) * count[1] as f64);
             let bins = (first + EDGE) as usize..=((last - EDGE) as usize).min(count[1] - 1);
-            for (s, rate) in interface.positions.iter().zip(interface.rates(row)) {
-                let column = bin(window.place.share(*s), columns);
+            for (column, rate) in own.iter().zip(interface.rates(row)) {
                 for cell in bins.clone().map(|row| row * columns + column) {
                     rates[cell] = rates[cell].max(*rate);
                 }
@@ -185,7 +185,7 @@ impl Map<'_> {
         let cell = [size[0] / columns as f64, size[1] / count[1] as f64];
         let mut filled: BTreeMap<String, Vec<[[f64; 2]; 2]>> = BTreeMap::new();
         for (row, rates) in rates.chunks(columns).enumerate() {
-            let colours: Vec<String> = rates.iter().map(|rate| colour(level(*rate, highest))).collect();
+            let colours: Vec<String> = nearest.iter().map(|&column| colour(level(rates[column], highest))).collect();
             let bottom = y0 + size[1] - row as f64 * cell[1];
             let mut first = 0;
             for run in colours.chunk_by(|a, b| a == b) {

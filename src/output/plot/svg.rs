@@ -74,14 +74,15 @@ pub fn text_width(text: &str, size: f64) -> f64 {
 
 // Writing to a String cannot fail: results of `write!` are dropped throughout.
 impl Drawing {
-    /// A line through the points of each piece.
+    /// A line through the points of each piece; one with a point that has no place is left out.
     pub fn path(&mut self, pieces: &[Vec<[f64; 2]>], stroke: Stroke) {
-        if pieces.iter().all(Vec::is_empty) {
+        let placed = |piece: &&Vec<[f64; 2]>| piece.as_flattened().iter().all(|x| x.is_finite());
+        if pieces.iter().filter(placed).all(Vec::is_empty) {
             return;
         }
         let _ = write!(self.0, "<path fill=\"none\" {}", attributes(stroke));
         self.0 += " d=\"";
-        for piece in pieces {
+        for piece in pieces.iter().filter(placed) {
             for (k, [x, y]) in piece.iter().enumerate() {
                 let _ = write!(self.0, "{}{x:.1},{y:.1}", if k == 0 { 'M' } else { ' ' });
             }
@@ -144,6 +145,9 @@ impl Drawing {
     /// A text; its baseline is at the place.
     pub fn text(&mut self, [x, y]: [f64; 2], label: Label) {
         let Label { text, size, anchor, bold, upright } = label;
+        if !(x.is_finite() && y.is_finite()) {
+            return;
+        }
         let anchor = match anchor {
             Anchor::Start => "start",
             Anchor::Middle => "middle",

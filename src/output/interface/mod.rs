@@ -1,0 +1,192 @@
+//! `interface.zarr`: what every contact does over time and place, in a store that xarray opens as it is.
+//!
+//! | array | dimensions | meaning |
+//! |---|---|---|
+//! | `time` | `time` | t of the rows of `history.csv` [T] |
+//! | `C.position`, `C.x`, `C.y`, `C.line` | `C.point` | undeformed points of contact C: way along the slave, place, number of the unbroken line [L] |
+//! | `C.slip` | `time`, `C.point` | plastic slip so far; the motion along the master where there is no friction [L] |
+//! | `C.total_slip` | | plastic and elastic slip, slip + q/α_t [L] |
+//! | `C.slip_rate` | | plastic slip since the row before over the time since [L/T] |
+//! | `C.p`, `C.q` | | pressure, traction [F/L²] |
+//! | `C.R`, `C.mu`, `C.structure` | | \|q\|/(μ p), μ, 1/R*; as [`observables`] say where a law has none [-] |
+//! | `C.gap` | | g, positive when open [L] |
+//! | `C.θ` … | | what else a law lets observe, by its name; NaN where another law acts |
+//!
+//! Times and places are as computed; what varies over time is rounded, with a relative error of 2⁻¹⁶ ([`codec`]).
+
+mod array;
+pub mod codec;
+mod quantities;
+pub mod read;
+mod zarr;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde_json::{Map, json};
+
+pub use self::array::{files_of, forget, is_own};
+use self::quantities::{QUANTITIES, SLIP, SLIP_RATE, along, prefixes, quantity, time};
+use self::zarr::Store;
+use super::memory;
+use super::rows::{Row, Rows};
+use crate::contact::force::ContactState;
+use crate::contact::pair::ContactPair;
+use crate::contact::surface::SlavePoint;
+use crate::laws::friction::observables;
+use crate::model::Model;
+use crate::model::state::State;
+use crate::run::error::Error;
+use crate::run::observer::{Attempt, Observer};
+
+/// Folder of the store in that of the results.
+pub const STORE: &str = "interface.zarr";
+
+/// Writes `interface.zarr` at the rows of the history.
+#[derive(Debug)]
+pub struct InterfaceStore {
+    store: Store,
+    /// Names of the quantities of each contact
+    names: Vec<Vec<&'static str>>,
+    /// Numbers that do not vary: places of the points
+    places: Vec<Vec<f64>>,
+    rows: Rows,
+    /// A record that is written if an event follows
+    held: Option<Record>,
+    /// Time of the last record, and slip of every contact and point then
+    last: (f64, Vec<Vec<f64>>),
+}
+
+/// Time and quantities of all contacts, one after the other.
+type Record = Vec<Vec<f64>>;
+
+impl InterfaceStore {
+    /// Create the store in `folder`; `start` is the state before the first increment. Units are labels of `length`, `force`,
+    /// `time` and `stress`, as far as they are known.
+    ///
+    /// # Errors
+    /// [`Error::Output`] when it cannot be written.
+    pub fn create(
+        folder: &Path,
+        model: &Model,
+        start: &State,
+        units: &BTreeMap<String, String>,
+    ) -> Result<Self, Error> {
+        let mut store = Self::reopen(folder, model, start, units);
+        store.store.create(&store.places)?;
+        Ok(store)
+    }
+
+    /// The store that is there, to be restored.
+    pub fn reopen(folder: &Path, model: &Model, start: &State, units: &BTreeMap<String, String>) -> Self {
+        let further = |pair: &ContactPair| observables::further(pair.laws.iter().map(|law| &**law));
+        let in_fluid = |pair: &ContactPair| pair.fluid.as_ref().map(|_| "p_w");
+        let own = QUANTITIES.iter().map(|(name, ..)| *name);
+        let names: Vec<Vec<&str>> = model
+            .contacts
+            .iter()
+            .map(|pair| own.clone().chain(further(pair)).chain(in_fluid(pair)).collect())
+            .collect();
+        let prefixes = prefixes(model);
+        let (mut fixed, mut places) = (Vec::new(), Vec::new());
+        let mut growing = vec![(time(units), None)];
+        for ((pair, prefix), names) in model.contacts.iter().zip(&prefixes).zip(&names) {
+            for (description, values) in along(model, pair, prefix, units) {
+                fixed.push((description, values.len()));
+                places.push(values);
+            }
+            let quantity = |name: &&str| (quantity(pair, prefix, name, units), Some(pair.points.len()));
+            growing.extend(names.iter().map(quantity));
+        }
+        let mut attributes = Map::new();
+        attributes.insert("Conventions".into(), json!("CF-1.11"));
+        attributes.insert("title".into(), json!(model.title));
+        attributes.insert("source".into(), json!(concat!("fecontact ", env!("CARGO_PKG_VERSION"))));
+        attributes.insert("contacts".into(), json!(model.contacts.iter().map(|pair| &pair.name).collect::<Vec<_>>()));
+        attributes.insert("prefixes".into(), json!(prefixes));
+        let slips = |states: &Vec<ContactState>| states.iter().map(|state| state.friction.plastic_slip).collect();
+        Self {
+            store: Store::new(folder.join(STORE), attributes, fixed, growing),
+            names,
+            places,
+            rows: Rows::default(),
+            held: None,
+            last: (start.time, start.contacts.iter().map(slips).collect()),
+        }
+    }
+
+    /// What a state says; the slip rates are not known yet.
+    fn record_of(&self, model: &Model, state: &State) -> Record {
+        let mut record = vec![vec![state.time]];
+        for ((pair, states), names) in model.contacts.iter().zip(&state.contacts).zip(&self.names) {
+            let values = |name: &&str| pair.points.iter().zip(states).map(|(p, s)| value(pair, p, s, name)).collect();
+            record.extend(names.iter().map(values));
+        }
+        record
+    }
+
+    fn write(&mut self, mut record: Record) -> Result<(), Error> {
+        let (time, mut first) = (record[0][0], 1);
+        let (before, slips) = &mut self.last;
+        for (names, old) in self.names.iter().zip(slips) {
+            let slip = record[first + SLIP].clone();
+            record[first + SLIP_RATE] =
+                slip.iter().zip(&*old).map(|(new, old)| (new - old) / (time - *before)).collect();
+            *old = slip;
+            first += names.len();
+        }
+        *before = time;
+        self.store.push(&record)
+    }
+}
+
+impl Observer for InterfaceStore {
+    fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
+        let Some(state) = attempt.accepted else { return Ok(()) };
+        let row = self.rows.judge(model, attempt, state);
+        let record = self.record_of(model, state);
+        let held = self.held.take();
+        match row {
+            Row::Held => self.held = Some(record),
+            Row::Written => self.write(record)?,
+            Row::AfterTheHeld => {
+                held.map_or(Ok(()), |held| self.write(held))?;
+                self.write(record)?;
+            }
+        }
+        self.store.share()
+    }
+
+    fn name(&self) -> &'static str {
+        "interface"
+    }
+
+    fn save(&mut self) -> Result<Vec<u8>, Error> {
+        memory::written(&(self.store.save()?, &self.rows, &self.held, &self.last))
+    }
+
+    fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
+        let saved;
+        (saved, self.rows, self.held, self.last) = memory::read(memory)?;
+        self.store.restore(&self.places, saved)
+    }
+
+    fn finish(&mut self) -> Result<(), Error> {
+        self.store.finish()
+    }
+}
+
+/// A quantity at a point; slip rates come later.
+fn value(pair: &ContactPair, slave: &SlavePoint, state: &ContactState, name: &str) -> f64 {
+    let friction = &state.friction;
+    match name {
+        "slip" => friction.plastic_slip,
+        "total_slip" => friction.plastic_slip + pair.elastic_slip(slave, friction),
+        "slip_rate" => 0.0,
+        "p" => friction.pressure,
+        "q" => friction.traction,
+        "gap" => state.gap,
+        "p_w" => state.fluid,
+        _ => observables::value(pair.law(slave), name, friction),
+    }
+}

@@ -1,0 +1,270 @@
+//! A store of arrays that grow record by record: zarr version 2, as xarray opens it.
+//!
+//! ```text
+//! .zgroup .zattrs          what the store is
+//! NAME/.zarray .zattrs     shape, chunks and codecs of an array; its dimensions, units and meaning
+//! NAME/k  NAME/k.0         chunk k: records k R … (k + 1) R − 1 of all places, NaN where there is none yet
+//! .zmetadata               all of the above but the chunks, once more in one file
+//! ```
+//!
+//! Every file is the old one or the new one at any moment. A flush writes chunks first, then the shapes, and `.zmetadata` at
+//! last, by which readers go: whatever ends the process, a reader finds all records up to the last flush, in all arrays.
+//!
+//! Source: Zarr storage specification version 2, <https://zarr-specs.readthedocs.io/en/latest/v2/v2.0.html>.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use serde_json::{Map, Value, json};
+
+use super::array::{ARRAY, ATTRIBUTES, Description, GROUP, METADATA, Series, all_attributes, group, shape};
+use super::codec::{QUICK, THOROUGH, packed};
+use crate::output::csv::failed;
+use crate::output::files;
+use crate::run::error::Error;
+
+/// Numbers of a chunk: enough to be compressed well, few enough to be written again with every flush.
+const CHUNK: usize = 1 << 15;
+
+/// Records of a chunk at most.
+const MOST_RECORDS: usize = 1 << 12;
+
+/// Time between two flushes: this at least, and this many times what the last one took.
+const BLINK: Duration = Duration::from_millis(50);
+/// See [`BLINK`].
+const REST: u32 = 40;
+
+/// Number of records, and the bytes of those since the last complete chunk, array by array.
+pub type Saved = (u64, Vec<Vec<u8>>);
+
+/// A store being written.
+#[derive(Debug)]
+pub struct Store {
+    folder: PathBuf,
+    attributes: Value,
+    /// arrays that do not grow, with their lengths
+    fixed: Vec<(Description, usize)>,
+    series: Vec<Series>,
+    /// R: records of a chunk
+    chunk: usize,
+    /// records so far
+    records: usize,
+    /// whether all of them are in the files
+    settled: bool,
+    flushed: Instant,
+    /// what the last flush took
+    took: Duration,
+    /// complete chunks that may not be on the disk yet
+    young: Vec<PathBuf>,
+}
+
+impl Store {
+    /// A store in `folder`, to be created or restored: arrays with their values, and arrays that grow by so many numbers a
+    /// record (`None`: one, without a dimension of its own).
+    pub fn new(
+        folder: PathBuf,
+        attributes: Map<String, Value>,
+        fixed: Vec<(Description, usize)>,
+        growing: Vec<(Description, Option<usize>)>,
+    ) -> Self {
+        let widest = growing.iter().filter_map(|(_, width)| *width).max().unwrap_or(1);
+        let series = growing.into_iter().map(|(is, width)| Series { is, width, chunk: Vec::new() }).collect();
+        Self {
+            folder,
+            attributes: Value::Object(attributes),
+            fixed,
+            series,
+            chunk: (CHUNK / widest.max(1)).clamp(1, MOST_RECORDS),
+            records: 0,
+            settled: false,
+            flushed: Instant::now(),
+            took: Duration::ZERO,
+            young: Vec::new(),
+        }
+    }
+
+    /// Begin it, with the values of the arrays that do not grow, and no records.
+    ///
+    /// # Errors
+    /// [`Error::Output`] when it cannot be written.
+    pub fn create(&mut self, fixed: &[Vec<f64>]) -> Result<(), Error> {
+        self.describe(fixed)?;
+        self.flush()
+    }
+
+    /// Write all that does not grow.
+    fn describe(&self, fixed: &[Vec<f64>]) -> Result<(), Error> {
+        let made = |folder: &Path| files::folder(folder).map_err(|cause| failed(folder, &cause));
+        made(&self.folder)?;
+        put(&self.folder.join(GROUP), &json_bytes(&group()))?;
+        put(&self.folder.join(ATTRIBUTES), &json_bytes(&self.attributes))?;
+        for is in self.descriptions() {
+            let folder = self.folder.join(&is.name);
+            made(&folder)?;
+            put(&folder.join(ATTRIBUTES), &json_bytes(&all_attributes(is)))?;
+        }
+        for ((is, _), values) in self.fixed.iter().zip(fixed) {
+            let mut bytes = Vec::new();
+            values.iter().for_each(|value| is.number.write(*value, &mut bytes));
+            put(&self.folder.join(&is.name).join("0"), &packed(&bytes, is.number.size(), THOROUGH))?;
+        }
+        Ok(())
+    }
+
+    /// Add a record: the numbers of each growing array.
+    ///
+    /// # Errors
+    /// [`Error::Output`] when a chunk that is complete cannot be written.
+    pub fn push(&mut self, record: &[Vec<f64>]) -> Result<(), Error> {
+        for (series, values) in self.series.iter_mut().zip(record) {
+            debug_assert_eq!(values.len(), series.width.unwrap_or(1), "{}", series.is.name);
+            values.iter().for_each(|value| series.is.number.write(*value, &mut series.chunk));
+        }
+        self.records += 1;
+        self.settled = false;
+        if self.records.is_multiple_of(self.chunk) {
+            self.write_chunks(self.records / self.chunk - 1, THOROUGH)?;
+            self.series.iter_mut().for_each(|series| series.chunk.clear());
+        }
+        Ok(())
+    }
+
+    /// Hand the records so far to the system, unless that was done a short while ago.
+    ///
+    /// # Errors
+    /// As [`flush`](Self::flush).
+    pub fn share(&mut self) -> Result<(), Error> {
+        if self.flushed.elapsed() < BLINK.max(REST * self.took) { Ok(()) } else { self.flush() }
+    }
+
+    /// Hand the records so far to the system.
+    ///
+    /// # Errors
+    /// [`Error::Output`] when they cannot be written.
+    pub fn flush(&mut self) -> Result<(), Error> {
+        let started = Instant::now();
+        self.settle(QUICK)?;
+        (self.flushed, self.took) = (Instant::now(), started.elapsed());
+        Ok(())
+    }
+
+    /// The last flush.
+    ///
+    /// # Errors
+    /// As [`flush`](Self::flush).
+    pub fn finish(&mut self) -> Result<(), Error> {
+        self.settle(THOROUGH)
+    }
+
+    /// How many records there are, and those since the last complete chunk; the complete ones are on the disk.
+    ///
+    /// # Errors
+    /// [`Error::Output`] when they do not get there.
+    pub fn save(&mut self) -> Result<Saved, Error> {
+        for path in std::mem::take(&mut self.young) {
+            File::open(&path).and_then(|file| file.sync_all()).map_err(|cause| failed(&path, &cause))?;
+        }
+        Ok((self.records as u64, self.series.iter().map(|series| series.chunk.clone()).collect()))
+    }
+
+    /// Go on from what was saved, with the values of the arrays that do not grow; later records are taken back.
+    ///
+    /// # Errors
+    /// [`Error::Output`] when the records are not there, or what follows cannot be taken away.
+    pub fn restore(&mut self, fixed: &[Vec<f64>], (records, chunks): Saved) -> Result<(), Error> {
+        self.records = usize::try_from(records).unwrap_or(usize::MAX);
+        let complete = self.records / self.chunk;
+        let length = self.records % self.chunk;
+        for (series, chunk) in self.series.iter_mut().zip(chunks) {
+            let gone = (0..complete).map(|number| self.folder.join(series.file(number))).find(|path| !path.is_file());
+            if let Some(path) = gone {
+                return Err(failed(&path, &"was there when the checkpoint was written, and is gone"));
+            }
+            if chunk.len() != length * series.record() {
+                return Err(failed(&self.folder, &"its checkpoint is one of another store"));
+            }
+            series.chunk = chunk;
+        }
+        self.describe(fixed)?;
+        self.settled = false;
+        // What is taken back is no longer counted when it goes.
+        self.flush()?;
+        let first = complete + usize::from(length > 0);
+        for series in &self.series {
+            for path in (first..).map(|number| self.folder.join(series.file(number))) {
+                if path.symlink_metadata().is_err() {
+                    break;
+                }
+                files::remove(&path).map_err(|cause| failed(&path, &cause))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Write what is not in the files yet: chunks, then shapes.
+    fn settle(&mut self, level: u8) -> Result<(), Error> {
+        if self.settled && level == QUICK {
+            return Ok(());
+        }
+        if !self.records.is_multiple_of(self.chunk) {
+            self.write_chunks(self.records / self.chunk, level)?;
+        }
+        let shapes: Vec<(String, Value)> = self.shapes().collect();
+        for (name, shape) in &shapes {
+            put(&self.folder.join(name).join(ARRAY), &json_bytes(shape))?;
+        }
+        let metadata = self.metadata(shapes);
+        put(&self.folder.join(METADATA), &json_bytes(&metadata))?;
+        self.settled = true;
+        Ok(())
+    }
+
+    fn write_chunks(&mut self, number: usize, level: u8) -> Result<(), Error> {
+        for k in 0..self.series.len() {
+            let series = &self.series[k];
+            let mut bytes = series.chunk.clone();
+            while bytes.len() < series.record() * self.chunk {
+                series.is.number.write(f64::NAN, &mut bytes);
+            }
+            let bytes = packed(&bytes, series.is.number.size(), level);
+            let path = self.folder.join(series.file(number));
+            put(&path, &bytes)?;
+            if level == THOROUGH {
+                self.young.push(path);
+            }
+        }
+        Ok(())
+    }
+
+    fn descriptions(&self) -> impl Iterator<Item = &Description> {
+        self.fixed.iter().map(|(is, _)| is).chain(self.series.iter().map(|series| &series.is))
+    }
+
+    /// The `.zarray` of every array.
+    fn shapes(&self) -> impl Iterator<Item = (String, Value)> {
+        let fixed = self.fixed.iter().map(|(is, length)| (is.name.clone(), shape(is, &[*length], &[*length])));
+        let growing = self.series.iter().map(|Series { is, width, .. }| {
+            let with = |records: usize| std::iter::once(records).chain(*width).collect::<Vec<_>>();
+            (is.name.clone(), shape(is, &with(self.records), &with(self.chunk)))
+        });
+        fixed.chain(growing)
+    }
+
+    fn metadata(&self, shapes: Vec<(String, Value)>) -> Value {
+        let mut all = Map::new();
+        all.insert(GROUP.into(), group());
+        all.insert(ATTRIBUTES.into(), self.attributes.clone());
+        all.extend(shapes.into_iter().map(|(name, shape)| (format!("{name}/{ARRAY}"), shape)));
+        all.extend(self.descriptions().map(|is| (format!("{}/{ATTRIBUTES}", is.name), all_attributes(is))));
+        json!({"metadata": all, "zarr_consolidated_format": 1})
+    }
+}
+
+fn put(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    files::replace(path, bytes).map_err(|cause| failed(path, &cause))
+}
+
+fn json_bytes(value: &Value) -> Vec<u8> {
+    format!("{value:#}\n").into_bytes()
+}

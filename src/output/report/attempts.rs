@@ -1,0 +1,119 @@
+//! Attempts at increments that were given up, as `newton.csv` tells them.
+
+use std::ops::Range;
+
+use serde_json::{Value, json};
+
+use crate::output::plot::read::Columns;
+
+/// Attempts that were given up and are shown at most.
+const MOST: usize = 500;
+
+/// What the rows of one attempt came to.
+struct Attempt {
+    rows: Range<usize>,
+    /// whether another one at the same increment followed
+    given_up: bool,
+}
+
+/// What is needed of the table; `None` where it has no such columns.
+struct Table<'a> {
+    step: (&'a [f64], &'a [String]),
+    increment: &'a [f64],
+    attempt: &'a [f64],
+    time: &'a [f64],
+    iteration: &'a [f64],
+    residual: &'a [f64],
+    counts: [&'a [f64]; 3],
+    verdict: Option<(&'a [f64], &'a [String])>,
+    reason: Option<(&'a [f64], &'a [String])>,
+}
+
+impl<'a> Table<'a> {
+    fn of(newton: &'a Columns) -> Option<Self> {
+        let get = |name| newton.get(name).ok();
+        Some(Self {
+            step: (get("step")?, newton.words("step")?),
+            increment: get("increment")?,
+            attempt: get("attempt")?,
+            time: get("time")?,
+            iteration: get("iteration")?,
+            residual: get("residual")?,
+            counts: [get("open")?, get("stick")?, get("slip")?],
+            verdict: get("verdict").zip(newton.words("verdict")),
+            reason: get("reason").zip(newton.words("reason")),
+        })
+    }
+
+    fn attempts(&self) -> Vec<Attempt> {
+        let mut attempts: Vec<Attempt> = Vec::new();
+        for row in 0..self.increment.len() {
+            let before = row.checked_sub(1);
+            let same = |of: &[f64]| before.is_some_and(|before| of[before] == of[row]);
+            match attempts.last_mut() {
+                Some(last) if same(self.increment) && same(self.attempt) => last.rows.end = row + 1,
+                last => {
+                    if let Some(last) = last.filter(|_| same(self.increment)) {
+                        last.given_up = true;
+                    }
+                    attempts.push(Attempt { rows: row..row + 1, given_up: false });
+                }
+            }
+        }
+        for attempt in &mut attempts {
+            attempt.given_up = self.verdict(&attempt.rows).map_or(attempt.given_up, |verdict| verdict != "accepted");
+        }
+        attempts
+    }
+
+    /// What became of an attempt, where the table says so.
+    fn verdict(&self, rows: &Range<usize>) -> Option<&str> {
+        word(self.verdict?, rows.end - 1)
+    }
+
+    /// Why an attempt was given up, as the table says.
+    fn why(&self, rows: &Range<usize>) -> &str {
+        let reason = self.reason.and_then(|reason| word(reason, rows.end - 1)).filter(|reason| !reason.is_empty());
+        reason.or_else(|| self.verdict(rows)).unwrap_or("not solved")
+    }
+}
+
+/// The word of a row in a column of words.
+fn word<'a>((values, words): (&[f64], &'a [String]), row: usize) -> Option<&'a str> {
+    words.get(values[row] as usize).map(String::as_str)
+}
+
+/// Every increment with its solves, and every attempt that was given up with what is known of why.
+pub fn attempts(newton: &Columns, complete: bool) -> Value {
+    let Some(table) = Table::of(newton) else { return Value::Null };
+    let mut attempts = table.attempts();
+    // A run that has stopped did so in its last attempt, unless the table knows better.
+    if !complete && let Some(last) = attempts.last_mut() {
+        last.given_up |= table.verdict(&last.rows).is_none();
+    }
+    let mut start = 0.0;
+    let (mut given_up, mut total) = (Vec::new(), 0);
+    for Attempt { rows, given_up: dropped } in &attempts {
+        let last = rows.end - 1;
+        let time = table.time[last];
+        if !dropped {
+            start = time;
+            continue;
+        }
+        total += 1;
+        if given_up.len() < MOST {
+            given_up.push(json!({
+                "time": start,
+                "dt": time - start,
+                "step": table.step.1.get(table.step.0[last] as usize),
+                "increment": table.increment[last],
+                "attempt": table.attempt[last],
+                "iterations": table.iteration[last],
+                "residual": table.residual[last],
+                "counts": table.counts.map(|counts| counts[last]),
+                "why": table.why(rows),
+            }));
+        }
+    }
+    json!({ "given_up": given_up, "total": total })
+}

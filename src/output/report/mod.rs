@@ -1,0 +1,127 @@
+//! One page to look at results in a browser, without a network and without another program.
+//!
+//! The numbers of the folders are packed into the page ([`pack`]), and unpacked and drawn there by what stands in `page/`.
+//! Where there are too many, some are left out; the page says which. Faults in a folder are told on the page and hide no more
+//! than they must.
+
+mod attempts;
+mod maps;
+pub mod pack;
+mod run;
+mod series;
+mod sheet;
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+
+use self::pack::Pack;
+use self::run::Run;
+use super::csv::failed;
+use super::files;
+use super::plot::error::PlotError;
+use super::plot::source::sources_of;
+
+/// Name of the page in a folder of results.
+pub const FILE: &str = "report.html";
+
+/// By this a page is known to be one of ours.
+const OURS: &str = "<meta name=\"generator\" content=\"fecontact report\">";
+
+/// All packed numbers at most [bytes]; with the rest the page stays below 30 MB.
+const ROOM: usize = 28_000_000;
+
+/// What draws the page, in the order in which it is run.
+const SCRIPTS: [&str; 16] = [
+    include_str!("page/uplot/uPlot.iife.min.js"),
+    include_str!("page/dom.js"),
+    include_str!("page/data.js"),
+    include_str!("page/colours.js"),
+    include_str!("page/export.js"),
+    include_str!("page/chart.js"),
+    include_str!("page/head.js"),
+    include_str!("page/scene.js"),
+    include_str!("page/fields.js"),
+    include_str!("page/stage.js"),
+    include_str!("page/bodies.js"),
+    include_str!("page/histories.js"),
+    include_str!("page/map.js"),
+    include_str!("page/interface.js"),
+    include_str!("page/events.js"),
+    include_str!("page/main.js"),
+];
+
+/// Whether a file is a page of ours: one that a user has under the same name is not.
+pub fn is_page(path: &Path) -> bool {
+    let plain = path.symlink_metadata().is_ok_and(|known| known.is_file());
+    let mut start = Vec::new();
+    let read = |file: std::fs::File| file.take(1024).read_to_end(&mut start);
+    plain && std::fs::File::open(path).and_then(read).is_ok() && String::from_utf8_lossy(&start).contains(OURS)
+}
+
+/// Write the page of result folders, finished or still growing; several are overlaid.
+///
+/// # Errors
+/// [`PlotError`].
+pub fn write(folders: &[PathBuf], file: &Path) -> Result<(), PlotError> {
+    if file.is_dir() {
+        return Err(failed(file, &"is a folder: give the name of the page").into());
+    }
+    if file.symlink_metadata().is_ok() && !is_page(file) {
+        let cause = "is in the way: it is no page written by fecontact; move it, or choose another --out";
+        return Err(failed(file, &cause).into());
+    }
+    let page = page(folders)?;
+    if let Some(folder) = file.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        std::fs::create_dir_all(folder).map_err(|cause| failed(folder, &cause))?;
+    }
+    Ok(files::replace(file, page.as_bytes()).map_err(|cause| failed(file, &cause))?)
+}
+
+/// The page of result folders.
+///
+/// # Errors
+/// [`PlotError::Unreadable`].
+pub fn page(folders: &[PathBuf]) -> Result<String, PlotError> {
+    let unreadable = |path: &Path, cause: &str| PlotError::Unreadable { path: path.to_owned(), cause: cause.into() };
+    for folder in folders {
+        if !folder.is_dir() {
+            return Err(unreadable(folder, "is not a folder; give a folder of results"));
+        }
+        if folder.join("law.csv").is_file() && !folder.join("history.csv").is_file() {
+            return Err(unreadable(folder, "holds a law driven alone: `fecontact plot` draws it"));
+        }
+        if !["history.csv", "summary.json"].iter().any(|file| folder.join(file).is_file()) {
+            return Err(unreadable(folder, "has neither history.csv nor summary.json: it is no folder of results"));
+        }
+    }
+    let sources = sources_of(folders)?;
+    let mut pack = Pack::default();
+    let share = ROOM / sources.len().max(1);
+    let runs: Vec<Value> = sources.iter().map(|source| Run::new(source, share).show(&mut pack)).collect();
+    Ok(assembled(&json!({ "version": env!("CARGO_PKG_VERSION"), "runs": runs }), &pack))
+}
+
+/// The page of its data.
+fn assembled(data: &Value, pack: &Pack) -> String {
+    // Nothing in the data ends the element that it stands in.
+    let json = data.to_string().replace('<', "\\u003c");
+    let licence = include_str!("page/uplot/LICENSE");
+    let scripts = SCRIPTS.map(|script| format!("<script>\n{script}\n</script>\n")).concat();
+    let parts = [
+        ("{{style}}", [include_str!("page/uplot/uPlot.min.css"), include_str!("page/style.css")].concat()),
+        ("{{data}}", json),
+        ("{{numbers}}", pack.text.clone()),
+        ("{{scripts}}", format!("<!-- uPlot:\n{licence}-->\n{scripts}")),
+    ];
+    let mut page = String::with_capacity(parts.iter().map(|(_, part)| part.len()).sum::<usize>() + 8192);
+    let mut rest = include_str!("page/index.html");
+    for (mark, part) in &parts {
+        let (before, after) = rest.split_once(mark).unwrap_or((rest, ""));
+        page += before;
+        page += part;
+        rest = after;
+    }
+    page + rest
+}

@@ -1,0 +1,242 @@
+"use strict";
+// Charts: uPlot with zoom, read-off, keyboard and export. Each is drawn when it comes into sight.
+
+const charts = [];
+const watcher = new IntersectionObserver((entries) => {
+  for (const entry of entries) if ((entry.target.chart.seen = entry.isIntersecting)) entry.target.chart.draw();
+}, { rootMargin: "300px" });
+
+/** Rows of several curves under one ascending x: `undefined` where a curve has no row, `null` where it has no number. */
+function aligned(series, log) {
+  const clean = (y) => Array.from(y, (value) => (Number.isFinite(value) && !(log && value <= 0) ? value : null));
+  const groups = new Map();
+  series.forEach((one, k) => {
+    if (!groups.has(one.x)) groups.set(one.x, []);
+    groups.get(one.x).push(k);
+  });
+  const tables = [...groups].map(([x, members]) => [Array.from(x), ...members.map((k) => clean(series[k].y))]);
+  const order = [...groups.values()].flat();
+  const all = tables.length === 1 ? tables[0] : uPlot.join(tables);
+  const data = [all[0]];
+  order.forEach((k, i) => (data[k + 1] = all[i + 1]));
+  return data;
+}
+
+/** Curves that are no functions of x, one behind the other. */
+function consecutive(series) {
+  const x = series.flatMap((one) => Array.from(one.x));
+  const data = [x];
+  let start = 0;
+  for (const one of series) {
+    const y = new Array(x.length).fill(undefined);
+    one.y.forEach((value, k) => (y[start + k] = Number.isFinite(value) && Number.isFinite(one.x[k]) ? value : null));
+    data.push(y);
+    start += one.x.length;
+  }
+  return data;
+}
+
+/** Draws a curve through its own points in their own order. */
+const ownWay = (u, k) => {
+  const stroke = new Path2D();
+  let down = false;
+  for (let i = 0; i < u.data[0].length; i++) {
+    const y = u.data[k][i];
+    if (y === undefined) continue;
+    if (y === null) down = false;
+    else {
+      const [px, py] = [u.valToPos(u.data[0][i], "x", true), u.valToPos(y, "y", true)];
+      if (down) stroke.lineTo(px, py);
+      else stroke.moveTo(px, py);
+      down = true;
+    }
+  }
+  return { stroke, fill: null, clip: null, band: null, gaps: null, flags: 0 };
+};
+
+class Chart {
+  /** series: {name, x, y, colour, dash, points}; x, y: {label, log, include}; path: curves are no functions of x;
+   * time: x is time. */
+  constructor({ title, x, y, series, path = false, time = false, click = null, height = 250 }) {
+    Object.assign(this, { title, x, y, series, path, time, click, height, plot: null });
+    this.host = el("div", { class: "plot", tabindex: 0, role: "img", "aria-label": `${title}: ${y.label} over ${x.label}` });
+    this.host.style.minHeight = `${height}px`;
+    this.host.addEventListener("keydown", (event) => this.key(event));
+    const tools = el("span", { class: "tools" },
+      button("⤢", "Show all again", () => this.reset()),
+      button("SVG", "Save this chart as SVG", () => this.draw().plot && save(fileName(this.title, "svg"), svg(this), "image/svg+xml")),
+      button("CSV", "Save its data as CSV", () => this.series.length && save(fileName(this.title, "csv"), this.csv(), "text/csv")));
+    this.caption = el("span", {}, title);
+    this.element = el("figure", { class: "chart" }, el("figcaption", {}, this.caption, tools), this.host);
+    this.host.chart = this;
+    watcher.observe(this.host);
+    charts.push(this);
+  }
+
+  width() {
+    return Math.max(240, Math.floor(this.host.clientWidth));
+  }
+
+  /** Draw it, if it is not yet, and there is something to draw. */
+  draw() {
+    if (!this.plot && this.series.length && this.host.clientWidth) this.plot = new uPlot(this.options(), this.data(), this.host);
+    return this;
+  }
+
+  /** Draw it again: in other colours, with other data. */
+  redraw() {
+    if (!this.plot) return;
+    this.plot.destroy();
+    this.plot = null;
+    this.draw();
+  }
+
+  /** Other curves. */
+  set(series, title = this.title, y = this.y) {
+    Object.assign(this, { series, title, y });
+    this.caption.textContent = title;
+    if (this.plot) this.redraw();
+    else if (this.seen) this.draw();
+  }
+
+  data() {
+    return this.path ? consecutive(this.series) : aligned(this.series, this.y.log);
+  }
+
+  csv() {
+    const names = [this.x.label, ...this.series.map((one) => one.name)];
+    return csv(names, this.data());
+  }
+
+  options() {
+    const [ink, grid] = [styled("--ink"), styled("--grid")];
+    const axis = (of, size) => ({
+      stroke: ink, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid, width: 1 }, label: of.label, size, labelSize: 20,
+      font: "11px sans-serif", labelFont: "12px sans-serif",
+      values: (u, splits) => (of.log ? splits.map((value) => (value == null ? "" : told(value, 2))) : tickTexts(splits)),
+    });
+    const series = this.series.map((one) => ({
+      label: one.name, stroke: one.colour, width: one.points ? 0 : 1.6, dash: one.dash, spanGaps: false,
+      paths: this.path ? ownWay : undefined,
+      points: one.points ? { show: true, size: 7, fill: one.colour, stroke: one.colour } : { show: this.series[0].x.length < 30 && !one.plain, size: 4 },
+      value: (u, value) => told(value, 6),
+    }));
+    const include = this.y.include || [];
+    return {
+      width: this.width(), height: this.height, padding: [8, 14, 0, 0],
+      legend: { live: true },
+      scales: {
+        x: { time: false, ...(this.path && { range: () => this.extent() }) },
+        y: this.y.log ? { distr: 3 } : { range: (u, low, high) => padded(Math.min(low, ...include), Math.max(high, ...include)) },
+      },
+      axes: [axis(this.x, 42), axis(this.y, 62)],
+      series: [{ label: this.x.label, value: (u, value) => told(value, 8) }, ...series],
+      cursor: {
+        drag: { x: true, y: true, uni: 30 }, focus: { prox: 24 },
+        ...(this.time && { sync: { key: "time", setSeries: false, scales: ["x", null] } }),
+        ...(this.path && { dataIdx: (u, k) => this.near(u, k) }),
+      },
+      hooks: {
+        draw: [(u) => this.time && marked(u)],
+        ready: [(u) => u.over.addEventListener("click", () => this.clicked(u))],
+      },
+    };
+  }
+
+  /** A click without a drag. */
+  clicked(u) {
+    if (u.cursor.left == null || u.cursor.left < 0 || u.select.width > 0) return;
+    const x = u.posToVal(u.cursor.left, "x");
+    if (this.click) this.click(x);
+    else if (this.time) now.set(x, this);
+  }
+
+  extent() {
+    const [low, high] = bounds(this.series.flatMap((one) => [...bounds(one.x), ...(this.x.include || [])]));
+    return padded(low, high);
+  }
+
+  /** The point of a curve that is nearest to the cursor. */
+  near(u, k) {
+    const { left, top } = u.cursor;
+    let [best, least] = [null, Infinity];
+    for (let i = 0; k > 0 && i < u.data[0].length; i++) {
+      if (u.data[k][i] == null) continue;
+      const away = Math.hypot(u.valToPos(u.data[0][i], "x") - left, u.valToPos(u.data[k][i], "y") - top);
+      if (away < least) [best, least] = [i, away];
+    }
+    return best;
+  }
+
+  reset() {
+    if (this.plot) this.plot.setData(this.plot.data, true);
+  }
+
+  /** Zoom by a factor about the cursor, or the middle. */
+  zoom(factor) {
+    const { min, max } = this.plot.scales.x;
+    const at = this.plot.cursor.left >= 0 ? this.plot.posToVal(this.plot.cursor.left, "x") : 0.5 * (min + max);
+    this.plot.setScale("x", { min: at + (min - at) * factor, max: at + (max - at) * factor });
+  }
+
+  key(event) {
+    const u = this.plot;
+    if (!u || event.ctrlKey || event.metaKey || event.altKey) return;
+    const xs = u.data[0];
+    const from = u.cursor.idx ?? nearest(xs, 0.5 * (u.scales.x.min + u.scales.x.max));
+    const move = (idx) => {
+      const i = Math.max(0, Math.min(xs.length - 1, idx));
+      const left = u.valToPos(xs[i], "x");
+      const y = u.data.slice(1).map((column) => column[i]).find((value) => value != null);
+      u.setCursor({ left, top: y == null ? 10 : u.valToPos(y, "y") });
+    };
+    const keys = {
+      ArrowLeft: () => move(from - (event.shiftKey ? 10 : 1)), ArrowRight: () => move(from + (event.shiftKey ? 10 : 1)),
+      Home: () => move(0), End: () => move(xs.length - 1),
+      "+": () => this.zoom(0.5), "=": () => this.zoom(0.5), "-": () => this.zoom(2), 0: () => this.reset(), Escape: () => this.reset(),
+      Enter: () => this.clicked(u),
+    };
+    if (!keys[event.key]) return;
+    event.preventDefault();
+    keys[event.key]();
+  }
+}
+
+/** A little more than what is between two numbers. */
+function padded(low, high) {
+  if (!(low <= high)) return [0, 1];
+  const size = Math.max(Math.abs(low), Math.abs(high));
+  const room = high - low > 1e-9 * size ? 0.05 * (high - low) : 0.1 * size || 1;
+  return [low === 0 ? 0 : low - room, high === 0 ? 0 : high + room];
+}
+
+/** The time that is looked at, as a line. */
+function marked(u) {
+  if (now.time == null) return;
+  const x = u.valToPos(now.time, "x", true);
+  const { left, top, width, height } = u.bbox;
+  if (x < left || x > left + width) return;
+  const { ctx } = u;
+  ctx.save();
+  ctx.strokeStyle = styled("--mark");
+  ctx.lineWidth = uPlot.pxRatio;
+  ctx.setLineDash([4, 3]);
+  ctx.beginPath();
+  ctx.moveTo(x, top);
+  ctx.lineTo(x, top + height);
+  ctx.stroke();
+  ctx.restore();
+}
+
+now.hear("charts", () => {
+  for (const chart of charts) if (chart.time && chart.plot) chart.plot.redraw(false);
+});
+
+let resizing = null;
+addEventListener("resize", () => {
+  clearTimeout(resizing);
+  resizing = setTimeout(() => {
+    for (const chart of charts) if (chart.plot) chart.plot.setSize({ width: chart.width(), height: chart.height });
+  }, 100);
+});
+addEventListener("beforeprint", () => charts.forEach((chart) => chart.draw()));

@@ -1,0 +1,106 @@
+"use strict";
+// The numbers of the page: text → bytes → arrays, when they are asked for, kept as long as there is room.
+
+const DATA = JSON.parse(document.getElementById("data").textContent);
+const NUMBERS = document.getElementById("numbers").textContent;
+const ARRAYS = { f64: Float64Array, f32: Float32Array, u32: Uint32Array, u8: Uint8Array };
+
+/** Unpacked arrays by where they start, the last used at the end; bytes in all. */
+const kept = new Map();
+let keptBytes = 0;
+const ROOM = 600e6;
+
+function decoded(text) {
+  if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);
+  const binary = atob(text);
+  const bytes = new Uint8Array(binary.length);
+  for (let k = 0; k < binary.length; k++) bytes[k] = binary.charCodeAt(k);
+  return bytes;
+}
+
+/** Bytes sorted by weight, put together again. */
+function joined(bytes, type) {
+  const size = ARRAYS[type].BYTES_PER_ELEMENT;
+  if (size === 1) return bytes;
+  const count = bytes.length / size;
+  const out = new Uint8Array(bytes.length);
+  for (let i = 0; i < size; i++) {
+    const from = i * count;
+    for (let k = 0, to = i; k < count; k++, to += size) out[to] = bytes[from + k];
+  }
+  return new ARRAYS[type](out.buffer);
+}
+
+/** The array of a chunk, if it is at hand. */
+function peek(chunk) {
+  const entry = chunk && kept.get(chunk[0]);
+  return entry && entry.array;
+}
+
+/** The array of a chunk. */
+function unpack(chunk, type = "f32") {
+  const [start, length] = chunk;
+  const known = kept.get(start);
+  if (known) {
+    kept.delete(start);
+    kept.set(start, known);
+    return known.promise;
+  }
+  const entry = { array: null, promise: null };
+  entry.promise = (async () => {
+    const stream = new Blob([decoded(NUMBERS.slice(start, start + length))]).stream();
+    const bytes = await new Response(stream.pipeThrough(new DecompressionStream("deflate-raw"))).arrayBuffer();
+    entry.array = joined(new Uint8Array(bytes), type);
+    keptBytes += entry.array.byteLength;
+    for (const [oldest, { array }] of kept) {
+      if (keptBytes <= ROOM || oldest === start) break;
+      if (array) keptBytes -= array.byteLength;
+      kept.delete(oldest);
+    }
+    return entry.array;
+  })();
+  kept.set(start, entry);
+  return entry.promise;
+}
+
+/** A table: its columns by name, words in the place of their numbers. */
+async function table(packed) {
+  if (!packed) return null;
+  const all = await Promise.all(packed.columns.map((column) => unpack(column.chunk, column.type)));
+  const columns = new Map();
+  packed.columns.forEach((column, k) => {
+    columns.set(column.name, column.words ? Array.from(all[k], (word) => column.words[word]) : all[k]);
+  });
+  return { rows: packed.rows, names: packed.columns.map((column) => column.name), get: (name) => columns.get(name) };
+}
+
+/** Label of the unit of a quantity; of some, what it is made of. */
+function unitOf(of) {
+  const units = Object.assign({}, ...DATA.runs.map((run) => run.units));
+  const { length, force, time } = units;
+  const made = (parts, text) => (parts.every(Boolean) ? text : "");
+  const derived = {
+    stress: made([force, length], `${force}/${length}²`),
+    energy: made([force, length], `${force}·${length}`),
+    velocity: made([length, time], `${length}/${time}`),
+    acceleration: made([length, time], `${length}/${time}²`),
+    dissipation: made([force, length], `${force}/${length}`),
+  };
+  return units[of] || derived[of] || "";
+}
+
+/** Units of what results are called. */
+const UNITS = {
+  displacement: "length", gap: "length", slip: "length", elastic_slip: "length", slip_rate: "velocity",
+  velocity: "velocity", acceleration: "acceleration", reaction: "force", stress: "stress", von_mises: "stress",
+  pressure: "stress", traction: "stress", dissipation: "dissipation", theta: "time",
+};
+const fieldUnit = (name) => (UNITS[name] ? unitOf(UNITS[name]) : "");
+
+/** Names of quantities as they are read. */
+const NAMES = {
+  slip: "slip", slip_rate: "slip rate", R: "R", mu: "μ", structure: "structure 1/R*", traction: "traction q",
+  pressure: "pressure p", gap: "gap", elastic_slip: "elastic slip", state: "state (0 open, 1 stick, 2 slip)",
+  von_mises: "von Mises stress", theta: "θ",
+};
+const spoken = (name) => NAMES[name] || name.replaceAll("_", " ");

@@ -1,0 +1,97 @@
+"use strict";
+// What is on the page as files: charts as SVG, their data as CSV, pictures as PNG.
+
+function save(name, content, type) {
+  const url = content instanceof Blob ? URL.createObjectURL(content) : URL.createObjectURL(new Blob([content], { type }));
+  const link = el("a", { href: url, download: name });
+  document.body.append(link);
+  link.click();
+  link.remove();
+  setTimeout(() => URL.revokeObjectURL(url), 10000);
+}
+
+const fileName = (title, ending) => `${title.replace(/[^\p{L}\p{N}]+/gu, "_").replace(/^_+|_+$/g, "").slice(0, 80)}.${ending}`;
+
+/** A cell of a CSV file. */
+const cell = (value) => {
+  if (typeof value === "number") return Number.isFinite(value) ? String(value) : "NaN";
+  if (value == null) return "";
+  return /[",\n]/.test(value) ? `"${String(value).replaceAll('"', '""')}"` : String(value);
+};
+
+/** Columns of one length as CSV. */
+function csv(names, columns) {
+  const lines = [names.map(cell).join(",")];
+  for (let k = 0; k < (columns[0] || []).length; k++) lines.push(columns.map((column) => cell(column[k])).join(","));
+  return lines.join("\n") + "\n";
+}
+
+const escaped = (text) => String(text).replace(/[&<>"]/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" })[c]);
+
+/** A chart as it is seen, zoom included, in black on white. */
+function svg(chart) {
+  const { plot } = chart;
+  const ratio = uPlot.pxRatio;
+  const box = { x: plot.bbox.left / ratio, y: plot.bbox.top / ratio, w: plot.bbox.width / ratio, h: plot.bbox.height / ratio };
+  const title = 24;
+  const shown = plot.series.map((series, k) => ({ series, k })).filter(({ series, k }) => k > 0 && series.show);
+  const height = plot.height + title + 18 * shown.length + 8;
+  const parts = [];
+  const text = (x, y, words, anchor = "middle", more = "") =>
+    parts.push(`<text x="${x.toFixed(1)}" y="${y.toFixed(1)}" text-anchor="${anchor}" ${more}>${escaped(words)}</text>`);
+  text(box.x, 16, chart.title, "start", 'font-weight="bold" font-size="14"');
+  parts.push(`<g transform="translate(0 ${title})">`);
+  const { x: bx, y: by, w, h } = box;
+  plot.axes.forEach((axis, k) => {
+    const values = axis._values || [];
+    (axis._splits || []).forEach((split, i) => {
+      const at = plot.valToPos(split, axis.scale) + (k === 0 ? bx : by);
+      if (k === 0 ? at < bx - 0.5 || at > bx + w + 0.5 : at < by - 0.5 || at > by + h + 0.5) return;
+      const [x2, y2] = k === 0 ? [at, by] : [bx + w, at];
+      const [x1, y1] = k === 0 ? [at, by + h] : [bx, at];
+      parts.push(`<line x1="${x1.toFixed(1)}" y1="${y1.toFixed(1)}" x2="${x2.toFixed(1)}" y2="${y2.toFixed(1)}" stroke="#ddd"/>`);
+      if (values[i] == null) return;
+      if (k === 0) text(at, by + h + 16, values[i]);
+      else text(bx - 6, at + 4, values[i], "end");
+    });
+  });
+  parts.push(`<rect x="${bx}" y="${by}" width="${w}" height="${h}" fill="none" stroke="#444"/>`);
+  text(bx + w / 2, by + h + 36, chart.x.label);
+  parts.push(`<text transform="translate(14 ${by + h / 2}) rotate(-90)" text-anchor="middle">${escaped(chart.y.label)}</text>`);
+  parts.push(`<clipPath id="box"><rect x="${bx}" y="${by}" width="${w}" height="${h}"/></clipPath><g clip-path="url(#box)">`);
+  for (const { series, k } of shown) {
+    const colour = chart.series[k - 1].colour;
+    const dashes = (chart.series[k - 1].dash || []).join(" ");
+    parts.push(`<path d="${outline(chart, k, box)}" fill="none" stroke="${colour}" stroke-width="1.6" stroke-dasharray="${dashes}"/>`);
+  }
+  parts.push("</g></g>");
+  shown.forEach(({ k }, i) => {
+    const y = plot.height + title + 18 * i + 6;
+    const { colour, name, dash } = chart.series[k - 1];
+    parts.push(`<line x1="${bx}" x2="${bx + 26}" y1="${y}" y2="${y}" stroke="${colour}" stroke-width="2" stroke-dasharray="${(dash || []).join(" ")}"/>`);
+    text(bx + 32, y + 4, name, "start");
+  });
+  return `<svg xmlns="http://www.w3.org/2000/svg" width="${plot.width}" height="${height}" viewBox="0 0 ${plot.width} ${height}" ` +
+    `font-family="sans-serif" font-size="11.5"><rect width="100%" height="100%" fill="white"/>${parts.join("\n")}</svg>\n`;
+}
+
+/** The way of a curve in pixels. */
+function outline(chart, k, box) {
+  const [xs, ys] = [chart.plot.data[0], chart.plot.data[k]];
+  const way = [];
+  let pen = "M";
+  let last = "";
+  for (let i = 0; i < xs.length; i++) {
+    if (ys[i] === undefined) continue;
+    if (ys[i] === null) {
+      pen = "M";
+      continue;
+    }
+    const x = box.x + chart.plot.valToPos(xs[i], "x");
+    const y = box.y + chart.plot.valToPos(ys[i], "y");
+    const place = `${x.toFixed(1)} ${y.toFixed(1)}`;
+    if (place !== last || pen === "M") way.push(pen + place);
+    [pen, last] = ["L", place];
+  }
+  return way.join("");
+}

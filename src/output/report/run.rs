@@ -1,0 +1,190 @@
+//! What the page knows of one folder of results.
+
+use serde_json::{Value, json};
+
+use super::attempts::attempts;
+use super::maps::map;
+use super::pack::Pack;
+use super::series::Series;
+use super::sheet::{Column, not_numbers, read, rows, sheet, some};
+use crate::laws::friction::FrictionParameters;
+use crate::output::lock;
+use crate::output::plot::convergence::{HARDEST, increments, residuals, solves};
+use crate::output::plot::error::PlotError;
+use crate::output::plot::read::Columns;
+use crate::output::plot::source::Source;
+use crate::output::results::InterfaceMap;
+
+/// Rows of a table at most.
+const ROWS: usize = 40_000;
+
+/// What a packed number takes, as a rough guess [bytes].
+const NUMBER: f64 = 3.0;
+
+/// Rows of newton.csv beyond which only its increments are shown.
+const ITERATIONS: usize = 20_000;
+
+/// A folder being put on a page.
+pub struct Run<'a> {
+    source: &'a Source,
+    /// share of the page for it [bytes]
+    room: usize,
+    /// what is left out, and what is wrong
+    notes: Vec<String>,
+}
+
+impl<'a> Run<'a> {
+    pub fn new(source: &'a Source, room: usize) -> Self {
+        Self { source, room, notes: Vec::new() }
+    }
+
+    /// How many rows of so many numbers fit into a share of the room.
+    fn fit(&self, share: f64, numbers: usize) -> usize {
+        (share * self.room as f64 / (NUMBER * numbers.max(1) as f64)) as usize
+    }
+
+    /// All of it.
+    pub fn show(mut self, pack: &mut Pack) -> Value {
+        let summary = self.summary();
+        let status = summary["status"].as_str().unwrap_or("unknown").to_owned();
+        let start = pack.text.len();
+        let history = self.history(pack);
+        let newton = self.newton(status == "completed", pack);
+        let fronts = self.small_table("fronts.csv", pack);
+        let events = self.small_table("events.csv", pack);
+        let interfaces = self.maps(pack);
+        let left = self.room.saturating_sub(pack.text.len() - start);
+        let [solid, contact] = self.frames(left, pack);
+        let about = &self.source.about;
+        let bounds = about.friction.iter().map(|(name, law)| (name.clone(), json!(FrictionParameters::bounds(law))));
+        json!({
+            "name": self.source.name,
+            "folder": self.source.folder.display().to_string(),
+            "summary": summary,
+            "at_work": lock::at_work(&self.source.folder),
+            "units": about.units,
+            "bounds": bounds.collect::<serde_json::Map<String, Value>>(),
+            "history": history,
+            "newton": newton,
+            "fronts": fronts,
+            "events": events,
+            "interfaces": interfaces,
+            "solid": solid,
+            "contact": contact,
+            "notes": self.notes,
+        })
+    }
+
+    fn summary(&mut self) -> Value {
+        let read = std::fs::read_to_string(self.source.folder.join("summary.json"));
+        let summary = read.ok().and_then(|text| serde_json::from_str(&text).ok());
+        summary.filter(Value::is_object).unwrap_or_else(|| {
+            self.notes.push("summary.json is missing or cannot be understood: how the run ended is not known".into());
+            json!({})
+        })
+    }
+
+    fn history(&mut self, pack: &mut Pack) -> Value {
+        let Some(history) = read(&self.source.folder, "history.csv", &mut self.notes) else { return Value::Null };
+        if history.get("time").is_err() {
+            self.notes.push("history.csv has no column `time`; it is not shown".into());
+            return Value::Null;
+        }
+        if history.is_empty() {
+            self.notes.push("history.csv has no rows yet".into());
+            return Value::Null;
+        }
+        for (name, count) in not_numbers(&history) {
+            self.notes.push(format!("history.csv: {count} values of {name} are no numbers; they are left blank"));
+        }
+        let shown = rows(&history, self.fit(0.2, history.names().count()).min(ROWS));
+        let all = history.get("time").map_or(0, <[f64]>::len);
+        if shown.len() < all {
+            let shown = shown.len();
+            self.notes
+                .push(format!("history.csv: {shown} of {all} rows are shown, the extremes of every column among them"));
+        }
+        sheet(some(&history, &shown), pack)
+    }
+
+    /// Residuals of the hardest increments, solves of all, and the attempts that were given up.
+    fn newton(&mut self, complete: bool, pack: &mut Pack) -> Value {
+        let Some(newton) = read(&self.source.folder, "newton.csv", &mut self.notes) else { return Value::Null };
+        self.convergence(&newton, complete, pack).unwrap_or_else(|fault| {
+            self.notes.push(format!("{fault}; convergence is not shown"));
+            Value::Null
+        })
+    }
+
+    fn convergence(&mut self, newton: &Columns, complete: bool, pack: &mut Pack) -> Result<Value, PlotError> {
+        let all = increments(newton)?;
+        if all.is_empty() {
+            return Ok(Value::Null);
+        }
+        let (mut iterations, mut of_increment) = (Vec::new(), Vec::new());
+        for [iteration, residual] in residuals(newton, &all)?.into_iter().take(self.fit(0.05, 2).min(ITERATIONS)) {
+            iterations.push(iteration);
+            of_increment.push(residual);
+        }
+        // Of many increments the one with the most solves in each group is shown.
+        let group = all.len().div_ceil(self.fit(0.05, 3).clamp(1, ROWS));
+        let (mut times, mut counts) = (Vec::new(), Vec::new());
+        for hardest in all.chunks(group).filter_map(|some| some.iter().max_by_key(|rows| rows.len())) {
+            let [time, count] = solves(newton, hardest)?;
+            times.push(time);
+            counts.push(count);
+        }
+        let residuals: Vec<Column> = vec![("iteration", None, iterations), ("residual", None, of_increment)];
+        let solves: Vec<Column> = vec![("time", None, times), ("solves", None, counts)];
+        Ok(json!({
+            "increments": all.len(),
+            "hardest": all.len().min(HARDEST),
+            "residuals": sheet(residuals, pack),
+            "solves": sheet(solves, pack),
+            "attempts": attempts(newton, complete),
+        }))
+    }
+
+    /// A table that is written at the end of a run, whole but for the rows there is no room for.
+    fn small_table(&mut self, file: &str, pack: &mut Pack) -> Value {
+        let Some(table) = read(&self.source.folder, file, &mut self.notes) else { return Value::Null };
+        let all = table.names().next().and_then(|name| table.get(name).ok()).map_or(0, <[f64]>::len);
+        let most = self.fit(0.1, table.names().count()).min(ROWS);
+        if all > most {
+            self.notes.push(format!("{file}: the first {most} of {all} rows are shown"));
+        }
+        let shown: Vec<usize> = (0..all.min(most)).collect();
+        sheet(some(&table, &shown), pack)
+    }
+
+    /// Values of a quantity of each map at most.
+    fn values(&self, maps: &[InterfaceMap]) -> usize {
+        self.fit(0.4, maps.iter().map(|map| map.quantities.len()).sum())
+    }
+
+    fn maps(&mut self, pack: &mut Pack) -> Vec<Value> {
+        match InterfaceMap::read(&self.source.folder) {
+            Ok(maps) => {
+                let most = self.values(&maps);
+                maps.iter().enumerate().map(|one| map(one, most, pack, &mut self.notes)).collect()
+            }
+            Err(fault) => {
+                self.notes.push(format!("{fault}; the interface is not shown"));
+                Vec::new()
+            }
+        }
+    }
+
+    /// Bodies and contacts, frame by frame.
+    fn frames(&mut self, room: usize, pack: &mut Pack) -> [Value; 2] {
+        let start = pack.text.len();
+        let contact = Series::read(&self.source.folder, "contact", room / 2, &mut self.notes);
+        let left = |pack: &Pack| room.saturating_sub(pack.text.len() - start);
+        // Half of what is left is enough for tractions.
+        let solid = Series::read(&self.source.folder, "solid", left(pack) * 4 / 5, &mut self.notes);
+        let bodies = solid.as_ref().map_or(Value::Null, |solid| solid.show(&solid.times(), pack));
+        let times = solid.as_ref().or(contact.as_ref()).map_or_else(Vec::new, Series::times);
+        let contact = contact.map_or(Value::Null, |contact| contact.show(&times, pack));
+        [bodies, contact]
+    }
+}

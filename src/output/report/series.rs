@@ -1,0 +1,211 @@
+//! Frames of bodies and of interfaces for the page: as many as there is room for.
+
+use std::path::Path;
+
+use rayon::prelude::*;
+use serde_json::{Value, json};
+
+use super::maps::{most, range};
+use super::pack::{Pack, Packed};
+use crate::output::results::{Array, Frame, Grid, frames};
+
+/// Places before anything moves are shown as they differ from the middle, so that single precision does far from the origin.
+fn middle(points: &[[f64; 2]]) -> [f64; 2] {
+    [0, 1].map(|i| {
+        let [low, high] = range(points.iter().map(|x| x[i]));
+        0.5 * (low + high)
+    })
+}
+
+/// Frames of one kind.
+pub struct Series {
+    /// those that can be read
+    frames: Vec<(Frame, Grid)>,
+}
+
+/// A frame, packed.
+struct PackedFrame {
+    time: f64,
+    /// displacement of all [L]
+    largest: f64,
+    displacement: Option<Packed>,
+    fields: Vec<Field>,
+}
+
+/// A field of a frame, packed.
+struct Field {
+    name: String,
+    /// of each component its range, that of most of it, and its values
+    components: Vec<([f64; 2], [f64; 2], Packed)>,
+    /// of a vector, the length of the longest of all, and of most
+    longest: [f64; 2],
+}
+
+impl PackedFrame {
+    fn size(&self) -> usize {
+        let fields = self.fields.iter().flat_map(|field| &field.components);
+        self.displacement.as_ref().map_or(0, Packed::size) + fields.map(|(_, _, packed)| packed.size()).sum::<usize>()
+    }
+}
+
+impl Series {
+    /// Read the frames that `NAME.pvd` lists, evenly spread and as many as fit into so many bytes of a page; what cannot be
+    /// read goes to the notes.
+    pub fn read(folder: &Path, name: &str, room: usize, notes: &mut Vec<String>) -> Option<Self> {
+        let listed = match frames(folder, name) {
+            Ok(listed) => listed?,
+            Err(fault) => {
+                notes.push(format!("{fault}; it is not shown"));
+                return None;
+            }
+        };
+        if listed.is_empty() {
+            return None;
+        }
+        let read = |&k: &usize| (listed[k].clone(), Grid::read(&folder.join(&listed[k].file)));
+        // Frames at rest take next to nothing: the largest of some tells.
+        let samples = spread(listed.len(), 7).into_iter().filter_map(|k| Some((listed[k].clone(), read(&k).1.ok()?)));
+        let samples = Self { frames: samples.collect() };
+        let most = (room.saturating_sub(samples.mesh()) / samples.estimate()).min(MOST);
+        if most == 0 {
+            notes.push(format!("{name}.pvd: a single frame is too large for a page; look at it with ParaView"));
+            return None;
+        }
+        let chosen = spread(listed.len(), most);
+        if chosen.len() < listed.len() {
+            let shown = chosen.len();
+            notes.push(format!("{name}.pvd: {shown} of {} frames are shown: the page holds no more", listed.len()));
+        }
+        let all: Vec<(Frame, Result<Grid, String>)> = chosen.par_iter().map(read).collect();
+        let mut series = Self { frames: Vec::new() };
+        for (frame, grid) in all {
+            match grid {
+                Ok(grid) if series.frames.first().is_none_or(|(_, first)| first.is_like(&grid)) => {
+                    notes.extend(not_numbers(&grid).map(|what| format!("{}: {what}; left blank", frame.file)));
+                    series.frames.push((frame, grid));
+                }
+                Ok(_) => notes.push(format!("{} has other points or cells than the first frame: left out", frame.file)),
+                Err(fault) => notes.push(format!("{} {fault}: this frame is left out", frame.file)),
+            }
+        }
+        Some(series).filter(|series| !series.frames.is_empty())
+    }
+
+    /// What points and cells take, as a rough guess [bytes].
+    fn mesh(&self) -> usize {
+        let count = |(_, grid): &(Frame, Grid)| 9 * grid.points.len() + 3 * grid.connectivity.len();
+        self.frames.first().map_or(0, count)
+    }
+
+    /// What a frame takes at most [bytes].
+    fn estimate(&self) -> usize {
+        let size = self.size();
+        self.frames.iter().map(|frame| self.packed(frame, size).size()).max().unwrap_or(0).max(1)
+    }
+
+    /// Times of the frames.
+    pub fn times(&self) -> Vec<f64> {
+        self.frames.iter().map(|(frame, _)| frame.time).collect()
+    }
+
+    /// The largest displacement of all.
+    fn size(&self) -> f64 {
+        let all = self.frames.iter().filter_map(|(_, grid)| displacement(grid)).flat_map(|u| &u.values);
+        all.filter(|u| u.is_finite()).fold(0.0, |size, u| u.abs().max(size))
+    }
+
+    fn packed(&self, (frame, grid): &(Frame, Grid), size: f64) -> PackedFrame {
+        let moved = displacement(grid).map(|u| {
+            let values: Vec<f64> = u.values.chunks_exact(u.components).flat_map(|u| [u[0], u[1]]).collect();
+            Packed::displacements(values.into_iter(), size)
+        });
+        let fields = grid.at_points.iter().filter(|array| array.name != DISPLACEMENT).map(|array| {
+            // VTK has three components where the plane has two.
+            let components = if array.components == 3 { 2 } else { array.components };
+            let component = |i: usize| {
+                let values: Vec<f64> = array.values.iter().skip(i).step_by(array.components).copied().collect();
+                let all = || values.iter().copied();
+                (range(all()), most(all()), Packed::rounded(values.iter().copied()))
+            };
+            let components = (0..components).map(component).collect();
+            Field { name: array.name.clone(), components, longest: longest(array) }
+        });
+        let largest = displacement(grid).map_or(0.0, |moved| longest(moved)[0]);
+        PackedFrame { time: frame.time, largest, displacement: moved, fields: fields.collect() }
+    }
+
+    /// The series for the page: its frames of these times.
+    pub fn show(&self, times: &[f64], pack: &mut Pack) -> Value {
+        let grid = &self.frames[0].1;
+        let size = self.size();
+        let chosen: Vec<&(Frame, Grid)> = self.frames.iter().filter(|(frame, _)| times.contains(&frame.time)).collect();
+        let packed: Vec<PackedFrame> = chosen.into_par_iter().map(|frame| self.packed(frame, size)).collect();
+        let origin = middle(&grid.points);
+        let places: Vec<f64> = grid.points.iter().flat_map(|x| [x[0] - origin[0], x[1] - origin[1]]).collect();
+        let of_cells = |name: &str| grid.at_cells.iter().find(|array| array.name == name);
+        let ids = |array: &Array| Packed::counts(&array.values.iter().map(|id| *id as u32).collect::<Vec<_>>());
+        let body = of_cells("body").or_else(|| of_cells("contact")).map(|array| pack.add(&ids(array)));
+        let frames: Vec<Value> = packed.iter().map(|frame| shown(frame, pack)).collect();
+        json!({
+            "points": grid.points.len(),
+            "cells": grid.ends.len(),
+            "origin": origin,
+            "places": pack.add(&Packed::single(&places)),
+            "connectivity": pack.add(&Packed::counts(&grid.connectivity)),
+            "ends": pack.add(&Packed::counts(&grid.ends)),
+            "kinds": pack.add(&Packed::bytes(&grid.kinds)),
+            "body": body,
+            "largest": size,
+            "frames": frames,
+        })
+    }
+}
+
+/// Frames of one kind at most.
+const MOST: usize = 2000;
+
+/// What moves a point.
+const DISPLACEMENT: &str = "displacement";
+
+fn displacement(grid: &Grid) -> Option<&Array> {
+    grid.at_points.iter().find(|array| array.name == DISPLACEMENT && array.components >= 2)
+}
+
+/// Length of the longest vector in the plane, of all and of most.
+fn longest(array: &Array) -> [f64; 2] {
+    if array.components < 2 {
+        return [0.0; 2];
+    }
+    let lengths = || array.values.chunks_exact(array.components).map(|vector| vector[0].hypot(vector[1]));
+    [range(lengths())[1], most(lengths())[1]]
+}
+
+/// A packed frame for the page.
+fn shown(frame: &PackedFrame, pack: &mut Pack) -> Value {
+    let mut fields = serde_json::Map::new();
+    for Field { name, components, longest } in &frame.fields {
+        let component = |(range, most, packed): &([f64; 2], [f64; 2], Packed)| json!({ "range": range, "most": most, "chunk": pack.add(packed) });
+        let components: Vec<Value> = components.iter().map(component).collect();
+        fields.insert(name.clone(), json!({ "components": components, "longest": longest }));
+    }
+    let displacement = frame.displacement.as_ref().map(|packed| pack.add(packed));
+    json!({ "time": frame.time, "displacement": displacement, "largest": frame.largest, "fields": fields })
+}
+
+/// Evenly spread numbers below `count`, first and last among them; the last alone, if there may be only one.
+fn spread(count: usize, most: usize) -> Vec<usize> {
+    match most {
+        _ if count <= most => (0..count).collect(),
+        0 => Vec::new(),
+        1 => vec![count - 1],
+        _ => (0..most).map(|k| k * (count - 1) / (most - 1)).collect(),
+    }
+}
+
+/// What of a grid is no number. A further field that some laws do not have is none there, and nothing is wrong.
+fn not_numbers(grid: &Grid) -> impl Iterator<Item = String> {
+    let bad = |array: &&Array| array.values.iter().filter(|value| !value.is_finite()).count();
+    let arrays = grid.at_points.iter().map(move |array| (array, bad(&array)));
+    let some = arrays.filter(|(array, bad)| *bad > 0 && (*bad < array.values.len() || array.name == DISPLACEMENT));
+    some.map(|(array, bad)| format!("{bad} values of {} are no numbers", array.name))
+}
