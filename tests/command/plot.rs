@@ -1,10 +1,12 @@
 //! `fecontact plot`: figures of result folders, finished or cut off, one or several.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use crate::common::store;
 use tempfile::TempDir;
 
 const RUN_FIGURES: [&str; 7] = [
@@ -265,17 +267,18 @@ fn folders_without_results_are_refused() {
     assert_eq!(fecontact(&["plot"]).status.code(), Some(2));
 }
 
-const MAP_HEADER: &str = "time,contact,number,position,x,y,slip,slip_rate,R,mu,structure,traction,pressure";
+/// Times, and quantities record by record.
+type Map = (Vec<f64>, BTreeMap<&'static str, Vec<f64>>);
 
-/// 41 points on 40 mm; from each start a pulse of 5 mm/s, 1 ms long, runs to the right at 1000 mm/s up to an end. Rows are
-/// 1 ms apart while something slips, and 1 s apart otherwise.
-fn slip_map(pulses: &[(f64, f64)]) -> String {
-    let mut times = vec![1.0, 2.0];
+/// 41 points on 40 mm; from each start a pulse of 5 mm/s, 1 ms long, runs to the right at 1000 mm/s up to an end. Records are
+/// 1 ms apart while something slips, and 1 s apart before and after if there is `rest`.
+fn slip_map(pulses: &[(f64, f64)], rest: bool) -> Map {
+    let mut times = if rest { vec![1.0, 2.0] } else { Vec::new() };
     for (start, _) in pulses {
         times.extend((0..=60).map(|k| start + 1e-3 * f64::from(k)));
-        times.push(start + 1.0);
+        times.extend(rest.then_some(start + 1.0));
     }
-    let mut text = format!("{MAP_HEADER}\n");
+    let mut quantities: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
     let mut slips = [0.0; 41];
     for (k, time) in times.iter().enumerate() {
         for (point, slip) in slips.iter_mut().enumerate() {
@@ -284,10 +287,17 @@ fn slip_map(pulses: &[(f64, f64)]) -> String {
             let rate = if pulses.iter().any(arrives) { 5.0 } else { 0.0 };
             *slip += rate * if k == 0 { 0.0 } else { time - times[k - 1] };
             let traction = if *slip > 0.0 { 1.0 } else { 2.0 };
-            writeln!(text, "{time},base,0,{s},{s},0,{slip},{rate},1,0.4,2,{traction},10").unwrap();
+            for (name, value) in [("slip", *slip), ("slip_rate", rate), ("mu", 0.4), ("q", traction), ("p", 10.0)] {
+                quantities.entry(name).or_default().push(value);
+            }
         }
     }
-    text
+    (times, quantities)
+}
+
+fn write_map(folder: &Path, (times, quantities): &Map) {
+    let positions: Vec<f64> = (0..41).map(f64::from).collect();
+    store::write(&folder.join("interface.zarr"), "base", times, &positions, quantities);
 }
 
 fn front_results(folder: &Path, name: &str, pulses: &[(f64, f64)]) -> std::path::PathBuf {
@@ -295,7 +305,7 @@ fn front_results(folder: &Path, name: &str, pulses: &[(f64, f64)]) -> std::path:
     let about = summary("Fronts", "mm")
         .replace("\"dofs\"", "\"wave_speeds\": [930, 1000, 1870], \"front_slip_rate\": 1, \"dofs\"");
     fs::write(folder.join("summary.json"), about).unwrap();
-    fs::write(folder.join("slip_map.csv"), slip_map(pulses)).unwrap();
+    write_map(&folder, &slip_map(pulses, true));
     folder
 }
 
@@ -362,25 +372,24 @@ fn fronts_are_drawn_over_space_and_time() {
 
     // One front that takes the whole run is in the map of the run, with its slopes, and nowhere else.
     let single = front_results(folder.path(), "single", &[]);
-    let mut rows = slip_map(&[(0.0, 40.0)]);
-    rows = rows
-        .lines()
-        .filter(|line| !line.starts_with("1,") && !line.starts_with("2,"))
-        .map(|line| format!("{line}\n"))
-        .collect();
-    fs::write(single.join("slip_map.csv"), rows).unwrap();
+    write_map(&single, &slip_map(&[(0.0, 40.0)], false));
     assert_eq!(plot(&[&single], &single).status.code(), Some(0));
     assert!(figure(&single, "slip_rate.svg").contains(">c_p<") && !single.join("events.svg").exists());
 
-    // Nothing slips; and a row that is being written.
+    // Nothing slips; and damage, which is named.
     let rest = front_results(folder.path(), "rest", &[]);
     assert_eq!(plot(&[&rest], &rest).status.code(), Some(0));
     figure(&rest, "slip_rate.svg");
     figure(&rest, "traction.svg");
     assert!(!rest.join("events.svg").exists());
-    let text = slip_map(&[(3.0, 20.0), (10.0, 40.0)]);
-    let last = text.trim_end().rfind('\n').unwrap();
-    fs::write(run.join("slip_map.csv"), &text[..last - 300]).unwrap();
-    assert_eq!(plot(&[&run], &run).status.code(), Some(0));
-    assert_eq!(figure(&run, "events.svg"), events);
+    let chunk = run.join("interface.zarr/base.q/0.0");
+    let bytes = fs::read(&chunk).unwrap();
+    fs::write(&chunk, &bytes[..bytes.len() - 300]).unwrap();
+    refused(&[&run], &["interface.zarr/base.q/0.0: is damaged"]);
+    fs::remove_file(&chunk).unwrap();
+    refused(&[&run], &["interface.zarr/base.q/0.0: cannot be read"]);
+    fs::write(run.join("interface.zarr/.zmetadata"), "{").unwrap();
+    refused(&[&run], &["interface.zarr/.zmetadata: EOF"]);
+    fs::write(run.join("interface.zarr/.zmetadata"), "{\"metadata\": {}}").unwrap();
+    refused(&[&run], &["does not name its `contacts`"]);
 }

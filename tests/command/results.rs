@@ -54,14 +54,15 @@ fn history_has_the_promised_columns() {
     let header = "time,dt,step,iterations,kinetic,strain,contact_elastic,friction_dissipation,damping_dissipation,\
                   external_work,energy_error,base.normal_force,base.tangential_force,base.contact_length,\
                   base.slip_fraction,base.mean_slip,base.max_penetration,base.max_elastic_slip,base.mean_elastic_slip,\
-                  block.ux,block.uy,block.fx,block.fy";
+                  block.ux,block.uy,block.fx,block.fy,base.force_x,base.force_y,base.moment,\
+                  base.frictional_heat,base.frictional_power";
     let mut lines = text.lines();
     assert_eq!(lines.next(), Some(header));
     let column = |name: &str| header.split(',').position(|column| column == name).unwrap();
     let mut pulled = false;
     for line in lines {
         let cells: Vec<&str> = line.split(',').collect();
-        assert_eq!(cells.len(), 23, "{line}");
+        assert_eq!(cells.len(), 28, "{line}");
         let number = |name: &str| cells[column(name)].parse::<f64>().unwrap();
         assert_eq!(cells[2], "pull");
         // One point of area 2: q = force/2, elastic slip q/α_t, plastic slip the rest of the motion.
@@ -210,7 +211,7 @@ fn frames_of_explicit_steps_come_with_every_nth_row() {
     }
 }
 
-/// What slides without friction has a map of its slip, and no fronts.
+/// What slides without friction has no fronts.
 #[test]
 fn frictionless_contacts_have_no_fronts() {
     for (friction, fronts) in [(json!({"law": "frictionless"}), false), (json!({"law": "coulomb", "mu": 0.1}), true)] {
@@ -229,7 +230,6 @@ fn frictionless_contacts_have_no_fronts() {
         run(folder.path(), &case);
         let rows =
             |name: &str| fs::read_to_string(folder.path().join("out/case").join(name)).unwrap().lines().count() - 1;
-        assert_eq!(rows("slip_map.csv"), 10 * 8);
         assert_eq!(rows("fronts.csv") > 0, fronts, "{friction}");
     }
 }
@@ -303,5 +303,122 @@ fn the_law_from_elsewhere_has_exact_tangents() {
         close("slip", answer.dtraction_dslip, by_slip, 1e-4 * law.alpha_t);
         close("pressure", answer.dtraction_dpressure, by_pressure, 1e-6);
         assert!(answer.state.dissipation >= 0.0);
+    }
+}
+
+/// Attempts of a run by what `newton.csv` says became of them, with its summary.
+fn verdicts(case: &Value) -> (std::collections::BTreeMap<String, usize>, Value) {
+    let folder = TempDir::new().unwrap();
+    run(folder.path(), case);
+    let text = fs::read_to_string(folder.path().join("out/case/newton.csv")).unwrap();
+    let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let header = lines.next().unwrap();
+    let column = |name: &str| header.iter().position(|column| *column == name).unwrap();
+    let [increment, attempt, verdict] = ["increment", "attempt", "verdict"].map(column);
+    assert_eq!(header.last(), Some(&"reason"));
+    let rows: Vec<[String; 3]> = lines
+        .map(|row| {
+            // Commas in reasons would be further cells.
+            assert_eq!(row.len(), header.len(), "{row:?}");
+            assert_eq!(row[verdict] == "accepted", row[row.len() - 1].is_empty(), "{row:?}");
+            [row[increment], row[attempt], row[verdict]].map(Into::into)
+        })
+        .collect();
+    let mut counts = std::collections::BTreeMap::new();
+    for attempt in rows.chunk_by(|a, b| a == b) {
+        *counts.entry(attempt[0][2].clone()).or_insert(0) += 1;
+    }
+    (counts, serde_json::from_slice(&fs::read(folder.path().join("out/case/summary.json")).unwrap()).unwrap())
+}
+
+/// A square pressed flat: the second increment starts from a guess in which it is inside out, before anything is solved. It has a row
+/// of its own, is told of, and counted.
+#[test]
+fn what_fails_before_a_solve_is_told_as_well() {
+    let case = json!({
+        "mesh": {"nodes": [[0, 0], [1, 0], [1, 1], [0, 1]], "elements": {"sled": [[0, 1, 2, 3]]},
+            "edges": {"bottom": [[0, 1]], "top": [[2, 3]]}},
+        "bodies": {"sled": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}}},
+        "contacts": {"base": {"slave": "bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+            "friction": {"law": "coulomb", "mu": 0.4}}},
+        "steps": [{"name": "press", "duration": 1, "dt": {"initial": 1, "min": 0.01},
+            "supports": [{"on": "top", "ux": 0, "uy": -1.5}]}],
+        "output": {"fields": false}
+    });
+    let folder = TempDir::new().unwrap();
+    let output = run(folder.path(), &case);
+    let out = folder.path().join("out/case");
+    let text = fs::read_to_string(out.join("newton.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    let column = |name: &str| rows[0].iter().position(|column| *column == name).unwrap();
+    let [iteration, verdict, reason] = ["iteration", "verdict", "reason"].map(column);
+    let unsolved: Vec<&Vec<&str>> = rows.iter().filter(|row| row[iteration] == "0").collect();
+    let [row] = unsolved[..] else { panic!("one attempt had no solve: {text}") };
+    assert!(
+        row[verdict] == "unsolved" && row[reason].starts_with("element 0 of body `sled` is turned inside out (J = -")
+    );
+    let told = String::from_utf8(output.stderr).unwrap();
+    for part in [
+        format!("press  t 0.5  dt 5.000e-1  given up before a solve: {}\n", row[reason].replace(';', ",")),
+        "given up after 1 iteration: element 0 of body `sled` is turned inside out (J = -4.821e-1) at (0.5, 0.5)\n"
+            .into(),
+        "\ngiven up: 2 × element inside out; `reason` in newton.csv tells of each\n".into(),
+    ] {
+        assert!(told.contains(&part), "{part:?} is not in {told}");
+    }
+    let summary: Value = serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
+    assert_eq!((&summary["given_up"], &summary["cutbacks"]), (&json!({"element inside out": 2}), &json!(2)));
+    // Rows with a solve are as many as solves; and no file is listed that is not there.
+    let solves = rows[1..].iter().filter(|row| row[iteration] != "0").count();
+    assert_eq!(summary["newton_iterations"], solves);
+    let files: Vec<&str> = summary["files"].as_array().unwrap().iter().filter_map(Value::as_str).collect();
+    assert!(files.contains(&"checkpoint.bin") && files.iter().all(|file| out.join(file).exists()), "{files:?}");
+}
+
+/// Every attempt says whether it was accepted or why not, and as many of each kind as the summary counts.
+#[test]
+fn every_attempt_says_what_became_of_it() {
+    let mut inaccurate = slider(10.0, 1e-3);
+    inaccurate["steps"][0]["dt"] = json!({"initial": 1e-3, "min": 1e-7, "max": 1, "error": 1e-6});
+    let mut laborious = slider(10.0, 0.5);
+    laborious["newton"] = json!({"max_iterations": 4});
+    laborious["steps"][0]["dt"] = json!({"initial": 2, "min": 1e-4});
+    let block = Blocks::default().rectangle("ground", [6, 2], [0.0, -0.5], [3.0, 0.0]).rectangle(
+        "block",
+        [3, 2],
+        [0.4, 0.01],
+        [1.4, 0.51],
+    );
+    let material = json!({"model": "linear", "E": 100, "nu": 0.3});
+    let touching = json!({
+        "mesh": block.json(),
+        "bodies": {"ground": {"material": material}, "block": {"material": material}},
+        "contacts": {"base": {"slave": "block_bottom", "master": "ground_top",
+            "friction": {"law": "coulomb", "mu": 0.3, "alpha_t": 2e3}}},
+        "steps": [{"name": "land", "duration": 1, "dt": {"initial": 0.1, "max": 0.1, "min": 1e-4}, "supports": [
+            {"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": "0.02*t", "uy": "-0.03*t"}]}],
+        "output": {"fields": false}
+    });
+    let mut rupturing = crate::survive::ruptures();
+    rupturing["output"] = json!({"fields": false, "report": false, "interval": 1e-2});
+    for (case, kind) in [(inaccurate, "error"), (laborious, "unsolved"), (touching, "touch"), (rupturing, "rupture")] {
+        let (counts, summary) = verdicts(&case);
+        let count = |name: &str| counts.get(name).copied().unwrap_or(0) as u64;
+        assert!(count(kind) > 0, "{kind}: {counts:?}");
+        assert_eq!(count("error") + count("touch") + count("rupture"), summary["rejected"], "{kind}: {counts:?}");
+        assert_eq!(count("unsolved"), summary["cutbacks"], "{kind}: {counts:?}");
+        let given_up = summary["given_up"].as_object().unwrap();
+        let by_kind = |kind: &str| given_up.get(kind).and_then(Value::as_u64).unwrap_or(0);
+        assert_eq!(
+            [by_kind("error in time"), by_kind("points touched"), by_kind("rupture")],
+            [count("error"), count("touch"), count("rupture")],
+            "{kind}: {given_up:?}"
+        );
+        let all: u64 = given_up.values().filter_map(Value::as_u64).sum();
+        assert_eq!(
+            all,
+            counts.iter().filter(|(verdict, _)| *verdict != "accepted").map(|(_, n)| *n as u64).sum::<u64>()
+        );
+        assert!(count("accepted") > 0 && counts.len() <= 5);
     }
 }

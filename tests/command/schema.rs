@@ -1,6 +1,7 @@
 //! The schemas that `fecontact schema` prints: they accept the cases of this repository, refuse bad ones, and explain
 //! every key.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -109,9 +110,12 @@ fn no_object_takes_unknown_keys() {
     assert!(open.is_empty(), "any key may stand at {open:#?}");
 }
 
-/// Objects of known keys that leave room for others.
+/// Objects of known keys that leave room for others, whatever these hold; parameters by name, as `along` has them beside its
+/// `law`, hold profiles.
 fn find_open(schema: &Value, place: &str, open: &mut Vec<String>) {
-    if schema.get("properties").is_some_and(Value::is_object) && schema["additionalProperties"] != json!(false) {
+    let others = &schema["additionalProperties"];
+    let told = *others == json!(false) || others.is_object();
+    if schema.get("properties").is_some_and(Value::is_object) && !told {
         open.push(place.into());
     }
     match schema {
@@ -131,6 +135,31 @@ fn every_key_is_explained() {
     find_silent(&schema(), "", &mut silent);
     find_silent(&printed(&["schema", "law"]), "law", &mut silent);
     assert!(silent.is_empty(), "no description at {silent:#?}");
+}
+
+/// The whole page is compared by `docs/reference.py --check`, which needs Python; this tells of a key that it lacks.
+#[test]
+fn the_reference_has_every_key() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/reference/case_file.md");
+    let page = fs::read_to_string(page).unwrap();
+    let mut keys = BTreeSet::new();
+    find_keys(&schema(), &mut keys);
+    find_keys(&printed(&["schema", "law"]), &mut keys);
+    assert!(keys.len() > 100, "{keys:?}");
+    keys.retain(|key| ![format!("| `{key}` |"), format!("**`{{\"{key}\"")].iter().any(|told| page.contains(told)));
+    // Tags of a choice: `"law": "coulomb"`.
+    keys.retain(|key| !page.contains(&format!("**`\"{key}\": ")));
+    assert!(keys.is_empty(), "python3 docs/reference.py: the page has no {keys:?}");
+}
+
+fn find_keys(schema: &Value, keys: &mut BTreeSet<String>) {
+    let properties = schema.get("properties").and_then(Value::as_object);
+    keys.extend(properties.into_iter().flatten().map(|(key, _)| key.clone()));
+    match schema {
+        Value::Object(object) => object.values().for_each(|value| find_keys(value, keys)),
+        Value::Array(list) => list.iter().for_each(|value| find_keys(value, keys)),
+        _ => {}
+    }
 }
 
 fn find_silent(schema: &Value, place: &str, silent: &mut Vec<String>) {

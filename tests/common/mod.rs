@@ -2,6 +2,8 @@
 //! every state.
 #![allow(dead_code, reason = "each test program uses a part")]
 
+pub mod store;
+
 use std::path::Path;
 use std::sync::Arc;
 
@@ -253,6 +255,7 @@ pub fn finished(model: Model) -> Finished {
     let (report, result) = run(&model, &mut [&mut record]);
     result.unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(record.failed, report.cutbacks + report.rejected);
+    assert_eq!(report.given_up.values().sum::<usize>(), record.failed, "{:?}", report.given_up);
     let Record { states, iterations, stabilization, .. } = record;
     Finished { model, states, iterations, stabilization, report }
 }

@@ -7,6 +7,10 @@
 mod common;
 
 mod aids;
+mod cycles;
+mod faults;
+mod fracture;
+mod healing;
 mod paper;
 mod published;
 mod rupture;

@@ -77,11 +77,16 @@ fn summit([(t0, y0), (t1, y1), (t2, y2)]: [(f64, f64); 3]) -> f64 {
     0.5 * (t0 + t1) - before * 0.5 * (t2 - t0) / (after - before)
 }
 
-/// The energy balance, relative to the work done, of a run that resolves the ringing.
+/// Largest error of the energy balance over the largest work done.
+fn energy_error(rows: &[Row]) -> f64 {
+    let most = |of: fn(&Row) -> f64| rows.iter().map(of).fold(0.0, f64::max);
+    most(|row| row.energy_error) / most(|row| row.work)
+}
+
+/// The energy balance of a run that resolves the ringing.
 fn assert_balanced(rows: &[Row]) {
-    let work = rows.iter().fold(0.0, |most: f64, row| most.max(row.work));
-    let error = rows.iter().fold(0.0, |most: f64, row| most.max(row.energy_error));
-    assert!(error < 1e-3 * work, "energy error {error:e} of {work:e}");
+    let error = energy_error(rows);
+    assert!(error < 1e-3, "energy error {error:e} of the work");
 }
 
 /// Friction grows as F = K (v_ex t − u) until the law's own curve has its peak: F = 25.0175 at u = 0.040384, so that
@@ -124,22 +129,32 @@ fn damped_runs_slip_first_at_the_quasi_static_onset() {
 
 /// With the ringing resolved the first slips come at 3083.50, 4626.02 and 2305.15; case 3's second at 5285.3. Ringing is
 /// unstable, and a difference in the last digit grows tenfold every 150 to 500 s: it moves the first slip of case 4 by some 5 s.
+/// The paper's scheme, at its increment, is beside them.
 #[test]
-#[ignore = "cases/paper/README, What is found: resolved and Runge–Kutta"]
+#[ignore = "cases/paper/README.md, What is found: resolved and Runge–Kutta"]
 fn resolved_runs_slip_when_an_independent_integration_does() {
-    println!("cases/paper/README, What is found: resolved and Runge–Kutta\n");
-    for (name, first, second, end) in
-        [("3", 3083.50, Some(5285.3), 12000.0), ("4", 4626.02, None, 12000.0), ("5", 2305.15, None, 8000.0)]
+    println!("cases/paper/README.md, What is found: resolved and Runge–Kutta\n");
+    println!(
+        "| case | slip | Runge–Kutta | resolved | Wilson-θ, Δt = 0.05 | energy error over the work: resolved | Wilson-θ |"
+    );
+    println!("|---|---|---|---|---|---|---|");
+    for (name, references, end) in
+        [("3", &[3083.50, 5285.3][..], 12000.0), ("4", &[4626.02], 12000.0), ("5", &[2305.15], 8000.0)]
     {
-        let (rows, _) = finish(&paper(&format!("spring_mass_{name}.json")));
-        let times = slips(&rows);
-        println!("case {name}: slips at {times:.1?}");
-        close(&format!("first slip of case {name}"), times[0], first, 2e-3 * first);
-        if let Some(second) = second {
-            close("second slip", times[1], second, 3e-3 * second);
+        let [resolved, wilson] = ["", "_wilson"].map(|way| finish(&paper(&format!("spring_mass_{name}{way}.json"))).0);
+        let [times, theirs] = [&resolved, &wilson].map(|rows| slips(rows));
+        let errors = [&resolved, &wilson].map(|rows| energy_error(rows));
+        for (k, reference) in references.iter().enumerate() {
+            let (slip, tolerance) = [("first", 2e-3), ("second", 3e-3)][k];
+            let [exact, ours] = errors;
+            println!(
+                "| {name} | {slip} | {reference:.1} | {:.1} | {:.1} | {exact:.0e} | {ours:.0e} |",
+                times[k], theirs[k]
+            );
+            close(&format!("{slip} slip of case {name}"), times[k], *reference, tolerance * reference);
         }
-        close("end", rows.last().unwrap().time, end, 1e-6);
-        assert_balanced(&rows);
+        close("end", resolved.last().unwrap().time, end, 1e-6);
+        assert_balanced(&resolved);
     }
 }
 

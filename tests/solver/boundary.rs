@@ -310,3 +310,91 @@ fn numbers_in_expressions_may_have_exponents() {
         assert!(value(text).is_err(), "{text} was read");
     }
 }
+
+/// A quarter of a plane under 45°: a trapezoid whose right side runs from (2, 0) to (1, 1), with the normal (1, 1)/√2.
+fn trapezoid(section: Value, steps: Value) -> Finished {
+    let mesh = Blocks::default().block("body", [3, 2], |s, t| [s * (2.0 - t), t]);
+    finish(&json!({
+        "section": section, "mesh": mesh.json(),
+        "bodies": {"body": {"material": {"model": "neo_hookean", "E": 100, "nu": 0.3, "density": 1}}},
+        "newton": {"tolerance": 1e-12},
+        "steps": steps,
+    }))
+}
+
+/// What the reactions of the left side balance while it is turned by 0.8 rad, over the last half under all of the load.
+fn turned_under(section: Value, load: Value) -> [f64; 2] {
+    let turned = json!([{"on": "body_left", "rotation": {"about": [0, 0], "angle": 0.8}}]);
+    let run = trapezoid(
+        section,
+        json!([{"name": "turn", "duration": 1, "dt": {"initial": 0.125}, "supports": turned, "loads": [load]}]),
+    );
+    run.reaction("body_left", run.last()).map(|force| -force)
+}
+
+/// A dead pressure p puts −p ∫ n dS of the undeformed side on the body, −p (1, 1) here, however the body turns and stretches;
+/// one that follows turns with the side.
+#[test]
+fn a_dead_pressure_keeps_its_force() {
+    let plate = json!({"plane_stress": {"thickness": 0.25}});
+    for (section, depth) in [(json!("plane_strain"), 1.0), (plate, 0.25)] {
+        let force = turned_under(section.clone(), json!({"on": "body_right", "dead_pressure": 3}));
+        force.iter().for_each(|force| close("dead", *force, -3.0 * depth, 1e-7));
+        let [x, y] = turned_under(section, json!({"on": "body_right", "pressure": 3}));
+        assert!((x - y).abs() > 1.0 * depth, "a pressure that follows has turned: ({x}, {y})");
+    }
+}
+
+/// On rings, −p ∫ n_y 2πr dS = −p π (2² − 1²) along the axis.
+#[test]
+fn a_dead_pressure_acts_on_the_full_turn() {
+    let run = trapezoid(
+        json!("axisymmetric"),
+        json!([{"name": "load", "duration": 1, "dt": {"initial": 0.5}, "supports": [{"on": "body_bottom", "ux": 0, "uy": 0}],
+                "loads": [{"on": "body_right", "dead_pressure": 0.5}]}]),
+    );
+    close("force", run.reaction("body_bottom", run.last())[1], 0.5 * 3.0 * PI, 1e-8);
+}
+
+/// A total force is the force on the side, whatever its length and the section, and as even as the traction F/(√2 w).
+#[test]
+fn a_total_force_is_spread_evenly() {
+    let plate = json!({"plane_stress": {"thickness": 0.25}});
+    for (section, area) in [(json!("plane_strain"), 2f64.sqrt()), (plate, 0.25 * 2f64.sqrt())] {
+        let force = turned_under(section.clone(), json!({"on": "body_right", "total_force": {"x": 3, "y": -4}}));
+        close("x", force[0], 3.0, 1e-7);
+        close("y", force[1], -4.0, 1e-7);
+        let loaded = |load: Value| {
+            let supports = json!([{"on": "body_left", "ux": 0, "uy": 0}]);
+            let step = json!([{"name": "load", "duration": 1, "supports": supports, "loads": [load]}]);
+            trapezoid(section.clone(), step).last().displacement.clone()
+        };
+        let even = loaded(json!({"on": "body_right", "traction": {"x": 3.0 / area, "y": -4.0 / area}}));
+        let total = loaded(json!({"on": "body_right", "total_force": {"x": 3, "y": -4}}));
+        assert!(distance(&even, &total) < 1e-11, "off by {}", distance(&even, &total));
+    }
+    let run = trapezoid(
+        json!("axisymmetric"),
+        json!([{"name": "load", "duration": 1, "supports": [{"on": "body_bottom", "ux": 0, "uy": 0}],
+                "loads": [{"on": "body_right", "total_force": {"y": -4}}]}]),
+    );
+    close("on the full turn", run.reaction("body_bottom", run.last())[1], 4.0, 1e-8);
+}
+
+/// A place by coordinates is the node nearest to it: the same run as with the node's tag, to the bit, and a load given by the
+/// one way is replaced by the other.
+#[test]
+fn a_place_by_coordinates_is_the_nearest_node() {
+    let run = |corner: Value, again: Value| {
+        let steps = json!([
+            {"name": "load", "duration": 1, "supports": [{"on": "bar_left", "ux": 0, "uy": 0}, {"on": corner, "uy": 0.1}],
+             "loads": [{"on": corner, "force": {"x": 0.3}}]},
+            {"name": "more", "duration": 1, "loads": [{"on": again, "force": {"x": 0.6}}]},
+        ]);
+        bar(steps).last().clone()
+    };
+    let tag = || json!({"node": 3});
+    let [tagged, near] = [run(tag(), tag()), run(json!({"near": [0.9, 1.05]}), tag())];
+    assert_eq!(tagged, near);
+    close("force", near.external.iter().step_by(2).filter(|force| **force > 0.0).sum(), 0.6, 1e-12);
+}

@@ -79,7 +79,7 @@ fn a_committed_dynamic_case_from_code_is_the_same_model() {
         alpha_t: Some(3000.0),
         ..SuperSubloadingParameters::new(0.5, 0.1, 3600.0)
     };
-    let initial = InitialTractions { pressure: 5.0.into(), traction: 0.5.into(), balanced: true };
+    let initial = InitialTractions { pressure: 5.0.into(), traction: 0.5.into(), balanced: true, of_bodies: false };
     let contact = Contact::new("interface", "block_bottom", "base_top", friction).alpha_n(3000.0);
     let increments = IncrementSettings { initial: 0.01, min: Some(1e-8), max: Some(0.05), error: Some(5e-5) };
     let push = LoadStep::new("push", 3.5)
@@ -123,7 +123,7 @@ fn a_committed_rupture_from_code_is_the_same_model() {
         Ok(Box::new(SlipWeakening::new(&parameters, alpha_t)?))
     });
     let contact = Contact::new("fault", "upper_bottom", "lower_top", friction).alpha_n(3203.8).small_sliding();
-    let initial = InitialTractions { pressure: 120.0.into(), traction, balanced: true };
+    let initial = InitialTractions { pressure: 120.0.into(), traction, balanced: true, of_bodies: false };
     let damping = Damping { mass: 0.0, retardation: 0.003 };
     let step = LoadStep::new("rupture", 12.0).scheme(Scheme::Explicit { safety: 0.9 }).dt(1.0);
     let sides = ["lower_left", "lower_right", "lower_bottom", "upper_left", "upper_right", "upper_top"];
@@ -404,7 +404,7 @@ fn what_is_wrong_is_named() {
             "contacts.b.master.plane.point: is NaN",
         ),
         (varying((-1.0).into()), "contacts.other.along.mu at (0, 0.7886751345948129): \"mu\" is -1"),
-        (varying(Profile::Expression(parsed("t"))), "contacts.other.along.mu: the time t has no meaning here"),
+        (varying(Profile::Expression(parsed("t"))), "contacts.other.along.mu at (0, 0.7886751345948129): \"mu\" is 0"),
         (varying(Profile::Table(1, vec![])), "contacts.other.along.mu.y: the table is empty"),
         (small().step(step().support(top())), "steps[1].supports[0]: prescribes nothing"),
         (small().step(step().support(top().ux(f64::NAN))), "steps[1].supports[0].ux: is NaN: must be a finite number"),
@@ -415,6 +415,30 @@ fn what_is_wrong_is_named() {
             "steps[1].supports[0].ux: null ends what an earlier step gave, but none gave this on block_bottom",
         ),
         (small().step(step().load(Load::gravity("block", [0.0, -1.0]))), "steps[1].loads[0].on: gravity needs a mass"),
+        (
+            small().step(step().fix(Place::Near([0.1, 7.0]))),
+            "steps[1].supports[0].on: no node is near (0.1, 7): the nearest, 3, lies ",
+        ),
+        (
+            small().step(step().fix(Place::Near([0.5, 1.0]))),
+            "steps[1].supports[0].on: nodes 3 and 4 are equally near to (0.5, 1): name one as {\"node\": 3}",
+        ),
+        (
+            small().step(step().load(Load::force(Place::Near([f64::NAN, 7.0]), [1.0, 0.0]))),
+            "steps[1].loads[0].on: near (NaN, 7) is no place: give finite numbers",
+        ),
+        (
+            small().step(step().load(Load::total_force(Place::Near([0.0, 0.0]), [1.0, 0.0]))),
+            "steps[1].loads[0].on: the node near (0, 0) cannot carry this load",
+        ),
+        (
+            small().step(step().load(Load::total_force("block_top", [expression("t"), expression("x*t")]))),
+            "steps[1].loads[0].total_force.y: is the force on the whole group, which does not vary from place to place",
+        ),
+        (
+            small().step(step().load(Load::dead_pressure("block", 1.0))),
+            "steps[1].loads[0].on: `block` is a group of solid elements, not of edges",
+        ),
         (
             small().step(step().load(Load::pressure(Place::Node(0), 1.0))),
             "steps[1].loads[0].on: node 0 cannot carry this load",
@@ -447,7 +471,7 @@ fn what_is_wrong_is_named() {
         (small().watch("block_top").watch("block_top"), "watch[1]: `block_top` is watched already"),
         (
             small().newton(NewtonSettings { tolerance: 2.0, max_iterations: 9 }),
-            "newton.tolerance: is 2: must be between 0 and 1",
+            "newton.tolerance: is 2: must be above 0 and at most 0.01",
         ),
         (small().interval(0.0), "output.interval: is 0: must be positive"),
     ] {

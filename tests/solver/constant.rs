@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use super::elements::lattices;
 use crate::common::{Blocks, elastic, linear, neo_hookean};
 use fecontact::equations::term::Term;
 use fecontact::equations::{Assembler, Trial};
@@ -25,22 +26,8 @@ const NAMES: [&str; 3] = ["left", "middle", "right"];
 fn strip(kind: ElementKind, section: Section, map: impl Fn([f64; 2]) -> [f64; 2]) -> Mesh {
     let mut mesh = InlineMesh::default();
     let mut numbers = HashMap::new();
-    let corners: &[&[[usize; 2]]] = match kind.corners() {
-        3 => &[&[[0, 0], [2, 0], [2, 2]], &[[0, 0], [2, 2], [0, 2]]],
-        _ => &[&[[0, 0], [2, 0], [2, 2], [0, 2]]],
-    };
     for (i, j) in (0..18).map(|cell| (cell % 6, cell / 6)) {
-        for corners in corners {
-            let mut lattice = corners.to_vec();
-            if kind.nodes() > kind.corners() {
-                lattice.extend((0..kind.corners()).map(|edge| {
-                    let [a, b] = kind.edge(edge).0.map(|a| corners[a]);
-                    [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2]
-                }));
-            }
-            if kind == ElementKind::Q9 {
-                lattice.push([1, 1]);
-            }
+        for lattice in lattices(kind) {
             let number = |&[a, b]: &[usize; 2]| {
                 let at = [2 * i + a, 2 * j + b];
                 *numbers.entry(at).or_insert_with(|| {
@@ -146,7 +133,7 @@ fn check(what: &str, model: &Arc<Model>) {
     agree(what, &assembler.evaluation.force, &expected.force, elastic);
     let energy = assembler.evaluation.strain_energy;
     assert!((energy - expected.energy).abs() < 1e-13 * expected.energy, "{what}: {energy} for {}", expected.energy);
-    if model.is_viscous() {
+    if model.is_viscous(step) {
         assembler.forces(trial, &u, Some(&v)).expect("forces");
         let damping: Vec<f64> = assembler.evaluation.damping.iter().map(|damping| -damping).collect();
         agree(what, &damping, &expected.viscous, viscous);
@@ -187,6 +174,10 @@ fn stored_elements_answer_as_each_by_itself() {
             (distorted as fn([f64; 2]) -> [f64; 2], Section::PlaneStrain),
             (|x| x, Section::PlaneStrain),
             (|x| x, graded),
+            (|x| x, Section::PlaneStress { thickness: 0.3 }),
+            (distorted, Section::PlaneStress { thickness: 0.3 }),
+            (|[x, y]| [x + 0.5, y], Section::Axisymmetric),
+            (|[x, y]| distorted([x + 0.5, y]), Section::Axisymmetric),
         ] {
             for retardations in [[0.0; 3], [0.0, 0.02, 0.0], [0.01, 0.02, 0.03]] {
                 let laws = || -> [Box<dyn Material>; 3] {
@@ -295,6 +286,8 @@ fn equal_elements_share_their_matrix() {
         };
         assert_eq!(count(Section::PlaneStrain, |x| x), 2 * triangles, "{kind:?}");
         assert_eq!(count(Section::Graded { depth: 1.0, slope: [0.5, 0.0] }, |x| x), 4 * triangles, "{kind:?}");
+        assert_eq!(count(Section::PlaneStress { thickness: 2.0 }, |x| x), 2 * triangles, "{kind:?}");
+        assert_eq!(count(Section::Axisymmetric, |x| x), 4 * triangles, "{kind:?}");
         assert_eq!(count(Section::PlaneStrain, distorted), 12 * triangles, "{kind:?}");
     }
 }

@@ -41,6 +41,24 @@ fn materials() -> impl Iterator<Item = Box<dyn Material>> {
     MODELS.iter().map(|model| model(ElasticConstants { young: E, poisson: 0.3, density: 0.0 }).build().unwrap())
 }
 
+/// Nodes of the elements that fill a cell, one quadrilateral or two triangles, in half sides of it.
+pub fn lattices(kind: ElementKind) -> Vec<Vec<[usize; 2]>> {
+    let corners: &[&[[usize; 2]]] = match kind.corners() {
+        3 => &[&[[0, 0], [2, 0], [2, 2]], &[[0, 0], [2, 2], [0, 2]]],
+        _ => &[&[[0, 0], [2, 0], [2, 2], [0, 2]]],
+    };
+    let lattice = |corners: &&[[usize; 2]]| {
+        let middle = |edge| {
+            let [a, b] = kind.edge(edge).0.map(|a| corners[a]);
+            [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2]
+        };
+        let middles = (0..kind.corners()).map(middle).filter(|_| kind.nodes() > kind.corners());
+        let centre = (kind == ElementKind::Q9).then_some([1, 1]);
+        corners.iter().copied().chain(middles).chain(centre).collect()
+    };
+    corners.iter().map(lattice).collect()
+}
+
 /// A structured mesh of the unit square, mapped anywhere.
 struct Patch {
     kind: ElementKind,
@@ -56,21 +74,8 @@ impl Patch {
     fn new(kind: ElementKind, f_bar: bool, n: usize, map: impl Fn(f64, f64) -> Vector2<f64>) -> Self {
         let mut patch = Self { kind, f_bar, nodes: vec![], square: vec![], elements: vec![] };
         let mut numbers = HashMap::new();
-        let halves: &[&[[usize; 2]]] = match kind.corners() {
-            3 => &[&[[0, 0], [2, 0], [2, 2]], &[[0, 0], [2, 2], [0, 2]]],
-            _ => &[&[[0, 0], [2, 0], [2, 2], [0, 2]]],
-        };
-        for (cell, corners) in (0..n * n).flat_map(|cell| halves.iter().map(move |half| (cell, half))) {
-            let mut lattice = corners.to_vec();
-            if kind.nodes() > kind.corners() {
-                lattice.extend((0..kind.corners()).map(|edge| {
-                    let [a, b] = kind.edge(edge).0.map(|a| corners[a]);
-                    [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2]
-                }));
-            }
-            if kind == ElementKind::Q9 {
-                lattice.push([1, 1]);
-            }
+        let halves = lattices(kind);
+        for (cell, lattice) in (0..n * n).flat_map(|cell| halves.iter().map(move |half| (cell, half))) {
             let connectivity: Vec<usize> = lattice
                 .iter()
                 .map(|[i, j]| {
@@ -571,6 +576,114 @@ fn both_ways_through_an_element_agree() {
             assert!((stored - energy).abs() < 1e-14 * E && dissipated == 0.0);
             let differ = |a: &[f64], b: &[f64]| a.iter().zip(b).fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
             assert!(differ(&force, &other) < 1e-14 * E && differ(&tangent, &by_memory) < 1e-13 * E, "{kind:?}");
+        }
+    }
+}
+
+/// Places of a distorted element of rings, whose left side is at the radius `r`; it may touch the axis.
+fn ring_positions(kind: ElementKind, r: f64) -> Vec<Vector2<f64>> {
+    let left = distorted_element(kind).iter().map(|x| x.x).fold(f64::INFINITY, f64::min);
+    distorted_element(kind).iter().map(|x| x + Vector2::new(r - left, 0.0)).collect()
+}
+
+/// Force and tangent of rings by differences of energy and force, of all laws and kinds; elements on the axis, too.
+#[test]
+fn tangent_and_energy_of_rings_agree_with_the_force_by_differences() {
+    for ((kind, f_bar), r) in VARIANTS.into_iter().flat_map(|variant| [0.0, 0.7].map(|r| (variant, r))) {
+        let element = SolidElement::new(kind, f_bar, Section::Axisymmetric, &ring_positions(kind, r)).unwrap();
+        let (nodes, h) = (kind.nodes(), 1e-6);
+        let u = wild(nodes, 0.01);
+        for material in materials() {
+            let (mut force, mut tangent) = (vec![0.0; 2 * nodes], vec![0.0; 4 * nodes * nodes]);
+            let energy = element.force_and_tangent(&*material, &u, &mut force, &mut tangent).unwrap();
+            let mut alone = vec![Vector2::zeros(); nodes];
+            assert_eq!(element.nodal_forces(&*material, &u, &mut alone).unwrap(), energy);
+            assert!(alone.iter().flatten().zip(&force).all(|(a, b)| a == b));
+            let largest = tangent.iter().fold(0.0f64, |most, entry| most.max(entry.abs()));
+            let at = |column: usize, h: f64| {
+                let (mut u, mut force) = (u.clone(), vec![0.0; 2 * nodes]);
+                u[column / 2][column % 2] += h;
+                (element.force(&*material, &u, &mut force).unwrap(), force)
+            };
+            for column in 0..2 * nodes {
+                let ((energy_hi, hi), (energy_lo, lo)) = (at(column, h), at(column, -h));
+                for row in 0..2 * nodes {
+                    let (exact, difference) = (tangent[row + column * 2 * nodes], (hi[row] - lo[row]) / (2.0 * h));
+                    assert!(
+                        (exact - difference).abs() < 1e-8 * largest,
+                        "{kind:?} f_bar {f_bar} at {r} {material:?}: {exact} {difference}"
+                    );
+                }
+                if !f_bar {
+                    let work = (energy_hi - energy_lo) / (2.0 * h);
+                    assert!((force[column] - work).abs() < 1e-9 * largest, "{kind:?} {work} {}", force[column]);
+                }
+            }
+        }
+    }
+}
+
+/// Viscous forces of rings: their derivatives by differences, and none in a motion along the axis.
+#[test]
+fn viscous_forces_of_rings_agree_with_differences() {
+    for kind in KINDS {
+        let element = SolidElement::new(kind, false, Section::Axisymmetric, &ring_positions(kind, 0.2)).unwrap();
+        let (nodes, h, tau) = (kind.nodes(), 1e-6, 0.3);
+        let (u, v) = (wild(nodes, 0.01), wild(nodes, 0.5));
+        let rates: Vec<f64> = (0..2 * nodes).map(|dof| 2.0 + (dof as f64).sin()).collect();
+        for material in materials() {
+            let mut tangent = vec![0.0; 4 * nodes * nodes];
+            element.viscous_tangent((&*material, tau), [&u, &v], &rates, &mut tangent);
+            let at = |column: usize, h: f64| {
+                let (mut u, mut v, mut forces) = (u.clone(), v.clone(), vec![Vector2::zeros(); nodes]);
+                u[column / 2][column % 2] += h;
+                v[column / 2][column % 2] += rates[column] * h;
+                element.viscous_forces((&*material, tau), [&u, &v], &mut forces);
+                forces
+            };
+            for column in 0..2 * nodes {
+                let (hi, lo) = (at(column, h), at(column, -h));
+                for row in 0..2 * nodes {
+                    let difference = (hi[row / 2][row % 2] - lo[row / 2][row % 2]) / (2.0 * h);
+                    let exact = tangent[row + column * 2 * nodes];
+                    assert!((exact - difference).abs() < 1e-7 * E, "{kind:?} {material:?}: {exact} {difference}");
+                }
+            }
+            let (up, mut forces) = (vec![Vector2::new(0.0, 3.0); nodes], vec![Vector2::zeros(); nodes]);
+            element.viscous_forces((&*material, tau), [&u, &up], &mut forces);
+            assert!(forces.iter().all(|force| force.amax() < 1e-13 * E), "{kind:?} {material:?}: {forces:?}");
+        }
+    }
+}
+
+/// u_r = a R, u_z = b Z + c: F = diag(1 + a, 1 + b, 1 + a) everywhere, on the axis too, and so is the stress; forces balance
+/// along the axis, and f·X = ∫ P:(F-gradient of X) dV holds.
+#[test]
+fn a_homogeneous_stretch_of_rings_passes_the_patch_test() {
+    let (a, b) = (0.08, -0.05);
+    for ((kind, f_bar), r) in VARIANTS.into_iter().flat_map(|variant| [0.0, 0.7].map(|r| (variant, r))) {
+        let positions = ring_positions(kind, r);
+        let element = SolidElement::new(kind, f_bar, Section::Axisymmetric, &positions).unwrap();
+        let u: Vec<_> = positions.iter().map(|x| Vector2::new(a * x.x, b * x.y + 3.0)).collect();
+        for material in materials() {
+            let law = material.spatial().unwrap();
+            let deformation = Matrix2::new(1.0 + a, 0.0, 0.0, 1.0 + b);
+            let straining = fecontact::laws::bulk::Straining { deformation, stretch: 1.0 + a, dt: 0.0, old: &[] };
+            let (sigma, piola) = (law.cauchy(&straining).unwrap(), law.stretched(&straining, &mut []).unwrap());
+            for stress in element.stresses(&*material, &[], &u).unwrap() {
+                assert!(differs(&stress, &sigma) < 1e-13 * E, "{kind:?} f_bar {f_bar}: {stress:?} for {sigma:?}");
+                assert!((stress.xx - stress.zz).abs() < 1e-13 * E);
+            }
+            let mut force = vec![0.0; 2 * kind.nodes()];
+            let energy = element.force(&*material, &u, &mut force).unwrap();
+            let volume = element.volume();
+            assert!((energy - volume * piola.energy).abs() < 1e-12 * volume * E);
+            let sum: f64 = force.iter().skip(1).step_by(2).sum();
+            assert!(sum.abs() < 1e-13 * E * volume, "{sum}");
+            // Of the virtual motion δu = X, δF = 1.
+            let virial: f64 = (0..2 * kind.nodes()).map(|dof| force[dof] * positions[dof / 2][dof % 2]).sum();
+            let expected = volume * (piola.stress[0] + piola.stress[3] + piola.stress[4]);
+            assert!((virial - expected).abs() < 1e-12 * volume * E, "{kind:?}: {virial} for {expected}");
         }
     }
 }

@@ -351,6 +351,24 @@ proptest! {
     }
 }
 
+/// Several vectors at a time have the products that each has by itself, bit by bit; all nodes coupled or not.
+#[test]
+fn products_of_several_vectors_are_those_of_each() {
+    let all: Vec<usize> = (0..7).collect();
+    let mut dense = SparseMatrix::zero(Arc::new(Pattern::new(7, std::iter::once(&all[..]))));
+    dense.values = noise(dense.values.len());
+    for matrix in [Grids::new(6, 4, 10.0).matrix(1.0), dense] {
+        let [x, y] = [noise(matrix.size()), noise(2 * matrix.size()).split_off(matrix.size())];
+        assert_eq!(matrix.multiply_all([&x, &y]), [matrix.multiply(&x), matrix.multiply(&y)]);
+        let entry = |row: usize, column: usize| {
+            let block = matrix.pattern.block(row / 2, column / 2);
+            block.map_or(0.0, |block| matrix.values[block.value(row % 2, column % 2)])
+        };
+        let first: f64 = (0..matrix.size()).map(|column| entry(3, column) * x[column]).sum();
+        assert!((matrix.multiply(&x)[3] - first).abs() < 1e-13);
+    }
+}
+
 /// A matrix of which little changes from one factorization to the next: fronts stay, and not a bit of the solution is another.
 #[test]
 fn fronts_that_stay_give_the_same_bits() {

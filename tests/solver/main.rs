@@ -6,15 +6,22 @@ mod common;
 #[path = "../common/grids.rs"]
 mod grids;
 
+mod blocks;
 mod boundary;
 mod builder;
 mod condensed;
 mod constant;
 mod elements;
 mod history;
+mod imposed;
 mod invariance;
 mod linear;
+mod loading;
 mod mesh;
 mod newton;
+mod plates;
+mod sections;
 mod simulation;
+mod spinning;
 mod terms;
+mod turning;

@@ -303,6 +303,17 @@ fn bad_gmsh_files_are_refused() {
     }
 }
 
+/// What is checked in the first section would be read from the second: without nodes, where the parser's count underflows.
+#[test]
+fn a_section_stands_once() {
+    for name in ["Entities", "Nodes", "Elements"] {
+        let good = two_squares();
+        let hollow = format!("$Other\n${name}\n1 0 1 1\n$End{name}\n$EndOther\n");
+        let twice = good.replacen(&format!("${name}\n"), &format!("{hollow}${name}\n"), 1);
+        assert_says(&verdict(twice.as_bytes()), &[&format!("${name}"), "more than once"]);
+    }
+}
+
 #[test]
 fn bodies_that_share_nodes_cannot_be_in_contact() {
     let mut text = two_squares();

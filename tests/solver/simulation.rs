@@ -9,7 +9,7 @@ use fecontact::model::Model;
 use fecontact::model::builder::{Builder, LoadStep, Place, Support};
 use fecontact::model::state::State;
 use fecontact::output::fields::Fields;
-use fecontact::output::fronts::Fronts;
+use fecontact::output::fronts::{Arrive, Fronts};
 use fecontact::output::history::History;
 use fecontact::output::newton_log::NewtonLog;
 use fecontact::output::warnings::Warnings;
@@ -96,6 +96,64 @@ fn every_increment_of_static_and_implicit_runs_can_be_redone_and_resumed() {
     }
     for scheme in [json!({"hht": {"alpha": -0.1}}), json!({"newmark": {}}), json!({"wilson": {}})] {
         check(&dragged(json!({}), scheme), Path::new("test.json"));
+    }
+}
+
+/// Plates and rings whose left side lies on the axis, static, implicit and explicit.
+#[test]
+fn every_increment_of_plates_and_rings_can_be_redone_and_resumed() {
+    for section in [json!({"plane_stress": {"thickness": 0.25}}), json!("axisymmetric")] {
+        let explicit = json!({"explicit": {}});
+        for (contact, scheme, law) in [
+            (json!({"method": "mortar"}), json!("static"), "neo_hookean"),
+            (json!({"method": "node_to_segment"}), json!({"hht": {"alpha": -0.1}}), "viscoelastic"),
+            (json!({}), explicit.clone(), "hencky"),
+            (json!({}), explicit.clone(), "linear"),
+            (json!({}), explicit, "viscoelastic"),
+        ] {
+            let mut case = dragged(contact, scheme.clone());
+            case["section"] = section.clone();
+            for body in ["ground", "block"] {
+                let material = &mut case["bodies"][body]["material"];
+                material["model"] = json!(law);
+                if law == "viscoelastic" {
+                    (material["E_1"], material["tau"]) = (json!(50), json!(0.5));
+                }
+            }
+            if scheme != "static" && scheme.get("explicit").is_some() {
+                case["steps"][1]["duration"] = json!(0.02);
+                case["output"] = json!({"interval": 5e-4});
+            }
+            check(&case, Path::new("test.json"));
+        }
+    }
+}
+
+/// Bodies with an initial stress that are heated, static, implicit and explicit.
+#[test]
+fn every_increment_of_stressed_and_heated_bodies_can_be_redone_and_resumed() {
+    for (scheme, law) in [
+        (json!("static"), "viscoelastic"),
+        (json!({"hht": {"alpha": -0.1}}), "linear"),
+        (json!({"explicit": {}}), "hencky"),
+    ] {
+        let mut case = dragged(json!({}), scheme.clone());
+        for (body, stress) in [("ground", 0.5), ("block", -0.25)] {
+            case["bodies"][body]["initial_stress"] = json!({"components": {"xx": stress, "yy": "0.1*y", "zz": stress}});
+            case["bodies"][body]["thermal"] = json!({"expansion": 1e-3});
+            let material = &mut case["bodies"][body]["material"];
+            material["model"] = json!(law);
+            if law == "viscoelastic" {
+                (material["E_1"], material["tau"]) = (json!(50), json!(0.5));
+            }
+        }
+        case["steps"][0]["temperature"] = json!({"block": 4});
+        case["steps"][1]["temperature"] = json!({"block": "4 + x*t", "ground": {"rate": 0.5}});
+        if scheme.get("explicit").is_some() {
+            case["steps"][1]["duration"] = json!(0.02);
+            case["output"] = json!({"interval": 5e-4});
+        }
+        check(&case, Path::new("test.json"));
     }
 }
 
@@ -337,7 +395,7 @@ fn observers_go_back_with_the_run() {
     let mut history = History::create(folder.path(), &model).expect("a table");
     let mut log = NewtonLog::create(folder.path()).expect("a table");
     let mut fields = Fields::create(folder.path(), model.clone(), &start, 2).expect("frames");
-    let mut fronts = Fronts::create(folder.path(), &model, &start, 1e-3).expect("a table");
+    let mut fronts = Fronts::new(folder.path(), &model, &start, 1e-3, Arrive::Rate);
     let mut warnings = Warnings::default();
     let mut simulation = Simulation::new(model.clone());
     let mut observers: [&mut dyn Observer; 5] = [&mut history, &mut log, &mut fields, &mut fronts, &mut warnings];
@@ -358,9 +416,7 @@ fn observers_go_back_with_the_run() {
     step(&mut simulation, &mut observers);
     // What is told so far reaches the disk with the memories.
     SavedRun::new(&simulation, &mut observers).expect("it is saved");
-    let tables = |folder: &Path| {
-        ["history.csv", "newton.csv", "slip_map.csv"].map(|file| std::fs::read(folder.join(file)).unwrap())
-    };
+    let tables = |folder: &Path| ["history.csv", "newton.csv"].map(|file| std::fs::read(folder.join(file)).unwrap());
     let first = tables(folder.path());
     let mut again = saved.resume(&model, &mut observers).expect("it goes back");
     assert!(
@@ -374,7 +430,7 @@ fn observers_go_back_with_the_run() {
         Box::new(History::create(straight.path(), &model).expect("a table")),
         Box::new(NewtonLog::create(straight.path()).expect("a table")),
         Box::new(Fields::create(straight.path(), model.clone(), &start, 2).expect("frames")),
-        Box::new(Fronts::create(straight.path(), &model, &start, 1e-3).expect("a table")),
+        Box::new(Fronts::new(straight.path(), &model, &start, 1e-3, Arrive::Rate)),
         Box::new(Warnings::default()),
     ];
     let mut others: Vec<&mut dyn Observer> =
@@ -382,4 +438,40 @@ fn observers_go_back_with_the_run() {
     watch(&mut Simulation::new(model.clone()), &mut others).expect("it ends");
     let [one, other] = [folder.path(), straight.path()].map(files);
     assert!(one.len() > 8 && one.values().eq(other.values()), "{:?} and {:?}", one.keys(), other.keys());
+}
+
+/// A mass on a spring k = 10 under a force that its caller leads: u = f/k at every increment, by the closed form.
+#[test]
+fn loads_are_led_between_increments() {
+    let document = json!({
+        "mesh": {"nodes": [[0, 0]], "points": {"ball": [0]}},
+        "point_masses": {"ball": {"mass": 1}},
+        "steps": [{"name": "hang", "duration": 10, "dt": {"initial": 1}, "loads": [
+            {"on": "ball", "spring": {"kx": 10, "ky": 10}}, {"on": "ball", "force": {"y": -2}},
+        ]}],
+    });
+    let path = Path::new("case");
+    let case = fecontact::case::from_text(&document.to_string(), path).expect("a case");
+    let mut run = Simulation::new(fecontact::case::build(&case, path).expect("a model"));
+    let mut loading = None;
+    let mut lead = |run: &mut Simulation, load: Value, by: f64| {
+        fecontact::case::loading::load((&case, path), run, &mut loading, (&load, by)).map_err(|error| error.to_string())
+    };
+    let next = |run: &mut Simulation| {
+        run.next_increment().expect("it goes on").expect("there is one");
+        run.displacement("ball").expect("a group").y
+    };
+    close("u", next(&mut run), -0.02, 1e-12);
+    // From -0.2 at t = 1 to 3 at t = 5: at t = 2 it is 0.6.
+    lead(&mut run, json!({"on": "ball", "force": {"y": 3}}), 5.0).expect("a load");
+    close("u", next(&mut run), 0.06, 1e-12);
+    // At once, and for good.
+    let now = run.state().time;
+    lead(&mut run, json!({"on": "ball", "force": {"y": 1}}), now).expect("a load");
+    close("u", next(&mut run), 0.1, 1e-12);
+    let past = lead(&mut run, json!({"on": "ball", "force": {"y": 1}}), 0.5).expect_err("that was before");
+    assert_eq!(past, "case: by: is 0.5: must be a time from now on, and now is 3");
+    let unknown = lead(&mut run, json!({"on": "bal", "force": {"y": 1}}), 4.0).expect_err("there is no such group");
+    assert!(unknown.starts_with("case: load.on: the mesh has no group `bal`"), "{unknown}");
+    close("u", next(&mut run), 0.1, 1e-12);
 }

@@ -30,12 +30,12 @@ fn arbitrary(k: usize) -> f64 {
     2.0 * ((k as f64 + 1.0) * 0.618_033_988_749_895).fract() - 1.0
 }
 
-fn arbitrary_displacement(model: &Model, size: f64) -> Vec<f64> {
+pub fn arbitrary_displacement(model: &Model, size: f64) -> Vec<f64> {
     (0..model.dofs()).map(|dof| size * arbitrary(dof)).collect()
 }
 
 /// A state with velocities and accelerations.
-fn moving(model: &Model) -> State {
+pub fn moving(model: &Model) -> State {
     let mut state = model.initial_state();
     state.velocity = (0..model.dofs()).map(|dof| 0.3 * arbitrary(dof + 7)).collect();
     state.acceleration = (0..model.dofs()).map(|dof| 2.0 * arbitrary(dof + 11)).collect();
@@ -134,7 +134,7 @@ fn terms_say_what_their_tangents_depend_on() {
 }
 
 /// The assembled tangent against central differences of the residual, in units of its largest entry.
-fn tangent_error(model: &Arc<Model>, trial: Trial, u: &[f64], h: f64) -> f64 {
+pub fn tangent_error(model: &Arc<Model>, trial: Trial, u: &[f64], h: f64) -> f64 {
     let mut assembler = Assembler::new(model);
     let mut system = assembler.system();
     let mut responses = Vec::new();
@@ -196,7 +196,13 @@ fn the_tangent_is_that_of_the_residual_in_any_section() {
         (json!("mortar"), plane),
     ];
     for (method, master) in methods {
-        for section in [Section::PlaneStrain, GRADED, Section::Graded { depth: 0.7, slope: [0.1, -0.3] }] {
+        for section in [
+            Section::PlaneStrain,
+            GRADED,
+            Section::Graded { depth: 0.7, slope: [0.1, -0.3] },
+            Section::PlaneStress { thickness: 0.3 },
+            Section::Axisymmetric,
+        ] {
             let model = model_in(section, &pressed(method.clone(), "upper_bottom", master.clone()));
             for slide in [1e-4, 3e-2] {
                 let (state, step) = (moving(&model), &model.steps[0]);
@@ -218,6 +224,64 @@ fn the_tangent_is_that_of_the_residual_in_any_section() {
             }
         }
     }
+}
+
+/// The same with a fluid between the surfaces, closed and sticking, sliding, and lifted off, and with surfaces that dilate and
+/// wear; in small sliding too. Where nothing is closed the fluid alone acts.
+#[test]
+fn the_tangent_of_a_contact_that_moves_or_holds_water_is_that_of_the_residual() {
+    let plane = json!({"plane": {"point": [0.0, 0.0], "normal": [0.0, 1.0]}});
+    let fluid = json!({"fluid_pressure": "(1 + 0.4*x)*(1 + t)"});
+    let offset = json!({"dilatancy": {"rate": 0.2, "limit": 0.01}, "wear": 0.02});
+    let mut all = offset.clone();
+    all["fluid_pressure"] = fluid["fluid_pressure"].clone();
+    all["friction"] =
+        json!({"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.3, "r": 100, "kappa": 10, "xi": 0.02, "alpha_t": 400});
+    let kinds = [
+        ("node_to_segment", "finite"),
+        ("gauss_to_segment", "finite"),
+        ("mortar", "finite"),
+        ("mortar", "small"),
+        ("node_to_segment", "small"),
+    ];
+    let kinds = kinds.iter().flat_map(|kind| [json!("lower_top"), plane.clone()].map(|master| (kind, master)));
+    for ((method, sliding), master) in kinds {
+        for more in [&fluid, &offset, &all] {
+            let mut case = pressed(json!(method), "upper_bottom", master.clone());
+            let contact = case["contacts"]["base"].as_object_mut().expect("a contact");
+            contact.insert("sliding".into(), json!(sliding));
+            contact.extend(more.as_object().expect("keys").clone());
+            for section in [Section::PlaneStrain, Section::Axisymmetric] {
+                let model = model_in(section, &case);
+                for [slide, lift] in [[1e-4, -0.01], [3e-2, -0.01], [1e-2, 0.04]] {
+                    let told = format!("{method}, {sliding} on {master} in {section:?}, {more}, moved {slide}, {lift}");
+                    moved_tangent(&model, [slide, lift], !more["fluid_pressure"].is_null(), &told);
+                }
+            }
+        }
+    }
+}
+
+/// Check the tangent where the upper block is moved; it is closed unless it is lifted.
+fn moved_tangent(model: &Arc<Model>, [slide, lift]: [f64; 2], is_wet: bool, told: &str) {
+    let (state, step) = (moving(model), &model.steps[0]);
+    let mut u = arbitrary_displacement(model, 1e-3);
+    let upper = model.bodies.iter().find(|body| body.name == "upper").expect("a body");
+    for &node in &upper.nodes {
+        u[2 * node] += slide;
+        u[2 * node + 1] += lift;
+    }
+    let trial = Trial::new(&state, step, 0.5, 0.1);
+    let error = tangent_error(model, trial, &u, 1e-6);
+    let mut assembler = Assembler::new(model);
+    let mut system = assembler.system();
+    assembler.residual(trial, &u, &mut system).expect("a residual");
+    let points = || assembler.evaluation.contacts.iter().flatten();
+    let closed = points().filter(|point| point.friction.pressure > 0.0).count();
+    let wet = points().filter(|point| point.fluid > 0.0).count();
+    assert_eq!(closed == 0, lift > 0.0, "{told}: {closed} are closed");
+    assert_eq!(wet > 0, is_wet, "{told}: {wet} are in the fluid");
+    assert!(error < 1e-6, "{told}: {error:.1e}");
 }
 
 fn sum(forces: &[f64], component: usize) -> f64 {

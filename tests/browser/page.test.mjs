@@ -1,0 +1,282 @@
+// report.html in Chromium: opened from file://, looked at, clicked, zoomed, exported; with faults in its folder; measured.
+import { after, before, test } from "node:test";
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { readFileSync, statSync } from "node:fs";
+import { join } from "node:path";
+import { chromium } from "playwright-core";
+
+const { PAGES, PICTURES, PROGRAM } = process.env;
+let browser;
+before(async () => {
+  browser = await chromium.launch({
+    executablePath: process.env.CHROMIUM || "/usr/bin/chromium",
+    args: ["--no-sandbox", "--enable-unsafe-swiftshader"],
+  });
+});
+after(() => browser.close());
+
+/** A page from file://; what its console says against it is found in `complaints`, and what it loads beside itself. */
+async function open(path, options = {}) {
+  const page = await browser.newPage({ viewport: { width: 1280, height: 900 }, ...options });
+  page.complaints = [];
+  page.on("console", (message) => message.type() === "error" && page.complaints.push(message.text()));
+  page.on("pageerror", (error) => page.complaints.push(error.message));
+  page.on("request", (request) => {
+    if (!/^(file|data|blob):/.test(request.url())) page.complaints.push(`asks the network: ${request.url()}`);
+  });
+  await page.goto(`file://${path}`);
+  await page.waitForSelector("html[data-ready]", { state: "attached" });
+  return page;
+}
+const of = (name) => join(PAGES, name, "report.html");
+const made = (name) => join(PAGES, `${name}.html`);
+
+async function close(page, picture) {
+  if (PICTURES && picture) {
+    await page.evaluate(() => charts.forEach((chart) => chart.draw()));
+    await page.waitForTimeout(400);
+    await page.screenshot({ path: join(PICTURES, `${picture}.png`), fullPage: true });
+  }
+  assert.deepEqual(page.complaints, []);
+  await page.close();
+}
+
+const text = (page, selector) => page.locator(selector).innerText();
+const picture = (page, selector) => page.locator(selector).evaluate((canvas) => canvas.toDataURL());
+
+for (const name of ["block_on_ground", "tube", "slip_front", "spring_mass_3", "stopped"]) {
+  test(`${name} opens from a file, without errors and without a network, below 30 MB`, async () => {
+    assert.ok(statSync(of(name)).size < 30e6);
+    const page = await open(of(name));
+    const summary = JSON.parse(readFileSync(join(PAGES, name, "summary.json"), "utf8"));
+    assert.equal(await text(page, "h1"), summary.title);
+    assert.match(await text(page, ".badge"), new RegExp(summary.status));
+    if (summary.reason) assert.ok((await text(page, "#head")).includes(summary.reason));
+    for (const warning of summary.warnings) assert.ok((await page.locator("#head").textContent()).includes(warning));
+    // The case as `check` tells it, the materials among it.
+    const told = await page.locator("#case").textContent();
+    for (const [heading, lines] of summary.understood) for (const line of [heading, ...lines]) assert.ok(told.includes(line), line);
+    await close(page, name);
+  });
+}
+
+test("the slider moves the mesh, and play goes on", async () => {
+  const page = await open(of("tube"));
+  const slider = page.locator("#bodies input[type=range]");
+  const set = async (frame) => {
+    await slider.evaluate((input, value) => {
+      input.value = value;
+      input.dispatchEvent(new Event("input"));
+    }, frame);
+    await page.waitForFunction((value) => bodiesView.frame === value, frame);
+  };
+  await set(0);
+  const first = await picture(page, "#bodies .stage canvas:first-child");
+  await set(50);
+  assert.notEqual(await picture(page, "#bodies .stage canvas:first-child"), first);
+  // What is drawn is what stands in the frame: |u| of the largest displacement, as the page's own reader is told by the file.
+  const largest = await page.evaluate(() => Math.max(...bodiesView.moved.map(Math.abs)));
+  assert.ok(largest > 0);
+  await page.locator("#bodies .stage").press("ArrowRight");
+  await page.waitForFunction(() => bodiesView.frame === 51);
+  await page.locator("#bodies .stage").press("Home");
+  await page.waitForFunction(() => bodiesView.frame === 0);
+  await page.getByRole("button", { name: "Play" }).first().click();
+  await page.waitForFunction(() => bodiesView.frame > 2);
+  await close(page);
+});
+
+test("every field is drawn, in every map, enlarged, with and without edges", async () => {
+  const page = await open(of("tube"));
+  const keys = await page.evaluate(() => bodiesView.fields.map((field) => field.key));
+  assert.ok(["displacement.size", "von_mises.0", "stress.3", "body.id"].every((key) => keys.includes(key)), keys.join());
+  const seen = new Set();
+  for (const key of keys) {
+    await page.locator("#bodies select").first().selectOption(key);
+    await page.waitForFunction((wanted) => bodiesView.field.key === wanted && bodiesView.values.length > 0, key);
+    seen.add(await picture(page, "#bodies .stage canvas:first-child"));
+  }
+  assert.ok(seen.size > keys.length / 2);
+  const range = await page.evaluate(() => bodiesView.range());
+  assert.ok(range[1] > range[0]);
+  await page.getByLabel("scale of displacement").fill("3");
+  await page.getByLabel("scale of displacement").press("Tab");
+  assert.equal(await page.evaluate(() => bodiesView.scale), 3);
+  for (const box of ["elements", "tractions"]) {
+    const before = await picture(page, `#bodies .stage canvas:${box === "elements" ? "first" : "last"}-child`);
+    await page.getByLabel(box).click();
+    assert.notEqual(await picture(page, `#bodies .stage canvas:${box === "elements" ? "first" : "last"}-child`), before, box);
+  }
+  await close(page);
+});
+
+test("a click into the interface chooses a profile and a history", async () => {
+  const page = await open(of("block_on_ground"));
+  const view = page.locator("#interface .map");
+  await view.scrollIntoViewIfNeeded();
+  const titles = () => page.locator("#interface figcaption > span:first-child").allInnerTexts();
+  const before = await titles();
+  const box = await view.boundingBox();
+  await view.click({ position: { x: 0.4 * box.width, y: 0.6 * box.height } });
+  await page.waitForFunction((old) => document.querySelector("#interface figcaption > span").innerText !== old, before[0]);
+  assert.notDeepEqual(await titles(), before);
+  // The profile is the row of the map at the chosen time, as contact/*.vtu has it.
+  const [values, expected] = await page.evaluate(() => {
+    const { values, chosen, places, profile, quantity } = interfaceView;
+    const shown = profile.series.find((one) => one.name === spoken(quantity.name));
+    return [Array.from(shown.y), Array.from(values.subarray(chosen.row * places.length, (chosen.row + 1) * places.length))];
+  });
+  assert.deepEqual(values, expected);
+  const row = await page.evaluate(() => interfaceView.chosen.row);
+  await view.press("ArrowUp");
+  assert.equal(await page.evaluate(() => interfaceView.chosen.row), row + 1);
+  await close(page);
+});
+
+test("charts zoom by the mouse and by keys, are read off, and are saved as SVG and CSV", async () => {
+  const page = await open(of("tube"));
+  const chart = page.locator("#histories figure.chart").first();
+  await chart.scrollIntoViewIfNeeded();
+  await page.waitForFunction(() => charts.find((one) => one.host.closest("#histories")).plot);
+  const span = () => page.evaluate(() => {
+    const { min, max } = charts.find((one) => one.host.closest("#histories")).plot.scales.x;
+    return max - min;
+  });
+  const whole = await span();
+  const over = await chart.locator(".u-over").boundingBox();
+  await page.mouse.move(over.x + 0.3 * over.width, over.y + 0.5 * over.height);
+  await page.mouse.down();
+  await page.mouse.move(over.x + 0.6 * over.width, over.y + 0.5 * over.height, { steps: 5 });
+  await page.mouse.up();
+  const zoomed = await span();
+  assert.ok(Math.abs(zoomed / whole - 0.3) < 0.03, `${zoomed} of ${whole}`);
+  await chart.locator(".plot").press("0");
+  assert.ok(Math.abs(await span() - whole) < 1e-6 * whole);
+  await chart.locator(".plot").press("+");
+  assert.ok((await span()) < 0.6 * whole);
+  await chart.locator(".plot").press("0");
+  await chart.locator(".plot").press("Home");
+  await chart.locator(".plot").press("ArrowRight");
+  assert.match(await chart.locator(".u-legend .u-value").first().innerText(), /\d/);
+  const saved = async (kind) => {
+    const [download] = await Promise.all([page.waitForEvent("download"), chart.getByText(kind, { exact: true }).click()]);
+    return readFileSync(await download.path(), "utf8");
+  };
+  const svg = await saved("SVG");
+  assert.match(svg, /^<svg[^]*<path d="M[^"]{40,}"[^]*<\/svg>\s*$/);
+  assert.ok(svg.includes("tangential force"));
+  // The data are those of history.csv, to single precision.
+  const rows = (await saved("CSV")).trimEnd().split("\n").map((line) => line.split(","));
+  const history = readFileSync(join(PAGES, "tube", "history.csv"), "utf8").trimEnd().split("\n").map((line) => line.split(","));
+  const column = history[0].indexOf("bar.tangential_force");
+  assert.equal(rows.length, history.length);
+  rows.slice(1).forEach((row, k) => {
+    assert.equal(+row[0], +history[k + 1][0]);
+    assert.equal(Math.fround(+row[1]), Math.fround(+history[k + 1][column]));
+  });
+  await close(page);
+});
+
+test("an event of the table is shown close up, with its fronts, at its time", async () => {
+  const page = await open(of("slip_front"));
+  await page.locator("#events tbody tr").first().click();
+  await page.waitForTimeout(500);
+  const [window, onset, time] = await page.evaluate(() => [interfaceView.window.t, +interfaceView.times[interfaceView.chosen.row], now.time]);
+  const fronts = readFileSync(join(PAGES, "slip_front", "fronts.csv"), "utf8").trimEnd().split("\n").slice(1).map((line) => line.split(","));
+  const first = Math.min(...fronts.filter((row) => row[11] === "1").map((row) => +row[6]));
+  assert.ok(window[0] < first && first < window[1] && window[1] - window[0] < 0.01, `${window} about ${first}`);
+  assert.ok(Math.abs(time - first) < 1e-9 && Math.abs(onset - first) < 1e-4);
+  await close(page, "slip_front_event");
+});
+
+test("two runs are overlaid, and told apart", async () => {
+  const page = await open(made("two"));
+  assert.equal(await page.locator(".badge").count(), 2);
+  const series = await page.evaluate(() => charts.find((one) => one.title.startsWith("Normal force")).series.map((one) => [one.name, one.colour]));
+  assert.deepEqual(series.map(([name]) => name), ["tube", "tube_soft"]);
+  assert.notEqual(series[0][1], series[1][1]);
+  await page.locator("#bodies select").first().selectOption("1");
+  await page.waitForFunction(() => bodiesView.run.name === "tube_soft" && bodiesView.frame != null);
+  await close(page, "two");
+});
+
+const faults = {
+  missing_frame: /solid\/00007\.vtu is missing/,
+  not_a_number: /1 values? of \S+ are no numbers/,
+  one_row: null,
+  killed: /newton\.csv: line \d+/,
+  no_frames: null,
+};
+for (const [name, told] of Object.entries(faults)) {
+  test(`fault ${name} is told and breaks nothing`, async () => {
+    const page = await open(made(name));
+    if (told) assert.match(await page.locator("#faults").textContent(), told);
+    assert.ok(await page.locator("#histories figure.chart").count() > 3);
+    await page.evaluate(() => charts.forEach((chart) => chart.draw()));
+    if (name === "missing_frame") assert.equal(await page.evaluate(() => bodiesView.solid.frames.length), 59);
+    if (name === "killed") assert.match(await text(page, ".badge"), /ended without a word/);
+    if (name === "no_frames") assert.equal(await page.locator("#bodies").isVisible(), false);
+    await close(page, name);
+  });
+}
+
+test("it fits a width of 400 pixels, light and dark, and on paper", async () => {
+  for (const colorScheme of ["light", "dark"]) {
+    const page = await open(of("block_on_ground"), { viewport: { width: 400, height: 800 }, colorScheme });
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth) <= 400);
+    const [r] = (await page.evaluate(() => getComputedStyle(document.body).backgroundColor)).match(/\d+/g);
+    assert.equal(+r < 128, colorScheme === "dark");
+    if (colorScheme === "light") assert.ok((await page.pdf({ format: "A4" })).length > 20000);
+    await close(page, `narrow_${colorScheme}`);
+  }
+});
+
+test("without WebGL it draws all the same", async () => {
+  const other = await chromium.launch({ executablePath: process.env.CHROMIUM || "/usr/bin/chromium", args: ["--no-sandbox", "--disable-gpu", "--disable-webgl", "--disable-webgl2", "--disable-3d-apis"] });
+  const page = await other.newPage();
+  await page.goto(`file://${of("tube")}`);
+  await page.waitForSelector("html[data-ready]", { state: "attached" });
+  assert.equal(await page.evaluate(() => bodiesView.scene.constructor.name), "PlainScene");
+  const colours = await page.evaluate(() => {
+    const { canvas } = bodiesView;
+    return new Set(new Uint32Array(canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data.buffer)).size;
+  });
+  assert.ok(colours > 20, `${colours} colours`);
+  await other.close();
+});
+
+/** From the slider to the picture, frame after frame; what it takes is told, on two quiet cores it should be 50 and 150 ms. */
+for (const name of ["elements_20000", "elements_100000"]) {
+  test(`${name} is drawn at every place of the slider`, async () => {
+    const page = await open(made(name), { viewport: { width: 940, height: 900 } });
+    await page.waitForFunction(() => bodiesView.solid.frames.every((frame) => peek(frame.displacement)));
+    const times = await page.evaluate(async () => {
+      const taken = [];
+      for (let k = 0; k < 24; k++) {
+        await new Promise(requestAnimationFrame);
+        const begun = performance.now();
+        bodiesView.slider.value = k % 8;
+        bodiesView.slider.dispatchEvent(new Event("input"));
+        while (bodiesView.frame !== k % 8) await new Promise((done) => setTimeout(done));
+        bodiesView.scene.finish();
+        taken.push(performance.now() - begun);
+      }
+      return taken.slice(4).sort((a, b) => a - b);
+    });
+    const [load] = readFileSync("/proc/loadavg", "utf8").split(" ");
+    console.log(`${name}: ${times[10].toFixed(0)} ms (least ${times[0].toFixed(0)}, most ${times[19].toFixed(0)}), load ${load}`);
+    assert.equal(times.length, 20);
+    await close(page, name);
+  });
+}
+
+test("a page of a run is written again, in 2 s on two quiet cores", () => {
+  const written = statSync(join(PAGES, "block_on_ground", "report.html")).mtimeMs;
+  const begun = performance.now();
+  execFileSync(PROGRAM, ["report", join(PAGES, "block_on_ground")]);
+  const seconds = (performance.now() - begun) / 1000;
+  const [load] = readFileSync("/proc/loadavg", "utf8").split(" ");
+  console.log(`block_on_ground: ${seconds.toFixed(2)} s, load ${load}`);
+  assert.ok(statSync(join(PAGES, "block_on_ground", "report.html")).mtimeMs > written);
+});

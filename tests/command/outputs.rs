@@ -1,0 +1,658 @@
+//! What a run writes over time: the store of its interfaces, rows at intervals, frames at times, gauges, and how bodies and
+//! contacts act as a whole; by closed forms, or by what another file of the same run says.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+use std::sync::Arc;
+
+use crate::common::{self, Blocks, close, store};
+use fecontact::mesh::InlineMesh;
+use fecontact::model::Model;
+use fecontact::model::builder::{Gauge, LoadStep};
+use fecontact::output::bodies::BodyMeans;
+use fecontact::output::interface::{codec, read};
+use nalgebra::{Rotation2, Vector2};
+use serde_json::{Value, json};
+use tempfile::TempDir;
+use vtkio::model::{Attribute, CellType, DataSet, UnstructuredGridPiece};
+
+fn start(folder: &Path, case: &Value) -> Output {
+    fs::write(folder.join("case.json"), case.to_string()).expect("a file");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fecontact"));
+    command.current_dir(folder).args(["run", "case.json", "--quiet", "--threads", "1", "--out", "out"]);
+    command.output().expect("the program runs")
+}
+
+#[track_caller]
+fn run(folder: &Path, case: &Value) {
+    let output = start(folder, case);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// Columns of a table by name, those of numbers.
+fn table(path: &Path) -> BTreeMap<String, Vec<f64>> {
+    let text = fs::read_to_string(path).expect("a table");
+    let names: Vec<&str> = text.lines().next().expect("a header").split(',').collect();
+    let mut columns: BTreeMap<String, Vec<f64>> = names.iter().map(|name| ((*name).into(), Vec::new())).collect();
+    for line in text.lines().skip(1) {
+        for (name, cell) in names.iter().zip(line.split(',')) {
+            columns.get_mut(*name).expect("a column").push(cell.parse().unwrap_or(f64::NAN));
+        }
+    }
+    columns
+}
+
+fn frame(path: &Path) -> UnstructuredGridPiece {
+    let DataSet::UnstructuredGrid { pieces, .. } = vtkio::Vtk::import(path).expect("a frame").data else { panic!() };
+    pieces.into_iter().next().expect("a piece").into_loaded_piece_data(None).expect("its data")
+}
+
+fn values(attributes: &[Attribute], name: &str) -> Vec<f64> {
+    let array = attributes.iter().find_map(|attribute| match attribute {
+        Attribute::DataArray(array) if array.name == name => Some(array),
+        _ => None,
+    });
+    array.unwrap_or_else(|| panic!("no array `{name}`")).data.cast_into().expect("numbers")
+}
+
+/// Times of the frames that a collection lists.
+fn times(out: &Path, collection: &str) -> Vec<f64> {
+    let text = fs::read_to_string(out.join(collection)).expect("a collection");
+    let times = text.split("timestep=\"").skip(1).map(|rest| rest.split('"').next().expect("a time"));
+    times.map(|time| time.parse().expect("a number")).collect()
+}
+
+/// A block pressed on ground and dragged; the law weakens and heals.
+fn dragged(friction: Value, method: &str) -> Value {
+    let material = json!({"model": "neo_hookean", "E": 100, "nu": 0.3, "density": 1e-4});
+    json!({
+        "title": "A block is dragged",
+        "units": {"length": "mm", "force": "N", "time": "seconds"},
+        "mesh": Blocks::default()
+            .rectangle("ground", [10, 3], [0.0, -0.5], [3.0, 0.0])
+            .rectangle("block", [5, 3], [0.4, 0.01], [1.4, 0.51]).json(),
+        "bodies": {"ground": {"material": material}, "block": {"material": material}},
+        "contacts": {"base/1": {"slave": "block_bottom", "master": "ground_top", "method": method, "friction": friction}},
+        "steps": [
+            {"name": "press", "duration": 1, "dt": {"initial": 0.25, "min": 1e-4}, "supports": [
+                {"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0, "uy": -0.02}]},
+            {"name": "drag", "duration": 1, "dt": {"initial": 0.05, "min": 1e-5},
+                "supports": [{"on": "block_top", "ux": {"rate": 0.1}}]},
+        ],
+        "watch": ["block_top"],
+    })
+}
+
+fn healing() -> Value {
+    json!({"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "alpha_t": 2e3, "r": 100, "kappa": 10, "xi": 0.002})
+}
+
+/// The store against the frames of the same run, which are in double precision, and against the history.
+#[test]
+fn the_store_holds_what_the_frames_show() {
+    let folder = TempDir::new().expect("a folder");
+    run(folder.path(), &dragged(healing(), "gauss_to_segment"));
+    let out = folder.path().join("out");
+    let store = out.join("interface.zarr");
+    // A slash cannot stand in the name of a file.
+    let of = |name: &str| format!("base_1.{name}");
+    let (_, all) = store::array(&store, "time");
+    assert_eq!(all, table(&out.join("history.csv"))["time"]);
+    let points = store::array(&store, &of("position")).0[0];
+    let series = |name: &str| {
+        let (shape, values) = store::array(&store, &of(name));
+        assert_eq!(shape, [all.len(), points]);
+        assert_eq!(store::consolidated(&store, &of(name)).1, values);
+        values
+    };
+    let [slip, total, rate, gap] = ["slip", "total_slip", "slip_rate", "gap"].map(series);
+    let [p, q, ratio, mu, structure] = ["p", "q", "R", "mu", "structure"].map(series);
+    let (mut before, mut slipped) = (vec![0.0; points], 0.0f64);
+    for (k, time) in all.iter().enumerate() {
+        let shown = frame(&out.join(format!("contact/{:05}.vtu", k + 1)));
+        let shown = |name: &str| values(&shown.data.point, name);
+        let row = |values: &[f64]| values[k * points..(k + 1) * points].to_vec();
+        let near = |what: &str, stored: &[f64], exact: &[f64]| {
+            for (stored, exact) in row(stored).iter().zip(exact) {
+                close(what, *stored, *exact, exact.abs() * 2f64.powi(-16));
+            }
+        };
+        let exact = shown("slip");
+        near("slip", &slip, &exact);
+        near("p", &p, &shown("pressure"));
+        near("q", &q, &shown("traction"));
+        near("R", &ratio, &shown("R"));
+        near("mu", &mu, &shown("mu"));
+        near("structure", &structure, &shown("structure"));
+        near("gap", &gap, &shown("gap"));
+        let both: Vec<f64> = exact.iter().zip(shown("elastic_slip")).map(|(slip, elastic)| slip + elastic).collect();
+        near("total slip", &total, &both);
+        let dt = time - if k == 0 { 0.0 } else { all[k - 1] };
+        let rates: Vec<f64> = exact.iter().zip(&before).map(|(new, old)| (new - old) / dt).collect();
+        near("slip rate", &rate, &rates);
+        before = exact;
+        slipped = slipped.max(before.iter().fold(0.0, |most: f64, slip| most.max(slip.abs())));
+    }
+    assert!(slipped > 0.02 && codec::RELATIVE_ERROR == 2f64.powi(-16), "{slipped}");
+    // What a reader is told.
+    let is = store::attributes(&store, &of("slip_rate"));
+    assert_eq!((&is["units"], &is["relative_error"]), (&json!("mm s-1"), &json!(2f64.powi(-16))));
+    assert_eq!(is["_ARRAY_DIMENSIONS"], json!(["time", "base_1.point"]));
+    assert_eq!(store::attributes(&store, &of("p"))["units"], json!("N mm-2"));
+    assert_eq!(store::attributes(&store, "time")["units"], json!("s"), "`seconds` would be read as a duration");
+    assert_eq!(store::attributes(&store, "")["Conventions"], json!("CF-1.11"));
+    // The reader that figures are drawn by.
+    let [contact] = &read::contacts(&out, |name| ["p", "slip"].contains(&name)).expect("a store")[..] else { panic!() };
+    assert_eq!((contact.name.as_str(), &contact.times, contact.quantities.len()), ("base/1", &all, 2));
+    let last = all.len() - 1;
+    let read: Vec<f64> = contact.at("p", last).expect("a record").iter().map(|p| f64::from(*p)).collect();
+    assert_eq!(read, p[last * points..]);
+    let places: Vec<f64> = contact.places.iter().map(|at| at[0]).collect();
+    assert_eq!((places, contact.lines.clone()), (store::array(&store, &of("x")).1, vec![0; points]));
+}
+
+/// What slides without friction is not called slipping, neither in the history nor in frames nor in the store.
+#[test]
+fn what_slides_freely_is_not_called_slipping() {
+    for (friction, slips) in [(json!({"law": "frictionless"}), false), (json!({"law": "coulomb", "mu": 0.1}), true)] {
+        let folder = TempDir::new().expect("a folder");
+        run(folder.path(), &dragged(friction, "gauss_to_segment"));
+        let out = folder.path().join("out");
+        let history = table(&out.join("history.csv"));
+        assert_eq!(history["base/1.slip_fraction"].last().is_some_and(|share| *share > 0.5), slips);
+        assert!(history["base/1.mean_slip"].last().is_some_and(|slip| *slip > 0.08), "it moves all the same");
+        assert_eq!(table(&out.join("newton.csv"))["slip"].iter().any(|count| *count > 0.0), slips);
+        let last = times(&out, "contact.pvd").len() - 1;
+        let states = values(&frame(&out.join(format!("contact/{last:05}.vtu"))).data.point, "state");
+        assert_eq!(states.contains(&2.0), slips);
+        assert!(states.contains(&1.0) || slips, "{states:?}");
+        let long_name = store::attributes(&out.join("interface.zarr"), "base_1.slip")["long_name"].to_string();
+        assert_eq!(long_name.contains("plastic slip"), slips, "{long_name}");
+    }
+}
+
+/// A mass drawn by a spring over a plane: it sticks and slips.
+fn slider() -> Value {
+    json!({
+        "mesh": {"nodes": [[0, 0]], "points": {"block": [0]}},
+        "point_masses": {"block": {"mass": 1}},
+        "contacts": {"base": {
+            "slave": "block", "area": 1, "normal": {"alpha_n": 1e4}, "initial": {"pressure": 10, "traction": 0},
+            "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+            "friction": {"law": "super_subloading", "mu_s": 0.6, "mu_k": 0.2, "alpha_t": 1e4, "r": 1e3, "kappa": 30, "xi": 2}
+        }},
+        "steps": [{"name": "pull", "duration": 10, "scheme": {"newmark": {}}, "dt": {"initial": 0.005}, "loads": [
+            {"on": "block", "force": {"y": -10}},
+            {"on": "block", "spring": {"kx": 4, "driver": {"x": {"rate": 0.5}}}}
+        ]}],
+        "output": {"fields": false, "checkpoint": 0}
+    })
+}
+
+/// Rows of a run with an interval are rows of the run without, to the byte: those that are far enough apart, and those before
+/// and after the contact begins or ceases to slip.
+#[test]
+fn an_interval_thins_rows_but_no_events() {
+    let folder = TempDir::new().expect("a folder");
+    let mut case = slider();
+    run(folder.path(), &case);
+    let out = folder.path().join("out");
+    let lines = || -> Vec<String> {
+        fs::read_to_string(out.join("history.csv")).expect("a table").lines().skip(1).map(String::from).collect()
+    };
+    let full = lines();
+    let whole = table(&out.join("history.csv"));
+    let regime = |k: usize| (whole["base.contact_length"][k] > 0.0, whole["base.slip_fraction"][k]);
+    case["output"]["interval"] = json!(0.25);
+    run(folder.path(), &case);
+    let thinned = lines();
+    let row: Vec<usize> =
+        thinned.iter().map(|line| full.iter().position(|other| other == line).expect("a row")).collect();
+    let kept: BTreeSet<usize> = row.iter().copied().collect();
+    // Events, as the full history tells them.
+    let events: Vec<usize> = (1..full.len()).filter(|&k| regime(k) != regime(k - 1)).collect();
+    assert!(events.len() >= 6, "it is meant to stick and slip: {events:?}");
+    for k in &events {
+        assert!(kept.contains(k) && kept.contains(&(k - 1)), "the event at row {k} is thinned away");
+    }
+    let last = full.len() - 1;
+    let time = |k: usize| 0.005 * (k + 1) as f64;
+    for pair in row.windows(2) {
+        let is_event = events.contains(&pair[1]) || events.contains(&(pair[1] + 1)) || pair[1] == last;
+        assert!(is_event || time(pair[1]) - time(pair[0]) > 0.25 - 1e-9, "rows {pair:?}");
+        assert!(time(pair[1]) - time(pair[0]) < 0.255 + 1e-9, "rows {pair:?}");
+    }
+    assert!(kept.contains(&last) && row.len() <= 2 * events.len() + 41, "{} rows of {}", row.len(), full.len());
+    // The store has the same rows, and slip rates since the row before.
+    let store = out.join("interface.zarr");
+    let all = store::array(&store, "time").1;
+    assert_eq!(all, table(&out.join("history.csv"))["time"]);
+    let history = table(&out.join("history.csv"));
+    let (slip, closed) = (&history["base.mean_slip"], &history["base.contact_length"]);
+    let rate = store::array(&store, "base.slip_rate").1;
+    let both = |k: &usize| closed[*k] > 0.0 && closed[k - 1] > 0.0;
+    assert!((1..all.len()).filter(both).count() > 20, "the history tells the slip of closed points alone");
+    for k in (1..all.len()).filter(both) {
+        let exact = (slip[k] - slip[k - 1]) / (all[k] - all[k - 1]);
+        close("slip rate", rate[k], exact, 2f64.powi(-16) * exact.abs() + 1e-12);
+    }
+}
+
+/// Two points pressed by forces N and drawn by s: friction turns μ N times the plastic slip s − q/α_t into heat, each contact by itself,
+/// and all of it is the friction dissipation of the audit. The power is that of the increment; a thinned table has the same.
+#[test]
+fn the_heat_of_each_contact_is_its_friction_times_its_slip() {
+    let contact = |slave: &str, area: f64, mu: f64| {
+        json!({"slave": slave, "area": area, "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+            "normal": {"alpha_n": 1e3}, "friction": {"law": "coulomb", "mu": mu, "alpha_t": 1e4}})
+    };
+    let mut case = json!({
+        "mesh": {"nodes": [[0, 0], [5, 0]], "points": {"a": [0], "b": [1]}},
+        "point_masses": {"a": {"mass": 1}, "b": {"mass": 1}},
+        "contacts": {"left": contact("a", 2.0, 0.3), "right": contact("b", 0.5, 0.2)},
+        "steps": [
+            {"name": "press", "duration": 1, "dt": {"initial": 1}, "supports": [{"on": "a", "ux": 0}, {"on": "b", "ux": 0}],
+                "loads": [{"on": "a", "force": {"y": -10}}, {"on": "b", "force": {"y": -20}}]},
+            {"name": "draw", "duration": 1, "dt": {"initial": 0.125},
+                "supports": [{"on": "a", "ux": {"rate": 0.5}}, {"on": "b", "ux": {"rate": -2}}]}
+        ],
+        "output": {"fields": false, "checkpoint": 0}
+    });
+    for interval in [None, Some(0.3)] {
+        if let Some(interval) = interval {
+            case["output"]["interval"] = json!(interval);
+        }
+        let folder = TempDir::new().expect("a folder");
+        run(folder.path(), &case);
+        let history = table(&folder.path().join("out/history.csv"));
+        let last = |name: &str| *history[name].last().expect("a row");
+        for (name, force, area, mu, way) in [("left", 10.0, 2.0, 0.3, 0.5), ("right", 20.0, 0.5, 0.2, 2.0)] {
+            let heat = mu * force * (way - mu * force / area / 1e4);
+            close(name, last(&format!("{name}.frictional_heat")), heat, 1e-9 * heat);
+            close(name, last(&format!("{name}.frictional_power")), mu * force * way, 1e-9 * heat);
+        }
+        let all = last("left.frictional_heat") + last("right.frictional_heat");
+        close("all", all, last("friction_dissipation"), 1e-14 * all);
+    }
+}
+
+/// Increments end at the times asked for, and go on as long as they were; nothing else has frames.
+#[test]
+fn fields_are_written_at_the_times_asked_for() {
+    let at = [0.1, 0.2501, 0.3, 1.0, 1.37];
+    for scheme in [json!("static"), json!({"newmark": {}}), json!({"explicit": {}})] {
+        let folder = TempDir::new().expect("a folder");
+        let step = |name: &str| {
+            json!({"name": name, "duration": 1, "scheme": scheme, "dt": {"initial": 0.1, "min": 1e-4},
+            "supports": [{"on": "bar_left", "ux": 0, "uy": 0}, {"on": "bar_right", "ux": {"rate": 1e-3}, "uy": 0}]})
+        };
+        let mut case = json!({
+            "mesh": Blocks::default().rectangle("bar", [2, 1], [0.0, 0.0], [1.0, 0.5]).json(),
+            "bodies": {"bar": {"material": {"model": "linear", "E": 1, "nu": 0.3, "density": 1}}},
+            "steps": [step("one"), step("two")],
+            "output": {"times": at, "interval": 0.1, "checkpoint": 0}
+        });
+        run(folder.path(), &case);
+        let out = folder.path().join("out");
+        let expected = [0.0, 0.1, 0.2501, 0.3, 1.0, 1.37, 2.0];
+        let frames = times(&out, "solid.pvd");
+        assert_eq!(frames.len(), expected.len(), "{scheme}: {frames:?}");
+        frames.iter().zip(expected).for_each(|(time, expected)| close("time of a frame", *time, expected, 1e-15));
+        // 20 increments of 0.1, and for each time between two of them two halves instead of one, and a rest.
+        let rows = table(&out.join("history.csv"))["time"].clone();
+        assert!((20..=27).contains(&rows.len()), "{scheme}: {rows:?}");
+        for (times, words) in [
+            (json!([0.3, 0.2]), "output.times[1]: is 0.2, but 0.3 comes before it"),
+            (json!([2.5]), "output.times[0]: is 2.5: must be after 0 and not after 2"),
+            (json!([0]), "output.times[0]: is 0"),
+        ] {
+            case["output"]["times"] = times;
+            let output = start(folder.path(), &case);
+            let told = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert!(output.status.code() == Some(2) && told.contains(words), "{told}");
+        }
+    }
+}
+
+/// Distorted elements of four kinds on a square, with the names of their boundary nodes.
+fn distorted() -> Vec<(&'static str, InlineMesh)> {
+    let quads = Blocks::default().block("body", [3, 3], |s, t| {
+        let bump = 0.3 * s * (1.0 - s) * t * (1.0 - t);
+        [2.0 * (s + bump), 2.0 * (t - bump)]
+    });
+    let mut triangles = quads.0.clone();
+    let split = |q: &Vec<usize>| [vec![q[0], q[1], q[2]], vec![q[0], q[2], q[3]]];
+    let all: Vec<Vec<usize>> = triangles.elements["body"].iter().flat_map(split).collect();
+    triangles.elements.insert("body".into(), all);
+    let quadratic = |mesh: &InlineMesh| -> InlineMesh {
+        let of = serde_json::to_value(mesh).expect("JSON");
+        serde_json::from_value(common::quadratic(&of, common::half_way)).expect("a mesh")
+    };
+    let (q8, t6) = (quadratic(&quads.0), quadratic(&triangles));
+    vec![("Q4", quads.0), ("T3", triangles), ("Q8", q8), ("T6", t6)]
+}
+
+/// A displacement linear in x and y, brought in at the boundary: every element kind has it, and its strain and stress, at any
+/// point, exactly.
+#[test]
+fn probes_are_exact_in_a_linear_field() {
+    let (young, nu) = (1000.0, 0.3);
+    let (lambda, shear) = (young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), 0.5 * young / (1.0 + nu));
+    let [exx, exy, eyx, eyy] = [2e-3, -1e-3, 3e-3, 4e-3];
+    let field = |[x, y]: [f64; 2]| [exx * x + exy * y, eyx * x + eyy * y];
+    for (kind, mesh) in distorted() {
+        let boundary: BTreeSet<usize> = mesh.edges.values().flatten().flatten().copied().collect();
+        let support = |&node: &usize| {
+            let [ux, uy] = field(mesh.nodes[node]);
+            json!({"on": {"node": node}, "ux": ux, "uy": uy})
+        };
+        let folder = TempDir::new().expect("a folder");
+        run(
+            folder.path(),
+            &json!({
+                "mesh": mesh,
+                "bodies": {"body": {"material": {"model": "linear", "E": young, "nu": nu}}},
+                "steps": [{"name": "pull", "duration": 1, "dt": {"initial": 0.5}, "supports": boundary.iter().map(support).collect::<Vec<_>>()}],
+                "probes": {"gauge": {"at": [0.7, 1.1]}, "corner": {"at": [2, 2], "body": "body"},
+                           "line": {"from": [0, 0], "to": [2, 1], "number": 5}},
+                "output": {"fields": false, "checkpoint": 0}
+            }),
+        );
+        let read = table(&folder.path().join("out/probes.csv"));
+        assert_eq!((read["time"].clone(), read.len()), (vec![0.5, 1.0], 1 + 11 * 7), "{kind}");
+        let along = |k: usize| [0.5 * k as f64, 0.25 * k as f64];
+        let lines = (0..5).map(|k| (format!("line.{}", k + 1), along(k)));
+        for (name, at) in [("gauge".to_string(), [0.7, 1.1]), ("corner".into(), [2.0, 2.0])].into_iter().chain(lines) {
+            let [ux, uy] = field(at);
+            let stress = |strain: f64| lambda * (exx + eyy) + 2.0 * shear * strain;
+            let expected = [
+                ("ux", ux, 1e-3),
+                ("uy", uy, 1e-3),
+                ("vx", 0.0, 1e-3),
+                ("vy", 0.0, 1e-3),
+                ("strain_xx", exx, 1e-3),
+                ("strain_yy", eyy, 1e-3),
+                ("strain_xy", 0.5 * (exy + eyx), 1e-3),
+                ("stress_xx", stress(exx), 1.0),
+                ("stress_yy", stress(eyy), 1.0),
+                ("stress_zz", stress(0.0), 1.0),
+                ("stress_xy", shear * (exy + eyx), 1.0),
+            ];
+            for (column, value, size) in expected {
+                close(&format!("{kind} {name}.{column}"), read[&format!("{name}.{column}")][1], value, 1e-9 * size);
+            }
+        }
+    }
+}
+
+/// Places of probes that cannot be meant.
+#[test]
+fn bad_places_of_probes_are_named() {
+    let mut case = dragged(healing(), "gauss_to_segment");
+    // The block touches the ground.
+    case["mesh"] = Blocks::default()
+        .rectangle("ground", [10, 3], [0.0, -0.5], [3.0, 0.0])
+        .rectangle("block", [5, 3], [0.4, 0.0], [1.4, 0.5])
+        .json();
+    let folder = TempDir::new().expect("a folder");
+    for (probe, words) in [
+        (json!({"at": [2.0, 0.3]}), "probes.gauge: (2, 0.3) lies in no body; the nearest node is at ("),
+        (json!({"at": [1.0, 0.0]}), "probes.gauge: (1, 0) lies in `block` and in `ground`: say which by \"body\""),
+        (json!({"at": [1.0, 0.3], "body": "ground"}), "lies outside of `ground`"),
+        (
+            json!({"at": [1.0, 0.3], "body": "rock"}),
+            "probes.gauge.body: there is no body `rock`; the bodies are block, ground",
+        ),
+        (json!({"from": [0.5, 0.3], "to": [2.0, 0.3], "number": 4}), "(1.5, 0.3) lies in no body"),
+        (json!({"from": [0.5, 0.3], "to": [1.0, 0.3], "number": 1}), "probes.gauge.number: is 1: a line has 2 to"),
+        (
+            json!({"from": [0.5, 0.3], "to": [0.5, 0.3], "number": 3}),
+            "probes.gauge.to: is (0.5, 0.3), where the line begins",
+        ),
+        (json!({"from": [0.5, 0.3], "number": 3}), "give `at` for a point, or `from`, `to` and `number`"),
+        (json!({"on": [0.5, 0.3]}), "probes.gauge"),
+    ] {
+        case["probes"] = json!({"gauge": probe});
+        let output = start(folder.path(), &case);
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.code() == Some(2) && told.contains(words), "{told}");
+    }
+    case["probes"] = json!({"gauge": {"at": [1.0, 0.0], "body": "block"}});
+    run(folder.path(), &case);
+}
+
+/// A step in which nothing happens.
+fn still() -> LoadStep {
+    LoadStep::new("still", 1.0).dt(1.0).fix("body_bottom")
+}
+
+/// A rectangle a × b that turns by more than half a turn and flies: momentum, angular momentum about its centre, place and
+/// rotation in closed form, also 10⁷ of its size away.
+#[test]
+fn bodies_move_as_a_whole_as_closed_forms_say() {
+    let density = 2.5;
+    for (kind, mesh) in distorted() {
+        for offset in [0.0, 2e7] {
+            let moved = InlineMesh {
+                nodes: mesh.nodes.iter().map(|[x, y]| [x + offset, y - offset]).collect(),
+                ..mesh.clone()
+            };
+            let model = Model::builder(moved.build().expect("a mesh"))
+                .body("body", common::neo_hookean(1e3, 0.3, density))
+                .step(still());
+            let model = model.build().expect("a model");
+            let centre = Vector2::new(1.0 + offset, 1.0 - offset);
+            let (angle, shift, v0, omega) = (2.5, Vector2::new(0.3, -4.0), Vector2::new(2.0, 1.0), -0.7);
+            let mut state = model.initial_state();
+            for (node, place) in model.mesh.nodes.iter().enumerate() {
+                let arm = Rotation2::new(angle) * (place - centre);
+                let u = arm - (place - centre) + shift;
+                let v = v0 + omega * Vector2::new(-arm.y, arm.x);
+                state.displacement[2 * node..2 * node + 2].copy_from_slice(u.as_slice());
+                state.velocity[2 * node..2 * node + 2].copy_from_slice(v.as_slice());
+            }
+            let motion = BodyMeans::new(&model, &model.bodies[0]).motion(&model, &state);
+            let (mass, inertia) = (4.0 * density, 4.0 * density * 8.0 / 12.0);
+            // The places themselves are rounded at a distance.
+            let round_off = 1e-12 + 8.0 * f64::EPSILON * offset;
+            let near =
+                |what: &str, is: f64, expected: f64| close(&format!("{kind} {what}"), is, expected, 20.0 * round_off);
+            near("P_x", motion.momentum.x, mass * v0.x);
+            near("P_y", motion.momentum.y, mass * v0.y);
+            near("L", motion.angular_momentum, inertia * omega);
+            near("c_x", motion.centre.x - offset, 1.0 + shift.x);
+            near("c_y", motion.centre.y + offset, 1.0 + shift.y);
+            near("rotation", motion.rotation, angle);
+        }
+    }
+}
+
+/// A block turned by two and a half turns about a point beside it; and a block that flies.
+#[test]
+fn the_history_counts_turns_and_momentum() {
+    let folder = TempDir::new().expect("a folder");
+    let mut case = json!({
+        "mesh": Blocks::default().rectangle("block", [2, 2], [1.0, 0.0], [2.0, 1.0]).json(),
+        "bodies": {"block": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3, "density": 3}}},
+        "steps": [{"name": "turn", "duration": 1, "dt": {"initial": 0.05}, "supports": [
+            {"on": "block", "rotation": {"about": [0, 0], "angle": {"rate": 5.0 * std::f64::consts::PI}}}]}],
+        "output": {"fields": false, "checkpoint": 0}
+    });
+    run(folder.path(), &case);
+    let history = table(&folder.path().join("out/history.csv"));
+    for (k, time) in history["time"].iter().enumerate() {
+        let angle = 5.0 * std::f64::consts::PI * time;
+        close("rotation", history["block.rotation"][k], angle, 1e-9);
+        let [x, y] = common::turned([1.5, 0.5], angle);
+        close("centre", history["block.centre_x"][k], x, 1e-9);
+        close("centre", history["block.centre_y"][k], y, 1e-9);
+    }
+    case["initial_velocity"] = json!({"block": [2, -1]});
+    case["steps"] =
+        json!([{"name": "fly", "duration": 1, "scheme": {"explicit": {}}, "dt": {"initial": 0.1}, "supports": []}]);
+    run(folder.path(), &case);
+    let history = table(&folder.path().join("out/history.csv"));
+    let last = |name: &str| *history[&format!("block.{name}")].last().expect("a row");
+    for (name, expected) in [
+        ("momentum_x", 6.0),
+        ("momentum_y", -3.0),
+        ("angular_momentum", 0.0),
+        ("centre_x", 3.5),
+        ("centre_y", -0.5),
+        ("rotation", 0.0),
+    ] {
+        close(name, last(name), expected, 1e-10);
+    }
+}
+
+/// Means by length of an edge whose nodes lie close together at one end: of u_x = x/10 it is that of the middle.
+#[test]
+fn edge_means_go_by_length() {
+    for quadratic in [false, true] {
+        let mesh = Blocks::default().block("bar", [6, 1], |s, t| [2.0 * s * s, 0.3 * t]).json();
+        let mesh = if quadratic { common::quadratic(&mesh, common::half_way) } else { mesh };
+        let stretch: Vec<Value> = mesh["nodes"]
+            .as_array()
+            .expect("nodes")
+            .iter()
+            .enumerate()
+            .map(|(node, at)| json!({"on": {"node": node}, "ux": 0.1 * at[0].as_f64().expect("a number"), "uy": 0}))
+            .collect();
+        let folder = TempDir::new().expect("a folder");
+        run(
+            folder.path(),
+            &json!({
+                "mesh": mesh, "bodies": {"bar": {"material": {"model": "linear", "E": 1000, "nu": 0.3}}},
+                "steps": [{"name": "pull", "duration": 1, "dt": {"initial": 1}, "supports": stretch}],
+                "watch": ["bar_top", "bar"], "output": {"fields": false, "checkpoint": 0}
+            }),
+        );
+        let history = table(&folder.path().join("out/history.csv"));
+        close("mean by length", history["bar_top.edge_ux"][0], 0.1, 1e-14);
+        assert!(history["bar_top.ux"][0] < 0.095, "nodes lie closer together on the left");
+        assert!(!history.contains_key("bar.edge_ux"), "a body has no length");
+    }
+}
+
+/// In equilibrium the contact carries what the support brings: force, moment about the stated point, and nodal forces, by every
+/// method; by a rigid master and in small sliding as well.
+#[test]
+fn the_resultant_of_a_contact_balances_the_support() {
+    let methods = ["gauss_to_segment", "node_to_segment", "mortar"];
+    let mut cases: Vec<(String, Value)> =
+        methods.iter().map(|method| ((*method).into(), dragged(healing(), method))).collect();
+    for method in methods {
+        let mut rigid = dragged(healing(), method);
+        rigid["contacts"]["base/1"]["master"] = json!({"plane": {"point": [0, 0], "normal": [0, 1]}});
+        cases.push((format!("rigid {method}"), rigid));
+        let mut small = dragged(healing(), method);
+        small["contacts"]["base/1"]["sliding"] = json!("small");
+        cases.push((format!("small {method}"), small));
+    }
+    for (name, mut case) in cases {
+        case["newton"] = json!({"tolerance": 1e-12});
+        case["output"] = json!({"checkpoint": 0, "every": 1000});
+        case["watch"] = json!(["block_top"]);
+        let folder = TempDir::new().expect("a folder");
+        run(folder.path(), &case);
+        let out = folder.path().join("out");
+        let history = table(&out.join("history.csv"));
+        let last = |column: &str| *history[column].last().expect("a row");
+        let [fx, fy] = [last("block_top.fx"), last("block_top.fy")];
+        let size = fy.abs();
+        assert!(size > 0.1 && fx.abs() > 0.02, "{name}: it is pressed and dragged");
+        close(&format!("{name} force"), last("base/1.force_x"), -fx, 1e-8 * size);
+        close(&format!("{name} force"), last("base/1.force_y"), -fy, 1e-8 * size);
+        let shown = frame(&out.join(format!("solid/{:05}.vtu", times(&out, "solid.pvd").len() - 1)));
+        let list = |name: &str| -> Vec<Vector2<f64>> {
+            values(&shown.data.point, name).chunks(3).map(|v| Vector2::new(v[0], v[1])).collect()
+        };
+        let [moved, reaction, contact] = ["displacement", "reaction", "contact_force"].map(list);
+        let model = common::model(&case);
+        let on = |group: &str| model.mesh.nodes_of(model.mesh.group(group).expect("a group"));
+        let block: BTreeSet<usize> = on("block").into_iter().collect();
+        // Moments about the middle of the undeformed slave surface.
+        let about = Vector2::new(0.9, 0.01);
+        let arm = |node: usize| model.mesh.nodes[node] + moved[node] - about;
+        let moment: f64 = on("block_top").iter().map(|&node| arm(node).perp(&reaction[node])).sum();
+        assert!(moment.abs() > 1e-3 * size, "{name}: {moment}");
+        // What small sliding keeps is the moment of forces at undeformed places: they have turned and slid by so much.
+        let slack = if name.starts_with("small") { 0.1 * size } else { 1e-7 * size };
+        close(&format!("{name} moment"), last("base/1.moment"), -moment, slack);
+        let sum = |nodes: &BTreeSet<usize>| -> Vector2<f64> { nodes.iter().map(|&node| contact[node]).sum() };
+        assert!((sum(&block) + Vector2::new(fx, fy)).norm() < 1e-8 * size, "{name}");
+        if !name.starts_with("rigid") {
+            let ground: BTreeSet<usize> = on("ground").into_iter().collect();
+            assert!((sum(&block) + sum(&ground)).norm() < 1e-12 * size, "{name}: forces come in pairs");
+        }
+        assert!(contact.iter().enumerate().all(|(node, force)| force.norm() == 0.0
+            || on("block_bottom").contains(&node)
+            || on("ground_top").contains(&node)));
+    }
+}
+
+/// Stresses at the integration points, at their places: those of the bending that the supports bring in, u_x = −κ x y and
+/// u_y = κ x²/2, which Q8 has exactly: σ_xx = (λ + 2G) ε_xx, ε_xx = −κ y.
+#[test]
+fn integration_points_have_their_stresses() {
+    let (young, nu, bend) = (1000.0, 0.25, 1e-3);
+    let (lambda, shear) = (young * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), 0.5 * young / (1.0 + nu));
+    let mesh = common::quadratic(
+        &Blocks::default().rectangle("bar", [3, 2], [0.0, -0.5], [3.0, 0.5]).json(),
+        common::half_way,
+    );
+    let supports: Vec<Value> = mesh["nodes"]
+        .as_array()
+        .expect("nodes")
+        .iter()
+        .enumerate()
+        .map(|(node, at)| {
+            let [x, y] = [0, 1].map(|i| at[i].as_f64().expect("a number"));
+            json!({"on": {"node": node}, "ux": -bend * x * y, "uy": 0.5 * bend * x * x})
+        })
+        .collect();
+    let folder = TempDir::new().expect("a folder");
+    run(
+        folder.path(),
+        &json!({
+            "mesh": mesh, "bodies": {"bar": {"material": {"model": "linear", "E": young, "nu": nu}}},
+            "steps": [{"name": "bend", "duration": 1, "dt": {"initial": 1}, "supports": supports}],
+            "output": {"points": true, "checkpoint": 0}
+        }),
+    );
+    let out = folder.path().join("out");
+    assert_eq!(times(&out, "points.pvd"), [0.0, 1.0]);
+    let shown = frame(&out.join("points/00001.vtu"));
+    let places: Vec<f64> = shown.points.cast_into().expect("places");
+    let (stress, moved) = (values(&shown.data.point, "stress"), values(&shown.data.point, "displacement"));
+    assert_eq!((places.len(), stress.len(), shown.cells.types.len()), (3 * 6 * 9, 4 * 6 * 9, 6 * 9));
+    assert!(shown.cells.types.iter().all(|kind| *kind == CellType::Vertex));
+    let mut heights = BTreeSet::new();
+    for (k, at) in places.chunks(3).enumerate() {
+        let strain = -bend * at[1];
+        close("σ_xx", stress[4 * k], (lambda + 2.0 * shear) * strain, 1e-9);
+        close("σ_yy", stress[4 * k + 1], lambda * strain, 1e-9);
+        close("σ_xy", stress[4 * k + 3], 0.0, 1e-9);
+        close("u_x", moved[3 * k], -bend * at[0] * at[1], 1e-12);
+        heights.insert((1e6 * at[1]).round() as i64);
+    }
+    // Three rows of Gauss points in each of the two rows of elements.
+    let h = 0.25 * 0.6f64.sqrt();
+    let gauss: BTreeSet<i64> =
+        [-0.25 - h, -0.25, -0.25 + h, 0.25 - h, 0.25, 0.25 + h].iter().map(|y| (1e6 * y).round() as i64).collect();
+    assert_eq!(heights, gauss);
+    assert_eq!(values(&shown.data.cell, "body"), vec![0.0; 54]);
+}
+
+/// A line of gauges from code.
+#[test]
+fn gauges_come_from_code_as_well() {
+    let mesh = Blocks::default().rectangle("body", [2, 2], [0.0, 0.0], [1.0, 1.0]).mesh();
+    let model = Model::builder(mesh).body("body", common::linear(1.0, 0.3, 1.0)).step(still());
+    let model =
+        Arc::new(model.probe(Gauge::line("line", [0.0, 0.5], [1.0, 0.5], 3).of("body")).build().expect("a model"));
+    let names: Vec<&str> = model.probes.iter().map(|probe| probe.name.as_str()).collect();
+    assert_eq!(names, ["line.1", "line.2", "line.3"]);
+}

@@ -1,0 +1,75 @@
+//! What a run tells while it goes on: on a terminal one line that is kept up to date, elsewhere plain lines.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+use crate::survive::dragged;
+
+const PROGRAM: &str = env!("CARGO_BIN_EXE_fecontact");
+
+/// A run that is told of by its penetration: the penalty is soft.
+fn soft(increments: usize) -> (TempDir, Value) {
+    let folder = TempDir::new().expect("a folder");
+    let mut case = dragged(json!("static"), increments);
+    case["contacts"]["base"]["normal"] = json!({"alpha_n": 200});
+    case["output"] = json!({"fields": false});
+    std::fs::write(folder.path().join("case.json"), case.to_string()).expect("a file");
+    (folder, case)
+}
+
+/// What a command writes to a terminal of 100 columns.
+fn on_terminal(folder: &Path, arguments: &str) -> String {
+    let command = format!("stty cols 100 rows 30; {PROGRAM} {arguments}");
+    let output: Output =
+        Command::new("script").args(["-qec", &command, "/dev/null"]).current_dir(folder).output().expect("script");
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success(), "{text}");
+    text
+}
+
+#[cfg(unix)]
+#[test]
+fn a_terminal_shows_one_line_that_is_kept_up_to_date() {
+    // Long enough for the time that is left to be told on a machine many times faster than today's.
+    let (folder, _) = soft(20_000);
+    let text = on_terminal(folder.path(), "run case.json --threads 1 --out out");
+    let drawn: Vec<&str> = text.split(['\r', '\n']).collect();
+    let states: Vec<&&str> = drawn.iter().filter(|line| line.contains(" %") && line.contains(" dt ")).collect();
+    assert!(states.len() > 5, "{text}");
+    let late = states.iter().rfind(|line| line.contains("drag t ")).expect("a line of the last step");
+    for part in [" %, 0:00:", " left  drag t ", " dt ", " iter  open ", " stick ", " slip "] {
+        assert!(late.contains(part), "{part} is not in {late}");
+    }
+    // The time is told so that an increment shows.
+    let time = late.split(" t ").nth(1).and_then(|rest| rest.split(' ').next()).expect("a time");
+    assert!(time.parse::<f64>().is_ok_and(|time| (1.0..=5.0).contains(&time)), "{late}");
+    // The warning comes while the run goes on, once; the line is gone at the end.
+    assert_eq!(text.matches("warning: ").count(), text.matches("warning: contact `base`").count(), "{text}");
+    assert_eq!(text.matches("% of the slave's edge").count(), 1, "{text}");
+    let warned = text.find("% of the slave's edge").expect("a warning");
+    assert!(warned < text.rfind(" dt ").expect("a state"), "{text}");
+    assert!(text.trim_end().ends_with("results in out"), "{text}");
+}
+
+/// Without a terminal there are lines; with `--quiet` there is nothing, and the warnings are in the summary all the same.
+#[test]
+fn lines_elsewhere_and_nothing_where_nothing_is_wanted() {
+    let (folder, _) = soft(20);
+    let run = |more: &[&str]| {
+        let output = Command::new(PROGRAM).args(["run", "case.json"]).args(more).current_dir(folder.path()).output();
+        let output = output.expect("the program runs");
+        assert!(output.status.success());
+        String::from_utf8(output.stderr).expect("text")
+    };
+    let told = run(&["--out", "out"]);
+    assert!(told.contains("press  t 0.25  dt 2.500e-1  "), "{told}");
+    assert_eq!(told.matches("% of the slave's edge").count(), 1, "{told}");
+    let [warned, last] = ["% of the slave's edge", "drag  t 5  "].map(|what| told.find(what).expect(what));
+    assert!(warned < last, "{told}");
+    assert_eq!(run(&["--out", "quiet", "--quiet"]), "");
+    let summary = std::fs::read_to_string(folder.path().join("quiet/summary.json")).expect("a summary");
+    assert!(summary.contains("% of the slave's edge"), "{summary}");
+}

@@ -1,0 +1,89 @@
+//! A store of zarr version 2, read by the words of its specification, and written without compression. It shares nothing with
+//! the program but the inflating of zlib.
+#![allow(dead_code, reason = "each test program uses a part")]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+fn described(path: &Path) -> Value {
+    let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    serde_json::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// Shape and values of an array; what stands in `.zmetadata` must be what stands beside it.
+pub fn array(store: &Path, name: &str) -> (Vec<usize>, Vec<f64>) {
+    let folder = store.join(name);
+    let is = described(&folder.join(".zarray"));
+    let consolidated = described(&store.join(".zmetadata"));
+    assert_eq!(consolidated["metadata"][format!("{name}/.zarray")], is, "{name}");
+    chunked(&folder, &is)
+}
+
+/// The same by `.zmetadata` alone, as xarray reads.
+pub fn consolidated(store: &Path, name: &str) -> (Vec<usize>, Vec<f64>) {
+    let consolidated = described(&store.join(".zmetadata"));
+    chunked(&store.join(name), &consolidated["metadata"][format!("{name}/.zarray")])
+}
+
+fn chunked(folder: &Path, is: &Value) -> (Vec<usize>, Vec<f64>) {
+    let name = folder.display();
+    let list = |key: &str| -> Vec<usize> { serde_json::from_value(is[key].clone()).expect("whole numbers") };
+    let (shape, chunks) = (list("shape"), list("chunks"));
+    let size: usize = is["dtype"].as_str().expect("a type")[2..].parse().expect("a size");
+    assert_eq!(is["filters"], json!([{"id": "shuffle", "elementsize": size}]));
+    assert_eq!((&is["compressor"]["id"], &is["zarr_format"], &is["order"]), (&json!("zlib"), &json!(2), &json!("C")));
+    let width: usize = shape[1..].iter().product();
+    assert_eq!(width, chunks[1..].iter().product::<usize>(), "chunks hold whole records");
+    let mut values = Vec::new();
+    for first in (0..shape[0]).step_by(chunks[0]) {
+        let behind = if shape.len() == 2 { ".0" } else { "" };
+        let packed = fs::read(folder.join(format!("{}{behind}", first / chunks[0]))).expect("a chunk");
+        let bytes = miniz_oxide::inflate::decompress_to_vec_zlib(&packed).expect("zlib");
+        let count = chunks[0] * width;
+        assert_eq!(bytes.len(), count * size, "{name}");
+        for k in 0..count.min((shape[0] - first) * width) {
+            let own: Vec<u8> = (0..size).map(|byte| bytes[byte * count + k]).collect();
+            values.push(match is["dtype"].as_str().expect("a type") {
+                "<f4" => f64::from(f32::from_le_bytes(own.try_into().expect("four bytes"))),
+                "<f8" => f64::from_le_bytes(own.try_into().expect("eight bytes")),
+                "<i4" => f64::from(i32::from_le_bytes(own.try_into().expect("four bytes"))),
+                other => panic!("{other}"),
+            });
+        }
+    }
+    (shape, values)
+}
+
+/// Attributes of an array, or of the store.
+pub fn attributes(store: &Path, name: &str) -> Value {
+    described(&store.join(name).join(".zattrs"))
+}
+
+/// A store of one contact whose points lie on y = 0, with its quantities as lists of records, in one chunk each.
+pub fn write(store: &Path, contact: &str, times: &[f64], positions: &[f64], quantities: &BTreeMap<&str, Vec<f64>>) {
+    let mut metadata = serde_json::Map::new();
+    metadata.insert(".zgroup".into(), json!({"zarr_format": 2}));
+    metadata.insert(".zattrs".into(), json!({"contacts": [contact], "prefixes": [contact]}));
+    let mut put = |name: String, shape: Vec<usize>, values: &[f64]| {
+        let folder = store.join(&name);
+        fs::create_dir_all(&folder).expect("a folder");
+        let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+        fs::write(folder.join(if shape.len() == 2 { "0.0" } else { "0" }), bytes).expect("a chunk");
+        let is = json!({"zarr_format": 2, "shape": shape, "chunks": shape, "dtype": "<f8", "fill_value": "NaN",
+                        "order": "C", "filters": null, "compressor": null});
+        metadata.insert(format!("{name}/.zarray"), is);
+    };
+    put("time".into(), vec![times.len()], times);
+    let zeros = vec![0.0; positions.len()];
+    for (name, values) in [("position", positions), ("x", positions), ("y", &zeros[..]), ("line", &zeros[..])] {
+        put(format!("{contact}.{name}"), vec![positions.len()], values);
+    }
+    for (name, values) in quantities {
+        put(format!("{contact}.{name}"), vec![times.len(), positions.len()], values);
+    }
+    let all = json!({"metadata": metadata, "zarr_consolidated_format": 1});
+    fs::write(store.join(".zmetadata"), all.to_string()).expect("a file");
+}
