@@ -166,7 +166,8 @@ fn updates(block: &Block, threads: usize) -> f64 {
         let mut explicit = Explicit::begin(&model, &step, &mut state, &mut assembler).expect("the step begins");
         let stretch = |k: i32| {
             let clock = Clock::start();
-            let count = explicit.go_to(2e-3 * f64::from(k), &mut state, &mut assembler).expect("a finite motion");
+            let count =
+                explicit.go_to(2e-3 * f64::from(k), &mut state, &mut assembler, &|| false).expect("a finite motion");
             (count * SIDE * SIDE) as f64 / clock.seconds()
         };
         (1..=8).map(stretch).fold(0.0, f64::max)

@@ -1,11 +1,13 @@
 //! What an interface costs against its number of points: a linear block pressed and sheared over an equal one, implicit dynamics,
-//! condensed on the nodes at the contact and on all equations. Milliseconds of processor time a linear solve, one thread.
+//! condensed on the nodes at the contact and on all equations, in finite sliding (two points an edge) and in small sliding (a
+//! point a node). Milliseconds of processor time a linear solve, one thread.
 //!
 //! ```text
-//! cargo run --release --example interface [-- 96 192]
+//! cargo run --release --example interface [-- 100 300]
 //! ```
 //!
-//! The blocks have 15 rows of elements, half as many columns as contact points; above a few thousand points a dense matrix of
+//! The blocks have 15 rows of elements, half as many columns as points in finite sliding, about as many points as columns in
+//! small sliding; above a few thousand points a dense matrix of
 //! the nodes at the contact costs more than an elimination of all, and both columns are the same.
 
 use std::error::Error;
@@ -17,11 +19,12 @@ use fecontact::mesh::InlineMesh;
 use fecontact::model::Model;
 use fecontact::model::boundary::Drive;
 use fecontact::model::builder::{Contact, LoadStep, Support};
+use fecontact::model::method::Method;
 use fecontact::model::scheme::Scheme;
 use fecontact::run::Simulation;
 
-/// Contact points of the rows of the table.
-const POINTS: [usize; 6] = [100, 300, 1000, 2000, 4000, 10000];
+/// Columns of elements in the rows of the table.
+const COLUMNS: [usize; 6] = [100, 300, 1000, 2000, 4000, 10000];
 
 /// Rows of elements in each block.
 const ROWS: usize = 15;
@@ -32,17 +35,22 @@ const INCREMENTS: usize = 40;
 fn main() -> Result<(), Box<dyn Error>> {
     rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global()?;
     let wanted: Vec<usize> = std::env::args().skip(1).map(|argument| argument.parse()).collect::<Result<_, _>>()?;
-    println!("| points | dofs | condensed, ms a solve | all equations | ratio |\n|---|---|---|---|---|");
-    for points in if wanted.is_empty() { POINTS.to_vec() } else { wanted } {
-        let mut cost = [0.0; 2];
-        let mut dofs = 0;
-        for (cost, condense) in cost.iter_mut().zip([true, false]) {
-            let mut model = model(points)?;
-            model.aids.condense = condense;
-            dofs = model.dofs();
-            *cost = milliseconds_a_solve(model)?;
+    println!(
+        "| columns | dofs | finite sliding, condensed | all equations | ratio | small sliding, condensed | all equations | ratio |"
+    );
+    println!("|---|---|---|---|---|---|---|---|");
+    for columns in if wanted.is_empty() { COLUMNS.to_vec() } else { wanted } {
+        let mut row = format!("| {columns} | {} |", model(columns, false)?.dofs());
+        for small in [false, true] {
+            let mut cost = [0.0; 2];
+            for (cost, condense) in cost.iter_mut().zip([true, false]) {
+                let mut model = model(columns, small)?;
+                model.aids.condense = condense;
+                *cost = milliseconds_a_solve(model)?;
+            }
+            row += &format!(" {:.2} | {:.2} | {:.2} |", cost[0], cost[1], cost[0] / cost[1]);
         }
-        println!("| {points} | {dofs} | {:.2} | {:.2} | {:.2} |", cost[0], cost[1], cost[0] / cost[1]);
+        println!("{row}");
     }
     Ok(())
 }
@@ -57,8 +65,7 @@ fn milliseconds_a_solve(model: Model) -> Result<f64, Box<dyn Error>> {
     Ok(1e3 * clock.elapsed().as_secs_f64() / (run.report().newton_iterations - before) as f64)
 }
 
-fn model(points: usize) -> Result<Model, Box<dyn Error>> {
-    let columns = points / 2;
+fn model(columns: usize, small: bool) -> Result<Model, Box<dyn Error>> {
     let (length, height) = (columns as f64, ROWS as f64);
     let mesh = InlineMesh::default()
         .rectangle("base", [columns, ROWS], [0.0, -height], [length, 0.0])
@@ -73,6 +80,7 @@ fn model(points: usize) -> Result<Model, Box<dyn Error>> {
     };
     let contact =
         Contact::new("interface", "block_bottom", "base_top", friction).alpha_n(3000.0).initial(5.0, 0.5).balanced();
+    let contact = if small { contact.method(Method::NodeToSegment).small_sliding() } else { contact };
     let step = LoadStep::new("push", 1.0)
         .scheme(Scheme::GeneralizedAlpha { rho_infinity: 0.8 })
         .dt(1e-4)

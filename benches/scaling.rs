@@ -35,6 +35,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     {
         return row(Path::new(case), threads.parse()?);
     }
+    if let Some(unknown) = arguments.iter().find(|wanted| SIZES.iter().all(|(name, ..)| name != wanted)) {
+        return Err(format!("no size is called {unknown}: 5k, 20k, 80k, 300k or 1M").into());
+    }
     println!("{HEAD}\n|{}", "---|".repeat(HEAD.matches('|').count() - 1));
     for (name, n, b) in SIZES {
         if !arguments.is_empty() && !arguments.iter().any(|wanted| wanted == name) {
