@@ -1,0 +1,235 @@
+"""Measured curves that a law can be fitted to: what was led, what was measured, and what a law says instead."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .law import Drive, law
+
+Array = NDArray[np.float64]
+Parameters = Mapping[str, Any]
+
+# Parameters of the machine of a spring-slider, which no law has.
+MACHINE = ("stiffness", "mass")
+
+
+class Interface:
+    """Slip, pressure and traction over time at an interface, as in direct shear.
+
+    Args:
+        time: ascending, shape (n,) [T].
+        slip: since the start, shape (n,) [L].
+        pressure: shape (n,), or a number [F/L²].
+        traction: measured, shape (n,) [F/L²].
+        sigma: standard deviation of the noise of ``traction``: a number or shape (n,); the fit finds it unless given [F/L²].
+        weight: of this record among others.
+        initial: traction at the start [F/L²].
+    """
+
+    # What the residuals are of; records of several kinds need a sigma each.
+    kind = "traction"
+    # What is led.
+    led = "slip"
+
+    def __init__(
+        self,
+        time: ArrayLike,
+        slip: ArrayLike,
+        pressure: ArrayLike,
+        traction: ArrayLike,
+        *,
+        sigma: ArrayLike | None = None,
+        weight: float = 1.0,
+        initial: float = 0.0,
+    ) -> None:
+        self.time = _array("time", time)
+        size = self.time.size
+        self.slip, self.measured = _array("slip", slip, size), _array("traction", traction, size)
+        self.pressure = np.broadcast_to(_array("pressure", pressure, size), size)
+        self.initial = float(initial)
+        self.sigma, self.weight = _noise(sigma, weight, size)
+
+    def scales(self) -> tuple[float, float, float]:
+        """Coefficient of friction, slip [L] and time [T] that the record covers."""
+        closed = self.pressure > 0
+        coefficient = np.max(np.abs(self.measured[closed]) / self.pressure[closed], initial=0.0)
+        return float(coefficient), float(np.ptp(self.slip)), float(np.ptp(self.time))
+
+    def predicted(self, parameters: Parameters, threads: int | None = None) -> Array:
+        """What the law says instead of what was measured, shape (sets, n)."""
+        driven = law(_of_law(parameters)).drive(self.time, self.slip, self.pressure, traction=self.initial, threads=threads)
+        return driven["traction"]
+
+    def derivatives(self, parameters: Parameters, by: Sequence[str], threads: int | None = None) -> Array:
+        """How that varies with parameters of one set, shape (n, by)."""
+        own = [name for name in by if name not in MACHINE]
+        drive = law(_of_law(parameters)).drive(self.time, self.slip, self.pressure, traction=self.initial, by=own, threads=threads)
+        return _columns(drive, "traction", by)
+
+    def __repr__(self) -> str:
+        return _shown(self, time=self.time, **{self.led: self.slip}, pressure=self.pressure, traction=self.measured)
+
+
+class SpringSlider(Interface):
+    """Load-point displacement and force of a machine, whose stiffness k is a parameter, ``stiffness``, and mass M may be one, ``mass``.
+
+    With a mass the record is what :meth:`fecontact.law.Law.ride` rides, from rest: M ü = F − q, F = F₀ + k (w − u). Without, the machine
+    and what the interface yields are springs in series: the load point leads a law with 1/α = 1/α_t + 1/k, of which the data tell no more
+    than α, and a slip event is a jump.
+
+    Args:
+        time: ascending, shape (n,) [T].
+        load_point: displacement since the start, shape (n,) [L].
+        pressure: shape (n,), or a number [F/L²].
+        traction: measured force an area, shape (n,) [F/L²].
+        sigma, weight, initial: as for :class:`Interface`.
+    """
+
+    led = "load_point"
+
+    def __init__(self, time: ArrayLike, load_point: ArrayLike, pressure: ArrayLike, traction: ArrayLike, **options: Any) -> None:
+        super().__init__(time, load_point, pressure, traction, **options)
+
+    def predicted(self, parameters: Parameters, threads: int | None = None) -> Array:
+        """The force that the slider says, shape (sets, n)."""
+        if "mass" in parameters:
+            return self._ride(parameters, (), threads)["force"]
+        return super().predicted({**parameters, "alpha_t": self._series(parameters)[0]}, threads)
+
+    def derivatives(self, parameters: Parameters, by: Sequence[str], threads: int | None = None) -> Array:
+        """How that varies with parameters of one set, shape (n, by)."""
+        if "mass" in parameters:
+            return _columns(self._ride(parameters, by, threads), "force", by)
+        series, shares = self._series(parameters)
+        own = list(dict.fromkeys("alpha_t" if name == "stiffness" else name for name in by))
+        columns = dict(zip(own, super().derivatives({**parameters, "alpha_t": series}, own, threads).T))
+        scaled = {name: columns["alpha_t"] * share for name, share in shares.items() if name in by}
+        return np.stack([{**columns, **scaled}[name] for name in by], axis=-1)
+
+    def _ride(self, parameters: Parameters, by: Sequence[str], threads: int | None) -> Drive:
+        self._check(parameters)
+        sets = np.broadcast_shapes(*(np.shape(value) for value in parameters.values() if isinstance(value, np.ndarray)))
+        whole = {**_of_law(parameters), "alpha_t": np.broadcast_to(parameters["alpha_t"], sets)}
+        stiffness, mass = (np.broadcast_to(parameters[name], sets) for name in MACHINE)
+        path = (self.time, self.slip, self.pressure)
+        return law(whole).ride(*path, stiffness=stiffness, mass=mass, force=self.initial, by=by, threads=threads)
+
+    def _series(self, parameters: Parameters) -> tuple[Array, dict[str, Array]]:
+        """α, and how it varies with k and α_t."""
+        self._check(parameters)
+        springs = {name: np.asarray(parameters[name], dtype=float) for name in ("stiffness", "alpha_t")}
+        series = np.asarray(1.0 / (1.0 / springs["stiffness"] + 1.0 / springs["alpha_t"]))
+        return series, {name: (series / spring) ** 2 for name, spring in springs.items()}
+
+    def _check(self, parameters: Parameters) -> None:
+        for name in ("stiffness", "alpha_t"):
+            if name not in parameters:
+                raise ValueError(f"{name}: a spring-slider needs it: give it, or a range to find it in")
+
+
+class Holds:
+    """Peaks of the coefficient of friction after holds, in one slide-hold-slide sequence of a stiff machine.
+
+    Args:
+        hold: durations, one after the other, shape (n,) [T].
+        peak: measured largest q/p of the slide after each hold, shape (n,) [-].
+        rate: of the slides [L/T].
+        slide: length of every slide, the first one included, from rest [L].
+        pressure: [F/L²].
+        sigma: standard deviation of the noise of ``peak``; the fit finds it unless given [-].
+        weight: of this record among others.
+    """
+
+    kind = "peak"
+    # Samples of a slide, closer together where it begins: the peak comes after an unknown share of it.
+    SAMPLES = np.concatenate([[0.0], np.geomspace(1e-6, 1.0, 150)])
+
+    def __init__(
+        self,
+        hold: ArrayLike,
+        peak: ArrayLike,
+        *,
+        rate: float,
+        slide: float,
+        pressure: float,
+        sigma: ArrayLike | None = None,
+        weight: float = 1.0,
+    ) -> None:
+        self.hold = _array("hold", hold)
+        size = self.hold.size
+        self.measured = _array("peak", peak, size)
+        for name, value in (("rate", rate), ("slide", slide), ("pressure", pressure), ("hold", self.hold.min(initial=1.0))):
+            if not value > 0:
+                raise ValueError(f"{name}: is {value}: must be positive")
+        self.rate, self.slide, self.pressure = float(rate), float(slide), float(pressure)
+        self.sigma, self.weight = _noise(sigma, weight, size)
+        starts = np.concatenate([[0.0], np.cumsum(self.hold + slide / rate)])
+        self._time = (starts[:, None] + slide / rate * self.SAMPLES).ravel()
+        self._slip = (slide * (np.arange(size + 1)[:, None] + self.SAMPLES)).ravel()
+
+    def scales(self) -> tuple[float, float, float]:
+        """Coefficient of friction, slip [L] and time [T] that the record covers."""
+        return float(self.measured.max()), self.slide, float(self.hold.max())
+
+    def predicted(self, parameters: Parameters, threads: int | None = None) -> Array:
+        """The peaks that the law says, shape (sets, n)."""
+        drive = law(_of_law(parameters)).drive(self._time, self._slip, self.pressure, threads=threads)
+        return np.asarray(self._slides(drive["traction"]).max(axis=-1) / self.pressure)
+
+    def derivatives(self, parameters: Parameters, by: Sequence[str], threads: int | None = None) -> Array:
+        """How they vary with parameters of one set, shape (n, by): as the law does at the sample of the peak."""
+        own = [name for name in by if name not in MACHINE]
+        drive = law(_of_law(parameters)).drive(self._time, self._slip, self.pressure, by=own, threads=threads)
+        peaks = self._slides(drive["traction"]).argmax(axis=-1)
+        columns = [self._slides(column)[np.arange(self.hold.size), peaks] for column in _columns(drive, "traction", by).T]
+        return np.stack(columns, axis=-1) / self.pressure
+
+    def __repr__(self) -> str:
+        return _shown(self, hold=self.hold, peak=self.measured, rate=self.rate, slide=self.slide, pressure=self.pressure)
+
+    def _slides(self, sampled: Array) -> Array:
+        """Samples (..., holds, samples) of the slides after holds."""
+        return sampled.reshape(*sampled.shape[:-1], self.hold.size + 1, self.SAMPLES.size)[..., 1:, :]
+
+
+Record = Interface | SpringSlider | Holds
+
+
+def _shown(record: Record, **ranges: Array | float) -> str:
+    """A record in a line: how many samples, and from where to where."""
+    spans = {name: np.unique([np.min(values, initial=np.inf), np.max(values, initial=-np.inf)]) for name, values in ranges.items()}
+    told = ", ".join(f"{name} {' to '.join(f'{end:.6g}' for end in span)}" for name, span in spans.items())
+    return f"<{type(record).__name__} of {record.measured.size} samples: {told}>"
+
+
+def _of_law(parameters: Parameters) -> dict[str, Any]:
+    return {name: value for name, value in parameters.items() if name not in MACHINE}
+
+
+def _columns(drive: Drive, what: str, by: Sequence[str]) -> Array:
+    """∂what/∂parameter of a drive, a column a parameter; 0 for those that it does not depend on."""
+    return np.stack([drive.get(f"d{what}_d{name}", np.zeros_like(drive[what])) for name in by], axis=-1)
+
+
+def _array(name: str, given: ArrayLike, size: int | None = None) -> Array:
+    values = np.asarray(given, dtype=float)
+    if values.ndim > 1 or (size is not None and values.shape not in ((), (size,))):
+        raise ValueError(f"{name}: has the shape {values.shape}: must be ({'n' if size is None else size},)")
+    if not np.isfinite(values).all():
+        raise ValueError(f"{name}: is not a finite number at {np.flatnonzero(~np.isfinite(np.atleast_1d(values)))[0]}")
+    return values
+
+
+def _noise(sigma: ArrayLike | None, weight: float, size: int) -> tuple[Array | None, float]:
+    if not weight > 0:
+        raise ValueError(f"weight: is {weight}: must be positive")
+    if sigma is None:
+        return None, float(weight)
+    values = np.broadcast_to(_array("sigma", sigma, size), size)
+    if not (values > 0).all():
+        raise ValueError("sigma: must be positive")
+    return values, float(weight)

@@ -1,0 +1,251 @@
+"""Cases: given as a file, a dict or keyword arguments, checked and run."""
+
+from __future__ import annotations
+
+import copy
+import difflib
+import hashlib
+import json
+import os
+import tempfile
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import _native
+from ._plain import plain, refused
+from ._progress import Progress
+from .errors import Defect, Interrupted, RunWarning, Stopped
+from .mesh import Mesh
+from .result import Result
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from .model import CaseKeys
+
+# What a case says of a mesh that is at hand.
+AT_HAND = "a mesh at hand"
+
+
+class Report(str):
+    """A text that shows itself as it is."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+class Case:
+    """A case: mesh, bodies, contacts and steps, as ``fecontact schema`` describes them.
+
+    Args:
+        source: the path of a case file, or its content as a dict. The mesh may be a :class:`Mesh`, and any part an object of
+            :mod:`fecontact.model`; arrays of numpy stand for lists.
+        folder: where relative paths of a dict begin; the current folder unless given.
+        **keys: the keys of a case, instead of a dict: ``Case(mesh=..., bodies=..., contacts=..., steps=...)``.
+
+    Raises:
+        CaseError: file, place and value of what is wrong, as the command line says it. What only the mesh can tell is found by
+            :meth:`check` and :meth:`run`.
+    """
+
+    def __init__(
+        self,
+        source: str | os.PathLike[str] | Mapping[str, Any] | None = None,
+        *,
+        folder: str | os.PathLike[str] = "",
+        **keys: Unpack[CaseKeys],
+    ) -> None:
+        self._mesh: Mesh | None = None
+        if isinstance(source, (str, os.PathLike)):
+            if keys:
+                raise TypeError(f"a case file says all: {', '.join(keys)} cannot be given beside it")
+            self._path = os.fspath(source)
+            self._native = _native.Case.read(self._path)
+            self._document: dict[str, Any] = json.loads(self._native.document())
+            return
+        given = {**(source or {}), **keys}
+        self._path = os.path.join(folder, "case")
+        if isinstance(given.get("mesh"), Mesh):
+            self._mesh = given["mesh"]
+            given = {**given, "mesh": AT_HAND}
+        self._document = plain(given, file=self._path)
+        self._native = self._made()
+
+    def _made(self) -> _native.Case:
+        text = json.dumps(self._document, allow_nan=False)
+        return _native.Case(text, self._path, None if self._mesh is None else self._mesh._native)
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        return (_again, (self._document, self._path, self._mesh))
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """The case as a dict; a copy."""
+        return copy.deepcopy(self._document)
+
+    @property
+    def mesh(self) -> Mesh | None:
+        """The mesh, if it is at hand and not named by the case."""
+        return self._mesh
+
+    @property
+    def title(self) -> str:
+        """What the case shows."""
+        return str(self._document.get("title", ""))
+
+    def check(self) -> str:
+        """Read the mesh, check everything, and tell what was understood; solves nothing.
+
+        Raises:
+            CaseError: file, place and value of what is wrong.
+        """
+        return Report(self._native.check())
+
+    def replace(self, values: Mapping[str, Any]) -> Case:
+        """The case with other values at some places.
+
+        Args:
+            values: by place, such as ``{"contacts.base.friction.mu_s": 0.5, "steps[1].duration": 10, "mesh": mesh}``.
+
+        Raises:
+            CaseError: there is no such place, or a value does not fit.
+        """
+        case = Case.__new__(Case)
+        case._path, case._mesh, case._document = self._path, self._mesh, copy.deepcopy(self._document)
+        for place, value in values.items():
+            if place == "mesh":
+                case._mesh = value if isinstance(value, Mesh) else None
+                value = AT_HAND if isinstance(value, Mesh) else value
+            _put(case._document, place, plain(value, place, self._path), self._path)
+        case._native = case._made()
+        return case
+
+    @property
+    def digest(self) -> str:
+        """A name of what is solved, mesh included, and of nothing else: 16 hexadecimal digits."""
+        solved = {key: value for key, value in self._document.items() if key not in ("title", "units")}
+        of = hashlib.sha256(json.dumps(solved, sort_keys=True).encode())
+        mesh = self._document.get("mesh")
+        if self._mesh is not None:
+            of.update(json.dumps(self._mesh.document(), sort_keys=True).encode())
+        elif isinstance(mesh, str):
+            of.update(Path(os.path.dirname(self._path), mesh).read_bytes())
+        return of.hexdigest()[:16]
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Write the case as a file for ``fecontact run``, a mesh at hand within it."""
+        document = dict(self._document)
+        mesh = document.get("mesh")
+        if self._mesh is not None:
+            document["mesh"] = self._mesh.document()
+        elif isinstance(mesh, str):
+            document["mesh"] = os.path.relpath(os.path.join(os.path.dirname(self._path), mesh), os.path.dirname(path) or ".")
+        Path(path).write_text(json.dumps(document, indent=1) + "\n")
+
+    def run(
+        self,
+        out: str | os.PathLike[str] | None = None,
+        threads: int | None = None,
+        progress: bool = True,
+        resume: bool = False,
+        report: bool = False,
+    ) -> Result:
+        """Run the case, to the same bits as ``fecontact run``.
+
+        Ctrl-C ends it at the next increment; a second one does not wait for that. SIGTERM and SIGHUP end Python as they end any
+        program of it, and the run goes on from its last checkpoint (``resume``).
+
+        Args:
+            out: folder of the results; a temporary one, which goes with the result, unless given.
+            threads: all cores unless given; the results do not depend on it.
+            progress: whether a bar is shown, on a terminal or in a notebook.
+            resume: whether to go on from the last checkpoint in ``out``.
+            report: whether to write ``report.html`` into ``out``.
+
+        Raises:
+            CaseError: bad input; nothing was written.
+            Stopped: it stopped while solving; ``.result`` has the results so far.
+            Interrupted: Ctrl-C; ``.result`` has the results so far.
+        """
+        holder = None
+        if out is None:
+            if resume:
+                raise ValueError("resume: give the folder `out` of the run to go on with")
+            holder = tempfile.TemporaryDirectory(prefix="fecontact-", ignore_cleanup_errors=True)
+            out = holder.name
+        with Progress(progress) as bar:
+
+            def poll(told: list[str], place: _native.Place | None) -> None:
+                bar.show(place)
+                for text in told:
+                    warnings.warn(text, RunWarning, stacklevel=3)
+
+            status, why, raised = _native.run(self._native, os.fspath(out), threads, resume, report, poll)
+        result = Result(out, _holder=holder)
+        _raise(status, why, raised, result)
+        return result
+
+    def __repr__(self) -> str:
+        title = f" «{self.title}»" if self.title else ""
+        parts = {"bodies": self._document.get("bodies"), "contacts": self._document.get("contacts")}
+        told = "; ".join(f"{name} {', '.join(part)}" for name, part in parts.items() if part)
+        return f"<Case{title}: {told}; {len(self._document.get('steps', []))} steps>"
+
+
+def _raise(status: str, why: str | None, raised: BaseException | None, result: Result) -> None:
+    """The exception of a run that did not come to its end, or during which something was raised."""
+    if isinstance(raised, KeyboardInterrupt):
+        text = f"interrupted; the results so far are the .result of this exception, in {result.folder}"
+        raise Interrupted(text, result) from None
+    if raised is not None and status == "interrupted":
+        # What was raised on the way, such as a warning that is an error.
+        raised.__notes__ = [f"the results so far are in {result.folder}"]
+        raise raised
+    if status == "defect":
+        raise Defect(why or "", result)
+    if status != "completed":
+        raise Stopped(why or "", result) from raised
+    if raised is not None:
+        raise raised
+
+
+def _again(document: dict[str, Any], path: str, mesh: Mesh | None) -> Case:
+    case = Case.__new__(Case)
+    case._document, case._path, case._mesh = document, path, mesh
+    case._native = case._made()
+    return case
+
+
+def _put(document: dict[str, Any], place: str, value: Any, file: str) -> None:
+    """Set a value at a place such as ``steps[1].duration``; the last key may be new."""
+    keys: list[str | int] = []
+    for part in place.split("."):
+        name, *numbers = part.split("[")
+        keys.append(name)
+        for number in numbers:
+            if not number.endswith("]") or not number[:-1].isdigit():
+                raise refused(file, place, "is no place: write it like steps[1].duration")
+            keys.append(int(number[:-1]))
+    at: Any = document
+    for k, key in enumerate(keys):
+        known = isinstance(at, list) and isinstance(key, int) and key < len(at)
+        known = known or (isinstance(at, dict) and isinstance(key, str) and (key in at or k == len(keys) - 1))
+        if not known:
+            there = f"0 to {len(at) - 1}" if isinstance(at, list) else ", ".join(at) if isinstance(at, dict) else "nothing"
+            near = difflib.get_close_matches(str(key), at, 1) if isinstance(at, dict) else []
+            meant = f"did you mean `{near[0]}`? There" if near else "there"
+            raise refused(file, place, f"there is no `{key}` in this case; {meant} is {there}")
+        if k == len(keys) - 1:
+            at[key] = value
+        else:
+            at = at[key]
+
+
+def schema(of: str = "case") -> dict[str, Any]:
+    """The JSON Schema of a ``"case"``, or of the test of a ``"law"``."""
+    found: dict[str, Any] = json.loads(_native.schema(of))
+    return found

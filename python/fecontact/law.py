@@ -1,0 +1,284 @@
+"""Friction laws alone, driven along paths of slip and pressure; many parameter sets at once."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _native
+from ._plain import plain, refused
+
+Array = NDArray[np.float64]
+
+
+class Drive(Mapping[str, Array]):
+    """What a law answers along a path, by name; each has the shape (..., n): that of the parameters, and the times.
+
+    ``time`` (n,) [T], ``slip`` [L], ``pressure``, ``traction`` [F/L²], ``R``, ``mu``, ``structure`` [-], ``plastic_slip`` [L],
+    ``dissipation`` [F/L], the consistent tangents of every step ``dtraction_dslip`` [F/L³] and ``dtraction_dpressure`` [-],
+    ``evaluations`` of the law's equation, and what the law has besides. Also attributes: ``drive.traction``.
+    """
+
+    def __init__(self, arrays: Mapping[str, Array]) -> None:
+        self._arrays = dict(arrays)
+
+    def __getitem__(self, name: str) -> Array:
+        return self._arrays[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._arrays)
+
+    def __len__(self) -> int:
+        return len(self._arrays)
+
+    def __getattr__(self, name: str) -> Array:
+        try:
+            return self.__dict__["_arrays"][name]  # type: ignore[no-any-return]
+        except KeyError:
+            raise AttributeError(f"a drive has no `{name}`; it has {', '.join(self.__dict__['_arrays'])}") from None
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._arrays]
+
+    def __repr__(self) -> str:
+        return f"<Drive of shape {self['traction'].shape}: {', '.join(self)}>"
+
+
+class Law:
+    """A friction law with its parameters, each a number, or an array of any shape: a set of parameters an entry."""
+
+    def __init__(self, parameters: Mapping[str, Any]) -> None:
+        arrays = {name: np.asarray(value) for name, value in parameters.items() if _is_array(value)}
+        try:
+            self.shape: tuple[int, ...] = np.broadcast_shapes(*(array.shape for array in arrays.values()))
+        except ValueError:
+            shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
+            raise refused("law", "", f"the shapes of the parameters do not go together: {shapes}") from None
+        self.parameters = dict(parameters)
+        self._sets = []
+        for index in np.ndindex(self.shape):
+            one = {name: np.broadcast_to(array, self.shape)[index] for name, array in arrays.items()}
+            self._sets.append(json.dumps(plain({**parameters, **one}, file="law")))
+
+    def check(self) -> None:
+        """Check the parameters of all sets.
+
+        Raises:
+            CaseError: one of them is wrong.
+        """
+        self.drive([0.0, 1.0], 0.0, 1.0)
+
+    def drive(
+        self,
+        time: ArrayLike,
+        slip: ArrayLike,
+        pressure: ArrayLike,
+        *,
+        traction: float = 0.0,
+        by: Sequence[str] = (),
+        threads: int | None = None,
+    ) -> Drive:
+        """Drive the law along straight lines from sample to sample: ``fecontact law`` of a table, to the same bits.
+
+        However far apart the samples are, the traction is right to about 1e-6 μ p: super/subloading friction (unless by backward
+        Euler) and rate and state take sub-steps for it, the increments of Coulomb friction and slip weakening are exact.
+
+        Args:
+            time: ascending, shape (n,), n ≥ 2 [T].
+            slip: total slip since the start, shape (n,), or (..., n) with a path for every set of parameters [L].
+            pressure: the same, or a number; at or below 0 the surfaces are apart [F/L²].
+            traction: at the start [F/L²].
+            by: parameters by which to differentiate the traction, of those that :meth:`sensitivities` names: the drive has
+                ``dtraction_dmu_s`` for ``"mu_s"``, the traction at the start staying as it is. The derivatives are those of what was
+                computed, to round-off, with the sub-steps that it took.
+            threads: all cores unless given.
+
+        Raises:
+            CaseError: a parameter or the path is wrong.
+            Stopped: the law has no answer somewhere.
+        """
+        times = _finite("time", time)
+        if times.ndim != 1:
+            raise refused("law", "time", f"has the shape {times.shape}: must be (n,)")
+        courses = {name: self._course(name, given, times.size) for name, given in (("slip", slip), ("pressure", pressure))}
+        self._check_by(by, self.sensitivities())
+        initial = json.dumps({"traction": float(traction)})
+        arrays = _native.drive(self._sets, times, courses["slip"], courses["pressure"], initial, list(by), threads)
+        answers = {name: array.reshape(*self.shape, times.size) for name, array in arrays}
+        slips = np.broadcast_to(courses["slip"], (len(self._sets), times.size)).reshape(*self.shape, times.size)
+        return Drive({"time": times, "slip": slips, **answers})
+
+    def ride(
+        self,
+        time: ArrayLike,
+        load_point: ArrayLike,
+        pressure: ArrayLike,
+        *,
+        stiffness: ArrayLike,
+        mass: ArrayLike,
+        force: float = 0.0,
+        by: Sequence[str] = (),
+        tolerance: float = 1e-8,
+        threads: int | None = None,
+    ) -> Drive:
+        """Ride a spring-slider: the law under a mass that the spring of a machine pulls, at rest in equilibrium at the start::
+
+            M ü = F − q,   F = F₀ + k (w − u)
+
+        Its steps are adapted to slip events by halving the samples; nothing but friction damps it.
+
+        Args:
+            time: ascending, shape (n,), n ≥ 2 [T].
+            load_point: w since the start, shape (n,), or (..., n) with a path for every set of parameters [L].
+            pressure: the same, or a number [F/L²].
+            stiffness: k of the machine, k > 0, a number or of the shape of the parameters [F/L³].
+            mass: M, M > 0, in the same way [F T²/L³].
+            force: F₀, at the start [F/L²].
+            by: parameters by which to differentiate the force, of those that :meth:`sensitivities` names, ``"stiffness"`` and ``"mass"``:
+                the drive has ``dforce_dmass``, exact for the steps that were taken.
+            tolerance: error of force and traction in a step, as a share of the largest pressure.
+            threads: all cores unless given.
+
+        Returns:
+            ``time``, ``load_point``, ``pressure``, ``force`` [F/L²], ``slip`` [L], ``slip_rate`` [L/T], shape (..., n).
+
+        Raises:
+            CaseError: a parameter or the path is wrong.
+            Stopped: the law has no answer somewhere.
+        """
+        times = _finite("time", time)
+        if times.ndim != 1:
+            raise refused("law", "time", f"has the shape {times.shape}: must be (n,)")
+        if known := self.sensitivities():
+            known += ["stiffness", "mass"]
+        self._check_by(by, known)
+        machine = []
+        for name, given in (("stiffness", stiffness), ("mass", mass), ("tolerance", tolerance)):
+            if not ((values := _finite(name, given)) > 0).all():
+                raise refused("law", name, f"is {values.min()}: must be positive")
+            if values.shape not in ((), self.shape):
+                raise refused("law", name, f"has the shape {values.shape}: must be {self.shape}, as the parameters")
+            machine.append(np.broadcast_to(values, self.shape).reshape(-1))
+        course = {name: self._course(name, given, times.size) for name, given in (("load_point", load_point), ("pressure", pressure))}
+        start = (float(force), float(tolerance))
+        springs = np.stack(machine[:2], axis=1)
+        arrays = _native.ride(self._sets, springs, times, course["load_point"], course["pressure"], start, list(by), threads)
+        answers = {name: array.reshape(*self.shape, times.size) for name, array in arrays}
+        led = {name: np.broadcast_to(given, (len(self._sets), times.size)).reshape(*self.shape, -1) for name, given in course.items()}
+        return Drive({"time": times, **led, **answers})
+
+    def _check_by(self, by: Sequence[str], known: list[str]) -> None:
+        for name in by:
+            if name not in known:
+                raise refused("law", "by", f"the law is not differentiated by {name}; it is by {', '.join(known) or 'nothing'}")
+
+    def sensitivities(self) -> list[str]:
+        """Parameters by which :meth:`drive` differentiates: those of Coulomb friction, slip weakening, rate and state, and
+        super/subloading friction unless it is integrated by backward Euler; none of other laws."""
+        return _native.sensitivities(self._sets[0])
+
+    def steady(self, rate: ArrayLike) -> Array:
+        """The coefficient q/p of steady sliding at a rate, shape (..., rates): that of the parameters, and the rates.
+
+        ```text
+        coulomb            μ
+        slip_weakening     μ_d, without cohesion
+        rate_and_state     a arsinh(V/(2 V₀) exp((f₀ + b ln(V₀/V))/a))
+        super_subloading   the root of κ V (μ/μ_k − 1)^m = ξ (1 − μ/μ_s)^n; (κ V + ξ)/(κ V/μ_k + ξ/μ_s) for m = n = 1
+        ```
+
+        Args:
+            rate: V > 0, shape (rates,) or a number [L/T].
+
+        Raises:
+            CaseError: the law has no steady state, or a parameter is wrong.
+        """
+        from ._steady import steady
+
+        return steady(self, _finite("rate", rate))
+
+    def _course(self, name: str, given: ArrayLike, samples: int) -> Array:
+        values = _finite(name, given)
+        whole = (*self.shape, samples)
+        allowed = {(): (1, samples), (samples,): (1, samples), whole: (len(self._sets), samples)}
+        if values.shape not in allowed:
+            also = f" or {whole}" if self.shape else ""
+            raise refused("law", name, f"has the shape {values.shape}: must be ({samples},), as time has{also}")
+        return np.ascontiguousarray(np.broadcast_to(values.reshape(-1, samples) if values.ndim else values, allowed[values.shape]))
+
+    def __repr__(self) -> str:
+        sets = f", {len(self._sets)} sets of parameters {self.shape}" if self.shape else ""
+        return f"<Law {self.parameters.get('law')}{sets}>"
+
+
+def law(law: str | Mapping[str, Any], **parameters: Any) -> Law:
+    """A friction law alone: ``law("coulomb", mu=[0.3, 0.4], alpha_t=1e5)``, an object of :mod:`fecontact.model`, or the
+    ``friction`` of a contact; it needs ``alpha_t``, for which there is no mesh.
+
+    Args:
+        law: its name, or all its parameters; see ``fecontact.model`` for what there is.
+        **parameters: numbers, or arrays that go together by the rules of numpy: a set of parameters an entry.
+
+    Raises:
+        CaseError: there is no such law, or a parameter is wrong.
+    """
+    given = {"law": law} if isinstance(law, str) else dict(law)
+    made = Law({**given, **parameters})
+    made.check()
+    return made
+
+
+def friction_law(
+    name: str, variables: Mapping[str, float] | None = None
+) -> Callable[[Callable[..., Mapping[str, Any]]], Callable[..., Mapping[str, Any]]]:
+    """Register a law written in Python, for trying ideas: ``model.Registered(name=...)`` uses it in cases and in :func:`law`.
+
+    It is slow: Python is entered for every slice of points at every iterate. Workers in other processes must register it too.
+    The function gets arrays of the n closed points, shape (n,), and the parameters as keywords::
+
+        @fc.friction_law("my_coulomb")
+        def my_coulomb(old, slip, pressure, dt, *, mu, alpha_t):
+            trial = old["traction"] + alpha_t * slip
+            sliding = np.abs(trial) > mu * pressure
+            traction = np.where(sliding, np.sign(trial) * mu * pressure, trial)
+            return {
+                "traction": traction,
+                "dtraction_dslip": np.where(sliding, 0.0, alpha_t),
+                "dtraction_dpressure": np.where(sliding, np.sign(trial) * mu, 0.0),
+                "plastic_increment": np.where(sliding, (trial - traction) / alpha_t, 0.0),
+            }
+
+    ``old`` has traction, pressure [F/L²], plastic_slip [L], dissipation [F/L] and the variables at the start; slip [L], pressure
+    [F/L²] and dt [T] are those of the increment, alpha_t is the tangential stiffness [F/L³]. It returns the traction at the end, its
+    consistent tangents [F/L³], [-], the plastic part of the slip [L], all variables and, if it knows better than the
+    trapezoidal rule, the dissipation of the increment [F/L].
+
+    Args:
+        name: by which cases use it.
+        variables: what the law remembers, at most 4 numbers a point, with their values at first touch.
+    """
+
+    def register(function: Callable[..., Mapping[str, Any]]) -> Callable[..., Mapping[str, Any]]:
+        _native.register_law(name, function, [(key, float(value)) for key, value in (variables or {}).items()])
+        return function
+
+    return register
+
+
+def _is_array(value: object) -> bool:
+    return isinstance(value, (np.ndarray, list, tuple))
+
+
+def _finite(name: str, given: ArrayLike) -> Array:
+    values = np.asarray(given, dtype=float)
+    if not np.isfinite(values).all():
+        at = np.argwhere(~np.isfinite(values))[0]
+        place = name + "".join(f"[{k}]" for k in at)
+        raise refused("law", place, f"is {values[tuple(at)]}: must be a finite number")
+    return values
+
+

@@ -1,0 +1,167 @@
+"""Meshes: from files, from arrays, from blocks, from the gmsh model in memory."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _native
+from ._plain import plain, refused
+
+Lists = Union[ArrayLike, Sequence[ArrayLike]]
+
+
+class Mesh:
+    """A mesh at hand, checked as one from a file is.
+
+    Args:
+        nodes: positions, shape (nodes, 2) [L].
+        elements: for each body its elements, numbers of nodes counted from 0: shape (elements, k) with k = 3 or 6
+            (triangles), 4, 8 or 9 (quadrilaterals; corners in turn, then mid-side nodes in the same order, then the centre),
+            or a list of such arrays.
+        edges: for each boundary curve its edges, shape (edges, 2), or (edges, 3) with the middle node last.
+        points: for each set its nodes, shape (points,).
+
+    Raises:
+        CaseError: what is wrong with it.
+    """
+
+    def __init__(
+        self,
+        nodes: ArrayLike,
+        elements: Mapping[str, Lists],
+        edges: Mapping[str, Lists] | None = None,
+        points: Mapping[str, ArrayLike] | None = None,
+    ) -> None:
+        given = np.asarray(nodes, dtype=float)
+        if given.ndim != 2 or given.shape[1] != 2:
+            raise refused("mesh", "nodes", f"has the shape {given.shape}: must be (nodes, 2)")
+        one = {name: np.asarray(numbers).reshape(-1, 1) for name, numbers in (points or {}).items()}
+        self._source: tuple[Any, ...] | bytes | str = (
+            np.ascontiguousarray(given),
+            {name: _lists("elements", name, lists, (3, 4, 6, 8, 9)) for name, lists in elements.items()},
+            {name: _lists("edges", name, lists, (2, 3)) for name, lists in (edges or {}).items()},
+            {name: _lists("points", name, numbers, (1,)) for name, numbers in one.items()},
+        )
+        self._native = _native.Mesh(*self._source)
+
+    @classmethod
+    def read(cls, path: str | os.PathLike[str]) -> Mesh:
+        """The mesh in a gmsh file (MSH 4.1)."""
+        return cls._of(Path(path).read_bytes(), _native.Mesh.read(os.fspath(path)))
+
+    @classmethod
+    def from_blocks(
+        cls,
+        blocks: Sequence[Mapping[str, Any]],
+        parameters: Mapping[str, float | str] | None = None,
+        apart: Sequence[str] = (),
+    ) -> Mesh:
+        """Quadrilaterals that are divided into elements and joined where two of a body share a side.
+
+        ``Case(mesh=model.Blocks(...))`` takes the same without a mesh at hand, and leaves the parameters to be changed:
+        ``case.replace({"mesh.parameters.L": 3.0})``.
+
+        Args:
+            blocks: objects of :class:`fecontact.model.Block`, or dicts.
+            parameters: numbers by name, which corners, numbers of elements and gradings may have in expressions.
+            apart: names of sides that are not joined.
+
+        Raises:
+            CaseError: which block is wrong, and why.
+        """
+        given = plain({"blocks": list(blocks), "parameters": dict(parameters or {}), "apart": list(apart)}, file="mesh")
+        return _again(json.dumps(given, allow_nan=False))
+
+    @classmethod
+    def from_gmsh(cls) -> Mesh:
+        """The mesh of the current model of the module ``gmsh``, which is initialized and has generated it.
+
+        Bodies are its physical surfaces, boundary curves its physical curves, sets of nodes its physical points.
+        """
+        import gmsh
+
+        options = {"Mesh.MshFileVersion": 4.1, "Mesh.Binary": 1, "Mesh.SaveAll": 0, "Mesh.SaveParametric": 0}
+        before = {name: gmsh.option.getNumber(name) for name in options}
+        with tempfile.TemporaryDirectory(prefix="fecontact-") as folder:
+            file = os.path.join(folder, "model.msh")
+            try:
+                for name, value in options.items():
+                    gmsh.option.setNumber(name, value)
+                gmsh.write(file)
+            finally:
+                for name, value in before.items():
+                    gmsh.option.setNumber(name, value)
+            content = Path(file).read_bytes()
+        return cls._of(content, _native.Mesh.from_bytes(content))
+
+    @classmethod
+    def _of(cls, source: bytes | str, native: _native.Mesh) -> Mesh:
+        mesh = cls.__new__(cls)
+        mesh._source, mesh._native = source, native
+        return mesh
+
+    def __reduce__(self) -> tuple[Any, tuple[Any]]:
+        return (_again, (self._source,))
+
+    @property
+    def nodes(self) -> NDArray[np.float64]:
+        """Reference positions, shape (nodes, 2) [L]; a copy."""
+        return self._native.nodes()
+
+    @property
+    def elements(self) -> list[list[int]]:
+        """The nodes of every element, counter-clockwise."""
+        return self._native.elements()
+
+    @property
+    def groups(self) -> dict[str, str]:
+        """Every group and its kind: elements, edges or points."""
+        return {name: kind for name, (kind, _) in self._native.groups().items()}
+
+    def document(self) -> dict[str, Any]:
+        """The mesh as it would stand in a case file."""
+        groups = self._native.groups()
+        elements = self.elements
+        return {
+            "nodes": self.nodes.tolist(),
+            "elements": {k: [elements[e] for e in m[0]] for k, (kind, m) in groups.items() if kind == "elements"},
+            "edges": {name: members for name, (kind, members) in groups.items() if kind == "edges"},
+            "points": {name: members[0] for name, (kind, members) in groups.items() if kind == "points"},
+        }
+
+    def __repr__(self) -> str:
+        groups = ", ".join(self.groups)
+        return f"<Mesh of {len(self.nodes)} nodes and {len(self.elements)} elements, with the groups {groups}>"
+
+
+def _again(source: tuple[Any, ...] | bytes | str) -> Mesh:
+    if isinstance(source, str):
+        return Mesh._of(source, _native.Mesh.from_blocks(source))
+    if isinstance(source, bytes):
+        return Mesh._of(source, _native.Mesh.from_bytes(source))
+    mesh = Mesh.__new__(Mesh)
+    mesh._source, mesh._native = source, _native.Mesh(*source)
+    return mesh
+
+
+def _lists(kind: str, name: str, given: Any, widths: tuple[int, ...]) -> list[NDArray[np.int64]]:
+    place = f"{kind}.{name}"
+    several = isinstance(given, (list, tuple)) and bool(given) and np.ndim(given[0]) == 2
+    arrays = [np.asarray(array) for array in (given if several else [given])]
+    for array in arrays:
+        if array.size == 0:
+            continue
+        if array.ndim != 2 or array.shape[1] not in widths:
+            allowed = " or ".join(str(width) for width in widths)
+            raise refused("mesh", place, f"has the shape {array.shape}: must be (number, {allowed})")
+        if not np.issubdtype(array.dtype, np.integer):
+            raise refused("mesh", place, f"has the type {array.dtype}: nodes are integers, counted from 0")
+    return [np.ascontiguousarray(array, dtype=np.int64) for array in arrays if array.size]

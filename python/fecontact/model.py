@@ -1,0 +1,1360 @@
+"""Parts of a case as Python objects: each is a dict, made from keyword arguments, that the reader of cases judges.
+
+Written by tools/model_from_schema.py from the JSON Schema (``fecontact schema``); not to be edited.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Final, Literal, TypedDict, Union
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from .mesh import Mesh
+
+    Pairs = Union[Sequence[Sequence[float]], NDArray[Any]]
+    Vector = Union[Sequence[float], NDArray[Any]]
+
+
+class Given:
+    """Stands for what is not given."""
+
+    def __repr__(self) -> str:
+        return "..."
+
+
+NOT_GIVEN: Final = Given()
+
+
+def _given(values: Mapping[str, Any]) -> dict[str, Any]:
+    return {key.rstrip("_"): value for key, value in values.items() if not isinstance(value, Given)}
+
+
+class Body(dict[str, Any]):
+    """A body.
+
+    Args:
+        material: Bulk law
+        damping: Damping of the body in dynamic steps; none unless given
+        element: Element formulation
+        initial_stress: Stress of the undeformed body at the start; none unless given
+        thermal: Thermal expansion; none unless given
+    """
+
+    def __init__(
+        self,
+        *,
+        material: Material,
+        damping: Damping | Given = NOT_GIVEN,
+        element: Formulation | Given = NOT_GIVEN,
+        initial_stress: InitialStress | None | Given = NOT_GIVEN,
+        thermal: Thermal | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"material": material, "damping": damping, "element": element, "initial_stress": initial_stress, "thermal": thermal}))
+
+
+class Linear(dict[str, Any]):
+    """Linear elasticity: small strains and rotations only.
+
+    Args:
+        E: E: Young's modulus, E > 0 [F/L²]
+        nu: ν: Poisson's ratio, −1 < ν < 0.5 [-]
+        density: ρ₀: mass per reference volume, ρ₀ ≥ 0 [M/L³]
+    """
+
+    def __init__(
+        self,
+        *,
+        E: float,
+        nu: float,
+        density: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"model": "linear", **_given({"E": E, "nu": nu, "density": density})})
+
+
+class SaintVenantKirchhoff(dict[str, Any]):
+    """Saint Venant–Kirchhoff: linear in the Green strain; large rotations, moderate strains.
+
+    Args:
+        E: E: Young's modulus, E > 0 [F/L²]
+        nu: ν: Poisson's ratio, −1 < ν < 0.5 [-]
+        density: ρ₀: mass per reference volume, ρ₀ ≥ 0 [M/L³]
+    """
+
+    def __init__(
+        self,
+        *,
+        E: float,
+        nu: float,
+        density: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"model": "saint_venant_kirchhoff", **_given({"E": E, "nu": nu, "density": density})})
+
+
+class NeoHookean(dict[str, Any]):
+    """Compressible neo-Hookean: large strains.
+
+    Args:
+        E: E: Young's modulus, E > 0 [F/L²]
+        nu: ν: Poisson's ratio, −1 < ν < 0.5 [-]
+        density: ρ₀: mass per reference volume, ρ₀ ≥ 0 [M/L³]
+    """
+
+    def __init__(
+        self,
+        *,
+        E: float,
+        nu: float,
+        density: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"model": "neo_hookean", **_given({"E": E, "nu": nu, "density": density})})
+
+
+class Hencky(dict[str, Any]):
+    """Hencky: linear in the logarithmic strain; large rotations, moderate strains.
+
+    Args:
+        E: E: Young's modulus, E > 0 [F/L²]
+        nu: ν: Poisson's ratio, −1 < ν < 0.5 [-]
+        density: ρ₀: mass per reference volume, ρ₀ ≥ 0 [M/L³]
+    """
+
+    def __init__(
+        self,
+        *,
+        E: float,
+        nu: float,
+        density: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"model": "hencky", **_given({"E": E, "nu": nu, "density": density})})
+
+
+class Viscoelastic(dict[str, Any]):
+    """Neo-Hookean beside a Maxwell arm: relaxes from E + E_1 to E within some tau.
+
+    Args:
+        E: E: Young's modulus that is left when all has relaxed, E > 0 [F/L²]
+        nu: ν: Poisson's ratio of both parts, −1 < ν < 0.5 [-]
+        E_1: E₁: Young's modulus of the part that relaxes, E₁ > 0; at once the body has E + E₁ [F/L²]
+        tau: τ: relaxation time, τ > 0 [T]
+        density: ρ₀: mass per reference volume, ρ₀ ≥ 0 [M/L³]
+    """
+
+    def __init__(
+        self,
+        *,
+        E: float,
+        nu: float,
+        E_1: float,
+        tau: float,
+        density: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"model": "viscoelastic", **_given({"E": E, "nu": nu, "E_1": E_1, "tau": tau, "density": density})})
+
+
+class Damping(dict[str, Any]):
+    """Rayleigh damping. A vibration of angular frequency w decays with the damping ratio (mass/w + stiffness w)/2.
+
+    Args:
+        mass: Force per momentum: damps slow motions most, free flight included [1/T]
+        stiffness: Kelvin-Voigt: viscous stress, this time times the elastic stress of the rate of strain; damps
+            fast vibrations most, and makes explicit increments shorter [T]
+    """
+
+    def __init__(
+        self,
+        *,
+        mass: float | Given = NOT_GIVEN,
+        stiffness: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"mass": mass, "stiffness": stiffness}))
+
+
+class Geostatic(dict[str, Any]):
+    """Ground at rest under its weight along -y.
+
+    Args:
+        surface: Level y at which the vertical stress is zero: the top of the body, or above it if it lies
+            deeper [L]
+        weight: γ: weight per volume, the density times gravity, above 0 [F/L³]
+        K0: K₀: horizontal over vertical stress, zero or positive; 1 − sin φ of loose ground, ν/(1 − ν) of an
+            elastic body that cannot widen [-]
+    """
+
+    def __init__(
+        self,
+        *,
+        surface: float,
+        weight: float,
+        K0: float,
+    ) -> None:
+        super().__init__({"geostatic": _given({"surface": surface, "weight": weight, "K0": K0})})
+
+
+class AlongX(dict[str, Any]):
+    """Pairs of x and value, x ascending."""
+
+    def __init__(self, x: Pairs) -> None:
+        super().__init__({"x": x})
+
+
+class AlongY(dict[str, Any]):
+    """Pairs of y and value, y ascending."""
+
+    def __init__(self, y: Pairs) -> None:
+        super().__init__({"y": y})
+
+
+class Components(dict[str, Any]):
+    """Components of the stress, tension positive.
+
+    Args:
+        xx: σ_xx [F/L²]
+        yy: σ_yy [F/L²]
+        xy: σ_xy; 0 unless given [F/L²]
+        zz: σ_zz: across the plane, of rings along the hoops. Needed but in plane stress, where it is 0 [F/L²]
+    """
+
+    def __init__(
+        self,
+        *,
+        xx: Profile,
+        yy: Profile,
+        xy: Profile | Given = NOT_GIVEN,
+        zz: Profile | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"components": _given({"xx": xx, "yy": yy, "xy": xy, "zz": zz})})
+
+
+class Thermal(dict[str, Any]):
+    """Thermal expansion of a body, whose `temperature` the steps give. With F = (1 + α (T − T₀)) F_e the material sees
+    F_e; a `linear` one sees the strain less α (T − T₀).
+
+    Args:
+        expansion: α: strain per temperature, against the undeformed body [1/Θ]
+        reference: T₀: temperature of the undeformed body, which it has until a step gives another [Θ]
+    """
+
+    def __init__(
+        self,
+        *,
+        expansion: float,
+        reference: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"expansion": expansion, "reference": reference}))
+
+
+class Contact(dict[str, Any]):
+    """A contact pair.
+
+    Args:
+        slave: Edge group whose points are kept out of the master, the finer or softer side; or a group of
+            points, each with the `area`
+        master: Edge group, or a rigid body. The slave's group again: contact of the surface with itself, each
+            point of which then stands for half its length, because every contact is met from both sides
+        friction: Friction law
+        along: What of friction varies along the slave, and in time
+        area: Area that each point of a slave group of points stands for, with the thickness or the full turn;
+            it does not change. Edges have lengths of their own [L, the thickness being 1, or L²]
+        dilatancy: How far the surfaces move apart with plastic slip
+        fluid_pressure: p_w: pressure of a fluid between the surfaces, zero or positive; expressions may have
+            the run time t besides the reference position x, y of the slave. It pushes both sides apart wherever
+            the master faces the slave, closed or open, beside the pressure p that the surfaces carry; friction,
+            `initial.pressure` and all outputs called pressure are this effective p alone. It is given, and does
+            not flow. Not for quasi_dynamic steps [F/L²]
+        initial: Tractions and structure at the start of a contact that starts closed. The gap of every slave
+            point is then counted from where the pressure acts at its initial position, all through the run
+        massless: Implicit dynamics: the mass of the slave's nodes is moved to the other nodes of their
+            elements, so that an impact does not set them ringing on the contact's stiffness, and the contact
+            force with them
+        method: Where contact is evaluated. Unless given: mortar where an edge of either side is quadratic or a
+            side curved (its direction turns by more than 1° between two corners of more than 45°);
+            gauss_to_segment between straight linear edges, with a `smooth` master, and where `points` are given
+        normal: Normal contact
+        points: Gauss points a slave edge (gauss_to_segment), 2 to 4; 2 unless given
+        radiation_damping: Static steps: a traction η × slip rate that resists slip beside friction, in place of
+            the inertia that is left out: the shear waves that slip would send into unbounded bodies take it
+            away. A number is η [F·T/L³]; true is that of the bodies, 1/η = 1/Z₁ + 1/Z₂ with Z = ρ c_s of each
+            side: G/(2 c_s) where both are alike, Z on a rigid master. Dynamic and explicit steps have inertia,
+            and leave it out
+        shrink_fit: Whether what the surfaces overlap at the start is brought in over the first step (shrink
+            fit) instead of at once
+        sliding: How far the surfaces may slide on each other: any way (finite), or by a small part of the
+            distance between nodes (small)
+        smooth: Whether the master's straight edges are taken for a smooth curve through their nodes (not by
+            mortar), so that nothing jumps where a slave slides from one to the next. Corners of more than 45°
+            stay
+        wear: k of Archard's law: the surfaces wear away by dw = k p × plastic slip, whichever way it goes, and
+            come nearer; k is the wear coefficient over the hardness. The depth w stands in tables and frames as
+            `wear` [L²/F]
+    """
+
+    def __init__(
+        self,
+        *,
+        slave: str,
+        master: Master,
+        friction: Friction,
+        along: Mapping[str, Any] | Given = NOT_GIVEN,
+        area: float | None | Given = NOT_GIVEN,
+        dilatancy: Dilatancy | None | Given = NOT_GIVEN,
+        fluid_pressure: Profile | None | Given = NOT_GIVEN,
+        initial: Initial | None | Given = NOT_GIVEN,
+        massless: bool | Given = NOT_GIVEN,
+        method: Method | None | Given = NOT_GIVEN,
+        normal: Normal | Given = NOT_GIVEN,
+        points: int | None | Given = NOT_GIVEN,
+        radiation_damping: Radiation | Given = NOT_GIVEN,
+        shrink_fit: bool | Given = NOT_GIVEN,
+        sliding: Sliding | Given = NOT_GIVEN,
+        smooth: bool | Given = NOT_GIVEN,
+        wear: float | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"slave": slave, "master": master, "friction": friction, "along": along, "area": area, "dilatancy": dilatancy, "fluid_pressure": fluid_pressure, "initial": initial, "massless": massless, "method": method, "normal": normal, "points": points, "radiation_damping": radiation_damping, "shrink_fit": shrink_fit, "sliding": sliding, "smooth": smooth, "wear": wear}))
+
+
+class Plane(dict[str, Any]):
+    """A half-space.
+
+    Args:
+        point: A point of its surface [L]
+        normal: Direction out of the solid, of any length
+    """
+
+    def __init__(
+        self,
+        *,
+        point: Vector,
+        normal: Vector,
+    ) -> None:
+        super().__init__({"plane": _given({"point": point, "normal": normal})})
+
+
+class Circle(dict[str, Any]):
+    """A disk, or the rim of a hole.
+
+    Args:
+        centre: Centre [L]
+        radius: Radius [L]
+        hole: Whether the solid is outside the circle
+    """
+
+    def __init__(
+        self,
+        *,
+        centre: Vector,
+        radius: float,
+        hole: bool | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"circle": _given({"centre": centre, "radius": radius, "hole": hole})})
+
+
+class Polyline(dict[str, Any]):
+    """A body bounded by straight lines.
+
+    Args:
+        points: Its corners, the solid on the right of the way; the first again at the end closes it [L]
+    """
+
+    def __init__(
+        self,
+        *,
+        points: Pairs,
+    ) -> None:
+        super().__init__({"polyline": _given({"points": points})})
+
+
+class Frictionless(dict[str, Any]):
+    """No friction."""
+
+    def __init__(self) -> None:
+        super().__init__({"law": "frictionless"})
+
+
+class Coulomb(dict[str, Any]):
+    """Elastic until |q| = μ p, then sliding at constant μ.
+
+    Args:
+        mu: μ: friction coefficient, μ > 0 [-]
+        alpha_t: α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies
+            [F/L³]
+    """
+
+    def __init__(
+        self,
+        *,
+        mu: float,
+        alpha_t: float | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"law": "coulomb", **_given({"mu": mu, "alpha_t": alpha_t})})
+
+
+class SuperSubloading(dict[str, Any]):
+    """Time-dependent super/subloading-surface friction: slip weakens the interface, rest heals it.
+
+    Args:
+        mu_s: μ_s: static friction coefficient, μ_s ≥ μ_k [-]
+        mu_k: μ_k: kinetic friction coefficient, μ_k > 0 [-]
+        r: r: rate at which R approaches 1 with plastic slip, r > 0 [1/L]
+        alpha_t: α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies
+            [F/L³]
+        approach: U(R): how R approaches 1
+        elastic_core: R_e: elastic core, no plastic slip for R ≤ R_e, 0 ≤ R_e < 1 [-]
+        integration: How an increment is integrated
+        kappa: κ: loss of structure with plastic slip, κ ≥ 0 [1/L]
+        m: m: exponent of the loss, m > 0 [-]
+        n: n: exponent of the recovery, n > 0 [-]
+        structure: 1/R*₀: structure at first touch, from 1 (μ = μ_k) to μ_s/μ_k (μ = μ_s, the default) [-]
+        tolerance: Error allowed to the controlled integration, as a share of μ_s p, from 1e-12 to 0.1; 1e-6 by
+            default [-]
+        xi: ξ: recovery of structure with time, ξ ≥ 0 [1/T]
+    """
+
+    def __init__(
+        self,
+        *,
+        mu_s: float,
+        mu_k: float,
+        r: float,
+        alpha_t: float | None | Given = NOT_GIVEN,
+        approach: Approach | Given = NOT_GIVEN,
+        elastic_core: float | Given = NOT_GIVEN,
+        integration: Integration | Given = NOT_GIVEN,
+        kappa: float | Given = NOT_GIVEN,
+        m: float | Given = NOT_GIVEN,
+        n: float | Given = NOT_GIVEN,
+        structure: float | None | Given = NOT_GIVEN,
+        tolerance: float | None | Given = NOT_GIVEN,
+        xi: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"law": "super_subloading", **_given({"mu_s": mu_s, "mu_k": mu_k, "r": r, "alpha_t": alpha_t, "approach": approach, "elastic_core": elastic_core, "integration": integration, "kappa": kappa, "m": m, "n": n, "structure": structure, "tolerance": tolerance, "xi": xi})})
+
+
+class SlipWeakening(dict[str, Any]):
+    """Friction that falls linearly with slip from static to dynamic, and does not heal.
+
+    Args:
+        mu_s: μ_s: static friction coefficient, μ_s ≥ μ_d [-]
+        mu_d: μ_d: friction coefficient after the slip D_c, μ_d > 0 [-]
+        D_c: D_c: slip over which friction falls from μ_s to μ_d, D_c > 0 [L]
+        alpha_t: α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies
+            [F/L³]
+        cohesion: c: cohesion, the strength without pressure of surfaces that touch, c ≥ 0 [F/L²]
+    """
+
+    def __init__(
+        self,
+        *,
+        mu_s: float,
+        mu_d: float,
+        D_c: float,
+        alpha_t: float | None | Given = NOT_GIVEN,
+        cohesion: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"law": "slip_weakening", **_given({"mu_s": mu_s, "mu_d": mu_d, "D_c": D_c, "alpha_t": alpha_t, "cohesion": cohesion})})
+
+
+class RateAndState(dict[str, Any]):
+    """Regularized rate-and-state friction: depends on the slip rate and on a state that ages or slips.
+
+    Args:
+        f_0: f₀: friction coefficient in steady sliding at V₀, f₀ > 0 [-]
+        V_0: V₀: reference slip rate, V₀ > 0 [L/T]
+        a: a: direct effect of the slip rate, a > 0 [-]
+        b: b: effect of the state, b ≥ 0; steady sliding weakens with the rate where b > a [-]
+        D_c: D_c: slip over which the state evolves, D_c > 0 [L]
+        alpha_t: α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies
+            [F/L³]
+        evolution: How the state evolves
+        theta: θ: state at the start, θ > 0; D_c/V₀, steady sliding at V₀, unless given [T]
+    """
+
+    def __init__(
+        self,
+        *,
+        f_0: float,
+        V_0: float,
+        a: float,
+        b: float,
+        D_c: float,
+        alpha_t: float | None | Given = NOT_GIVEN,
+        evolution: StateEvolution | Given = NOT_GIVEN,
+        theta: float | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"law": "rate_and_state", **_given({"f_0": f_0, "V_0": V_0, "a": a, "b": b, "D_c": D_c, "alpha_t": alpha_t, "evolution": evolution, "theta": theta})})
+
+
+class Prescribed(dict[str, Any]):
+    """Slip at a given rate, whatever traction that takes.
+
+    Args:
+        slip_rate: V: slip rate of the slave along +s, of either sign [L/T]
+        alpha_t: α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies
+            [F/L³]
+    """
+
+    def __init__(
+        self,
+        *,
+        slip_rate: float,
+        alpha_t: float | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"law": "prescribed", **_given({"slip_rate": slip_rate, "alpha_t": alpha_t})})
+
+
+class Registered(dict[str, Any]):
+    """A law that the program has not itself: one that calls the library has registered it, such as a law written in
+    Python.
+
+    Args:
+        name: The name by which the program that calls the library has registered it
+        alpha_t: α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies
+            [F/L³]
+        parameters: Its parameters by their names
+    """
+
+    def __init__(
+        self,
+        *,
+        name: str,
+        alpha_t: float | None | Given = NOT_GIVEN,
+        parameters: Mapping[str, float] | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"law": "registered", **_given({"name": name, "alpha_t": alpha_t, "parameters": parameters})})
+
+
+class LawChoice(dict[str, Any]):
+    """A law on a part of the slave.
+
+    Args:
+        where: It holds where this is positive
+        friction: Friction law
+        along: Its parameters that vary along the slave, and in time, by name
+    """
+
+    def __init__(
+        self,
+        *,
+        where: Profile,
+        friction: Friction,
+        along: Mapping[str, Profile] | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"where": where, "friction": friction, "along": along}))
+
+
+class Dilatancy(dict[str, Any]):
+    """Dilatancy of a contact, with any friction law.
+
+    Args:
+        rate: tan ψ: opening per plastic slip at the start, whichever way it goes; below the friction
+            coefficient, for the work that lifts the load is friction's [-]
+        limit: d_max: opening that much slip leads to, dδ = tan ψ (1 − δ/d_max) × plastic slip; no limit unless
+            given. The opening δ stands in tables and frames as `dilation` [L]
+    """
+
+    def __init__(
+        self,
+        *,
+        rate: float,
+        limit: float | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"rate": rate, "limit": limit}))
+
+
+class Initial(dict[str, Any]):
+    """The state of a contact that starts closed.
+
+    Args:
+        balanced: Whether an initial stress of the bodies is in equilibrium with these tractions. Displacements
+            and stresses of the run are then those that come on top of the initial stress
+        of_bodies: Instead of pressure and traction: those with which the `initial_stress` of the slave's body
+            ends at the contact, p = −n·σn (less the pressure of a fluid at the start) and q = s·σn, with the
+            normal n and the tangent s of the master
+        pressure: p: contact pressure, zero or positive [F/L²]
+        structure: 1/R*: structure of the super/subloading law, from 1 to μ_s/μ_k; that of the law unless given
+            [-]
+        traction: q: traction that resists the slip of the slave along +s, the master's normal turned by −90°
+            [F/L²]
+    """
+
+    def __init__(
+        self,
+        *,
+        balanced: bool | Given = NOT_GIVEN,
+        of_bodies: bool | Given = NOT_GIVEN,
+        pressure: Profile | None | Given = NOT_GIVEN,
+        structure: Profile | None | Given = NOT_GIVEN,
+        traction: Profile | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"balanced": balanced, "of_bodies": of_bodies, "pressure": pressure, "structure": structure, "traction": traction}))
+
+
+class Normal(dict[str, Any]):
+    """Normal contact.
+
+    Args:
+        alpha_n: α_n: pressure per penetration [F/L³]; unless given 10 (λ + 2G)/h, with λ + 2G of the softer of
+            the two sides and the depth h of the elements behind the slave. A slave group of points has none
+            behind it and needs a number
+        penetration: Largest penetration left [L]: the pressure is raised until no closed gap is larger
+            (augmented Lagrangian by Uzawa's method), so that the answer does not depend on alpha_n; penalty
+            alone unless given
+    """
+
+    def __init__(
+        self,
+        *,
+        alpha_n: float | None | Given = NOT_GIVEN,
+        penetration: float | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"alpha_n": alpha_n, "penetration": penetration}))
+
+
+class Blocks(dict[str, Any]):
+    """A mesh of blocks: quadrilaterals with straight sides or arcs, each divided into rows and columns of elements.
+    Blocks of one body that share a whole side are joined there, with the same nodes; those of different bodies
+    never are.
+
+    Args:
+        blocks: Blocks; nodes are numbered in their order, row by row
+        apart: Names of sides that are not joined to others, such as the two sides of a crack in one body
+        parameters: Numbers with names of your choice, for the expressions of the blocks; a number, or an
+            expression in other parameters
+    """
+
+    def __init__(
+        self,
+        *,
+        blocks: Sequence[Block],
+        apart: Sequence[str] | Given = NOT_GIVEN,
+        parameters: Mapping[str, Amount] | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"blocks": blocks, "apart": apart, "parameters": parameters}))
+
+
+class Block(dict[str, Any]):
+    """A quadrilateral divided into elements. Side k goes from corner k to the next one, in the order in which the
+    corners are given.
+
+    Args:
+        body: Name of the body that its elements belong to
+        corners: The four corners [x, y] in turn, either way round [L]
+        elements: Number of elements along side 0, from corner 0 to corner 1, and along side 1, from corner 1 to
+            corner 2
+        arcs: For each side null where it is straight, or the centre [x, y] of the circle through its two
+            corners: it is the shorter arc
+        grading: How their sizes vary along side 0 and along side 1, as a geometric series; even unless given
+        kind: Kind of the elements
+        sides: For each side its name, or null: edges of a name are a group for contacts, supports and loads
+    """
+
+    def __init__(
+        self,
+        *,
+        body: str,
+        corners: Sequence[Sequence[Amount]],
+        elements: Sequence[Amount],
+        arcs: Sequence[Sequence[Amount] | None] | Given = NOT_GIVEN,
+        grading: Sequence[Grading] | Given = NOT_GIVEN,
+        kind: BlockKind | Given = NOT_GIVEN,
+        sides: Sequence[str | None] | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"body": body, "corners": corners, "elements": elements, "arcs": arcs, "grading": grading, "kind": kind, "sides": sides}))
+
+
+class Middle(dict[str, Any]):
+    """Sizes that are alike at both ends.
+
+    Args:
+        middle: Size in the middle over that at both ends
+    """
+
+    def __init__(
+        self,
+        *,
+        middle: Amount,
+    ) -> None:
+        super().__init__(_given({"middle": middle}))
+
+
+class Newton(dict[str, Any]):
+    """When Newton's method stops.
+
+    Args:
+        max_iterations: Linear solves an increment before it is cut
+        tolerance: Out-of-balance force relative to the forces at work
+    """
+
+    def __init__(
+        self,
+        *,
+        max_iterations: int | Given = NOT_GIVEN,
+        tolerance: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"max_iterations": max_iterations, "tolerance": tolerance}))
+
+
+class Output(dict[str, Any]):
+    """What is written.
+
+    Args:
+        checkpoint: Minutes of wall time between checkpoints (checkpoint.bin), from which `run --resume` goes on
+            to the same bits after whatever has ended the run; the last one is written at the end. 5 unless
+            given; null or 0 for none
+        every: Fields are written with every n-th row of the history, and at the end of each step; with every
+            row unless given, or with none where `times` are
+        fields: Whether fields are written at all
+        fronts: The fronts that run along contacts with friction (fronts.csv), and the events of slip that they
+            make (events.csv)
+        interval: Explicit steps write a row of the history (and fields, every n-th time) at multiples of this
+            since the start of the step [T]; a hundredth of the step unless given. Implicit steps write every
+            increment or, if this is given, rows that are at least so far apart in time; where a contact point
+            opens, closes, begins to slip or stops, the increments before and after are always written, and so
+            are the ends of steps
+        points: Whether stresses at the integration points are written with the fields (points.pvd)
+        report: Whether a run ends with report.html, one page to look at its results in a browser; `fecontact
+            report` writes it at any time
+        times: Times at which fields are written, ascending; increments end on them [T]
+    """
+
+    def __init__(
+        self,
+        *,
+        checkpoint: float | None | Given = NOT_GIVEN,
+        every: int | None | Given = NOT_GIVEN,
+        fields: bool | Given = NOT_GIVEN,
+        fronts: Fronts | None | Given = NOT_GIVEN,
+        interval: float | None | Given = NOT_GIVEN,
+        points: bool | Given = NOT_GIVEN,
+        report: bool | Given = NOT_GIVEN,
+        times: Vector | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"checkpoint": checkpoint, "every": every, "fields": fields, "fronts": fronts, "interval": interval, "points": points, "report": report, "times": times}))
+
+
+class Fronts(dict[str, Any]):
+    """What counts as a front.
+
+    Args:
+        slip_rate: Slip rate whose passage from below is the arrival of a front; an event of slip lasts while a
+            point of the contact slips faster [L/T]
+        arrival: What tells of arrivals instead of the slip rate
+    """
+
+    def __init__(
+        self,
+        *,
+        slip_rate: float,
+        arrival: Arrival | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"slip_rate": slip_rate, "arrival": arrival}))
+
+
+class ArrivalR(dict[str, Any]):
+    """R passes this value from below [-]."""
+
+    def __init__(self, R: float) -> None:
+        super().__init__({"R": R})
+
+
+class ArrivalMu(dict[str, Any]):
+    """μ passes this value from above [-]."""
+
+    def __init__(self, mu: float) -> None:
+        super().__init__({"mu": mu})
+
+
+class MovingPlate(dict[str, Any]):
+    """A loading plate that moves in another way than as one.
+
+    Args:
+        on: Group of its nodes
+        moves: How they move
+    """
+
+    def __init__(
+        self,
+        *,
+        on: str,
+        moves: PlateMotion,
+    ) -> None:
+        super().__init__(_given({"on": on, "moves": moves}))
+
+
+class PointMass(dict[str, Any]):
+    """A mass at every node of a group.
+
+    Args:
+        mass: Mass of each node, added to what a body has there [M]
+        velocity: Initial velocity [x, y] of the nodes [L/T]
+    """
+
+    def __init__(
+        self,
+        *,
+        mass: float,
+        velocity: Vector | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"mass": mass, "velocity": velocity}))
+
+
+class Probe(dict[str, Any]):
+    """A gauge: a point given by `at`, or a line of points given by `from`, `to` and `number`; places are undeformed
+    ones.
+
+    Args:
+        at: The point [x, y]
+        body: The body, needed where two bodies touch
+        from_: Where a line begins [x, y]
+        number: How many points it has, both ends included; the k-th is called NAME.k, from 1
+        to: Where it ends [x, y]
+    """
+
+    def __init__(
+        self,
+        *,
+        at: Vector | None | Given = NOT_GIVEN,
+        body: str | None | Given = NOT_GIVEN,
+        from_: Vector | None | Given = NOT_GIVEN,
+        number: int | None | Given = NOT_GIVEN,
+        to: Vector | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"at": at, "body": body, "from_": from_, "number": number, "to": to}))
+
+
+class PlaneStress(dict[str, Any]):
+    """A plate, free of stress across the plane: forces, masses and energies of its whole thickness. Pressures and
+    tractions, those of contact included, count the undeformed thickness.
+
+    Args:
+        thickness: Undeformed thickness, above 0 [L]
+    """
+
+    def __init__(
+        self,
+        *,
+        thickness: float,
+    ) -> None:
+        super().__init__({"plane_stress": _given({"thickness": thickness})})
+
+
+class Step(dict[str, Any]):
+    """A step.
+
+    Args:
+        name: Name in messages and results
+        duration: Length of the step [T]
+        damping: Damping of bodies from this step on, in place of what the body or a step before has; inherited.
+            Statics know none
+        dt: Increments; inherited from the step before unless given
+        loads: Loads; inherited, and replaced where the same group and kind is named again. In any scheme null
+            takes a pressure, traction, force or gravity linearly to zero over the step, as the value 0 would,
+            and ends springs, dashpots and absorbing sides at once. A table or expression makes an end as sudden
+            as it is to be
+        rupture: Static and implicit steps: the step goes on explicitly while a contact slips fast. Not
+            inherited
+        scheme: Time scheme; inherited from the step before unless given, static in the first step
+        stabilize: Static steps only, where bodies are held by nothing until contact holds them: dashpots at all
+            nodes of every body resist motion, at the start of the step as if this share of the body's stiffness
+            lambda + 2G moved it in the time of the step; they fade linearly and are gone at its end, which
+            takes at least two increments. 1e-3 is a good start. Not inherited
+        supports: Supports; inherited, and replaced where the same group and direction is named again. One that
+            null frees is gone at once in dynamic and explicit steps; in a static step, also while `rupture`
+            makes it explicit, its reaction stays as a force that fades linearly over the step
+        temperature: Temperature of bodies that have `thermal` [Θ]; inherited, and replaced where the same body
+            is named again. A number is reached linearly at the end of the step, from the temperature at its
+            start; expressions may have the reference position x, y and the run time t
+        until: Static and implicit steps: the step ends before its time when a reaction comes to a value, and
+            those after it begin then. A step that comes to its own end without stops the run. Not inherited
+        velocity: Velocity [x, y] that whole bodies or point masses take when this step begins, a dynamic or
+            explicit one: settle under gravity, then launch. What it changes of the kinetic energy counts as
+            work from outside. Supported nodes keep to their supports [L/T]
+    """
+
+    def __init__(
+        self,
+        *,
+        name: str,
+        duration: float,
+        damping: Mapping[str, Damping] | Given = NOT_GIVEN,
+        dt: Increments | None | Given = NOT_GIVEN,
+        loads: Sequence[Load] | Given = NOT_GIVEN,
+        rupture: Rupture | None | Given = NOT_GIVEN,
+        scheme: Scheme | None | Given = NOT_GIVEN,
+        stabilize: float | None | Given = NOT_GIVEN,
+        supports: Sequence[Support] | Given = NOT_GIVEN,
+        temperature: Mapping[str, Temperature] | Given = NOT_GIVEN,
+        until: Until | None | Given = NOT_GIVEN,
+        velocity: Mapping[str, Vector] | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"name": name, "duration": duration, "damping": damping, "dt": dt, "loads": loads, "rupture": rupture, "scheme": scheme, "stabilize": stabilize, "supports": supports, "temperature": temperature, "until": until, "velocity": velocity}))
+
+
+class Increments(dict[str, Any]):
+    """Increments of a step.
+
+    Args:
+        initial: First increment [T]
+        error: Increments are as long as the estimated error of each stays below this [L]: in dynamic steps the
+            error of a displacement, and events of contact (slip sets in, stops or turns round) are located to
+            ten times this; in static steps the error of the slip of a contact point, half of what its plastic
+            slip differs from that at the last rate
+        max: Increments do not grow beyond this [T]; initial unless given, with `error` and in quasi_dynamic
+            steps a tenth of the step
+        min: Increments are not cut below this [T]; initial/1000 unless given, with `error` initial/10⁶, in
+            quasi_dynamic steps what round-off of the time allows
+    """
+
+    def __init__(
+        self,
+        *,
+        initial: float,
+        error: float | None | Given = NOT_GIVEN,
+        max: float | None | Given = NOT_GIVEN,
+        min: float | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"initial": initial, "error": error, "max": max, "min": min}))
+
+
+class Load(dict[str, Any]):
+    """A load: exactly one kind an entry.
+
+    Args:
+        on: Where
+        absorbing: true: a side of a body absorbs waves, as if the body went on (Lysmer-Kuhlemeyer: dashpots rho
+            c_p along the normal and rho c_s along the side, of the undeformed body); false ends it
+        dashpot: Dashpot at every node of the group, to the ground or to a moving driver
+        dead_pressure: Pressure on edges that keeps the force and direction it has on the undeformed edges,
+            positive toward the body [F/L²]
+        force: Force on every node of the group [F]
+        gravity: Acceleration of gravity on a body or on point masses [L/T²]
+        moment: Moment on a plate that moves as a rigid body, counter-clockwise; it turns with the plate [F L]
+        pressure: Pressure on edges that follows the surface, positive toward the body [F/L²]
+        spring: Spring at every node of the group, to the ground or to a moving driver; what it does to the node
+            counts as work from outside
+        total_force: Force on edges as a whole, spread over them as an even traction: a unit of depth in plane
+            strain, the thickness of a plate, the full turn of a ring. Its expressions depend on t alone [F]
+        traction: Traction on reference edges that keeps its direction [F/L²]
+    """
+
+    def __init__(
+        self,
+        *,
+        on: Place,
+        absorbing: bool | None | Given = NOT_GIVEN,
+        dashpot: Dashpot | None | Given = NOT_GIVEN,
+        dead_pressure: Drive | None | Given = NOT_GIVEN,
+        force: Components | None | Given = NOT_GIVEN,
+        gravity: Components | None | Given = NOT_GIVEN,
+        moment: Drive | None | Given = NOT_GIVEN,
+        pressure: Drive | None | Given = NOT_GIVEN,
+        spring: Spring | None | Given = NOT_GIVEN,
+        total_force: Components | None | Given = NOT_GIVEN,
+        traction: Components | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"on": on, "absorbing": absorbing, "dashpot": dashpot, "dead_pressure": dead_pressure, "force": force, "gravity": gravity, "moment": moment, "pressure": pressure, "spring": spring, "total_force": total_force, "traction": traction}))
+
+
+class Node(dict[str, Any]):
+    """Its tag in the mesh file (its number from 0 in a mesh given in place)."""
+
+    def __init__(self, node: int) -> None:
+        super().__init__({"node": node})
+
+
+class Near(dict[str, Any]):
+    """The node of the undeformed mesh that is nearest to this point [x, y]. It must be the only one, and no farther
+    away than the elements there are long [L].
+    """
+
+    def __init__(self, near: Vector) -> None:
+        super().__init__({"near": near})
+
+
+class Dashpot(dict[str, Any]):
+    """A dashpot: force c (v_driver − v). In statics v is the mean velocity of the increment.
+
+    Args:
+        cx: Coefficient in x [F T/L]
+        cy: Coefficient in y [F T/L]
+        driver: Velocity of the far end; the ground unless given [L/T]
+    """
+
+    def __init__(
+        self,
+        *,
+        cx: float | Given = NOT_GIVEN,
+        cy: float | Given = NOT_GIVEN,
+        driver: Components | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"cx": cx, "cy": cy, "driver": driver}))
+
+
+class Rate(dict[str, Any]):
+    """Value at the start of the step plus rate × time since [1/T]."""
+
+    def __init__(self, rate: float) -> None:
+        super().__init__({"rate": rate})
+
+
+class Table(dict[str, Any]):
+    """Pairs of run time and value, times ascending; linear between, constant outside."""
+
+    def __init__(self, table: Pairs) -> None:
+        super().__init__({"table": table})
+
+
+class Spring(dict[str, Any]):
+    """A spring.
+
+    Args:
+        driver: Displacement of the far end; the ground unless given [L]
+        kx: Stiffness in x [F/L]
+        ky: Stiffness in y [F/L]
+    """
+
+    def __init__(
+        self,
+        *,
+        driver: Components | None | Given = NOT_GIVEN,
+        kx: float | Given = NOT_GIVEN,
+        ky: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"driver": driver, "kx": kx, "ky": ky}))
+
+
+class Rupture(dict[str, Any]):
+    """When a step goes on explicitly, and returns to its own scheme. An increment in which a contact point slips
+    faster than `slip_rate`, or that cannot be solved, is halved down to `dt.min` and, if that does not help, made
+    explicitly. The step returns when no point has slipped that fast, on the mean of the time that a shear wave
+    takes across the model. What slides without friction does not count. To be noticed, an event must slip more than
+    `slip_rate` times `dt.max`. Waves that are left die in a static step, and their energy counts as damped.
+
+    Args:
+        slip_rate: Slip rate above which increments are explicit [L/T]
+        safety: Explicit increments as a share of the longest that is stable, above 0 and at most 1; 0.9 unless
+            given [-]
+    """
+
+    def __init__(
+        self,
+        *,
+        slip_rate: float,
+        safety: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"slip_rate": slip_rate, "safety": safety}))
+
+
+class Newmark(dict[str, Any]):
+    """Newmark; β = 1/4, γ = 1/2 (the trapezoidal rule) unless given.
+
+    Args:
+        beta: β > 0 [-]
+        gamma: γ ≥ 1/2 [-]
+    """
+
+    def __init__(
+        self,
+        *,
+        beta: float | Given = NOT_GIVEN,
+        gamma: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"newmark": _given({"beta": beta, "gamma": gamma})})
+
+
+class Hht(dict[str, Any]):
+    """Hilber–Hughes–Taylor: second order, damps what the steps do not resolve.
+
+    Args:
+        alpha: −1/3 ≤ α ≤ 0; the nearer to −1/3, the more damping [-]
+    """
+
+    def __init__(
+        self,
+        *,
+        alpha: float,
+    ) -> None:
+        super().__init__({"hht": _given({"alpha": alpha})})
+
+
+class GeneralizedAlpha(dict[str, Any]):
+    """Generalized-α: second order, and of all such schemes the one that damps least what the steps resolve.
+
+    Args:
+        rho_infinity: 0 ≤ ρ∞ ≤ 1: what is left after an increment of a motion far too fast for it; 0.8 unless
+            given, 1 does not damp [-]
+    """
+
+    def __init__(
+        self,
+        *,
+        rho_infinity: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"generalized_alpha": _given({"rho_infinity": rho_infinity})})
+
+
+class Explicit(dict[str, Any]):
+    """Central differences: no equations to solve, but increments no longer than the fastest vibration of a single
+    element or contact point allows.
+
+    Args:
+        safety: 0 < safety ≤ 1: increment as a share of the longest that is stable; 0.9 unless given [-]
+    """
+
+    def __init__(
+        self,
+        *,
+        safety: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"explicit": _given({"safety": safety})})
+
+
+class QuasiDynamic(dict[str, Any]):
+    """Without inertia, bodies linear and contacts in small sliding with radiation damping: slip and state of the
+    interface are integrated explicitly, in steps that their error decides. For friction whose slip rate follows
+    from traction and state (rate_and_state, prescribed), nodes facing nodes, loads and supports that go evenly
+    within the step.
+
+    Args:
+        every: Steps from one result to the next, at least 1; 10 unless given
+        tolerance: Error of one step in the coefficient of friction, 0 < tolerance < 0.1; 1e-5 unless given [-]
+    """
+
+    def __init__(
+        self,
+        *,
+        every: int | Given = NOT_GIVEN,
+        tolerance: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"quasi_dynamic": _given({"every": every, "tolerance": tolerance})})
+
+
+class Wilson(dict[str, Any]):
+    """Wilson-θ: linear acceleration, equilibrium at t + θ Δt.
+
+    Args:
+        theta: 1.37 ≤ θ ≤ 2; 1.4 unless given [-]
+    """
+
+    def __init__(
+        self,
+        *,
+        theta: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__({"wilson": _given({"theta": theta})})
+
+
+class Support(dict[str, Any]):
+    """A support on a group or a node.
+
+    Args:
+        on: Where
+        along: Direction [x, y] of the displacement u; it need not be of unit length
+        rotation: Rigid rotation about a point, instead of all others; null frees it, see `supports`
+        u: Displacement along the direction `along`; what is across is free, unless another support of the node
+            holds that as well: two directions at a node hold both of its components. null frees it, see
+            `supports` [L]
+        un: Displacement along the normal of a side, positive out of the body; the side slides. The normal is
+            that of the undeformed body, averaged over the edges at a node; where edges of the group meet at 45
+            degrees or more, both normals hold. null frees it, see `supports` [L]
+        ux: Displacement in x [L]; null frees it, see `supports`
+        uy: Displacement in y [L]; null frees it, see `supports`
+    """
+
+    def __init__(
+        self,
+        *,
+        on: Place,
+        along: Vector | None | Given = NOT_GIVEN,
+        rotation: Rotation | None | Given = NOT_GIVEN,
+        u: Drive | None | Given = NOT_GIVEN,
+        un: Drive | None | Given = NOT_GIVEN,
+        ux: Drive | None | Given = NOT_GIVEN,
+        uy: Drive | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"on": on, "along": along, "rotation": rotation, "u": u, "un": un, "ux": ux, "uy": uy}))
+
+
+class Rotation(dict[str, Any]):
+    """A rigid rotation.
+
+    Args:
+        about: Centre [L]
+        angle: Angle, counter-clockwise [rad]
+    """
+
+    def __init__(
+        self,
+        *,
+        about: Vector,
+        angle: Drive,
+    ) -> None:
+        super().__init__(_given({"about": about, "angle": angle}))
+
+
+class Until(dict[str, Any]):
+    """A reaction that ends a step: displacement control up to a force. The increment in which the force passes its
+    value is made shorter until it has it. Supports that were to come to a value stay where the step has ended;
+    tables and expressions go on by the time of the run. Exactly one of `fx`, `fy` and `force` is given.
+
+    Args:
+        on: Whose reaction: what supports put on these nodes
+        force: Its size [F]
+        fx: Its x component [F]
+        fy: Its y component [F]
+        tolerance: Share of the value, or of the reaction at the start of the step if that is larger, within
+            which it is met, at most 0.1; 1e-6 unless given [-]
+    """
+
+    def __init__(
+        self,
+        *,
+        on: Place,
+        force: float | None | Given = NOT_GIVEN,
+        fx: float | None | Given = NOT_GIVEN,
+        fy: float | None | Given = NOT_GIVEN,
+        tolerance: float | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"on": on, "force": force, "fx": fx, "fy": fy, "tolerance": tolerance}))
+
+
+# A bulk material: its law and its constants.
+Material = Union[Linear, SaintVenantKirchhoff, NeoHookean, Hencky, Viscoelastic]
+
+# How the elements of a body are integrated.
+Formulation = Union[Literal["displacement"], Literal["f_bar"]]
+
+# Stress of a body before anything has moved. Displacements and strains count from there, stresses are whole. The run
+# tells how far it is out of balance with what acts at the start of the first step; loads that are there from the
+# start are expressions, such as "-9.81" for a gravity, for a number grows from zero over the step
+InitialStress = Union[Geostatic, Components]
+
+# Values by a coordinate of the reference position: linear between, constant outside. The same coordinate twice is a
+# jump.
+ProfileTable = Union[AlongX, AlongY]
+
+# A rigid body at rest, given by a formula.
+Rigid = Union[Plane, Circle, Polyline]
+
+# A friction law and its parameters.
+Friction = Union[Frictionless, Coulomb, SuperSubloading, SlipWeakening, RateAndState, Prescribed, Registered]
+
+# U(R): how fast the normal-sliding ratio approaches 1 with plastic slip. ```text dR/dλ = U(R), y = (R − R_e)/(1 −
+# R_e) U = −r ln y logarithmic (the authors' choice) U = r cot(π y/2) cotangent (their earlier subloading-friction
+# models) ``` Both are infinite at y = 0 (elastic) and 0 at y = 1 (full sliding). Source: Toyoda, Yasuike & Noda
+# (2024), Tribology International 191:109080, eq. 13; Ozaki & Hashiguchi (2010), Tribology International 43:2120.
+Approach = Union[Literal["logarithmic"], Literal["cotangent"]]
+
+# How the evolution of an increment is integrated.
+Integration = Union[Literal["controlled"], Literal["backward_euler"]]
+
+# Evolution of the state θ of rate-and-state friction.
+StateEvolution = Union[Literal["ageing"], Literal["slip"]]
+
+# Where contact is evaluated.
+Method = Union[Literal["node_to_segment"], Literal["gauss_to_segment"], Literal["mortar"]]
+
+# Radiation damping: whether, or how much.
+Radiation = Union[bool, float]
+
+# How far surfaces may slide on each other, and turn.
+Sliding = Union[Literal["finite"], Literal["small"]]
+
+# A mesh file or a mesh in place.
+MeshSource = Union[str, Blocks, Mapping[str, Any]]
+
+# A number that may depend on the parameters of the mesh.
+Amount = Union[float, str]
+
+# How the sizes of elements vary along a side.
+Grading = Union[float, str, Middle]
+
+# Elements of a block.
+BlockKind = Union[Literal["Q4"], Literal["Q8"]]
+
+# What tells that a front arrives at a point.
+Arrival = Union[ArrivalR, ArrivalMu]
+
+# A loading plate.
+LoadingPlate = Union[str, MovingPlate]
+
+# How the nodes of a loading plate move.
+PlateMotion = Union[Literal["as_one"], Literal["ux_alike"], Literal["uy_alike"], Literal["rigid"]]
+
+# What the plane stands for in space.
+Section = Union[Literal["plane_strain"], PlaneStress, Literal["axisymmetric"]]
+
+# A single node.
+Spot = Union[Node, Near]
+
+# A variation in time.
+Time = Union[Rate, Table]
+
+# Time scheme of a step, as the case file names it.
+Scheme = Union[Literal["static"], Newmark, Hht, GeneralizedAlpha, Explicit, QuasiDynamic, Wilson]
+
+# A temperature that varies. A table by x or y, of the reference position, is reached at the end of the step, linearly
+# from the temperature at its start: linear between, constant outside, the same coordinate twice is a jump.
+TemperatureVariation = Union[Rate, Table, AlongX, AlongY]
+
+# How a quantity varies along a surface.
+Profile = Union[float, str, ProfileTable]
+
+# The master side.
+Master = Union[str, Rigid]
+
+# A group or a single node.
+Place = Union[str, Spot]
+
+# How a quantity varies.
+Drive = Union[float, str, Time]
+
+# How warm a body is.
+Temperature = Union[float, str, TemperatureVariation]
+
+
+class CaseKeys(TypedDict, total=False):
+    """The keys of a case."""
+
+    # Folder of results, or checkpoint, of a case that has come to its end, relative to this file: this case begins
+    # there. Mesh, bodies and contacts must be the same but for the parameters of friction and damping. The steps
+    # follow on those of that case: supports, loads and time go on from there; energies are counted anew
+    begin_with: str | None
+    # Bodies by the name of their mesh group
+    bodies: Mapping[str, Body]
+    # Contacts by a name of your choice
+    contacts: Mapping[str, Contact]
+    # Initial velocity [x, y] of whole bodies
+    initial_velocity: Mapping[str, Vector]
+    # Path of a gmsh MSH 4.1 file relative to the case file, or a mesh given in place: as blocks that are divided
+    # into elements, or node by node
+    mesh: Mesh | MeshSource
+    # When Newton's method stops
+    newton: Newton
+    # What is written
+    output: Output
+    # Periodic sides: pairs of groups whose nodes lie alike. What leaves by one side comes in by the other: each
+    # node moves as its partner does, and what acts on one acts on both
+    periodic: Sequence[Sequence[str]]
+    # Loading plates: groups whose nodes all move alike, as if glued to a rigid plate that does not turn. A support,
+    # force, spring or dashpot on one of its nodes acts on the whole plate once, a `total_force` on its group as
+    # well. Its reaction counts in the watched groups that all of the plate belongs to. In axisymmetry a plate keeps
+    # its radius, ux = 0. Other plates say how they `moves`: only one component alike, or as a rigid body that turns
+    plates: Sequence[LoadingPlate]
+    # Point masses by the name of a mesh group: a mass at each of its nodes
+    point_masses: Mapping[str, PointMass]
+    # Gauges by a name of your choice: displacement, velocity, strain and stress at points of the bodies, at every
+    # row of the history (probes.csv)
+    probes: Mapping[str, Probe]
+    # What the plane stands for in space: "plane_strain", a plate {"plane_stress": {"thickness": …}}, or
+    # "axisymmetric"
+    section: Section
+    # Steps, one after the other
+    steps: Sequence[Step]
+    # What the case shows, in a line
+    title: str
+    # Labels of the units used, for readers; any consistent set will do
+    units: Mapping[str, str]
+    # Groups whose mean displacement and reaction go to the history
+    watch: Sequence[str]

@@ -1,0 +1,235 @@
+"""Figures of results with matplotlib; each takes ``ax``, and returns it.
+
+Labels have the units that the case names under ``units``; legends and limits are matplotlib's to change.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from .law import Drive
+    from .result import Result
+
+# Symbols of the fields of an interface.
+_SYMBOLS = {
+    "slip": "slip",
+    "total_slip": "slip, elastic and plastic",
+    "slip_rate": "slip rate",
+    "p": "pressure",
+    "q": "traction",
+    "R": "R",
+    "mu": "μ",
+    "structure": "structure 1/R*",
+    "gap": "gap",
+    "theta": "θ",
+}
+
+# What columns of the history are.
+_LENGTHS = "ux uy edge_ux edge_uy centre_x centre_y contact_length mean_slip mean_elastic_slip max_elastic_slip max_penetration"
+_KINDS = {
+    "time": ("time", "dt"),
+    "length": (*_LENGTHS.split(), "mean_dilation", "mean_wear"),
+    "force": ("normal_force", "tangential_force", "fluid_force", "force_x", "force_y", "fx", "fy"),
+}
+
+
+def friction(result: Result, contact: str | None = None, *, x: str = "time", ax: Axes | None = None, **line: Any) -> Axes:
+    """|Q|/N of contacts over time, or over another column of the history.
+
+    Args:
+        result: the results.
+        contact: one contact; all unless given.
+        x: a column of the history, such as ``"time"`` or ``"base.mean_slip"``.
+        ax: where to draw.
+        **line: for ``ax.plot``.
+    """
+    ax = _axes(ax)
+    history = result.history
+    for name in _contacts(result, contact):
+        normal, tangential = history[f"{name}.normal_force"], history[f"{name}.tangential_force"]
+        ratio = (tangential.abs() / normal).where(normal > 0)
+        ax.plot(history[x], ratio, **{"label": name, **line})
+    ax.set(xlabel=_labelled(result, x), ylabel="|Q|/N [-]")
+    return _legend(ax)
+
+
+def slip_fraction(result: Result, contact: str | None = None, *, ax: Axes | None = None, **line: Any) -> Axes:
+    """Slipping share of the closed length of contacts over time."""
+    ax = _axes(ax)
+    for name in _contacts(result, contact):
+        ax.plot(result.history["time"], result.history[f"{name}.slip_fraction"], **{"label": name, **line})
+    ax.set(xlabel=_labelled(result, "time"), ylabel="slip fraction [-]", ylim=(-0.03, 1.03))
+    return _legend(ax)
+
+
+def interface(
+    result: Result,
+    contact: str | None = None,
+    field: str = "slip_rate",
+    *,
+    x: str = "position",
+    y: str = "time",
+    log: bool | None = None,
+    ax: Axes | None = None,
+    **mesh: Any,
+) -> Axes:
+    """A field of a contact over place and time, as colours.
+
+    Args:
+        result: the results.
+        contact: one contact; the first unless given.
+        field: of ``result.interface[contact]``, such as ``slip``, ``slip_rate``, ``p``, ``q``, ``mu``.
+        x: place by ``"position"``, the way along the slave surface, or by its coordinate ``"x"`` or ``"y"``.
+        y: ``"time"``, or ``"row"`` of the history, which are dense where much happens: over cycles of earthquakes an event is
+            too short to be seen in time. The axis then bears the times of rows.
+        log: whether colours are logarithmic; for slip rates unless given.
+        ax: where to draw.
+        **mesh: for ``ax.pcolormesh``.
+    """
+    from matplotlib.colors import LogNorm
+
+    ax = _axes(ax)
+    name = contact or _contacts(result, None)[0]
+    data = result.interface[name]
+    if x not in ("position", "x", "y") or y not in ("time", "row"):
+        raise ValueError(f"x is {x!r}, y is {y!r}: x is position, x or y; y is time or row")
+    order = np.argsort(data[x].values, kind="stable")
+    values = np.asarray(data[field].values, dtype=float)[:, order]
+    closed = np.asarray(data["p"].values)[:, order] > 0
+    shown = np.ma.masked_where(~closed | ~np.isfinite(values), values)
+    if log if log is not None else field == "slip_rate":
+        shown = np.ma.masked_where(np.abs(shown) <= 0, np.abs(shown))
+        if shown.count():
+            high = float(shown.max())
+            mesh.setdefault("norm", LogNorm(max(float(shown.min()), 1e-9 * high), high))
+    times = data["time"].values
+    rows = times if y == "time" else np.arange(times.size)
+    colours = ax.pcolormesh(data[x].values[order], rows, shown, **{"shading": "nearest", **mesh})
+    label = _SYMBOLS.get(field, field) + _unit(data[field].attrs.get("units"))
+    ax.figure.colorbar(colours, ax=ax, label=label)
+    ax.set(xlabel=x + _unit(result.units.get("length")), ylabel=_labelled(result, "time"), title=name)
+    if y == "row":
+        ticks = np.unique(np.linspace(0, times.size - 1, 7).astype(int))
+        ax.set_yticks(ticks, [f"{times[tick]:.5g}" for tick in ticks])
+        ax.set_ylabel(_labelled(result, "time") + ", a row of the history a step up")
+    return ax
+
+
+def fronts(
+    result: Result, contact: str | None = None, *, event: int | None = None, ax: Axes | None = None, **points: Any
+) -> Axes:
+    """Arrivals of fronts over the way along a contact, with the slopes of c_R, c_s and c_p of the body behind its slave.
+
+    Args:
+        result: the results; the case asks for fronts by ``output.fronts``.
+        contact: one contact; the first unless given.
+        event: its number in ``result.events``; that of the greatest length unless given. Time counts from its onset.
+        ax: where to draw.
+        **points: for ``ax.plot``.
+    """
+    ax = _axes(ax)
+    name = _contacts(result, contact)[0]
+    events, arrivals = (table[table["contact"] == name] for table in (result.events, result.fronts))
+    if events.empty:
+        raise ValueError(f"{name}: no event of slip reached a point (output.fronts)")
+    known = events.set_index("event")
+    if event is not None and event not in known.index:
+        raise KeyError(f"{name} has no event {event}; there are {', '.join(map(str, known.index))}")
+    of: Any = known["length"].idxmax() if event is None else event
+    own, onset = arrivals[arrivals["event"] == of], known["onset"][of]
+    after = own["arrival"] - onset
+    ax.plot(own["position"], after, **{"marker": ".", "linestyle": "", "color": "C0", "label": f"event {of}", **points})
+    _slopes(ax, own, known["position"][of], float(after.max()))
+    at = f"time after {onset:.6g}" + _unit(result.units.get("time"))
+    ax.set(xlabel="position" + _unit(result.units.get("length")), ylabel=at, title=name)
+    return _legend(ax)
+
+
+def _slopes(ax: Axes, arrivals: pd.DataFrame, start: float, until: float) -> None:
+    """What a wave from the start would draw, to the ends of what the arrivals cover."""
+    low, high = arrivals["position"].min(), arrivals["position"].max()
+    for k, wave in enumerate(("c_R", "c_s", "c_p")):
+        # Of each row: speed/(speed/c); the same c in all.
+        speeds = (arrivals["speed"] / arrivals[f"speed_over_{wave}"]).replace([np.inf, 0.0], np.nan).dropna()
+        if speeds.empty or until <= 0.0:
+            continue
+        ends = np.clip([start - speeds.median() * until, start, start + speeds.median() * until], low, high)
+        ax.plot(ends, np.abs(ends - start) / speeds.median(), color=f"C{k + 1}", linewidth=0.8, label=wave)
+
+
+def events(result: Result, *, ax: Axes | None = None, **points: Any) -> Axes:
+    """Largest slip of every event over its onset."""
+    ax = _axes(ax)
+    table = result.events
+    for name, own in table.groupby("contact", sort=False):
+        ax.plot(own["onset"], own["largest_slip"], **{"marker": "o", "linestyle": "", "label": name, **points})
+    ax.set(xlabel=_labelled(result, "time"), ylabel="largest slip" + _unit(result.units.get("length")))
+    return _legend(ax)
+
+
+def path(drive: Drive | Result, contact: str | None = None, *, ax: Axes | None = None, **line: Any) -> Axes:
+    """Traction over pressure: of a law that was driven, or N and Q of a contact."""
+    from .law import Drive as Driven
+
+    ax = _axes(ax)
+    if isinstance(drive, Driven):
+        pressures = np.atleast_2d(drive["pressure"].reshape(-1, drive["time"].size))
+        tractions = np.atleast_2d(drive["traction"].reshape(-1, drive["time"].size))
+        for pressure, traction in zip(pressures, tractions):
+            ax.plot(pressure, traction, **line)
+        ax.set(xlabel="p", ylabel="q")
+        return ax
+    for name in _contacts(drive, contact):
+        history = drive.history
+        ax.plot(history[f"{name}.normal_force"], history[f"{name}.tangential_force"], **{"label": name, **line})
+    force = _unit(drive.units.get("force"))
+    ax.set(xlabel="normal force N" + force, ylabel="tangential force Q" + force)
+    return _legend(ax)
+
+
+def newton(result: Result, *, ax: Axes | None = None, **line: Any) -> Axes:
+    """Relative residual of every iteration, a line an attempt."""
+    ax = _axes(ax)
+    for _, attempt in result.newton.groupby(["step", "increment", "attempt"], sort=False):
+        ax.semilogy(attempt["iteration"], attempt["residual"], **{"linewidth": 0.6, "color": "C0", "alpha": 0.5, **line})
+    ax.set(xlabel="iteration", ylabel="residual, relative [-]")
+    return ax
+
+
+def _axes(ax: Axes | None) -> Axes:
+    if ax is not None:
+        return ax
+    import matplotlib.pyplot as plt
+
+    return plt.subplots(layout="constrained")[1]
+
+
+def _contacts(result: Result, contact: str | None) -> list[str]:
+    known = result.contacts
+    if contact is not None and contact not in known:
+        raise KeyError(f"there is no contact {contact}; there are {', '.join(known)}")
+    if not known:
+        raise ValueError("this run has no contacts")
+    return known if contact is None else [contact]
+
+
+def _labelled(result: Result, column: str) -> str:
+    last = column.rsplit(".")[-1]
+    kind = next((kind for kind, names in _KINDS.items() if last in names), "")
+    return column + _unit(result.units.get(kind))
+
+
+def _unit(unit: str | None) -> str:
+    return f" [{unit}]" if unit else ""
+
+
+def _legend(ax: Axes) -> Axes:
+    if len(ax.get_lines()) > 1:
+        ax.legend()
+    return ax

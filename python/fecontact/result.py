@@ -1,0 +1,263 @@
+"""What a run leaves behind, read when it is asked for."""
+
+from __future__ import annotations
+
+import html
+import io
+import json
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+
+from . import _native
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from numpy.typing import NDArray
+
+
+class Result:
+    """The results of a run, whoever made it: ``case.run()``, or ``fecontact run`` (:meth:`open`).
+
+    Tables and fields are read when they are asked for, and kept; :meth:`reload` forgets them, for a run that is under way.
+    """
+
+    def __init__(self, folder: str | os.PathLike[str], *, _holder: Any = None) -> None:
+        self.folder = Path(folder)
+        # A temporary folder lives as long as the result.
+        self._holder = _holder
+
+    @classmethod
+    def open(cls, folder: str | os.PathLike[str]) -> Result:
+        """The results in a folder, finished or still growing.
+
+        Raises:
+            FileNotFoundError: there is no ``summary.json``.
+        """
+        result = cls(folder)
+        if not (result.folder / "summary.json").is_file():
+            raise FileNotFoundError(f"{result.folder}: there are no results here (no summary.json); check the path")
+        return result
+
+    def reload(self) -> Result:
+        """The same folder, read anew."""
+        return Result(self.folder, _holder=self._holder)
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """``summary.json``: status, reason, counts, times, warnings."""
+        summary: dict[str, Any] = json.loads((self.folder / "summary.json").read_text())
+        return summary
+
+    @property
+    def status(self) -> str:
+        """``"completed"``, ``"stopped"``, ``"interrupted"`` or ``"running"``."""
+        return str(self.summary["status"])
+
+    @property
+    def warnings(self) -> list[str]:
+        """Things to know about the result."""
+        return list(self.summary["warnings"])
+
+    @property
+    def contacts(self) -> list[str]:
+        """Names of the contacts."""
+        return list(self.summary["friction"])
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Labels of the units, as the case has them."""
+        return dict(self.summary["units"])
+
+    @cached_property
+    def history(self) -> pd.DataFrame:
+        """A row an increment: time [T], energies [F·L], forces [F] and means of every contact, watched sets."""
+        return self._table("history.csv")
+
+    @cached_property
+    def newton(self) -> pd.DataFrame:
+        """A row a linear solve: residual, correction, numbers of points open, sticking, slipping; what became of the attempt (``verdict``),
+        and why it was given up (``reason``). One that was given up before its first solve has a row whose ``iteration`` is 0."""
+        return self._table("newton.csv")
+
+    @cached_property
+    def events(self) -> pd.DataFrame:
+        """A row an event of slip; the case asks for it by ``output.fronts``."""
+        return self._table("events.csv", "the case asks for events by output.fronts")
+
+    @cached_property
+    def fronts(self) -> pd.DataFrame:
+        """A row a passage of a front; the case asks for it by ``output.fronts``."""
+        return self._table("fronts.csv", "the case asks for fronts by output.fronts")
+
+    @cached_property
+    def probes(self) -> pd.DataFrame:
+        """Displacement [L], velocity [L/T], strain [-] and stress [F/L²] of every probe over time."""
+        return self._table("probes.csv", "the case asks for them by probes")
+
+    @cached_property
+    def interface(self) -> Mapping[str, xr.Dataset]:
+        """Fields of every contact over time and place, by its name: ``result.interface["base"].slip`` has the dimensions
+        (time, point) and the coordinates time [T] and position [L]."""
+        return _Interfaces(self.folder / "interface.zarr", self._holder is not None)
+
+    @cached_property
+    def fields(self) -> Fields:
+        """Fields of the bodies, a grid of PyVista a time; ``.contact`` and ``.points`` are those of contacts and of
+        integration points."""
+        return Fields(self.folder, "solid")
+
+    def report(self, file: str | os.PathLike[str] | None = None) -> Path:
+        """Write one page (HTML) to look at the results in a browser; into their folder unless a file is given."""
+        return report([self.folder], file or self.folder / "report.html")
+
+    def _table(self, name: str, hint: str = "") -> pd.DataFrame:
+        path = self.folder / name
+        if not path.is_file():
+            raise FileNotFoundError(f"{path}: this run did not write it" + (f" ({hint})" if hint else ""))
+        # Numbers to the last digit, as pandas 3 reads them by itself.
+        exact: Any = {} if int(pd.__version__.split(".")[0]) >= 3 else {"float_precision": "round_trip"}
+        # An increment that was accepted has no reason why not: an empty text.
+        table: pd.DataFrame = pd.read_csv(path, converters={"reason": str}, **exact)
+        return table
+
+    def __repr__(self) -> str:
+        summary = self.summary
+        why = f" ({summary['reason']})" if summary.get("reason") else ""
+        title = f" «{summary['title']}»" if summary.get("title") else ""
+        return f"<Result{title} in {self.folder}: {self.status}{why}, {summary['increments']} increments>"
+
+    def _repr_html_(self) -> str:
+        summary = self.summary
+        rows = {
+            "status": self.status + (f": {summary['reason']}" if summary.get("reason") else ""),
+            "model": f"{summary['dofs']} dofs, {summary['elements']} elements, {summary['contact_points']} contact points",
+            "work": f"{summary['increments']} increments, {summary['cutbacks']} cut-backs, "
+            f"{summary['newton_iterations']} linear solves in {summary['wall_s']['total']:.2f} s",
+            "folder": str(self.folder),
+        }
+        rows.update({f"warning {k + 1}": text for k, text in enumerate(self.warnings)})
+        cells = "".join(
+            f"<tr><th style='text-align:left'>{html.escape(key)}</th><td style='text-align:left'>{html.escape(text)}</td></tr>"
+            for key, text in rows.items()
+        )
+        title = html.escape(str(summary.get("title") or "Result"))
+        return f"<div><b>{title}</b><table>{cells}</table>{self._figure()}</div>"
+
+    def _figure(self) -> str:
+        """Friction over time as an SVG; nothing where there is none."""
+        if not self.contacts or not (self.folder / "history.csv").is_file() or len(self.history) < 2:
+            return ""
+        from matplotlib.backends.backend_svg import FigureCanvasSVG
+        from matplotlib.figure import Figure
+
+        from . import plot
+
+        figure = Figure(figsize=(6.4, 2.8), layout="constrained")
+        FigureCanvasSVG(figure)
+        plot.friction(self, ax=figure.add_subplot())
+        text = io.StringIO()
+        figure.savefig(text, format="svg")
+        svg = text.getvalue()
+        return svg[svg.index("<svg") :]
+
+
+class Fields(Sequence[Any]):
+    """Grids of PyVista over time; each is read when it is asked for."""
+
+    def __init__(self, folder: Path, kind: str) -> None:
+        self._folder, self._kind = folder, kind
+        path = folder / f"{kind}.pvd"
+        if not path.is_file():
+            raise FileNotFoundError(f"{path}: this run did not write it (output.fields, output.points)")
+        from xml.etree import ElementTree
+
+        frames = ElementTree.fromstring(_closed(path.read_text())).iter("DataSet")
+        self._frames = [(float(frame.attrib["timestep"]), folder / frame.attrib["file"]) for frame in frames]
+
+    @property
+    def times(self) -> NDArray[np.float64]:
+        """Times of the grids, shape (frames,) [T]."""
+        return np.array([time for time, _ in self._frames])
+
+    def at(self, time: float) -> Any:
+        """The grid nearest to a time [T]."""
+        if not self._frames:
+            raise IndexError("there are no fields yet")
+        return self[int(np.argmin(np.abs(self.times - time)))]
+
+    @property
+    def contact(self) -> Fields:
+        """Those of the contacts: polylines through the contact points."""
+        return Fields(self._folder, "contact")
+
+    @property
+    def points(self) -> Fields:
+        """Those of the integration points."""
+        return Fields(self._folder, "points")
+
+    def __len__(self) -> int:
+        return len(self._frames)
+
+    def __getitem__(self, k: Any) -> Any:
+        if isinstance(k, slice):
+            return [self[i] for i in range(*k.indices(len(self)))]
+        try:
+            import pyvista
+        except ImportError as error:
+            raise ImportError("fields need PyVista: pip install 'fecontact[fields]'") from error
+        return pyvista.read(self._frames[k][1])
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} grids of {self._kind}>"
+
+
+class _Interfaces(Mapping[str, "xr.Dataset"]):
+    """Datasets of the contacts of one store."""
+
+    def __init__(self, store: Path, load: bool) -> None:
+        if not store.is_dir():
+            raise FileNotFoundError(f"{store}: this run did not write it: it has no contacts")
+        import xarray as xr
+
+        # Arrays are read when they are used; those of a temporary folder at once, because it may go before they do.
+        whole = xr.open_zarr(store, consolidated=True, chunks=None)
+        self._sets = {
+            contact: _of_contact(whole.load() if load else whole, prefix)
+            for contact, prefix in zip(whole.attrs["contacts"], whole.attrs["prefixes"])
+        }
+
+    def __getitem__(self, contact: str) -> xr.Dataset:
+        if contact not in self._sets:
+            raise KeyError(f"there is no contact {contact}; there are {', '.join(self._sets)}")
+        return self._sets[contact]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._sets)
+
+    def __len__(self) -> int:
+        return len(self._sets)
+
+
+def _of_contact(whole: xr.Dataset, prefix: str) -> xr.Dataset:
+    """The arrays of one contact, without its name before theirs."""
+    own = [name for name in whole.variables if str(name).startswith(f"{prefix}.")]
+    part = whole[own]
+    names = {name: str(name)[len(prefix) + 1 :] for name in [*part.variables, *part.dims] if str(name).startswith(f"{prefix}.")}
+    return part.rename(names)
+
+
+def _closed(text: str) -> str:
+    """The text of a collection, also of one that is still growing."""
+    return text if "</VTKFile>" in text else text[: text.rindex("/>") + 2] + "</Collection></VTKFile>"
+
+
+def report(folders: Sequence[str | os.PathLike[str]], file: str | os.PathLike[str]) -> Path:
+    """Write one page (HTML) to look at the results of some folders, overlaid: ``fecontact report``."""
+    _native.report([os.fspath(folder) for folder in folders], os.fspath(file))
+    return Path(file)

@@ -1,0 +1,267 @@
+"""A run increment by increment, led by its caller."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _native
+from ._plain import plain
+from .case import Case
+
+Array = NDArray[np.float64]
+
+
+class Increment:
+    """An accepted state. Its arrays of the nodes are views of the solver's own, not to be written to; nothing is copied."""
+
+    def __init__(self, native: _native.Increment) -> None:
+        self._native = native
+
+    @property
+    def time(self) -> float:
+        """t [T]."""
+        return self._native.time
+
+    @property
+    def dt(self) -> float:
+        """Δt of the increment that led here [T]."""
+        return self._native.dt
+
+    @property
+    def number(self) -> int:
+        """Accepted increments so far."""
+        return self._native.number
+
+    @property
+    def step(self) -> str:
+        """Name of the step."""
+        return self._native.step
+
+    @property
+    def iterations(self) -> int:
+        """Linear solves."""
+        return self._native.iterations
+
+    @property
+    def displacement(self) -> Array:
+        """u, shape (nodes, 2) [L]; a view."""
+        return self._native.field("displacement")
+
+    @property
+    def velocity(self) -> Array:
+        """v, shape (nodes, 2) [L/T]; a view."""
+        return self._native.field("velocity")
+
+    @property
+    def acceleration(self) -> Array:
+        """a, shape (nodes, 2) [L/T²]; a view."""
+        return self._native.field("acceleration")
+
+    @property
+    def reaction(self) -> Array:
+        """What the supports put on the nodes, shape (nodes, 2) [F]; a view."""
+        return self._native.field("reaction")
+
+    @property
+    def external(self) -> Array:
+        """What loads and supports put on the nodes, shape (nodes, 2) [F]; a view."""
+        return self._native.field("external")
+
+    def __repr__(self) -> str:
+        return f"<Increment {self.number} of step {self.step}: t = {self.time:g}, dt = {self.dt:g}>"
+
+
+class ContactFields(Mapping[str, Array]):
+    """Fields of a contact at present by name, shape (points,); each is computed, and so a copy.
+
+    ``gap``, ``slip``, ``elastic_slip`` [L], ``pressure``, ``traction`` [F/L²], ``slip_rate`` [L/T], ``state`` (0 open, 1
+    sticking, 2 slipping), ``dissipation`` [F/L], ``R``, ``mu``, ``structure`` [-], and what its law has besides.
+    """
+
+    ALWAYS = (
+        "gap",
+        "pressure",
+        "traction",
+        "slip",
+        "elastic_slip",
+        "slip_rate",
+        "R",
+        "mu",
+        "structure",
+        "state",
+        "dissipation",
+    )
+
+    def __init__(self, native: _native.Simulation, name: str) -> None:
+        self._native, self._name = native, name
+
+    def __getitem__(self, field: str) -> Array:
+        return self._native.contact_field(self._name, field)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.ALWAYS)
+
+    def __len__(self) -> int:
+        return len(self.ALWAYS)
+
+    @property
+    def position(self) -> Array:
+        """Where the slave points are, shape (points, 2) [L]; a copy."""
+        return self._native.contact_positions(self._name)
+
+    @property
+    def force(self) -> Array:
+        """What the master puts on the slave, shape (2,) [F]."""
+        return np.array(self._native.contact_force(self._name))
+
+
+class Simulation:
+    """A run as an iterator over its increments; supports and loads can be led between them.
+
+    A machine that keeps a force, from what the last increment has shown::
+
+        machine = fc.Simulation(case)
+        for increment in machine:
+            error = wanted - machine.reaction("piston")[0]
+            machine.lead("piston", ux=machine.displacement("piston")[0] + error / stiffness, by=increment.time + dt)
+
+    Args:
+        case: a case, or what makes one.
+        threads: all cores unless given; the results do not depend on it.
+
+    Raises:
+        CaseError: as of ``case.check()``.
+    """
+
+    def __init__(self, case: Case | Mapping[str, Any] | str | os.PathLike[str], threads: int | None = None) -> None:
+        self.case = case if isinstance(case, Case) else Case(case)
+        self._native = _native.Simulation(self.case._native, threads)
+
+    def __iter__(self) -> Simulation:
+        return self
+
+    def __next__(self) -> Increment:
+        """The next accepted increment; of an explicit step, all of them to the next output.
+
+        Raises:
+            Stopped: no increment is short enough; the state before it is still there.
+        """
+        increment = self._native.next_increment()
+        if increment is None:
+            raise StopIteration
+        return Increment(increment)
+
+    @property
+    def state(self) -> Increment:
+        """The accepted state."""
+        return Increment(self._native.state)
+
+    @property
+    def time(self) -> float:
+        """t [T]."""
+        return self._native.state.time
+
+    @property
+    def step(self) -> str:
+        """Name of the step of the next increment."""
+        return self._native.state.step
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Start and end of the step of the next increment [T]."""
+        return self._native.span
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether the last step is over."""
+        return self._native.is_complete
+
+    @property
+    def report(self) -> dict[str, Any]:
+        """Counts, energies and times so far, as in ``summary.json``."""
+        report: dict[str, Any] = json.loads(self._native.report())
+        return report
+
+    @property
+    def nodes(self) -> Array:
+        """Reference positions, shape (nodes, 2) [L]; a copy."""
+        return self._native.nodes()
+
+    def nodes_of(self, group: str) -> NDArray[np.intp]:
+        """Numbers of the nodes of a group, ascending."""
+        return np.array(self._native.nodes_of(group), dtype=np.intp)
+
+    def reaction(self, group: str) -> Array:
+        """Sum of what the supports of a group put on it, shape (2,) [F]."""
+        return np.array(self._native.reaction(group))
+
+    def displacement(self, group: str) -> Array:
+        """Mean displacement of the nodes of a group, shape (2,) [L]."""
+        return np.array(self._native.displacement(group))
+
+    @property
+    def contacts(self) -> dict[str, ContactFields]:
+        """Contacts by name, and their fields at present."""
+        return {name: ContactFields(self._native, name) for name in self._native.contacts}
+
+    def lead(self, group: str, *, ux: float | None = None, uy: float | None = None, by: float) -> None:
+        """Lead the supports of a group evenly from where they are to a displacement, and hold them there to the end of the
+        step.
+
+        Args:
+            group: a group that is supported in these directions.
+            ux, uy: displacements [L].
+            by: when they are reached [T].
+        """
+        for axis, to in enumerate((ux, uy)):
+            if to is not None:
+                self._native.lead(group, axis, float(to), float(by))
+
+    def load(self, on: str, *, by: float | None = None, **load: Any) -> None:
+        """Give a load anew, to the end of the step.
+
+        Args:
+            on: where: a group.
+            by: when it is reached, evenly from what it is now [T]; at once unless given.
+            **load: one kind, as in a step: ``pressure=2.0``, ``traction={"x": 1.0}``, ``force=``, ``gravity=``,
+                ``spring={"kx": 10, "driver": {"x": 0.1}}``, ``dashpot=``; ``None`` ends it.
+        """
+        self._native.load(json.dumps(plain({"on": on, **load}, file="load")), None if by is None else float(by))
+
+    def increments(self, *, max: float | None = None, min: float | None = None) -> None:
+        """Bound the increments of the step under way [T]."""
+        self._native.increments(max, min)
+
+    def stop(self) -> None:
+        """End it: no increment follows."""
+        self._native.stop()
+
+    def save(self) -> _native.Saved:
+        """The run as it is, to be gone on with in this process by :meth:`resume`, as often as wanted."""
+        return self._native.save()
+
+    def write(self, folder: str | os.PathLike[str]) -> None:
+        """Write a checkpoint into a folder; another case can begin with it once this run is complete (``begin_with``).
+
+        Raises:
+            Stopped: it cannot be written, or supports and loads of the step under way were led, which no file holds.
+        """
+        self._native.write(os.fspath(folder))
+
+    @classmethod
+    def resume(cls, case: Case, saved: _native.Saved, threads: int | None = None) -> Simulation:
+        """Go on from what :meth:`save` gave, to the same bits as if the run had never stopped."""
+        simulation = cls(case, threads)
+        simulation._native.restore(saved)
+        return simulation
+
+    def __repr__(self) -> str:
+        return f"<Simulation of {self.case!r} at t = {self.time:g}>"
+
+

@@ -1,0 +1,80 @@
+//! Cases: read, checked, opened.
+
+use std::path::PathBuf;
+
+use fecontact::case::{self, CaseError, Opened, Written, law_test};
+use fecontact::output::checkpoint::Checkpoint;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::errors::case_error;
+use crate::mesh::Mesh;
+use crate::pool::Pool;
+
+/// A case as it is written, with its mesh if that is at hand.
+#[pyclass(frozen, module = "fecontact._native")]
+pub struct Case {
+    pub written: Written,
+    pub mesh: Option<fecontact::mesh::Mesh>,
+}
+
+impl Case {
+    /// Ready to be run from its beginning.
+    pub fn opened(&self) -> Result<Opened, CaseError> {
+        Ok(self.on_mesh(Opened::begin(self.written.clone())?))
+    }
+
+    /// Ready to go on from a checkpoint.
+    pub fn resumed(&self, checkpoint: Checkpoint) -> Result<Opened, CaseError> {
+        Ok(self.on_mesh(Opened::resume(self.written.clone(), checkpoint)?))
+    }
+
+    fn on_mesh(&self, opened: Opened) -> Opened {
+        match &self.mesh {
+            Some(mesh) => opened.on(mesh.clone()),
+            None => opened,
+        }
+    }
+}
+
+#[pymethods]
+impl Case {
+    /// From the text of a case that would stand at `path`.
+    #[new]
+    fn new(py: Python, text: &str, path: PathBuf, mesh: Option<&Bound<Mesh>>) -> PyResult<Self> {
+        let written = py.detach(|| Written::from_text(text, &path)).map_err(|error| case_error(py, &error))?;
+        Ok(Self { written, mesh: mesh.map(|mesh| mesh.get().mesh.clone()) })
+    }
+
+    /// From a file.
+    #[staticmethod]
+    fn read(py: Python, path: PathBuf) -> PyResult<Self> {
+        let written = py.detach(|| Written::read(&path)).map_err(|error| case_error(py, &error))?;
+        Ok(Self { written, mesh: None })
+    }
+
+    /// The case as JSON.
+    fn document(&self) -> String {
+        self.written.document.to_string()
+    }
+
+    /// What `fecontact check` prints.
+    fn check(&self, py: Python) -> PyResult<String> {
+        let checked = Pool::new(None)?.short(py, || {
+            let mut opened = self.opened()?;
+            let (model, _) = opened.build()?;
+            Ok::<_, CaseError>(case::report(&opened.case, &model))
+        })?;
+        checked.map_err(|error| case_error(py, &error))
+    }
+}
+
+/// The JSON Schema of a `"case"`, or of the test of a `"law"`.
+#[pyfunction]
+pub fn schema(of: &str) -> PyResult<String> {
+    match of {
+        "case" => Ok(case::schema().to_string()),
+        "law" => Ok(law_test::schema().to_string()),
+        _ => Err(PyValueError::new_err(format!("there is no schema of `{of}`: give \"case\" or \"law\""))),
+    }
+}

@@ -1,0 +1,183 @@
+//! Friction laws written in Python: a callable over arrays of points.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use fecontact::laws::friction::state::MOST_VARIABLES;
+use fecontact::laws::friction::{
+    Answer, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Regime, Sliding, register,
+};
+use fecontact::run::error::Error;
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyMapping};
+
+use crate::pool::Raised;
+
+/// A law whose answers Python gives. The interpreter is entered once for every slice of points.
+#[derive(Debug)]
+struct PythonLaw {
+    name: Arc<str>,
+    call: Arc<Py<PyAny>>,
+    parameters: BTreeMap<String, f64>,
+    alpha_t: f64,
+    /// names of its variables, and their values at first touch
+    variables: &'static [&'static str],
+    initial: [f64; MOST_VARIABLES],
+}
+
+/// Let cases use `{"law": "registered", "name": name}`; `variables` with their values at first touch.
+#[pyfunction]
+pub fn register_law(name: &str, call: Py<PyAny>, variables: Vec<(String, f64)>) -> PyResult<()> {
+    let bad = |message: String| Err(PyValueError::new_err(format!("law `{name}`: {message}")));
+    if variables.len() > MOST_VARIABLES {
+        return bad(format!("has {} variables: {MOST_VARIABLES} are the most", variables.len()));
+    }
+    if variables.iter().map(|(name, _)| name).collect::<BTreeSet<_>>().len() < variables.len() {
+        return bad("two of its variables have one name".into());
+    }
+    if let Some((variable, value)) = variables.iter().find(|(_, value)| !value.is_finite()) {
+        return bad(format!("variable `{variable}` is {value} at first touch: must be a finite number"));
+    }
+    let mut initial = [0.0; MOST_VARIABLES];
+    initial.iter_mut().zip(&variables).for_each(|(to, (_, value))| *to = *value);
+    // A law is registered for as long as the process lives.
+    let names: Vec<&'static str> = variables.into_iter().map(|(name, _)| &*String::leak(name)).collect();
+    let (variables, call, own): (&'static [_], _, Arc<str>) = (Vec::leak(names), Arc::new(call), name.into());
+    register(name, move |parameters, alpha_t| {
+        let (name, call, parameters) = (own.clone(), call.clone(), parameters.clone());
+        Ok(Box::new(PythonLaw { name, call, parameters, alpha_t, variables, initial }))
+    });
+    Ok(())
+}
+
+impl FrictionLaw for PythonLaw {
+    fn initial_state(&self) -> FrictionState {
+        FrictionState { variables: self.initial, ..FrictionState::default() }
+    }
+
+    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
+        let mut answer = [Err(LawFailure::Registered)];
+        self.respond_many(&[*old], &[sliding], &mut answer);
+        answer[0]
+    }
+
+    fn respond_many(&self, old: &[FrictionState], sliding: &[Sliding], answers: &mut [Answer]) {
+        let mut closed = Vec::new();
+        for (i, (old, sliding)) in old.iter().zip(sliding).enumerate() {
+            match sliding.checked() {
+                Err(failure) => answers[i] = Err(failure),
+                Ok(Sliding { pressure, .. }) if pressure <= 0.0 => {
+                    answers[i] = FrictionResponse::elastic(old.parted(self.alpha_t), 0.0).checked(self.alpha_t);
+                }
+                Ok(_) => closed.push(i),
+            }
+        }
+        if closed.is_empty() {
+            return;
+        }
+        let answered =
+            Python::attach(|py| self.answers(py, &closed, old, sliding).map_err(|error| (error.to_string(), error)));
+        match answered {
+            Ok(responses) => closed.into_iter().zip(responses).for_each(|(i, answer)| answers[i] = answer),
+            Err((text, error)) => {
+                let why = format!("the friction law `{}` failed: {text}", self.name);
+                Raised::of_this_pool().set(error, Error::Ended(why));
+                closed.into_iter().for_each(|i| answers[i] = Err(LawFailure::Registered));
+            }
+        }
+    }
+
+    fn variables(&self) -> &'static [&'static str] {
+        self.variables
+    }
+
+    fn stiffness(&self) -> f64 {
+        self.alpha_t
+    }
+}
+
+impl PythonLaw {
+    /// What the callable says of the closed points.
+    fn answers(
+        &self,
+        py: Python,
+        closed: &[usize],
+        old: &[FrictionState],
+        sliding: &[Sliding],
+    ) -> PyResult<Vec<Answer>> {
+        let array = |value: &dyn Fn(usize) -> f64| PyArray1::from_iter(py, closed.iter().map(|&i| value(i)));
+        let before = PyDict::new(py);
+        before.set_item("traction", array(&|i| old[i].traction))?;
+        before.set_item("pressure", array(&|i| old[i].pressure))?;
+        before.set_item("plastic_slip", array(&|i| old[i].plastic_slip))?;
+        before.set_item("dissipation", array(&|i| old[i].dissipation))?;
+        for (k, name) in self.variables.iter().enumerate() {
+            before.set_item(name, array(&|i| old[i].variables[k]))?;
+        }
+        let (slip, pressure) = (array(&|i| sliding[i].slip), array(&|i| sliding[i].pressure));
+        let keywords = PyDict::new(py);
+        keywords.set_item("alpha_t", self.alpha_t)?;
+        self.parameters.iter().try_for_each(|(name, value)| keywords.set_item(name, value))?;
+        let arguments = (before, slip, pressure, array(&|i| sliding[i].dt));
+        let said = self.call.bind(py).call(arguments, Some(&keywords))?;
+        let said =
+            said.cast_into::<PyMapping>().map_err(|_| PyTypeError::new_err("it must return a dict of arrays"))?;
+        self.check_names(&said)?;
+        let column = |name: &str| values(&said, name, closed.len());
+        let [traction, by_slip, by_pressure, plastic] =
+            ["traction", "dtraction_dslip", "dtraction_dpressure", "plastic_increment"].map(column);
+        let (traction, by_slip, by_pressure, plastic) = (traction?, by_slip?, by_pressure?, plastic?);
+        let dissipated = if said.contains("dissipation")? { Some(column("dissipation")?) } else { None };
+        let variables = self.variables.iter().map(|name| column(name)).collect::<PyResult<Vec<_>>>()?;
+        let answer = |(j, &i): (usize, &usize)| {
+            let (old, pressure) = (&old[i], sliding[i].pressure);
+            // The trapezoidal rule for ∫ |q| dλ, unless the law knows better.
+            let trapezoid = 0.5 * (old.traction + traction[j]) * plastic[j];
+            let mut state = FrictionState {
+                plastic_slip: old.plastic_slip + plastic[j],
+                plastic_increment: plastic[j],
+                dissipation: old.dissipation + dissipated.as_ref().map_or(trapezoid, |given| given[j]),
+                regime: if plastic[j] == 0.0 { Regime::Stick } else { Regime::Slip },
+                ..old.stuck(traction[j], pressure)
+            };
+            state.variables.iter_mut().zip(&variables).for_each(|(to, values)| *to = values[j]);
+            let tangent = (by_slip[j], by_pressure[j]);
+            FrictionResponse { state, dtraction_dslip: tangent.0, dtraction_dpressure: tangent.1, ..Default::default() }
+                .checked(self.alpha_t)
+        };
+        Ok(closed.iter().enumerate().map(answer).collect())
+    }
+
+    /// A name that means nothing is a slip of the keyboard.
+    fn check_names(&self, said: &Bound<PyMapping>) -> PyResult<()> {
+        let known = ["traction", "dtraction_dslip", "dtraction_dpressure", "plastic_increment", "dissipation"];
+        for name in said.keys()? {
+            let name: String = name.extract()?;
+            if !known.contains(&name.as_str()) && !self.variables.contains(&name.as_str()) {
+                let known: Vec<&str> = known.iter().chain(self.variables).copied().collect();
+                return Err(PyValueError::new_err(format!("it returned `{name}`; known are {}", known.join(", "))));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// An array that was returned under a name: finite, one value a point, or one for all.
+fn values(said: &Bound<PyMapping>, name: &str, points: usize) -> PyResult<Vec<f64>> {
+    let py = said.py();
+    let missing = |_| PyValueError::new_err(format!("it did not return `{name}`"));
+    let given = said.get_item(name).map_err(missing)?;
+    let given = py.import("numpy")?.call_method1("asarray", (given, "float64"))?;
+    let shaped = py.import("numpy")?.call_method1("broadcast_to", (&given, (points,)));
+    let shape = |_| {
+        let shape = given.getattr("shape").map(|shape| shape.to_string()).unwrap_or_default();
+        PyValueError::new_err(format!("it returned `{name}` of the shape {shape}: must be ({points},)"))
+    };
+    let values: Vec<f64> = shaped.map_err(shape)?.extract::<PyReadonlyArray1<f64>>()?.to_owned_array().to_vec();
+    match values.iter().find(|value| !value.is_finite()) {
+        Some(value) => Err(PyValueError::new_err(format!("it returned `{name}` = {value}: must be finite numbers"))),
+        None => Ok(values),
+    }
+}

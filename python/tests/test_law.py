@@ -1,0 +1,224 @@
+"""Laws alone, and laws written in Python."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import REPOSITORY, command
+
+import fecontact as fc
+
+PAPER: dict[str, Any] = {
+    "law": "super_subloading",
+    "mu_s": 0.4,
+    "mu_k": 0.2,
+    "alpha_t": 1000.0,
+    "r": 100.0,
+    "kappa": 10.0,
+    "xi": 0.002,
+}
+
+
+def wave(n: int = 400) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    time = np.linspace(0.0, 20.0, n)
+    return time, 0.02 * np.sin(time) + 0.001 * time, 98.1 * (1.0 + 0.3 * np.cos(1.7 * time))
+
+
+@pytest.mark.parametrize("friction", [PAPER, {"law": "coulomb", "mu": 0.3, "alpha_t": 1e3}])
+def test_drive_gives_what_the_command_line_writes(program: Path, tmp_path: Path, friction: dict[str, Any]) -> None:
+    time, slip, pressure = wave()
+    test = {"friction": friction, "table": np.stack([time, slip, pressure], axis=1).tolist()}
+    (tmp_path / "test.json").write_text(json.dumps(test))
+    told = command(program, "law", tmp_path / "test.json", "--out", tmp_path / "out")
+    assert told.returncode == 0, told.stderr
+    table = fc.Result(tmp_path / "out")._table("law.csv")
+    drive = fc.law(friction).drive(time, slip, pressure)
+    for name in table:
+        np.testing.assert_array_equal(drive[name], table[name], err_msg=name)
+    assert set(table) == set(drive)
+
+
+def test_many_sets_at_once_are_each_as_alone() -> None:
+    time, slip, pressure = wave(120)
+    mu_s, xi = np.array([[0.3], [0.4]]), np.array([0.0, 0.002, 0.2])
+    law = fc.law({**PAPER, "mu_s": mu_s, "xi": xi})
+    drive = law.drive(time, slip, pressure)
+    assert law.shape == (2, 3) and drive.traction.shape == (2, 3, 120) and drive.slip.shape == (2, 3, 120)
+    one = fc.law({**PAPER, "mu_s": 0.4, "xi": 0.2}).drive(time, slip, pressure)
+    np.testing.assert_array_equal(drive.traction[1, 2], one.traction)
+    slips = np.linspace(0.5, 1.5, 6).reshape(2, 3, 1) * slip
+    many = law.drive(time, slips, 98.1, threads=1)
+    alone = fc.law({**PAPER, "mu_s": 0.3, "xi": 0.002}).drive(time, slips[0, 1], 98.1)
+    np.testing.assert_array_equal(many.mu[0, 1], alone.mu)
+
+
+def test_tangents_are_those_of_the_answers() -> None:
+    """Central differences over the last step of a path."""
+    time, slip, pressure = (array[:50] for array in wave(400))
+    law = fc.law(PAPER)
+    at = law.drive(time, slip, pressure)
+    for name, course, h in (("dtraction_dslip", slip, 1e-9), ("dtraction_dpressure", pressure, 1e-5)):
+        ends = []
+        for sign in (1.0, -1.0):
+            moved = course.copy()
+            moved[-1] += sign * h
+            arrays = (moved, pressure) if course is slip else (slip, moved)
+            ends.append(law.drive(time, *arrays).traction[-1])
+        assert at[name][-1] == pytest.approx((ends[0] - ends[1]) / (2 * h), rel=1e-4), name
+
+
+@pytest.mark.parametrize(
+    "friction",
+    [
+        PAPER,
+        {**PAPER, "m": 1.5, "n": 0.8},
+        {"law": "rate_and_state", "f_0": 0.6, "V_0": 1e-3, "a": 0.01, "b": 0.015, "D_c": 1e-3, "alpha_t": 1e4},
+        {"law": "rate_and_state", "f_0": 0.6, "V_0": 1e-3, "a": 0.02, "b": 0.015, "D_c": 1e-3, "alpha_t": 1e4},
+        {"law": "slip_weakening", "mu_s": 0.6, "mu_d": 0.3, "D_c": 0.01, "alpha_t": 1e4},
+        {"law": "coulomb", "mu": 0.3, "alpha_t": 1e3},
+    ],
+)
+def test_steady_sliding_is_where_a_long_drive_ends(friction: dict[str, Any]) -> None:
+    rates = np.array([1e-4, 1e-3, 0.02])
+    expected = fc.law(friction).steady(rates)
+    for rate, coefficient in zip(rates, expected):
+        duration = 20.0 / rate
+        time = np.linspace(0.0, duration, 4001)
+        drive = fc.law(friction).drive(time, rate * time, 10.0)
+        assert drive.traction[-1] / 10.0 == pytest.approx(coefficient, rel=1e-6), rate
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: fc.law("coulomb", mu=0.3).drive([0, 1], 0.0, 1.0), "law: friction: the key `alpha_t` is missing"),
+        (lambda: fc.law("coulom", mu=0.3), "did you mean `coulomb`"),
+        (lambda: fc.law("coulomb", muu=0.3, alpha_t=1.0), "did you mean `mu`"),
+        (lambda: fc.law("coulomb", mu=[0.3, -1.0], alpha_t=1.0).drive([0, 1], 0.0, 1.0), '"mu" is -1'),
+        (lambda: fc.law("coulomb", mu=[0.3, 1.0], alpha_t=[1.0, 2.0, 3.0]), r"mu \(2,\), alpha_t \(3,\)"),
+        (lambda: fc.law(PAPER).drive([0, 1, 2], [0.0, 1.0], 1.0), r"slip: has the shape \(2,\): must be \(3,\), as time has"),
+        (lambda: fc.law(PAPER).drive([0, 1, 1], 0.0, 1.0), "times must ascend"),
+        (lambda: fc.law(PAPER).drive([0, 1, np.nan], 0.0, 1.0), r"time\[2\]: is nan"),
+        (lambda: fc.law(PAPER).drive([0, 1], 0.0, 1.0, traction=9.0), "traction: is 9, beyond the strength"),
+        (lambda: fc.law("prescribed", slip_rate=1.0, alpha_t=1.0).steady(1.0), "has no steady sliding"),
+        (lambda: fc.law(PAPER).steady([1.0, -1.0]), "rate: is -1.0: must be positive"),
+    ],
+)
+def test_bad_drives(call: Any, message: str) -> None:
+    with pytest.raises(fc.CaseError, match=message):
+        call()
+
+
+def coulomb(old: Any, slip: Any, pressure: Any, dt: Any, *, mu: float, alpha_t: float) -> dict[str, Any]:
+    """Coulomb friction as the built-in law has it, dissipation included."""
+    trial = old["traction"] + alpha_t * slip
+    sign, strength = np.sign(trial), mu * pressure
+    slides = np.abs(trial) > strength
+    traction = np.where(slides, sign * strength, trial)
+    # Where |q|, rising from q₀ to the trial, meets μ p, which goes from μ p₀ to μ p.
+    start, before = sign * old["traction"], mu * old["pressure"]
+    rise, fall = np.abs(trial) - start, before - strength
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.clip((before - start) / (rise + fall), 0.0, 1.0)
+    at_yield = start + np.nan_to_num(share) * rise
+    plastic = np.where(slides, (trial - traction) / alpha_t, 0.0)
+    return {
+        "traction": traction,
+        "dtraction_dslip": np.where(slides, 0.0, alpha_t),
+        "dtraction_dpressure": np.where(slides, sign * mu, 0.0),
+        "plastic_increment": plastic,
+        "dissipation": 0.5 * (at_yield + strength) * np.abs(plastic),
+    }
+
+
+def test_a_law_in_python_is_the_built_in_one() -> None:
+    fc.friction_law("python_coulomb")(coulomb)
+    time, slip, pressure = wave(300)
+    ours = fc.law("registered", name="python_coulomb", parameters={"mu": 0.3}, alpha_t=1e3).drive(time, slip, pressure)
+    theirs = fc.law("coulomb", mu=0.3, alpha_t=1e3).drive(time, slip, pressure)
+    for name in ("traction", "plastic_slip", "dissipation", "dtraction_dslip", "dtraction_dpressure"):
+        np.testing.assert_allclose(ours[name], theirs[name], rtol=1e-12, atol=1e-13, err_msg=name)
+
+
+def test_a_law_in_python_in_a_case(document: dict[str, Any]) -> None:
+    fc.friction_law("python_coulomb")(coulomb)
+    base = document["contacts"]["base"]
+    base["friction"] = {"law": "coulomb", "mu": 0.3, "alpha_t": 2e3}
+    theirs = fc.Case(document).run(progress=False).history
+    base["friction"] = fc.model.Registered(name="python_coulomb", parameters={"mu": 0.3}, alpha_t=2e3)
+    ours = fc.Case(document).run(progress=False).history
+    assert len(ours) == len(theirs)
+    for name in ("time", "base.normal_force", "base.tangential_force", "base.mean_slip", "friction_dissipation", "iterations"):
+        np.testing.assert_allclose(ours[name], theirs[name], rtol=1e-9, atol=1e-12, err_msg=name)
+
+
+def test_a_law_remembers_its_variables() -> None:
+    """q = η λ̇ with a count of increments: variables go from increment to increment, and begin as they are told."""
+
+    @fc.friction_law("counting", variables={"count": 5.0})
+    def counting(old: Any, slip: Any, pressure: Any, dt: Any, *, alpha_t: float) -> dict[str, Any]:
+        stick = old["traction"] + alpha_t * slip
+        return {
+            "traction": stick,
+            "dtraction_dslip": alpha_t,
+            "dtraction_dpressure": 0.0,
+            "plastic_increment": 0.0,
+            "count": old["count"] + 1.0,
+        }
+
+    drive = fc.law("registered", name="counting", alpha_t=2.0).drive([0, 1, 2, 3], [0, 1, 2, 3], 1.0)
+    assert drive["count"].tolist() == [6, 7, 8, 9] and drive.traction.tolist() == [0, 2, 4, 6]
+
+
+LACKING = {"traction": 1.0}
+
+
+@pytest.mark.parametrize(
+    ("returned", "message"),
+    [
+        (ValueError("no idea"), "no idea"),
+        (LACKING, "did not return `dtraction_dslip`"),
+        ({"traction": np.zeros(77)}, "`traction` of the shape .77,.: must be"),
+        ({"traction": np.nan}, "`traction` = NaN"),
+        ({"tractoin": 1.0}, "returned `tractoin`; known are traction"),
+        (7, "must return a dict"),
+    ],
+)
+def test_laws_that_fail(document: dict[str, Any], returned: Any, message: str) -> None:
+    @fc.friction_law("failing")
+    def failing(old: Any, slip: Any, pressure: Any, dt: Any, *, alpha_t: float) -> Any:
+        if isinstance(returned, Exception):
+            raise returned
+        full = {"traction": 0.0, "dtraction_dslip": 0.0, "dtraction_dpressure": 0.0, "plastic_increment": 0.0}
+        return returned if returned is LACKING or not isinstance(returned, dict) else {**full, **returned}
+
+    document["contacts"]["base"]["friction"] = {"law": "registered", "name": "failing", "alpha_t": 2e3}
+    with pytest.raises(fc.Stopped, match=f"the friction law `failing` failed: .*{message}") as caught:
+        fc.Case(document).run(progress=False)
+    assert isinstance(caught.value.__cause__, (ValueError, TypeError))
+    result = caught.value.result
+    assert result is not None and result.status == "stopped" and result.summary["reason"] == str(caught.value)
+    with pytest.raises((ValueError, TypeError), match=message):
+        list(fc.Simulation(document))
+    with pytest.raises((ValueError, TypeError), match=message):
+        fc.law("registered", name="failing", alpha_t=1.0).drive([0, 1], [0, 1], 1.0)
+
+
+def test_laws_that_nobody_has_registered(program: Path, document: dict[str, Any], tmp_path: Path) -> None:
+    document["contacts"]["base"]["friction"] = {"law": "registered", "name": "nobodys"}
+    with pytest.raises(fc.CaseError, match="base.friction.name: no law `nobodys` is registered in this program"):
+        fc.Case(document).check()
+    (tmp_path / "case.json").write_text(json.dumps(document))
+    told = command(program, "check", tmp_path / "case.json")
+    assert told.returncode == 2 and "no law `nobodys` is registered in this program; none is" in told.stderr
+    with pytest.raises(ValueError, match="has 5 variables: 4 are the most"):
+        fc.friction_law("five", variables=dict.fromkeys("abcde", 0.0))(coulomb)
+
+
+def test_committed_law_test_is_read() -> None:
+    test = json.loads((REPOSITORY / "cases" / "law" / "monotone.json").read_text())
+    assert fc.law(test["friction"]).drive([0, 1], [0, 0.1], 50.0).traction[-1] > 0

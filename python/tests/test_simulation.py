@@ -1,0 +1,186 @@
+"""A run increment by increment."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import fecontact as fc
+
+
+def test_iterating_gives_the_bits_of_a_run(document: dict[str, Any], result: fc.Result) -> None:
+    simulation, history = fc.Simulation(document), result.history
+    for (_, row), increment in zip(history.iterrows(), simulation, strict=True):
+        assert (increment.time, increment.dt, increment.iterations) == (row["time"], row["dt"], row["iterations"])
+        assert simulation.reaction("block_top").tolist() == [row["block_top.fx"], row["block_top.fy"]]
+        assert simulation.contacts["base"].force.tolist() == [row["base.force_x"], row["base.force_y"]]
+    assert simulation.is_complete and simulation.report["increments"] == len(history)
+
+
+def test_arrays_are_views_that_cannot_be_written(document: dict[str, Any]) -> None:
+    simulation = fc.Simulation(document)
+    increment = next(simulation)
+    displacement = increment.displacement
+    assert displacement.shape == simulation.nodes.shape and displacement.dtype == np.float64
+    assert not displacement.flags.owndata and not displacement.flags.writeable
+    with pytest.raises(ValueError):
+        displacement[0, 0] = 1.0
+    with pytest.raises(ValueError):
+        displacement.setflags(write=True)
+    # The same memory every time, which outlives what gave it.
+    assert np.shares_memory(displacement, increment.displacement)
+    before = displacement.copy()
+    del increment
+    list(simulation)
+    del simulation
+    np.testing.assert_array_equal(displacement, before)
+
+
+def test_contact_fields(document: dict[str, Any]) -> None:
+    simulation = fc.Simulation(document)
+    for _ in simulation:
+        pass
+    base = simulation.contacts["base"]
+    assert base.position.shape == (10, 2) and base["pressure"].shape == (10,)
+    assert (np.diff(base.position[:, 0]) > 0).all() and set(base["state"]) <= {0.0, 1.0, 2.0}
+    assert (base["traction"] <= 0.4 * base["pressure"] * (1 + 1e-9)).all()
+    with pytest.raises(LookupError, match="contacts have no field `pres`; they have gap, pressure"):
+        base["pres"]
+    with pytest.raises(LookupError, match="did you mean `block_top`"):
+        simulation.reaction("block_to")
+
+
+def test_saved_runs_go_on_to_the_same_bits(document: dict[str, Any], result: fc.Result, tmp_path: Path) -> None:
+    case = fc.Case(document)
+    simulation = fc.Simulation(case)
+    for _ in range(4):
+        next(simulation)
+    saved = simulation.save()
+    for _ in range(2):
+        again = fc.Simulation.resume(case, saved)
+        assert [increment.time for increment in again] == result.history["time"].tolist()[4:]
+        assert again.reaction("block_top")[0] == result.history["block_top.fx"].iloc[-1]
+    simulation.write(tmp_path)
+    assert (tmp_path / "checkpoint.bin").is_file()
+    simulation.lead("block_top", ux=0.0, by=3.0)
+    with pytest.raises(fc.Stopped, match="was changed by its caller"):
+        simulation.write(tmp_path)
+
+
+def test_a_servo_finds_the_force_that_is_wanted() -> None:
+    from fecontact.examples.servo import servo
+
+    felt = servo(wanted=1.5)
+    assert len(felt) > 50
+    # It comes nearer with every increment, and is there at the end.
+    errors = [abs(force - 1.5) for _, force in felt[len(felt) // 2 :]]
+    assert errors == sorted(errors, reverse=True) and errors[-1] < 1e-3 * 1.5
+
+
+def hung() -> dict[str, Any]:
+    """A point mass on a spring of 10 along x and y, to which loads are given."""
+    return {
+        "mesh": {"nodes": [[0, 0]], "points": {"ball": [0]}},
+        "point_masses": {"ball": {"mass": 1.0}},
+        "steps": [
+            {
+                "name": "hang",
+                "duration": 10,
+                "dt": {"initial": 1.0},
+                "loads": [{"on": "ball", "spring": {"kx": 10, "ky": 10}}, {"on": "ball", "force": {"y": -2}}],
+            },
+        ],
+    }
+
+
+def test_loads_are_led() -> None:
+    simulation = fc.Simulation(hung())
+    next(simulation)
+    # f = -2 t/10 on a spring of 10, so far.
+    assert simulation.displacement("ball")[1] == pytest.approx(-0.02, rel=1e-12)
+    # From -0.2 now to 3 at t = 5, evenly: at t = 2 a quarter of the way; then held.
+    simulation.load("ball", force={"x": 1.0, "y": 3.0}, by=5.0)
+    next(simulation)
+    assert simulation.displacement("ball") == pytest.approx([0.025, 0.06], rel=1e-12)
+    while simulation.time < 7.0:
+        next(simulation)
+    assert simulation.displacement("ball") == pytest.approx([0.1, 0.3], rel=1e-12)
+    # At once, and in both directions again; the spring's driver moves too.
+    simulation.load("ball", force={"x": -1.0, "y": 0.0})
+    simulation.load("ball", spring={"kx": 20, "ky": 10, "driver": {"y": 0.5}})
+    next(simulation)
+    assert simulation.displacement("ball") == pytest.approx([-0.05, 0.5], rel=1e-12)
+    # A load that ends does so evenly.
+    simulation.load("ball", force=None, by=10.0)
+    next(simulation)
+    assert simulation.displacement("ball") == pytest.approx([-0.025, 0.5], rel=1e-12)
+
+
+def test_loads_led_are_saved_and_forgotten_in_the_next_step() -> None:
+    document = hung()
+    document["steps"].append({"name": "on", "duration": 2})
+    case = fc.Case(document)
+    simulation = fc.Simulation(case)
+    next(simulation)
+    simulation.load("ball", force={"y": 1.0})
+    again = fc.Simulation.resume(case, simulation.save())
+    for one in (simulation, again):
+        one.load("ball", force={"y": 2.0}, by=2.0)
+        next(one)
+        assert one.displacement("ball")[1] == pytest.approx(0.2, rel=1e-12)
+    list(again)
+    # The next step has its own: what the case says.
+    assert again.displacement("ball")[1] == pytest.approx(-0.2, rel=1e-12)
+
+
+def test_many_changes_cost_no_memory_and_no_time() -> None:
+    document = hung()
+    document["steps"][0]["dt"] = {"initial": 1e-3}
+    simulation = fc.Simulation(document)
+    for k, _ in enumerate(simulation):
+        if k >= 2000:
+            break
+        simulation.load("ball", force={"y": float(k % 7)}, by=simulation.time + 1e-3)
+    assert simulation.displacement("ball")[1] == pytest.approx(0.1 * (1999 % 7), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"on": "bal", "force": {"y": 1}}, "load.on.*did you mean `ball`"),
+        ({"on": "ball", "forse": {"y": 1}}, "did you mean `force`"),
+        ({"on": "ball"}, "must give exactly one of"),
+        ({"on": "ball", "force": {"y": float("nan")}}, "load: force.y: is nan"),
+        ({"on": "ball", "force": {"y": 1}, "by": -1.0}, "by: is -1: must be a time from now on"),
+    ],
+)
+def test_bad_loads(given: dict[str, Any], message: str) -> None:
+    simulation = fc.Simulation(hung())
+    next(simulation)
+    with pytest.raises(fc.CaseError, match=message):
+        simulation.load(**given)
+    # What was there is there still.
+    next(simulation)
+    assert simulation.displacement("ball")[1] == pytest.approx(-0.04, rel=1e-12)
+
+
+def test_bad_leads(document: dict[str, Any]) -> None:
+    simulation = fc.Simulation(document)
+    next(simulation)
+    with pytest.raises(LookupError, match="`block_bottom` has no support along x"):
+        simulation.lead("block_bottom", ux=1.0, by=2.0)
+    with pytest.raises(fc.CaseError, match="by: is 0"):
+        simulation.lead("block_top", ux=1.0, by=0.0)
+    with pytest.raises(fc.CaseError, match="ux: is nan|ux: is NaN"):
+        simulation.lead("block_top", ux=float("nan"), by=2.0)
+
+
+def test_increments_are_bounded(document: dict[str, Any]) -> None:
+    simulation = fc.Simulation(document)
+    while simulation.step == "press":
+        next(simulation)
+    simulation.increments(max=0.05)
+    assert next(simulation).dt == pytest.approx(0.05)

@@ -1,0 +1,114 @@
+"""Spring-sliders with inertia: against closed forms and scipy, and machines found from their records."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import fecontact as fc
+from fecontact.calibration import SpringSlider
+
+LAW = {"mu_s": 0.6, "mu_k": 0.4, "alpha_t": 2000.0, "r": 400.0, "kappa": 40.0, "xi": 0.5}
+STIFFNESS, MASS = 50.0, 0.01
+TIME = np.linspace(0.0, 4.0, 401)
+# Slow, ten times as fast, held, and between: the fast slide stirs up an oscillation that friction feeds.
+LOAD_POINT = np.interp(TIME, [0.0, 1.0, 2.0, 3.2, 4.0], [0.0, 0.05, 0.35, 0.35, 0.47])
+
+
+@pytest.fixture(scope="module")
+def scipys() -> np.ndarray:
+    """The force by scipy, from the rate equations of the law and M ü = k (w − u) − q."""
+    from scipy.integrate import solve_ivp
+
+    mu_s, mu_k, alpha_t, r, kappa, xi = LAW.values()
+
+    def rates(t: float, y: np.ndarray) -> list[float]:
+        u, v, q, mu = y
+        ratio, sign = min(max(abs(q) / mu, 1e-15), 1.0), 1.0 if q >= 0.0 else -1.0
+        approach, heals = -r * np.log(ratio), xi * (1.0 - mu / mu_s)
+        # λ of consistency, |q|˙ = (R μ p)˙ with p = 1; where it were negative R falls elastically.
+        lam = max((alpha_t * v * sign - ratio * heals) / (alpha_t + approach * mu - ratio * kappa * (mu / mu_k - 1.0)), 0.0)
+        pull = STIFFNESS * (np.interp(t, TIME, LOAD_POINT) - u)
+        return [v, (pull - q) / MASS, alpha_t * (v - sign * lam), heals - kappa * (mu / mu_k - 1.0) * lam]
+
+    state, slips = np.array([0.0, 0.0, 1e-12, mu_s]), [0.0]
+    for ends in zip(TIME[:-1], TIME[1:]):
+        state = solve_ivp(rates, ends, state, "LSODA", rtol=1e-10, atol=1e-13).y[:, -1]
+        slips.append(state[0])
+    return STIFFNESS * (LOAD_POINT - np.array(slips))
+
+
+def test_a_slider_that_sticks_swings_on_two_springs() -> None:
+    # M ü = k V t − (k + α_t) u,   u = k V/(k + α_t) (t − sin(ω t)/ω),   and F₀ stays what it was
+    k, alpha_t, rate, mass = 3.0, 20.0, 0.2, 0.5
+    time = np.linspace(0.0, 5.0, 101)
+    omega = np.sqrt((k + alpha_t) / mass)
+    exact = k * rate / (k + alpha_t) * (time - np.sin(omega * time) / omega)
+    for given, start in ((rate * time, 0.0), (rate * time + 7.0, 0.1)):
+        ride = fc.law("coulomb", mu=10.0, alpha_t=alpha_t).ride(
+            time, given, 1.0, stiffness=k, mass=mass, force=start, by=["stiffness", "mass", "alpha_t", "mu"], tolerance=1e-11
+        )
+        np.testing.assert_allclose(ride.slip, exact, atol=1e-6)
+        np.testing.assert_allclose(ride.force, start + k * (rate * time - exact), atol=3e-6)
+        # ∂u/∂M through ω alone: ∂ω/∂M = −ω/(2M)
+        by_omega = k * rate / (k + alpha_t) * (np.sin(omega * time) / omega**2 - time * np.cos(omega * time) / omega)
+        np.testing.assert_allclose(ride.dforce_dmass, k * by_omega * omega / (2.0 * mass), atol=1e-4)
+        assert not ride.dforce_dmu.any() and ride.slip.shape == (101,)
+
+
+def test_a_slider_is_that_of_scipy(scipys: np.ndarray) -> None:
+    errors = []
+    for tolerance in (1e-6, 1e-8):
+        ride = fc.law("super_subloading", **LAW).ride(TIME, LOAD_POINT, 1.0, stiffness=STIFFNESS, mass=MASS, tolerance=tolerance)
+        errors.append(np.abs(ride.force - scipys).max())
+    # Steps go with the cube root of the tolerance, errors with their square.
+    assert errors[1] < 2e-4 and errors[0] > 5.0 * errors[1], errors
+
+
+def test_mass_and_stiffness_of_a_machine_are_found(scipys: np.ndarray) -> None:
+    noise = 2e-3 * np.random.default_rng(6).normal(size=TIME.size)
+    free = {name: (LAW[name] / 3.0, LAW[name] * 3.0) for name in ("mu_s", "mu_k", "kappa", "xi")}
+    machine = {"stiffness": (30.0, 80.0), "mass": (0.004, 0.025)}
+    record = SpringSlider(TIME, LOAD_POINT, 1.0, scipys + noise)
+    found = fc.fit(record, free={**free, **machine}, r=LAW["r"], alpha_t=LAW["alpha_t"], starts=2)
+    truth = {**{name: LAW[name] for name in free}, "stiffness": STIFFNESS, "mass": MASS}
+    for name, value in truth.items():
+        assert found.table["low"][name] <= value <= found.table["high"][name], found
+        assert found.parameters[name] == pytest.approx(value, rel=0.02), name
+    assert found.noise == pytest.approx(2e-3, rel=0.15) and abs(found.memory) < 0.2
+    # The period tells k/M far better than either.
+    assert any("stiffness and mass trade off" in text for text in found.words), found.words
+    # The law itself is without the machine.
+    assert "mass" not in found.law.parameters and found.predicted(record).shape == TIME.shape
+    # A machine that is known
+    given = {name: value for name, value in truth.items() if name != "mu_k"}
+    known = fc.fit(record, free={"mu_k": (0.35, 0.45)}, r=LAW["r"], alpha_t=LAW["alpha_t"], starts=1, **given)
+    assert known.words == [] and known.parameters["mu_k"] == pytest.approx(0.4, rel=2e-3)
+
+
+def test_a_record_that_begins_under_a_force() -> None:
+    start = {"stiffness": STIFFNESS, "mass": MASS}
+    for force in (0.0, 0.2):
+        law = {"law": "super_subloading", **LAW}
+        record = SpringSlider(TIME, LOAD_POINT, 1.0, TIME, initial=force)
+        ride = fc.law(law).ride(TIME, LOAD_POINT, 1.0, **start, force=force)
+        assert ride.force[0] == force
+        np.testing.assert_array_equal(record.predicted({**law, **start}), ride.force)
+        by = ["mass", "mu_k"]
+        derivatives = record.derivatives({**law, **start}, by)
+        exact = fc.law(law).ride(TIME, LOAD_POINT, 1.0, **start, force=force, by=by)
+        np.testing.assert_array_equal(derivatives, np.stack([exact.dforce_dmass, exact.dforce_dmu_k], axis=-1))
+
+
+def test_what_cannot_be_ridden() -> None:
+    law = fc.law("super_subloading", **LAW)
+    with pytest.raises(fc.CaseError, match=r"mass: is 0.0: must be positive"):
+        law.ride([0, 1], [0, 1], 1.0, stiffness=1.0, mass=0.0)
+    with pytest.raises(fc.CaseError, match=r"stiffness: has the shape \(2,\): must be \(\)"):
+        law.ride([0, 1], [0, 1], 1.0, stiffness=[1.0, 2.0], mass=1.0)
+    with pytest.raises(fc.CaseError, match="not differentiated by mu; it is by mu_s, .*, stiffness, mass"):
+        law.ride([0, 1], [0, 1], 1.0, stiffness=1.0, mass=1.0, by=["mu"])
+    with pytest.raises(fc.Stopped, match="the slider takes too many steps at the time .*: check mass and stiffness"):
+        law.ride([0, 1e9], [0, 1e9], 1.0, stiffness=1e9, mass=1e-9)
+    with pytest.raises(ValueError, match="alpha_t: a spring-slider needs it"):
+        fc.fit(SpringSlider(TIME, LOAD_POINT, 1.0, TIME), free={"mu_s": (0.4, 0.8)}, mu_k=0.3, r=1.0, stiffness=1.0, mass=1.0)
