@@ -132,10 +132,15 @@ pub fn write(folder: &Path, checkpoint: &Checkpoint) -> Result<(), Error> {
     files::replace_for_good_after(&newest, &bytes, keep).map_err(|cause| failed(&newest, &cause))
 }
 
-/// Let the newest checkpoint be the previous one as well; where a file cannot have two names, the previous one alone.
+/// Let the newest checkpoint be the previous one as well, in one move: at any moment there is a previous one. Where a file
+/// cannot have two names, it is the previous one alone.
 fn kept(newest: &Path, previous: &Path) -> std::io::Result<()> {
-    files::remove(previous)?;
-    fs::hard_link(newest, previous).or_else(|_| fs::rename(newest, previous))
+    let second = files::aside(previous);
+    files::remove(&second)?;
+    match fs::hard_link(newest, &second) {
+        Ok(()) => files::into_place(&second, previous),
+        Err(_) => files::into_place(newest, previous),
+    }
 }
 
 /// Take the newest checkpoint away where it was of no use: it must not become the previous one.

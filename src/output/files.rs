@@ -97,11 +97,17 @@ pub fn replace_for_good_after(path: &Path, bytes: &[u8], then: impl FnOnce() -> 
     written
 }
 
-fn into_place(aside: &Path, path: &Path) -> io::Result<()> {
+/// Move a file into the place of another.
+///
+/// # Errors
+/// As [`create`].
+pub fn into_place(aside: &Path, path: &Path) -> io::Result<()> {
     match plain(path) {
-        Err(error) if error.kind() != ErrorKind::NotFound => Err(error),
-        _ => fs::rename(aside, path),
+        Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
+        _ => fs::rename(aside, path)?,
     }
+    // Two names of one file stay as they are (POSIX).
+    remove(aside)
 }
 
 /// A renamed file has its new name for good only once its folder is on the disk.

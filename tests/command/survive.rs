@@ -238,6 +238,20 @@ fn a_hundred_kills_over_five_cases_leave_no_trace() {
     }
 }
 
+/// Once there is a checkpoint before the newest there always is one: whenever the run is killed, two are left.
+#[test]
+fn there_are_two_checkpoints_at_any_moment() {
+    let folder = TempDir::new().expect("a folder");
+    written(folder.path(), &dragged(json!("static"), 200));
+    let out = folder.path().join("out");
+    let mut child = command(folder.path(), "out", &[]).spawn().expect("it runs");
+    let two = || ["checkpoint.bin", "checkpoint_prev.bin"].iter().all(|name| out.join(name).exists());
+    wait_for_rows(&mut child, &out, 12);
+    while child.try_wait().expect("a child").is_none() {
+        assert!((0..1000).all(|_| two()), "a checkpoint is gone while the next is put into its place");
+    }
+}
+
 /// With checkpoints at every increment, without any, and on two threads: the same bytes.
 #[test]
 fn a_checkpoint_changes_nothing() {
