@@ -27,8 +27,9 @@ pub(super) fn evolves(model: &Model, body: usize) -> bool {
 }
 
 impl Evolving {
-    pub fn new(model: &Model) -> Self {
-        let own = |(e, _): &(usize, Range<usize>)| evolves(model, model.body_of_element[*e]);
+    /// Those of the bodies, but for elements that are `constant`.
+    pub fn new(model: &Model, constant: &[bool]) -> Self {
+        let own = |(e, _): &(usize, Range<usize>)| evolves(model, model.body_of_element[*e]) && !constant[*e];
         Self(model.memories().into_iter().enumerate().filter(own).collect())
     }
 
@@ -43,7 +44,10 @@ impl Evolving {
     ) -> Result<f64, TrialFailure> {
         let (memory, [heat, heating]) = found;
         let old = &trial.old.memory;
-        memory.resize(old.len(), 0.0);
+        if memory.len() != old.len() {
+            // The initial stress of constant elements stays as it is.
+            memory.clone_from(old);
+        }
         let mut rest = &mut memory[..];
         let mut energy = 0.0;
         (*heat, *heating) = (0.0, 0.0);

@@ -7,7 +7,7 @@ use crate::laws::bulk::{INITIAL_STRESS, TEMPERATURE};
 
 impl Model {
     /// What the materials remember at the start: the initial stress of the bodies that have one, and zero.
-    pub(super) fn initial_memory(&self) -> Vec<f64> {
+    pub fn initial_memory(&self) -> Vec<f64> {
         let memories = self.memories();
         let mut memory = vec![0.0; memories.last().map_or(0, |last| last.end)];
         for (e, own) in memories.into_iter().enumerate() {

@@ -213,6 +213,17 @@ fn every_scheme_gives_the_same_condensed() {
     }
 }
 
+/// Ground that is stressed before anything moves, unevenly and out of balance.
+#[test]
+fn stressed_bodies_give_the_same_condensed() {
+    for scheme in [json!("static"), json!({"newmark": {}})] {
+        let mut case = dragged(json!({}), json!({"scheme": scheme}));
+        case["bodies"]["ground"]["initial_stress"] =
+            json!({"components": {"xx": "-0.5 - 0.1*x", "yy": -0.02, "xy": 0.01, "zz": -0.2}});
+        agree(&case, 1e-8);
+    }
+}
+
 /// A fluid that opens part of the contact.
 #[test]
 fn contacts_that_hold_water_give_the_same_condensed() {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::elements::lattices;
 use crate::common::{Blocks, elastic, linear, neo_hookean};
+use fecontact::equations::dependence::Dependence;
 use fecontact::equations::term::Term;
 use fecontact::equations::{Assembler, Trial};
 use fecontact::laws::bulk::{InvertedElement, Linear, Material, MaterialResponse, Viscoelastic, ViscoelasticConstants};
@@ -12,7 +13,10 @@ use fecontact::linear::system::Request;
 use fecontact::mesh::section::Section;
 use fecontact::mesh::shape::ElementKind;
 use fecontact::mesh::{InlineMesh, Mesh};
-use fecontact::model::builder::LoadStep;
+use fecontact::model::boundary::Profile;
+use fecontact::model::builder::{Builder, LoadStep};
+use fecontact::model::element::Memory;
+use fecontact::model::imposed::InitialStress;
 use fecontact::model::scheme::Scheme;
 use fecontact::model::{Damping, Model};
 use nalgebra::{DMatrix, Matrix2, Vector2};
@@ -49,10 +53,18 @@ fn distorted([x, y]: [f64; 2]) -> [f64; 2] {
 
 /// A model of the three bodies in a dynamic step.
 fn built(mesh: Mesh, laws: [Box<dyn Material>; 3], retardations: [f64; 3]) -> Arc<Model> {
+    of_step(bodies(mesh, laws, retardations))
+}
+
+fn bodies(mesh: Mesh, laws: [Box<dyn Material>; 3], retardations: [f64; 3]) -> Builder {
     let mut builder = Model::builder(mesh);
     for ((name, law), retardation) in NAMES.into_iter().zip(laws).zip(retardations) {
         builder = builder.body(name, law).damping(name, Damping { mass: 0.0, retardation });
     }
+    builder
+}
+
+fn of_step(builder: Builder) -> Arc<Model> {
     let step = LoadStep::new("step", 1.0).dt(0.1).scheme(Scheme::Newmark { beta: 0.25, gamma: 0.5 });
     Arc::new(builder.step(step).build().expect("a good model"))
 }
@@ -78,6 +90,7 @@ struct Direct {
 fn direct(model: &Model, u: &[f64], v: &[f64]) -> Direct {
     let n = model.dofs();
     let zero = vec![0.0; n];
+    let memory = model.initial_state().memory;
     let mut sum = Direct {
         force: zero.clone(),
         viscous: zero.clone(),
@@ -93,7 +106,14 @@ fn direct(model: &Model, u: &[f64], v: &[f64]) -> Direct {
         let dofs: Vec<usize> = element.nodes.iter().flat_map(|node| [2 * node, 2 * node + 1]).collect();
         let (mut force, mut tangent) = (vec![0.0; dofs.len()], vec![0.0; dofs.len() * dofs.len()]);
         let solid = &model.solids[e];
-        sum.energy += solid.force_and_tangent(&*body.material, &local_u, &mut force, &mut tangent).expect("finite");
+        let old = &memory[model.memory_of(e)];
+        sum.energy += match old {
+            [] => solid.force_and_tangent(&*body.material, &local_u, &mut force, &mut tangent).expect("finite"),
+            _ => {
+                let memory = Memory { dt: 0.1, old, new: &mut old.to_vec() };
+                solid.evolve(&*body.material, memory, &local_u, &mut force, Some(&mut tangent)).expect("finite")[0]
+            }
+        };
         let mut viscous = vec![Vector2::zeros(); element.nodes.len()];
         if body.damping.retardation > 0.0 {
             solid.viscous_forces((&*body.material, body.damping.retardation), [&local_u, &local_v], &mut viscous);
@@ -189,6 +209,39 @@ fn stored_elements_answer_as_each_by_itself() {
                     let what = format!("{kind:?} in {section:?}, {laws:?}, retardations {retardations:?}");
                     check(&what, &built(strip(kind, section, map), laws, retardations));
                 }
+            }
+        }
+    }
+}
+
+/// The same with initial stresses that vary from place to place, in two of the bodies: K_e is not found again for them, and
+/// what they remember stays.
+#[test]
+fn stressed_elements_answer_as_each_by_itself() {
+    let stress = |at: [f64; 2], section: Section| {
+        let table = |axis: usize, [start, end]: [f64; 2]| Profile::Table(axis, vec![[-1.0, start], [3.0, end]]);
+        InitialStress::Components {
+            xx: table(0, at),
+            yy: table(1, [at[1], at[0]]),
+            xy: table(0, [0.3, -0.2]),
+            zz: table(1, if section.is_plate() { [0.0; 2] } else { [at[0], 0.0] }),
+        }
+    };
+    for kind in KINDS {
+        for (map, section) in [
+            (distorted as fn([f64; 2]) -> [f64; 2], Section::PlaneStrain),
+            (|x| x, Section::PlaneStress { thickness: 0.3 }),
+            (|[x, y]| distorted([x + 0.5, y]), Section::Axisymmetric),
+        ] {
+            for retardations in [[0.0; 3], [0.0, 0.02, 0.0]] {
+                let laws =
+                    [linear(100.0, 0.3, 2.0).into(), linear(300.0, 0.2, 1.0).into(), linear(50.0, 0.4, 3.0).into()];
+                let builder = bodies(strip(kind, section, map), laws, retardations);
+                let builder = builder.initial_stress("left", stress([-3.0, -1.0], section));
+                let model = of_step(builder.initial_stress("middle", stress([2.0, 5.0], section)));
+                assert_eq!(Term::Solids.dependence(&model, &model.steps[0]), Dependence::Nothing);
+                assert!(Assembler::new(&model).stored_matrices() > 0);
+                check(&format!("{kind:?} in {section:?}, retardations {retardations:?}"), &model);
             }
         }
     }

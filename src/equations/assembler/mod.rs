@@ -60,11 +60,12 @@ impl Assembler {
 
     /// An assembler of a model.
     pub fn new(model: &Arc<Model>) -> Self {
+        let solids = Solids::new(model);
         Self {
             model: model.clone(),
             layout: Layout::new(model),
-            solids: Solids::new(model),
-            evolving: Evolving::new(model),
+            evolving: Evolving::new(model, solids.constant()),
+            solids,
             mass: None,
             damping_mass: None,
             weight: supports::weight(model),

@@ -5,15 +5,22 @@
 //! Morton's curve through their centres, whatever their numbers are.
 
 use nalgebra::Vector2;
+use rayon::prelude::*;
 
 use crate::mesh::shape::ElementKind;
 use crate::model::Model;
+use crate::model::element::Memory;
 
 /// Most nodes of a block.
 pub(super) const NODES: usize = 512;
 
 /// Cells along each side of the mesh that Morton's curve tells apart.
 const CELLS: f64 = 65535.0;
+
+/// Rows of the matrix of an element of n nodes as it is kept, filled up with zeros to whole registers.
+pub(super) const fn rows(n: usize) -> usize {
+    (2 * n).next_multiple_of(4)
+}
 
 /// Elements that are evaluated together.
 pub(super) struct Block {
@@ -25,6 +32,8 @@ pub(super) struct Block {
     pub places: Vec<u16>,
     /// Number of each element's matrix
     pub matrices: Vec<u32>,
+    /// f_0 of each element, filled up with zeros as its matrix is, if the body has an initial stress [F]
+    pub initial: Vec<f64>,
 }
 
 /// Blocks of the elements that have a matrix, and which it is.
@@ -48,7 +57,8 @@ pub(super) fn blocks(model: &Model, matrices: &[Option<u32>]) -> Vec<Block> {
         };
         if !blocks.last().is_some_and(fits) {
             let [nodes, matrices] = [Vec::new(), Vec::new()];
-            blocks.push(Block { body, kind: element.kind, nodes, matrices, places: Vec::new() });
+            let (places, initial) = (Vec::new(), Vec::new());
+            blocks.push(Block { body, kind: element.kind, nodes, matrices, places, initial });
         }
         let number = blocks.len() - 1;
         let block = &mut blocks[number];
@@ -59,19 +69,41 @@ pub(super) fn blocks(model: &Model, matrices: &[Option<u32>]) -> Vec<Block> {
         }
         block.matrices.push(matrix);
     }
-    find_places(model, order.iter().map(|((.., e), _)| *e), &mut blocks);
+    let mut elements = order.iter().map(|((.., e), _)| *e);
+    let elements: Vec<Vec<usize>> =
+        blocks.iter().map(|block| elements.by_ref().take(block.matrices.len()).collect()).collect();
+    find_places(model, &elements, &mut blocks);
+    find_initial(model, &elements, &mut blocks);
     blocks
 }
 
 /// Sort the nodes of every block, and find the places of its elements' nodes.
-fn find_places(model: &Model, mut elements: impl Iterator<Item = usize>, blocks: &mut [Block]) {
+fn find_places(model: &Model, elements: &[Vec<usize>], blocks: &mut [Block]) {
     let mut place = vec![0u16; model.mesh.nodes.len()];
-    for block in blocks {
+    for (block, own) in blocks.iter_mut().zip(elements) {
         block.nodes.sort_unstable();
         block.nodes.iter().enumerate().for_each(|(k, &node)| place[node as usize] = k as u16);
-        let own = elements.by_ref().take(block.matrices.len());
-        block.places = own.flat_map(|e| model.mesh.elements[e].nodes.iter().map(|&node| place[node])).collect();
+        block.places = own.iter().flat_map(|&e| model.mesh.elements[e].nodes.iter().map(|&node| place[node])).collect();
     }
+}
+
+/// Find what the initial stress of bodies puts on the nodes of their elements.
+fn find_initial(model: &Model, elements: &[Vec<usize>], blocks: &mut [Block]) {
+    let stressed = |block: &Block| model.bodies[block.body].initial_stress.is_some();
+    if !blocks.iter().any(stressed) {
+        return;
+    }
+    let (all, memories) = (model.initial_memory(), model.memories());
+    blocks.par_iter_mut().zip(elements).filter(|(block, _)| stressed(block)).for_each(|(block, elements)| {
+        let (n, material) = (block.kind.nodes(), &*model.bodies[block.body].material);
+        block.initial = vec![0.0; rows(n) * elements.len()];
+        for (&e, force) in elements.iter().zip(block.initial.chunks_exact_mut(rows(n))) {
+            let old = &all[memories[e].clone()];
+            let (memory, still) = (Memory { dt: 0.0, old, new: &mut old.to_vec() }, [Vector2::zeros(); 9]);
+            // An element that has a matrix has an answer where nothing has moved.
+            let _ = model.solids[e].evolve(material, memory, &still[..n], &mut force[..2 * n], None);
+        }
+    });
 }
 
 /// Where an element lies on Morton's curve: the digits of its centre's coordinates in turn.

@@ -1,8 +1,10 @@
 //! Elements whose stiffness never changes: it is found once, and elements that have the same one in every bit share it.
 //!
 //! ```text
-//! f_e = K_e (u_e − u_1),   W_e = ½ (u_e − u_1)·f_e,   f_v = τ K_e (v_e − v_1)
+//! f_e = f_0 + K_e (u_e − u_1),   W_e = ½ (u_e − u_1)·(f_e + f_0),   f_v = τ K_e (v_e − v_1)
 //! ```
+//! f_0 are the forces of the initial stress.
+//!
 //! Motions are taken against the element's first node: a displacement of all nodes costs no digits, and K_e's columns of that
 //! node are not needed (in rings only motions along the axis are, and all columns are kept). An element keeps them if none before it has the same ones: 384 bytes for Q4, 256 for T3, 960 for T6,
 //! 1792 for Q8, 2560 for Q9. Equal elements of a regular mesh differ in the last bits of their nodes' places unless these are round.
@@ -15,15 +17,14 @@ use std::sync::Arc;
 use nalgebra::{Matrix2, Vector2, Vector4};
 use rayon::prelude::*;
 
-use super::blocks::{Block, blocks};
-use super::kernel::{Pass, first, rows};
+use super::blocks::{Block, blocks, rows};
+use super::kernel::{Pass, first};
 use super::places::{BATCH, Places};
 use super::runs::nodal;
 use crate::equations::coupling::Layout;
-use crate::equations::evolving::evolves;
 use crate::equations::failure::TrialFailure;
 use crate::equations::sums::add_blocks;
-use crate::laws::bulk::Material;
+use crate::laws::bulk::{INITIAL_STRESS, Material};
 use crate::linear::SparseMatrix;
 use crate::mesh::shape::ElementKind;
 use crate::model::{Body, Model};
@@ -31,11 +32,12 @@ use crate::model::{Body, Model};
 /// Blocks that are done sooner than another thread wakes up.
 const FEW_BLOCKS: usize = 2;
 
-/// Whether the tangent of an element is the same at every displacement: a linear law at small strains that remembers nothing;
-/// with F-bar the tangent changes nevertheless.
+/// Whether the tangent of an element is the same at every displacement: a linear law at small strains that remembers nothing but
+/// an initial stress; with F-bar the tangent changes nevertheless.
 pub fn is_constant(model: &Model, element: usize) -> bool {
-    let body = model.body_of_element[element];
-    model.bodies[body].material.is_linear() && !model.solids[element].is_f_bar() && !evolves(model, body)
+    let material = &model.bodies[model.body_of_element[element]].material;
+    let remembers = !material.variables().is_empty() && *material.variables() != INITIAL_STRESS;
+    material.is_linear() && material.is_symmetric() && !remembers && !model.solids[element].is_f_bar()
 }
 
 /// Whether the viscous stress of a law is τ ∂P/∂F:Ḟ with the same ∂P/∂F at every F. A linear law need not have such a one.

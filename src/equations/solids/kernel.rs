@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use pulp::{Arch, Simd, WithSimd};
 
-use super::blocks::{Block, NODES};
+use super::blocks::{Block, NODES, rows};
 use crate::mesh::shape::ElementKind;
 
 /// What the blocks are asked for.
@@ -15,11 +15,6 @@ pub(super) enum Pass<'a> {
     Viscous { v: &'a [f64], scaled: bool },
     /// Forces at displacements, and viscous ones at velocities
     Both { u: &'a [f64], v: &'a [f64] },
-}
-
-/// Rows of the matrix of an element of n nodes as it is kept, filled up with zeros to whole registers.
-pub(super) const fn rows(n: usize) -> usize {
-    (2 * n).next_multiple_of(4)
 }
 
 /// The first node whose columns are kept. Motions count against the first node, whose own columns then are not needed, but
@@ -56,33 +51,34 @@ impl Block {
         pass: Pass,
         sums: [&mut [Vector2<f64>]; 2],
     ) -> f64 {
+        let (elastic, viscous) = ((stiffness, &self.initial[..]), (stiffness, &[][..]));
         match pass {
-            Pass::Elastic { u, scaled: false } => self.of_kind::<1, false, RING>(stiffness, [(all(u), 1.0)], sums),
-            Pass::Elastic { u, scaled: true } => self.of_kind::<1, true, RING>(stiffness, [(all(u), 1.0)], sums),
-            Pass::Viscous { v, scaled: false } => self.of_kind::<1, false, RING>(stiffness, [(all(v), tau)], sums),
-            Pass::Viscous { v, scaled: true } => self.of_kind::<1, true, RING>(stiffness, [(all(v), tau)], sums),
-            Pass::Both { u, v } => self.of_kind::<2, false, RING>(stiffness, [(all(u), 1.0), (all(v), tau)], sums),
+            Pass::Elastic { u, scaled: false } => self.of_kind::<1, false, RING>(elastic, [(all(u), 1.0)], sums),
+            Pass::Elastic { u, scaled: true } => self.of_kind::<1, true, RING>(elastic, [(all(u), 1.0)], sums),
+            Pass::Viscous { v, scaled: false } => self.of_kind::<1, false, RING>(viscous, [(all(v), tau)], sums),
+            Pass::Viscous { v, scaled: true } => self.of_kind::<1, true, RING>(viscous, [(all(v), tau)], sums),
+            Pass::Both { u, v } => self.of_kind::<2, false, RING>(elastic, [(all(u), 1.0), (all(v), tau)], sums),
         }
     }
 
     fn of_kind<const M: usize, const SCALED: bool, const RING: bool>(
         &self,
-        stiffness: &[f64],
+        matrices: (&[f64], &[f64]),
         motions: [(&[[f64; 2]], f64); M],
         sums: [&mut [Vector2<f64>]; 2],
     ) -> f64 {
         match self.kind {
-            ElementKind::T3 => self.dispatched::<3, { rows(3) }, M, SCALED, RING>(stiffness, motions, sums),
-            ElementKind::T6 => self.dispatched::<6, { rows(6) }, M, SCALED, RING>(stiffness, motions, sums),
-            ElementKind::Q4 => self.dispatched::<4, { rows(4) }, M, SCALED, RING>(stiffness, motions, sums),
-            ElementKind::Q8 => self.dispatched::<8, { rows(8) }, M, SCALED, RING>(stiffness, motions, sums),
-            ElementKind::Q9 => self.dispatched::<9, { rows(9) }, M, SCALED, RING>(stiffness, motions, sums),
+            ElementKind::T3 => self.dispatched::<3, { rows(3) }, M, SCALED, RING>(matrices, motions, sums),
+            ElementKind::T6 => self.dispatched::<6, { rows(6) }, M, SCALED, RING>(matrices, motions, sums),
+            ElementKind::Q4 => self.dispatched::<4, { rows(4) }, M, SCALED, RING>(matrices, motions, sums),
+            ElementKind::Q8 => self.dispatched::<8, { rows(8) }, M, SCALED, RING>(matrices, motions, sums),
+            ElementKind::Q9 => self.dispatched::<9, { rows(9) }, M, SCALED, RING>(matrices, motions, sums),
         }
     }
 
     fn dispatched<const N: usize, const R: usize, const M: usize, const SCALED: bool, const RING: bool>(
         &self,
-        stiffness: &[f64],
+        (stiffness, initial): (&[f64], &[f64]),
         motions: [(&[[f64; 2]], f64); M],
         sums: [&mut [Vector2<f64>]; 2],
     ) -> f64 {
@@ -92,8 +88,14 @@ impl Block {
         }
         let factors = motions.map(|(_, factor)| factor);
         let mut total = [[[0.0; 2]; 2]; NODES];
-        let elements =
-            Elements::<N, R, M, SCALED, RING> { block: self, stiffness, moved: &moved, factors, total: &mut total };
+        let elements = Elements::<N, R, M, SCALED, RING> {
+            block: self,
+            stiffness,
+            initial,
+            moved: &moved,
+            factors,
+            total: &mut total,
+        };
         let energy = Arch::new().dispatch(elements);
         let [forces, others] = sums;
         for (place, total) in total[..self.nodes.len()].iter().enumerate() {
@@ -110,6 +112,8 @@ impl Block {
 struct Elements<'a, const N: usize, const R: usize, const M: usize, const SCALED: bool, const RING: bool> {
     block: &'a Block,
     stiffness: &'a [f64],
+    /// Forces of each element on its nodes that the first motion adds to, if there are any
+    initial: &'a [f64],
     /// The motions of the block's nodes
     moved: &'a [[[f64; 2]; M]; NODES],
     /// The factors of their forces
@@ -125,7 +129,8 @@ impl<const N: usize, const R: usize, const M: usize, const SCALED: bool, const R
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        let Self { block, stiffness, moved, factors, total } = self;
+        let Self { block, stiffness, initial, moved, factors, total } = self;
+        let mut initial = initial.as_chunks::<R>().0.iter();
         let length = 2 * (N - first(RING)) * R;
         let mut twice = simd.splat_f64s(0.0);
         for (places, &matrix) in block.places.as_chunks::<N>().0.iter().zip(&block.matrices) {
@@ -143,6 +148,10 @@ impl<const N: usize, const R: usize, const M: usize, const SCALED: bool, const R
                 }
             }
             let mut forces = [[simd.splat_f64s(0.0); R]; M];
+            if let Some(initial) = initial.next().map(|own| S::as_simd_f64s(own).0) {
+                forces[0].iter_mut().zip(initial).for_each(|(f, own)| *f = *own);
+                twice = dot(simd, initial, S::as_simd_f64s(&motions[0]).0, twice);
+            }
             for (dof, column) in matrix.as_chunks::<R>().0.iter().enumerate() {
                 let column = S::as_simd_f64s(column).0;
                 for (forces, motion) in forces.iter_mut().zip(&motions) {
@@ -150,9 +159,7 @@ impl<const N: usize, const R: usize, const M: usize, const SCALED: bool, const R
                     forces.iter_mut().zip(column).for_each(|(f, k)| *f = simd.mul_add_e_f64s(*k, moved, *f));
                 }
             }
-            for (f, x) in forces[0].iter().zip(S::as_simd_f64s(&motions[0]).0) {
-                twice = simd.mul_add_e_f64s(*f, *x, twice);
-            }
+            twice = dot(simd, &forces[0], S::as_simd_f64s(&motions[0]).0, twice);
             for (m, forces) in forces.iter().enumerate() {
                 let mut own = [0.0; R];
                 S::as_mut_simd_f64s(&mut own).0.iter_mut().zip(forces).for_each(|(own, f)| *own = *f);
@@ -168,4 +175,10 @@ impl<const N: usize, const R: usize, const M: usize, const SCALED: bool, const R
         }
         0.5 * simd.reduce_sum_f64s(twice)
     }
+}
+
+/// sum + a·x, register by register.
+#[inline(always)]
+fn dot<S: Simd>(simd: S, a: &[S::f64s], x: &[S::f64s], sum: S::f64s) -> S::f64s {
+    a.iter().zip(x).fold(sum, |sum, (a, x)| simd.mul_add_e_f64s(*a, *x, sum))
 }

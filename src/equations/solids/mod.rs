@@ -58,6 +58,11 @@ impl Solids {
         }
     }
 
+    /// Which elements are constant.
+    pub fn constant(&self) -> &[bool] {
+        &self.constant.is
+    }
+
     /// Number of the distinct matrices that constant elements share.
     pub fn matrices(&self) -> usize {
         self.constant.matrices()
