@@ -30,6 +30,7 @@ DEATHS = 3
 SIGN, DEAD = 5.0, 60.0
 # What the solver leaves in a folder that it writes into.
 LOCK = "fecontact.lock"
+CHECKPOINTS = ("checkpoint.bin", "checkpoint_prev.bin")
 
 Record = dict[str, Any]
 Measure = Callable[[Result], "float | Mapping[str, float | str | None]"]
@@ -112,7 +113,7 @@ def _ended(task: Task, halted: Callable[[], bool]) -> Record:
             return record
         if (task.folder / "summary.json").is_file() and Result(task.folder).status == "completed":
             # Its worker died between the end of the run and its record.
-            return task.write(_record("completed", task))
+            return task.write({**_record("completed", task), "resumed": True})
         begun = _begun(task, record)
         if begun["deaths"] >= DEATHS:
             reason = f"its worker died {DEATHS} times on the way: out of memory? (memory=, fewer workers)"
@@ -120,7 +121,7 @@ def _ended(task: Task, halted: Callable[[], bool]) -> Record:
         task.write(begun)
         started = time.monotonic()
         try:
-            goes_on = resume and (task.folder / "checkpoint.bin").is_file()
+            goes_on = resume and any((task.folder / name).is_file() for name in CHECKPOINTS)
             status, why, raised = _run(task, halted, goes_on)
         except CaseError as error:
             if error.file:

