@@ -67,6 +67,11 @@ impl Table {
         self.text(zmij::Buffer::new().format(value));
     }
 
+    /// Add cells with numbers.
+    pub fn numbers(&mut self, numbers: impl IntoIterator<Item = f64>) {
+        numbers.into_iter().for_each(|number| self.number(number));
+    }
+
     /// Add a cell with a whole number.
     pub fn count(&mut self, value: usize) {
         // Writing to a Vec cannot fail.

@@ -121,7 +121,7 @@ impl Fronts {
                     let speed = interface.speed(k, arrival.time);
                     table.text(&interface.name);
                     table.count(k);
-                    [point.position, point.at[0], point.at[1]].into_iter().for_each(|number| table.number(number));
+                    table.numbers([point.position, point.at[0], point.at[1]]);
                     table.count(passage + 1);
                     let over =
                         |of: fn(&WaveSpeeds) -> f64| interface.speeds.as_ref().map_or(f64::NAN, |s| speed / of(s));
@@ -149,12 +149,12 @@ impl Fronts {
                 table.text(&interface.name);
                 table.count(event.number);
                 let when = [m.onset, m.position, m.at[0], m.at[1], event.until - m.onset];
-                when.into_iter().for_each(|number| table.number(number));
+                table.numbers(when);
                 table.count(usize::from(event.over));
                 let slip = [m.length, m.mean_slip, m.largest_slip, m.peak_slip_rate];
                 let energies = [m.stress_drop, m.fracture_energy, m.released, m.radiated];
                 let speeds = [m.front_speed, m.front_speed / rayleigh];
-                slip.into_iter().chain(energies).chain(speeds).for_each(|number| table.number(number));
+                table.numbers(slip.into_iter().chain(energies).chain(speeds));
                 table.end_row()?;
             }
         }

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::bodies::{BodyMeans, Motion};
 use super::csv::{Opening, Table};
+use super::friction_course::FrictionCourse;
 use super::memory;
 use super::rows::Rows;
 use crate::contact::force::ContactState;
@@ -47,6 +48,8 @@ struct Memory {
     rotations: Vec<f64>,
     /// Frictional heat of each contact so far [F·L]
     heat: Vec<f64>,
+    /// How the friction of each contact went so far
+    courses: Vec<FrictionCourse>,
 }
 
 /// A watched set of edges: its name, and the share of its length that each node stands for.
@@ -127,8 +130,18 @@ impl History {
             edges,
             fluids,
             radiates,
-            memory: Memory { rows: Rows::default(), rotations: Vec::new(), heat: vec![0.0; model.contacts.len()] },
+            memory: Memory {
+                rows: Rows::default(),
+                rotations: Vec::new(),
+                heat: vec![0.0; model.contacts.len()],
+                courses: vec![FrictionCourse::default(); model.contacts.len()],
+            },
         })
+    }
+
+    /// How the friction of the contacts went, in their order.
+    pub fn courses(&self) -> &[FrictionCourse] {
+        &self.memory.courses
     }
 }
 
@@ -141,23 +154,23 @@ impl Observer for History {
         table.number(state.dt);
         table.text(&attempt.step.name);
         table.count(attempt.iterations.len());
-        energy_row(&state.energy).into_iter().for_each(|energy| table.number(energy));
-        for (pair, states) in model.contacts.iter().zip(&state.contacts) {
-            contact_row(pair, states).into_iter().for_each(|number| table.number(number));
+        table.numbers(energy_row(&state.energy));
+        for ((pair, states), course) in model.contacts.iter().zip(&state.contacts).zip(&mut memory.courses) {
+            let row @ [normal, tangential, _, slipping, ..] = contact_row(pair, states);
+            course.note(state.time, [normal, tangential], slipping);
+            table.numbers(row);
         }
         for set in &model.watch {
-            watched_row(set, state).into_iter().for_each(|number| table.number(number));
+            table.numbers(watched_row(set, state));
         }
-        if *radiates {
-            table.number(state.energy.radiated);
-        }
+        table.numbers(radiates.then_some(state.energy.radiated));
         for ((pair, states), names) in model.contacts.iter().zip(&state.contacts).zip(observed) {
-            names.iter().for_each(|name| table.number(mean(pair, states, name)));
+            table.numbers(names.iter().map(|name| mean(pair, states, name)));
         }
         let x = model.configuration(&state.displacement);
         for ((pair, states), middle) in model.contacts.iter().zip(&state.contacts).zip(middles) {
             let Resultant { force, moment } = pair.resultant(states, &x, *middle);
-            [force.x, force.y, moment].into_iter().for_each(|number| table.number(number));
+            table.numbers([force.x, force.y, moment]);
         }
         if memory.rotations.is_empty() {
             memory.rotations = bodies.iter().map(|body| body.motion(model, attempt.old).rotation).collect();
@@ -166,11 +179,11 @@ impl Observer for History {
             let motion = body.motion(model, state);
             *rotation = nearest_turn(*rotation, motion.rotation);
             let Motion { momentum: p, angular_momentum, centre: c, .. } = motion;
-            [p.x, p.y, angular_momentum, c.x, c.y, *rotation].into_iter().for_each(|number| table.number(number));
+            table.numbers([p.x, p.y, angular_momentum, c.x, c.y, *rotation]);
         }
         for (_, shares) in edges {
             let mean = |i: usize| shares.iter().map(|(node, share)| share * state.displacement[2 * node + i]).sum();
-            [mean(0), mean(1)].into_iter().for_each(|number| table.number(number));
+            table.numbers([mean(0), mean(1)]);
         }
         for (states, _) in state.contacts.iter().zip(fluids).filter(|(_, has)| **has) {
             table.number(states.iter().map(|state| state.length * state.fluid).sum());
@@ -178,7 +191,7 @@ impl Observer for History {
         for (heat, (old, new)) in memory.heat.iter_mut().zip(attempt.old.contacts.iter().zip(&state.contacts)) {
             let more = interfaces::dissipated(slice::from_ref(old), slice::from_ref(new));
             *heat += more;
-            [*heat, more / (state.time - attempt.old.time)].into_iter().for_each(|number| table.number(number));
+            table.numbers([*heat, more / (state.time - attempt.old.time)]);
         }
         table.end_row_as(row)?;
         table.share()

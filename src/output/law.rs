@@ -55,7 +55,7 @@ impl<'a> LawTable<'a> {
         write(&observables::ALWAYS.map(|(name, _)| observed(name)));
         write(&[state.plastic_slip, state.dissipation, *dtraction_dslip, *dtraction_dpressure]);
         table.count(*evaluations);
-        observables::further([*law]).into_iter().for_each(|name| table.number(observed(name)));
+        table.numbers(observables::further([*law]).into_iter().map(observed));
         table.end_row()
     }
 

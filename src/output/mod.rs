@@ -10,6 +10,7 @@ pub mod fields;
 pub mod files;
 pub mod folder;
 mod frames;
+pub mod friction_course;
 pub mod fronts;
 pub mod gauge;
 pub mod history;

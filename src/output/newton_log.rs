@@ -85,7 +85,7 @@ impl Observer for NewtonLog {
             let IterationRecord { newton, contacts, flips, pass, stabilization, acted } = iteration;
             self.begin_row(attempt, k + 1);
             let Self(table) = self;
-            [newton.residual, newton.correction].into_iter().for_each(|number| table.number(number));
+            table.numbers([newton.residual, newton.correction]);
             [contacts.open, contacts.stick, contacts.slip].into_iter().for_each(|count| table.count(count));
             table.number(newton.linear_residual);
             table.count(usize::from(newton.factorized));

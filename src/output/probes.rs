@@ -65,7 +65,7 @@ impl Observer for Probes {
             let CauchyStress { xx, yy, zz, xy } = stress;
             let hoop = model.mesh.section.is_axisymmetric().then_some(hoop_strain);
             let all = [u.x, u.y, v.x, v.y].into_iter().chain(strain).chain([xx, yy, zz, xy]).chain(hoop);
-            all.for_each(|number| self.table.number(number));
+            self.table.numbers(all);
         }
         self.table.end_row_as(row)?;
         self.table.share()

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::csv::failed;
 use super::files;
+use super::friction_course::FrictionCourse;
 use crate::laws::friction::FrictionParameters;
 use crate::model::Model;
 use crate::run::error::Error;
@@ -111,6 +112,8 @@ pub struct Summary {
     /// fronts [1/T]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub chatter: Option<BTreeMap<String, f64>>,
+    /// how the friction of each contact went; none of those that bore none
+    pub friction_course: BTreeMap<String, FrictionCourse>,
     /// largest resident memory of the process, where the system tells [MiB]
     pub peak_memory_mib: Option<f64>,
     /// warnings
@@ -130,6 +133,7 @@ impl Summary {
             contact_points: model.contacts.iter().map(|pair| pair.points.len()).sum(),
             report,
             chatter: None,
+            friction_course: BTreeMap::new(),
             peak_memory_mib: peak_memory_mib(),
             warnings,
         }

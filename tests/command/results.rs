@@ -93,6 +93,45 @@ fn the_summary_tells_title_units_and_laws() {
     assert_eq!((&law["law"], law["mu_s"].as_f64()), (&json!("super_subloading"), Some(0.4)));
 }
 
+/// By Coulomb's law the mass sticks until its spring, k in series with the contact's α_t A, has brought μ N: T = (k v t + k q₀/α_t)/(1 + k/(α_t A))
+/// = 30 at t = 6.035, with steps of 0.02. When the driver goes back by d, k d/(1 + k/(α_t A)) are taken off.
+#[test]
+fn the_last_lines_tell_how_friction_went() {
+    let folder = TempDir::new().unwrap();
+    let mut case = slider(10.0, 0.02);
+    case["contacts"]["base"]["friction"] = json!({"law": "coulomb", "mu": 0.3, "alpha_t": ALPHA_T});
+    let step = &mut case["steps"][0];
+    step["scheme"] = json!("static");
+    step["loads"][0]["force"]["y"] = json!("-100");
+    step["loads"][1]["spring"]["driver"]["x"] = json!({"table": [[0, 0], [8, 4], [10, 3.6]]});
+    let told = String::from_utf8(run(folder.path(), &case).stderr).unwrap();
+    let summary = fs::read_to_string(folder.path().join("out/case/summary.json")).unwrap();
+    let summary: Value = serde_json::from_str(&summary).unwrap();
+    let course = &summary["friction_course"]["base"];
+    let number = |pointer: &str| course.pointer(pointer).and_then(Value::as_f64).unwrap().abs();
+    let taken_off = 10.0 * 0.4 / (1.0 + 10.0 / (2.0 * ALPHA_T));
+    for (pointer, expected) in [
+        ("/first_slip", 6.04),
+        ("/full_slip", 6.04),
+        ("/largest/time", 6.04),
+        ("/largest/tangential_force", 30.0),
+        ("/largest/ratio", 0.3),
+        ("/last/time", 10.0),
+        ("/last/tangential_force", 30.0 - taken_off),
+        ("/last/ratio", 0.3 - taken_off / 100.0),
+    ] {
+        close(pointer, number(pointer), expected, 1e-9);
+    }
+    let line = told.lines().find(|line| line.starts_with("contact `base`")).expect("a line");
+    assert!(line.contains("slips from t = 6.04; tangential force at most "), "{line}");
+    assert!(line.contains("30 (0.3000 of the normal force) at t = 6.04, ") && line.ends_with(" at the end"), "{line}");
+    // What sticks to the end.
+    case["steps"][0]["duration"] = json!(6.0);
+    case["steps"][0]["loads"][1]["spring"]["driver"]["x"] = json!({"rate": 0.5});
+    let told = String::from_utf8(run(folder.path(), &case).stderr).unwrap();
+    assert!(told.contains("contact `base` sticks; tangential force at most "), "{told}");
+}
+
 /// A run of thousands of quick increments does not drown its reader: a hundred lines, then two a second; the history has
 /// them all.
 #[test]

@@ -24,6 +24,7 @@ use super::{CaseError, Opened};
 use crate::model::Model;
 use crate::output::checkpoint::{self, Checkpoint};
 use crate::output::folder::Folder;
+use crate::output::friction_course::FrictionCourse;
 use crate::output::fronts::Fronts;
 use crate::output::summary::{self, About, Ending, Summary};
 use crate::output::wave_speeds;
@@ -134,7 +135,8 @@ impl Job {
         let Self { opened, model, folder, saved, damage } = self;
         let summary = |ending, report, warnings| Summary::new(ending, about.clone(), model, report, warnings);
         let first = summary(Ending::running(&folder.files), RunReport::default(), model.warnings());
-        let mut work = Work { simulation: None, warnings: Vec::new(), chatter: None, supplied: 0.0 };
+        let mut work =
+            Work { simulation: None, warnings: Vec::new(), chatter: None, courses: BTreeMap::new(), supplied: 0.0 };
         let result = defect::catch(|| work.go(opened, model, folder, saved.take(), &first, company));
         let result = match (result, opened.resumes(), &work.simulation) {
             (Ok(Err(error)), true, None) => return Err(error.into()),
@@ -150,7 +152,8 @@ impl Job {
         }
         let report = work.simulation.map(|simulation| simulation.report()).unwrap_or_default();
         work.warnings.extend(damage.take().map(|damage| format!("{damage}; the checkpoint before it was taken")));
-        let last = Summary { chatter: work.chatter, ..summary(ending, report, work.warnings) };
+        let last =
+            Summary { chatter: work.chatter, friction_course: work.courses, ..summary(ending, report, work.warnings) };
         let written = summary::write(&last, &folder.path);
         let ended = result.map_err(Failed::Defect).and_then(|ended| ended.map_err(Failed::Stopped));
         Ok(Outcome { summary: last, supplied: work.supplied, ended, written })
@@ -179,6 +182,7 @@ struct Work {
     warnings: Vec<String>,
     /// restarts of slip, if the case asks for fronts
     chatter: Option<BTreeMap<String, f64>>,
+    courses: BTreeMap<String, FrictionCourse>,
     /// the most energy that there was [F·L]
     supplied: f64,
 }
@@ -219,6 +223,7 @@ impl Work {
             keeper.look((simulation, observers), moment, &folder.lock)
         });
         drop(observers);
+        self.courses = outputs.courses(model);
         self.chatter = outputs.fronts.as_ref().map(Fronts::chatter);
         self.supplied = outputs.aloud.warnings.audit.supplied;
         self.warnings = std::mem::take(&mut outputs.aloud.warnings.list);

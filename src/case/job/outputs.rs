@@ -1,5 +1,6 @@
 //! The observers of a run, and the files they write.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -9,6 +10,7 @@ use crate::model::Model;
 use crate::output::checkpoint;
 use crate::output::fields::{Fields, Frames};
 use crate::output::folder::INTERFACE;
+use crate::output::friction_course::FrictionCourse;
 use crate::output::fronts::{Arrive, Fronts};
 use crate::output::history::History;
 use crate::output::interface::InterfaceStore;
@@ -101,6 +103,13 @@ impl Outputs {
             fields: fields.transpose()?,
             fronts,
         })
+    }
+
+    /// How the friction of the contacts went, by their names; of those that bore any.
+    pub fn courses(&self, model: &Model) -> BTreeMap<String, FrictionCourse> {
+        let named = model.contacts.iter().zip(self.history.courses());
+        let borne = named.filter(|(_, course)| course.is_friction());
+        borne.map(|(pair, course)| (pair.name.clone(), course.clone())).collect()
     }
 
     /// All of them.

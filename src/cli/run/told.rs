@@ -54,6 +54,7 @@ fn conclude(summary: &Summary, model: &Model, folder: &Path, supplied: f64) {
         report.wall_s.total,
         folder.display()
     );
+    summary.friction_course.iter().for_each(|(name, course)| say!("contact `{name}` {course}"));
     if !report.given_up.is_empty() {
         say!("given up: {}; `reason` in newton.csv tells of each", most_first(&report.given_up));
     }

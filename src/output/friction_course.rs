@@ -1,0 +1,84 @@
+//! How the friction of a contact went, in a few numbers: how much it bore, and when stick turned into slip.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use crate::model::told::number;
+
+/// Shares that are the same but for round-off.
+const ROUND_OFF: f64 = 1e-9;
+
+/// The forces of a contact at one time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Borne {
+    /// time [T]
+    pub time: f64,
+    /// ∫ q ds of all points, as in `history.csv` [F]
+    pub tangential_force: f64,
+    /// its magnitude over ∫ p ds [-]
+    pub ratio: f64,
+}
+
+/// How the friction of a contact went, by the accepted increments.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FrictionCourse {
+    /// when a point slipped first [T]
+    pub first_slip: Option<f64>,
+    /// when all that was closed slipped at once for the first time [T]
+    pub full_slip: Option<f64>,
+    /// the largest magnitude of the tangential force
+    pub largest: Option<Borne>,
+    /// at the end
+    pub last: Option<Borne>,
+}
+
+impl FrictionCourse {
+    /// Take note of the forces [F] and of the share of the closed length that slips [-].
+    pub fn note(&mut self, time: f64, [normal, tangential]: [f64; 2], slipping: f64) {
+        let ratio = if normal > 0.0 { tangential.abs() / normal } else { 0.0 };
+        let borne = Borne { time, tangential_force: tangential, ratio };
+        self.last = Some(borne);
+        // Of a force that stays as it is, the beginning.
+        let more = |largest: Borne| tangential.abs() > (1.0 + ROUND_OFF) * largest.tangential_force.abs();
+        if self.largest.is_none_or(more) {
+            self.largest = Some(borne);
+        }
+        if slipping > 0.0 {
+            self.first_slip.get_or_insert(time);
+        }
+        if slipping > 1.0 - ROUND_OFF {
+            self.full_slip.get_or_insert(time);
+        }
+    }
+
+    /// Whether there was any friction.
+    pub fn is_friction(&self) -> bool {
+        self.largest.is_some_and(|largest| largest.tangential_force != 0.0)
+    }
+}
+
+impl fmt::Display for FrictionCourse {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match (self.first_slip, self.full_slip) {
+            (None, _) => write!(f, "sticks")?,
+            (Some(first), None) => write!(f, "slips in part from t = {}", number(first))?,
+            (Some(first), Some(all)) if first == all => write!(f, "slips from t = {}", number(first))?,
+            (Some(first), Some(all)) => {
+                write!(f, "slips from t = {}, all of it at t = {}", number(first), number(all))?
+            }
+        }
+        if let [Some(largest), Some(last)] = [self.largest, self.last] {
+            let told =
+                |borne: Borne| format!("{} ({:.4} of the normal force)", number(borne.tangential_force), borne.ratio);
+            write!(
+                f,
+                "; tangential force at most {} at t = {}, {} at the end",
+                told(largest),
+                number(largest.time),
+                told(last)
+            )?;
+        }
+        Ok(())
+    }
+}
