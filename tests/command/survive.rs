@@ -791,7 +791,14 @@ fn threads_that_cannot_be_had_are_told() {
         done(&shell(folder.path(), &format!("{text} PROGRAM check case.json")));
     }
     let cramped = shell(folder.path(), "ulimit -v 400000; RAYON_NUM_THREADS=1024 PROGRAM check case.json");
-    assert!(told(&cramped, 2).contains("RAYON_NUM_THREADS 1024: "), "{cramped:?}");
+    assert!(told(&cramped, 2).contains("RAYON_NUM_THREADS 1024: they need "), "{cramped:?}");
+    assert!(told(&cramped, 2).contains(" MiB; give fewer"), "{cramped:?}");
+    // Those that fit, and as many as fit where nobody asked for more.
+    for asked in ["RAYON_NUM_THREADS=3", ""] {
+        done(&shell(folder.path(), &format!("ulimit -v 400000; {asked} PROGRAM check case.json")));
+    }
+    // A user other than root has no more processes than this one.
+    done(&shell(folder.path(), "ulimit -u 1; exec PROGRAM check case.json"));
 }
 
 /// A panic is told as what it is, with another exit code than anything else.
