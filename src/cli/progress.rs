@@ -1,6 +1,5 @@
 //! Progress on stderr: one line that is kept up to date on a terminal, plain lines elsewhere; warnings as they come.
 
-use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -27,12 +26,14 @@ pub enum Voice {
 impl Voice {
     /// The voice of a run.
     pub fn new(quiet: bool) -> Self {
-        match (quiet, std::io::stderr().is_terminal()) {
+        // It is drawn where there is something new, and not more often than a frame; never where nothing once written can be
+        // written over: beside a terminal, and on one whose TERM is unset or `dumb`.
+        let target = ProgressDrawTarget::stderr();
+        match (quiet, target.is_hidden()) {
             (true, _) => Self::Silent,
-            (false, false) => Self::Lines,
-            (false, true) => {
-                // It is drawn where there is something new, and not more often than a frame.
-                let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+            (false, true) => Self::Lines,
+            (false, false) => {
+                let bar = ProgressBar::with_draw_target(None, target);
                 let style = ProgressStyle::with_template("{wide_msg}");
                 Self::Terminal(bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())))
             }

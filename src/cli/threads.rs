@@ -1,14 +1,28 @@
 //! The threads of a run; its answers do not depend on their number.
 
-use rayon::ThreadPoolBuilder;
+use std::io;
+use std::sync::mpsc::{Sender, channel};
+
+use rayon::{ThreadBuilder, ThreadPoolBuilder};
 
 use super::failure::Failure;
+use crate::linear::memory::address_space;
 
 /// More threads than this are a slip of the keyboard.
 const MOST: usize = 1024;
 
 /// By this the number of threads may be given for all runs.
 const VARIABLE: &str = "RAYON_NUM_THREADS";
+
+/// The stack of a thread [MiB].
+const STACK: usize = 2;
+
+/// What a thread takes of the address space [MiB]: its stack, the 64 MiB that glibc reserves for what a thread allocates, and
+/// its own data.
+const THREAD: usize = STACK + 64 + 1;
+
+/// A MiB.
+const MIB: usize = 1 << 20;
 
 /// Make so many threads; all cores unless the environment says otherwise.
 ///
@@ -27,19 +41,45 @@ pub fn use_threads(asked: Option<usize>) -> Result<(), Failure> {
         let message = format!("{name} {threads}: give 1 to {MOST}, or leave it out for all cores");
         return Err(Failure::BadInput(message));
     }
-    let pool = ThreadPoolBuilder::new().num_threads(threads).use_current_thread().build_global();
-    pool.map_err(|error| Failure::BadInput(format!("{name} {threads}: {error}; give fewer")))
+    let made = room_for(threads).and_then(|()| {
+        let waiting: io::Result<Vec<_>> = (1..threads).map(|_| started()).collect();
+        set_to_work(waiting.map_err(|error| error.to_string())?)
+    });
+    made.map_err(|cause| Failure::BadInput(format!("{name} {threads}: {cause}; give fewer")))
 }
 
 /// A thread for every core; where the system does not give so many, fewer, and at last the one that there is.
 fn as_usual() -> Result<(), Failure> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from).min(MOST);
-    let fewer = std::iter::successors(Some(cores), |threads| (*threads > 1).then_some(threads / 2));
-    let mut made =
-        fewer.map(|threads| ThreadPoolBuilder::new().num_threads(threads).use_current_thread().build_global());
-    let alone = || ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global();
-    match made.any(|pool| pool.is_ok()) {
-        true => Ok(()),
-        false => alone().map_err(|error| Failure::BadInput(format!("no thread can be made: {error}"))),
+    let fitting = address_space().map_or(cores, |left| cores.min(left / (THREAD * MIB)));
+    let waiting = (1..fitting).map_while(|_| started().ok()).collect();
+    set_to_work(waiting).map_err(|cause| Failure::BadInput(format!("the threads cannot be set to work: {cause}")))
+}
+
+/// Refuse more threads than the limit of the address space leaves room for: one that is made, and finds no memory when its turn
+/// comes, aborts the process.
+fn room_for(threads: usize) -> Result<(), String> {
+    let (needed, left) = (threads * THREAD, address_space().map(|left| left / MIB));
+    match left.filter(|left| threads > 1 && *left < needed) {
+        None => Ok(()),
+        Some(left) => {
+            Err(format!("they need {needed} MiB of address space, and its limit (ulimit -v) leaves {left} MiB"))
+        }
     }
+}
+
+/// A thread that waits for what it is to do. It is made before the pool, of which there can be one attempt only.
+fn started() -> io::Result<Sender<ThreadBuilder>> {
+    let (work, given) = channel::<ThreadBuilder>();
+    let waits = move || given.recv().map_or((), ThreadBuilder::run);
+    std::thread::Builder::new().stack_size(STACK * MIB).spawn(waits)?;
+    Ok(work)
+}
+
+/// Make this thread and those that wait the ones of all parallel work.
+fn set_to_work(mut waiting: Vec<Sender<ThreadBuilder>>) -> Result<(), String> {
+    let lost = || io::Error::other("a thread is gone");
+    let pool = ThreadPoolBuilder::new().num_threads(waiting.len() + 1).use_current_thread();
+    let pool = pool.spawn_handler(|thread| waiting.pop().and_then(|one| one.send(thread).ok()).ok_or_else(lost));
+    pool.build_global().map_err(|error| error.to_string())
 }

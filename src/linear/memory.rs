@@ -51,8 +51,8 @@ pub fn available_memory() -> Option<usize> {
     Some(control_groups().chain(address_space()).fold(machine, usize::min))
 }
 
-/// What the limit of the address space leaves, if there is one.
-fn address_space() -> Option<usize> {
+/// What the limit of the address space leaves (ulimit -v), if there is one [bytes].
+pub fn address_space() -> Option<usize> {
     let limits = read_to_string("/proc/self/limits").ok()?;
     let limit = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
     let limit: usize = limit.split_whitespace().next()?.parse().ok()?;

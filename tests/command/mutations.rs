@@ -14,8 +14,8 @@ use tempfile::TempDir;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_fecontact");
 
-/// A run that takes longer is asked to end.
-const LIMIT: Duration = Duration::from_secs(4);
+/// A run that takes longer is asked to end: far more than any takes, also where the machine has other work.
+const LIMIT: Duration = Duration::from_secs(60);
 
 /// What is asked to end does so in this time.
 const OBEYS: Duration = Duration::from_secs(10);

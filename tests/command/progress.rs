@@ -20,11 +20,12 @@ fn soft(increments: usize) -> (TempDir, Value) {
     (folder, case)
 }
 
-/// What a command writes to a terminal of 100 columns.
-fn on_terminal(folder: &Path, arguments: &str) -> String {
+/// What a command writes to a terminal of this kind with 100 columns.
+fn on_terminal(folder: &Path, kind: &str, arguments: &str) -> String {
     let command = format!("stty cols 100 rows 30; {PROGRAM} {arguments}");
-    let output: Output =
-        Command::new("script").args(["-qec", &command, "/dev/null"]).current_dir(folder).output().expect("script");
+    let mut script = Command::new("script");
+    script.args(["-qec", &command, "/dev/null"]).current_dir(folder).env("TERM", kind);
+    let output: Output = script.output().expect("script");
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(output.status.success(), "{text}");
     text
@@ -35,7 +36,7 @@ fn on_terminal(folder: &Path, arguments: &str) -> String {
 fn a_terminal_shows_one_line_that_is_kept_up_to_date() {
     // Long enough for the time that is left to be told on a machine many times faster than today's.
     let (folder, _) = soft(20_000);
-    let text = on_terminal(folder.path(), "run case.json --threads 1 --out out");
+    let text = on_terminal(folder.path(), "xterm", "run case.json --threads 1 --out out");
     let drawn: Vec<&str> = text.split(['\r', '\n']).collect();
     let states: Vec<&&str> = drawn.iter().filter(|line| line.contains(" %") && line.contains(" dt ")).collect();
     assert!(states.len() > 5, "{text}");
@@ -52,6 +53,17 @@ fn a_terminal_shows_one_line_that_is_kept_up_to_date() {
     let warned = text.find("% of the slave's edge").expect("a warning");
     assert!(warned < text.rfind(" dt ").expect("a state"), "{text}");
     assert!(text.trim_end().ends_with("results in out"), "{text}");
+}
+
+/// A terminal on which nothing can be written over has lines.
+#[cfg(unix)]
+#[test]
+fn a_dumb_terminal_shows_lines() {
+    let (folder, _) = soft(20);
+    let text = on_terminal(folder.path(), "dumb", "run case.json --threads 1 --out out");
+    for line in ["press  t 0.25  dt 2.500e-1  ", "% of the slave's edge", "drag  t 5  "] {
+        assert_eq!(text.matches(line).count(), 1, "{text}");
+    }
 }
 
 /// Without a terminal there are lines; with `--quiet` there is nothing, and the warnings are in the summary all the same.

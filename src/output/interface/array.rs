@@ -80,7 +80,23 @@ pub fn shape(is: &Description, shape: &[usize], chunks: &[usize]) -> Value {
     })
 }
 
-/// The files of a store that lies in a folder; others than its own are none of them, nor is anything behind a link.
+/// Records of growing arrays of the store in a folder, as its files say; the largest number where they differ, and 0 where there
+/// are none.
+pub fn counted<'n>(store: &Path, names: impl Iterator<Item = &'n str>) -> u64 {
+    let read = |path: PathBuf| {
+        let bytes = fs::read(path).unwrap_or_default();
+        serde_json::from_slice::<Value>(&bytes).unwrap_or_default()
+    };
+    let all = read(store.join(METADATA));
+    let of_one = |name: &str| {
+        let own = read(store.join(name).join(ARRAY))["shape"][0].as_u64();
+        own.max(all["metadata"][format!("{name}/{ARRAY}")]["shape"][0].as_u64())
+    };
+    names.filter_map(of_one).max().unwrap_or(0)
+}
+
+/// The files of a store that lies in a folder, those first by which readers go: removed in this order, they never count what is
+/// gone; others than its own are none of them, nor is anything behind a link.
 ///
 /// # Errors
 /// What the system says.
@@ -99,6 +115,12 @@ pub fn files_of(folder: &Path) -> io::Result<Vec<PathBuf>> {
         }
     }
     found.retain(|path| is_own(path));
+    let turn = |path: &PathBuf| match path.file_name().and_then(|name| name.to_str()) {
+        Some(METADATA) => 0,
+        Some(name) if name.starts_with('.') => 1,
+        _ => 2,
+    };
+    found.sort_by_key(turn);
     Ok(found)
 }
 

@@ -8,7 +8,8 @@
 //! ```
 //!
 //! Every file is the old one or the new one at any moment. A flush writes chunks first, then the shapes, and `.zmetadata` at
-//! last, by which readers go: whatever ends the process, a reader finds all records up to the last flush, in all arrays.
+//! last, by which readers go: whatever ends the process, a reader finds all records up to the last flush, in all arrays. Where
+//! records are taken back it is the other way round.
 //!
 //! Source: Zarr storage specification version 2, <https://zarr-specs.readthedocs.io/en/latest/v2/v2.0.html>.
 
@@ -18,7 +19,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Map, Value, json};
 
-use super::array::{ARRAY, ATTRIBUTES, Description, GROUP, METADATA, Series, all_attributes, group, shape};
+use super::array::{ARRAY, ATTRIBUTES, Description, GROUP, METADATA, Series, all_attributes, counted, group, shape};
 use super::codec::{QUICK, THOROUGH, packed};
 use crate::output::csv::failed;
 use crate::output::files;
@@ -189,6 +190,9 @@ impl Store {
         self.describe(fixed)?;
         self.settled = false;
         // What is taken back is no longer counted when it goes.
+        if counted(&self.folder, self.series.iter().map(|series| &*series.is.name)) > records {
+            self.write_shapes()?;
+        }
         self.flush()?;
         let first = complete + usize::from(length > 0);
         for series in &self.series {
@@ -210,14 +214,19 @@ impl Store {
         if !self.records.is_multiple_of(self.chunk) {
             self.write_chunks(self.records / self.chunk, level)?;
         }
+        self.write_shapes()?;
+        self.settled = true;
+        Ok(())
+    }
+
+    /// Write how many records there are.
+    fn write_shapes(&self) -> Result<(), Error> {
         let shapes: Vec<(String, Value)> = self.shapes().collect();
         for (name, shape) in &shapes {
             put(&self.folder.join(name).join(ARRAY), &json_bytes(shape))?;
         }
         let metadata = self.metadata(shapes);
-        put(&self.folder.join(METADATA), &json_bytes(&metadata))?;
-        self.settled = true;
-        Ok(())
+        put(&self.folder.join(METADATA), &json_bytes(&metadata))
     }
 
     fn write_chunks(&mut self, number: usize, level: u8) -> Result<(), Error> {
