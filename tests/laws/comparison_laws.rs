@@ -9,8 +9,8 @@ use fecontact::laws::friction::{
 };
 
 /// μ, the one variable of slip weakening.
-fn mu_of(state: &FrictionState) -> f64 {
-    state.variables[0]
+fn mu_of(law: &SlipWeakening, state: &FrictionState) -> f64 {
+    law.observe("mu", state).expect("it has one")
 }
 
 /// ψ of rate-and-state friction.
@@ -98,7 +98,7 @@ fn slip_weakens_to_the_dynamic_coefficient_at_any_step_size() {
             let q = if slipped < 1.0 { 10.0 * (0.6 - 0.1 * slipped) } else { 5.0 };
             assert_close(state.plastic_slip, slipped, 1e-12, "slip");
             assert_close(state.traction, q, 1e-11, "traction");
-            assert_close(mu_of(&state), 0.1 * q, 1e-12, "mu");
+            assert_close(mu_of(&law, &state), 0.1 * q, 1e-12, "mu");
         }
     }
 }
@@ -112,11 +112,11 @@ fn weakening_counts_slip_to_and_fro_and_never_heals() {
     assert_close(state.traction, q, 1e-12, "rest");
     state = respond(&law, &state, -0.3, 10.0, 1.0).state;
     let back = slip - state.plastic_slip;
-    assert_close(mu_of(&state), 0.6 - 0.1 * (slip + back), 1e-12, "mu after reversal");
-    assert_close(state.traction, -10.0 * mu_of(&state), 1e-11, "traction after reversal");
+    assert_close(mu_of(&law, &state), 0.6 - 0.1 * (slip + back), 1e-12, "mu after reversal");
+    assert_close(state.traction, -10.0 * mu_of(&law, &state), 1e-11, "traction after reversal");
     state = respond(&law, &state, 0.0, 0.0, 1.0).state;
     assert_eq!(state.traction, 0.0, "parted");
-    assert_close(mu_of(&state), 0.6 - 0.1 * (slip + back), 1e-12, "parted");
+    assert_close(mu_of(&law, &state), 0.6 - 0.1 * (slip + back), 1e-12, "parted");
 }
 
 #[test]
@@ -144,9 +144,9 @@ fn weakening_that_outruns_the_contact_snaps_to_the_dynamic_coefficient() {
     let law = weakening(SlipWeakeningParameters { alpha_t: Some(0.9), ..WEAKENING });
     assert_close(law.uniqueness_limit().expect("a limit"), 9.0, 1e-12, "limit");
     let state = respond(&law, &law.initial_state(), 7.0, 10.0, 1.0).state;
-    assert_eq!((mu_of(&state), state.traction), (0.5, 5.0));
+    assert_eq!((mu_of(&law, &state), state.traction), (0.5, 5.0));
     let just_below = respond(&law, &law.initial_state(), 5.99 / 0.9, 10.0, 1.0).state;
-    assert_eq!((mu_of(&just_below), just_below.plastic_slip), (0.6, 0.0));
+    assert_eq!((mu_of(&law, &just_below), just_below.plastic_slip), (0.6, 0.0));
 }
 
 #[test]
@@ -160,9 +160,9 @@ fn weakening_tangents_are_exact() {
             ..WEAKENING
         });
         let pressure = random.between(0.1, 20.0);
-        let mu = random.between(0.5, 0.6);
-        let old =
-            FrictionState { traction: random.between(-8.0, 8.0), pressure, ..law.initial_state().with_variables([mu]) };
+        let slipped = random.between(0.0, 1.2);
+        let start = law.initial_state().with_variables([slipped]);
+        let old = FrictionState { traction: random.between(-8.0, 8.0), pressure, ..start };
         let slip = random.between(-20.0, 20.0) / law.stiffness();
         smooth += usize::from(check_tangents(&law, &old, slip, random.between(0.1, 20.0), 1.0));
     }
@@ -181,7 +181,7 @@ fn weakening_dissipates_what_the_work_leaves() {
         state = new;
     }
     let stored = state.traction.powi(2) / 2000.0;
-    assert!(state.plastic_slip.abs() > 0.1 && mu_of(&state) == 0.5);
+    assert!(state.plastic_slip.abs() > 0.1 && mu_of(&law, &state) == 0.5);
     // The trapezoidal work of an increment in which slip sets in or turns round is not exact.
     assert_close(state.dissipation + stored, work, 2e-3 * work, "energy");
 }
@@ -210,7 +210,7 @@ fn weakening_dissipates_the_strength_over_the_slip() {
             at = turn;
         }
         assert_close(state.dissipation, work, 1e-12 * work, &format!("{parts} parts"));
-        assert!(mu_of(&state) == 0.5, "all strokes weaken");
+        assert!(mu_of(&law, &state) == 0.5, "all strokes weaken");
     }
 }
 
@@ -244,6 +244,46 @@ fn weakening_dissipates_the_same_in_one_increment_as_in_many() {
         }
         let stored = one.traction.powi(2) / 2000.0;
         assert_close(one.dissipation + stored, work, 1e-8 * work, &format!("{line:?}: work"));
+    }
+}
+
+/// A traction above the strength by a rounding, or by much, is no other path: the dissipation is that of slip off at once, and then of
+/// the rest in a thousand increments.
+#[test]
+fn weakening_dissipates_the_same_from_above_the_strength() {
+    let law = weakening(SlipWeakeningParameters { cohesion: 0.5, critical_slip: 0.05, ..WEAKENING });
+    let at = |above: f64| FrictionState { traction: 6.5 + above, pressure: 10.0, ..law.initial_state() };
+    for [slip, pressure] in [[0.02, 14.0], [0.04, 4.0], [0.3, 25.0], [0.3, 9.0]] {
+        let smooth = respond(&law, &at(-1e-9), slip, pressure, 1.0).state.dissipation;
+        for rounding in [-1e-15, 0.0, 1e-15, 1e-12] {
+            let one = respond(&law, &at(rounding), slip, pressure, 1.0).state.dissipation;
+            assert_close(one, smooth, 1e-7 * smooth, &format!("{slip} {pressure} {rounding:e}"));
+        }
+        for above in [0.5, 3.0] {
+            let one = respond(&law, &at(above), slip, pressure, 1.0).state;
+            let mut many = respond(&law, &at(above), 0.0, 10.0, 0.0).state;
+            for k in 1..=1000 {
+                let pressure = 10.0 + f64::from(k) / 1000.0 * (pressure - 10.0);
+                many = respond(&law, &many, slip / 1000.0, pressure, 1e-3).state;
+            }
+            let what = format!("{slip} {pressure} from {above} above");
+            assert_close(one.traction, many.traction, 1e-11, &what);
+            assert_close(one.dissipation, many.dissipation, 1e-11 * many.dissipation, &what);
+        }
+    }
+}
+
+/// Parameters may change between increments: μ = max(μ_s − W D, μ_d) with those of now, and D of all slip.
+#[test]
+fn weakening_counts_its_slip_whatever_the_parameters_are() {
+    let first = weakening(SlipWeakeningParameters { mu_s: 0.8, mu_d: 0.2, ..WEAKENING });
+    let slid = respond(&first, &first.initial_state(), 0.258, 10.0, 1.0).state;
+    // 1000 (0.258 − D) = 10 (0.8 − 0.6 D)
+    assert_close(slid.plastic_slip, 250.0 / 994.0, 1e-14, "D");
+    for (mu_s, mu_d, critical_slip) in [(0.6, 0.2, 1.0), (0.9, 0.1, 0.5), (0.4, 0.39, 0.1)] {
+        let then = weakening(SlipWeakeningParameters { mu_s, mu_d, critical_slip, ..WEAKENING });
+        let mu = f64::max(mu_s - (mu_s - mu_d) / critical_slip * 250.0 / 994.0, mu_d);
+        assert_close(mu_of(&then, &slid), mu, 1e-14, "mu");
     }
 }
 

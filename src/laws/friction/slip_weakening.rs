@@ -46,8 +46,8 @@ impl SlipWeakeningParameters {
 /// ```
 /// Nothing is left of the error in time. The work dissipated is ∫ |q| dλ along even paths of slip and pressure: elastic up
 /// to the strength, then at the strength; where friction falls
-/// faster than the contact unloads, |q| falls with α_t λ from one strength to the other. μ itself remembers the slip: D = (μ_s − μ)/W. A traction above the strength, as
-/// a run may start with, slips off in the first increment.
+/// faster than the contact unloads, |q| falls with α_t λ from one strength to the other. D is what is remembered, so that parameters may
+/// vary in time. A traction above the strength, as a run may start with, slips off in the first increment.
 ///
 /// # Errors
 /// [`LawFailure`](super::LawFailure) when the increment or the answer is not finite, or time goes backwards.
@@ -83,35 +83,85 @@ impl SlipWeakening {
     }
 }
 
+/// Slip down to the strength.
+struct Slid {
+    /// D then [L]
+    total: f64,
+    /// μ then [-]
+    mu: f64,
+    /// |q| = c + μ p [F/L²]
+    strength: f64,
+    /// How much of α_t is lost to slip
+    softness: f64,
+}
+
 impl SlipWeakening {
-    /// Mean of |q| over the plastic slip of an increment that ends with (p, μ).
-    fn mean_traction(&self, old: &FrictionState, trial: f64, (pressure, mu): (f64, f64)) -> f64 {
-        let old_mu = mu_of(old);
+    /// μ after so much slip.
+    fn mu_after(&self, slip: f64) -> f64 {
+        (self.mu_s - self.weakening * slip).max(self.mu_d)
+    }
+
+    /// Slip that brings an elastic traction down to the strength, from D on; none if it is not above.
+    fn slide(&self, before: f64, elastic: f64, pressure: f64) -> Option<Slid> {
         let Self { mu_d, weakening, cohesion, alpha_t, .. } = *self;
-        let elastic = [trial.signum() * old.traction, trial.abs()];
-        let strength = |mu: f64, pressure: f64| cohesion + mu * pressure;
-        let before = [strength(old_mu, old.pressure), strength(old_mu, pressure)];
-        let (at_yield, at_end) = (traction_at_yield(elastic, before), strength(mu, pressure));
-        let slip = (elastic[1] - at_end) / alpha_t;
-        if old_mu <= mu_d || elastic[0] > before[0] {
-            return 0.5 * (at_yield + at_end);
+        let old_mu = self.mu_after(before);
+        let excess = elastic - cohesion - old_mu * pressure;
+        if excess <= 0.0 {
+            return None;
         }
+        let net = alpha_t - weakening * pressure;
+        let fallen = weakening * excess / net;
+        let (mu, softness) = match net > 0.0 && old_mu - fallen > mu_d {
+            true => (old_mu - fallen, alpha_t / net.max(LEAST_SLOPE * alpha_t)),
+            false => (mu_d, 1.0),
+        };
+        let strength = cohesion + mu * pressure;
+        Some(Slid { total: before + (elastic - strength) / alpha_t, mu, strength, softness })
+    }
+
+    /// Mean of |q| over the plastic slip of an increment that ends so. What is above the strength from the start slips off first.
+    fn mean_traction(&self, old: &FrictionState, trial: f64, pressure: f64, end: &Slid) -> f64 {
+        let [start, last] = [trial.signum() * old.traction, trial.abs()];
+        let (before, way) = (slip_of(old), [old.pressure, pressure]);
+        let Some(first) = self.slide(before, start, old.pressure) else {
+            return self.mean_on_the_way(self.mu_after(before), [start, last], way, end);
+        };
+        let (off, slip) = (first.total - before, end.total - before);
+        let at_once = 0.5 * (start + first.strength);
+        if off >= slip {
+            return 0.5 * (start + end.strength);
+        }
+        let rest = self.mean_on_the_way(first.mu, [first.strength, last - self.alpha_t * off], way, end);
+        (off * at_once + (slip - off) * rest) / slip
+    }
+
+    /// The same from a first μ on, along which the elastic traction and the pressure go evenly and the former is not above the
+    /// strength at the start.
+    fn mean_on_the_way(&self, old_mu: f64, elastic: [f64; 2], [old_pressure, pressure]: [f64; 2], end: &Slid) -> f64 {
+        let Self { mu_d, weakening, cohesion, alpha_t, .. } = *self;
+        let strength = |mu: f64, pressure: f64| cohesion + mu * pressure;
+        let at_yield = traction_at_yield(elastic, [strength(old_mu, old_pressure), strength(old_mu, pressure)]);
+        let at_end = end.strength;
+        let slip = (elastic[1] - at_end) / alpha_t;
         // Over the increment the elastic traction gains on the strength, at the first μ and at the second, and the share of
         // the increment that has passed is a quotient of linear functions of λ, whose denominator goes from one to the other.
-        let gain = |mu: f64| elastic[1] - elastic[0] - mu * (pressure - old.pressure);
+        let gain = |mu: f64| elastic[1] - elastic[0] - mu * (pressure - old_pressure);
+        if old_mu <= mu_d || gain(old_mu) <= 0.0 {
+            return 0.5 * (at_yield + at_end);
+        }
         let falling = |to: f64, slip: f64, mu: f64| {
             let lag = end_share(gain(mu) / gain(old_mu) - 1.0) - 0.5;
             0.5 * (at_yield + to) + lag * (alpha_t * slip + to - at_yield)
         };
-        if mu > mu_d {
-            return falling(at_end, slip, mu);
+        if end.mu > mu_d {
+            return falling(at_end, slip, end.mu);
         }
         let pressure_at_yield = (at_yield - cohesion) / old_mu;
         // Slip until μ_d is reached, the traction then, and the mean of |q| so far
         let (fallen, level, mean) = if weakening * pressure_at_yield < alpha_t {
             let fallen = (old_mu - mu_d) / weakening;
-            let share = (strength(mu_d, old.pressure) + alpha_t * fallen - elastic[0]) / gain(mu_d);
-            let level = strength(mu_d, old.pressure + share.clamp(0.0, 1.0) * (pressure - old.pressure));
+            let share = (strength(mu_d, old_pressure) + alpha_t * fallen - elastic[0]) / gain(mu_d);
+            let level = strength(mu_d, old_pressure + share.clamp(0.0, 1.0) * (pressure - old_pressure));
             (fallen.min(slip), level, falling(level, fallen, mu_d))
         } else {
             let level = strength(mu_d, pressure_at_yield);
@@ -138,41 +188,32 @@ fn end_share(z: f64) -> f64 {
     }
 }
 
-/// μ, the one variable of the law [-]
-fn mu_of(state: &FrictionState) -> f64 {
+/// D, the one variable of the law [L]
+fn slip_of(state: &FrictionState) -> f64 {
     state.variables[0]
 }
 
 impl FrictionLaw for SlipWeakening {
     fn initial_state(&self) -> FrictionState {
-        FrictionState::default().with_variables([self.mu_s])
+        FrictionState::default()
     }
 
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
-        let Self { mu_d, weakening, cohesion, alpha_t, .. } = *self;
+        let alpha_t = self.alpha_t;
         let Sliding { slip, pressure, .. } = sliding.checked()?;
-        let old_mu = mu_of(old);
         if pressure <= 0.0 {
             return FrictionResponse::elastic(old.parted(alpha_t), 0.0).checked(alpha_t);
         }
         let trial = old.traction + alpha_t * slip;
-        let excess = trial.abs() - cohesion - old_mu * pressure;
-        if excess <= 0.0 {
+        let Some(slid) = self.slide(slip_of(old), trial.abs(), pressure) else {
             return FrictionResponse::elastic(old.stuck(trial, pressure), alpha_t).checked(alpha_t);
-        }
-        let net = alpha_t - weakening * pressure;
-        let slid = excess / net;
-        let (mu, softness) = if net > 0.0 && old_mu - weakening * slid > mu_d {
-            (old_mu - weakening * slid, alpha_t / net.max(LEAST_SLOPE * alpha_t))
-        } else {
-            (old_mu.min(mu_d), 1.0)
         };
-        let traction = trial.signum() * (cohesion + mu * pressure);
-        let mean = self.mean_traction(old, trial, (pressure, mu));
+        let mean = self.mean_traction(old, trial, pressure, &slid);
+        let traction = trial.signum() * slid.strength;
         FrictionResponse {
-            state: old.slid(trial, traction, mean, pressure, alpha_t).with_variables([mu]),
-            dtraction_dslip: alpha_t * (1.0 - softness),
-            dtraction_dpressure: trial.signum() * mu * softness,
+            state: old.slid(trial, traction, mean, pressure, alpha_t).with_variables([slid.total]),
+            dtraction_dslip: alpha_t * (1.0 - slid.softness),
+            dtraction_dpressure: trial.signum() * slid.mu * slid.softness,
             ..Default::default()
         }
         .checked(alpha_t)
@@ -183,7 +224,7 @@ impl FrictionLaw for SlipWeakening {
     }
 
     fn variables(&self) -> &'static [&'static str] {
-        &["mu"]
+        &["weakening_slip"]
     }
 
     fn observables(&self) -> &'static [&'static str] {
@@ -191,7 +232,7 @@ impl FrictionLaw for SlipWeakening {
     }
 
     fn observe(&self, name: &str, state: &FrictionState) -> Option<f64> {
-        let mu = mu_of(state);
+        let mu = self.mu_after(slip_of(state));
         match name {
             "R" => Some(state.ratio(mu)),
             "mu" => Some(mu),
@@ -214,8 +255,8 @@ impl SensitiveLaw for SlipWeakening {
         &["mu_s", "mu_d", "D_c", "cohesion", "alpha_t"]
     }
 
-    fn start(&self, parameter: usize) -> Variation {
-        Variation::new(0.0, if parameter == 0 { 1.0 } else { 0.0 })
+    fn start(&self, _parameter: usize) -> Variation {
+        Variation::new(0.0, 0.0)
     }
 
     fn vary(
@@ -224,34 +265,29 @@ impl SensitiveLaw for SlipWeakening {
         sliding: Sliding,
         directions: [Direction; 2],
     ) -> Result<[Variation; 2], LawFailure> {
-        let Self { mu_d, critical_slip, weakening, cohesion, alpha_t, .. } = *self;
+        let Self { mu_d, critical_slip, weakening, alpha_t, .. } = *self;
         let Sliding { slip, pressure, .. } = sliding.checked()?;
-        let old_mu = mu_of(old);
+        let before = slip_of(old);
         let trial = old.traction + alpha_t * slip;
-        let (sign, excess) = (trial.signum(), trial.abs() - cohesion - old_mu * pressure);
-        let net = alpha_t - weakening * pressure;
-        let slid = excess / net;
-        let weakens = net > 0.0 && old_mu - weakening * slid > mu_d;
+        let slid = self.slide(before, trial.abs(), pressure).filter(|_| pressure > 0.0);
         Ok(directions.map(|by| {
             let dtrial = by.state.traction + alpha_t * by.slip + by.of(4) * slip;
-            let dold = by.variable();
-            if pressure <= 0.0 {
-                return Variation::new(0.0, dold);
-            } else if excess <= 0.0 {
-                return Variation::new(dtrial, dold);
-            }
-            let dmu = if weakens {
-                let dweakening = (by.of(0) - by.of(1) - weakening * by.of(2)) / critical_slip;
-                let dexcess = sign * dtrial - by.of(3) - pressure * dold;
-                let dslid = (dexcess - slid * (by.of(4) - pressure * dweakening)) / net.max(LEAST_SLOPE * alpha_t);
-                dold - dweakening * slid - weakening * dslid
-            } else if old_mu > mu_d {
-                by.of(1)
-            } else {
-                dold
+            let dbefore = by.variable();
+            let Some(Slid { total, mu, softness, .. }) = slid else {
+                return Variation::new(if pressure > 0.0 { dtrial } else { 0.0 }, dbefore);
             };
-            let dtraction = sign * (by.of(3) + pressure * dmu);
-            Variation::new(dtraction, dmu)
+            let delastic = trial.signum() * dtrial;
+            // Of the slip at the end, with μ held at first: α_t ΔD = |q_tr| − c − μ p
+            let dslip = dbefore + (delastic - by.of(3) - by.of(4) * (total - before)) / alpha_t;
+            let dmu = match mu > mu_d {
+                true => {
+                    let dweakening = (by.of(0) - by.of(1) - weakening * by.of(2)) / critical_slip;
+                    softness * (by.of(0) - dweakening * total - weakening * dslip)
+                }
+                false => by.of(1),
+            };
+            let dstrength = by.of(3) + pressure * dmu;
+            Variation::new(trial.signum() * dstrength, dslip - pressure * dmu / alpha_t)
         }))
     }
 }
