@@ -161,7 +161,7 @@ impl Simulation {
     /// A rupture is over when no point has slipped fast over the time of calm.
     fn after_output(&self, outputs: Outputs, before: Option<Arc<State>>, state: &Arc<State>) -> Phase {
         let (Some(before), Some(rupture)) = (before, &self.step.rupture) else { return Phase::Explicit(outputs) };
-        if state.time - before.time < rupture.calm {
+        if state.time - before.time < self.control.calm {
             return Phase::Rupture { outputs, before };
         }
         match fastest_slip(&self.model, &before, state) <= rupture.slip_rate {

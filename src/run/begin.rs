@@ -1,4 +1,5 @@
-//! What the next attempt needs first: a step that begins, explicit or quasi-dynamic increments, or implicit ones again.
+//! What the next attempt needs first: a step that begins, explicit or quasi-dynamic increments, or implicit ones again; and the
+//! phase that one leads to.
 
 use std::sync::Arc;
 
@@ -12,6 +13,9 @@ use crate::time::explicit::Explicit;
 use crate::time::increment::{begin, go_on};
 use crate::time::quasi_dynamic::QuasiDynamic;
 use crate::time::touching::Touching;
+
+/// How many times as long slip must be slow in a rupture after the step's own scheme could not take over.
+const PATIENCE: f64 = 2.0;
 
 impl Simulation {
     /// Begin what the next attempt needs: a step, explicit increments, or implicit ones again after them.
@@ -80,7 +84,11 @@ impl Simulation {
     fn begin_implicit(&mut self) -> Result<(), IncrementFailure> {
         let state = match self.control.phase {
             Phase::Begin => begin(&self.model, &self.step, &self.state, &mut self.work)?,
-            _ => go_on(&self.model, &self.step, &self.state, &mut self.work)?,
+            _ => {
+                let moves = !self.step.scheme.is_dynamic();
+                self.control.moving = moves.then(|| self.state.clone());
+                go_on(&self.model, &self.step, &self.state, &mut self.work)?
+            }
         };
         self.state = Arc::new(state);
         let dt = self.step.increments.initial;
@@ -102,5 +110,49 @@ impl Simulation {
         }
         self.state = collapsed;
         Err(self.unsolvable(cause.after_all()))
+    }
+
+    /// Break out of an implicit step: from its state, or with the motion that its static increments could not follow on, which
+    /// then must have been slow for twice as long until they are tried again. Returns the state since which slip is watched.
+    fn break_out(&mut self) -> Arc<State> {
+        match self.control.moving.take() {
+            Some(moving) => {
+                self.state = moving;
+                self.control.calm *= PATIENCE;
+            }
+            None => {
+                self.report.ruptures += 1;
+                self.control.calm = self.step.rupture.as_ref().map_or(f64::INFINITY, |rupture| rupture.calm);
+            }
+        }
+        self.state.clone()
+    }
+
+    /// Enter the phase that a candidate led to, or the next step.
+    pub(super) fn enter(&mut self, mut phase: Phase) {
+        let implicit = |phase: &Phase| matches!(phase, Phase::Implicit { .. });
+        if let (Phase::Implicit { .. }, Phase::Rupture { before, .. }) = (&self.control.phase, &mut phase) {
+            *before = self.break_out();
+        }
+        if implicit(&phase) || matches!(phase, Phase::Resume) {
+            self.explicit = None;
+        }
+        let ends = self.state.time >= self.step.span.end || matches!(phase, Phase::Met);
+        if self.state.time < self.step.span.end && ends {
+            let planned = self.model.steps[self.control.step].span.end;
+            self.control.ended.push([planned, self.state.time]);
+        }
+        self.control.phase = phase;
+        if ends && !matches!(self.control.phase, Phase::Missed) {
+            self.explicit = None;
+            self.quasi_dynamic = None;
+            self.control.step += 1;
+            self.control.phase = Phase::Complete;
+            if let Some(step) = self.control.step_of(&self.model) {
+                self.step = Arc::new(step);
+                self.led = false;
+                self.control.phase = Phase::Begin;
+            }
+        }
     }
 }

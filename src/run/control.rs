@@ -35,6 +35,10 @@ pub(super) struct Control {
     pub coupling: Arc<Coupling>,
     /// ends of steps that a reaction has ended, as they were planned and as they came [T]
     pub ended: Vec<[f64; 2]>,
+    /// the motion that a static step has stopped to go on from there, until an increment of it is accepted
+    pub moving: Option<Arc<State>>,
+    /// how long slip must have been slow in a rupture until the step's own scheme is tried again [T]
+    pub calm: f64,
 }
 
 impl Control {
@@ -61,7 +65,9 @@ impl Control {
             }
             _ => self.step < model.steps.len(),
         };
-        exists && self.coupling.fits(model.mesh.nodes.len())
+        self.moving.as_ref().is_none_or(|moving| is_of(moving, model))
+            && exists
+            && self.coupling.fits(model.mesh.nodes.len())
     }
 }
 

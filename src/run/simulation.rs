@@ -37,7 +37,7 @@ pub struct Simulation {
     /// The step under way, as its caller may have changed it
     pub(super) step: Arc<Step>,
     /// Whether he has
-    led: bool,
+    pub(super) led: bool,
     pub(super) state: Arc<State>,
     pub(super) control: Control,
     /// What explicit increments need besides the state, while there are any
@@ -49,7 +49,7 @@ pub struct Simulation {
     /// What quasi-dynamic steps need besides the state, while there are any
     pub(super) quasi_dynamic: Option<QuasiDynamic>,
     pub(super) work: Workspace,
-    report: RunReport,
+    pub(super) report: RunReport,
     started: Instant,
     /// Wall time of what was resumed [s]
     earlier: WallSeconds,
@@ -65,7 +65,14 @@ impl Simulation {
             step: Arc::new(model.steps.first().cloned().unwrap_or_default()),
             led: false,
             state: Arc::new(model.initial_state()),
-            control: Control { step: 0, phase, coupling: work.assembler.coupling(), ended: Vec::new() },
+            control: Control {
+                step: 0,
+                phase,
+                coupling: work.assembler.coupling(),
+                ended: Vec::new(),
+                moving: None,
+                calm: 0.0,
+            },
             explicit: None,
             midway: None,
             pause: Arc::new(|| false),
@@ -184,6 +191,7 @@ impl Simulation {
         if let Some(state) = accepted {
             self.state = state;
             self.explicit = explicit;
+            self.control.moving = None;
         }
         match outcome {
             Outcome::Accepted(phase) | Outcome::Rejected(_, phase) | Outcome::Cut(_, phase) => self.enter(phase),
@@ -247,33 +255,6 @@ impl Simulation {
     /// The step as it goes on at present: explicitly while a contact slips fast.
     pub(super) fn step_now(&self) -> &Step {
         self.control.phase.of(&self.step)
-    }
-
-    /// Enter the phase that a candidate led to, or the next step.
-    fn enter(&mut self, phase: Phase) {
-        let implicit = |phase: &Phase| matches!(phase, Phase::Implicit { .. });
-        let rupture = |phase: &Phase| matches!(phase, Phase::Rupture { .. });
-        self.report.ruptures += usize::from(implicit(&self.control.phase) && rupture(&phase));
-        if implicit(&phase) || matches!(phase, Phase::Resume) {
-            self.explicit = None;
-        }
-        let ends = self.state.time >= self.step.span.end || matches!(phase, Phase::Met);
-        if self.state.time < self.step.span.end && ends {
-            let planned = self.model.steps[self.control.step].span.end;
-            self.control.ended.push([planned, self.state.time]);
-        }
-        self.control.phase = phase;
-        if ends && !matches!(self.control.phase, Phase::Missed) {
-            self.explicit = None;
-            self.quasi_dynamic = None;
-            self.control.step += 1;
-            self.control.phase = Phase::Complete;
-            if let Some(step) = self.control.step_of(&self.model) {
-                self.step = Arc::new(step);
-                self.led = false;
-                self.control.phase = Phase::Begin;
-            }
-        }
     }
 }
 

@@ -161,6 +161,41 @@ fn a_static_step_stops_a_motion_and_tells_what_it_took() {
     }
 }
 
+/// A box of mass m, drawn by a spring k whose end moves with v, breaks away when k v t = μ p A at t = 6, and then moves as
+/// x = v t' − (v/ω) sin ωt', ω² = k/m: slowly at first, so that it seems to be over, while no static state is near. The motion goes on.
+#[test]
+fn a_rupture_that_begins_slowly_is_not_stopped() {
+    let (k, v) = (10.0, 0.1);
+    let mut case = json!({
+        "mesh": Blocks::default().rectangle("box", [2, 1], [0.0, 0.0], [2.0, 1.0]).json(),
+        "bodies": {"box": {"material": {"model": "linear", "E": 1e6, "nu": 0.0, "density": 1}}},
+        "plates": ["box_top"],
+        "contacts": {"base": {
+            "slave": "box_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}}, "method": "node_to_segment",
+            "sliding": "small", "normal": {"alpha_n": 1e5},
+            "friction": {"law": "coulomb", "mu": 0.6, "alpha_t": 1e5}, "initial": {"pressure": 5},
+        }},
+        "steps": [{
+            "name": "draw", "duration": 8, "dt": {"initial": 0.01, "min": 1e-3}, "rupture": {"slip_rate": 0.01},
+            "loads": [{"on": "box_top", "total_force": {"y": "-10"}},
+                {"on": {"near": [0, 1]}, "spring": {"kx": k, "driver": {"x": {"rate": v}}}}],
+        }],
+    });
+    for slip_rate in [0.001, 0.01, 0.03] {
+        case["steps"][0]["rupture"]["slip_rate"] = json!(slip_rate);
+        let run = finish(&case);
+        let omega = (k / 2.0f64).sqrt();
+        for state in run.states.iter().filter(|state| state.time > 6.3) {
+            let after = state.time - 6.0;
+            let expected = v * after - v / omega * (omega * after).sin();
+            close(&format!("x at {}", state.time), state.displacement[0], expected, 0.01 * v * after);
+        }
+        assert_eq!(run.report.ruptures, 1, "by {slip_rate}");
+        let energy = &run.last().energy;
+        close("energy", energy.error(), 0.0, 0.01 * energy.external_work);
+    }
+}
+
 /// A slab that slides on a guide without friction, faster than a rupture would: there is nothing to break. The ten
 /// increments stay ten.
 #[test]
