@@ -93,11 +93,11 @@ impl Simulation {
     fn rupture(&self) -> Phase {
         let calm = self.step.rupture.as_ref().map_or(f64::INFINITY, |rupture| rupture.calm);
         let interval = self.model.interval.unwrap_or(f64::INFINITY).min(calm / RESULTS);
-        Phase::Rupture { outputs: Outputs::new(self.state.time, interval), before: self.state.clone() }
+        Phase::Rupture { outputs: Outputs::new(self.state.time, interval), before: self.state.clone(), pace: 0.0 }
     }
 
-    /// Explicit increments to the next output; `before` is the state since which slip is watched, in a rupture.
-    pub(super) fn explicit(&mut self, outputs: Outputs, before: Option<Arc<State>>) -> Candidate {
+    /// Explicit increments to the next output; in a rupture slip is `watched` since a state, before which it was so fast.
+    pub(super) fn explicit(&mut self, outputs: Outputs, watched: Option<(Arc<State>, f64)>) -> Candidate {
         let (time, following) = outputs.next(self.step.span, self.model.next_output_time(self.state.time));
         let (from, before_pause) =
             self.midway.as_ref().map_or((&self.state, 0), |midway| (&midway.state, midway.increments));
@@ -110,7 +110,7 @@ impl Simulation {
         let accepted = (gone.is_ok() && arrived).then(|| state.clone());
         let outcome = match gone {
             Ok(_) if !arrived => Outcome::Paused(Midway { state, increments }),
-            Ok(_) => Outcome::Accepted(self.after_output(following, before, &state)),
+            Ok(_) => Outcome::Accepted(self.after_output(following, watched, &state)),
             Err(cause) if cause.is_collapse() => Outcome::Collapsed(state, cause),
             Err(cause) => Outcome::Stopped(self.unsolvable(cause)),
         };
@@ -159,14 +159,17 @@ impl Simulation {
     }
 
     /// A rupture is over when no point has slipped fast over the time of calm.
-    fn after_output(&self, outputs: Outputs, before: Option<Arc<State>>, state: &Arc<State>) -> Phase {
-        let (Some(before), Some(rupture)) = (before, &self.step.rupture) else { return Phase::Explicit(outputs) };
-        if state.time - before.time < self.control.calm {
-            return Phase::Rupture { outputs, before };
+    fn after_output(&self, outputs: Outputs, watched: Option<(Arc<State>, f64)>, state: &Arc<State>) -> Phase {
+        let (Some((before, pace)), Some(rupture)) = (watched, &self.step.rupture) else {
+            return Phase::Explicit(outputs);
+        };
+        if state.time - before.time < rupture.calm {
+            return Phase::Rupture { outputs, before, pace };
         }
-        match fastest_slip(&self.model, &before, state) <= rupture.slip_rate {
-            true => Phase::Resume,
-            false => Phase::Rupture { outputs, before: state.clone() },
+        let fastest = fastest_slip(&self.model, &before, state);
+        match fastest <= rupture.slip_rate {
+            true => Phase::Resume { gains: (fastest > pace).then_some(fastest) },
+            false => Phase::Rupture { outputs, before: state.clone(), pace: fastest },
         }
     }
 }

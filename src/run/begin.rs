@@ -14,9 +14,6 @@ use crate::time::increment::{begin, go_on};
 use crate::time::quasi_dynamic::QuasiDynamic;
 use crate::time::touching::Touching;
 
-/// How many times as long slip must be slow in a rupture after the step's own scheme could not take over.
-const PATIENCE: f64 = 2.0;
-
 impl Simulation {
     /// Begin what the next attempt needs: a step, explicit increments, or implicit ones again after them.
     pub(super) fn begin(&mut self) -> Result<(), Error> {
@@ -30,7 +27,7 @@ impl Simulation {
             Phase::Begin if is_quasi_dynamic => self.begin_quasi_dynamic(true),
             Phase::QuasiDynamic { .. } if self.quasi_dynamic.is_none() => self.begin_quasi_dynamic(false),
             Phase::Explicit(_) | Phase::Rupture { .. } if self.explicit.is_none() => self.begin_explicit(false),
-            Phase::Begin | Phase::Resume => self.begin_implicit(),
+            Phase::Begin | Phase::Resume { .. } => self.begin_implicit(),
             _ => Ok(()),
         };
         begun.map_err(|cause| self.unsolvable(cause))
@@ -83,12 +80,12 @@ impl Simulation {
 
     fn begin_implicit(&mut self) -> Result<(), IncrementFailure> {
         let state = match self.control.phase {
-            Phase::Begin => begin(&self.model, &self.step, &self.state, &mut self.work)?,
-            _ => {
-                let moves = !self.step.scheme.is_dynamic();
-                self.control.moving = moves.then(|| self.state.clone());
+            Phase::Resume { gains } => {
+                let stops = !self.step.scheme.is_dynamic();
+                self.control.moving = gains.filter(|_| stops).map(|pace| (self.state.clone(), pace));
                 go_on(&self.model, &self.step, &self.state, &mut self.work)?
             }
+            _ => begin(&self.model, &self.step, &self.state, &mut self.work)?,
         };
         self.state = Arc::new(state);
         let dt = self.step.increments.initial;
@@ -112,29 +109,25 @@ impl Simulation {
         Err(self.unsolvable(cause.after_all()))
     }
 
-    /// Break out of an implicit step: from its state, or with the motion that its static increments could not follow on, which
-    /// then must have been slow for twice as long until they are tried again. Returns the state since which slip is watched.
-    fn break_out(&mut self) -> Arc<State> {
-        match self.control.moving.take() {
-            Some(moving) => {
-                self.state = moving;
-                self.control.calm *= PATIENCE;
-            }
-            None => {
-                self.report.ruptures += 1;
-                self.control.calm = self.step.rupture.as_ref().map_or(f64::INFINITY, |rupture| rupture.calm);
-            }
-        }
-        self.state.clone()
+    /// Break out of an implicit step: from its state, or with the motion that its static increments could not follow on. Returns
+    /// how fast slip has been there.
+    fn break_out(&mut self) -> f64 {
+        let Some((moving, pace)) = self.control.moving.take() else {
+            self.report.ruptures += 1;
+            return 0.0;
+        };
+        self.state = moving;
+        pace
     }
 
     /// Enter the phase that a candidate led to, or the next step.
     pub(super) fn enter(&mut self, mut phase: Phase) {
         let implicit = |phase: &Phase| matches!(phase, Phase::Implicit { .. });
-        if let (Phase::Implicit { .. }, Phase::Rupture { before, .. }) = (&self.control.phase, &mut phase) {
-            *before = self.break_out();
+        if let (Phase::Implicit { .. }, Phase::Rupture { before, pace, .. }) = (&self.control.phase, &mut phase) {
+            *pace = self.break_out();
+            *before = self.state.clone();
         }
-        if implicit(&phase) || matches!(phase, Phase::Resume) {
+        if implicit(&phase) || matches!(phase, Phase::Resume { .. }) {
             self.explicit = None;
         }
         let ends = self.state.time >= self.step.span.end || matches!(phase, Phase::Met);

@@ -35,10 +35,9 @@ pub(super) struct Control {
     pub coupling: Arc<Coupling>,
     /// ends of steps that a reaction has ended, as they were planned and as they came [T]
     pub ended: Vec<[f64; 2]>,
-    /// the motion that a static step has stopped to go on from there, until an increment of it is accepted
-    pub moving: Option<Arc<State>>,
-    /// how long slip must have been slow in a rupture until the step's own scheme is tried again [T]
-    pub calm: f64,
+    /// the motion, with its fastest slip, that a static step has stopped although slip became faster, until an increment of it is
+    /// accepted
+    pub moving: Option<(Arc<State>, f64)>,
 }
 
 impl Control {
@@ -65,7 +64,7 @@ impl Control {
             }
             _ => self.step < model.steps.len(),
         };
-        self.moving.as_ref().is_none_or(|moving| is_of(moving, model))
+        self.moving.as_ref().is_none_or(|(moving, _)| is_of(moving, model))
             && exists
             && self.coupling.fits(model.mesh.nodes.len())
     }
@@ -110,6 +109,8 @@ pub(super) enum Phase {
         outputs: Outputs,
         /// the state since which slip is watched
         before: Arc<State>,
+        /// fastest slip in the time of calm before that [L/T]
+        pace: f64,
     },
     /// Quasi-dynamic steps, some at a time
     QuasiDynamic {
@@ -117,7 +118,10 @@ pub(super) enum Phase {
         dt: f64,
     },
     /// After explicit increments, before the next implicit one
-    Resume,
+    Resume {
+        /// fastest slip in the time of calm, if it was faster than before [L/T]
+        gains: Option<f64>,
+    },
     /// After the last step
     Complete,
     /// With the reaction that ends the step

@@ -65,14 +65,7 @@ impl Simulation {
             step: Arc::new(model.steps.first().cloned().unwrap_or_default()),
             led: false,
             state: Arc::new(model.initial_state()),
-            control: Control {
-                step: 0,
-                phase,
-                coupling: work.assembler.coupling(),
-                ended: Vec::new(),
-                moving: None,
-                calm: 0.0,
-            },
+            control: Control { step: 0, phase, coupling: work.assembler.coupling(), ended: Vec::new(), moving: None },
             explicit: None,
             midway: None,
             pause: Arc::new(|| false),
@@ -164,11 +157,11 @@ impl Simulation {
         self.work.assembler.couple(&self.control.coupling);
         self.begin()?;
         Ok(match self.control.phase.clone() {
-            Phase::Complete | Phase::Begin | Phase::Resume | Phase::Met | Phase::Missed => None,
+            Phase::Complete | Phase::Begin | Phase::Resume { .. } | Phase::Met | Phase::Missed => None,
             Phase::Implicit { dt, attempt, touching } => Some(self.implicit(dt, attempt, touching)),
             Phase::Explicit(outputs) => Some(self.explicit(outputs, None)),
             Phase::QuasiDynamic { dt } => Some(self.quasi_dynamic(dt)),
-            Phase::Rupture { outputs, before } => Some(self.explicit(outputs, Some(before))),
+            Phase::Rupture { outputs, before, pace } => Some(self.explicit(outputs, Some((before, pace)))),
         })
     }
 
