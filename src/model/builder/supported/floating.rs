@@ -100,8 +100,8 @@ impl<'m> Groups<'m> {
     fn free_motion(&self, step: &Step) -> Option<String> {
         let mut resisted = self.resisted.clone();
         holding(step).for_each(|at| self.add(&self.parts.row(&[at]), &mut resisted));
-        let motions = resisted.iter().zip(&self.members);
-        motions.filter_map(|(resisted, group)| Some(self.told(group, &resisted.free()?))).next()
+        let mut motions = resisted.iter().zip(&self.members);
+        motions.find_map(|(resisted, group)| Some(self.told(group, &resisted.free()?)))
     }
 
     fn told(&self, group: &[usize], motion: &DVector<f64>) -> String {
