@@ -11,6 +11,7 @@ mod error;
 pub mod few;
 pub mod gmsh;
 mod inline;
+pub mod joined;
 pub mod names;
 mod raw;
 pub mod section;

@@ -11,10 +11,14 @@ use nalgebra::{DMatrix, DVector, Matrix2, Matrix2x3, Matrix3, Vector2, Vector3};
 
 use crate::linear::{LinearSolver, Multifrontal, Pattern, SparseMatrix, norm};
 use crate::mesh::configuration::Configuration;
+use crate::mesh::joined::Joined;
 use crate::model::Model;
 
 /// Relative stiffness below which a motion counts as free: far above round-off, far below any contact penalty.
 const FREE: f64 = 1e-12;
+
+/// Share of the stiffest entry below which an equation is fulfilled: far above round-off, far below the equation of a plate.
+const FULFILLED: f64 = 1e-9;
 
 /// Parts of a group whose singular values cost nothing.
 const FEW_PARTS: usize = 8;
@@ -41,6 +45,10 @@ fn null_motion_of_bodies(model: &Model, u: &[f64], tangent: &SparseMatrix) -> Op
     let resistance = Resistance::new(model, &parts, u, tangent)?;
     resistance.groups().iter().find_map(|group| {
         let motion = resistance.null_motion(group)?;
+        // Followers of plates have equations that are no forces: Φᵀ K Φ may vanish where K Φ does not.
+        if !model.linkage.is_empty() && resistance.moves_equations(model, &parts, u, tangent, (group, &motion)) {
+            return None;
+        }
         Some(describe(model, &parts, group, &motion))
     })
 }
@@ -70,6 +78,8 @@ impl Parts {
 /// A = Φᵀ K Φ by pairs of parts that K couples, and its scales.
 struct Resistance {
     blocks: BTreeMap<(usize, usize), Matrix3<f64>>,
+    /// ΦᵀD Φ of each part
+    scales: Vec<Vector3<f64>>,
     parts: usize,
 }
 
@@ -102,7 +112,7 @@ impl Resistance {
         for (&(row, column), block) in &mut blocks {
             block.component_div_assign(&(scales[row].map(f64::sqrt) * scales[column].map(f64::sqrt).transpose()));
         }
-        Some(Self { blocks, parts: parts.bodies.len() })
+        Some(Self { blocks, scales, parts: parts.bodies.len() })
     }
 
     /// Parts that are coupled, directly or through others.
@@ -140,6 +150,28 @@ impl Resistance {
         None
     }
 
+    /// Whether a motion of a group leaves equations of K that it does not fulfil.
+    fn moves_equations(
+        &self,
+        model: &Model,
+        parts: &Parts,
+        u: &[f64],
+        tangent: &SparseMatrix,
+        (group, motion): (&[usize], &DVector<f64>),
+    ) -> bool {
+        let motions = rigid_motions(parts, &model.configuration(u));
+        let mut of_part = vec![Vector3::zeros(); self.parts];
+        for (k, &part) in group.iter().enumerate() {
+            of_part[part] = motion.fixed_rows::<3>(3 * k).component_div(&self.scales[part].map(f64::sqrt));
+        }
+        let moved = |(part, motion): (&Option<usize>, &Matrix2x3<f64>)| -> [f64; 2] {
+            part.map_or_else(Vector2::zeros, |part| motion * of_part[part]).into()
+        };
+        let way: Vec<f64> = parts.of_node.iter().zip(&motions).flat_map(moved).collect();
+        let stiffest = tangent.values.iter().fold(0.0f64, |most, k| most.max(k.abs()));
+        norm(&tangent.multiply(&way)) > FULFILLED * stiffest * norm(&way)
+    }
+
     /// A of a group, two nodes of two dofs for the three motions of a part; the fourth dof is held.
     fn sparse(&self, group: &[usize]) -> SparseMatrix {
         let place: BTreeMap<usize, usize> = group.iter().enumerate().map(|(k, &part)| (part, k)).collect();
@@ -158,39 +190,6 @@ impl Resistance {
         }
         (0..group.len()).for_each(|k| matrix.add_diagonal(4 * k + 3, 1.0));
         matrix
-    }
-}
-
-/// Which of a number of things are joined.
-struct Joined(Vec<usize>);
-
-impl Joined {
-    fn new(count: usize) -> Self {
-        Self((0..count).collect())
-    }
-
-    /// The lowest of those joined with one.
-    fn lowest(&mut self, of: usize) -> usize {
-        let mut at = of;
-        while self.0[at] != at {
-            self.0[at] = self.0[self.0[at]];
-            at = self.0[at];
-        }
-        at
-    }
-
-    fn join(&mut self, a: usize, b: usize) {
-        let [a, b] = [a, b].map(|of| self.lowest(of));
-        self.0[a.max(b)] = a.min(b);
-    }
-
-    /// Groups of those joined, each ascending, in the order of their lowest.
-    fn groups(mut self) -> Vec<Vec<usize>> {
-        let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for of in 0..self.0.len() {
-            groups.entry(self.lowest(of)).or_default().push(of);
-        }
-        groups.into_values().collect()
     }
 }
 

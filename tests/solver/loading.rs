@@ -13,6 +13,7 @@ use fecontact::laws::bulk::Material;
 use fecontact::laws::friction::CoulombParameters;
 use fecontact::model::boundary::Drive;
 use fecontact::model::builder::{Builder, Change, Contact, Load, LoadStep, MasterSide, Place, Support};
+use fecontact::model::imposed::Thermal;
 use fecontact::model::scheme::Scheme;
 use fecontact::model::state::State;
 use fecontact::model::until::Part;
@@ -526,6 +527,60 @@ fn what_a_step_cannot_end_by_is_refused() {
         let told = told(block(0.0, false).step(step));
         assert!(told.starts_with(words), "`{words}` is not in `{told}`");
     }
+}
+
+/// A block of ν = 0 held between its ends presses them with E α ΔT = 10 ΔT on its width of 2, ΔT = 0.4 t of a rate, say:
+/// −2 at t = 0.5. The step after it goes on warming, to −6 at t = 1.5; a temperature of the step before stays.
+#[test]
+fn what_warms_by_the_time_of_the_run_may_end_a_step() {
+    let block = || {
+        Model::builder(Blocks::default().rectangle("block", [4, 3], [0.0, 0.0], [2.0, 1.0]).mesh())
+            .body("block", linear(100.0, 0.0, 1.0))
+            .thermal("block", Thermal { expansion: 0.05, reference: 0.0 })
+    };
+    let held = || LoadStep::new("warm", 1.0).dt(0.3).fix("block_bottom").support(Support::on("block_top").uy(0.0));
+    for warmth in [Drive::Rate(0.4), expression("0.4 * t"), Drive::Table(vec![[0.0, 0.0], [2.0, 0.8]])] {
+        let warm = held().temperature("block", warmth).until("block_top", Part::Y, -2.0);
+        let run = run_through(block().step(warm).step(LoadStep::new("on", 1.0)));
+        close("met", run.reaction("block_top", run.at(0.5))[1], -2.0, 2e-6);
+        close("goes on", run.reaction("block_top", run.last())[1], -6.0, 1e-5);
+        close("end", run.last().time, 1.5, 1e-6);
+    }
+    // After −4 of a temperature, −6 by pressing: k = E A/L = 200.
+    let press = Support::on("block_top").uy(Drive::Rate(-0.02));
+    let press = LoadStep::new("press", 1.0).support(press).until("block_top", Part::Y, -6.0);
+    let run = run_through(block().step(held().temperature("block", 0.4)).step(press));
+    close("pressed", run.reaction("block_top", run.last())[1], -6.0, 6e-6);
+    close("so long", run.last().time, 1.5, 1e-6);
+    for given in [Drive::Constant(0.4), Drive::ByPlace(0, vec![[0.0, 0.2], [2.0, 0.4]])] {
+        let warm = held().temperature("block", given).until("block_top", Part::Y, -2.0);
+        let told = told(block().step(warm));
+        let words = "steps[0].until: ends the step before its time, and the temperature of `block`, given as a number or by place, \
+                     would not be there yet: give it in the step before, or as a rate";
+        assert!(told.starts_with(words), "{told}");
+    }
+}
+
+/// An overlap is brought in over the whole of the first step; a later one may end by a reaction.
+#[test]
+fn a_shrink_fit_is_not_cut_short() {
+    let model = |first: LoadStep| {
+        let fit = Contact::new("fit", "block_bottom", floor(), CoulombParameters::new(0.3)).alpha_n(4e3);
+        let mesh = Blocks::default().rectangle("block", [4, 3], [0.0, -0.01], [2.0, 1.0]).mesh();
+        let draw = Support::on("block_top").uy(Drive::Rate(-0.01));
+        Model::builder(mesh)
+            .body("block", linear(100.0, 0.0, 1.0))
+            .contact(Contact { shrink_fit: true, ..fit })
+            .step(first.dt(0.5).support(Support::on("block_top").ux(0.0).uy(0.0)))
+            .step(LoadStep::new("press", 1.0).support(draw).until("block_top", Part::Y, -2.5))
+    };
+    let fit = || LoadStep::new("fit", 1.0);
+    let told = told(model(fit().until("block_top", Part::Y, -1.0)));
+    let words =
+        "steps[0].until: ends the step before its time, and the overlap of `fit`, brought in over the first step";
+    assert!(told.starts_with(words), "{told}");
+    let run = run_through(model(fit()));
+    close("pressed", run.reaction("block_top", run.last())[1], -2.5, 2.5e-6);
 }
 
 /// A block that flies and is damped by its mass in the second of three steps: v (1 + ½ η Δt) = v₀ (1 − ½ η Δt) in each of its

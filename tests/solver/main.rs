@@ -15,6 +15,7 @@ mod elements;
 mod history;
 mod imposed;
 mod invariance;
+mod joints;
 mod linear;
 mod loading;
 mod mesh;

@@ -3,6 +3,7 @@
 use super::error::{Checked, ModelError};
 use super::groups::{nodes_at, originals};
 use super::load_step::{LoadStep, UntilSettings};
+use crate::contact::pair::ContactPair;
 use crate::model::boundary::{Amplitude, Drive};
 use crate::model::scheme::Scheme;
 use crate::model::support::Motion;
@@ -44,12 +45,12 @@ pub fn until(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Check
             format!("{on} has no support{axis} in this step, and no reaction: name the side that is moved or held");
         return refused(".on", message);
     }
-    check_step(&place, given, step)?;
+    check_step(&place, given, step, model)?;
     Ok(Some(Until { on: on.to_string(), held, part, value, tolerance }))
 }
 
 /// What counts on the whole of the step.
-fn check_step(place: &str, given: &LoadStep, step: &Step) -> Checked<()> {
+fn check_step(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Checked<()> {
     let refused = |message: &str| Err(ModelError::new(place, message));
     if matches!(step.scheme, Scheme::Explicit { .. } | Scheme::QuasiDynamic { .. }) {
         return refused("ends static and implicit steps alone: leave it out, and give the step its time");
@@ -65,7 +66,16 @@ fn check_step(place: &str, given: &LoadStep, step: &Step) -> Checked<()> {
              would be left: let it fade in a step before",
         );
     }
-    let is_new = |of: &Amplitude| of.span == step.span && matches!(of.drive, Drive::Constant(_));
+    check_ramps(place, step, model)
+}
+
+/// What comes to a value over the whole of the step would go on coming to it in the next one.
+fn check_ramps(place: &str, step: &Step, model: &Model) -> Checked<()> {
+    let refused = |what: &str, instead: &str| {
+        let message = format!("ends the step before its time, and {what} would not be there yet: {instead}");
+        Err(ModelError::new(place, message))
+    };
+    let is_new = |of: &Amplitude| of.span == step.span && matches!(of.drive, Drive::Constant(_) | Drive::ByPlace(..));
     let mut loads = step.loads.clone();
     let mut turns = step.supports.iter().filter_map(|support| match &support.motion {
         Motion::Rotation { angle, .. } => Some(angle),
@@ -73,9 +83,22 @@ fn check_step(place: &str, given: &LoadStep, step: &Step) -> Checked<()> {
     });
     if loads.amplitudes().any(|amplitude| is_new(amplitude)) || turns.any(is_new) {
         return refused(
-            "ends the step before its time, and a load, driver or rotation given as a number (or ended by null) would not be \
-             there yet: give it in the step before, or as a rate, table or expression",
+            "a load, driver or rotation given as a number (or ended by null)",
+            "give it in the step before, or as a rate, table or expression",
         );
     }
-    Ok(())
+    if let Some(heated) = step.temperatures.iter().find(|temperature| is_new(&temperature.amplitude)) {
+        return refused(
+            &format!("the temperature of `{}`, given as a number or by place,", model.bodies[heated.body].name),
+            "give it in the step before, or as a rate, table in time or expression",
+        );
+    }
+    let fits = |pair: &&ContactPair| pair.points.iter().any(|point| point.overlap > 0.0);
+    match model.contacts.iter().find(fits).filter(|_| step.span.start == 0.0) {
+        Some(pair) => refused(
+            &format!("the overlap of `{}`, brought in over the first step (shrink_fit),", pair.name),
+            "bring it in over a step without until before this one",
+        ),
+        None => Ok(()),
+    }
 }
