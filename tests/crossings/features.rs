@@ -1,0 +1,450 @@
+//! What a model can have, and what goes together: the one list that a new feature has to be entered in.
+//!
+//! A model is a value for every slot. The first value of a slot is the plain one, which a minimal case goes back to. Which values
+//! a seed gives does not depend on the others but by [`EXCLUDED`] and [`NEEDED`], and numbers depend on the seed and their own
+//! name alone: taking one feature away changes nothing else.
+
+use std::collections::BTreeMap;
+
+/// A choice, with how often each value is drawn; the first is the plain one.
+pub type Slot = (&'static str, &'static [(&'static str, u64)]);
+
+const LAWS: &[(&str, u64)] =
+    &[("linear", 3), ("neo_hookean", 2), ("saint_venant_kirchhoff", 1), ("hencky", 1), ("viscoelastic", 2)];
+const ELEMENTS: &[(&str, u64)] = &[("q4", 4), ("f_bar", 2), ("t3", 1), ("t6", 1), ("q8", 1), ("q9", 1)];
+const OPTION: &[(&str, u64)] = &[("no", 5), ("yes", 1)];
+
+/// All features.
+pub const SLOTS: &[Slot] = &[
+    ("section", &[("plane_strain", 4), ("plane_stress", 2), ("rings_on_end", 1), ("rings_around", 1)]),
+    ("ground_element", ELEMENTS),
+    ("block_element", ELEMENTS),
+    ("ground_law", LAWS),
+    ("block_law", LAWS),
+    ("surfaces", &[("apart", 2), ("matching", 1)]),
+    ("master", &[("deformable", 10), ("plane", 2), ("circle", 2), ("polyline", 2), ("itself", 2)]),
+    ("method", &[("gauss_to_segment", 3), ("node_to_segment", 3), ("mortar", 3), ("chosen", 1)]),
+    ("gauss_points", &[("2", 3), ("3", 1), ("4", 1)]),
+    ("smooth", OPTION),
+    ("sliding", &[("finite", 2), ("small", 1)]),
+    ("normal", &[("alpha_n", 3), ("default", 1), ("augmented", 1)]),
+    (
+        "friction",
+        &[
+            ("coulomb", 2),
+            ("super_subloading", 3),
+            ("slip_weakening", 2),
+            ("rate_and_state", 2),
+            ("prescribed", 1),
+            ("frictionless", 1),
+            ("registered", 1),
+        ],
+    ),
+    ("further_parameters", OPTION),
+    ("varying", &[("no", 4), ("by_place", 1), ("in_time", 2), ("by_part", 1)]),
+    ("dilatancy", &[("no", 6), ("free", 1), ("limited", 1)]),
+    ("wear", OPTION),
+    ("fluid", &[("no", 6), ("constant", 1), ("in_time", 1)]),
+    ("radiation", &[("no", 6), ("given", 1), ("of_bodies", 1)]),
+    ("shrink_fit", OPTION),
+    ("massless", OPTION),
+    ("tractions", &[("no", 8), ("given", 1), ("balanced", 1), ("of_bodies", 1)]),
+    ("stress", &[("no", 5), ("components", 2), ("geostatic", 1)]),
+    ("heat", &[("no", 6), ("number", 1), ("table", 1), ("by_place", 1)]),
+    (
+        "scheme",
+        &[
+            ("static", 6),
+            ("newmark", 1),
+            ("hht", 1),
+            ("generalized_alpha", 1),
+            ("wilson", 1),
+            ("explicit", 1),
+            ("quasi_dynamic", 1),
+        ],
+    ),
+    ("error_control", OPTION),
+    ("rupture", OPTION),
+    (
+        "press",
+        &[
+            ("displacement", 4),
+            ("pressure", 1),
+            ("dead_pressure", 1),
+            ("traction", 1),
+            ("total_force", 1),
+            ("force", 1),
+            ("plate", 1),
+            ("rotation", 1),
+        ],
+    ),
+    ("drive", &[("number", 3), ("table", 1), ("expression", 1), ("rate", 1)]),
+    ("plate", &[("no", 8), ("rigid", 1), ("alike", 1)]),
+    ("gravity", OPTION),
+    ("spring", &[("no", 6), ("ground", 1), ("driven", 1), ("ends", 1)]),
+    ("dashpot", OPTION),
+    ("absorbing", OPTION),
+    ("damping", &[("no", 6), ("of_body", 1), ("of_step", 1)]),
+    ("periodic", OPTION),
+    ("inclined", &[("no", 6), ("normal", 1), ("direction", 1)]),
+    ("velocity", &[("no", 6), ("initial", 1), ("launch", 1)]),
+    ("point_mass", OPTION),
+    ("second_contact", OPTION),
+    ("reversal", OPTION),
+    ("until", OPTION),
+    ("times", OPTION),
+    ("interval", OPTION),
+];
+
+/// Features that cannot meet, each of the first with each of the second, and why. `slot:value`, or a slot for all its values but
+/// the plain one.
+pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
+    (&["section:plane_stress"], &["ground_element:f_bar", "block_element:f_bar"], "a plate does not lock"),
+    (&["ground_law:linear"], &["ground_element:f_bar"], "F-bar is for large strains"),
+    (&["block_law:linear"], &["block_element:f_bar"], "F-bar is for large strains"),
+    (
+        &["section:rings_on_end", "section:rings_around"],
+        &["press:rotation", "plate:rigid", "inclined", "periodic", "second_contact", "stress:geostatic"],
+        "the axis does not turn, and is not left",
+    ),
+    (&["section:rings_on_end", "section:rings_around"], &["velocity"], "rings do not fly off along their radius"),
+    (
+        &["section:rings_on_end", "section:rings_around"],
+        &["master:circle", "master:polyline", "master:plane"],
+        "rigid bodies are drawn for planes",
+    ),
+    (&["section:rings_around"], &["press:plate"], "the plate would not change its radius"),
+    (&["section:rings_on_end"], &["plate:alike"], "the side would keep its radius"),
+    (&["section:rings_around"], &["gravity"], "there is no weight along the radius"),
+    (&["master:plane", "master:circle", "master:polyline"], GROUND, "there is no second body"),
+    (
+        &["master:itself"],
+        &["smooth", "tractions", "sliding:small", "shrink_fit", "radiation:of_bodies"],
+        "a surface lies free of itself at first",
+    ),
+    (
+        &["method:node_to_segment", "method:mortar", "method:chosen"],
+        &["gauss_points"],
+        "Gauss points are of one method",
+    ),
+    (
+        &["smooth"],
+        &["method:mortar", "method:chosen", "ground_element:t6", "ground_element:q8", "ground_element:q9"],
+        "a spline runs through straight edges",
+    ),
+    (
+        &["scheme:explicit", "scheme:wilson", "rupture"],
+        &["normal:augmented"],
+        "multipliers need equilibrium at the end of an increment",
+    ),
+    (
+        &["friction:frictionless", "friction:prescribed", "friction:registered"],
+        &["varying", "further_parameters"],
+        "nothing to vary",
+    ),
+    (&["friction:frictionless", "friction:prescribed"], &["dilatancy", "wear"], "no slip that friction resists"),
+    (&["friction:coulomb"], &["further_parameters"], "it has one parameter"),
+    (&["friction:prescribed"], DYNAMIC, "slip is prescribed while nothing rings"),
+    (
+        &["friction:prescribed"],
+        &["rupture", "error_control", "shrink_fit", "reversal", "radiation", "press:rotation", "tractions", "fluid"],
+        "slip is prescribed",
+    ),
+    (&["friction:rate_and_state"], &["scheme:explicit", "rupture"], "increments are far shorter than its creep"),
+    (&["dilatancy", "wear"], &["shrink_fit"], "an overlap that wears away while it is brought in"),
+    (&["massless"], &["scheme:static", "scheme:explicit", "scheme:quasi_dynamic", "rupture"], "for implicit dynamics"),
+    (&["velocity", "absorbing", "damping"], &["scheme:static", "scheme:quasi_dynamic"], "statics has no motion"),
+    (&["radiation"], DYNAMIC, "inertia radiates by itself"),
+    (
+        &["shrink_fit"],
+        &[
+            "master:circle",
+            "tractions",
+            "scheme:newmark",
+            "scheme:hht",
+            "scheme:generalized_alpha",
+            "scheme:wilson",
+            "scheme:explicit",
+            "scheme:quasi_dynamic",
+            "until",
+        ],
+        "an overlap is brought in by a static step",
+    ),
+    (
+        &["tractions:balanced", "tractions:of_bodies"],
+        &["stress:no", "stress:geostatic", "section:rings_on_end", "section:rings_around", "heat"],
+        "they belong to a stress that goes through the contact",
+    ),
+    (&["tractions"], &["master:circle"], "an even pressure on a bent surface"),
+    (&["stress:components"], &["tractions:given"], "the stress would count twice"),
+    (&["heat", "stress"], &["scheme:quasi_dynamic"], "tractions serve there"),
+    (
+        &["error_control"],
+        &["scheme:wilson", "scheme:explicit", "scheme:quasi_dynamic", "rupture"],
+        "they have a rule of their own",
+    ),
+    (
+        &["rupture"],
+        &[
+            "scheme:explicit",
+            "scheme:quasi_dynamic",
+            "scheme:wilson",
+            "until",
+            "friction:registered",
+            "heat",
+            "interval",
+        ],
+        "implicit steps switch",
+    ),
+    (
+        &["until"],
+        &[
+            "press:pressure",
+            "press:dead_pressure",
+            "press:traction",
+            "press:total_force",
+            "press:force",
+            "press:plate",
+            "press:rotation",
+            "scheme:explicit",
+            "scheme:quasi_dynamic",
+            "scheme:wilson",
+            "heat",
+            "times",
+            "tractions",
+            "gravity",
+            "spring:driven",
+        ],
+        "a reaction grows with a displacement",
+    ),
+    (&["press:displacement", "press:rotation"], &["plate:rigid"], "supports hold one node of a plate at most"),
+    (&["plate"], &["inclined:direction", "press:plate", "second_contact"], "one plate a side"),
+    (&["plate:alike"], &["press:rotation"], "what moves alike does not turn"),
+    (&["press:rotation"], &["drive"], "a turn is given by a number"),
+    (&["press:rotation", "press:plate", "press:force"], DYNAMIC, "sudden forces at few nodes"),
+    (
+        &["scheme:quasi_dynamic"],
+        &[
+            "dilatancy",
+            "wear",
+            "fluid",
+            "press:pressure",
+            "press:plate",
+            "press:rotation",
+            "plate",
+            "dashpot",
+            "normal:augmented",
+            "drive:table",
+            "drive:expression",
+            "master:itself",
+            "method:gauss_to_segment",
+            "method:chosen",
+            "friction:coulomb",
+            "friction:super_subloading",
+            "friction:slip_weakening",
+            "friction:frictionless",
+            "friction:registered",
+            "ground_element:t6",
+            "ground_element:q8",
+            "ground_element:q9",
+            "block_element:t6",
+            "block_element:q8",
+            "block_element:q9",
+            "shrink_fit",
+            "second_contact",
+            "inclined",
+            "until",
+            "periodic",
+        ],
+        "quasi-dynamic steps are linear but for the interface",
+    ),
+    (&["periodic"], &["inclined", "absorbing", "master:itself"], "the sides are one"),
+    (&["absorbing"], &["inclined:direction"], "one thing a side"),
+    (&["spring:ends"], &["scheme:quasi_dynamic"], "a spring that ends in a step under way"),
+];
+
+const DYNAMIC: &[&str] =
+    &["scheme:newmark", "scheme:hht", "scheme:generalized_alpha", "scheme:wilson", "scheme:explicit"];
+const GROUND: &[&str] = &["surfaces", "ground_element", "ground_law", "smooth", "absorbing", "periodic", "inclined"];
+
+/// What a feature brings with it.
+pub const NEEDED: &[(&str, &[(&str, &str)])] = &[
+    (
+        "scheme:quasi_dynamic",
+        &[
+            ("sliding", "small"),
+            ("surfaces", "matching"),
+            ("method", "node_to_segment"),
+            ("friction", "rate_and_state"),
+            ("radiation", "of_bodies"),
+            ("ground_law", "linear"),
+            ("block_law", "linear"),
+            ("ground_element", "q4"),
+            ("block_element", "q4"),
+        ],
+    ),
+    ("tractions:balanced", &[("stress", "components")]),
+    ("tractions:of_bodies", &[("stress", "components")]),
+    ("press:plate", &[]),
+];
+
+/// A feature: a slot and its value.
+pub type Feature = (&'static str, &'static str);
+
+/// Every feature but the plain ones of options.
+pub fn features() -> Vec<Feature> {
+    SLOTS
+        .iter()
+        .flat_map(|(slot, values)| values.iter().map(move |(value, _)| (*slot, *value)))
+        .filter(|(_, value)| *value != "no")
+        .collect()
+}
+
+/// Whether `word` of a rule names the feature.
+fn names(word: &str, (slot, value): Feature) -> bool {
+    match word.split_once(':') {
+        Some((s, v)) => s == slot && v == value,
+        None => word == slot && value != plain(slot),
+    }
+}
+
+/// The plain value of a slot.
+pub fn plain(slot: &str) -> &'static str {
+    SLOTS.iter().find(|(name, _)| *name == slot).unwrap_or_else(|| panic!("no slot {slot}")).1[0].0
+}
+
+/// Why two features cannot meet, if they cannot.
+pub fn excluded(a: Feature, b: Feature) -> Option<&'static str> {
+    let rule = |(first, second, why): &(&[&str], &[&str], &'static str)| {
+        let has = |words: &[&str], feature| words.iter().any(|word| names(word, feature));
+        (has(first, a) && has(second, b) || has(first, b) && has(second, a)).then_some(*why)
+    };
+    let needed = |(needing, needs): &(&str, &[(&str, &str)])| {
+        let other = |one, other: Feature| {
+            names(needing, one) && needs.iter().any(|(slot, value)| *slot == other.0 && *value != other.1)
+        };
+        (other(a, b) || other(b, a)).then_some("another value is needed")
+    };
+    EXCLUDED.iter().find_map(rule).or_else(|| NEEDED.iter().find_map(needed))
+}
+
+/// A model to be made: a value for every slot, and the seed of its numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Draft {
+    pub seed: u64,
+    chosen: BTreeMap<&'static str, &'static str>,
+}
+
+impl Draft {
+    /// What a seed says.
+    pub fn new(seed: u64) -> Self {
+        let mut draft = Self { seed, chosen: BTreeMap::new() };
+        let mut order: Vec<usize> = (0..SLOTS.len()).collect();
+        for k in (1..order.len()).rev() {
+            order.swap(k, (hash(seed, &format!("order {k}")) % (k as u64 + 1)) as usize);
+        }
+        // The scheme asks most of the others; an option gives way to all.
+        order.sort_by_key(|&k| (SLOTS[k].0 != "scheme", SLOTS[k].1[0].0 == "no"));
+        for (slot, values) in order.into_iter().map(|k| SLOTS[k]) {
+            if draft.chosen.contains_key(slot) {
+                continue;
+            }
+            let all: u64 = values.iter().map(|(_, weight)| weight).sum();
+            let mut left = hash(seed, slot) % all;
+            let drawn = values.iter().find(|(_, weight)| {
+                let found = left < *weight;
+                left = left.saturating_sub(*weight);
+                found
+            });
+            let drawn = drawn.map_or(values[0].0, |(value, _)| value);
+            if !draft.take((slot, drawn)) && !draft.take((slot, values[0].0)) {
+                // The plain value does not go with what has been chosen: the first that does.
+                let taken = values.iter().any(|(value, _)| draft.take((slot, value)));
+                assert!(taken, "seed {seed}: no value of {slot} goes with {:?}", draft.chosen);
+            }
+        }
+        draft
+    }
+
+    /// Take a feature and what it needs, if they go with what has been chosen.
+    fn take(&mut self, feature: Feature) -> bool {
+        let mut new = vec![feature];
+        for (_, needs) in NEEDED.iter().filter(|(needing, _)| names(needing, feature)) {
+            new.extend(needs.iter().copied());
+        }
+        let fits = |(slot, value): &Feature| self.chosen.get(slot).is_none_or(|chosen| chosen == value);
+        let meets = |one: &Feature| {
+            self.chosen.iter().chain(new.iter().map(|(s, v)| (s, v))).all(|(s, v)| excluded(*one, (*s, *v)).is_none())
+        };
+        let possible = new.iter().all(|one| fits(one) && meets(one));
+        if possible {
+            self.chosen.extend(new);
+        }
+        possible
+    }
+
+    /// The value of a slot.
+    pub fn of(&self, slot: &str) -> &'static str {
+        self.chosen.get(slot).unwrap_or_else(|| panic!("no slot {slot}"))
+    }
+
+    /// Whether a slot has a value.
+    pub fn is(&self, slot: &str, value: &str) -> bool {
+        debug_assert!(
+            SLOTS.iter().any(|(name, values)| *name == slot && values.iter().any(|(v, _)| *v == value)),
+            "{slot}:{value}"
+        );
+        self.of(slot) == value
+    }
+
+    /// Whether an option is taken.
+    pub fn has(&self, slot: &str) -> bool {
+        self.of(slot) != plain(slot)
+    }
+
+    /// Whether it has one of some features, `slot:value`.
+    pub fn has_any(&self, words: &[&str]) -> bool {
+        self.chosen.iter().any(|(slot, value)| words.iter().any(|word| names(word, (slot, value))))
+    }
+
+    /// All its features, without those that options lack.
+    pub fn features(&self) -> Vec<Feature> {
+        self.chosen.iter().map(|(slot, value)| (*slot, *value)).filter(|(_, value)| *value != "no").collect()
+    }
+
+    /// The same with another value of a slot; nothing if it does not go with the others.
+    pub fn with(&self, slot: &'static str, value: &'static str) -> Option<Self> {
+        let mut chosen = self.chosen.clone();
+        chosen.insert(slot, value);
+        let all: Vec<Feature> = chosen.iter().map(|(slot, value)| (*slot, *value)).collect();
+        let allowed = all.iter().enumerate().all(|(k, a)| all[..k].iter().all(|b| excluded(*a, *b).is_none()));
+        allowed.then_some(Self { seed: self.seed, chosen })
+    }
+
+    /// The features that differ from the plain ones.
+    pub fn told(&self) -> String {
+        let told = self.chosen.iter().filter(|(slot, value)| **value != plain(slot));
+        told.map(|(slot, value)| format!("{slot}:{value}")).collect::<Vec<_>>().join(" ")
+    }
+
+    /// One of some numbers, by name.
+    pub fn pick(&self, name: &str, among: &[f64]) -> f64 {
+        among[(hash(self.seed, name) % among.len() as u64) as usize]
+    }
+
+    /// A whole number from `low` to `high`, by name.
+    pub fn count(&self, name: &str, low: usize, high: usize) -> usize {
+        low + (hash(self.seed, name) % (high - low + 1) as u64) as usize
+    }
+}
+
+/// An even distribution over all 64-bit numbers (splitmix64 over the bytes of the name).
+pub fn hash(seed: u64, name: &str) -> u64 {
+    let mix = |x: u64| {
+        let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        x ^ (x >> 31)
+    };
+    let next = |state: u64, byte: u8| mix(state.wrapping_add(0x9e37_79b9_7f4a_7c15) ^ u64::from(byte));
+    name.bytes().fold(mix(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(1)), next)
+}

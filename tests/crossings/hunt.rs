@@ -1,0 +1,191 @@
+//! Seeds tried one after the other on all cores; what breaks is made as small as it goes.
+
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::features::{Draft, Feature, SLOTS, excluded, features, hash, plain};
+use crate::law;
+use crate::model::{self, Ways};
+use crate::record::{Difference, Ended};
+use crate::relations::{Base, OPEN, Outcome, RELATIONS, Relation};
+
+/// A relation that a model breaks.
+struct Finding {
+    seed: u64,
+    relation: &'static str,
+    difference: Difference,
+    /// the features with which it still does
+    smallest: Draft,
+}
+
+/// What all seeds came to.
+#[derive(Default)]
+struct Tally {
+    models: usize,
+    solved: usize,
+    stopped: BTreeMap<String, Vec<u64>>,
+    refused: BTreeMap<String, Vec<u64>>,
+    /// how often a relation was held to, and round-off alone could have made the difference
+    held: BTreeMap<&'static str, [usize; 2]>,
+    /// solved, closed and slipping models that have both features
+    pairs: BTreeMap<(Feature, Feature), usize>,
+    findings: Vec<Finding>,
+}
+
+fn number(name: &str) -> Option<u64> {
+    std::env::var(name).ok().map(|text| text.parse().unwrap_or_else(|_| panic!("{name}={text} is no number")))
+}
+
+#[test]
+fn features_do_not_disturb_each_other() {
+    let count = number("CROSSINGS").unwrap_or(300);
+    let tally = hunt(number("FIRST").unwrap_or(0), count);
+    tally.print(count > 300);
+    assert!(tally.findings.is_empty(), "{} relations are broken", tally.findings.len());
+    assert!(tally.solved * 10 >= tally.models * 8, "only {} of {} models are solved", tally.solved, tally.models);
+}
+
+/// Try seeds, as many at once as there are cores.
+fn hunt(first: u64, count: u64) -> Tally {
+    law::registered();
+    let (next, tally) = (AtomicU64::new(first), Mutex::new(Tally::default()));
+    let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    std::thread::scope(|scope| {
+        for _ in 0..cores {
+            scope.spawn(|| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+                loop {
+                    let seed = next.fetch_add(1, Ordering::Relaxed);
+                    if seed >= first + count {
+                        return;
+                    }
+                    pool.install(|| try_seed(seed, &tally));
+                }
+            });
+        }
+    });
+    tally.into_inner().expect("no thread has failed")
+}
+
+fn try_seed(seed: u64, tally: &Mutex<Tally>) {
+    let draft = Draft::new(seed);
+    let base = Base::new(&draft);
+    let mut held = Vec::new();
+    let mut findings = Vec::new();
+    if !matches!(base.record.ended, Ended::Refused(_)) {
+        let only = std::env::var("RELATION").ok();
+        let is_open =
+            |relation: &Relation| OPEN.iter().any(|(name, words, _)| *name == relation.name && draft.has_any(words));
+        let own = |relation: &&Relation| match &only {
+            Some(only) => only == relation.name,
+            None => hash(seed, relation.name).is_multiple_of(relation.rarity) && !is_open(relation),
+        };
+        for relation in RELATIONS.iter().filter(own) {
+            match (relation.check)(&base) {
+                Outcome::Idle => held.push((relation.name, 1)),
+                Outcome::Holds => held.push((relation.name, 0)),
+                Outcome::Broken(difference) => {
+                    let smallest = smallest(&draft, relation);
+                    findings.push(Finding { seed, relation: relation.name, difference, smallest });
+                }
+            }
+        }
+    }
+    let mut tally = tally.lock().expect("no thread has failed");
+    tally.models += 1;
+    let said = |message: &str| -> String { message.chars().filter(|c| !c.is_ascii_digit()).take(160).collect() };
+    match &base.record.ended {
+        Ended::Complete => tally.solved += 1,
+        Ended::Stopped(why) => tally.stopped.entry(said(why)).or_default().push(seed),
+        Ended::Refused(why) => tally.refused.entry(said(why)).or_default().push(seed),
+    }
+    for (name, k) in held {
+        tally.held.entry(name).or_default()[k] += 1;
+    }
+    if base.record.ended == Ended::Complete && base.record.closed && base.record.slipped {
+        let own = draft.features();
+        for (k, a) in own.iter().enumerate() {
+            for b in &own[..k] {
+                *tally.pairs.entry((*b, *a)).or_default() += 1;
+            }
+        }
+    }
+    for finding in &findings {
+        finding.print();
+    }
+    tally.findings.extend(findings);
+}
+
+/// Take features away one by one while the relation is still broken.
+fn smallest(draft: &Draft, relation: &Relation) -> Draft {
+    let breaks = |draft: &Draft| {
+        let base = Base::new(draft);
+        !matches!(base.record.ended, Ended::Refused(_)) && matches!((relation.check)(&base), Outcome::Broken(_))
+    };
+    let mut draft = draft.clone();
+    loop {
+        let less = SLOTS
+            .iter()
+            .filter(|(slot, _)| draft.has(slot))
+            .find_map(|(slot, _)| draft.with(slot, plain(slot)).filter(&breaks));
+        match less {
+            Some(less) => draft = less,
+            None => return draft,
+        }
+    }
+}
+
+impl Finding {
+    fn print(&self) {
+        let Self { seed, relation, difference, smallest } = self;
+        let Difference { share, place, values: [a, b] } = difference;
+        println!("seed {seed}: {relation} is broken: {place}: {a:.12e} and {b:.12e}, {share:.2e} of the largest");
+        println!("    with {}", smallest.told());
+        if std::env::var_os("CASES").is_some() {
+            println!("{}", model::case(smallest, &Ways::plain(smallest)));
+        }
+    }
+}
+
+impl Tally {
+    fn print(&self, pairs: bool) {
+        println!("{} models: {} solved", self.models, self.solved);
+        for (what, all) in [("stopped", &self.stopped), ("refused", &self.refused)] {
+            let total: usize = all.values().map(Vec::len).sum();
+            println!("{total} {what}");
+            for (why, seeds) in all {
+                println!("    {} × {why} (seeds {:?})", seeds.len(), &seeds[..seeds.len().min(4)]);
+            }
+        }
+        for (name, [holds, idle]) in &self.held {
+            println!("{name}: held {holds} times, had nothing to say {idle} times");
+        }
+        for (relation, words, why) in OPEN {
+            println!("open: {relation} with {}: {why}", words.join(", "));
+        }
+        if pairs {
+            self.print_pairs();
+        }
+    }
+
+    /// How often each allowed pair of features was solved, closed and slipping.
+    fn print_pairs(&self) {
+        let all = features();
+        let mut rare = Vec::new();
+        for (k, a) in all.iter().enumerate() {
+            for b in all[..k].iter().filter(|b| b.0 != a.0 && excluded(*a, **b).is_none()) {
+                let key = if b < a { (*b, *a) } else { (*a, *b) };
+                rare.push((self.pairs.get(&key).copied().unwrap_or(0), key));
+            }
+        }
+        rare.sort();
+        println!("{} pairs of features can meet", rare.len());
+        for limit in [0, 5, 20, 100, 1000] {
+            println!("    {} in at most {limit} models", rare.iter().filter(|(count, _)| *count <= limit).count());
+        }
+        for (count, (a, b)) in rare.iter().filter(|(count, _)| *count < 20) {
+            println!("{count} × {}:{} with {}:{}", a.0, a.1, b.0, b.1);
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! A law that the program does not know, with as many variables as a point has room for.
+
+use fecontact::laws::friction::{FrictionLaw, FrictionResponse, FrictionState, LawFailure, Regime, Sliding, register};
+
+/// Viscous friction above a threshold that grows with what it has slipped.
+///
+/// ```text
+/// q = η v (1 + 0.1 min(w, 1)),   w = ∫ |v| dt/(1 + ∫ dt)          pressures below the threshold are frictionless
+/// ```
+#[derive(Clone, Debug)]
+struct Viscous {
+    viscosity: f64,
+    threshold: f64,
+}
+
+const VARIABLES: [&str; 4] = ["slipped", "loads", "closed_increments", "last_sign"];
+
+impl FrictionLaw for Viscous {
+    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Result<FrictionResponse, LawFailure> {
+        let Sliding { slip, pressure, dt } = sliding.checked()?;
+        if pressure <= self.threshold || dt == 0.0 {
+            return FrictionResponse::elastic(old.stuck(0.0, pressure.max(0.0)), 0.0).checked(1.0);
+        }
+        // What it remembers makes it more viscous; a variable that is lost is seen in forces.
+        let [slipped, loads, closed, last] = old.variables;
+        let growth = 1.0 + 0.01 * closed.min(10.0) + 0.02 * last;
+        let dtraction_dslip = self.viscosity * growth / dt;
+        let traction = dtraction_dslip * slip;
+        let state = FrictionState {
+            plastic_slip: old.plastic_slip + slip,
+            plastic_increment: slip,
+            dissipation: old.dissipation + traction * slip,
+            regime: if slip == 0.0 { Regime::Stick } else { Regime::Slip },
+            variables: [slipped + slip, loads + 1.0, closed + 1.0, 1.0],
+            ..old.stuck(traction, pressure)
+        };
+        FrictionResponse { state, dtraction_dslip, ..Default::default() }.checked(dtraction_dslip)
+    }
+
+    fn variables(&self) -> &'static [&'static str] {
+        &VARIABLES
+    }
+
+    fn stiffness(&self) -> f64 {
+        0.0
+    }
+}
+
+/// Let cases use it.
+pub fn registered() {
+    register("crossings viscous", |parameters, _| {
+        Ok(Box::new(Viscous { viscosity: parameters["viscosity"], threshold: parameters["threshold"] }))
+    });
+}

@@ -1,0 +1,477 @@
+//! A run of a case, and what it left, read back into canonical axes and units.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use fecontact::case;
+use fecontact::model::Model;
+use fecontact::output::history::History;
+use fecontact::output::newton_log::NewtonLog;
+use fecontact::output::probes::Probes;
+use fecontact::output::warnings::Warnings;
+use fecontact::run::observer::Observer;
+use fecontact::run::{RunBytes, SavedRun, Simulation, watch};
+use serde_json::Value;
+
+use crate::frame::{Frame, Kind};
+use crate::model::{ASIDE, Names, Ways};
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ended {
+    Complete,
+    Stopped(String),
+    Refused(String),
+}
+
+/// One number of a row: what it is, and in which column.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    pub kind: Kind,
+    pub column: Arc<str>,
+    pub value: f64,
+}
+
+/// What a run left.
+#[derive(Clone, Debug)]
+pub struct Record {
+    pub ended: Ended,
+    /// the tables as they are written
+    pub tables: Vec<String>,
+    /// rows in canonical axes and units: time, and all else
+    pub rows: Vec<(f64, Vec<Entry>)>,
+    /// increments, those between two rows of explicit steps included
+    pub increments: usize,
+    /// whether points of the first contact closed, and slipped
+    pub closed: bool,
+    pub slipped: bool,
+}
+
+/// How a run is led.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lead {
+    /// From its beginning to its end
+    Through,
+    /// Left in the middle, and taken up from its bytes
+    Resumed,
+    /// Every candidate dropped once, and tried again
+    Dropped,
+    /// The first step as a run of its own, with which another begins
+    Begun,
+}
+
+/// Run a case in a folder of its own.
+pub fn run(document: &Value, ways: &Ways, lead: Lead) -> Record {
+    let refused =
+        |ended| Record { ended, tables: Vec::new(), rows: Vec::new(), increments: 0, closed: false, slipped: false };
+    let model = match built(document) {
+        Ok(model) => model,
+        Err(message) => return refused(Ended::Refused(message)),
+    };
+    let folder = tempfile::tempdir().expect("a folder for results");
+    let mut outputs = Outputs::create(folder.path(), &model);
+    let result = match lead {
+        Lead::Through => led(Simulation::new(model.clone()), &mut outputs),
+        Lead::Dropped => dropped(Simulation::new(model.clone()), &mut outputs),
+        Lead::Resumed => resumed(document, folder.path(), &model, &mut outputs),
+        Lead::Begun => begun(document, folder.path(), &model, &mut outputs),
+    };
+    let (simulation, ended) = match result {
+        Ok((simulation, result)) => (simulation, result.map_or_else(Ended::Stopped, |()| Ended::Complete)),
+        Err(message) => return refused(Ended::Refused(message)),
+    };
+    let points = simulation.state().contacts.first();
+    let tables: Vec<String> = ["history.csv", "probes.csv", "newton.csv"]
+        .iter()
+        .filter_map(|name| std::fs::read_to_string(folder.path().join(name)).ok())
+        .collect();
+    let mut rows = rows(&tables, ways);
+    let most = |column: &str| {
+        rows.iter()
+            .flat_map(|(_, row)| row)
+            .filter(|entry| &*entry.column == column)
+            .map(|entry| entry.value)
+            .fold(0.0, f64::max)
+    };
+    let closed = most("c.contact_length") > 0.0;
+    let slipped = points.is_some_and(|points| points.iter().any(|point| point.friction.plastic_slip != 0.0))
+        || most("c.slip_fraction") > 0.0;
+    if let (Some((_, last)), Ended::Complete) = (rows.last_mut(), &ended) {
+        last.extend(point_entries(&simulation, ways));
+    }
+    Record { ended, tables, closed, slipped, rows, increments: simulation.report().increments }
+}
+
+fn built(document: &Value) -> Result<Arc<Model>, String> {
+    let path = Path::new("case.json");
+    let case = case::from_text(&document.to_string(), path).map_err(|error| error.to_string())?;
+    case::build(&case, path).map(Arc::new).map_err(|error| error.to_string())
+}
+
+/// The observers whose tables are compared.
+struct Outputs {
+    history: History,
+    probes: Probes,
+    newton: NewtonLog,
+    warnings: Warnings,
+}
+
+impl Outputs {
+    fn create(folder: &Path, model: &Model) -> Self {
+        Self {
+            history: History::create(folder, model).expect("history.csv"),
+            probes: Probes::create(folder, model).expect("probes.csv"),
+            newton: NewtonLog::create(folder).expect("newton.csv"),
+            warnings: Warnings::default(),
+        }
+    }
+
+    fn reopen(folder: &Path, model: &Model) -> Self {
+        Self {
+            history: History::reopen(folder, model).expect("history.csv"),
+            probes: Probes::reopen(folder, model).expect("probes.csv"),
+            newton: NewtonLog::reopen(folder).expect("newton.csv"),
+            warnings: Warnings::default(),
+        }
+    }
+
+    fn all(&mut self) -> [&mut dyn Observer; 4] {
+        [&mut self.history, &mut self.probes, &mut self.newton, &mut self.warnings]
+    }
+}
+
+type Led = (Simulation, Result<(), String>);
+
+fn led(mut simulation: Simulation, outputs: &mut Outputs) -> Result<Led, String> {
+    let result = watch(&mut simulation, &mut outputs.all());
+    Ok((simulation, result.map_err(|error| error.to_string())))
+}
+
+/// Attempts that are made twice, the first time for nothing.
+fn dropped(mut simulation: Simulation, outputs: &mut Outputs) -> Result<Led, String> {
+    let result = loop {
+        let first = simulation.attempt();
+        drop(first);
+        match simulation.attempt() {
+            Ok(None) => break Ok(()),
+            Err(error) => break Err(error.to_string()),
+            Ok(Some(candidate)) => {
+                let told = simulation.told(&candidate);
+                outputs
+                    .all()
+                    .into_iter()
+                    .try_for_each(|observer| observer.record(simulation.model(), &told))
+                    .expect("tables can be written");
+                if let Err(error) = simulation.follow(candidate) {
+                    break Err(error.to_string());
+                }
+            }
+        }
+    };
+    outputs.all().into_iter().try_for_each(|observer| observer.finish()).expect("tables can be written");
+    Ok((simulation, result))
+}
+
+/// Some attempts; false where the run has ended.
+fn attempts(simulation: &mut Simulation, outputs: &mut Outputs, number: usize) -> bool {
+    for _ in 0..number {
+        let Ok(Some(candidate)) = simulation.attempt() else { return false };
+        let told = simulation.told(&candidate);
+        outputs
+            .all()
+            .into_iter()
+            .try_for_each(|observer| observer.record(simulation.model(), &told))
+            .expect("tables can be written");
+        if simulation.follow(candidate).is_err() {
+            return false;
+        }
+    }
+    true
+}
+
+/// Left after some attempts, gone on with a little, and taken up where it was left.
+fn resumed(document: &Value, folder: &Path, model: &Arc<Model>, outputs: &mut Outputs) -> Result<Led, String> {
+    let mut simulation = Simulation::new(model.clone());
+    attempts(&mut simulation, outputs, 5);
+    let saved =
+        SavedRun::new(&simulation, &mut outputs.all()).and_then(SavedRun::bytes).map_err(|error| error.to_string())?;
+    let text = serde_json::to_vec(&saved).expect("bytes");
+    attempts(&mut simulation, outputs, 2);
+    outputs.all().into_iter().try_for_each(|observer| observer.finish()).expect("tables can be written");
+    drop(simulation);
+    let model = built(document)?;
+    let saved: RunBytes = serde_json::from_slice(&text).expect("bytes");
+    *outputs = Outputs::reopen(folder, &model);
+    let saved = SavedRun::from_bytes(saved, &model)?;
+    let simulation = saved.resume(&model, &mut outputs.all()).map_err(|error| error.to_string())?;
+    led(simulation, outputs)
+}
+
+/// The first step as a run of its own, then the others from where it has ended.
+fn begun(document: &Value, folder: &Path, model: &Arc<Model>, outputs: &mut Outputs) -> Result<Led, String> {
+    let mut alone = document.clone();
+    alone["steps"].as_array_mut().expect("steps").truncate(1);
+    let first = built(&alone)?;
+    let (first, ended) = led(Simulation::new(first), outputs)?;
+    if ended.is_err() {
+        return Ok((first, ended));
+    }
+    let saved = SavedRun::new(&first, &mut []).and_then(SavedRun::bytes).map_err(|error| error.to_string())?;
+    let saved = SavedRun::from_bytes(saved, model)?.begin();
+    *outputs = Outputs::create(folder, model);
+    let simulation = saved.resume(model, &mut []).map_err(|error| error.to_string())?;
+    led(simulation, outputs)
+}
+
+/// How the numbers of a column are written, by the last part of its name.
+enum Form {
+    /// As they are
+    Scalar(Kind),
+    /// With the sign of the tangent
+    Signed(Kind),
+    /// With the other one that follows it
+    Vector(Kind),
+    /// A place
+    Place,
+    /// Components xx, yy and xy of a tensor, found by their names
+    Tensor(Kind),
+    /// Not compared
+    Skip,
+}
+
+fn form(column: &str, header: &[&str]) -> Form {
+    let last = column.rsplit('.').next().unwrap_or(column);
+    let in_probe = header
+        .iter()
+        .any(|other| *other == format!("{}.strain_xx", column.rsplit_once('.').map_or("", |(name, _)| name)));
+    match last {
+        "time" | "dt" => Form::Scalar(Kind::Time),
+        "step" | "iterations" => Form::Skip,
+        "kinetic"
+        | "strain"
+        | "contact_elastic"
+        | "friction_dissipation"
+        | "damping_dissipation"
+        | "external_work"
+        | "energy_error"
+        | "radiated"
+        | "frictional_heat" => Form::Scalar(Kind::Energy),
+        "normal_force" | "fluid_force" => Form::Scalar(Kind::Force),
+        "tangential_force" => Form::Signed(Kind::Force),
+        "contact_length" => Form::Scalar(Kind::Area),
+        "slip_fraction" => Form::Scalar(Kind::Share),
+        "mean_slip" | "mean_elastic_slip" => Form::Signed(Kind::Length),
+        "max_penetration" | "max_elastic_slip" | "mean_dilation" | "mean_wear" => Form::Scalar(Kind::Length),
+        "mean_theta" => Form::Scalar(Kind::Time),
+        "mean_slipped" => Form::Signed(Kind::Length),
+        "ux" | "edge_ux" => Form::Vector(Kind::Length),
+        "vx" => Form::Vector(Kind::Velocity),
+        "fx" | "force_x" => Form::Vector(Kind::Force),
+        "momentum_x" => Form::Vector(Kind::Momentum),
+        "centre_x" => Form::Place,
+        "uy" | "edge_uy" | "vy" | "fy" | "force_y" | "momentum_y" | "centre_y" => Form::Skip,
+        "moment" => Form::Signed(Kind::Energy),
+        "angular_momentum" => Form::Signed(Kind::AngularMomentum),
+        "rotation" => Form::Signed(Kind::Number),
+        "frictional_power" => Form::Scalar(Kind::Power),
+        "strain_xx" => Form::Tensor(Kind::Number),
+        "stress_xx" => Form::Tensor(Kind::Stress),
+        "strain_zz" => Form::Scalar(Kind::Number),
+        "stress_zz" => Form::Scalar(Kind::Stress),
+        "strain_yy" | "strain_xy" | "stress_yy" | "stress_xy" if in_probe => Form::Skip,
+        _ => Form::Scalar(Kind::Number),
+    }
+}
+
+/// The rows of history and probes, joined by their times, in canonical axes and units.
+fn rows(tables: &[String], ways: &Ways) -> Vec<(f64, Vec<Entry>)> {
+    let mut rows: Vec<(f64, Vec<Entry>)> = Vec::new();
+    for (k, table) in tables.iter().take(2).enumerate() {
+        let mut lines = table.lines();
+        let header: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
+        let columns: Vec<(Form, Arc<str>)> =
+            header.iter().map(|column| (form(column, &header), own_name(column, ways).into())).collect();
+        for (number, line) in lines.enumerate() {
+            let values: Vec<f64> = line.split(',').map(|text| text.parse().unwrap_or(f64::NAN)).collect();
+            let entries = entries(&header, &columns, &values, &ways.frame);
+            if k == 0 {
+                rows.push((values[0] / ways.frame.time, entries));
+            } else if let Some((_, row)) = rows.get_mut(number) {
+                row.extend(entries.into_iter().skip(1));
+            }
+        }
+    }
+    rows
+}
+
+fn entries(header: &[&str], columns: &[(Form, Arc<str>)], values: &[f64], frame: &Frame) -> Vec<Entry> {
+    let mut entries = Vec::with_capacity(columns.len());
+    for (k, ((form, column), &value)) in columns.iter().zip(values).enumerate() {
+        let unit = |kind| value / frame.unit(kind);
+        let mut push = |kind, column: &str, value| entries.push(Entry { kind, column: column.into(), value });
+        match form {
+            Form::Scalar(kind) => push(*kind, column, unit(*kind)),
+            Form::Signed(kind) => push(*kind, column, frame.sign() * unit(*kind)),
+            Form::Vector(kind) => {
+                let [x, y] = frame.canonical([value, values[k + 1]]).map(|x| x / frame.unit(*kind));
+                push(*kind, column, x);
+                push(*kind, &format!("{column}, y"), y);
+            }
+            Form::Place => {
+                let [x, y] = frame.place([value, values[k + 1]]);
+                push(Kind::Length, column, x);
+                push(Kind::Length, &format!("{column}, y"), y);
+            }
+            Form::Tensor(kind) => {
+                let name = header[k].strip_suffix("xx").unwrap_or_default();
+                let of = |part: &str| {
+                    header.iter().position(|other| *other == format!("{name}{part}")).map_or(f64::NAN, |at| values[at])
+                };
+                let tensor = frame.canonical_tensor([value, of("yy"), of("xy")]);
+                for (part, value) in ["", ", yy", ", xy"].into_iter().zip(tensor) {
+                    push(*kind, &format!("{column}{part}"), value / frame.unit(*kind));
+                }
+            }
+            Form::Skip => {}
+        }
+    }
+    entries
+}
+
+/// The column with the canonical names of bodies and contacts.
+fn own_name(column: &str, ways: &Ways) -> String {
+    let Names { block, ground, contact, second } = Names::of(ways);
+    for (now, own) in [(block, "block"), (ground, "ground")] {
+        let rest = column.strip_prefix(now).filter(|rest| rest.starts_with(['_', '.']));
+        if let Some(rest) = rest {
+            return format!("{own}{rest}");
+        }
+    }
+    for (now, own) in [(contact, "c"), (second, "d")] {
+        if let Some(rest) = column.strip_prefix(now).filter(|rest| rest.starts_with('.')) {
+            return format!("{own}{rest}");
+        }
+    }
+    column.into()
+}
+
+/// Whether a column belongs to what stands aside.
+pub fn is_aside(column: &str) -> bool {
+    ASIDE.iter().any(|name| column.starts_with(name))
+}
+
+/// The fields of the contacts, point by point in the order of their canonical places.
+fn point_entries(simulation: &Simulation, ways: &Ways) -> Vec<Entry> {
+    let frame = &ways.frame;
+    let kinds = |field: &str| match field {
+        "gap" | "dilation" | "wear" => (Kind::Length, 1.0),
+        "slip" | "elastic_slip" => (Kind::Length, frame.sign()),
+        "slip_rate" => (Kind::Velocity, frame.sign()),
+        "pressure" | "fluid_pressure" => (Kind::Stress, 1.0),
+        "traction" => (Kind::Stress, frame.sign()),
+        "theta" => (Kind::Time, 1.0),
+        _ => (Kind::Number, 1.0),
+    };
+    let fields = [
+        "gap",
+        "pressure",
+        "traction",
+        "slip",
+        "elastic_slip",
+        "slip_rate",
+        "fluid_pressure",
+        "R",
+        "mu",
+        "structure",
+        "theta",
+        "dilation",
+        "wear",
+    ];
+    let mut entries = Vec::new();
+    for pair in &simulation.model().contacts {
+        let places = simulation.contact_positions(&pair.name).expect("a contact");
+        let mut order: Vec<(usize, [f64; 2])> = places.iter().map(|p| frame.place([p.x, p.y])).enumerate().collect();
+        order.sort_by(|(_, a), (_, b)| (a[1].round(), a[0]).partial_cmp(&(b[1].round(), b[0])).expect("numbers"));
+        for field in fields {
+            let Ok(values) = simulation.contact_field(&pair.name, field) else { continue };
+            let (kind, sign) = kinds(field);
+            for (rank, (point, _)) in order.iter().enumerate() {
+                let value = sign * values[*point] / frame.unit(kind);
+                entries.push(Entry {
+                    kind,
+                    column: own_name(&format!("{}.{field} of point {rank}", pair.name), ways).into(),
+                    value,
+                });
+            }
+        }
+    }
+    entries
+}
+
+impl Record {
+    /// Whether all increments are as long as the first, as they are where nothing made one shorter.
+    pub fn is_even(&self) -> bool {
+        let dts =
+            self.rows.iter().flat_map(|(_, row)| row).filter(|entry| &*entry.column == "dt").map(|entry| entry.value);
+        let (least, most) = dts.fold((f64::INFINITY, 0.0f64), |(least, most), dt| (least.min(dt), most.max(dt)));
+        most - least <= 1e-9 * most
+    }
+}
+
+/// The largest difference of two records, as a share of the largest number of its kind; where, and the two numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Difference {
+    pub share: f64,
+    pub place: String,
+    pub values: [f64; 2],
+}
+
+/// Compare what two records say at the same times of the columns that both have. `skip` leaves columns out.
+pub fn compare(a: &Record, b: &Record, skip: &dyn Fn(&str) -> bool) -> Difference {
+    let mut scales: BTreeMap<Kind, f64> = BTreeMap::new();
+    for entry in a
+        .rows
+        .iter()
+        .chain(&b.rows)
+        .flat_map(|(_, row)| row)
+        .filter(|entry| entry.value.is_finite() && !skip(&entry.column))
+    {
+        let scale = scales.entry(entry.kind).or_insert(0.0);
+        *scale = scale.max(entry.value.abs());
+    }
+    scales.insert(Kind::Share, 1.0);
+    scales.insert(Kind::Number, 1.0);
+    let last = a.rows.last().map_or(1.0, |(time, _)| *time);
+    let mut worst = Difference::default();
+    let mut common = 0;
+    for (time, row) in &a.rows {
+        let Some((_, other)) = b.rows.iter().find(|(t, _)| (t - time).abs() <= 1e-7 * last) else { continue };
+        common += 1;
+        let other: BTreeMap<&str, f64> = other.iter().map(|entry| (&*entry.column, entry.value)).collect();
+        for entry in row.iter().filter(|entry| !skip(&entry.column)) {
+            let Some(&value) = other.get(&*entry.column) else { continue };
+            if entry.value.is_nan() && value.is_nan() {
+                continue;
+            }
+            let scale = scales.get(&entry.kind).copied().filter(|scale| *scale > 0.0).unwrap_or(1.0);
+            let share = (entry.value - value).abs() / scale;
+            let share = if share.is_nan() { f64::INFINITY } else { share };
+            if share > worst.share {
+                worst = Difference {
+                    share,
+                    place: format!("{} at t = {time:.5}", entry.column),
+                    values: [entry.value, value],
+                };
+            }
+        }
+    }
+    if common == 0 || a.rows.len().abs_diff(b.rows.len()) > 0 && common < 2 {
+        return Difference {
+            share: f64::INFINITY,
+            place: format!("{} rows and {}, none at the same time", a.rows.len(), b.rows.len()),
+            values: [0.0; 2],
+        };
+    }
+    worst
+}

@@ -1,0 +1,554 @@
+//! What must hold between two ways of writing the same problem, or between two problems that become the same.
+
+use crate::features::{Draft, hash, plain};
+use crate::frame::Kind;
+use crate::mesh::is_quadratic;
+use crate::model::{self, Ways, is_dynamic};
+use crate::record::{Difference, Ended, Entry, Lead, Record, compare, is_aside, run};
+
+/// A relation: its name, and what breaks it, if anything does. Nothing where it does not apply.
+pub struct Relation {
+    pub name: &'static str,
+    /// one of so many models is held to it
+    pub rarity: u64,
+    pub check: fn(&Base) -> Outcome,
+}
+
+/// What came of a relation.
+pub enum Outcome {
+    /// It says nothing of this model
+    Idle,
+    Holds,
+    Broken(Difference),
+}
+
+/// A draft, its plain run, and what perturbations make of it.
+pub struct Base<'a> {
+    pub draft: &'a Draft,
+    pub ways: Ways,
+    pub record: Record,
+}
+
+impl<'a> Base<'a> {
+    pub fn new(draft: &'a Draft) -> Self {
+        let ways = Ways::plain(draft);
+        let record = run(&model::case(draft, &ways), &ways, Lead::Through);
+        Self { draft, ways, record }
+    }
+
+    fn run(&self, ways: &Ways) -> Record {
+        run(&model::case(self.draft, ways), ways, Lead::Through)
+    }
+
+    /// How far the plain run moves when its numbers change in the 12th digit: what round-off can do to this model.
+    pub fn sensitivity(&self, skip: &dyn Fn(&str) -> bool) -> f64 {
+        let of = |noise| {
+            let record = self.run(&Ways { noise: Some(noise), ..self.ways.clone() });
+            if record.ended == self.record.ended { compare(&self.record, &record, skip).share } else { f64::INFINITY }
+        };
+        (1..=4).map(of).fold(0.0, f64::max)
+    }
+
+    /// The same problem written in another way has the same answer.
+    fn same(&self, ways: Ways, tolerance: f64, skip: &dyn Fn(&str) -> bool) -> Outcome {
+        if !self.has_ended_well() {
+            return Outcome::Idle;
+        }
+        let record = self.run(&ways);
+        self.as_before(&record, tolerance, skip)
+    }
+
+    fn as_before(&self, record: &Record, tolerance: f64, skip: &dyn Fn(&str) -> bool) -> Outcome {
+        if ended(&record.ended) != ended(&self.record.ended) {
+            let place = format!("ended {:?}, and was {:?}", record.ended, self.record.ended);
+            return self.judged(Difference { share: f64::INFINITY, place, values: [0.0; 2] }, skip);
+        }
+        // How long explicit increments may be follows from the one foot that stands for a point: the order of segments has a say.
+        let is_explicit = self.draft.is("scheme", "explicit") || self.draft.has("rupture");
+        if is_explicit && record.increments != self.record.increments {
+            return Outcome::Idle;
+        }
+        let difference = compare(&self.record, record, skip);
+        let tolerance = if is_dynamic(self.draft.of("scheme")) { tolerance.max(SAME_IN_MOTION) } else { tolerance };
+        if difference.share <= tolerance { Outcome::Holds } else { self.judged(difference, skip) }
+    }
+
+    /// A difference that round-off can make is none.
+    fn judged(&self, difference: Difference, skip: &dyn Fn(&str) -> bool) -> Outcome {
+        if difference.share <= AMPLIFIED * self.sensitivity(skip) { Outcome::Idle } else { Outcome::Broken(difference) }
+    }
+
+    fn has_ended_well(&self) -> bool {
+        self.record.ended == Ended::Complete
+    }
+}
+
+/// How it ended, without numbers.
+fn ended(of: &Ended) -> u8 {
+    match of {
+        Ended::Complete => 0,
+        Ended::Stopped(_) => 1,
+        Ended::Refused(_) => 2,
+    }
+}
+
+/// A relation may miss by so many times what a change in the 12th digit of its numbers does.
+const AMPLIFIED: f64 = 100.0;
+
+/// What is the same is the same to this share.
+const SAME: f64 = 1e-9;
+
+/// In motion to this one: points that close and open in turn add up round-off from increment to increment.
+const SAME_IN_MOTION: f64 = 1e-7;
+
+/// What is known to break a relation and not mended yet: models with one of the features are not held to it. To be emptied.
+pub const OPEN: &[(&str, &[&str], &str)] = &[
+    (
+        "dropped",
+        &["normal:augmented", "dilatancy:free", "dilatancy:limited", "scheme:wilson"],
+        "newton.csv, and the last bits of a result, hang on the attempt that was dropped",
+    ),
+    ("flight", &["scheme:explicit"], "the first half of an explicit step goes by the acceleration of the step before"),
+    ("steps in two", &["scheme:explicit", "scheme:wilson"], "the first half of an explicit step, as in flight"),
+    ("driven", &["scheme:wilson"], "what it looks ahead to beside a drive"),
+    (
+        "units",
+        &["error_control:yes", "normal:augmented", "scheme:explicit", "scheme:wilson"],
+        "some models take other increments, which nothing explains yet",
+    ),
+    (
+        "energies",
+        &[
+            "scheme:newmark",
+            "scheme:hht",
+            "scheme:generalized_alpha",
+            "scheme:wilson",
+            "scheme:explicit",
+            "scheme:quasi_dynamic",
+            "wear:yes",
+            "rupture:yes",
+        ],
+        "impacts, damping of schemes and wear leave a share that falls slower than its order",
+    ),
+    (
+        "bystander",
+        &["scheme:explicit", "rupture:yes", "error_control:yes"],
+        "increments are as long as the bystander lets them be",
+    ),
+    ("shuffled", &["error_control:yes", "scheme:quasi_dynamic"], "lengths of increments turn on round-off"),
+    ("body in two", &["master:itself"], "a surface that meets itself"),
+];
+
+pub const RELATIONS: &[Relation] = &[
+    Relation { name: "resumed", rarity: 5, check: resumed },
+    Relation { name: "dropped", rarity: 5, check: dropped },
+    Relation { name: "threads", rarity: 5, check: threads },
+    Relation { name: "begun with", rarity: 5, check: begun_with },
+    Relation { name: "bystander", rarity: 3, check: bystander },
+    Relation { name: "flight", rarity: 3, check: flight },
+    Relation { name: "moved", rarity: 5, check: moved },
+    Relation { name: "turned by 37", rarity: 5, check: turned },
+    Relation { name: "turned by 90", rarity: 5, check: turned_square },
+    Relation { name: "mirrored", rarity: 5, check: mirrored },
+    Relation { name: "units", rarity: 5, check: units },
+    Relation { name: "inclined", rarity: 4, check: inclined },
+    Relation { name: "renamed", rarity: 5, check: renamed },
+    Relation { name: "shuffled", rarity: 5, check: shuffled },
+    Relation { name: "driven", rarity: 5, check: driven },
+    Relation { name: "steps in two", rarity: 3, check: steps_in_two },
+    Relation { name: "body in two", rarity: 5, check: body_in_two },
+    Relation { name: "energies", rarity: 4, check: energies },
+    Relation { name: "resultants", rarity: 1, check: resultants },
+    Relation { name: "small and finite", rarity: 12, check: small_and_finite },
+    Relation { name: "slow dynamics", rarity: 12, check: slow_dynamics },
+    Relation { name: "stiff and augmented", rarity: 12, check: stiff_and_augmented },
+    Relation { name: "sides swapped", rarity: 12, check: sides_swapped },
+];
+
+const NOTHING: &dyn Fn(&str) -> bool = &|_| false;
+
+fn to_the_bit(base: &Base, record: &Record) -> Outcome {
+    if !base.has_ended_well() {
+        return Outcome::Idle;
+    }
+    let text = |record: &Record| {
+        record.tables.iter().map(|table| table.lines().map(str::to_owned).collect::<Vec<_>>()).collect::<Vec<_>>()
+    };
+    if record.ended != base.record.ended {
+        let place = format!("ended {:?}, and was {:?}", record.ended, base.record.ended);
+        return Outcome::Broken(Difference { share: f64::INFINITY, place, values: [0.0; 2] });
+    }
+    let (was, is) = (text(&base.record), text(record));
+    if was == is {
+        return Outcome::Holds;
+    }
+    let first = was.iter().flatten().zip(is.iter().flatten()).position(|(a, b)| a != b).unwrap_or(0);
+    let difference = compare(&base.record, record, NOTHING);
+    Outcome::Broken(Difference { place: format!("line {first}; {}", difference.place), ..difference })
+}
+
+fn resumed(base: &Base) -> Outcome {
+    to_the_bit(base, &run(&model::case(base.draft, &base.ways), &base.ways, Lead::Resumed))
+}
+
+fn dropped(base: &Base) -> Outcome {
+    to_the_bit(base, &run(&model::case(base.draft, &base.ways), &base.ways, Lead::Dropped))
+}
+
+fn threads(base: &Base) -> Outcome {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().expect("threads");
+    to_the_bit(base, &pool.install(|| base.run(&base.ways)))
+}
+
+/// The steps after the first as a case that begins with the first.
+fn begun_with(base: &Base) -> Outcome {
+    if !base.has_ended_well() || base.draft.has("times") {
+        return Outcome::Idle;
+    }
+    let record = run(&model::case(base.draft, &base.ways), &base.ways, Lead::Begun);
+    // It counts its own energies; the turns of bodies begin anew as well.
+    let counted = |column: &str| {
+        ["friction_dissipation", "damping_dissipation", "external_work", "energy_error", "radiated"].contains(&column)
+            || column.ends_with("frictional_heat")
+    };
+    base.as_before(&record, SAME, &counted)
+}
+
+/// Something that touches nothing.
+fn bystander(base: &Base) -> Outcome {
+    if base.draft.has("plate") && base.draft.is("press", "plate") {
+        return Outcome::Idle;
+    }
+    let energies = |column: &str| !column.contains('.') && column != "dt" && column != "time" || is_aside(column);
+    base.same(Ways { bystander: true, ..base.ways.clone() }, SAME, &energies)
+}
+
+/// A free body flies on with the momentum that its springs have left it.
+fn flight(base: &Base) -> Outcome {
+    let draft = base.draft;
+    if !is_dynamic(draft.of("scheme"))
+        || draft.of("section").starts_with("rings")
+        || draft.has("rupture")
+        || !base.has_ended_well()
+    {
+        return Outcome::Idle;
+    }
+    let record = base.run(&Ways { bystander: true, flight: true, ..base.ways.clone() });
+    if record.ended != Ended::Complete {
+        return Outcome::Idle;
+    }
+    let name = format!("{}.momentum_x", model::ASIDE[1]);
+    let momentum =
+        |row: &[Entry]| row.iter().find(|entry| *entry.column == *name).map_or(f64::NAN, |entry| entry.value);
+    let free: Vec<f64> = record
+        .rows
+        .iter()
+        .filter(|(time, _)| *time >= model::duration(draft) * (1.0 - 1e-9))
+        .map(|(_, row)| momentum(row))
+        .collect();
+    let most = record.rows.iter().map(|(_, row)| momentum(row).abs()).fold(0.0, f64::max);
+    let spread =
+        free.iter().copied().fold(f64::NEG_INFINITY, f64::max) - free.iter().copied().fold(f64::INFINITY, f64::min);
+    if spread <= SAME * most {
+        Outcome::Holds
+    } else {
+        Outcome::Broken(Difference { share: spread / most, place: name, values: [free[0], free[free.len() - 1]] })
+    }
+}
+
+/// Far from the origin; rings along their axis alone.
+fn moved(base: &Base) -> Outcome {
+    let far = f64::from(1 << 20);
+    let by = if base.draft.of("section").starts_with("rings") { [0.0, far] } else { [far, -0.25 * far] };
+    base.same(Ways { frame: base.ways.frame.clone().moved(by), ..base.ways.clone() }, SAME, NOTHING)
+}
+
+fn turns(draft: &Draft) -> bool {
+    !draft.of("section").starts_with("rings") && !draft.is("stress", "geostatic")
+}
+
+fn turned(base: &Base) -> Outcome {
+    // The error of an increment is that of the component of a displacement, and plates move alike along an axis.
+    if !turns(base.draft) || base.draft.is("plate", "alike") || base.draft.has("error_control") {
+        return Outcome::Idle;
+    }
+    base.same(Ways { frame: base.ways.frame.clone().turned(37.0), ..base.ways.clone() }, SAME, NOTHING)
+}
+
+fn turned_square(base: &Base) -> Outcome {
+    if !turns(base.draft) {
+        return Outcome::Idle;
+    }
+    base.same(Ways { frame: base.ways.frame.clone().turned(90.0), ..base.ways.clone() }, SAME, NOTHING)
+}
+
+fn mirrored(base: &Base) -> Outcome {
+    let axis = usize::from(base.draft.of("section").starts_with("rings"));
+    if base.draft.is("stress", "geostatic") && axis == 1 {
+        return Outcome::Idle;
+    }
+    base.same(Ways { frame: base.ways.frame.clone().mirrored(axis), ..base.ways.clone() }, SAME, NOTHING)
+}
+
+fn units(base: &Base) -> Outcome {
+    let [length, stress, time] =
+        [[1000.0, 1.0, 1.0], [1.0, 1e6, 1.0], [1.0, 1.0, 1e-3], [0.0078125, 1048576.0, 32.0], [1e-3, 1e-6, 3600.0]]
+            [(hash(base.draft.seed, "units") % 5) as usize];
+    base.same(Ways { frame: base.ways.frame.clone().units(length, stress, time), ..base.ways.clone() }, SAME, NOTHING)
+}
+
+/// Supports along axes written as inclined ones.
+fn inclined(base: &Base) -> Outcome {
+    if base.draft.is("section", "rings_on_end")
+        || base.draft.is("section", "rings_around")
+        || base.draft.is("scheme", "quasi_dynamic")
+        || base.draft.has("plate")
+        || base.draft.is("press", "plate")
+    {
+        return Outcome::Idle;
+    }
+    let mut frame = base.ways.frame.clone();
+    frame.inclined = true;
+    base.same(Ways { frame, ..base.ways.clone() }, SAME, NOTHING)
+}
+
+fn renamed(base: &Base) -> Outcome {
+    base.same(Ways { renamed: true, ..base.ways.clone() }, SAME, NOTHING)
+}
+
+fn shuffled(base: &Base) -> Outcome {
+    base.same(Ways { shuffled: true, ..base.ways.clone() }, SAME, NOTHING)
+}
+
+/// A motion or load written as a number, a rate, a table or an expression.
+fn driven(base: &Base) -> Outcome {
+    if base.draft.has("until") || base.draft.is("scheme", "quasi_dynamic") || base.draft.is("press", "rotation") {
+        return Outcome::Idle;
+    }
+    let ways = ["number", "rate", "table", "expression"];
+    let drawn = ways[(hash(base.draft.seed, "driven") % 4) as usize];
+    base.same(Ways { drive: Some(drawn), ..base.ways.clone() }, SAME, NOTHING)
+}
+
+/// Whether dashpots of the bodies hold the block until contact does; what they hold depends on the bodies and on the step.
+fn is_stabilized(base: &Base) -> bool {
+    model::case(base.draft, &base.ways).to_string().contains("stabilize")
+}
+
+/// Every step in two, where increments are as long as they are said to be.
+fn steps_in_two(base: &Base) -> Outcome {
+    let draft = base.draft;
+    let idle = is_stabilized(base)
+        || !base.record.is_even()
+        || draft.has("until")
+        || draft.has("error_control")
+        || draft.has("shrink_fit")
+        || draft.is("press", "rotation")
+        || draft.is("scheme", "quasi_dynamic")
+        || draft.has("rupture")
+        || draft.has("plate");
+    if idle {
+        return Outcome::Idle;
+    }
+    base.same(Ways { halves: true, ..base.ways.clone() }, SAME, NOTHING)
+}
+
+/// The block as two bodies that share the nodes between them.
+fn body_in_two(base: &Base) -> Outcome {
+    if is_stabilized(base) || base.draft.is("tractions", "of_bodies") {
+        return Outcome::Idle;
+    }
+    let of_block = |column: &str| column.starts_with("block.") || column.starts_with("half.");
+    base.same(Ways { block_in_two: true, ..base.ways.clone() }, SAME, &of_block)
+}
+
+/// Energies balance, or the error of their balance falls with the increments at their order.
+fn energies(base: &Base) -> Outcome {
+    let draft = base.draft;
+    // What is out of balance at the beginning of a static step springs to equilibrium, and nothing says what it does on its way.
+    let springs =
+        !is_dynamic(draft.of("scheme")) && (draft.has("stress") || draft.has("tractions") || draft.has("spring"));
+    if !base.has_ended_well() || draft.has("error_control") || draft.has("until") || springs {
+        return Outcome::Idle;
+    }
+    let coarse = audit(&base.record);
+    if coarse.share <= BALANCED {
+        return Outcome::Holds;
+    }
+    let finer = |finer| {
+        let record = base.run(&Ways { finer, ..base.ways.clone() });
+        (record.ended == Ended::Complete).then(|| audit(&record))
+    };
+    let (Some(fine), Some(finest)) = (finer(2.0), finer(4.0)) else { return Outcome::Idle };
+    let falls = finest.share <= BALANCED || finest.share <= 0.6 * fine.share || finest.share <= 0.36 * coarse.share;
+    if falls {
+        Outcome::Holds
+    } else {
+        Outcome::Broken(Difference {
+            place: format!("{}; {:.2e} {:.2e} {:.2e}", finest.place, coarse.share, fine.share, finest.share),
+            ..finest
+        })
+    }
+}
+
+/// Energies that balance to this share of the largest are exact.
+const BALANCED: f64 = 1e-7;
+
+/// The largest error of the energies as a share of the largest of them.
+fn audit(record: &Record) -> Difference {
+    let entries = || record.rows.iter().flat_map(|(time, row)| row.iter().map(move |entry| (time, entry)));
+    let is_energy =
+        |entry: &Entry| entry.kind == Kind::Energy && &*entry.column != "energy_error" && !entry.column.contains('.');
+    let most = entries().filter(|(_, entry)| is_energy(entry)).map(|(_, entry)| entry.value.abs()).fold(0.0, f64::max);
+    let error = entries()
+        .filter(|(_, entry)| &*entry.column == "energy_error")
+        .max_by(|a, b| a.1.value.abs().total_cmp(&b.1.value.abs()));
+    let Some((time, error)) = error.filter(|_| most > 0.0) else { return Difference::default() };
+    Difference {
+        share: error.value.abs() / most,
+        place: format!("energy_error at t = {time}"),
+        values: [error.value, most],
+    }
+}
+
+/// What the contact says it puts on its slave is p and q summed up along it.
+fn resultants(base: &Base) -> Outcome {
+    let draft = base.draft;
+    // Along a straight surface that does not turn.
+    if !base.has_ended_well()
+        || draft.of("section").starts_with("rings")
+        || draft.is("master", "itself")
+        || draft.is("master", "circle")
+    {
+        return Outcome::Idle;
+    }
+    let mut worst = Difference::default();
+    for (time, row) in &base.record.rows {
+        let of = |name: &str| row.iter().find(|entry| &*entry.column == name).map_or(f64::NAN, |entry| entry.value);
+        let (normal, fluid, tangential) = (of("c.normal_force"), of("c.fluid_force"), of("c.tangential_force"));
+        let (x, y) = (of("c.force_x"), of("c.force_y"));
+        let whole = normal.hypot(tangential);
+        let share = ((normal + 0.0 * fluid).hypot(tangential) - x.hypot(y)).abs() / whole.max(1e-9);
+        if share > worst.share && whole > 1e-6 {
+            worst = Difference { share, place: format!("c.force at t = {time}"), values: [whole, x.hypot(y)] };
+        }
+    }
+    // Points of a bent surface have directions of their own.
+    if worst.share <= 2e-2 { Outcome::Holds } else { Outcome::Broken(worst) }
+}
+
+/// A difference that falls at least at its order when something becomes smaller by four.
+fn falls(draft: &Draft, pair: &dyn Fn(f64) -> [Ways; 2], order: f64, skip: &dyn Fn(&str) -> bool) -> Outcome {
+    let mut shares = Vec::new();
+    let mut place = String::new();
+    for factor in [1.0, 0.25, 0.0625] {
+        let records = pair(factor).map(|ways| run(&model::case(draft, &ways), &ways, Lead::Through));
+        if records.iter().any(|record| record.ended != Ended::Complete || record.rows.is_empty()) {
+            return Outcome::Idle;
+        }
+        let difference = compare(&records[0], &records[1], skip);
+        shares.push(difference.share);
+        place = difference.place;
+    }
+    let falls = shares[2] <= 1e-7
+        || shares[2] <= 2.0 * shares[0] * 0.0625f64.powf(order)
+        || shares[2] <= 2.0 * shares[1] * 0.25f64.powf(order);
+    if falls {
+        Outcome::Holds
+    } else {
+        Outcome::Broken(Difference {
+            share: shares[2],
+            place: format!("{place}; {shares:?}"),
+            values: [shares[0], shares[1]],
+        })
+    }
+}
+
+/// Linear quantities: forces and stresses.
+fn not_of_forces(column: &str) -> bool {
+    !["normal_force", "tangential_force", "fx", "fx, y"].iter().any(|part| column.ends_with(part))
+        || column.starts_with("d.")
+}
+
+/// The draft with nothing that keeps another order or does not scale: what is left of it is a static contact of two bodies.
+fn simple(draft: &Draft) -> Option<Draft> {
+    let without = [
+        "scheme",
+        "error_control",
+        "rupture",
+        "until",
+        "varying",
+        "dilatancy",
+        "wear",
+        "fluid",
+        "radiation",
+        "shrink_fit",
+        "massless",
+        "tractions",
+        "stress",
+        "heat",
+        "plate",
+        "spring",
+        "dashpot",
+        "velocity",
+        "second_contact",
+        "gravity",
+        "damping",
+        "absorbing",
+        "point_mass",
+        "further_parameters",
+        "press",
+        "friction",
+        "master",
+        "smooth",
+        "normal",
+    ];
+    let plainer = without.iter().try_fold(draft.clone(), |draft, slot| {
+        if draft.is("friction", "frictionless") && *slot == "friction" {
+            Some(draft)
+        } else {
+            draft.with(slot, plain(slot))
+        }
+    })?;
+    let remembers = [plainer.of("ground_law"), plainer.of("block_law")].contains(&"viscoelastic");
+    let apart = model::starts_apart(&plainer) || plainer.of("section").starts_with("rings");
+    (!remembers && !apart).then_some(plainer)
+}
+
+/// Small sliding is finite sliding of small loads.
+fn small_and_finite(base: &Base) -> Outcome {
+    let Some(draft) = simple(base.draft) else { return Outcome::Idle };
+    let plain = Ways::plain(&draft);
+    let ways = |sliding, load| Ways { sliding: Some(sliding), load, ..plain.clone() };
+    falls(&draft, &|load| [ways("small", load), ways("finite", load)], 1.0, &not_of_forces)
+}
+
+/// Statics is dynamics without mass.
+fn slow_dynamics(base: &Base) -> Outcome {
+    let Some(draft) = simple(base.draft) else { return Outcome::Idle };
+    let plain = Ways::plain(&draft);
+    let ways = |scheme, density| Ways { scheme: Some(scheme), density, ..plain.clone() };
+    falls(&draft, &|density| [ways("static", density), ways("generalized_alpha", density)], 1.0, &not_of_forces)
+}
+
+/// An augmented Lagrangian is a penalty without give, along the normal.
+fn stiff_and_augmented(base: &Base) -> Outcome {
+    let Some(draft) = simple(base.draft) else { return Outcome::Idle };
+    let plain = Ways::plain(&draft);
+    let ways = |normal, stiffer| Ways { normal: Some(normal), stiffer, ..plain.clone() };
+    let tangential = |column: &str| not_of_forces(column) || !column.ends_with("normal_force");
+    falls(&draft, &|give| [ways("alpha_n", 1.0 / give), ways("augmented", 1.0)], 1.0, &tangential)
+}
+
+/// Of two sides that are alike, either is the slave.
+fn sides_swapped(base: &Base) -> Outcome {
+    let Some(draft) = simple(base.draft) else { return Outcome::Idle };
+    let quadratic = |slot: &str| is_quadratic(draft.of(slot));
+    if !draft.is("surfaces", "matching") || quadratic("ground_element") != quadratic("block_element") {
+        return Outcome::Idle;
+    }
+    let plain = Ways::plain(&draft);
+    let ways = |swapped, load| Ways { swapped, load, ..plain.clone() };
+    let on_slave = |column: &str| not_of_forces(column) || column.starts_with("c.tangential");
+    falls(&draft, &|load| [ways(false, load), ways(true, load)], 1.0, &on_slave)
+}

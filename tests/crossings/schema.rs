@@ -1,0 +1,71 @@
+//! Every key of the schema is in a model that is drawn, or in the list of those that change nothing in it.
+
+use std::collections::BTreeSet;
+
+use fecontact::case;
+use serde_json::Value;
+
+use crate::features::Draft;
+use crate::model::{Ways, case as written};
+
+/// Keys that no drawn model has, and why.
+const ELSEWHERE: &[(&[&str], &str)] = &[
+    (
+        &["title", "units", "every", "fields", "report", "checkpoint", "points", "fronts", "arrival", "R"],
+        "what is written, not what is computed: tests/command",
+    ),
+    (
+        &["blocks", "apart", "arcs", "corners", "grading", "kind", "middle", "sides", "body"],
+        "another way to write a mesh: tests/solver/blocks.rs",
+    ),
+    (&["node", "near"], "other ways to name a node: tests/solver/boundary.rs"),
+    (&["area"], "slaves that are points: tests/contact/contact.rs"),
+    (&["hole"], "the rim of a hole: tests/contact/contact.rs"),
+    (&["fx", "fy"], "components of the force that ends a step: tests/solver/loading.rs"),
+    (&["beta", "gamma", "rho_infinity"], "parameters of schemes: tests/time/time_integration.rs"),
+    (&["begin_with"], "the relation `begun with` does it without folders"),
+];
+
+fn keys(value: &Value, found: &mut BTreeSet<String>) {
+    match value {
+        Value::Object(object) => object.iter().for_each(|(key, value)| {
+            found.insert(key.clone());
+            keys(value, found);
+        }),
+        Value::Array(array) => array.iter().for_each(|value| keys(value, found)),
+        _ => {}
+    }
+}
+
+/// Names of all properties of a schema.
+fn properties(value: &Value, found: &mut BTreeSet<String>) {
+    match value {
+        Value::Object(object) => {
+            if let Some(Value::Object(properties)) = object.get("properties") {
+                found.extend(properties.keys().cloned());
+            }
+            object.values().for_each(|value| properties_of(value, found));
+        }
+        Value::Array(array) => array.iter().for_each(|value| properties_of(value, found)),
+        _ => {}
+    }
+}
+
+fn properties_of(value: &Value, found: &mut BTreeSet<String>) {
+    properties(value, found);
+}
+
+#[test]
+fn every_key_is_crossed() {
+    let mut written_keys = BTreeSet::new();
+    for seed in 0..3000 {
+        let draft = Draft::new(seed);
+        keys(&written(&draft, &Ways::plain(&draft)), &mut written_keys);
+    }
+    let mut known = BTreeSet::new();
+    properties(&case::schema(), &mut known);
+    let elsewhere: BTreeSet<&str> = ELSEWHERE.iter().flat_map(|(keys, _)| keys.iter().copied()).collect();
+    let missing: Vec<&String> =
+        known.iter().filter(|key| !written_keys.contains(*key) && !elsewhere.contains(key.as_str())).collect();
+    assert!(missing.is_empty(), "no model that is drawn has {missing:?}: enter them in tests/crossings/features.rs");
+}
