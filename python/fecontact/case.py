@@ -227,7 +227,7 @@ def _put(document: dict[str, Any], place: str, value: Any, file: str) -> None:
         name, *numbers = part.split("[")
         keys.append(name)
         for number in numbers:
-            if not number.endswith("]") or not number[:-1].isdigit():
+            if not number.endswith("]") or not (number[:-1].isascii() and number[:-1].isdigit()):
                 raise refused(file, place, "is no place: write it like steps[1].duration")
             keys.append(int(number[:-1]))
     at: Any = document

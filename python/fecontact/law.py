@@ -58,6 +58,8 @@ class Law:
         except ValueError:
             shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
             raise refused("law", "", f"the shapes of the parameters do not go together: {shapes}") from None
+        if 0 in self.shape:
+            raise refused("law", "", f"the parameters have the shape {self.shape}: give one set of them or more")
         self.parameters = dict(parameters)
         self._sets = []
         for index in np.ndindex(self.shape):
@@ -101,12 +103,10 @@ class Law:
             CaseError: a parameter or the path is wrong.
             Stopped: the law has no answer somewhere.
         """
-        times = _finite("time", time)
-        if times.ndim != 1:
-            raise refused("law", "time", f"has the shape {times.shape}: must be (n,)")
+        times = _times(time)
         courses = {name: self._course(name, given, times.size) for name, given in (("slip", slip), ("pressure", pressure))}
         self._check_by(by, self.sensitivities())
-        initial = json.dumps({"traction": float(traction)})
+        initial = json.dumps({"traction": float(_finite("traction", traction))})
         arrays = _native.drive(self._sets, times, courses["slip"], courses["pressure"], initial, list(by), threads)
         answers = {name: array.reshape(*self.shape, times.size) for name, array in arrays}
         slips = np.broadcast_to(courses["slip"], (len(self._sets), times.size)).reshape(*self.shape, times.size)
@@ -150,9 +150,7 @@ class Law:
             CaseError: a parameter or the path is wrong.
             Stopped: the law has no answer somewhere.
         """
-        times = _finite("time", time)
-        if times.ndim != 1:
-            raise refused("law", "time", f"has the shape {times.shape}: must be (n,)")
+        times = _times(time)
         if known := self.sensitivities():
             known += ["stiffness", "mass"]
         self._check_by(by, known)
@@ -164,7 +162,7 @@ class Law:
                 raise refused("law", name, f"has the shape {values.shape}: must be {self.shape}, as the parameters")
             machine.append(np.broadcast_to(values, self.shape).reshape(-1))
         course = {name: self._course(name, given, times.size) for name, given in (("load_point", load_point), ("pressure", pressure))}
-        start = (float(force), float(tolerance))
+        start = (float(_finite("force", force)), float(tolerance))
         springs = np.stack(machine[:2], axis=1)
         arrays = _native.ride(self._sets, springs, times, course["load_point"], course["pressure"], start, list(by), threads)
         answers = {name: array.reshape(*self.shape, times.size) for name, array in arrays}
@@ -255,11 +253,16 @@ def friction_law(
     ``old`` has traction, pressure [F/L²], plastic_slip [L], dissipation [F/L] and the variables at the start; slip [L], pressure
     [F/L²] and dt [T] are those of the increment, alpha_t is the tangential stiffness [F/L³]. It returns the traction at the end, its
     consistent tangents [F/L³], [-], the plastic part of the slip [L], all variables and, if it knows better than the
-    trapezoidal rule, the dissipation of the increment [F/L].
+    trapezoidal rule, the dissipation of the increment [F/L]: each an array of shape (n,), or a number that all points have.
 
     Args:
         name: by which cases use it.
-        variables: what the law remembers, at most 4 numbers a point, with their values at first touch.
+        variables: what the law remembers, at most 4 numbers a point, with their values at first touch. Results have them by
+            their names, which begin with a letter, have letters, digits and ``_``, and are not those of what results have anyway
+            (``slip``, ``pressure``, ``q``); ``mu`` is what results show as μ.
+
+    Raises:
+        ValueError: a name cannot be one, or there are too many.
     """
 
     def register(function: Callable[..., Mapping[str, Any]]) -> Callable[..., Mapping[str, Any]]:
@@ -271,6 +274,13 @@ def friction_law(
 
 def _is_array(value: object) -> bool:
     return isinstance(value, (np.ndarray, list, tuple))
+
+
+def _times(given: ArrayLike) -> Array:
+    times = _finite("time", given)
+    if times.ndim != 1 or times.size < 2:
+        raise refused("law", "time", f"has the shape {times.shape}: must be (n,), n ≥ 2")
+    return times
 
 
 def _finite(name: str, given: ArrayLike) -> Array:

@@ -547,8 +547,8 @@ class Dilatancy(dict[str, Any]):
     """Dilatancy of a contact, with any friction law.
 
     Args:
-        rate: tan ψ: opening per plastic slip at the start, whichever way it goes; below the friction
-            coefficient, for the work that lifts the load is friction's [-]
+        rate: tan ψ: opening per plastic slip at the start, whichever way it goes; below the least coefficient
+            that friction can come to (mu, mu_k, mu_d), for the work that lifts the load is friction's [-]
         limit: d_max: opening that much slip leads to, dδ = tan ψ (1 − δ/d_max) × plastic slip; no limit unless
             given. The opening δ stands in tables and frames as `dilation` [L]
     """
@@ -1325,7 +1325,7 @@ class CaseKeys(TypedDict, total=False):
     bodies: Mapping[str, Body]
     # Contacts by a name of your choice
     contacts: Mapping[str, Contact]
-    # Initial velocity [x, y] of whole bodies
+    # Initial velocity [x, y] of whole bodies; supported nodes keep to their supports
     initial_velocity: Mapping[str, Vector]
     # Path of a gmsh MSH 4.1 file relative to the case file, or a mesh given in place: as blocks that are divided
     # into elements, or node by node

@@ -123,7 +123,7 @@ class Result:
         # Numbers to the last digit, as pandas 3 reads them by itself.
         exact: Any = {} if int(pd.__version__.split(".")[0]) >= 3 else {"float_precision": "round_trip"}
         # An increment that was accepted has no reason why not: an empty text.
-        table: pd.DataFrame = pd.read_csv(path, converters={"reason": str}, **exact)
+        table: pd.DataFrame = pd.read_csv(_finished(path), converters={"reason": str}, **exact)
         return table
 
     def __repr__(self) -> str:
@@ -261,3 +261,14 @@ def report(folders: Sequence[str | os.PathLike[str]], file: str | os.PathLike[st
     """Write one page (HTML) to look at the results of some folders, overlaid: ``fecontact report``."""
     _native.report([os.fspath(folder) for folder in folders], os.fspath(file))
     return Path(file)
+
+
+def _finished(path: Path) -> Path | io.BytesIO:
+    """A table without the row that is being written, if there is one: cut off, its last number would be another one."""
+    with path.open("rb") as file:
+        file.seek(max(0, path.stat().st_size - 1))
+        if file.read() in (b"", b"\n"):
+            return path
+        file.seek(0)
+        rows = file.read()
+    return io.BytesIO(rows[: rows.rfind(b"\n") + 1])

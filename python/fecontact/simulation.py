@@ -117,7 +117,7 @@ class ContactFields(Mapping[str, Array]):
 
     @property
     def force(self) -> Array:
-        """What the master puts on the slave, shape (2,) [F]."""
+        """What the master puts on the slave, without the pressure of a fluid, shape (2,) [F]."""
         return np.array(self._native.contact_force(self._name))
 
 
@@ -179,7 +179,7 @@ class Simulation:
 
     @property
     def is_complete(self) -> bool:
-        """Whether the last step is over."""
+        """Whether the last step is over, or :meth:`stop` has ended it."""
         return self._native.is_complete
 
     @property
@@ -235,11 +235,19 @@ class Simulation:
         self._native.load(json.dumps(plain({"on": on, **load}, file="load")), None if by is None else float(by))
 
     def increments(self, *, max: float | None = None, min: float | None = None) -> None:
-        """Bound the increments of the step under way [T]."""
+        """Bound the increments of the step under way [T].
+
+        Args:
+            max: none is longer; that of the step unless given.
+            min: none is cut below it; that of the step unless given, and at most ``max``.
+
+        Raises:
+            CaseError: a bound is not positive, ``min`` is above ``max``, or they ask for increments without end, as of ``dt`` in a case.
+        """
         self._native.increments(max, min)
 
     def stop(self) -> None:
-        """End it: no increment follows."""
+        """End it: no increment follows. What is saved goes on as if it had not been ended."""
         self._native.stop()
 
     def save(self) -> _native.Saved:
@@ -255,8 +263,20 @@ class Simulation:
         self._native.write(os.fspath(folder))
 
     @classmethod
-    def resume(cls, case: Case, saved: _native.Saved, threads: int | None = None) -> Simulation:
-        """Go on from what :meth:`save` gave, to the same bits as if the run had never stopped."""
+    def resume(
+        cls, case: Case | Mapping[str, Any] | str | os.PathLike[str], saved: _native.Saved, threads: int | None = None
+    ) -> Simulation:
+        """Go on from what :meth:`save` gave, to the same bits as if the run had never stopped.
+
+        Args:
+            case: the case that it was saved of. Its title, units, what is watched and what is written may be others, and so may
+                steps that had not begun; a step that was led has begun.
+            saved: where it goes on from.
+            threads: all cores unless given.
+
+        Raises:
+            CaseError: the case has changed otherwise, and how: as of ``case.run(out, resume=True)``.
+        """
         simulation = cls(case, threads)
         simulation._native.restore(saved)
         return simulation

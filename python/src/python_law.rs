@@ -1,15 +1,15 @@
 //! Friction laws written in Python: a callable over arrays of points.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use fecontact::laws::friction::state::MOST_VARIABLES;
 use fecontact::laws::friction::{
-    Answer, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Regime, Sliding, register,
+    Answer, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Regime, Sliding, observables, register,
 };
 use fecontact::run::error::Error;
-use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
+use pyo3::exceptions::{PyRuntimeError, PyStopIteration, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
 
@@ -29,13 +29,14 @@ struct PythonLaw {
 
 /// Let cases use `{"law": "registered", "name": name}`; `variables` with their values at first touch.
 #[pyfunction]
-pub fn register_law(name: &str, call: Py<PyAny>, variables: Vec<(String, f64)>) -> PyResult<()> {
+pub fn register_law(name: &str, call: Bound<PyAny>, variables: Vec<(String, f64)>) -> PyResult<()> {
+    if !call.is_callable() {
+        return Err(PyTypeError::new_err(format!("law `{name}`: must be a function")));
+    }
+    let call = call.unbind();
     let bad = |message: String| Err(PyValueError::new_err(format!("law `{name}`: {message}")));
     if variables.len() > MOST_VARIABLES {
         return bad(format!("has {} variables: {MOST_VARIABLES} are the most", variables.len()));
-    }
-    if variables.iter().map(|(name, _)| name).collect::<BTreeSet<_>>().len() < variables.len() {
-        return bad("two of its variables have one name".into());
     }
     if let Some((variable, value)) = variables.iter().find(|(_, value)| !value.is_finite()) {
         return bad(format!("variable `{variable}` is {value} at first touch: must be a finite number"));
@@ -45,6 +46,11 @@ pub fn register_law(name: &str, call: Py<PyAny>, variables: Vec<(String, f64)>) 
     // A law is registered for as long as the process lives.
     let names: Vec<&'static str> = variables.into_iter().map(|(name, _)| &*String::leak(name)).collect();
     let (variables, call, own): (&'static [_], _, Arc<str>) = (Vec::leak(names), Arc::new(call), name.into());
+    let (parameters, alpha_t) = (BTreeMap::new(), 1.0);
+    let law = PythonLaw { name: own.clone(), call: call.clone(), parameters, alpha_t, variables, initial };
+    if let Err(message) = observables::check_names(&law) {
+        return bad(message);
+    }
     register(name, move |parameters, alpha_t| {
         let (name, call, parameters) = (own.clone(), call.clone(), parameters.clone());
         Ok(Box::new(PythonLaw { name, call, parameters, alpha_t, variables, initial }))
@@ -83,6 +89,7 @@ impl FrictionLaw for PythonLaw {
             Ok(responses) => closed.into_iter().zip(responses).for_each(|(i, answer)| answers[i] = answer),
             Err((text, error)) => {
                 let why = format!("the friction law `{}` failed: {text}", self.name);
+                let error = Python::attach(|py| not_an_end(py, error, &why));
                 Raised::of_this_pool().set(error, Error::Ended(why));
                 closed.into_iter().for_each(|i| answers[i] = Err(LawFailure::Registered));
             }
@@ -164,18 +171,40 @@ impl PythonLaw {
     }
 }
 
-/// An array that was returned under a name: finite, one value a point, or one for all.
+/// To whoever iterates over increments the end of an iteration within the law would be that of the run.
+fn not_an_end(py: Python, error: PyErr, why: &str) -> PyErr {
+    if !error.is_instance_of::<PyStopIteration>(py) {
+        return error;
+    }
+    let told = PyRuntimeError::new_err(why.to_owned());
+    told.set_cause(py, Some(error));
+    told
+}
+
+/// What was returned under a name: an array of finite numbers, one a point, or one number for all.
 fn values(said: &Bound<PyMapping>, name: &str, points: usize) -> PyResult<Vec<f64>> {
     let py = said.py();
     let missing = |_| PyValueError::new_err(format!("it did not return `{name}`"));
     let given = said.get_item(name).map_err(missing)?;
-    let given = py.import("numpy")?.call_method1("asarray", (given, "float64"))?;
-    let shaped = py.import("numpy")?.call_method1("broadcast_to", (&given, (points,)));
-    let shape = |_| {
-        let shape = given.getattr("shape").map(|shape| shape.to_string()).unwrap_or_default();
-        PyValueError::new_err(format!("it returned `{name}` of the shape {shape}: must be ({points},)"))
+    let given = py.import("numpy")?.call_method1("asarray", (given,))?;
+    let kind: String = given.getattr("dtype")?.getattr("kind")?.extract()?;
+    if !"fiub".contains(&kind) {
+        let of = given.getattr("dtype")?;
+        return Err(PyValueError::new_err(format!("it returned `{name}` of the type {of}: must be real numbers")));
+    }
+    let given = given.call_method1("astype", ("float64",))?;
+    let given = given.cast_into::<PyArrayDyn<f64>>()?.to_owned_array();
+    let values: Vec<f64> = match given.shape() {
+        [] => given.iter().copied().cycle().take(points).collect(),
+        [count] if *count == points => given.into_iter().collect(),
+        shape => {
+            let shape: Vec<String> = shape.iter().map(ToString::to_string).collect();
+            return Err(PyValueError::new_err(format!(
+                "it returned `{name}` of the shape ({}): must be ({points},), as slip and pressure have, or a number",
+                if shape.len() == 1 { format!("{},", shape[0]) } else { shape.join(", ") }
+            )));
+        }
     };
-    let values: Vec<f64> = shaped.map_err(shape)?.extract::<PyReadonlyArray1<f64>>()?.to_owned_array().to_vec();
     match values.iter().find(|value| !value.is_finite()) {
         Some(value) => Err(PyValueError::new_err(format!("it returned `{name}` = {value}: must be finite numbers"))),
         None => Ok(values),

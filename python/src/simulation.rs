@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use fecontact::case::job::{Ends, defect};
 use fecontact::case::loading::{self, Loading};
 use fecontact::case::{CaseError, Opened};
+use fecontact::model::builder::ModelError;
 use fecontact::model::state::State;
 use fecontact::output::checkpoint::{self, Checkpoint, MeshPrint};
 use fecontact::run::error::Error;
@@ -14,6 +15,7 @@ use numpy::ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::exceptions::{PyLookupError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
+use serde_json::Value;
 
 use crate::case::Case;
 use crate::errors::{case_error, complaint, stopped};
@@ -25,6 +27,13 @@ use crate::pool::Pool;
 pub struct Saved {
     run: fecontact::run::Saved,
     loading: Option<Loading>,
+    of: Arc<Origin>,
+}
+
+/// The case of a run (JSON) and its mesh, by which it is known whether another case can go on with it.
+struct Origin {
+    document: Value,
+    mesh: MeshPrint,
 }
 
 #[pymethods]
@@ -47,6 +56,7 @@ struct UnderWay {
     run: Run,
     loading: Option<Loading>,
     last: Option<Arc<State>>,
+    of: Arc<Origin>,
 }
 
 #[pymethods]
@@ -61,7 +71,8 @@ impl Simulation {
                 Some(saved) => Run::resume(model, saved.simulation().clone()),
                 None => Run::new(model),
             };
-            Ok::<_, CaseError>(UnderWay { opened, run, loading: None, last: None })
+            let of = Origin { document: opened.document.clone(), mesh: MeshPrint::of(&run.model().mesh) };
+            Ok::<_, CaseError>(UnderWay { opened, run, loading: None, last: None, of: of.into() })
         })?;
         let made = made.map_err(|error| case_error(py, &error))?;
         Ok(Self { pool, under_way: Mutex::new(Some(made)) })
@@ -192,18 +203,9 @@ impl Simulation {
 
     /// Bounds of the increments of the step under way [T].
     fn increments(&self, py: Python, max: Option<f64>, min: Option<f64>) -> PyResult<()> {
-        for (name, value) in [("max", max), ("min", min)] {
-            if let Some(value) = value.filter(|value| !(*value > 0.0 && value.is_finite())) {
-                return Err(complaint(py, "increments", name, format!("is {value}: must be positive")));
-            }
-        }
-        self.with(|under_way| {
-            under_way.run.change(|step| {
-                let bounds = &mut step.increments;
-                bounds.max = max.unwrap_or(bounds.max);
-                bounds.min = min.unwrap_or(bounds.min).min(bounds.max);
-            });
-            Ok(())
+        let bounded = self.with(|under_way| Ok(under_way.run.bound_increments(max, min)))?;
+        bounded.map_err(|ModelError { place, message }| {
+            complaint(py, "increments", place.trim_start_matches("increments").trim_start_matches('.'), message)
         })
     }
 
@@ -216,18 +218,18 @@ impl Simulation {
     }
 
     fn save(&self) -> PyResult<Saved> {
-        self.with(|under_way| Ok(Saved { run: under_way.run.save(), loading: under_way.loading.clone() }))
+        self.with(|UnderWay { run, loading, of, .. }| {
+            Ok(Saved { run: run.save(), loading: loading.clone(), of: of.clone() })
+        })
     }
 
-    /// Go on from what was saved, of the same case in this process.
-    fn restore(&self, saved: &Bound<Saved>) -> PyResult<()> {
-        let Saved { run, loading } = saved.get();
+    /// Go on from what was saved in this process.
+    fn restore(&self, py: Python, saved: &Bound<Saved>) -> PyResult<()> {
+        let Saved { run, loading, of } = saved.get();
         self.with(|under_way| {
             let model = under_way.run.model().clone();
-            if run.state().displacement.len() != model.dofs() || run.state().contacts.len() != model.contacts.len() {
-                return Err(PyValueError::new_err("it is not of this case"));
-            }
-            under_way.run = Run::resume(model, run.clone());
+            let taken_up = under_way.opened.take_up(run.clone(), (&of.document, &of.mesh), &model);
+            under_way.run = Run::resume(model, taken_up.map_err(|error| case_error(py, &error))?);
             (under_way.loading, under_way.last) = (loading.clone(), None);
             Ok(())
         })

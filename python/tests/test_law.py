@@ -105,6 +105,11 @@ def test_steady_sliding_is_where_a_long_drive_ends(friction: dict[str, Any]) -> 
         (lambda: fc.law(PAPER).drive([0, 1, np.nan], 0.0, 1.0), r"time\[2\]: is nan"),
         (lambda: fc.law(PAPER).drive([0, 1], 0.0, 1.0, traction=9.0), "traction: is 9, beyond the strength"),
         (lambda: fc.law("prescribed", slip_rate=1.0, alpha_t=1.0).steady(1.0), "has no steady sliding"),
+        (lambda: fc.law(PAPER).drive([0, 1], 0.0, 1.0, traction=np.nan), "law: traction: is nan: must be a finite number"),
+        (lambda: fc.law(PAPER).ride([0, 1], 0.0, 1.0, stiffness=1, mass=1, force=np.inf), "law: force: is inf: must be a finite number"),
+        (lambda: fc.law(PAPER).drive([], [], 1.0), r"law: time: has the shape \(0,\): must be \(n,\), n ≥ 2"),
+        (lambda: fc.law(PAPER).drive(1.0, 1.0, 1.0), r"law: time: has the shape \(\): must be \(n,\), n ≥ 2"),
+        (lambda: fc.law({**PAPER, "xi": []}), r"the parameters have the shape \(0,\): give one set of them or more"),
         (lambda: fc.law(PAPER).steady([1.0, -1.0]), "rate: is -1.0: must be positive"),
     ],
 )
@@ -184,6 +189,8 @@ LACKING = {"traction": 1.0}
         (LACKING, "did not return `dtraction_dslip`"),
         ({"traction": np.zeros(77)}, "`traction` of the shape .77,.: must be"),
         ({"traction": np.nan}, "`traction` = NaN"),
+        ({"traction": np.array(1.0 + 2.0j)}, "`traction` of the type complex128: must be real numbers"),
+        ({"traction": "0.3"}, "`traction` of the type <U3: must be real numbers"),
         ({"tractoin": 1.0}, "returned `tractoin`; known are traction"),
         (7, "must return a dict"),
     ],
@@ -208,6 +215,17 @@ def test_laws_that_fail(document: dict[str, Any], returned: Any, message: str) -
         fc.law("registered", name="failing", alpha_t=1.0).drive([0, 1], [0, 1], 1.0)
 
 
+def test_the_end_of_an_iteration_within_a_law_is_not_that_of_the_run(document: dict[str, Any]) -> None:
+    @fc.friction_law("ending")
+    def ending(old: Any, slip: Any, pressure: Any, dt: Any, *, alpha_t: float) -> Any:
+        raise StopIteration
+
+    document["contacts"]["base"]["friction"] = {"law": "registered", "name": "ending", "alpha_t": 2e3}
+    with pytest.raises(RuntimeError, match="the friction law `ending` failed: StopIteration") as caught:
+        list(fc.Simulation(document))
+    assert isinstance(caught.value.__cause__, StopIteration)
+
+
 def test_laws_that_nobody_has_registered(program: Path, document: dict[str, Any], tmp_path: Path) -> None:
     document["contacts"]["base"]["friction"] = {"law": "registered", "name": "nobodys"}
     with pytest.raises(fc.CaseError, match="base.friction.name: no law `nobodys` is registered in this program"):
@@ -217,6 +235,71 @@ def test_laws_that_nobody_has_registered(program: Path, document: dict[str, Any]
     assert told.returncode == 2 and "no law `nobodys` is registered in this program; none is" in told.stderr
     with pytest.raises(ValueError, match="has 5 variables: 4 are the most"):
         fc.friction_law("five", variables=dict.fromkeys("abcde", 0.0))(coulomb)
+    with pytest.raises(TypeError, match="law `three`: must be a function"):
+        fc.friction_law("three")(3)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("names", "message"),
+    [
+        *(([name], f"a variable cannot be named `{name}`") for name in ("q", "p", "slip", "time", "pressure", "dilation", "gap", "Slip")),
+        *(([name], "must begin with a letter") for name in ("", " ", "a,b", "a.b", "../a", "<b>", "a\x1b[31m", "a\n", "1a", "a" * 65)),
+        (["a", "A"], "`a` and `A` are told apart by capitals at most"),
+        (["r"], "`R` and `r` are told apart by capitals at most"),
+    ],
+)
+def test_names_of_variables_are_checked(names: list[str], message: str) -> None:
+    with pytest.raises(ValueError, match=f"law `named`: .*{message}"):
+        fc.friction_law("named", variables=dict.fromkeys(names, 0.0))(coulomb)
+
+
+def test_every_name_of_the_outputs_is_taken(document: dict[str, Any], tmp_path: Path) -> None:
+    """All that results say of a contact point by name; only what laws themselves say, R, mu and structure, may be a variable."""
+    base = document["contacts"]["base"]
+    base.update(fluid_pressure=0.1, dilatancy={"rate": 0.01, "limit": 1e-4}, wear=1e-6)
+    result = fc.Case(document).run(tmp_path / "out", progress=False)
+    frame = result.fields.contact[-1]
+    interface = result.interface["base"]
+    names = {*frame.point_data, *interface.data_vars, *interface.coords, *interface.dims}
+    names |= set(fc.law(PAPER).drive([0, 1], [0, 1], 1.0))
+    names |= set(fc.Simulation(document).contacts["base"])
+    assert {"p_w", "fluid_pressure", "wear", "dilation", "total_slip", "elastic_slip", "evaluations", "position"} <= names
+    free = set()
+    for name in names:
+        try:
+            fc.friction_law("named", variables={name: 0.0})(coulomb)
+        except ValueError:
+            continue
+        free.add(name)
+    assert free == {"R", "mu", "structure"}
+
+
+def test_answers_of_a_law_have_the_shape_of_its_points(document: dict[str, Any]) -> None:
+    """One number for all points is a number, and not an array of one: the shape of something else."""
+    asked = []
+
+    @fc.friction_law("shapely", variables={"count": 0.0})
+    def shapely(old: Any, slip: Any, pressure: Any, dt: Any, *, alpha_t: float, shape: float) -> Any:
+        asked.append(slip.size)
+        count = {0: 1.0, 1: np.ones(1), 2: np.ones((1, slip.size)), 3: np.ones((slip.size, 1))}[int(shape)]
+        return {"traction": 0 * slip, "dtraction_dslip": 0.0, "dtraction_dpressure": 0.0, "plastic_increment": 0.0, "count": count}
+
+    for shape in range(4):
+        document["contacts"]["base"]["friction"] = {"law": "registered", "name": "shapely", "parameters": {"shape": shape}}
+        if shape == 0:
+            fc.Case(document).run(progress=False, threads=1)
+            assert max(asked) > 1
+            continue
+        with pytest.raises(fc.Stopped, match=r"the friction law `shapely` failed: .*it returned `count` of the shape \(\d+,.*: must be \(\d+,\)"):
+            fc.Case(document).run(progress=False, threads=1)
+
+
+def test_the_stiffness_is_not_a_parameter_of_its_own(document: dict[str, Any]) -> None:
+    fc.friction_law("python_coulomb")(coulomb)
+    parameters = {"mu": 0.3, "alpha_t": 7.0}
+    document["contacts"]["base"]["friction"] = {"law": "registered", "name": "python_coulomb", "parameters": parameters}
+    with pytest.raises(fc.CaseError, match='contacts.base.friction: "parameters.alpha_t" is 7, but'):
+        fc.Case(document).check()
 
 
 def test_committed_law_test_is_read() -> None:

@@ -73,6 +73,16 @@ def test_tables_and_interface(result: fc.Result) -> None:
         result.interface["bas"]
 
 
+def test_a_row_that_is_being_written_is_none_yet(result: fc.Result, tmp_path: Path) -> None:
+    """Cut anywhere, the last row would end in another number; the others are whole."""
+    text, whole = (result.folder / "history.csv").read_text(), result.history
+    for cut in (2, 20, len(text.splitlines()[-1])):
+        (tmp_path / "history.csv").write_text(text[:-cut])
+        assert fc.Result(tmp_path).history.equals(whole[:-1])
+    (tmp_path / "history.csv").write_text(text)
+    assert fc.Result(tmp_path).history.equals(whole)
+
+
 def test_fields(result: fc.Result) -> None:
     pytest.importorskip("pyvista")
     fields = result.fields
@@ -184,6 +194,8 @@ def test_replace(document: dict[str, Any]) -> None:
         case.replace({"contacts.base.friktion.mu_s": 0.5})
     with pytest.raises(fc.CaseError, match=r"steps\[7\].duration.*0 to 1"):
         case.replace({"steps[7].duration": 2})
+    with pytest.raises(fc.CaseError, match=r"steps\[²\].duration: is no place"):
+        case.replace({"steps[²].duration": 2})
     with pytest.raises(fc.CaseError, match="mu_S.*did you mean `mu_s`"):
         case.replace({"contacts.base.friction.mu_S": 0.5})
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from conftest import command
 
 import fecontact as fc
 
@@ -68,6 +69,81 @@ def test_saved_runs_go_on_to_the_same_bits(document: dict[str, Any], result: fc.
     simulation.lead("block_top", ux=0.0, by=3.0)
     with pytest.raises(fc.Stopped, match="was changed by its caller"):
         simulation.write(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"bodies.block.material.E": 5}, "`bodies.block.material.E` is 5, and was 100"),
+        ({"steps[1].supports[0].ux": {"rate": 0.2}}, "`steps[1].supports[0].ux.rate` is 0.2, and was 0.1"),
+        ({"contacts.base.friction.mu_s": 0.5, "newton": {"tolerance": 1e-6}}, "`contacts.base.friction.mu_s` is 0.5, and was 0.4"),
+    ],
+)
+def test_a_changed_case_is_refused_in_the_words_of_the_command_line(
+    program: Path, document: dict[str, Any], tmp_path: Path, change: dict[str, Any], told: str
+) -> None:
+    case = fc.Case(document, folder=tmp_path)
+    case.run(tmp_path / "out", progress=False)
+    changed = case.replace(change)
+    changed.write(tmp_path / "case")
+    by_command = command(program, "run", tmp_path / "case", "--resume", "--out", tmp_path / "out")
+    assert by_command.returncode == 2
+    simulation = fc.Simulation(case)
+    for _ in range(4):
+        next(simulation)
+    with pytest.raises(fc.CaseError, match="the case has changed since its checkpoint was written") as caught:
+        fc.Simulation.resume(changed, simulation.save())
+    assert told in str(caught.value) and f"error: {caught.value}\n" == by_command.stderr
+
+
+def test_a_mesh_at_hand_that_has_changed_is_refused(document: dict[str, Any]) -> None:
+    nodes = np.array(document["mesh"]["nodes"])
+    parts = {kind: {name: np.array(group) for name, group in document["mesh"][kind].items()} for kind in ("elements", "edges")}
+    case = fc.Case({**document, "mesh": fc.Mesh(nodes, **parts)})
+    simulation = fc.Simulation(case)
+    next(simulation)
+    moved = case.replace({"mesh": fc.Mesh(1.5 * nodes, **parts)})
+    with pytest.raises(fc.CaseError, match="mesh: its nodes lie elsewhere, so the run cannot go on from its checkpoint"):
+        fc.Simulation.resume(moved, simulation.save())
+
+
+def test_what_is_to_come_may_have_changed(document: dict[str, Any]) -> None:
+    case = fc.Case(document)
+    simulation = fc.Simulation(case)
+    while simulation.step == "press":
+        next(simulation)
+    # Between two steps: the next one has not begun, and is that of the new case.
+    changed = case.replace({"title": "other", "watch": [], "steps[1].supports[0].ux": {"rate": 0.2}})
+    again = fc.Simulation.resume(changed, simulation.save())
+    straight = fc.Simulation(changed)
+    list(straight)
+    list(again)
+    assert again.reaction("block_top").tolist() == straight.reaction("block_top").tolist()
+    assert again.displacement("block_top")[0] == pytest.approx(0.8, rel=1e-12)
+    # Once it is led, what its caller has done to it holds, and so it is one that has begun.
+    simulation.lead("block_top", ux=0.1, by=2.0)
+    with pytest.raises(fc.CaseError, match="steps.1..supports.0..ux.rate` is 0.2, and was 0.1"):
+        fc.Simulation.resume(changed, simulation.save())
+    # A step that comes behind the last one goes on from its end.
+    list(simulation)
+    longer = case.replace({"steps": [*document["steps"], {"name": "rest", "duration": 1}]})
+    further = fc.Simulation.resume(longer, simulation.save())
+    assert not further.is_complete and further.step == "rest" and [one.step for one in further] == ["rest"] * 4
+
+
+def test_a_run_that_was_stopped_goes_on_from_what_was_saved(document: dict[str, Any], result: fc.Result, tmp_path: Path) -> None:
+    case = fc.Case(document)
+    simulation = fc.Simulation(case)
+    for _ in range(4):
+        next(simulation)
+    simulation.stop()
+    assert list(simulation) == [] and simulation.is_complete
+    again = fc.Simulation.resume(case, simulation.save())
+    assert [increment.time for increment in again] == result.history["time"].tolist()[4:]
+    # Its checkpoint is one of the middle of a run, with which nothing can begin.
+    simulation.write(tmp_path)
+    with pytest.raises(fc.CaseError, match="has not come to its end"):
+        fc.Case({**document, "begin_with": str(tmp_path)}).check()
 
 
 def test_a_servo_finds_the_force_that_is_wanted() -> None:
@@ -176,6 +252,29 @@ def test_bad_leads(document: dict[str, Any]) -> None:
         simulation.lead("block_top", ux=1.0, by=0.0)
     with pytest.raises(fc.CaseError, match="ux: is nan|ux: is NaN"):
         simulation.lead("block_top", ux=float("nan"), by=2.0)
+
+
+@pytest.mark.parametrize(
+    ("bounds", "message"),
+    [
+        ({"max": 1e-300}, "increments: max: is 1e-300: at the time 5e0 increments below .* are lost in round-off"),
+        ({"min": 1e-300}, "increments: min: is 1e-300: at the time 5e0 increments below .* are lost in round-off"),
+        ({"max": 1e-12}, "increments: increments of at most 1e-12 make 4.0e12 of them .*: make them longer"),
+        ({"min": 0.5, "max": 0.1}, "increments: min = 0.5 is above max = 0.1: increments must have room between them"),
+        ({"min": 0.5}, "increments: min = 0.5 is above max = 0.25"),
+        ({"max": float("nan")}, "increments: max: is NaN: must be positive"),
+        ({"min": -1.0}, "increments: min: is -1: must be positive"),
+        ({"max": float("inf")}, "increments: max: is inf: must be positive"),
+    ],
+)
+def test_bad_bounds_of_increments(document: dict[str, Any], bounds: dict[str, float], message: str) -> None:
+    simulation = fc.Simulation(document)
+    while simulation.step == "press":
+        next(simulation)
+    with pytest.raises(fc.CaseError, match=message):
+        simulation.increments(**bounds)
+    # What was there is there still.
+    assert next(simulation).dt == pytest.approx(0.25)
 
 
 def test_increments_are_bounded(document: dict[str, Any]) -> None:
