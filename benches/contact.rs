@@ -32,11 +32,12 @@ fn surfaces(n: usize) -> Surfaces {
         master: Master::Mesh(Surface::new(&master)),
         alpha_n: 1e4,
         compliance: 0.0,
-        laws: vec![Box::new(law)],
+        laws: vec![law.into()],
         initial: None,
         unseen: Vec::new(),
         modulus: 0.0,
         reverse: None,
+        body: None,
         small: None,
         mortar: None,
         penetration: None,
@@ -120,7 +121,7 @@ fn flat(n: usize, law: &FrictionParameters, method: &str) -> (Vec<Vector2<f64>>,
             (p, Some(m))
         }
     };
-    let laws = vec![law.build(1e3).expect("valid parameters")];
+    let laws = vec![law.build(1e3).expect("valid parameters").into()];
     let mut pair =
         ContactPair { name: "flat".into(), points, mortar, master: Master::Mesh(Surface::new(&master)), laws, ..other };
     if method == "small" {

@@ -29,7 +29,7 @@ fuzz_target!(|bytes: &[u8]| {
     let _ = checkpoint::from_bytes(bytes);
     let body = bytes.get(HEAD..).unwrap_or(bytes);
     let mut mended = b"fecontact checkpoint\n".to_vec();
-    mended.extend_from_slice(&2u32.to_le_bytes());
+    mended.extend_from_slice(&checkpoint::VERSION.to_le_bytes());
     mended.extend_from_slice(&(body.len() as u64).to_le_bytes());
     mended.extend_from_slice(&crc32fast::hash(body).to_le_bytes());
     mended.extend_from_slice(body);

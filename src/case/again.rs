@@ -4,33 +4,26 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use serde_json::{Map, Value};
+use serde_json::Value;
 
+use super::differences::{both, compare, object, told};
 use super::error::{CaseError, Checked, Complaint};
-use super::explain::clipped;
 use super::file::Case;
 use super::read;
 use super::written::Written;
 use crate::contact::force::ContactState;
 use crate::contact::surface::SlavePoint;
-use crate::laws::friction::observables;
 use crate::mesh::Mesh;
 use crate::model::Model;
 use crate::model::state::State;
 use crate::output::checkpoint::{self, Checkpoint, MeshPrint};
-use crate::run::SavedRun;
+use crate::run::{Saved, SavedRun};
 
 /// What never changes how a run goes on.
 const FREE: [&str; 5] = ["title", "units", "watch", "probes", "output"];
 
-/// Parameters of friction that only the start of a run depends on, or that what is stored depends on.
-const STARTING: [&str; 4] = ["alpha_t", "law", "structure", "theta"];
-
 /// Values that differ by less than this, relative, are the same.
 const SAME: f64 = 1e-9;
-
-/// Differences that are told at once.
-const TOLD: usize = 5;
 
 /// A case ready to be run: its steps behind those of the case that it begins with, if there is one.
 pub struct Opened {
@@ -109,19 +102,33 @@ impl Opened {
         };
         let model = Arc::new(built.map_err(|error| CaseError { place: self.own_place(error.place), ..error })?);
         let Some(Checkpoint { mesh, run, .. }) = self.start.take() else { return Ok((model, None)) };
-        let complain = |message: String| {
-            let place = if self.resumes { "" } else { "begin_with" };
-            Complaint::new(place, format!("{message}, so the run cannot go on from its checkpoint")).in_file(&self.path)
-        };
-        if let Some(difference) = mesh.difference(&MeshPrint::of(&model.mesh)) {
-            return Err(complain(difference));
-        }
+        let complain = |message: String| self.not_of(if self.resumes { "" } else { "begin_with" }, message);
+        check_mesh(&mesh, &model).map_err(complain)?;
         let saved = SavedRun::from_bytes(run, &model).map_err(complain)?;
         if self.resumes {
             return Ok((model, Some(saved)));
         }
         self.within_strength(&model, saved.simulation().state()).map_err(|complaint| complaint.in_file(&self.path))?;
         Ok((model, Some(saved.begin())))
+    }
+
+    /// A run that was saved in this process, to go on with this case on its model. It was one of the case `before`, its steps
+    /// behind those of the case that it begins with, on a mesh.
+    ///
+    /// # Errors
+    /// [`CaseError`] as [`Self::resume`] and [`Self::build`].
+    pub fn take_up(
+        &self,
+        run: Saved,
+        (before, mesh): (&Value, &MeshPrint),
+        model: &Arc<Model>,
+    ) -> Result<Saved, CaseError> {
+        unchanged(before, &self.document, run.begun()).map_err(|complaint| complaint.in_file(&self.path))?;
+        check_mesh(mesh, model).and_then(|()| run.on(model)).map_err(|message| self.not_of("", message))
+    }
+
+    fn not_of(&self, place: &str, message: String) -> CaseError {
+        Complaint::new(place, format!("{message}, so the run cannot go on from its checkpoint")).in_file(&self.path)
     }
 
     /// A structure that the other case has left must be one of the law as it is now.
@@ -132,8 +139,8 @@ impl Opened {
             };
             let [(_, highest), (_, lowest)] = input.friction.bounds()[..] else { continue };
             let allowed = lowest * (1.0 - SAME)..=highest * (1.0 + SAME);
-            let mu = |(point, state): (&SlavePoint, &ContactState)| {
-                observables::value(pair.law(point), "mu", &state.friction)
+            let mu = |(point, contact): (&SlavePoint, &ContactState)| {
+                pair.observed(point, "mu", (&contact.friction, state.time))
             };
             let of_law = ["mu_s", "mu_k"].iter().any(|name| input.along.parameters.contains_key(*name));
             let varies = of_law || !input.along.law.is_empty();
@@ -159,6 +166,10 @@ impl Opened {
         };
         own(&place).unwrap_or(place)
     }
+}
+
+fn check_mesh(before: &MeshPrint, model: &Model) -> Result<(), String> {
+    before.difference(&MeshPrint::of(&model.mesh)).map_or(Ok(()), Err)
 }
 
 /// A path relative to the folder of the case file.
@@ -229,68 +240,4 @@ fn unchanged(before: &Value, now: &Value, begun: usize) -> Checked<()> {
         compare(format!("steps[{k}]"), steps(before).get(k), steps(now).get(k), &mut differences);
     }
     told(differences, "the case has changed since its checkpoint was written")
-}
-
-/// A place where two cases differ.
-struct Difference {
-    place: String,
-    was: Option<Value>,
-    is: Option<Value>,
-}
-
-impl Difference {
-    /// Whether it makes a variant of the same model: other parameters of friction, other damping.
-    fn is_variant(&self) -> bool {
-        let parts: Vec<&str> = self.place.split('.').collect();
-        match parts[..] {
-            ["contacts", _, "friction", parameter, ..] => !STARTING.contains(&parameter),
-            ["bodies", _, "damping", ..] => true,
-            _ => false,
-        }
-    }
-}
-
-fn told(differences: Vec<Difference>, what: &str) -> Checked<()> {
-    if differences.is_empty() {
-        return Ok(());
-    }
-    let value = |value: &Option<Value>| value.as_ref().map_or("not given".into(), |value| clipped(&value.to_string()));
-    let told = differences.iter().take(TOLD);
-    let told: Vec<String> = told
-        .map(|Difference { place, was, is }| format!("`{}` is {}, and was {}", clipped(place), value(is), value(was)))
-        .collect();
-    let more =
-        if differences.len() > TOLD { format!(", and {} more", differences.len() - TOLD) } else { String::new() };
-    Err(Complaint::new("", format!("{what}: {}{more}", told.join("; "))))
-}
-
-fn object(value: &Value) -> &Map<String, Value> {
-    static NONE: std::sync::LazyLock<Map<String, Value>> = std::sync::LazyLock::new(Map::new);
-    value.as_object().unwrap_or(&NONE)
-}
-
-/// Keys of two objects with their values in both.
-fn both<'a>(
-    was: &'a Map<String, Value>,
-    is: &'a Map<String, Value>,
-) -> impl Iterator<Item = (&'a str, Option<&'a Value>, Option<&'a Value>)> {
-    let new = is.keys().filter(|key| !was.contains_key(*key));
-    was.keys().chain(new).map(|key| (key.as_str(), was.get(key), is.get(key)))
-}
-
-fn compare(place: String, was: Option<&Value>, is: Option<&Value>, differences: &mut Vec<Difference>) {
-    match (was, is) {
-        // Two meshes are compared themselves, wherever they lie.
-        (Some(Value::String(_)), Some(Value::String(_))) if place == "mesh" => {}
-        (Some(Value::Object(was)), Some(Value::Object(is))) => {
-            both(was, is).for_each(|(key, was, is)| compare(format!("{place}.{key}"), was, is, differences));
-        }
-        (Some(Value::Array(was)), Some(Value::Array(is))) => {
-            let places = 0..was.len().max(is.len());
-            places.for_each(|k| compare(format!("{place}[{k}]"), was.get(k), is.get(k), differences));
-        }
-        (Some(Value::Number(was)), Some(Value::Number(is))) if was.as_f64() == is.as_f64() => {}
-        (was, is) if was == is => {}
-        (was, is) => differences.push(Difference { place, was: was.cloned(), is: is.cloned() }),
-    }
 }

@@ -9,6 +9,7 @@ use serde_json::Value;
 
 use super::error::{CaseError, Checked, Complaint};
 use super::file::DriveInput;
+use super::labels;
 use super::schema::schema_of;
 use super::translate::drive;
 use crate::laws::friction::{FrictionLaw, FrictionParameters, FrictionState, observables};
@@ -107,6 +108,7 @@ pub fn build(input: &LawTestInput, path: &Path) -> Result<LawTest, CaseError> {
 }
 
 fn test(input: &LawTestInput) -> Checked<LawTest> {
+    labels::check(&input.title, &input.units)?;
     let law = law(&input.friction)?;
     let path = match (&input.path, &input.table) {
         (Some(phases), None) => phases_of(input, phases)?,
@@ -128,6 +130,8 @@ fn law(parameters: &FrictionParameters) -> Checked<Box<dyn FrictionLaw>> {
         }
         _ => Complaint::new("friction", error),
     })?;
+    let named = observables::check_names(&*law);
+    named.map_err(|message| Complaint::new("friction", format!("the names of the law: {message}")))?;
     Ok(law.controlled().unwrap_or(law))
 }
 

@@ -2,10 +2,12 @@
 
 mod again;
 mod choice;
+mod differences;
 mod error;
 mod explain;
 pub mod file;
 pub mod job;
+mod labels;
 pub mod law_test;
 pub mod loading;
 mod read;

@@ -3,19 +3,19 @@
 use super::pair::ContactPair;
 use super::state::ContactState;
 use super::surface::SlavePoint;
-use crate::laws::friction::{FrictionLaw, Regime, observables};
+use crate::laws::friction::{Regime, observables};
 
 /// Names of the fields of some contacts: those that all have, and what their laws remember or let observe besides.
 pub fn names(pairs: &[ContactPair]) -> Vec<&'static str> {
-    let laws = pairs.iter().flat_map(|pair| &pair.laws).map(|law| &**law);
+    let laws = pairs.iter().flat_map(|pair| &pair.laws).map(|law| law.start());
     let always = observables::ALWAYS.iter().map(|(name, _)| *name);
     let of_surfaces = ["gap", "pressure", "traction", "slip", "elastic_slip", "slip_rate"].into_iter();
-    let further = observables::further(laws.map(|law| law as &dyn FrictionLaw));
+    let further = observables::further(laws);
     let fluid = pairs.iter().any(|pair| pair.fluid.is_some()).then_some("fluid_pressure");
     of_surfaces.chain(always).chain(["state", "dissipation"]).chain(further).chain(fluid).collect()
 }
 
-/// Value of a field at a point after an increment of length `dt`. Where a law has none, `R` and `mu` are 0 and `structure` is
+/// Value of a field at a point, at a time after an increment of length Δt. Where a law has none, `R` and `mu` are 0 and `structure` is
 /// 1; any other name that it does not know is NaN.
 ///
 /// | name | meaning |
@@ -28,7 +28,7 @@ pub fn names(pairs: &[ContactPair]) -> Vec<&'static str> {
 /// | `dissipation` | work of friction so far per area [F/L] |
 /// | `fluid_pressure` | p_w, beside `pressure`, where a contact has a fluid [F/L²] |
 /// | any other | what the law observes under this name, such as `R`, `mu`, `structure`, `theta` |
-pub fn value(pair: &ContactPair, slave: &SlavePoint, state: &ContactState, dt: f64, name: &str) -> f64 {
+pub fn value(pair: &ContactPair, slave: &SlavePoint, state: &ContactState, (time, dt): (f64, f64), name: &str) -> f64 {
     let friction = &state.friction;
     match name {
         "gap" => state.gap,
@@ -44,6 +44,6 @@ pub fn value(pair: &ContactPair, slave: &SlavePoint, state: &ContactState, dt: f
             Regime::Stick => 1.0,
             Regime::Slip => 2.0,
         },
-        _ => observables::value(pair.law(slave), name, friction),
+        _ => pair.observed(slave, name, (friction, time)),
     }
 }

@@ -28,6 +28,11 @@
 //!                                                no p/α_n under the augmented Lagrangian, which leaves no penetration
 //! ```
 //!
+//! Nor do surfaces ride up on each other (dilate) in such an increment, where they meet: they begin with the next. From where they end
+//! alone it could not be told which of two states they are in: apart at a gap g > 0, never having touched, or riding at the same
+//! gap on what slip after touch has opened. Closed is what overlaps, g < d₀, as without dilatancy; what the opening would have done to
+//! the pressure is part of the doubt by which static increments end where points touch ([`ContactPair::arrival`]).
+//!
 //! What is accepted depends on c by no more than the control of static increments allows: it repeats those in which friction
 //! would change with the share that counts. Without c a point that comes in with a high pressure would stick for its stiff
 //! penalty alone, and spring away by all it has missed in the increment after.
@@ -43,13 +48,15 @@ use super::point::SlavePoint;
 use super::presumption::Presumption;
 pub use super::presumption::{PointIncrement, Presume, Tractions};
 pub use super::state::ContactState;
-use crate::laws::friction::{Answer, FrictionResponse, LawFailure, Sliding};
+use crate::laws::friction::{Answer, FrictionLaw, FrictionResponse, LawFailure, Sliding};
 
 /// A point on the way through its law: first what the law is asked for, then what follows from its answer.
 #[derive(Debug)]
 pub struct Loading<'a> {
     pair: &'a ContactPair,
     slave: &'a SlavePoint,
+    /// The law that holds in the increment
+    law: &'a dyn FrictionLaw,
     old: &'a ContactState,
     increment: PointIncrement,
     place: PointPlace,
@@ -73,8 +80,7 @@ impl<'a> Loading<'a> {
     /// # Errors
     /// [`LawFailure`] of a law that does not say where its surfaces part.
     pub fn new(
-        pair: &'a ContactPair,
-        slave: &'a SlavePoint,
+        (pair, slave, law): (&'a ContactPair, &'a SlavePoint, &'a dyn FrictionLaw),
         old: &'a ContactState,
         increment: PointIncrement,
         place: PointPlace,
@@ -89,6 +95,7 @@ impl<'a> Loading<'a> {
         let mut loading = Self {
             pair,
             slave,
+            law,
             old,
             increment,
             place,
@@ -132,20 +139,12 @@ impl<'a> Loading<'a> {
     /// d at p → 0: a law has no answer at 0, but near it the answer no longer changes.
     fn parting(&self) -> Result<f64, LawFailure> {
         let (old, slip) = (&self.old.friction, self.whole * self.counted(0.0).0);
-        let law = self.pair.law(self.slave);
-        let size = old.pressure + old.traction.abs() + (self.alpha_n + law.stiffness()) * slip.abs();
+        let size = old.pressure + old.traction.abs() + (self.alpha_n + self.law.stiffness()) * slip.abs();
         if size == 0.0 {
             return Ok(old.opening);
         }
         let sliding = Sliding { slip, pressure: f64::EPSILON * size, ..self.sliding };
-        Ok(self.answer(sliding)?.state.opening)
-    }
-
-    /// The answer of the law as it holds in the increment.
-    fn answer(&self, sliding: Sliding) -> Answer {
-        let law = self.pair.law(self.slave);
-        let now = law.during(self.increment.during.span())?;
-        now.as_deref().unwrap_or(law).respond(&self.old.friction, sliding)
+        Ok(self.law.respond(old, sliding)?.state.opening)
     }
 
     /// Ask for a pressure, and the slip that counts under it.
@@ -167,7 +166,7 @@ impl<'a> Loading<'a> {
     /// # Errors
     /// [`LawFailure`] of the law, or where its opening and its pressure do not come to agree.
     pub fn finish(mut self, answer: Answer, closed: &mut ClosedPoints) -> Result<ContactState, LawFailure> {
-        let mut response = answer?;
+        let mut response = self.met(answer?);
         let PointPlace { gap, foot, closes, fluid } = self.place;
         if !closes {
             let length = closed.push_open(self.kinematics, fluid).unwrap_or(self.old.length);
@@ -176,8 +175,8 @@ impl<'a> Loading<'a> {
         }
         let (pressure, carried) = (self.agree(&mut response)?, self.sliding.pressure);
         let (share, dslip_dpressure) = self.counted(carried);
-        let Self { pair, slave, old, increment, kinematics, whole, alpha_n, sliding, compliance, .. } = self;
-        let stiffness = pair.law(slave).stiffness();
+        let Self { pair, law, old, increment, kinematics, whole, alpha_n, sliding, compliance, .. } = self;
+        let stiffness = law.stiffness();
         if increment.presumption.presume == Presume::Stick {
             response.state.traction = old.friction.traction + stiffness * sliding.slip;
             response.dtraction_dslip = stiffness;
@@ -217,6 +216,11 @@ impl<'a> Loading<'a> {
         })
     }
 
+    /// The answer of the law, without riding up in an increment in which the surfaces meet.
+    fn met(&self, response: FrictionResponse) -> FrictionResponse {
+        if self.compliance.is_some() { response.without_lift(&self.old.friction) } else { response }
+    }
+
     /// The pressure that goes with the opening of the law, p = p̄ − α_n (g − d): asked for again until both agree, or by the
     /// tangent of one answer where a presumption says under which pressure the law answers.
     fn agree(&mut self, response: &mut FrictionResponse) -> Result<f64, LawFailure> {
@@ -240,7 +244,7 @@ impl<'a> Loading<'a> {
             // Where slip sets in the opening has a kink, over which tangents lead to and fro.
             let between = low < pressure && pressure < high;
             self.load(if between { pressure } else { 0.5 * (low + high.min(4.0 * asked)) });
-            *response = self.answer(self.sliding)?;
+            *response = self.met(self.law.respond(&self.old.friction, self.sliding)?);
         }
         Err(LawFailure::Opening { opening: response.state.opening, pressure: self.sliding.pressure })
     }

@@ -75,7 +75,7 @@ impl ContactPair {
     /// that starts closed, under its initial tractions.
     pub fn initial_states(&self, x: &Configuration) -> Vec<ContactState> {
         let state = |(k, (slave, met)): (usize, (&SlavePoint, Met))| {
-            let law = self.law(slave);
+            let law = self.law(slave).start();
             let friction = match self.initial.as_ref().map(|initial| initial[k]) {
                 Some(InitialTraction { pressure, traction }) => law.starting_state(pressure, traction),
                 None => law.initial_state(),

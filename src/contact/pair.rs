@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use nalgebra::Vector2;
+use rayon::prelude::*;
 
 use super::fluid::{BadPressure, Fluid};
 use super::master::Master;
@@ -11,8 +12,11 @@ pub use super::presumption::{ContactIncrement, Presumption};
 use super::small_sliding::SmallSliding;
 use super::state::ContactState;
 use super::surface::SlavePoint;
-use crate::laws::friction::{FrictionLaw, FrictionState, LawFailure, Regime, Sliding};
+use crate::laws::friction::{FrictionState, Held, LawFailure, LawInTime, Regime, Resolved, Sliding, observables};
 use crate::mesh::configuration::Configuration;
+
+/// Laws that one thread resolves at a time.
+const PART: usize = 64;
 
 /// Two surfaces that may touch.
 #[derive(Debug)]
@@ -37,7 +41,7 @@ pub struct ContactPair {
     /// What pushes the surfaces apart beside their own pressure
     pub fluid: Option<Fluid>,
     /// The friction laws, each with the parameters of some of the points
-    pub laws: Vec<Box<dyn FrictionLaw>>,
+    pub laws: Vec<LawInTime>,
     /// Tractions of every point at the start of a contact that starts closed
     pub initial: Option<Vec<InitialTraction>>,
     /// The two sides the other way round, to see what the slave's points do not: how deep master nodes lie in the slave
@@ -47,6 +51,8 @@ pub struct ContactPair {
     /// G*: G/(1 − ν) of both sides, what slip that varies along the interface is resisted with; 0 where there are no bodies
     /// [F/L²]
     pub modulus: f64,
+    /// Body of the slave's edges, at its first point; of a group of points the only body there, if there is one
+    pub body: Option<usize>,
     /// What every point keeps meeting, in small sliding
     pub small: Option<SmallSliding>,
 }
@@ -84,15 +90,35 @@ impl ContactPair {
         matches!(&self.master, Master::Mesh(surface) if surface.own_depth.is_some())
     }
 
-    /// The friction law of a slave point.
-    pub fn law(&self, slave: &SlavePoint) -> &dyn FrictionLaw {
-        &*self.laws[slave.law]
+    /// Friction of a slave point through the run.
+    pub fn law(&self, slave: &SlavePoint) -> &LawInTime {
+        &self.laws[slave.law]
+    }
+
+    /// The laws that hold from one time to another.
+    ///
+    /// # Errors
+    /// [`LawFailure`] of parameters without good values then, with the first point that has them.
+    pub fn laws_during(&self, span: [f64; 2]) -> Result<Resolved<'_>, (usize, LawFailure)> {
+        if !self.laws.iter().any(LawInTime::varies) {
+            return Ok(Resolved::Always(&self.laws));
+        }
+        let resolved = self.laws.par_iter().with_min_len(PART).map(|law| law.during(span));
+        let resolved: Vec<Result<Held, LawFailure>> = resolved.collect();
+        let first = |law: usize| self.points.iter().position(|slave| slave.law == law).unwrap_or_default();
+        let laws = resolved.into_iter().enumerate().map(|(k, law)| law.map_err(|failure| (first(k), failure)));
+        Ok(Resolved::Then(laws.collect::<Result<_, _>>()?))
+    }
+
+    /// What the law of a point shows by a name of a state at a time; NaN where its parameters have no good values then.
+    pub fn observed(&self, slave: &SlavePoint, name: &str, (state, time): (&FrictionState, f64)) -> f64 {
+        self.law(slave).at(time).map_or(f64::NAN, |law| observables::value(&*law, name, state))
     }
 
     /// Open, stick or slip; what has no friction slides freely, and is not called slipping.
     pub fn regime(&self, slave: &SlavePoint, state: &ContactState) -> Regime {
         match state.regime() {
-            Regime::Slip if self.law(slave).is_frictionless() => Regime::Stick,
+            Regime::Slip if self.law(slave).start().is_frictionless() => Regime::Stick,
             regime => regime,
         }
     }
@@ -126,7 +152,7 @@ impl ContactPair {
     /// The larger of α_n and α_t; slip that lifts the surfaces, δp = α_n tan ψ δu and δq = μ δp, has α_n (1 + μ tan ψ), which is
     /// below 2 α_n as long as μ is below 1 [F/L³].
     pub fn stiffest(&self, slave: &SlavePoint) -> f64 {
-        let law = self.law(slave);
+        let law = self.law(slave).start();
         let lifted = if law.offsets().is_empty() { 1.0 } else { 2.0 };
         (lifted * self.alpha_n).max(law.stiffness())
     }
@@ -145,7 +171,8 @@ impl ContactPair {
     }
 
     /// What friction may have to do with the slip before touch, at a point that was apart when the increment began and is
-    /// closed `now`: that slip lies between none and what it would have been, had the motion gone on as before until touch. `foreseen` is
+    /// closed `now`, beside what the slip after touch would have lifted (surfaces do not ride up in the increment in which they
+    /// meet): the slip before touch lies between none and what it would have been, had the motion gone on as before until touch. `foreseen` is
     /// the state that such a motion would have led to. 0 for any other point, and for one that slides at the limit of
     /// friction in all these cases.
     ///
@@ -155,7 +182,7 @@ impl ContactPair {
         &self,
         slave: &SlavePoint,
         [old, foreseen, now]: [&ContactState; 3],
-        dt: f64,
+        (time, dt): (f64, f64),
     ) -> Result<Option<Arrival>, LawFailure> {
         let pressure = now.friction.pressure;
         if pressure <= 0.0 || !old.apart(now.length) {
@@ -164,10 +191,17 @@ impl ContactPair {
         let met = foreseen.friction.pressure > 0.0 && foreseen.clearance() < 0.0;
         let at = if met { old.clearance() / (old.clearance() - foreseen.clearance()) } else { 0.0 };
         let free = foreseen.slip * at;
+        let law = self.law(slave).during([time - dt, time])?;
         let mut doubt = 0.0f64;
         for slip in [now.slip, now.slip - free] {
-            let other = self.law(slave).respond(&old.friction, Sliding { slip, pressure, dt })?;
+            let other = law.respond(&old.friction, Sliding { slip, pressure, dt })?;
             doubt = doubt.max((other.state.traction - now.friction.traction).abs() * now.length);
+        }
+        if !law.offsets().is_empty() {
+            let way = self.compliance_after_touch(true) * pressure;
+            let slip = now.slip * way / (old.clearance() + way);
+            let lift = law.respond(&old.friction, Sliding { slip, pressure, dt })?.state.opening - now.friction.opening;
+            doubt = doubt.hypot(lift / (self.compliance + 1.0 / self.alpha_n) * now.length);
         }
         Ok((doubt > 0.0).then_some(Arrival { at, doubt }))
     }
@@ -186,7 +220,7 @@ impl ContactPair {
 
     /// Elastic part of the slip, q/α_t; 0 for a frictionless contact [L].
     pub fn elastic_slip(&self, slave: &SlavePoint, friction: &FrictionState) -> f64 {
-        let stiffness = self.law(slave).stiffness();
+        let stiffness = self.law(slave).start().stiffness();
         if stiffness > 0.0 { friction.traction / stiffness } else { 0.0 }
     }
 

@@ -70,7 +70,7 @@ pub(super) fn may_ride(
     old: &ContactState,
     length: impl FnOnce() -> f64,
 ) -> bool {
-    old.foot.is_some() && !pair.law(slave).offsets().is_empty() && !old.apart(length())
+    old.foot.is_some() && !pair.law(slave).start().offsets().is_empty() && !old.apart(length())
 }
 
 /// Whether a zero gap is presumed to be closed, and to stick.

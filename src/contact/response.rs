@@ -12,7 +12,7 @@ use super::presumption::{ContactIncrement, PointIncrement, Presumption};
 use super::search::{Index, Trees};
 use super::state::ContactState;
 use super::surface::SlavePoint;
-use crate::laws::friction::{Answer, FrictionResponse, FrictionState, LawFailure, Sliding};
+use crate::laws::friction::{Answer, FrictionResponse, FrictionState, LawFailure, Resolved, Sliding};
 use crate::linear::system::Request;
 use crate::mesh::configuration::Configuration;
 
@@ -76,6 +76,8 @@ type At<'a> = (&'a mut Kinematics, &'a mut Room);
 /// What one evaluation asks of every point.
 struct Question<'a, P> {
     pair: &'a ContactPair,
+    /// The laws that hold in the increment
+    laws: Resolved<'a>,
     /// Increment of a point, and what is presumed about it
     during: ContactIncrement,
     presumed: P,
@@ -98,7 +100,8 @@ impl ContactPair {
         request: Request,
         response: &mut PairResponse,
     ) -> Result<(), (usize, LawFailure)> {
-        let question = Question { pair: self, during, presumed, varied: request == Request::Tangent };
+        let laws = self.laws_during(during.span())?;
+        let question = Question { pair: self, laws, during, presumed, varied: request == Request::Tangent };
         if let Some(small) = &self.small {
             return question.each(old, response, |k, slave, old, increment, (kinematics, _)| {
                 let meeting = small.points[k].as_ref().map(|point| point.meet(before, x, kinematics));
@@ -183,7 +186,7 @@ impl Part {
         states: &mut [ContactState],
         place: impl Fn(usize, &SlavePoint, &ContactState, PointIncrement, At) -> PointPlace,
     ) {
-        let Question { pair, during, .. } = *question;
+        let Question { pair, ref laws, during, .. } = *question;
         let Self { closed, kinematics, room, failure } = self;
         closed.clear();
         kinematics.resize_with(TOGETHER.min(numbers.len()), Kinematics::default);
@@ -197,7 +200,7 @@ impl Part {
                 let increment = PointIncrement { during, presumption: (question.presumed)(first + i) };
                 kinematics.varied = question.varied;
                 let place = place(first + i, slave, old, increment, (&mut *kinematics, room));
-                match Loading::new(pair, slave, old, increment, place, kinematics) {
+                match Loading::new((pair, slave, laws.law(slave.law)), old, increment, place, kinematics) {
                     Ok(loading) => {
                         sliding[i] = loading.sliding;
                         loadings[i] = Some(loading);
@@ -208,7 +211,7 @@ impl Part {
                     }
                 }
             }
-            let answers = answers(pair, during, points, old, &sliding[..points.len()]);
+            let answers = answers(laws, points, old, &sliding[..points.len()]);
             for (i, (loading, answer)) in loadings.into_iter().flatten().zip(answers).enumerate() {
                 match loading.finish(answer, closed) {
                     Ok(state) => states[i] = state,
@@ -223,13 +226,7 @@ impl Part {
 }
 
 /// What the laws of consecutive points say.
-fn answers(
-    pair: &ContactPair,
-    during: ContactIncrement,
-    points: &[SlavePoint],
-    old: &[ContactState],
-    sliding: &[Sliding],
-) -> [Answer; TOGETHER] {
+fn answers(laws: &Resolved, points: &[SlavePoint], old: &[ContactState], sliding: &[Sliding]) -> [Answer; TOGETHER] {
     let mut committed = [FrictionState::default(); TOGETHER];
     committed.iter_mut().zip(old).for_each(|(committed, old)| *committed = old.friction);
     let mut answers = [Ok(FrictionResponse::default()); TOGETHER];
@@ -238,12 +235,7 @@ fn answers(
         let range = start..start + alike.len();
         start = range.end;
         let (old, sliding, answers) = (&committed[range.clone()], &sliding[range.clone()], &mut answers[range]);
-        let law = pair.law(&alike[0]);
-        match law.during(during.span()) {
-            Ok(None) => law.respond_many(old, sliding, answers),
-            Ok(Some(law)) => law.respond_many(old, sliding, answers),
-            Err(failure) => answers.fill(Err(failure)),
-        }
+        laws.law(alike[0].law).respond_many(old, sliding, answers);
     }
     answers
 }

@@ -15,8 +15,11 @@ use crate::mesh::configuration::Configuration;
 /// Force and moment that the master puts on the slave.
 ///
 /// ```text
-/// F = Σ_j t_j ℓ_j,   M = Σ_j (x_j − x₀) × t_j ℓ_j,   t = p n − q s
+/// F = Σ_j t_j ℓ_j,   M = Σ_j (x_j − x₀) × t_j ℓ_j,   t = p n − (q + η v) s
 /// ```
+/// What slip radiates, η v, is a traction of the surfaces like friction, 0 without radiation damping. The pressure p_w of a fluid is
+/// a load, and left out.
+///
 /// Of rings F_x sums up the radial parts of the full turn, and M is that of the section.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Resultant {
@@ -48,8 +51,8 @@ impl ContactPair {
     pub fn forces_on_nodes(&self, states: &[ContactState], x: &Configuration) -> Vec<(usize, Vector2<f64>)> {
         let acting = self.acting(states, x);
         let forces = acting.iter().flat_map(|acting| {
-            let friction = &states[acting.point].friction;
-            nodal_forces(&acting.kinematics, friction.pressure, friction.traction)
+            let [pressure, traction] = states[acting.point].tractions();
+            nodal_forces(&acting.kinematics, pressure, traction)
         });
         forces.collect()
     }
@@ -58,8 +61,8 @@ impl ContactPair {
     pub fn resultant(&self, states: &[ContactState], x: &Configuration, about: Vector2<f64>) -> Resultant {
         let mut sum = Resultant::default();
         for Acting { point, place, kinematics: k } in self.acting(states, x) {
-            let friction = &states[point].friction;
-            let force = (k.normal * friction.pressure - k.tangent * friction.traction) * k.length;
+            let [pressure, traction] = states[point].tractions();
+            let force = (k.normal * pressure - k.tangent * traction) * k.length;
             let [reference, displacement] = x.apart(&place, about);
             sum.force += force;
             sum.moment += (reference + displacement).perp(&force);

@@ -38,6 +38,11 @@ impl ContactState {
         self.gap - self.friction.opening
     }
 
+    /// p and q + η v: what the surfaces put on each other, friction and what slip radiates together [F/L²]
+    pub fn tractions(&self) -> [f64; 2] {
+        [self.friction.pressure, self.friction.traction + self.radiation]
+    }
+
     /// Whether a point that stands for this length is open at a gap that counts.
     pub fn apart(&self, length: f64) -> bool {
         self.friction.pressure == 0.0 && self.clearance() > TOUCH * length

@@ -37,6 +37,12 @@ pub fn is_linear(model: &Model, step: &Step) -> bool {
     others.map(|term| term.dependence(model, step)).all(|dependence| dependence <= Dependence::StepSize)
 }
 
+/// Whether that tangent is another one in increments of another length.
+pub fn depends_on_length(model: &Model, step: &Step) -> bool {
+    let mut others = Term::ALL.into_iter().filter(|term| *term != Term::Interfaces);
+    others.any(|term| term.dependence(model, step) == Dependence::StepSize)
+}
+
 /// Whether a node at a contact is held along an inclined direction, or follows others or leads them: its equations are no sums of
 /// its forces.
 fn bound_at_contacts(model: &Model, step: &Step) -> bool {

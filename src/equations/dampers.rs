@@ -37,7 +37,7 @@ pub(super) fn add(
     };
     for dashpot in &trial.step.loads.dashpots {
         let dof = dashpot.dof;
-        let driver = dashpot.driver_velocity(model.mesh.nodes[dof / 2], trial.time);
+        let driver = dashpot.driver_velocity(model.mesh.nodes[dof / 2], trial.moment());
         let (velocity, dvelocity) = velocity(dof);
         let pull = dashpot.coefficient * (driver - velocity);
         if !pull.is_finite() {

@@ -1,7 +1,5 @@
 //! Bodies that remember, or whose tangent is not symmetric: what they remember is committed and trial state.
 
-use std::ops::Range;
-
 use nalgebra::Vector2;
 use rayon::prelude::*;
 
@@ -16,9 +14,9 @@ use crate::model::element::Memory;
 /// Elements whose contributions are held at once before they are added.
 const BATCH: usize = 1024;
 
-/// The elements of such bodies, and where each finds what it remembers.
+/// Whether each element is one of such bodies; empty if none is.
 #[derive(Clone, Debug)]
-pub(super) struct Evolving(Vec<(usize, Range<usize>)>);
+pub(super) struct Evolving(Vec<bool>);
 
 /// Whether a body is one of them.
 pub(super) fn evolves(model: &Model, body: usize) -> bool {
@@ -29,8 +27,9 @@ pub(super) fn evolves(model: &Model, body: usize) -> bool {
 impl Evolving {
     /// Those of the bodies, but for elements that are `constant`.
     pub fn new(model: &Model, constant: &[bool]) -> Self {
-        let own = |(e, _): &(usize, Range<usize>)| evolves(model, model.body_of_element[*e]) && !constant[*e];
-        Self(model.memories().into_iter().enumerate().filter(own).collect())
+        let own = |(&body, constant): (&usize, &bool)| evolves(model, body) && !constant;
+        let all: Vec<bool> = model.body_of_element.iter().zip(constant).map(own).collect();
+        Self(if all.contains(&true) { all } else { Vec::new() })
     }
 
     /// Add the forces of these elements and what they store; their variables at the end of the trial, what they dissipate and the
@@ -48,27 +47,26 @@ impl Evolving {
             // The initial stress of constant elements stays as it is.
             memory.clone_from(old);
         }
-        let mut rest = &mut memory[..];
         let mut energy = 0.0;
         (*heat, *heating) = (0.0, 0.0);
-        for batch in self.0.chunks(BATCH) {
-            let mut trials: Vec<&mut [f64]> = Vec::with_capacity(batch.len());
-            for (_, range) in batch {
-                let (own, after) = std::mem::take(&mut rest).split_at_mut(range.len());
-                trials.push(own);
-                rest = after;
+        let wanted = sums.tangent.is_some();
+        let one = |(e, new): (usize, &mut [f64])| {
+            let old = model.memories.of(e, old);
+            model.write_temperatures((trial.step, trial.moment()), e, old, new);
+            let found = evolve(model, e, Memory { dt: trial.dt, old, new: &mut *new }, u, wanted);
+            let found = found.map_err(|failure| TrialFailure::inverted(model, e, failure))?;
+            Ok((found, model.heating(e, [old, new])))
+        };
+        let elements = model.memories.each_mut(memory).enumerate().zip(&self.0);
+        let mut own = elements.filter_map(|(element, own)| own.then_some(element));
+        loop {
+            let batch: Vec<(usize, &mut [f64])> = own.by_ref().take(BATCH).collect();
+            if batch.is_empty() {
+                break;
             }
-            let wanted = sums.tangent.is_some();
-            let one = |((e, range), new): (&(usize, Range<usize>), &mut [f64])| {
-                let old = &old[range.clone()];
-                model.write_temperatures((trial.dt > 0.0).then_some((trial.step, trial.time)), *e, old, new);
-                let found = evolve(model, *e, Memory { dt: trial.dt, old, new: &mut *new }, u, wanted)?;
-                Ok((found, model.heating(*e, [old, new])))
-            };
-            let answers: Vec<_> = batch.par_iter().zip(trials).map(one).collect();
-            for ((e, _), answer) in batch.iter().zip(answers) {
-                let (([stored, dissipated], contribution), work) =
-                    answer.map_err(|failure| TrialFailure::inverted(model, *e, failure))?;
+            let answers: Vec<Result<_, TrialFailure>> = batch.into_par_iter().map(one).collect();
+            for answer in answers {
+                let (([stored, dissipated], contribution), work) = answer?;
                 energy += stored;
                 *heat += dissipated;
                 *heating += work;

@@ -59,11 +59,11 @@ pub(super) fn add(
 
 /// Add all loads to `loads`, and their tangents.
 fn collect(model: &Model, trial: Trial, u: &[f64], loads: &mut [f64], sums: &mut Sums) {
-    let Trial { old, step, time, .. } = trial;
+    let (Trial { old, step, time, .. }, at) = (trial, trial.moment());
     loads.iter_mut().zip(&model.prestress).for_each(|(load, prestress)| *load += prestress);
     for load in &step.loads.dead {
         for &(node, weight, position) in &load.shares {
-            loads[2 * node + load.component] += weight * load.amplitude.value(position, time);
+            loads[2 * node + load.component] += weight * load.amplitude.value(position, at);
         }
     }
     if !step.loads.pressures.is_empty() {
@@ -71,7 +71,7 @@ fn collect(model: &Model, trial: Trial, u: &[f64], loads: &mut [f64], sums: &mut
         for load in &step.loads.pressures {
             for edge in &load.edges {
                 let middle = edge.iter().map(|&node| model.mesh.nodes[node]).sum::<Vector2<f64>>() / edge.len() as f64;
-                let pressure = follower_pressure(edge, load.amplitude.value(middle, time), &x);
+                let pressure = follower_pressure(edge, load.amplitude.value(middle, at), &x);
                 for (a, &node) in edge.iter().enumerate() {
                     (0..2).for_each(|i| loads[2 * node + i] -= pressure.force[2 * a + i]);
                 }
@@ -81,7 +81,7 @@ fn collect(model: &Model, trial: Trial, u: &[f64], loads: &mut [f64], sums: &mut
     }
     for moment in &step.loads.moments {
         let [a, b] = moment.plate;
-        let size = moment.amplitude.value(model.mesh.nodes[a], time);
+        let size = moment.amplitude.value(model.mesh.nodes[a], at);
         let (force, rates) = links::couple(model, moment.plate, u, size);
         (0..2).for_each(|i| {
             (loads[2 * a + i], loads[2 * b + i]) = (loads[2 * a + i] - force[i], loads[2 * b + i] + force[i])
@@ -90,7 +90,7 @@ fn collect(model: &Model, trial: Trial, u: &[f64], loads: &mut [f64], sums: &mut
     }
     for spring in &step.loads.springs {
         let position = model.mesh.nodes[spring.dof / 2];
-        let driver = spring.driver.as_ref().map_or(0.0, |driver| driver.value(position, time));
+        let driver = spring.driver.as_ref().map_or(0.0, |driver| driver.value(position, at));
         loads[spring.dof] += spring.stiffness * (driver - u[spring.dof]);
         sums.stiffen(spring.dof / 2, (spring.dof % 2, spring.dof % 2), spring.stiffness);
     }

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector2;
 
+use crate::model::boundary::Moment;
 use crate::model::state::State;
 use crate::model::support::Prescribed;
 use crate::model::{Model, Step};
@@ -17,6 +18,8 @@ pub struct Trial<'a> {
     pub time: f64,
     /// Δt [T]
     pub dt: f64,
+    /// Start and end of the increment beyond whose end equilibrium is asked for, if it is
+    pub beyond: Option<[f64; 2]>,
     /// α_n of contacts under the augmented Lagrangian is this many times the one given
     pub stiffening: f64,
     /// Whether the bodies give way under the pressures that come up within the increment; central differences move first
@@ -26,13 +29,22 @@ pub struct Trial<'a> {
 impl<'a> Trial<'a> {
     /// The increment from a state to a time.
     pub fn new(old: &'a State, step: &'a Step, time: f64, dt: f64) -> Self {
-        Self { old, step, time, dt, stiffening: 1.0, settles: true }
+        Self { old, step, time, dt, beyond: None, stiffening: 1.0, settles: true }
     }
 
     /// The increment to the time t + θ Δt at which the scheme asks for equilibrium.
     pub fn ahead(self) -> Trial<'a> {
         let theta = self.step.scheme.theta();
-        if theta == 1.0 { self } else { Self { time: self.old.time + theta * self.dt, dt: theta * self.dt, ..self } }
+        if theta == 1.0 {
+            return self;
+        }
+        let beyond = Some([self.old.time, self.time]);
+        Self { time: self.old.time + theta * self.dt, dt: theta * self.dt, beyond, ..self }
+    }
+
+    /// When what is prescribed and applied is asked for.
+    pub fn moment(&self) -> Moment {
+        Moment { time: self.time, beyond: self.beyond }
     }
 
     /// What is left of the dashpots that stabilize at the end of the increment, 1 to 0; exactly 0 at the end of the step.
@@ -43,13 +55,13 @@ impl<'a> Trial<'a> {
     /// ū of a support at the end of the increment; not finite where its expression has no value [L].
     pub fn prescribed(&self, support: &Prescribed, model: &Model) -> f64 {
         let (position, start) = self.place(support, model);
-        support.value(position, self.time, self.step.span, start)
+        support.value(position, self.moment(), self.step.span, start)
     }
 
     /// ū of a support at the start, thirds and end of the increment [L].
     pub fn thirds(&self, support: &Prescribed, model: &Model) -> [f64; 4] {
         let (position, start) = self.place(support, model);
-        support.thirds(position, [self.time - self.dt, self.time], self.step.span, start)
+        support.thirds(position, (self.time - self.dt, self.moment()), self.step.span, start)
     }
 
     /// Reference position of a support, and its displacement at the start of the step.

@@ -4,6 +4,7 @@
 //! ([`InlineMesh::build`]). Readers only fill in a raw mesh; one check turns it into a [`Mesh`], so that a mesh keeps its promises wherever it comes from.
 
 mod blocks;
+pub mod boxes;
 mod check;
 pub mod configuration;
 mod degenerate;

@@ -37,6 +37,11 @@ fn spelled(text: &str, wanted: impl Fn(char) -> bool) -> Cow<'_, str> {
     text.chars().map(spell).collect::<String>().into()
 }
 
+/// Whether a character can stand in no name, table or figure: it steers a device, or XML has none such.
+pub fn is_unwritable(c: char) -> bool {
+    c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}')
+}
+
 fn steers(c: char) -> bool {
     let direction =
         matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{061c}');

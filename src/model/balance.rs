@@ -77,13 +77,13 @@ fn told(body: &Body, found: &Imbalance, later: &Imbalance, step: &Step) -> Strin
 /// Forces of the bodies' initial stress, less what acts on them, at a time of the first step.
 fn forces(model: &Model, step: &Step, time: f64) -> Forces {
     let mut forces = Forces { sum: vec![0.0; model.dofs()], magnitude: vec![0.0; model.dofs()] };
-    let (old, memories) = (model.initial_memory(), model.memories());
-    for (e, own) in memories.into_iter().enumerate() {
+    let initial = model.initial_memory();
+    for e in 0..model.solids.len() {
         let body = &model.bodies[model.body_of_element[e]];
         if body.initial_stress.is_none() {
             continue;
         }
-        let (old, nodes) = (&old[own], &model.mesh.elements[e].nodes);
+        let (old, nodes) = (model.memories.of(e, &initial), &model.mesh.elements[e].nodes);
         let (mut new, mut force) = (old.to_vec(), vec![0.0; 2 * nodes.len()]);
         let memory = Memory { dt: 0.0, old, new: &mut new };
         let still = vec![Vector2::zeros(); nodes.len()];

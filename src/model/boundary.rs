@@ -3,6 +3,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 pub use super::expression::Expression;
+pub use super::moment::{Moment, Span};
 
 /// How a prescribed quantity varies.
 #[derive(Clone, Debug)]
@@ -56,22 +57,6 @@ impl Profile {
     /// Whether it varies in time.
     pub fn depends_on_time(&self) -> bool {
         matches!(self, Self::Expression(expression) if expression.depends_on_time())
-    }
-}
-
-/// The time span of a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Span {
-    /// start [T]
-    pub start: f64,
-    /// end [T]
-    pub end: f64,
-}
-
-impl Span {
-    /// Share of the span that has passed, 0 to 1.
-    pub fn share(&self, time: f64) -> f64 {
-        if self.end > self.start { ((time - self.start) / (self.end - self.start)).clamp(0.0, 1.0) } else { 1.0 }
     }
 }
 
@@ -133,8 +118,14 @@ impl Drive {
         }
     }
 
-    /// Value at a reference position and run time, `start` being the value at the start of the step.
-    pub fn value(&self, position: Vector2<f64>, time: f64, span: Span, start: f64) -> f64 {
+    /// Value at a reference position and run time, `start` being the value at the start of the step. Beyond an increment a straight
+    /// line goes on as it does within, wherever it bends or the step ends; rates and expressions say themselves what comes.
+    pub fn value(&self, position: Vector2<f64>, at: impl Into<Moment>, span: Span, start: f64) -> f64 {
+        let Moment { time, beyond } = at.into();
+        if let (Self::Constant(_) | Self::Table(_) | Self::ByPlace(..), Some([from, to])) = (self, beyond) {
+            let [first, last] = [from, to].map(|time| self.value(position, time, span, start));
+            return first + (time - from) / (to - from) * (last - first);
+        }
         match self {
             Self::Constant(end) => start + (end - start) * span.share(time),
             Self::Rate(rate) => start + rate * (time - span.start),
@@ -168,8 +159,8 @@ pub struct Amplitude {
 
 impl Amplitude {
     /// Value at a reference position and run time.
-    pub fn value(&self, position: Vector2<f64>, time: f64) -> f64 {
-        self.drive.value(position, time, self.span, self.taken_over(position))
+    pub fn value(&self, position: Vector2<f64>, at: impl Into<Moment>) -> f64 {
+        self.drive.value(position, at, self.span, self.taken_over(position))
     }
 
     /// Value at the start of a step: what was taken over if the drive is new in this step, else its own.
@@ -242,8 +233,8 @@ pub struct Dashpot {
 
 impl Dashpot {
     /// v_driver, for the node's reference position [L/T].
-    pub fn driver_velocity(&self, position: Vector2<f64>, time: f64) -> f64 {
-        self.driver.as_ref().map_or(0.0, |driver| driver.value(position, time))
+    pub fn driver_velocity(&self, position: Vector2<f64>, at: impl Into<Moment>) -> f64 {
+        self.driver.as_ref().map_or(0.0, |driver| driver.value(position, at))
     }
 }
 

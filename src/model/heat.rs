@@ -2,20 +2,21 @@
 
 use nalgebra::Vector2;
 
+use super::boundary::Moment;
+use super::imposed::Temperature;
 use super::{Model, Step};
 use crate::laws::bulk::{INITIAL_STRESS, TEMPERATURE};
 
 impl Model {
     /// What the materials remember at the start: the initial stress of the bodies that have one, and zero.
     pub fn initial_memory(&self) -> Vec<f64> {
-        let memories = self.memories();
-        let mut memory = vec![0.0; memories.last().map_or(0, |last| last.end)];
-        for (e, own) in memories.into_iter().enumerate() {
+        let mut memory = vec![0.0; self.memories.total()];
+        for (e, own) in self.memories.each_mut(&mut memory).enumerate() {
             let body = &self.bodies[self.body_of_element[e]];
             let Some(stress) = &body.initial_stress else { continue };
             let count = body.material.variables().len();
             let last = count - body.thermal.map_or(0, |_| TEMPERATURE.len());
-            for (point, at) in memory[own].chunks_exact_mut(count).zip(self.quadrature_positions(e)) {
+            for (point, at) in own.chunks_exact_mut(count).zip(self.quadrature_positions(e)) {
                 let stress @ [xx, yy, _, zz] = stress.at(at, self.mesh.section.is_plate());
                 point[last - INITIAL_STRESS.len()..last].copy_from_slice(&stress);
                 if body.thermal.is_some() {
@@ -26,20 +27,17 @@ impl Model {
         memory
     }
 
-    /// Write T − T₀ over the variables of an element's material at the end of an increment to a time of a step. A body to which no
-    /// step has given a temperature stays as it is, and so do all in an increment of no length.
-    pub fn write_temperatures(&self, at: Option<(&Step, f64)>, element: usize, old: &[f64], new: &mut [f64]) {
+    /// Write T − T₀ over the variables of an element's material at a moment of a step. A body to which no step has given a
+    /// temperature stays as it is.
+    pub fn write_temperatures(&self, (step, at): (&Step, Moment), element: usize, old: &[f64], new: &mut [f64]) {
         let (body, Some((count, rise))) = (self.body_of_element[element], self.rises(element)) else { return };
         let reference = self.bodies[body].thermal.map_or(0.0, |thermal| thermal.reference);
-        let given = at.and_then(|(step, time)| {
-            let of_body = step.temperatures.iter().find(|temperature| temperature.body == body)?;
-            Some((&of_body.amplitude, time))
-        });
+        let given = step.temperatures.iter().find(|temperature| temperature.body == body);
         let points = new.chunks_exact_mut(count).zip(old.chunks_exact(count));
         match given {
-            Some((amplitude, time)) => {
+            Some(Temperature { amplitude, .. }) => {
                 for ((new, _), place) in points.zip(self.quadrature_positions(element)) {
-                    new[rise] = amplitude.value(place, time) - reference;
+                    new[rise] = amplitude.value(place, at) - reference;
                 }
             }
             None => points.for_each(|(new, old)| new[rise] = old[rise]),

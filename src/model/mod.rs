@@ -11,7 +11,9 @@ mod expression;
 mod heat;
 pub mod imposed;
 pub mod linkage;
+mod memories;
 pub mod method;
+mod moment;
 mod plates;
 pub mod probe;
 pub mod scheme;
@@ -37,6 +39,7 @@ use crate::model::boundary::Loads;
 pub use crate::model::damping::Damping;
 use crate::model::element::{SolidElement, consistent_mass, lumped_mass, redistributed};
 use crate::model::linkage::Linkage;
+pub use crate::model::memories::Memories;
 use crate::model::method::Chosen;
 use crate::model::probe::Probe;
 use crate::model::state::{Energy, State, StepStart};
@@ -91,6 +94,8 @@ pub struct Model {
     pub body_of_element: Vec<usize>,
     /// integration geometry of each element
     pub solids: Vec<SolidElement>,
+    /// where each element finds what its material remembers, in [`State::memory`]
+    pub memories: Memories,
     /// contact pairs
     pub contacts: Vec<ContactPair>,
     /// where each contact is evaluated, and why; none for a slave group of points
@@ -150,23 +155,6 @@ impl Model {
     pub fn starts_loaded(&self) -> bool {
         self.contacts.iter().any(|pair| pair.initial.is_some())
             || self.bodies.iter().any(|body| body.initial_stress.is_some())
-    }
-
-    /// Where each element finds what its material remembers, in [`State::memory`].
-    pub fn memories(&self) -> Vec<std::ops::Range<usize>> {
-        let mut end = 0;
-        let own = |(solid, &body): (&SolidElement, &usize)| {
-            let start = end;
-            end += solid.quadrature_points() * self.bodies[body].material.variables().len();
-            start..end
-        };
-        self.solids.iter().zip(&self.body_of_element).map(own).collect()
-    }
-
-    /// Where one element finds it.
-    pub fn memory_of(&self, element: usize) -> std::ops::Range<usize> {
-        let none = self.bodies.iter().all(|body| body.material.variables().is_empty());
-        if none { 0..0 } else { self.memories()[element].clone() }
     }
 
     /// Whether dashpots, absorbing sides or viscous bodies act in a step.

@@ -22,7 +22,8 @@
 //! ```text
 //! a₁ = a₀ + (a_θ − a₀)/θ                                                                                     (4)
 //! ```
-//! and (2), (3) over Δt give u₁ and v₁. At t + Δt equilibrium is met only to the order of the scheme. It is stable for
+//! and (2), (3) over Δt give u₁ and v₁. Ramps and tables go on to t + θ Δt as they go from t to t + Δt, wherever they bend or the
+//! step ends; rates and expressions say themselves where they go. At t + Δt equilibrium is met only to the order of the scheme. It is stable for
 //! every Δt from θ = (1 + √3)/2 = 1.366 on.
 //!
 //! # Central differences
@@ -278,6 +279,11 @@ pub fn supported_rates(places: [f64; 4], v: f64, dt: f64) -> (f64, f64) {
     let v1 = (11.0 * end - 18.0 * second + 9.0 * first - 2.0 * start) / (2.0 * dt);
     let [a0, a1] = [start_acceleration(places, dt), start_acceleration([end, second, first, start], dt)];
     (v1, (v1 - v) / dt + 0.5 * (a1 - a0))
+}
+
+/// Velocity, at the start of an increment, of a support that goes through four places in it.
+pub fn start_velocity([start, first, second, end]: [f64; 4], dt: f64) -> f64 {
+    (-11.0 * start + 18.0 * first - 9.0 * second + 2.0 * end) / (2.0 * dt)
 }
 
 /// Acceleration, at the start of an increment, of a support that goes through four places in it.

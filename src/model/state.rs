@@ -14,7 +14,7 @@ pub struct State {
     pub time: f64,
     /// accepted increments so far
     pub increment: usize,
-    /// length of the last increment, 0 at the start [T]
+    /// length of the last increment of this step, 0 at its start [T]
     pub dt: f64,
     /// u: displacement of every dof [L]
     pub displacement: Vec<f64>,
@@ -32,9 +32,9 @@ pub struct State {
     pub reaction: Vec<f64>,
     /// One list a contact pair, one entry a slave point
     pub contacts: Vec<Vec<ContactState>>,
-    /// What the materials remember, element by element ([`crate::model::Model::memories`])
+    /// What the materials remember, element by element ([`crate::model::Memories`])
     pub memory: Vec<f64>,
-    /// Displacement increment of the last increment of this step; `None` at its start
+    /// Displacement increment of the last increment of this step; `None` at its start, and after explicit increments
     pub last_increment: Option<LastIncrement>,
     /// Values at the start of the current step, the same for all its states
     pub step_start: Arc<StepStart>,
@@ -47,7 +47,12 @@ impl State {
     pub fn begin_step(&mut self) {
         let (displacement, reaction) = (self.displacement.clone(), self.reaction.clone());
         self.step_start = Arc::new(StepStart { displacement, reaction });
-        self.last_increment = None;
+        (self.dt, self.last_increment) = (0.0, None);
+    }
+
+    /// Whether an explicit increment led to it: its accelerations are those of lumped masses.
+    pub fn is_of_explicit(&self) -> bool {
+        self.last_increment.is_none() && self.dt > 0.0
     }
 
     /// Take the motion out of a state, as statics does. Its energy counts as damped.

@@ -53,8 +53,6 @@ pub struct Step {
     pub temperatures: Vec<Temperature>,
     /// damping of every body
     pub damping: Vec<Damping>,
-    /// whether it is another one than in the step before: accelerations jump
-    pub damps_anew: bool,
     /// reaction that ends the step before its time
     pub until: Option<Until>,
     /// c₀ of every dof: dashpots c₀ (1 − share of the step that has passed) that hold bodies until contact does [F T/L]

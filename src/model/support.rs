@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::boundary::{Amplitude, Drive, Span};
+use super::boundary::{Amplitude, Drive, Moment, Span};
 
 /// A direction in which a node is held: a coordinate, or an inclined one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,19 +119,19 @@ impl Prescribed {
     }
 
     /// ū at a time within `step`, for the node's reference position and its displacement at the start of the step [L].
-    pub fn value(&self, position: Vector2<f64>, time: f64, step: Span, start: Vector2<f64>) -> f64 {
-        let component = self.at.dof % 2;
+    pub fn value(&self, position: Vector2<f64>, at: impl Into<Moment>, step: Span, start: Vector2<f64>) -> f64 {
+        let (component, at) = (self.at.dof % 2, at.into());
         match &self.motion {
-            Motion::Displacement(drive, span) => drive.value(position, time, *span, start[component]),
+            Motion::Displacement(drive, span) => drive.value(position, at, *span, start[component]),
             Motion::Inclined(parts) => {
                 let part = |Inclined { share, direction, drive, span }: &Inclined| {
-                    share * drive.value(position, time, *span, direction.dot(&start))
+                    share * drive.value(position, at, *span, direction.dot(&start))
                 };
                 parts.iter().map(part).sum()
             }
             Motion::Rotation { about, angle } => {
                 let arm = (position - about) + start;
-                let turn = angle.value(position, time) - angle.at_start_of(step, position);
+                let turn = angle.value(position, at) - angle.at_start_of(step, position);
                 // Q − I, to the last digit of small angles as well
                 let (sine, versed) = (turn.sin(), 2.0 * (0.5 * turn).sin().powi(2));
                 let moved = Vector2::new(-versed * arm.x - sine * arm.y, sine * arm.x - versed * arm.y);
@@ -140,10 +140,17 @@ impl Prescribed {
         }
     }
 
-    /// ū at the start, thirds and end of an increment. What is linear in time is taken straight from end to end: the kinks
+    /// ū at the start, thirds and end of an increment, from a time to a moment. What is linear in time is taken straight from end to end: the kinks
     /// of a table are jumps of the velocity and no accelerations [L].
-    pub fn thirds(&self, position: Vector2<f64>, [t0, t1]: [f64; 2], step: Span, start: Vector2<f64>) -> [f64; 4] {
-        let at = |time: f64| self.value(position, time, step, start);
+    pub fn thirds(
+        &self,
+        position: Vector2<f64>,
+        (t0, end): (f64, Moment),
+        step: Span,
+        start: Vector2<f64>,
+    ) -> [f64; 4] {
+        let at = |time: f64| self.value(position, Moment { time, ..end }, step, start);
+        let t1 = end.time;
         let [first, last] = [t0, t1].map(at);
         let curved = match &self.motion {
             Motion::Displacement(drive, _) => matches!(drive, Drive::Expression(_)),

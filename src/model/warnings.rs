@@ -22,11 +22,12 @@ const OF_EDGE: f64 = 1e-12;
 impl Model {
     /// What a user should know before anything is solved.
     pub fn warnings(&self) -> Vec<String> {
+        let farthest = farthest(&self.mesh);
         let of_contact = |pair: &ContactPair| {
             // What starts closed has no gaps, and a surface commonly lies free of itself at the start.
             let warnings = match pair.initial.is_some() || is_its_own_master(pair) {
                 true => Vec::new(),
-                false => Gaps::of(self, pair).warnings(),
+                false => Gaps::of(self, pair, farthest).warnings(),
             };
             let away = faces_away(self, pair);
             warnings
@@ -147,9 +148,14 @@ fn shortest_side(mesh: &Mesh) -> f64 {
     sides.fold(f64::INFINITY, f64::min)
 }
 
+/// Largest coordinate of all nodes [L].
+pub fn farthest(mesh: &Mesh) -> f64 {
+    mesh.nodes.iter().fold(0.0, |most: f64, node| most.max(node.amax()))
+}
+
 /// Positions are known to ε |X|. What that is beside an element is an error of its shape, and of gaps and overlaps.
 fn coarse_positions(mesh: &Mesh) -> Option<String> {
-    let farthest = mesh.nodes.iter().fold(0.0, |most: f64, node| most.max(node.amax()));
+    let farthest = farthest(mesh);
     let shortest = shortest_side(mesh);
     let known = f64::EPSILON * farthest;
     (known > KNOWN * shortest).then(|| {
@@ -162,9 +168,9 @@ fn coarse_positions(mesh: &Mesh) -> Option<String> {
     })
 }
 
-/// The gaps of a contact that does not start closed, as a reader is told of them.
-pub fn gaps(model: &Model, pair: &ContactPair, shrink_fit: bool) -> String {
-    let gaps = Gaps::of(model, pair);
+/// The gaps of a contact that does not start closed, as a reader is told of them, in a mesh that goes as far as [`farthest`].
+pub fn gaps(model: &Model, pair: &ContactPair, farthest: f64, shrink_fit: bool) -> String {
+    let gaps = Gaps::of(model, pair, farthest);
     let fit = gaps.fit.map(|(overlap, at)| {
         let place = format!("at ({}, {})", number(at.x), number(at.y));
         format!(
@@ -193,13 +199,13 @@ struct Gaps {
 }
 
 impl Gaps {
-    fn of(model: &Model, pair: &ContactPair) -> Self {
+    fn of(model: &Model, pair: &ContactPair, farthest: f64) -> Self {
         let x = model.mesh.undeformed();
         let reach = match &pair.master {
             Master::Rigid(Rigid::Circle(circle)) => circle.radius + circle.centre.norm(),
             _ => 0.0,
         };
-        let size = model.mesh.nodes.iter().fold(reach, |size, node| size.max(node.amax()));
+        let size = farthest.max(reach);
         let rounded = |point: &SlavePoint, length: f64| {
             let noise = (OF_POSITIONS * size).max(OF_EDGE * point.edge_length(&x).unwrap_or(0.0));
             if length.abs() <= noise { 0.0 } else { length }

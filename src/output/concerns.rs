@@ -6,7 +6,7 @@ use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::contact::small_sliding::{Departure, LITTLE_SLIP, LITTLE_TURN};
 use crate::contact::surface::SlavePoint;
-use crate::laws::friction::Regime;
+use crate::laws::friction::{FrictionLaw, FrictionState, Regime};
 use crate::mesh::configuration::Configuration;
 
 /// Penetration, as a share of the slave's edge, that is worth a warning.
@@ -35,6 +35,8 @@ pub enum Kind {
     TurnedFar,
     /// Edges have been stretched far in small sliding
     StretchedFar,
+    /// Surfaces that dilate more than they rub
+    YieldsWork,
 }
 
 /// What is to be said of a pressure past the bound of uniqueness.
@@ -45,11 +47,10 @@ pub fn several_answers(pressure: f64, limit: f64) -> String {
     )
 }
 
-/// What is worth a warning at one closed point.
+/// What is worth a warning at one closed point after an increment up to a time.
 pub fn concerns(
-    pair: &ContactPair,
-    point: &SlavePoint,
-    contact: &ContactState,
+    (pair, point, time): (&ContactPair, &SlavePoint, f64),
+    [old, contact]: [&ContactState; 2],
     x: &Configuration,
 ) -> impl Iterator<Item = (Kind, String)> {
     let (gap, pressure) = (contact.clearance(), contact.friction.pressure);
@@ -58,16 +59,43 @@ pub fn concerns(
         let percent = 100.0 * share;
         format!("the penetration {:.3e} is {percent:.1} % of the slave's edge; raise alpha_n", -gap)
     });
-    let limit = pair.law(point).uniqueness_limit().filter(|limit| pressure > *limit);
+    let law = pair.law(point).at(time).ok();
+    let limit = law.as_ref().and_then(|law| law.uniqueness_limit()).filter(|limit| pressure > *limit);
     let several = limit.map(|limit| several_answers(pressure, limit));
     let deep = deep.map(|message| (Kind::DeepPenetration, message));
-    let coarse = unresolved(pair, point, contact, x).map(|message| (Kind::Unresolved, message));
-    deep.into_iter().chain(several.map(|message| (Kind::SeveralAnswers, message))).chain(coarse)
+    let yields = yields_work([&old.friction, &contact.friction]).map(|message| (Kind::YieldsWork, message));
+    let coarse =
+        law.and_then(|law| unresolved(pair, (point, &*law), contact, x)).map(|message| (Kind::Unresolved, message));
+    deep.into_iter().chain(several.map(|message| (Kind::SeveralAnswers, message))).chain(coarse).chain(yields)
+}
+
+/// Share of the work of friction that an increment may give back for round-off.
+const GIVEN_BACK: f64 = 1e-9;
+
+/// What is to be said of a point that slides and lifts its load with more work than friction takes: laws whose least coefficient is
+/// not known beforehand may come to it.
+fn yields_work([old, new]: [&FrictionState; 2]) -> Option<String> {
+    let [slip, opened] = [new.plastic_increment.abs(), new.opening - old.opening];
+    let (friction, gained) = (new.traction.abs(), old.dissipation - new.dissipation);
+    let yields = new.regime == Regime::Slip && opened > 0.0 && gained > GIVEN_BACK * friction * slip;
+    yields.then(|| {
+        format!(
+            "sliding yields work instead of taking it: friction has come down to |q|/p = {:.4}, and the surfaces open by {:.4} per \
+             slip (dilatancy.rate); lower that, or raise the friction",
+            friction / new.pressure,
+            opened / slip
+        )
+    })
 }
 
 /// What is to be said of an edge that is longer than the process zone of a front that runs along it.
-fn unresolved(pair: &ContactPair, point: &SlavePoint, contact: &ContactState, x: &Configuration) -> Option<String> {
-    let weakening = pair.law(point).weakening() * contact.friction.pressure;
+fn unresolved(
+    pair: &ContactPair,
+    (point, law): (&SlavePoint, &dyn FrictionLaw),
+    contact: &ContactState,
+    x: &Configuration,
+) -> Option<String> {
+    let weakening = law.weakening() * contact.friction.pressure;
     let edge = point.edge_length(x).filter(|_| contact.regime() == Regime::Slip && pair.modulus > 0.0)?;
     let zone = PROCESS_ZONE * pair.modulus / weakening;
     (edge > zone).then(|| {

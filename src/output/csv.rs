@@ -2,9 +2,11 @@
 //! table never ends within a row, whether its run is killed or its disk full.
 
 use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io::{self, BufRead, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+
+use serde::{Deserialize, Serialize};
 
 use super::files;
 use super::rows::Row;
@@ -15,6 +17,14 @@ const BLINK: Duration = Duration::from_millis(50);
 
 /// Rows of so many bytes do so at once.
 const MANY: usize = 1 << 16;
+
+/// What stands in a table, so many bytes and their checksum, and the row that is held.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Standing {
+    length: u64,
+    crc: u32,
+    held: Vec<u8>,
+}
 
 /// A CSV file being written, row by row and cell by cell.
 #[derive(Debug)]
@@ -28,6 +38,9 @@ pub struct Table {
     row: Vec<u8>,
     /// a whole row that is written if an event follows
     held: Vec<u8>,
+    /// bytes in the file, and their checksum so far
+    length: u64,
+    crc: crc32fast::Hasher,
     flushed: Instant,
 }
 
@@ -52,8 +65,17 @@ impl Table {
     }
 
     fn of(path: &Path, file: File, header: &[String]) -> Self {
-        let (path, header) = (path.to_owned(), header.to_vec());
-        Self { path, file, header, rows: Vec::new(), row: Vec::new(), held: Vec::new(), flushed: Instant::now() }
+        Self {
+            path: path.to_owned(),
+            file,
+            header: header.to_vec(),
+            rows: Vec::new(),
+            row: Vec::new(),
+            held: Vec::new(),
+            length: 0,
+            crc: crc32fast::Hasher::new(),
+            flushed: Instant::now(),
+        }
     }
 
     /// Add a cell.
@@ -99,71 +121,103 @@ impl Table {
         if self.rows.len() < MANY { Ok(()) } else { self.flush() }
     }
 
-    /// The row that is held.
-    pub fn held(&self) -> &[u8] {
-        &self.held
-    }
-
-    /// Hold a row of an earlier run.
-    pub fn hold(&mut self, row: Vec<u8>) {
-        self.held = row;
-    }
-
     /// Hand the rows so far to the system, so that a killed run loses nothing, unless that was done a blink ago.
     pub fn share(&mut self) -> Result<(), Error> {
         if self.flushed.elapsed() < BLINK { Ok(()) } else { self.flush() }
     }
 
-    /// How long the file is [bytes]; so much of it is on the disk.
-    pub fn length(&mut self) -> Result<u64, Error> {
+    /// What stands in the file; it is on the disk.
+    pub fn standing(&mut self) -> Result<Standing, Error> {
         self.flush()?;
-        let length = self.file.sync_data().and_then(|()| self.file.metadata()).map(|file| file.len());
-        length.map_err(|cause| failed(&self.path, &cause))
+        self.file.sync_data().map_err(|cause| failed(&self.path, &cause))?;
+        Ok(Standing { length: self.length, crc: self.crc.clone().finalize(), held: self.held.clone() })
     }
 
-    /// Take back what was written after the file was this long. Where it had other columns then, the new ones are not a number
-    /// in the rows so far.
-    pub fn cut(&mut self, length: u64) -> Result<(), Error> {
-        self.rows.clear();
-        self.row.clear();
-        self.held.clear();
-        let path = self.path.clone();
-        self.cut_to(length).map_err(|cause| failed(&path, &cause))
+    /// Whether the file can be gone on with: what stood in it does so still, and no column of it would be lost. Nothing is
+    /// changed.
+    pub fn check(&self, stood: &Standing) -> Result<(), Error> {
+        self.can_go_on_from(stood).map_err(|cause| failed(&self.path, &cause))
     }
 
-    fn cut_to(&mut self, length: u64) -> io::Result<()> {
+    fn can_go_on_from(&self, &Standing { length, crc, .. }: &Standing) -> io::Result<()> {
+        let changed = |what: String| {
+            Err(io::Error::other(format!(
+                "was changed since the checkpoint was written: {what}; put it back as it was, or begin anew in another folder"
+            )))
+        };
         let is = self.file.metadata()?.len();
         if is < length {
-            let message =
-                format!("has {is} bytes, but had {length} when the checkpoint was written: it was changed since");
-            return Err(io::Error::other(message));
+            return changed(format!("it had {length} bytes, and has {is}"));
         }
-        self.file.seek(SeekFrom::Start(0))?;
+        if self.checksum(length)?.finalize() != crc {
+            return changed(format!("its first {length} bytes have another checksum"));
+        }
+        let had = self.columns_there(length)?;
+        match had.iter().find(|name| !self.header.contains(name)) {
+            None => Ok(()),
+            Some(gone) => Err(io::Error::other(format!(
+                "has the column `{gone}`, which would be lost: ask for it in the case as before"
+            ))),
+        }
+    }
+
+    /// Checksum of the first bytes of the file.
+    fn checksum(&self, length: u64) -> io::Result<crc32fast::Hasher> {
+        let (mut crc, mut part) = (crc32fast::Hasher::new(), vec![0; MANY]);
+        let mut rest = self.first(length)?;
+        loop {
+            match rest.read(&mut part)? {
+                0 => return Ok(crc),
+                read => crc.update(&part[..read]),
+            }
+        }
+    }
+
+    /// The columns under which the file was written.
+    fn columns_there(&self, length: u64) -> io::Result<Vec<String>> {
         let mut line = String::new();
-        io::BufRead::read_line(&mut io::BufReader::new((&self.file).take(length)), &mut line)?;
-        let had: Vec<&str> = line.trim_end_matches('\n').split(',').collect();
-        if had != self.header {
+        io::BufReader::new(self.first(length)?).read_line(&mut line)?;
+        Ok(line.trim_end_matches('\n').split(',').map(String::from).collect())
+    }
+
+    /// The first bytes of the file.
+    fn first(&self, length: u64) -> io::Result<io::Take<&File>> {
+        let mut file = &self.file;
+        file.seek(SeekFrom::Start(0))?;
+        Ok(file.take(length))
+    }
+
+    /// Take back what was written after this stood in the file. Where it had other columns then, the new ones are not a number
+    /// in the rows so far.
+    pub fn cut(&mut self, stood: Standing) -> Result<(), Error> {
+        self.rows.clear();
+        self.row.clear();
+        self.cut_to(&stood).map_err(|cause| failed(&self.path, &cause))?;
+        self.held = stood.held;
+        Ok(())
+    }
+
+    fn cut_to(&mut self, &Standing { length, crc, .. }: &Standing) -> io::Result<()> {
+        let had = self.columns_there(length)?;
+        if had == self.header {
+            self.file.set_len(length)?;
+            (self.length, self.crc) = (length, crc32fast::Hasher::new_with_initial(crc));
+        } else {
             let rewritten = self.with_columns_of_now(&had, length)?;
             files::replace(&self.path, rewritten.as_bytes())?;
             self.file = files::open(&self.path)?;
-        } else {
-            self.file.set_len(length)?;
+            (self.length, self.crc) = (rewritten.len() as u64, crc32fast::Hasher::new());
+            self.crc.update(rewritten.as_bytes());
         }
         self.file.seek(SeekFrom::End(0)).map(drop)
     }
 
     /// The rows so far under the header of now.
-    fn with_columns_of_now(&self, had: &[&str], length: u64) -> io::Result<String> {
-        if let Some(gone) = had.iter().find(|name| !self.header.iter().any(|column| column == *name)) {
-            let message = format!("has the column `{gone}`, which would be lost: ask for it in the case as before");
-            return Err(io::Error::other(message));
-        }
+    fn with_columns_of_now(&self, had: &[String], length: u64) -> io::Result<String> {
         let places: Vec<Option<usize>> =
             self.header.iter().map(|name| had.iter().position(|column| column == name)).collect();
-        let mut file = &self.file;
-        file.seek(SeekFrom::Start(0))?;
         let mut text = String::new();
-        file.take(length).read_to_string(&mut text)?;
+        self.first(length)?.read_to_string(&mut text)?;
         let mut rewritten = self.header.join(",") + "\n";
         for row in text.lines().skip(1) {
             let cells: Vec<&str> = row.split(',').collect();
@@ -182,7 +236,11 @@ impl Table {
             match self.file.write(&rows[written..]) {
                 Err(cause) if cause.kind() == io::ErrorKind::Interrupted => {}
                 Ok(0) => return Err(self.ended_in_a_row(&rows[..written], io::ErrorKind::WriteZero.into())),
-                Ok(more) => written += more,
+                Ok(more) => {
+                    self.crc.update(&rows[written..written + more]);
+                    self.length += more as u64;
+                    written += more;
+                }
                 Err(cause) => return Err(self.ended_in_a_row(&rows[..written], cause)),
             }
         }

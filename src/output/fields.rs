@@ -22,7 +22,10 @@ use crate::run::observer::{Attempt, Observer};
 /// Writes frames of the solids and of the interfaces, in the background while the run goes on.
 #[derive(Debug)]
 pub struct Fields {
+    folder: PathBuf,
     room: Room,
+    /// Names of the series
+    names: Vec<&'static str>,
     frames_of: Frames,
     /// Which increments are rows of the history, and how many there are so far
     rows: (Rows, usize),
@@ -95,8 +98,8 @@ impl Fields {
     pub fn reopen(folder: &Path, model: Arc<Model>, frames: impl Into<Frames>) -> Result<Self, Error> {
         let (frames_of, rows) = (frames.into(), (Rows::default(), 0));
         let names = [("solid", true), ("contact", !model.contacts.is_empty()), ("points", frames_of.points)];
-        let names = names.into_iter().filter(|(_, asked)| *asked);
-        let collections = names.map(|(name, _)| Collection::create(folder, name)).collect::<Result<_, _>>()?;
+        let names: Vec<&str> = names.into_iter().filter(|(_, asked)| *asked).map(|(name, _)| name).collect();
+        let collections = names.iter().map(|name| Collection::create(folder, name)).collect::<Result<_, _>>()?;
         let (frames, arriving): (_, Receiver<Task>) = sync_channel(WAITING);
         let (room, writer) = (Room::of(folder, &model), std::thread::Builder::new().name("frames".into()));
         let writer = writer.spawn(move || {
@@ -107,7 +110,8 @@ impl Fields {
                 .and_then(|_alone| written(&model, collections, arriving))
         });
         let writer = writer.map_err(|cause| failed(&folder.join("solid"), &cause))?;
-        Ok(Self { room, frames_of, rows, times: Vec::new(), frames: Some(frames), writer: Some(writer) })
+        let (folder, times) = (folder.to_owned(), Vec::new());
+        Ok(Self { folder, room, names, frames_of, rows, times, frames: Some(frames), writer: Some(writer) })
     }
 
     /// Hand a state to the writer. One that has ended has failed, and says why.
@@ -182,6 +186,16 @@ impl Observer for Fields {
         memory::written(&(&self.rows, &self.times))
     }
 
+    fn check(&self, memory: &[u8]) -> Result<(), Error> {
+        let (_, times): ((Rows, usize), Vec<f64>) = memory::read(memory)?;
+        let frames =
+            self.names.iter().flat_map(|name| (0..times.len()).map(|number| self.folder.join(file(name, number))));
+        match frames.into_iter().find(|path| !path.is_file()) {
+            None => Ok(()),
+            Some(path) => Err(failed(&path, &"was there when the checkpoint was written, and is gone")),
+        }
+    }
+
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
         (self.rows, self.times) = memory::read(memory)?;
         self.ask(Task::Keep(self.times.clone()))?;
@@ -198,6 +212,11 @@ impl Observer for Fields {
     }
 }
 
+/// Where a frame of a series lies in the folder of results.
+fn file(series: &str, number: usize) -> String {
+    format!("{series}/{number:05}.vtu")
+}
+
 impl Collection {
     fn create(folder: &Path, name: &'static str) -> Result<Self, Error> {
         let frames = folder.join(name);
@@ -206,7 +225,7 @@ impl Collection {
     }
 
     fn file(&self, number: usize) -> String {
-        format!("{}/{number:05}.vtu", self.name)
+        file(self.name, number)
     }
 
     /// Write one frame and list it, so that a running or killed run can be looked at.
@@ -231,10 +250,6 @@ impl Collection {
     /// The frames of these times are kept, and those after them taken back.
     fn keep(&mut self, times: &[f64]) -> Result<(), Error> {
         times.clone_into(&mut self.times);
-        let missing = (0..times.len()).map(|number| self.folder.join(self.file(number))).find(|path| !path.is_file());
-        if let Some(path) = missing {
-            return Err(failed(&path, &"was there when the checkpoint was written, and is gone"));
-        }
         // What is taken back is no longer listed when it goes.
         self.listed.0 = usize::MAX;
         self.list()?;

@@ -71,7 +71,7 @@ fn displacements(state: &State, nodes: &[usize]) -> Vec<Vector2<f64>> {
 
 /// The integration points of the bodies, with their stresses and what the materials remember there.
 pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid) -> io::Result<()> {
-    let (elements, memories) = (&model.mesh.elements, model.memories());
+    let elements = &model.mesh.elements;
     let mut names: Vec<&str> = Vec::new();
     for name in model.bodies.iter().flat_map(|body| body.material.variables()) {
         if !names.contains(name) {
@@ -82,7 +82,7 @@ pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid)
     let (mut stresses, mut variables) = (Vec::new(), vec![Vec::new(); names.len()]);
     for (e, element) in elements.iter().enumerate() {
         let (u, number) = (displacements(state, &element.nodes), model.body_of_element[e]);
-        let (material, memory) = (&*model.bodies[number].material, &state.memory[memories[e].clone()]);
+        let (material, memory) = (&*model.bodies[number].material, model.memories.of(e, &state.memory));
         // An element without an answer never occurs in an accepted state.
         let none = || (0..model.solids[e].quadrature_points()).map(|_| CauchyStress::default()).collect();
         let found = model.solids[e].stresses(material, memory, &u).unwrap_or_else(|_| none());
@@ -120,14 +120,14 @@ fn add_stresses(grid: &mut Grid, stresses: &[CauchyStress]) {
 /// Cauchy stress at the nodes, averaged over the elements that meet there. An element that the
 /// material law cannot answer leaves no trace: it never occurs in an accepted state.
 fn nodal_stresses(model: &Model, state: &State) -> Vec<CauchyStress> {
-    let (elements, memories) = (&model.mesh.elements, model.memories());
+    let elements = &model.mesh.elements;
     let stresses_of = |e: usize| {
         let mut u = [Vector2::zeros(); 9];
         for (u, &node) in u.iter_mut().zip(&elements[e].nodes) {
             *u = Vector2::new(state.displacement[2 * node], state.displacement[2 * node + 1]);
         }
         let material = &*model.bodies[model.body_of_element[e]].material;
-        model.solids[e].nodal_stresses(material, &state.memory[memories[e].clone()], &u[..elements[e].nodes.len()])
+        model.solids[e].nodal_stresses(material, model.memories.of(e, &state.memory), &u[..elements[e].nodes.len()])
     };
     let mut sums = vec![([0.0; 4], 0.0); model.mesh.nodes.len()];
     for (element, stresses) in elements.iter().zip((0..elements.len()).map(stresses_of)) {
@@ -180,7 +180,9 @@ pub fn contact_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid
     grid.begin(|| (reference, lines))?;
     grid.vectors("displacement", &displacement);
     for name in fields::names(&model.contacts) {
-        let value = |(place, s): &(Place, &ContactState)| fields::value(place.pair, place.slave, s, state.dt, name);
+        let value = |(place, s): &(Place, &ContactState)| {
+            fields::value(place.pair, place.slave, s, (state.time, state.dt), name)
+        };
         grid.at_points(name, 1, all.iter().map(value));
     }
     grid.at_cells("contact", contact_id.into_iter());

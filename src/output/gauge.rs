@@ -40,7 +40,7 @@ impl Reading {
         let mean = |of: &[Vector2<f64>]| of.iter().zip(&values).map(|(of, n)| of * *n).sum::<Vector2<f64>>();
         let (u, v) = (nodal(&state.displacement), nodal(&state.velocity));
         let material = &*model.bodies[model.body_of_element[probe.element]].material;
-        let memory = &state.memory[model.memory_of(probe.element)];
+        let memory = model.memories.of(probe.element, &state.memory);
         let strain = |f: &Matrix2<f64>| {
             let gradient = f - Matrix2::identity();
             let square = if material.is_linear() { Matrix2::zeros() } else { gradient.transpose() * gradient };

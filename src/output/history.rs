@@ -108,7 +108,7 @@ impl History {
         header.extend(model.watch.iter().flat_map(|set| of(&set.name, &WATCHED)));
         let radiates = model.contacts.iter().any(|pair| pair.radiation > 0.0);
         header.extend(radiates.then(|| "radiated".into()));
-        let further = |pair: &ContactPair| observables::further(pair.laws.iter().map(|law| &**law));
+        let further = |pair: &ContactPair| observables::further(pair.laws.iter().map(|law| law.start()));
         let observed: Vec<Vec<&str>> = model.contacts.iter().map(further).collect();
         for (pair, names) in model.contacts.iter().zip(&observed) {
             header.extend(names.iter().map(|name| format!("{}.mean_{name}", pair.name)));
@@ -165,7 +165,7 @@ impl Observer for History {
         }
         table.numbers(radiates.then_some(state.energy.radiated));
         for ((pair, states), names) in model.contacts.iter().zip(&state.contacts).zip(observed) {
-            table.numbers(names.iter().map(|name| mean(pair, states, name)));
+            table.numbers(names.iter().map(|name| mean(pair, (states, state.time), name)));
         }
         let x = model.configuration(&state.displacement);
         for ((pair, states), middle) in model.contacts.iter().zip(&state.contacts).zip(middles) {
@@ -202,14 +202,15 @@ impl Observer for History {
     }
 
     fn save(&mut self) -> Result<Vec<u8>, Error> {
-        memory::written(&(self.table.length()?, self.table.held(), &self.memory))
+        memory::written(&(self.table.standing()?, &self.memory))
+    }
+
+    fn check(&self, memory: &[u8]) -> Result<(), Error> {
+        memory::check_table(&self.table, memory)
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        let (length, held);
-        (length, held, self.memory) = memory::read(memory)?;
-        self.table.cut(length)?;
-        self.table.hold(held);
+        self.memory = memory::cut_table(&mut self.table, memory)?;
         Ok(())
     }
 
@@ -240,7 +241,7 @@ fn contact_row(pair: &ContactPair, states: &[ContactState]) -> [f64; CONTACT.len
             continue;
         }
         normal += length * friction.pressure;
-        tangential += length * (friction.traction + state.radiation);
+        tangential += length * state.tractions()[1];
         closed += length;
         slipping += if pair.regime(point, state) == Regime::Slip { length } else { 0.0 };
         slip += length * friction.plastic_slip;
@@ -253,10 +254,10 @@ fn contact_row(pair: &ContactPair, states: &[ContactState]) -> [f64; CONTACT.len
 }
 
 /// Mean of an observable over the closed length; 0 where nothing is closed.
-fn mean(pair: &ContactPair, states: &[ContactState], name: &str) -> f64 {
+fn mean(pair: &ContactPair, (states, time): (&[ContactState], f64), name: &str) -> f64 {
     let (mut sum, mut closed) = (0.0, 0.0);
     for (point, state) in pair.points.iter().zip(states).filter(|(_, state)| state.regime() != Regime::Open) {
-        sum += state.length * observables::value(pair.law(point), name, &state.friction);
+        sum += state.length * pair.observed(point, name, (&state.friction, time));
         closed += state.length;
     }
     if closed > 0.0 { sum / closed } else { 0.0 }

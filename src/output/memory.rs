@@ -18,12 +18,19 @@ pub fn read<M: DeserializeOwned>(bytes: &[u8]) -> Result<M, Error> {
     postcard::from_bytes(bytes).map_err(|cause| failed(Path::new("memory of an observer"), &cause))
 }
 
-/// A table remembers how long it is.
+/// A table remembers what stands in it.
 pub fn of_table(table: &mut Table) -> Result<Vec<u8>, Error> {
-    written(&table.length()?)
+    written(&table.standing()?)
 }
 
-/// Cut a table back to its length.
-pub fn cut_table(table: &mut Table, bytes: &[u8]) -> Result<(), Error> {
-    table.cut(read(bytes)?)
+/// Whether a table can be gone on with, where the memory begins with what stood in it.
+pub fn check_table(table: &Table, bytes: &[u8]) -> Result<(), Error> {
+    table.check(&read(bytes)?)
+}
+
+/// Cut a table back to what stood in it; what else was remembered.
+pub fn cut_table<M: DeserializeOwned>(table: &mut Table, bytes: &[u8]) -> Result<M, Error> {
+    let (stood, memory) = read(bytes)?;
+    table.cut(stood)?;
+    Ok(memory)
 }

@@ -111,6 +111,10 @@ impl Observer for NewtonLog {
         memory::of_table(&mut self.0)
     }
 
+    fn check(&self, memory: &[u8]) -> Result<(), Error> {
+        memory::check_table(&self.0, memory)
+    }
+
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
         memory::cut_table(&mut self.0, memory)
     }

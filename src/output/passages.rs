@@ -6,7 +6,6 @@ use super::events::{Energies, Mark, SlipEvent};
 use super::wave_speeds::WaveSpeeds;
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
-use crate::laws::friction::observables;
 use crate::model::Model;
 use crate::model::state::State;
 
@@ -134,7 +133,7 @@ impl Interface {
                     position += (at - pair.points[k - 1].at(&x)).norm();
                 }
                 let length = pair.points[k].current_length(&x);
-                let rubs = !pair.law(&pair.points[k]).is_frictionless();
+                let rubs = !pair.law(&pair.points[k]).start().is_frictionless();
                 let (at, arrivals) = (at.into(), Vec::new());
                 let (mark, rate, signal) = (Mark::default(), 0.0, f64::NEG_INFINITY);
                 points.push(Point { line, position, at, length, rubs, mark, rate, signal, arrivals });
@@ -166,7 +165,7 @@ impl Interface {
         }
         let points = self.points.iter_mut().zip(marks.iter().zip(&rates)).zip(pair.points.iter().zip(states));
         for ((point, (mark, rate)), (slave, state)) in points {
-            let observed = |name| observables::value(pair.law(slave), name, &state.friction);
+            let observed = |name| pair.observed(slave, name, (&state.friction, after.time));
             let signal = match passing.arrive {
                 Arrive::Rate => rate.abs(),
                 Arrive::R(_) => observed("R"),

@@ -76,14 +76,15 @@ impl Observer for Probes {
     }
 
     fn save(&mut self) -> Result<Vec<u8>, Error> {
-        memory::written(&(self.table.length()?, self.table.held(), &self.rows))
+        memory::written(&(self.table.standing()?, &self.rows))
+    }
+
+    fn check(&self, memory: &[u8]) -> Result<(), Error> {
+        memory::check_table(&self.table, memory)
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        let (length, held);
-        (length, held, self.rows) = memory::read(memory)?;
-        self.table.cut(length)?;
-        self.table.hold(held);
+        self.rows = memory::cut_table(&mut self.table, memory)?;
         Ok(())
     }
 

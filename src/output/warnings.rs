@@ -68,8 +68,9 @@ impl Observer for Warnings {
         self.audit.record(model, attempt.step, attempt.old, state);
         let x = model.configuration(&state.displacement);
         for (number, (pair, states)) in model.contacts.iter().zip(&state.contacts).enumerate() {
-            for (point, contact) in pair.points.iter().zip(states).filter(|(_, c)| c.friction.pressure > 0.0) {
-                for (kind, message) in concerns(pair, point, contact, &x) {
+            let points = pair.points.iter().zip(attempt.old.contacts[number].iter().zip(states));
+            for (point, (old, contact)) in points.filter(|(_, (_, new))| new.friction.pressure > 0.0) {
+                for (kind, message) in concerns((pair, point, state.time), [old, contact], &x) {
                     if self.given.insert((number, kind)) {
                         let at = point.at(&x);
                         let place =

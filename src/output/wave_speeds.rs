@@ -20,9 +20,7 @@ pub struct WaveSpeeds {
 impl WaveSpeeds {
     /// Of the body behind the slave of a contact, if there is one.
     pub fn behind(model: &Model, pair: &ContactPair) -> Option<Self> {
-        let (node, _) = *pair.points.first()?.position.first()?;
-        let body = model.bodies.iter().find(|body| body.nodes.binary_search(&node).is_ok())?;
-        Some(Self::of(&*body.material))
+        Some(Self::of(&*model.bodies[pair.body?].material))
     }
 
     /// Of a material; infinite without density.

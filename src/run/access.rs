@@ -8,7 +8,10 @@ use crate::contact::fields;
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::mesh::UnknownGroup;
-use crate::model::boundary::Drive;
+use crate::model::Step;
+use crate::model::boundary::{Drive, Span};
+use crate::model::builder::ModelError;
+use crate::model::builder::increments::check_bounds;
 use crate::model::support::{Direction, Motion, Prescribed};
 
 /// A name that a run does not know.
@@ -97,7 +100,9 @@ impl Simulation {
             return Err(Unknown::Field { name: field.into(), known: names.join(", ") });
         }
         let points = pair.points.iter().zip(states);
-        Ok(points.map(|(slave, point)| fields::value(pair, slave, point, self.state().dt, field)).collect())
+        Ok(points
+            .map(|(slave, point)| fields::value(pair, slave, point, (self.state().time, self.state().dt), field))
+            .collect())
     }
 
     /// Where the slave points of a contact are, in their order [L].
@@ -110,7 +115,8 @@ impl Simulation {
         Ok(pair.points.iter().map(|point| point.at(&x)).collect())
     }
 
-    /// What the master of a contact puts on its slave, as `force_x` and `force_y` of the history [F].
+    /// What the master of a contact puts on its slave, as `force_x` and `force_y` of the history: pressure, friction and what
+    /// slip radiates, without the pressure of a fluid [F].
     ///
     /// # Errors
     /// [`Unknown::Contact`].
@@ -162,6 +168,21 @@ impl Simulation {
                 }
             }
         });
+        Ok(())
+    }
+
+    /// Bound the increments of the step under way, from the next one to its end: as `max` and `min` of its `dt`, of which the one
+    /// that is not given stays, but for a `min` above the new `max`, which comes down to it.
+    ///
+    /// # Errors
+    /// [`ModelError`] as of the `dt` of a step; the bounds are then as they were.
+    pub fn bound_increments(&mut self, max: Option<f64>, min: Option<f64>) -> Result<(), ModelError> {
+        let Step { increments, span, scheme, .. } = self.step();
+        let max = max.unwrap_or(increments.max);
+        let min = min.unwrap_or(increments.min.min(max));
+        let left = Span { start: self.state().time, end: span.end };
+        check_bounds("increments", [min, max], left, *scheme)?;
+        self.change(|step| (step.increments.min, step.increments.max) = (min, max));
         Ok(())
     }
 

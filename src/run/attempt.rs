@@ -137,12 +137,8 @@ impl Simulation {
         let (length, increments) = (state.time - self.state.time, gone.as_ref().map_or(0, |gone| gone.steps));
         let (accepted, outcome) = match gone {
             Ok(Gone { next, .. }) => (Some(Arc::new(state)), Outcome::Accepted(Phase::QuasiDynamic { dt: next })),
-            Err(cause) => {
-                let Step { name, increments, .. } = &*self.step;
-                let (step, time, min) = (name.clone(), self.state.time, increments.min);
-                let (cause, suspicion) = (Box::new(cause), String::new());
-                (None, Outcome::Stopped(Error::IncrementTooSmall { step, time, dt: min, min, cause, suspicion }))
-            }
+            // How short its steps came to be, and whether that is to blame, the cause says itself.
+            Err(cause) => (None, Outcome::Stopped(self.unsolvable(cause))),
         };
         Candidate {
             number: 1,

@@ -10,7 +10,7 @@ use crate::model::scheme::Scheme;
 use crate::model::state::State;
 use crate::solve::failure::IncrementFailure;
 use crate::time::explicit::Explicit;
-use crate::time::increment::{begin, go_on};
+use crate::time::increment::{begin, go_on, led};
 use crate::time::quasi_dynamic::QuasiDynamic;
 use crate::time::touching::Touching;
 
@@ -28,9 +28,17 @@ impl Simulation {
             Phase::QuasiDynamic { .. } if self.quasi_dynamic.is_none() => self.begin_quasi_dynamic(false),
             Phase::Explicit(_) | Phase::Rupture { .. } if self.explicit.is_none() => self.begin_explicit(false),
             Phase::Begin | Phase::Resume { .. } => self.begin_implicit(),
+            Phase::Implicit { .. } if self.led => self.take_note(),
             _ => Ok(()),
         };
         begun.map_err(|cause| self.unsolvable(cause))
+    }
+
+    /// Go on under the loads that whoever leads the run has changed.
+    fn take_note(&mut self) -> Result<(), IncrementFailure> {
+        let state = led(&self.model, &self.step, &self.state, &mut self.work)?;
+        self.state = state.map_or_else(|| self.state.clone(), Arc::new);
+        Ok(())
     }
 
     /// The error of a step whose reaction has not come to its value.
@@ -50,11 +58,18 @@ impl Simulation {
     fn begin_explicit(&mut self, step_begins: bool) -> Result<(), IncrementFailure> {
         let step = Arc::new(self.step_now().clone());
         let mut state = State::clone(&self.state);
+        let goes_on = state.is_of_explicit();
+        let dt = if goes_on { state.dt } else { 0.0 };
         if step_begins {
             state.begin_step();
             Explicit::launch(&self.model, &step, &mut state);
         }
-        self.explicit = Some(Explicit::begin(&self.model, &step, &mut state, &mut self.work.assembler)?);
+        (state.dt, state.last_increment) = (dt, None);
+        let explicit = Explicit::begin(&self.model, &step, &mut state, &mut self.work.assembler)?;
+        if !goes_on {
+            explicit.lump(&mut state);
+        }
+        self.explicit = Some(explicit);
         self.state = Arc::new(state);
         if step_begins {
             let interval = self.model.interval.unwrap_or((step.span.end - step.span.start) / RESULTS);
@@ -139,11 +154,11 @@ impl Simulation {
         if ends && !matches!(self.control.phase, Phase::Missed) {
             self.explicit = None;
             self.quasi_dynamic = None;
+            self.led = false;
             self.control.step += 1;
             self.control.phase = Phase::Complete;
             if let Some(step) = self.control.step_of(&self.model) {
                 self.step = Arc::new(step);
-                self.led = false;
                 self.control.phase = Phase::Begin;
             }
         }

@@ -85,7 +85,7 @@ pub(super) fn is_of(state: &State, model: &Model) -> bool {
         states.len() == pair.points.len() && states.iter().all(stands)
     };
     all.into_iter().chain([&start.displacement, &start.reaction]).chain(last).all(|values| values.len() == model.dofs())
-        && state.memory.len() == model.memories().last().map_or(0, |last| last.end)
+        && state.memory.len() == model.memories.total()
         && state.contacts.len() == model.contacts.len()
         && state.contacts.iter().zip(&model.contacts).all(contact)
 }

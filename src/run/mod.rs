@@ -165,9 +165,23 @@ impl SavedRun {
         Self { simulation: self.simulation.begin(), observers: Vec::new() }
     }
 
+    /// Whether observers, found by their names, can go on from what was saved: [`Observer::check`].
+    ///
+    /// # Errors
+    /// [`Error::Output`] with the first thing that is not as it was.
+    pub fn check(&self, observers: &[&dyn Observer]) -> Result<(), Error> {
+        observers
+            .iter()
+            .try_for_each(|observer| self.memory(observer.name()).map_or(Ok(()), |memory| observer.check(memory)))
+    }
+
+    fn memory(&self, observer: &str) -> Option<&[u8]> {
+        self.observers.iter().find(|(name, _)| name == observer).map(|(_, memory)| &**memory)
+    }
+
     /// Whether an observer of this name has something to go on from.
     pub fn remembers(&self, observer: &str) -> bool {
-        self.observers.iter().any(|(name, _)| name == observer)
+        self.memory(observer).is_some()
     }
 
     /// The run as it was; the observers, found by their names, take back what they have written since. One that was not there
@@ -177,7 +191,7 @@ impl SavedRun {
     /// [`Error::Output`] when an observer cannot.
     pub fn resume(self, model: &Arc<Model>, observers: &mut [&mut dyn Observer]) -> Result<Simulation, Error> {
         for observer in observers.iter_mut() {
-            if let Some((_, memory)) = self.observers.iter().find(|(name, _)| name == observer.name()) {
+            if let Some(memory) = self.memory(observer.name()) {
                 observer.restore(memory)?;
             }
         }

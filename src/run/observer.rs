@@ -94,6 +94,14 @@ pub trait Observer {
         Ok(Vec::new())
     }
 
+    /// Whether it can go on from what was saved: what it had written by then still stands. Nothing is changed.
+    ///
+    /// # Errors
+    /// As [`record`](Self::record), with what is wrong.
+    fn check(&self, _memory: &[u8]) -> Result<(), Error> {
+        Ok(())
+    }
+
     /// Go on from what was saved; what has been written since is taken back.
     ///
     /// # Errors

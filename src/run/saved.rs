@@ -34,7 +34,8 @@ impl Saved {
 
     /// How many steps of the model the run depends on so far: those that have begun.
     pub fn begun(&self) -> usize {
-        self.control.step + usize::from(!matches!(self.control.phase, Phase::Begin | Phase::Complete))
+        // What its caller has changed of a step holds in place of what the model says.
+        self.control.step + usize::from(self.led || !matches!(self.control.phase, Phase::Begin | Phase::Complete))
     }
 
     /// Whether its last step is over.
@@ -62,7 +63,22 @@ impl Saved {
     /// Why they tell of no run of this model.
     pub fn from_bytes(bytes: &[u8], model: &Arc<Model>) -> Result<Self, String> {
         let written: Written = postcard::from_bytes(bytes).map_err(|cause| cause.to_string())?;
-        let (state, mut control, memory, midway, report) = written;
+        Self::fitted(written, None, model)
+    }
+
+    /// The run on another model, whose steps that have not begun may be other ones, or come after the last one.
+    ///
+    /// # Errors
+    /// Why it is no run of this model.
+    pub fn on(self, model: &Arc<Model>) -> Result<Self, String> {
+        let Self { step, state, control, explicit, midway, report, led } = self;
+        let memory = explicit.as_ref().map(Explicit::memory);
+        Self::fitted((Arc::unwrap_or_clone(state), control, memory, midway, report), led.then_some(step), model)
+    }
+
+    /// A run of a model, with the step under way if its caller has changed it.
+    fn fitted(run: Written, led: Option<Arc<Step>>, model: &Arc<Model>) -> Result<Self, String> {
+        let (state, mut control, memory, midway, report) = run;
         let fits = |memory: &ExplicitMemory| memory.fits(model);
         let on_its_way = midway.as_ref().is_none_or(|midway| is_of(&midway.state, model) && memory.is_some());
         if !(is_of(&state, model) && control.fits(model) && memory.as_ref().is_none_or(fits) && on_its_way) {
@@ -71,10 +87,11 @@ impl Saved {
         if matches!(control.phase, Phase::Complete) && control.step < model.steps.len() {
             control.phase = Phase::Begin;
         }
-        let step = Arc::new(control.step_of(model).unwrap_or_default());
+        let is_led = led.is_some();
+        let step = led.unwrap_or_else(|| Arc::new(control.step_of(model).unwrap_or_default()));
         let under_way = control.phase.of(&step);
         let explicit = memory.map(|memory| Explicit::again(model, &Arc::new(under_way.clone()), memory));
-        Ok(Self { step, state: Arc::new(state), control, explicit, midway, report, led: false })
+        Ok(Self { step, state: Arc::new(state), control, explicit, midway, report, led: is_led })
     }
 
     /// The same place, from where another run begins: it counts its increments, and the energies that come and go, from here.

@@ -38,6 +38,8 @@ pub struct Simulation {
     pub(super) step: Arc<Step>,
     /// Whether he has
     pub(super) led: bool,
+    /// Whether he has stopped it
+    stopped: bool,
     pub(super) state: Arc<State>,
     pub(super) control: Control,
     /// What explicit increments need besides the state, while there are any
@@ -64,6 +66,7 @@ impl Simulation {
         Self {
             step: Arc::new(model.steps.first().cloned().unwrap_or_default()),
             led: false,
+            stopped: false,
             state: Arc::new(model.initial_state()),
             control: Control { step: 0, phase, coupling: work.assembler.coupling(), ended: Vec::new(), moving: None },
             explicit: None,
@@ -91,7 +94,7 @@ impl Simulation {
         }
     }
 
-    /// A run as it was, of the same model.
+    /// A run as it was, of the same model; of another one that it may go on with, what [`Saved::on`] gives.
     pub fn resume(model: impl Into<Arc<Model>>, saved: Saved) -> Self {
         let Saved { step, state, control, explicit, midway, report, led } = saved;
         let earlier = report.wall_s;
@@ -153,6 +156,9 @@ impl Simulation {
     /// # Errors
     /// [`Error::Unsolvable`] when a step cannot begin.
     pub fn attempt(&mut self) -> Result<Option<Candidate>, Error> {
+        if self.stopped {
+            return Ok(None);
+        }
         // An attempt that was dropped may have coupled other nodes.
         self.work.assembler.couple(&self.control.coupling);
         self.begin()?;
@@ -217,14 +223,14 @@ impl Simulation {
         Ok(None)
     }
 
-    /// Whether the last step is over.
+    /// Whether the last step is over, or its caller has stopped it.
     pub fn is_complete(&self) -> bool {
-        matches!(self.control.phase, Phase::Complete)
+        self.stopped || matches!(self.control.phase, Phase::Complete)
     }
 
-    /// Stop here: no increment follows.
+    /// Stop here: no increment follows. What is saved goes on as if it had not been stopped.
     pub fn stop(&mut self) {
-        self.control.phase = Phase::Complete;
+        self.stopped = true;
     }
 
     /// Change loads, supports and bounds of increments of the step under way: what changes is so from the next increment to the

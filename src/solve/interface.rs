@@ -14,7 +14,7 @@
 
 use std::sync::Arc;
 
-use crate::equations::condensed::{CondensedEquations, is_linear};
+use crate::equations::condensed::{CondensedEquations, depends_on_length, is_linear};
 use crate::equations::contact_nodes::ContactNodes;
 use crate::equations::failure::TrialFailure;
 use crate::equations::{Assembler, Trial};
@@ -125,8 +125,9 @@ impl Interface {
             self.constants = Some(constants);
             self.rungs.clear();
         }
-        let dt = if trial.step.scheme.is_dynamic() { without_jitter(trial.dt) } else { trial.dt };
-        let length = if trial.step.scheme.is_dynamic() { dt.to_bits() } else { 0 };
+        let varies = depends_on_length(model, trial.step);
+        let dt = if varies { without_jitter(trial.dt) } else { trial.dt };
+        let length = if varies { dt.to_bits() } else { 0 };
         let rung = match self.rungs.iter().position(|(own, _)| *own == length) {
             Some(k) => self.rungs.remove(k).1,
             None => self.condense(Trial { dt, ..trial })?,

@@ -28,8 +28,13 @@ pub fn suspicion(model: &Model, step: &Step, work: &Workspace, cause: &Increment
     let place = unbalanced.map(|node| {
         let (tag, at) = (model.mesh.node_tags[node], model.mesh.nodes[node]);
         let owner = contact.map(|pair| format!(" of contact `{}`", pair.name)).or_else(|| {
-            let body = model.bodies.iter().find(|body| body.nodes.binary_search(&node).is_ok());
-            body.map(|body| format!(" of body `{}`", body.name))
+            let bodies = model.bodies.iter().filter(|body| body.nodes.binary_search(&node).is_ok());
+            let names: Vec<String> = bodies.map(|body| format!("`{}`", body.name)).collect();
+            match &names[..] {
+                [] => None,
+                [body] => Some(format!(" of body {body}")),
+                _ => Some(format!(" of bodies {}", names.join(" and "))),
+            }
         });
         let owner = owner.unwrap_or_default();
         format!("the forces are farthest from balance at node {tag}{owner}, ({}, {})", number(at.x), number(at.y))
@@ -63,7 +68,7 @@ fn has(pair: &ContactPair, node: usize) -> bool {
 
 /// A penalty far above the stiffness of the bodies: their own forces are round-off beside those of contact.
 fn penalty(pair: &ContactPair) -> Option<String> {
-    let alpha_t = pair.laws.iter().map(|law| law.stiffness()).fold(0.0, f64::max);
+    let alpha_t = pair.laws.iter().map(|law| law.start().stiffness()).fold(0.0, f64::max);
     let (name, value) = if alpha_t > pair.alpha_n { ("alpha_t", alpha_t) } else { ("alpha_n", pair.alpha_n) };
     let times = value * pair.compliance;
     (times > STIFF).then(|| {

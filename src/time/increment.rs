@@ -1,14 +1,14 @@
 //! One increment: old state → new state.
 
-use super::accept::{accept, take_stock};
+use super::accept::{accept, heat, take_stock};
 use crate::equations::inertia::kinetic_energy;
 use crate::equations::supports::{hold, tie, turn};
 use crate::equations::{Evaluation, Trial};
 use crate::equations::{links, turning};
 use crate::linear;
-use crate::model::scheme::{Scheme, start_acceleration};
+use crate::model::scheme::{Scheme, start_acceleration, start_velocity};
 use crate::model::state::{LastIncrement, State};
-use crate::model::support::Direction;
+use crate::model::support::{Direction, Prescribed};
 use crate::model::{Model, Step};
 use crate::solve::augmented::augment;
 use crate::solve::failure::IncrementFailure;
@@ -27,27 +27,66 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
     model.ties.gather(2, &mut state.force);
     // The reaction of a freed support has become a load.
     step.released.iter().for_each(|at| at.add(-at.of(&old.reaction), &mut state.force));
-    let before = if step.launch.is_empty() { 0.0 } else { kinetic(step, &state, work) };
     launch(model, step, &mut state);
-    match step.scheme.is_dynamic() {
-        true if rests(old) || frees(step, old) || step.damps_anew || !step.launch.is_empty() => {
-            start_dynamics(model, step, &mut state, work)?
+    if step.scheme.is_dynamic() {
+        let dt = step.increments.initial;
+        keep_to_supports(model, (step, dt), &mut state);
+        let is_new = rests(old) || old.is_of_explicit() || !step.launch.is_empty();
+        if is_new || frees(step, old) || jumps(step, &state, work)? {
+            start_dynamics(model, step, &mut state, work)?;
         }
-        true => {}
-        false => {
-            state.stop();
-            if old.increment == 0 && model.starts_loaded() {
-                start_loaded(step, &mut state, work)?;
-            }
+    } else {
+        state.stop();
+        if old.increment == 0 && model.starts_loaded() {
+            start_loaded(step, &mut state, work)?;
         }
     }
     if state.increment == 0 {
         let kinetic = kinetic(step, &state, work);
         take_stock(model, kinetic, &mut state);
-    } else if !step.launch.is_empty() {
-        state.energy.external_work += kinetic(step, &state, work) - before;
+    } else if !step.launch.is_empty() || old.is_of_explicit() {
+        moves_anew(step, &mut state, work);
     }
     Ok(state)
+}
+
+/// What velocities that are given, or masses that are lumped no longer, change of the kinetic energy counts as work from outside.
+fn moves_anew(step: &Step, state: &mut State, work: &mut Workspace) {
+    let kinetic = kinetic(step, state, work);
+    state.energy.external_work += kinetic - state.energy.kinetic;
+    state.energy.kinetic = kinetic;
+}
+
+/// New accelerations within a step if whoever leads the run has changed its loads or dampers, or freed a support; none if they go
+/// on.
+///
+/// # Errors
+/// As [`begin`].
+pub fn led(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> Result<Option<State>, IncrementFailure> {
+    if !(step.scheme.is_dynamic() && (frees(step, old) || jumps(step, old, work)?)) {
+        return Ok(None);
+    }
+    let mut state = old.clone();
+    start_dynamics(model, step, &mut state, work)?;
+    Ok(Some(state))
+}
+
+/// Give what supports hold when a run begins, and was given a velocity with its body, that of the support.
+pub fn keep_to_supports(model: &Model, (step, dt): (&Step, f64), state: &mut State) {
+    if state.increment > 0 {
+        return;
+    }
+    let first = Trial::new(state, step, state.time + dt, dt);
+    let own = |support: &Prescribed| {
+        let (given, own) = (support.at.of(&state.velocity), start_velocity(first.thirds(support, model), dt));
+        (given != 0.0 && (own - given).abs() > ROUNDED * given.abs()).then_some((support.at, own))
+    };
+    let held: Vec<(Direction, f64)> = step.supports.iter().filter_map(own).collect();
+    if !held.is_empty() {
+        held.into_iter().for_each(|(at, velocity)| at.set(velocity, &mut state.velocity));
+        model.ties.spread(2, &mut state.velocity);
+        links::stiffen_velocities(model, &state.displacement, &mut state.velocity);
+    }
 }
 
 /// Give nodes the velocities that they take when a step begins, where no support says how they move.
@@ -71,8 +110,35 @@ fn rests(state: &State) -> bool {
     state.acceleration.iter().all(|a| *a == 0.0)
 }
 
-/// Share of a reaction along a direction that round-off may leave across.
+/// Share of a value that round-off may leave of it: of a reaction across its direction, of a load that does not jump.
 const ROUNDED: f64 = 1e-12;
+
+/// Share of the largest force that round-off may leave of any.
+const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
+
+/// Whether loads, dampers or temperatures are others at a time than those with which the last increment ended there, whatever
+/// their kind: without new accelerations the old ones would go on for half an increment. Where a step is cut in two nothing jumps,
+/// and accelerations that belong to another time, as those of generalized-α, are kept.
+fn jumps(step: &Step, old: &State, work: &mut Workspace) -> Result<bool, IncrementFailure> {
+    let mut now = old.clone();
+    evaluate_forces(step, &mut now, work)?;
+    let memory = &work.assembler.evaluation.memory;
+    // Reactions count as loads in a state.
+    let given: Vec<f64> =
+        old.external.iter().zip(&old.reaction).map(|(external, reaction)| external - reaction).collect();
+    let largest = |values: &[f64]| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let forces = [&old.force, &old.external, &old.damping, &now.external].map(|forces| largest(forces));
+    let differ = |[before, after]: [&[f64]; 2], beside: Option<&[f64]>, least: f64| {
+        (0..before.len()).any(|k| {
+            let size = before[k].abs().max(after[k].abs()).max(beside.map_or(0.0, |values| values[k].abs()));
+            (after[k] - before[k]).abs() > ROUNDED * size + ROUND_OFF * least
+        })
+    };
+    let force = forces.into_iter().fold(0.0, f64::max);
+    Ok(differ([&given, &now.external], Some(&old.reaction), force)
+        || differ([&old.damping, &now.damping], None, force)
+        || differ([&old.memory, memory], None, largest(&old.memory)))
+}
 
 /// Whether a dof with a reaction is free from now on: without it, accelerations jump.
 fn frees(step: &Step, old: &State) -> bool {
@@ -93,6 +159,7 @@ pub fn go_on(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
     let mut state = State { last_increment: None, ..old.clone() };
     if step.scheme.is_dynamic() {
         start_dynamics(model, step, &mut state, work)?;
+        moves_anew(step, &mut state, work);
         return Ok(state);
     }
     model.ties.gather(2, &mut state.force);
@@ -107,6 +174,7 @@ pub fn go_on(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
 /// ```
 fn start_dynamics(model: &Model, step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), IncrementFailure> {
     evaluate_forces(step, state, work)?;
+    heat(step, &work.assembler.evaluation, state);
     let force = &state.force;
     let mut right: Vec<f64> = force.iter().map(|f| -f).collect();
     let mut mass = work.assembler.mass().clone();
@@ -140,7 +208,8 @@ fn start_dynamics(model: &Model, step: &Step, state: &mut State, work: &mut Work
 /// The forces at the start of a static run whose bodies are stressed or contacts closed already: loads and reactions balance
 /// them.
 fn start_loaded(step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), IncrementFailure> {
-    evaluate_forces(step, state, work)?;
+    // Statics bring temperatures in with the first increment.
+    evaluate_forces(&Step { temperatures: Vec::new(), ..step.clone() }, state, work)?;
     let force = links::relieved(work.assembler.model(), &state.displacement, &state.force);
     step.supports.iter().for_each(|support| support.at.add(support.at.of(&force), &mut state.external));
     Ok(())

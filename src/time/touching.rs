@@ -3,7 +3,8 @@
 //! - A point that was apart at the start of an increment has slipped in part before it touched. That part lies between
 //!   nothing and what it would have been had the motion before the increment gone on until touch; what friction may have to do
 //!   with it, summed over the points of a contact, must not exceed 2 % of its force. Where points slide at the limit of
-//!   friction anyway, nothing is in doubt.
+//!   friction anyway, nothing is in doubt. Where surfaces dilate, what the slip after touch would have lifted is in doubt, too: they
+//!   do not ride up on each other in the increment in which they meet (`contact/force.rs`).
 //! - Else the increment is made in parts: up to the touch that was foreseen if nothing of the contact was closed before, else
 //!   as far as few enough points touch; then on to where it should have ended. The contact's force is the largest of
 //!   all attempts at the increment.
@@ -89,7 +90,8 @@ impl Touching {
         let (mut share, mut meets) = (1.0f64, false);
         for (k, pair) in model.contacts.iter().enumerate() {
             let states = old.contacts[k].iter().zip(&foreseen[k]).zip(&new.contacts[k]).zip(&pair.points);
-            let arrival = |(((old, foreseen), now), slave)| pair.arrival(slave, [old, foreseen, now], new.dt);
+            let arrival =
+                |(((old, foreseen), now), slave)| pair.arrival(slave, [old, foreseen, now], (new.time, new.dt));
             let unknown = Some(Arrival { at: 0.0, doubt: f64::INFINITY });
             let arrivals: Vec<Arrival> = states.filter_map(|states| arrival(states).unwrap_or(unknown)).collect();
             let force = |state: &ContactState| state.friction.pressure.hypot(state.friction.traction) * state.length;

@@ -76,8 +76,8 @@ pub struct ContactInput {
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DilatancyInput {
-    /// tan ψ: opening per plastic slip at the start, whichever way it goes; below the friction coefficient, for the work that
-    /// lifts the load is friction's [-]
+    /// tan ψ: opening per plastic slip at the start, whichever way it goes; below the least coefficient that friction can come to
+    /// (mu, mu_k, mu_d), for the work that lifts the load is friction's [-]
     pub rate: f64,
     /// d_max: opening that much slip leads to, dδ = tan ψ (1 − δ/d_max) × plastic slip; no limit unless given. The opening δ stands
     /// in tables and frames as `dilation` [L]

@@ -80,7 +80,7 @@ pub struct Case {
     /// Contacts by a name of your choice
     #[serde(default)]
     pub contacts: BTreeMap<String, ContactInput>,
-    /// Initial velocity [x, y] of whole bodies
+    /// Initial velocity [x, y] of whole bodies; supported nodes keep to their supports
     #[serde(default)]
     pub initial_velocity: BTreeMap<String, [f64; 2]>,
     /// Steps, one after the other

@@ -51,6 +51,47 @@ pub(super) fn files(case: &Case, model: &Model) -> Vec<&'static str> {
     files
 }
 
+/// Which frames a case asks for.
+fn frames(case: &Case) -> Frames {
+    Frames { every: case.output.every(), points: case.output.points }
+}
+
+/// The observers whose files are there already, to be gone on with.
+#[derive(Default)]
+struct Earlier {
+    history: Option<History>,
+    newton_log: Option<NewtonLog>,
+    interface: Option<InterfaceStore>,
+    probes: Option<Probes>,
+    fields: Option<Fields>,
+}
+
+impl Earlier {
+    /// Open what the saved run has written, and look whether it is as it was: before anything changes.
+    fn open(folder: &Path, model: &Arc<Model>, case: &Case, saved: &SavedRun) -> Result<Self, Error> {
+        let goes_on = |name: &str| saved.remembers(name);
+        let asked = (goes_on("interface") && !model.contacts.is_empty(), goes_on("fields") && case.output.fields);
+        let start = saved.simulation().state();
+        let earlier = Self {
+            history: goes_on("history").then(|| History::reopen(folder, model)).transpose()?,
+            newton_log: goes_on("newton").then(|| NewtonLog::reopen(folder)).transpose()?,
+            interface: asked.0.then(|| InterfaceStore::reopen(folder, model, start, &case.units)),
+            probes: goes_on("probes").then(|| Probes::reopen(folder, model)).transpose()?,
+            fields: asked.1.then(|| Fields::reopen(folder, model.clone(), frames(case))).transpose()?,
+        };
+        let Self { history, newton_log, interface, probes, fields } = &earlier;
+        let observers = [
+            history.as_ref().map(|history| history as &dyn Observer),
+            newton_log.as_ref().map(|log| log as &dyn Observer),
+            interface.as_ref().map(|interface| interface as &dyn Observer),
+            probes.as_ref().map(|probes| probes as &dyn Observer),
+            fields.as_ref().map(|fields| fields as &dyn Observer),
+        ];
+        saved.check(&observers.into_iter().flatten().collect::<Vec<_>>())?;
+        Ok(earlier)
+    }
+}
+
 /// The observers of a run.
 pub(super) struct Outputs {
     history: History,
@@ -71,20 +112,22 @@ impl Outputs {
         saved: Option<&SavedRun>,
         aloud: Aloud,
     ) -> Result<Self, Error> {
-        let goes_on = |name: &str| saved.is_some_and(|saved| saved.remembers(name));
         let start = saved.map_or_else(|| model.initial_state(), |saved| saved.simulation().state().clone());
-        let frames = Frames { every: case.output.every(), points: case.output.points };
-        let fields = case.output.fields.then(|| match goes_on("fields") {
-            true => Fields::reopen(folder, model.clone(), frames),
-            false => Fields::create(folder, model.clone(), &start, frames),
+        let earlier = match saved {
+            Some(saved) => Earlier::open(folder, model, case, saved)?,
+            None => Earlier::default(),
+        };
+        let fields = case.output.fields.then(|| match earlier.fields {
+            Some(fields) => Ok(fields),
+            None => Fields::create(folder, model.clone(), &start, frames(case)),
         });
-        let interface = (!model.contacts.is_empty()).then(|| match goes_on("interface") {
-            true => Ok(InterfaceStore::reopen(folder, model, &start, &case.units)),
-            false => InterfaceStore::create(folder, model, &start, &case.units),
+        let interface = (!model.contacts.is_empty()).then(|| match earlier.interface {
+            Some(interface) => Ok(interface),
+            None => InterfaceStore::create(folder, model, &start, &case.units),
         });
-        let probes = (!model.probes.is_empty()).then(|| match goes_on("probes") {
-            true => Probes::reopen(folder, model),
-            false => Probes::create(folder, model),
+        let probes = (!model.probes.is_empty()).then(|| match earlier.probes {
+            Some(probes) => Ok(probes),
+            None => Probes::create(folder, model),
         });
         let fronts = case.output.fronts.map(|fronts| {
             let arrive = match fronts.arrival {
@@ -95,8 +138,8 @@ impl Outputs {
             Fronts::new(folder, model, &start, fronts.slip_rate, arrive)
         });
         Ok(Self {
-            history: if goes_on("history") { History::reopen(folder, model) } else { History::create(folder, model) }?,
-            newton_log: if goes_on("newton") { NewtonLog::reopen(folder) } else { NewtonLog::create(folder) }?,
+            history: earlier.history.map_or_else(|| History::create(folder, model), Ok)?,
+            newton_log: earlier.newton_log.map_or_else(|| NewtonLog::create(folder), Ok)?,
             aloud,
             interface: interface.transpose()?,
             probes: probes.transpose()?,

@@ -13,18 +13,18 @@ use crate::laws::friction::{Onset, observables};
 use crate::model::Model;
 use crate::model::method::{Chosen, Method};
 use crate::model::told::{count, number};
-use crate::model::warnings::gaps;
+use crate::model::warnings::{farthest, gaps};
 use crate::output::warnings::several_answers;
 
 /// Every contact, with how its surfaces lie at the start.
 pub fn contacts(case: &Case, model: &Model) -> Vec<String> {
-    let mut lines = Vec::new();
+    let (mut lines, farthest) = (Vec::new(), farthest(&model.mesh));
     for (pair, chosen) in model.contacts.iter().zip(&model.methods) {
         lines.push(pair.name.clone());
         lines.extend(contact(case, model, pair, chosen.as_ref()).into_iter().map(|line| format!("  {line}")));
         let start = match &case.contacts[&pair.name].initial {
             Some(initial) => initial_tractions(initial, pair),
-            None => gaps(model, pair, case.contacts[&pair.name].shrink_fit),
+            None => gaps(model, pair, farthest, case.contacts[&pair.name].shrink_fit),
         };
         lines.push(format!("  {start}"));
     }
@@ -34,8 +34,11 @@ pub fn contacts(case: &Case, model: &Model) -> Vec<String> {
 fn initial_tractions(initial: &InitialInput, pair: &ContactPair) -> String {
     let tractions = pair.initial.iter().flatten();
     let points = || pair.points.iter();
-    let observed =
-        |name| points().map(move |point| observables::value(pair.law(point), name, &pair.law(point).initial_state()));
+    let observed = |name| {
+        points()
+            .map(move |point| pair.law(point).start())
+            .map(move |law| observables::value(law, name, &law.initial_state()))
+    };
     let p = range(tractions.clone().map(|initial| initial.pressure));
     let q = range(tractions.map(|initial| initial.traction));
     let (structure, mu) = (range(observed("structure")), range(observed("mu")));
@@ -50,7 +53,8 @@ fn initial_tractions(initial: &InitialInput, pair: &ContactPair) -> String {
 /// An initial pressure under which the answer may snap; a run meets it in its first increment.
 pub fn pressed_too_hard(pair: &ContactPair) -> Option<String> {
     let pressed = pair.points.iter().zip(pair.initial.iter().flatten());
-    let limits = pressed.filter_map(|(point, initial)| Some((initial.pressure, pair.law(point).uniqueness_limit()?)));
+    let limits =
+        pressed.filter_map(|(point, initial)| Some((initial.pressure, pair.law(point).start().uniqueness_limit()?)));
     let (pressure, limit) = limits.filter(|(pressure, limit)| pressure > limit).max_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(format!("contact `{}`: {}", pair.name, several_answers(pressure, limit)))
 }
@@ -88,7 +92,7 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
     }
     if let Some(given) = gives_alpha_t(input) {
         let chosen = if given { "given" } else { "alpha_n/2" };
-        let alpha_t = range(pair.laws.iter().map(|law| law.stiffness()));
+        let alpha_t = range(pair.laws.iter().map(|law| law.start().stiffness()));
         lines.push(format!("alpha_t {alpha_t} ({chosen})"));
     }
     lines.push(format!("friction {}", parameters(&input.friction, "law", &["alpha_t"])));
@@ -106,7 +110,7 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
         lines.push(format!("slip radiates with η = {} in static steps", number(pair.radiation)));
     }
     lines.extend(moving(input, model, pair));
-    if let Some(limit) = pair.laws.iter().filter_map(|law| law.uniqueness_limit()).reduce(f64::min) {
+    if let Some(limit) = pair.laws.iter().filter_map(|law| law.start().uniqueness_limit()).reduce(f64::min) {
         let limit = number(limit);
         lines.push(format!(
             "one answer while the pressure stays below {limit}; above, slip may weaken faster than alpha_t"
@@ -117,7 +121,7 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
 
 /// What a law with a peak means in the numbers of a test: a range where its parameters vary along the interface.
 fn onset(pair: &ContactPair) -> Option<String> {
-    let laws: Vec<Onset> = pair.laws.iter().filter_map(|law| law.onset()).collect();
+    let laws: Vec<Onset> = pair.laws.iter().filter_map(|law| law.start().onset()).collect();
     if laws.is_empty() {
         return None;
     }

@@ -25,10 +25,14 @@ pub fn blocks(input: &BlocksInput, place: &str) -> Checked<InlineMesh> {
 /// Numbers by their names.
 #[derive(Default)]
 struct Parameters<'p> {
-    names: Vec<&'p str>,
-    numbers: Vec<f64>,
+    numbers: BTreeMap<&'p str, f64>,
     /// words of the expressions that were read
     words: RefCell<BTreeSet<String>>,
+}
+
+/// Words of an expression: names, among others.
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| !(c.is_alphanumeric() || c == '_'))
 }
 
 /// Those that others depend on come first, whatever their order.
@@ -36,32 +40,39 @@ fn parameters<'p>(input: &'p BTreeMap<String, Amount>, place: &str) -> Checked<P
     if let Some((name, why)) = input.keys().find_map(|name| Some((name, Expression::refused_name(name)?))) {
         return Err(Complaint::new(format!("{place}.{name}"), why));
     }
-    let mut known = Parameters::default();
-    let mut left: Vec<_> = input.iter().collect();
-    while !left.is_empty() {
-        let values: Vec<_> =
-            left.iter().map(|(name, amount)| known.value(amount, &format!("{place}.{name}"))).collect();
-        let before = left.len();
-        let mut complaint = None;
-        let mut waiting = Vec::new();
-        for ((name, amount), value) in left.into_iter().zip(values) {
-            match value {
-                Ok(value) => {
-                    known.names.push(name);
-                    known.numbers.push(value);
-                }
-                Err(error) => {
-                    complaint.get_or_insert(error);
-                    waiting.push((name, amount));
-                }
-            }
+    let needs = |amount: &'p Amount| -> BTreeSet<&'p str> {
+        match amount {
+            Amount::Number(_) => BTreeSet::new(),
+            Amount::Expression(text) => words(text).filter(|word| input.contains_key(*word)).collect(),
         }
-        left = waiting;
-        if let Some(complaint) = complaint.filter(|_| left.len() == before) {
-            return Err(complaint);
+    };
+    let mut missing: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut needed_by: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    for (name, amount) in input {
+        let needs = needs(amount);
+        missing.insert(name, needs.len());
+        needs.into_iter().for_each(|other| needed_by.entry(other).or_default().push(name));
+    }
+    let mut known = Parameters::default();
+    let mut refused = BTreeSet::new();
+    let mut ready: Vec<&str> = missing.iter().filter(|(_, missing)| **missing == 0).map(|(name, _)| *name).collect();
+    while let Some(name) = ready.pop() {
+        let Ok(value) = known.value(&input[name], "") else {
+            refused.insert(name);
+            continue;
+        };
+        known.numbers.insert(name, value);
+        for other in needed_by.remove(name).unwrap_or_default() {
+            let left = missing.entry(other).and_modify(|missing| *missing -= 1).or_default();
+            ready.extend((*left == 0).then_some(other));
         }
     }
-    Ok(known)
+    // What is left depends on what was refused, or on itself. It is told what is wrong once all that can be known is.
+    let left = || input.keys().map(String::as_str).find(|name| !known.numbers.contains_key(name));
+    match refused.pop_first().or_else(left) {
+        Some(name) => known.value(&input[name], &format!("{place}.{name}")).map(|_| known),
+        None => Ok(known),
+    }
 }
 
 impl Parameters<'_> {
@@ -73,9 +84,15 @@ impl Parameters<'_> {
     }
 
     fn expression(&self, text: &str, place: &str) -> Checked<f64> {
-        let words = text.split(|c: char| !(c.is_alphanumeric() || c == '_')).map(String::from);
-        self.words.borrow_mut().extend(words);
-        Expression::constant(text, &self.names, &self.numbers).map_err(|message| Complaint::new(place, message))
+        self.words.borrow_mut().extend(words(text).map(String::from));
+        let constant = |numbers: &BTreeMap<&str, f64>| {
+            let (names, numbers): (Vec<&str>, Vec<f64>) = numbers.iter().map(|(name, number)| (*name, *number)).unzip();
+            Expression::constant(text, &names, &numbers)
+        };
+        let own = words(text).filter_map(|word| self.numbers.get_key_value(word));
+        let value = constant(&own.map(|(name, number)| (*name, *number)).collect());
+        // Who is told what is wrong is told of all the names there are.
+        value.or_else(|_| constant(&self.numbers)).map_err(|message| Complaint::new(place, message))
     }
 
     fn point(&self, [x, y]: &[Amount; 2], place: &str) -> Checked<[f64; 2]> {

@@ -15,6 +15,7 @@ use super::file::{
     BodyInput, Case, Formulation, GeostaticInput, InitialStressInput, LoadingPlateInput, NewtonInput, PlateInput,
     PlateMotion, ProbeInput, ProfileInput, SectionInput, StressInput, ThermalInput,
 };
+use super::labels;
 use crate::mesh::Mesh;
 use crate::mesh::section::Section;
 use crate::model::builder::{Builder, Gauge, Plate};
@@ -38,6 +39,7 @@ pub fn model(case: &Case, mesh: Mesh) -> Checked<Builder> {
         SectionInput::PlaneStress(PlateInput { thickness }) => Section::PlaneStress { thickness },
         SectionInput::Axisymmetric => Section::Axisymmetric,
     };
+    labels::check(&case.title, &case.units)?;
     let mut builder = Model::builder(mesh).title(&case.title).section(section);
     builder = builder.newton(NewtonSettings { tolerance, max_iterations });
     for (name, given) in &case.bodies {

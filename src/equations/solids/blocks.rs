@@ -93,12 +93,12 @@ fn find_initial(model: &Model, elements: &[Vec<usize>], blocks: &mut [Block]) {
     if !blocks.iter().any(stressed) {
         return;
     }
-    let (all, memories) = (model.initial_memory(), model.memories());
+    let all = model.initial_memory();
     blocks.par_iter_mut().zip(elements).filter(|(block, _)| stressed(block)).for_each(|(block, elements)| {
         let (n, material) = (block.kind.nodes(), &*model.bodies[block.body].material);
         block.initial = vec![0.0; rows(n) * elements.len()];
         for (&e, force) in elements.iter().zip(block.initial.chunks_exact_mut(rows(n))) {
-            let old = &all[memories[e].clone()];
+            let old = model.memories.of(e, &all);
             let (memory, still) = (Memory { dt: 0.0, old, new: &mut old.to_vec() }, [Vector2::zeros(); 9]);
             // An element that has a matrix has an answer where nothing has moved.
             let _ = model.solids[e].evolve(material, memory, &still[..n], &mut force[..2 * n], None);

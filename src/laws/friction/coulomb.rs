@@ -96,6 +96,10 @@ impl FrictionLaw for Coulomb {
         self.mu * pressure
     }
 
+    fn least_coefficient(&self) -> Option<f64> {
+        Some(self.mu)
+    }
+
     fn sensitivities(&self) -> Option<&dyn SensitiveLaw> {
         Some(self)
     }

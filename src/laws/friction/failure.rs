@@ -47,6 +47,19 @@ pub enum LawFailure {
         /// t [T]
         time: f64,
     },
+    /// Parameters that vary in time let the surfaces dilate more than they rub.
+    #[error(
+        "the opening per slip {rate} (dilatancy.rate) is not below the least friction coefficient {least} that the law can come to \
+         at t = {time}, and sliding would yield work: lower dilatancy.rate, or see that `along` stays above it"
+    )]
+    Dilates {
+        /// t [T]
+        time: f64,
+        /// tan ψ [-]
+        rate: f64,
+        /// least coefficient of the law then [-]
+        least: f64,
+    },
     /// The state was not finite, or the increment is so large that it no longer is.
     #[error("the friction state is not finite: the traction is {traction}")]
     Overflow {

@@ -14,6 +14,7 @@ mod coulomb;
 mod exponential_integral;
 mod failure;
 mod frictionless;
+mod in_time;
 pub mod observables;
 mod offset;
 mod onset;
@@ -50,7 +51,8 @@ pub use approach::Approach;
 pub use coulomb::{Coulomb, CoulombParameters};
 pub use failure::LawFailure;
 pub use frictionless::Frictionless;
-pub use offset::{Dilatancy, Offset};
+pub use in_time::{Held, LawInTime, LawOf, Resolved};
+pub use offset::{Dilatancy, Offset, Offsets};
 pub use onset::{Onset, Rise};
 pub use parameters::FrictionParameters;
 pub use peak::Integration;
@@ -99,6 +101,18 @@ impl FrictionResponse {
     /// The answer that `state` follows without plastic slip, where q has the tangent `stiffness` by slip.
     pub fn elastic(state: FrictionState, stiffness: f64) -> Self {
         Self { state, dtraction_dslip: stiffness, ..Self::default() }
+    }
+
+    /// The answer of surfaces that do not ride up on each other in this increment, from the state `old` on: neither lift nor its
+    /// work. Where wear outweighs dilation it stays as it is.
+    pub fn without_lift(mut self, old: &FrictionState) -> Self {
+        let lift = self.state.opening - old.opening;
+        if lift > 0.0 {
+            self.state.dissipation += 0.5 * (old.pressure + self.state.pressure) * lift;
+            (self.state.opening, self.state.wear) = (old.opening, old.wear);
+            (self.dopening_dslip, self.dopening_dpressure) = (0.0, 0.0);
+        }
+        self
     }
 
     /// Bounds the tangent to what [`FrictionLaw::respond`] promises for the stiffness α_t, and refuses numbers that have
@@ -195,14 +209,6 @@ pub trait FrictionLaw: Debug + Send + Sync {
     /// solved to their tolerance.
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer;
 
-    /// The law as it holds in an increment from one time to another, if its parameters vary in time.
-    ///
-    /// # Errors
-    /// [`LawFailure::Undefined`] where they have no good values then.
-    fn during(&self, _: [f64; 2]) -> Result<Option<Box<dyn FrictionLaw>>, LawFailure> {
-        Ok(None)
-    }
-
     /// Whether parameters that vary in time enter by their mean over an increment, as rates do, and not by their value at its
     /// end, as strengths do.
     fn takes_means(&self) -> bool {
@@ -233,7 +239,8 @@ pub trait FrictionLaw: Debug + Send + Sync {
         }
     }
 
-    /// Names of the [`FrictionState::variables`] that the law uses.
+    /// Names of the [`FrictionState::variables`] that the law uses: its own, and not those of what outputs show anyway
+    /// ([`observables::check_names`]).
     fn variables(&self) -> &'static [&'static str] {
         &[]
     }
@@ -248,7 +255,7 @@ pub trait FrictionLaw: Debug + Send + Sync {
         self.variables().iter().zip(state.variables).find_map(|(own, value)| (*own == name).then_some(value))
     }
 
-    /// Names of the parts of the opening that outputs show: `dilation`, `wear`, as far as the law has them. A law whose opening
+    /// Names of the parts of the opening that outputs show, `dilation` and `wear`, as far as the law has them. A law whose opening
     /// changes names one: then a point is closed by what slip makes of its opening, not by that of the old state.
     fn offsets(&self) -> &'static [&'static str] {
         &[]
@@ -266,6 +273,12 @@ pub trait FrictionLaw: Debug + Send + Sync {
     /// lets an excess slip off [F/L²]
     fn starting_limit(&self, _pressure: f64) -> f64 {
         f64::INFINITY
+    }
+
+    /// Least |q|/p that a point can come to that goes on sliding, at any rate and state; none where there is no such bound, or the
+    /// law does not say [-]
+    fn least_coefficient(&self) -> Option<f64> {
+        None
     }
 
     /// −d(q/p)/dδ at its largest: how much friction fast slip takes over its way δ, 0 where it takes none [1/L]

@@ -1,10 +1,90 @@
 //! What outputs show of friction beside what all laws have in common: the names come from the laws.
 
+use super::state::MOST_VARIABLES;
 use super::{FrictionLaw, FrictionState};
 
 /// Observables that every table has a column for, and their value where the law does not know them: without friction
 /// there is no strength to approach, and without structure its degree is 1.
 pub const ALWAYS: [(&str, f64); 3] = [("R", 0.0), ("mu", 0.0), ("structure", 1.0)];
+
+/// Parts of an opening that outputs show.
+const OF_OPENING: [&str; 2] = ["dilation", "wear"];
+
+/// What else outputs say of a contact point by name: nothing that a law names may be taken for it.
+const TAKEN: [&str; 28] = [
+    "time",
+    "contact",
+    "line",
+    "point",
+    "position",
+    "x",
+    "y",
+    "displacement",
+    "gap",
+    "state",
+    "slip",
+    "total_slip",
+    "plastic_slip",
+    "plastic_increment",
+    "elastic_slip",
+    "slip_rate",
+    "pressure",
+    "p",
+    "fluid_pressure",
+    "p_w",
+    "traction",
+    "q",
+    "dissipation",
+    "dtraction_dslip",
+    "dtraction_dpressure",
+    "evaluations",
+    OF_OPENING[0],
+    OF_OPENING[1],
+];
+
+/// Longest name: with that of its contact it is one of a file.
+const LONGEST: usize = 64;
+
+/// Whether the names that a law gives can be those of columns, arrays and files, and are its own. They are told apart by more than
+/// capitals, as not all systems tell files apart by them.
+///
+/// # Errors
+/// What is wrong with which name, and what to do.
+pub fn check_names(law: &dyn FrictionLaw) -> Result<(), String> {
+    let (variables, observables) = (law.variables(), law.observables());
+    if variables.len() > MOST_VARIABLES {
+        return Err(format!("it has {} variables: {MOST_VARIABLES} are the most", variables.len()));
+    }
+    if let Some(name) = law.offsets().iter().find(|name| !OF_OPENING.contains(name)) {
+        let [dilation, wear] = OF_OPENING;
+        return Err(format!("an opening has no part `{name}`: outputs show `{dilation}` and `{wear}`"));
+    }
+    check_each(variables)?;
+    check_each(observables)
+}
+
+fn check_each(names: &[&str]) -> Result<(), String> {
+    for (k, name) in names.iter().enumerate() {
+        let fits = name.starts_with(char::is_alphabetic) && name.chars().all(|c| c.is_alphanumeric() || c == '_');
+        if !fits || name.len() > LONGEST {
+            return Err(format!(
+                "the name {name:?} of a variable must begin with a letter, and have letters, digits and _ alone, \
+                 {LONGEST} bytes at most: columns and files of the results have it too"
+            ));
+        }
+        if TAKEN.iter().any(|taken| taken.eq_ignore_ascii_case(name)) {
+            return Err(format!(
+                "a variable cannot be named `{name}`: results have something else of that name; rename it"
+            ));
+        }
+        let always =
+            ALWAYS.iter().map(|(always, _)| always).find(|always| *always != name && always.eq_ignore_ascii_case(name));
+        if let Some(other) = always.or_else(|| names[..k].iter().find(|other| other.eq_ignore_ascii_case(name))) {
+            return Err(format!("the names `{other}` and `{name}` are told apart by capitals at most: rename one"));
+        }
+    }
+    Ok(())
+}
 
 /// Names of the further observables of some laws, each once, in order of appearance.
 pub fn further<'a>(laws: impl IntoIterator<Item = &'a dyn FrictionLaw>) -> Vec<&'static str> {

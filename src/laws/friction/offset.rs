@@ -1,6 +1,6 @@
 //! How plastic slip moves the surfaces against each other along the normal: dilatancy and wear, beside any friction law.
 
-use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Onset, Sliding};
+use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, Onset, Sliding};
 use crate::laws::parameter::{InvalidParameter, require_positive};
 
 /// Dilatancy: asperities ride up on each other as the surfaces slip, until the interface has its largest opening.
@@ -26,6 +26,10 @@ pub struct Dilatancy {
 /// again when slip reverses. (Interlocked ones would.) The opening stays while the surfaces are apart. (2) is Archard's law with k = K/H, the
 /// wear coefficient over the hardness; p goes evenly over the increment, as it does in (3).
 ///
+/// (3) is what friction and pressure do on flat surfaces. The contact puts q on both sides across the gap g without a couple, so that
+/// where the surfaces turn by dθ under the slip the work q g dθ is missing, the share g/R of friction's on a radius R: the opening
+/// must be small against that. Without an opening g is as small as the penetration.
+///
 /// Sources: J. F. Archard, J. Appl. Phys. 24 (1953) 981; (1) P. Segall, J. R. Rice, J. Geophys. Res. 100 (1995) 22155, whose
 /// porosity goes to that of its state over a distance of slip in the same way.
 #[derive(Debug)]
@@ -34,6 +38,25 @@ pub struct Offset {
     dilatancy: Option<Dilatancy>,
     /// k; 0 for none [L²/F]
     wear: f64,
+}
+
+/// How the surfaces of a contact move apart with slip, whatever their law: not at all unless given.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Offsets {
+    /// Dilatancy
+    pub dilatancy: Option<Dilatancy>,
+    /// k: depth of wear per pressure and plastic slip [L²/F]
+    pub wear: Option<f64>,
+}
+
+impl Offsets {
+    /// tan ψ and the least coefficient of friction that a law can come to, where the first is not below the second: sliding
+    /// would lift the load with more work than it takes.
+    pub fn beyond(&self, law: &dyn FrictionLaw) -> Option<[f64; 2]> {
+        let rate = self.dilatancy?.rate;
+        let least = law.least_coefficient().unwrap_or_else(|| law.starting_limit(1.0));
+        (rate >= least).then_some([rate, least])
+    }
 }
 
 /// What a friction law says of itself where its surfaces dilate.
@@ -56,7 +79,8 @@ impl Offset {
     ///
     /// # Errors
     /// [`InvalidParameter`] when a parameter is out of its range, named `dilatancy.rate`, `dilatancy.limit` or `wear`; also a
-    /// dilatancy that would take more work than friction does: tan ψ must be below μ, where the law has one.
+    /// dilatancy that would give more work than friction takes: tan ψ must be below the least coefficient that the law can come
+    /// to, if it has one ([`FrictionLaw::least_coefficient`]).
     pub fn new(
         law: Box<dyn FrictionLaw>,
         dilatancy: Option<Dilatancy>,
@@ -65,16 +89,27 @@ impl Offset {
         if let Some(Dilatancy { rate, limit }) = dilatancy {
             require_positive("dilatancy.rate", rate)?;
             limit.map_or(Ok(()), |limit| require_positive("dilatancy.limit", limit))?;
-            let mu = law.starting_limit(1.0);
-            if rate >= mu {
+            if let Some([_, least]) = (Offsets { dilatancy, wear }).beyond(&*law) {
                 let allowed = format!(
-                    "it must be below the friction coefficient {mu}, or sliding would yield work instead of taking it"
+                    "it must be below {least}, the least friction coefficient that the law can come to, or sliding would yield work \
+                     instead of taking it: lower it, or raise the friction"
                 );
                 return Err(InvalidParameter { name: "dilatancy.rate", value: rate, allowed: allowed.into() });
             }
         }
         wear.map_or(Ok(()), |wear| require_positive("wear", wear))?;
         Ok(Self { law, dilatancy, wear: wear.unwrap_or(0.0) })
+    }
+
+    /// A law with the offsets of its surfaces; as it is where there are none.
+    ///
+    /// # Errors
+    /// As of [`Offset::new`].
+    pub fn over(law: Box<dyn FrictionLaw>, offsets: Offsets) -> Result<Box<dyn FrictionLaw>, InvalidParameter> {
+        match offsets {
+            Offsets { dilatancy: None, wear: None } => Ok(law),
+            Offsets { dilatancy, wear } => Ok(Box::new(Self::new(law, dilatancy, wear)?)),
+        }
     }
 
     /// The answer of the law with what it means for the opening.
@@ -123,16 +158,6 @@ impl FrictionLaw for Offset {
         }
     }
 
-    fn during(&self, span: [f64; 2]) -> Result<Option<Box<dyn FrictionLaw>>, LawFailure> {
-        let Self { dilatancy, wear, .. } = *self;
-        let moving = |law| -> Box<dyn FrictionLaw> { Box::new(Self { law, dilatancy, wear }) };
-        Ok(self.law.during(span)?.map(moving))
-    }
-
-    fn takes_means(&self) -> bool {
-        self.law.takes_means()
-    }
-
     fn variables(&self) -> &'static [&'static str] {
         self.law.variables()
     }
@@ -167,6 +192,10 @@ impl FrictionLaw for Offset {
 
     fn starting_limit(&self, pressure: f64) -> f64 {
         self.law.starting_limit(pressure)
+    }
+
+    fn least_coefficient(&self) -> Option<f64> {
+        self.law.least_coefficient()
     }
 
     fn weakening(&self) -> f64 {

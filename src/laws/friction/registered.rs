@@ -56,6 +56,10 @@ impl RegisteredParameters {
     pub fn build(&self, default_alpha_t: f64) -> Result<Box<dyn FrictionLaw>, InvalidParameter> {
         let alpha_t = self.alpha_t.unwrap_or(default_alpha_t);
         require_positive("alpha_t", alpha_t)?;
+        if let Some(&value) = self.parameters.get("alpha_t") {
+            let allowed = "the stiffness stands beside the parameters, as \"alpha_t\" of the law".into();
+            return Err(InvalidParameter { name: "parameters.alpha_t", value, allowed });
+        }
         let maker = REGISTER.read().unwrap_or_else(PoisonError::into_inner).get(&self.name).cloned();
         let allowed = "it must be the name of a law that is registered".into();
         let maker = maker.ok_or(InvalidParameter { name: "name", value: f64::NAN, allowed })?;

@@ -241,6 +241,11 @@ impl FrictionLaw for SlipWeakening {
         }
     }
 
+    /// μ_d; cohesion is beside it.
+    fn least_coefficient(&self) -> Option<f64> {
+        Some(self.mu_d)
+    }
+
     fn weakening(&self) -> f64 {
         self.weakening
     }

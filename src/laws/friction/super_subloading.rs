@@ -253,6 +253,11 @@ impl FrictionLaw for SuperSubloading {
         self.initial_mu * pressure
     }
 
+    /// μ_k, R being 1 in sliding that goes on.
+    fn least_coefficient(&self) -> Option<f64> {
+        Some(self.evolution.mu_k.min(self.evolution.mu_s))
+    }
+
     fn weakening(&self) -> f64 {
         self.evolution.weakening(self.evolution.mu_s)
     }

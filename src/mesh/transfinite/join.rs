@@ -1,12 +1,18 @@
 //! Blocks that share a side get the same nodes there; blocks that touch otherwise are refused.
 
+use std::collections::BTreeSet;
+
 use nalgebra::Vector2;
 
 use super::grid::Grid;
 use super::{BlockError, Blocks};
+use crate::mesh::boxes::{Box2, Tree};
 
 /// Places nearer to each other than this share of the shortest side are the same.
 const SAME: f64 = 1e-6;
+
+/// Share of the size of a block by which arcs may leave the places that are taken of its outline, and more.
+const MARGIN: f64 = 0.01;
 
 /// A side of a block.
 type Side = (usize, usize);
@@ -14,15 +20,22 @@ type Side = (usize, usize);
 /// The number of the node in each slot.
 pub fn joined(blocks: &Blocks, grids: &[Grid]) -> Result<Vec<usize>, BlockError> {
     let slots = grids.iter().map(|grid| grid.nodes.len()).sum();
-    let mut join = Join { blocks, grids, first: (0..slots).collect(), partner: vec![[None; 4]; grids.len()] };
-    let pairs =
-        || (0..grids.len()).flat_map(|b| (0..b).map(move |a| [a, b])).filter(|[a, b]| join_body(blocks, *a, *b));
-    for [a, b] in pairs() {
+    let apart: BTreeSet<&String> = blocks.apart.iter().collect();
+    let is_apart = |name: &Option<String>| name.as_ref().is_some_and(|name| apart.contains(name));
+    let mut join = Join {
+        blocks,
+        grids,
+        apart: blocks.blocks.iter().map(|block| [0, 1, 2, 3].map(|side| is_apart(&block.sides[side]))).collect(),
+        first: (0..slots).collect(),
+        partner: vec![[None; 4]; grids.len()],
+    };
+    let pairs = neighbours(blocks, grids);
+    for &[a, b] in &pairs {
         for side in 0..16 {
             join.sides((a, side / 4), (b, side % 4))?;
         }
     }
-    for [a, b] in pairs() {
+    for [a, b] in pairs {
         join.refuse_touching(a, b)?;
         join.refuse_touching(b, a)?;
         join.refuse_overlap(a, b)?;
@@ -31,13 +44,29 @@ pub fn joined(blocks: &Blocks, grids: &[Grid]) -> Result<Vec<usize>, BlockError>
     Ok(join.numbers())
 }
 
-fn join_body(blocks: &Blocks, a: usize, b: usize) -> bool {
-    blocks.blocks[a].body == blocks.blocks[b].body
+/// Pairs of blocks of one body that may touch, in the order of the second ones.
+fn neighbours(blocks: &Blocks, grids: &[Grid]) -> Vec<[usize; 2]> {
+    let boxes: Vec<Box2> = grids.iter().filter_map(reach).collect();
+    let tree = Tree::new(boxes.iter().copied());
+    let one_body = |[a, b]: &[usize; 2]| blocks.blocks[*a].body == blocks.blocks[*b].body;
+    let before =
+        |(b, own): (usize, &Box2)| tree.meeting(own).into_iter().take_while(move |a| *a < b).map(move |a| [a, b]);
+    boxes.iter().enumerate().flat_map(before).filter(one_body).collect()
+}
+
+/// A box that what touches a block cannot miss.
+fn reach(grid: &Grid) -> Option<Box2> {
+    let places = grid.outline().into_iter().chain(grid.inside.iter().copied());
+    let own = Box2::around(places)?;
+    let farthest = own.low.amax().max(own.high.amax());
+    Some(own.wider(MARGIN * own.size().norm() + 8.0 * f64::EPSILON * farthest))
 }
 
 struct Join<'b> {
     blocks: &'b Blocks,
     grids: &'b [Grid],
+    /// sides that are not to be joined
+    apart: Vec<[bool; 4]>,
     /// an earlier slot of the same node, or itself
     first: Vec<usize>,
     /// what each side is joined to
@@ -47,7 +76,7 @@ struct Join<'b> {
 impl Join<'_> {
     /// Join two sides if they lie on each other.
     fn sides(&mut self, one: Side, other: Side) -> Result<(), BlockError> {
-        if self.blocks.is_apart(one.0, one.1) || self.blocks.is_apart(other.0, other.1) {
+        if self.apart[one.0][one.1] || self.apart[other.0][other.1] {
             return Ok(());
         }
         let [a, mut b] = [one, other].map(|(block, side)| self.grids[block].side(side));
@@ -137,7 +166,7 @@ impl Join<'_> {
         for corner in 0..4 {
             let (slot, at) = (self.root(self.grids[a].side(corner)[0]), self.grids[a].corner(corner));
             let touched: Vec<usize> = (0..4).filter(|side| self.grids[b].distance(*side, at) <= near).collect();
-            let apart = |block: usize, sides: &[usize]| sides.iter().any(|side| self.blocks.is_apart(block, *side));
+            let apart = |block: usize, sides: &[usize]| sides.iter().any(|side| self.apart[block][*side]);
             let Some(side) = touched.first() else { continue };
             let joined =
                 touched.iter().any(|side| self.grids[b].side(*side).iter().any(|&node| self.root(node) == slot));

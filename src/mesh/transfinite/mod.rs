@@ -191,8 +191,4 @@ impl Blocks {
             None => Ok(()),
         }
     }
-
-    fn is_apart(&self, block: usize, side: usize) -> bool {
-        self.blocks[block].sides[side].as_ref().is_some_and(|name| self.apart.contains(name))
-    }
 }

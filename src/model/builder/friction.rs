@@ -9,9 +9,10 @@ use super::error::{Checked, ModelError};
 use super::in_time::{InTime, LawAt};
 use crate::contact::surface::SlavePoint;
 use crate::laws::friction::{
-    CoulombParameters, FrictionLaw, FrictionParameters, PrescribedSlipParameters, RateAndStateParameters,
-    SlipWeakeningParameters, SuperSubloadingParameters,
+    CoulombParameters, FrictionLaw, FrictionParameters, LawInTime, Offset, Offsets, PrescribedSlipParameters,
+    RateAndStateParameters, SlipWeakeningParameters, SuperSubloadingParameters, observables,
 };
+use crate::laws::parameter::InvalidParameter;
 use crate::mesh::Mesh;
 use crate::model::boundary::Profile;
 
@@ -57,14 +58,16 @@ impl Friction {
         self
     }
 
-    /// The laws of a contact, and to every slave point the number of its own: one for all that have the same values.
+    /// The laws of a contact, with the offsets of its surfaces, and to every slave point the number of its own: one for all that
+    /// have the same values.
     pub(super) fn laws(
         &self,
         place: &str,
         points: &mut [SlavePoint],
         mesh: &Mesh,
         default_alpha_t: Option<f64>,
-    ) -> Checked<Vec<Box<dyn FrictionLaw>>> {
+        offsets: Offsets,
+    ) -> Checked<Vec<LawInTime>> {
         for (name, profile, _) in &self.elsewhere {
             check_profile(profile, &format!("{place}.{name}"))?;
         }
@@ -85,7 +88,7 @@ impl Friction {
             let (number, friction) = chosen;
             let value = |(name, profile): &(String, Profile)| defined(profile, at, &format!("{place}.{name}"));
             let values = friction.varying.iter().map(value).collect::<Checked<Vec<_>>>()?;
-            let in_time = friction.varying.iter().any(|(_, profile)| profile.depends_on_time());
+            let in_time = friction.varies_in_time();
             // In time, only points at one place are alike.
             let place_of = [at.x, at.y].into_iter().filter(|_| in_time);
             let key = (number, values.iter().copied().chain(place_of).map(f64::to_bits).collect());
@@ -97,16 +100,34 @@ impl Friction {
             numbers.insert(key, laws.len());
             let first = friction.varying.first().map(|(name, _)| format!("{place}.{name} at ({}, {})", at.x, at.y));
             let law = friction.law(&values, default_alpha_t, place, first)?;
-            laws.push(if in_time { friction.in_time(law, at, default_alpha_t) } else { law });
+            laws.push(friction.through_the_run(law, at, (default_alpha_t, offsets), place)?);
         }
         Ok(laws)
     }
 
-    /// The law that is this one at the start, and varies in time.
-    fn in_time(&self, start: Box<dyn FrictionLaw>, at: Vector2<f64>, alpha_t: Option<f64>) -> Box<dyn FrictionLaw> {
-        let profiles = Arc::new(self.varying.iter().map(|(_, profile)| profile.clone()).collect());
+    fn varies_in_time(&self) -> bool {
+        self.varying.iter().any(|(_, profile)| profile.depends_on_time())
+    }
+
+    /// The law of a place, with the offsets of its surfaces, from what it is at the start.
+    fn through_the_run(
+        &self,
+        start: Box<dyn FrictionLaw>,
+        at: Vector2<f64>,
+        (alpha_t, offsets): (Option<f64>, Offsets),
+        place: &str,
+    ) -> Checked<LawInTime> {
+        let takes_means = start.takes_means();
+        let start = Offset::over(start, offsets).map_err(|InvalidParameter { name, value, allowed }| {
+            ModelError::new(format!("{place}.{name}"), format!("is {value}: {allowed}"))
+        })?;
+        if !self.varies_in_time() {
+            return Ok(start.into());
+        }
+        let profiles = self.varying.iter().map(|(_, profile)| profile.clone()).collect();
         let alpha_t = alpha_t.unwrap_or(f64::NAN);
-        Box::new(InTime { profiles, at, law: self.law.clone(), alpha_t, start: start.into() })
+        let varying = InTime { profiles, at, law: self.law.clone(), alpha_t, offsets, takes_means };
+        Ok(LawInTime::varying(start, Box::new(move |span| varying.during(span))))
     }
 
     fn law(
@@ -125,7 +146,11 @@ impl Friction {
             return Err(ModelError::new(format!("{own}.alpha_t"), message));
         }
         let place = place.unwrap_or(own);
-        law.map_err(|error| if error.place.is_empty() { ModelError { place, ..error } } else { error })
+        let named = |law: Box<dyn FrictionLaw>| match observables::check_names(&*law) {
+            Ok(()) => Ok(law),
+            Err(message) => Err(ModelError::new("", format!("the names of the law: {message}"))),
+        };
+        law.and_then(named).map_err(|error| if error.place.is_empty() { ModelError { place, ..error } } else { error })
     }
 }
 

@@ -25,13 +25,12 @@ pub fn increments(place: &str, given: Option<IncrementSettings>, span: Span, sch
     };
     let (min, max) = (given.min.unwrap_or(default_min), given.max.unwrap_or(default_max));
     let increments = Increments { initial: given.initial, min, max, error: given.error };
-    check_lengths(place, increments, span.end, least)?;
-    let count = duration / max;
-    if count > MOST_INCREMENTS && !matches!(scheme, Scheme::Explicit { .. }) {
-        let message = format!(
-            "increments of at most {max:e} make {count:.1e} of them in a step of {duration:e}, and {MOST_INCREMENTS:e} are the \
-             most: make them longer"
-        );
+    for (name, value) in [("initial", Some(given.initial)), ("error", given.error)] {
+        value.map_or(Ok(()), |value| check_positive(&format!("{place}.{name}"), value))?;
+    }
+    check_bounds(place, [min, max], span, scheme)?;
+    if given.initial > max || given.initial < min {
+        let message = format!("initial = {} must lie between min = {min} and max = {max}", given.initial);
         return Err(ModelError::new(place, message));
     }
     if given.error.is_some() && scheme != Scheme::Static && scheme.error_constant().is_none() {
@@ -46,28 +45,38 @@ pub fn increments(place: &str, given: Option<IncrementSettings>, span: Span, sch
     Ok(increments)
 }
 
-/// Lengths of increments must be positive, leave room between them, and not be lost in the round-off of the time.
-fn check_lengths(place: &str, increments: Increments, end: f64, least: f64) -> Checked<()> {
-    let Increments { initial, min, max, error } = increments;
-    let positive = [("initial", Some(initial)), ("min", Some(min)), ("max", Some(max)), ("error", error)];
-    for (name, value) in positive.into_iter().filter_map(|(name, value)| Some((name, value?))) {
-        if !(value > 0.0 && value.is_finite()) {
-            return Err(ModelError::new(format!("{place}.{name}"), format!("is {value}: must be positive")));
-        }
-    }
+/// Bounds of increments must leave room between them, not be lost in the round-off of the time, and not ask for too many
+/// increments of what is left of a step.
+pub fn check_bounds(place: &str, [min, max]: [f64; 2], left: Span, scheme: Scheme) -> Checked<()> {
+    check_positive(&format!("{place}.min"), min)?;
+    check_positive(&format!("{place}.max"), max)?;
     if min > max {
         let message = format!("min = {min} is above max = {max}: increments must have room between them");
         return Err(ModelError::new(place, message));
     }
-    if initial > max || initial < min {
-        let message = format!("initial = {initial} must lie between min = {min} and max = {max}");
+    let (end, least, duration) = (left.end, SHORTEST_INCREMENT * left.end, left.end - left.start);
+    if min < least {
+        // Where the two are one number, it is max that was given.
+        let name = if min < max { "min" } else { "max" };
+        let message = format!("is {min:e}: at the time {end:e} increments below {least:.1e} are lost in round-off");
+        return Err(ModelError::new(format!("{place}.{name}"), message));
+    }
+    let count = duration / max;
+    if count > MOST_INCREMENTS && !matches!(scheme, Scheme::Explicit { .. }) {
+        let message = format!(
+            "increments of at most {max:e} make {count:.1e} of them in a step of {duration:e}, and {MOST_INCREMENTS:e} are the \
+             most: make them longer"
+        );
         return Err(ModelError::new(place, message));
     }
-    if min < least {
-        let message = format!("is {min:e}: at the time {end:e} increments below {least:.1e} are lost in round-off");
-        return Err(ModelError::new(format!("{place}.min"), message));
-    }
     Ok(())
+}
+
+fn check_positive(place: &str, value: f64) -> Checked<()> {
+    match value > 0.0 && value.is_finite() {
+        true => Ok(()),
+        false => Err(ModelError::new(place, format!("is {value}: must be positive"))),
+    }
 }
 
 /// c₀ of every dof: the nodes of a body share `stabilize` × (λ + 2G) × duration.

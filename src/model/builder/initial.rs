@@ -113,9 +113,9 @@ pub fn close(
         false => as_given(pair, given, model, place)?,
     };
     for (point, InitialTraction { pressure, traction }) in pair.points.iter().zip(&initial) {
-        let limit = pair.law(point).starting_limit(*pressure);
+        let limit = pair.law(point).start().starting_limit(*pressure);
         if traction.abs() > limit * (1.0 + ROUNDED) {
-            let law = pair.law(point);
+            let law = pair.law(point).start();
             let mu = observables::value(law, "mu", &law.initial_state());
             let message = format!(
                 "is {traction}: the initial strength is exceeded already, which is mu p = {limit} with mu = {mu} and \

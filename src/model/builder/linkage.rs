@@ -1,6 +1,6 @@
 //! Plates that turn, or of which one component is alike.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Matrix2;
 
@@ -10,13 +10,13 @@ use super::load_step::{LoadStep, Support};
 use super::plate::Plate;
 use crate::mesh::Mesh;
 use crate::model::Model;
-use crate::model::linkage::{Linkage, alike, rigid};
+use crate::model::linkage::{Follower, Linkage, alike, rigid};
 
 /// The nodes of plates that follow others.
 pub fn linkage(given: &[(String, Plate)], steps: &[LoadStep], model: &Model) -> Checked<Linkage> {
     let mesh = &model.mesh;
-    let pairs = model.ties.pairs();
-    let tied = |node: usize| pairs.iter().any(|&(copy, original)| copy == node || original == node);
+    let tied: BTreeSet<usize> = model.ties.pairs().iter().flat_map(|&(copy, original)| [copy, original]).collect();
+    let mut held = None;
     let mut linkage = Linkage::default();
     let mut seen: BTreeSet<(usize, usize)> = BTreeSet::new();
     for (k, (name, plate)) in given.iter().enumerate() {
@@ -30,7 +30,7 @@ pub fn linkage(given: &[(String, Plate)], steps: &[LoadStep], model: &Model) -> 
         let refused = |message: String| Err(ModelError::new(&place, message));
         let nodes = mesh.nodes_of(group(mesh, name, &place)?);
         let dofs = || nodes.iter().flat_map(|node| (0..2).filter(|i| components[*i]).map(|i| (*node, i)));
-        if let Some((node, _)) = dofs().find(|dof| tied(dof.0) || seen.contains(dof)) {
+        if let Some((node, _)) = dofs().find(|dof| tied.contains(&dof.0) || seen.contains(dof)) {
             return refused(format!(
                 "node {} moves with others already, a periodic side or another plate: leave it out of one of the two",
                 mesh.node_tags[node]
@@ -44,7 +44,11 @@ pub fn linkage(given: &[(String, Plate)], steps: &[LoadStep], model: &Model) -> 
         }
         match plate {
             Plate::Rigid => {
-                let leaders = leaders(&nodes, steps, mesh, &place)?;
+                let held = match &held {
+                    Some(held) => held,
+                    None => held.insert(held_nodes(steps, mesh, &place)?),
+                };
+                let leaders = leaders(&nodes, held, mesh, &place)?;
                 linkage.followers.extend(rigid(&nodes, leaders, |node| mesh.nodes[node]));
                 linkage.rigid.push(leaders);
             }
@@ -68,8 +72,10 @@ fn centers(linkage: &Linkage, model: &Model) -> Vec<Matrix2<f64>> {
         }
         model.point_masses.iter().for_each(|point| point.nodes.iter().for_each(|&node| mass[node] += point.mass));
     }
+    let mut of_leader: BTreeMap<usize, Vec<&Follower>> = BTreeMap::new();
+    linkage.turning().for_each(|follower| of_leader.entry(follower.leaders[0].0).or_default().push(follower));
     let center = |&[a, b]: &[usize; 2]| {
-        let own = || linkage.turning().filter(|follower| follower.leaders[0].0 == a);
+        let own = || of_leader.get(&a).into_iter().flatten();
         let moment = own().fold(Matrix2::identity() * mass[b], |sum, f| sum + f.leaders[1].1 * mass[f.node]);
         let total = mass[a] + mass[b] + own().map(|follower| mass[follower.node]).sum::<f64>();
         if total > 0.0 { moment / total } else { Matrix2::zeros() }
@@ -89,13 +95,18 @@ pub fn plate_of_moment(model: &Model, on: &Place, place: &str) -> Checked<[usize
     })
 }
 
-/// The node by which a rigid plate is held, or its first one, and the one farthest from it.
-fn leaders(nodes: &[usize], steps: &[LoadStep], mesh: &Mesh, place: &str) -> Checked<[usize; 2]> {
+/// Nodes that supports hold in any step.
+fn held_nodes(steps: &[LoadStep], mesh: &Mesh, place: &str) -> Checked<BTreeSet<usize>> {
     let mut held = BTreeSet::new();
     for support in steps.iter().flat_map(|step| &step.supports) {
-        let on: BTreeSet<usize> = nodes_at(mesh, &support.on, place)?.into_iter().collect();
-        held.extend(nodes.iter().copied().filter(|node| on.contains(node)));
+        held.extend(nodes_at(mesh, &support.on, place)?);
     }
+    Ok(held)
+}
+
+/// The node by which a rigid plate is held, or its first one, and the one farthest from it.
+fn leaders(nodes: &[usize], all_held: &BTreeSet<usize>, mesh: &Mesh, place: &str) -> Checked<[usize; 2]> {
+    let held: BTreeSet<usize> = nodes.iter().copied().filter(|node| all_held.contains(node)).collect();
     if held.len() > 1 {
         let tags: Vec<u64> = held.iter().take(2).map(|node| mesh.node_tags[*node]).collect();
         let message = format!(

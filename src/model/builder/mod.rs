@@ -40,7 +40,7 @@ mod groups;
 mod imposed;
 mod in_time;
 mod inclined;
-mod increments;
+pub(crate) mod increments;
 mod initial;
 mod limits;
 mod linkage;
@@ -81,10 +81,9 @@ use crate::laws::bulk::Material;
 use crate::mesh::Mesh;
 use crate::mesh::section::Section;
 use crate::mesh::ties::Ties;
-use crate::model::aids::Aids;
 use crate::model::imposed::{InitialStress, Thermal};
 use crate::model::linkage::Linkage;
-use crate::model::{Damping, Model, NewtonSettings};
+use crate::model::{Damping, Memories, Model, NewtonSettings};
 use body::{GivenBody, GivenMass};
 
 /// What a model is made of; [`Builder::build`] checks it and makes the model.
@@ -255,6 +254,7 @@ impl Builder {
         let (bodies, body_of_element) = body::bodies(std::mem::take(&mut self.bodies), &self.mesh)?;
         let solids = body::solids(&self.mesh, &bodies, &body_of_element, &f_bar)?;
         let mut model = Model {
+            memories: Memories::new(&solids, &bodies, &body_of_element),
             title: self.title,
             initial_velocity: vec![0.0; 2 * self.mesh.nodes.len()],
             massless: vec![false; self.mesh.nodes.len()],
@@ -270,7 +270,7 @@ impl Builder {
             methods: Vec::new(),
             steps: Vec::new(),
             watch: Vec::new(),
-            aids: Aids::default(),
+            aids: Default::default(),
             newton: checks::checked_newton(self.newton)?,
             prestress: Vec::new(),
             interval: checks::checked_interval(self.interval)?,
@@ -282,7 +282,7 @@ impl Builder {
         model.ties = periodic::ties(&self.periodic, &model.plates, &model.mesh)?;
         model.massless = pair::massless(&self.contacts, &model.mesh)?;
         model.linkage = linkage::linkage(&self.plates, &self.steps, &model)?;
-        model.contacts = self.contacts.iter().map(|contact| pair::pair(contact, &model)).collect::<Checked<_>>()?;
+        model.contacts = pair::pairs(&self.contacts, &model)?;
         model.methods = self.contacts.iter().map(|contact| pair::evaluation(contact, &model.mesh)).collect();
         model.prestress = initial::prestress(&self.contacts, &model);
         model.steps = schedule::steps(&self.steps, &model)?;

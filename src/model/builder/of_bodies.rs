@@ -1,5 +1,7 @@
 //! What is said of a body by its name.
 
+use std::collections::BTreeMap;
+
 use super::Builder;
 use super::error::{Checked, ModelError};
 use crate::model::imposed::{InitialStress, Thermal};
@@ -19,10 +21,11 @@ impl Builder {
 
     /// Give the bodies what was said about them elsewhere; returns which of them take F-bar.
     pub(super) fn settled(&mut self) -> Checked<Vec<bool>> {
-        let known: Vec<String> = self.bodies.iter().map(|body| body.name.clone()).collect();
+        let names: Vec<String> = self.bodies.iter().map(|body| body.name.clone()).collect();
+        let known: BTreeMap<&String, usize> = names.iter().zip(0..).collect();
         let number = |name: &String| {
-            known.iter().position(|known| known == name).ok_or_else(|| {
-                let message = format!("there is no body of this name; the bodies are {}", known.join(", "));
+            known.get(name).copied().ok_or_else(|| {
+                let message = format!("there is no body of this name; the bodies are {}", names.join(", "));
                 ModelError::new(format!("bodies.{name}"), message)
             })
         };

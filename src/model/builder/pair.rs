@@ -16,14 +16,21 @@ use crate::contact::pair::{ContactPair, Reverse};
 use crate::contact::surface::{
     SlavePoint, Surface, gauss_points, in_order, lone_point, nodal_points, nodal_points_of_rings,
 };
-use crate::laws::friction::{FrictionLaw, Offset};
-use crate::laws::parameter::InvalidParameter;
+use crate::laws::friction::Offsets;
 use crate::mesh::{Edge, Group, Mesh};
 use crate::model::Model;
 use crate::model::method::{Chosen, Method, choose};
 
-/// The pair of a contact.
-pub fn pair(contact: &Contact, model: &Model) -> Checked<ContactPair> {
+/// The pairs of contacts.
+pub fn pairs(contacts: &[Contact], model: &Model) -> Checked<Vec<ContactPair>> {
+    check_penetrations(contacts, &model.mesh)?;
+    let mut pairs = contacts.iter().map(|contact| pair(contact, model)).collect::<Checked<Vec<_>>>()?;
+    unseen(contacts, &mut pairs, model);
+    Ok(pairs)
+}
+
+/// The pair of a contact, but for what its points do not see.
+fn pair(contact: &Contact, model: &Model) -> Checked<ContactPair> {
     let place = format!("contacts.{}", contact.name);
     let (mut points, mortar) = slave_points(&place, contact, &model.mesh)?;
     let master = master(&place, contact, &points, model)?;
@@ -31,14 +38,14 @@ pub fn pair(contact: &Contact, model: &Model) -> Checked<ContactPair> {
         points.iter_mut().flat_map(|point| &mut point.length).for_each(|length| length.factor *= surface.share());
     }
     let Penalty { alpha_n, alpha_t, compliance } = penalty(&place, contact, model)?;
-    check_penetration(&place, contact, model)?;
-    let laws = contact.friction.laws(&place, &mut points, &model.mesh, alpha_t)?;
-    let laws = laws.into_iter().map(|law| offset(law, contact, &place)).collect::<Checked<Vec<_>>>()?;
-    for law in laws.iter().filter(|law| law.stiffness() > 0.0) {
-        check_size(&format!("{place}.friction"), "alpha_t", law.stiffness())?;
+    let offsets = Offsets { dilatancy: contact.dilatancy, wear: contact.wear };
+    let laws = contact.friction.laws(&place, &mut points, &model.mesh, alpha_t, offsets)?;
+    for stiffness in laws.iter().map(|law| law.start().stiffness()).filter(|stiffness| *stiffness > 0.0) {
+        check_size(&format!("{place}.friction"), "alpha_t", stiffness)?;
     }
     let mut pair = ContactPair {
         name: contact.name.clone(),
+        body: body(contact, points.first(), model),
         points,
         mortar,
         alpha_n,
@@ -48,7 +55,7 @@ pub fn pair(contact: &Contact, model: &Model) -> Checked<ContactPair> {
         fluid: fluid::fluid(&place, contact)?,
         laws,
         initial: None,
-        unseen: unseen(contact, &master, model),
+        unseen: Vec::new(),
         modulus: modulus(contact, model),
         reverse: reverse(contact, &model.mesh),
         small: None,
@@ -67,16 +74,17 @@ pub fn pair(contact: &Contact, model: &Model) -> Checked<ContactPair> {
     Ok(pair)
 }
 
-/// A law with the dilatancy and the wear of the contact.
-fn offset(law: Box<dyn FrictionLaw>, contact: &Contact, place: &str) -> Checked<Box<dyn FrictionLaw>> {
-    let Contact { dilatancy, wear, .. } = *contact;
-    if dilatancy.is_none() && wear.is_none() {
-        return Ok(law);
-    }
-    match Offset::new(law, dilatancy, wear) {
-        Ok(law) => Ok(Box::new(law)),
-        Err(InvalidParameter { name, value, allowed }) => {
-            Err(ModelError::new(format!("{place}.{name}"), format!("is {value}: {allowed}")))
+/// The body of the slave's edge at its first point. Where two bodies meet a node is one of both: the edge tells, not the node.
+fn body(contact: &Contact, first: Option<&SlavePoint>, model: &Model) -> Option<usize> {
+    let (node, _) = *first?.position.first()?;
+    match model.mesh.group(&contact.slave) {
+        Ok(Group::Edges(edges)) => {
+            let edge = edges.iter().find(|edge| edge.nodes.contains(&node))?;
+            Some(model.body_of_element[edge.element])
+        }
+        _ => {
+            let mut there = (0..model.bodies.len()).filter(|&k| model.bodies[k].nodes.binary_search(&node).is_ok());
+            there.next().filter(|_| there.next().is_none())
         }
     }
 }
@@ -99,9 +107,14 @@ fn start(pair: &mut ContactPair, contact: &Contact, model: &Model, place: &str) 
 /// Gaps are differences of positions and displacements; of these, round-off of the size of the model is left.
 const OF_SIZE: f64 = 8.0 * f64::EPSILON;
 
-fn check_penetration(place: &str, contact: &Contact, model: &Model) -> Checked<()> {
+/// A penetration must be one that gaps can tell.
+fn check_penetrations(contacts: &[Contact], mesh: &Mesh) -> Checked<()> {
+    let least = OF_SIZE * mesh.diagonal();
+    contacts.iter().try_for_each(|contact| check_penetration(contact, least))
+}
+
+fn check_penetration(contact: &Contact, least: f64) -> Checked<()> {
     let Some(penetration) = contact.penetration else { return Ok(()) };
-    let least = OF_SIZE * model.mesh.diagonal();
     let message = if !(penetration > 0.0 && penetration.is_finite()) {
         format!("is {penetration}: must be positive (leave it out for the plain penalty)")
     } else if penetration < least {
@@ -109,7 +122,7 @@ fn check_penetration(place: &str, contact: &Contact, model: &Model) -> Checked<(
     } else {
         return Ok(());
     };
-    Err(ModelError::new(format!("{place}.normal.penetration"), message))
+    Err(ModelError::new(format!("contacts.{}.normal.penetration", contact.name), message))
 }
 
 /// Where a contact of edges is evaluated; that of a group of points is at the points.

@@ -6,6 +6,7 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::error::{Checked, ModelError};
 use super::names;
+use crate::mesh::boxes::{Box2, Tree};
 use crate::mesh::shape::ElementKind;
 use crate::model::Model;
 use crate::model::probe::Probe;
@@ -82,17 +83,23 @@ impl Gauge {
 /// # Errors
 /// A place that lies in no body, or in two without saying which is meant.
 pub fn probes(gauges: &[Gauge], model: &Model) -> Checked<Vec<Probe>> {
-    let mut probes: Vec<Probe> = Vec::new();
+    if gauges.is_empty() {
+        return Ok(Vec::new());
+    }
+    let (mut probes, mut taken) = (Vec::new(), BTreeSet::new());
+    let reaches = Tree::new((0..model.solids.len()).map(|element| reach(model, element)));
     for gauge in gauges {
         let place = format!("probes.{}", gauge.name);
         names::check_name(&place, &gauge.name)?;
-        let elements = candidates(gauge, model)?;
+        let body = body(gauge, model)?;
         for (name, at) in gauge.points()? {
-            if probes.iter().any(|probe| probe.name == name) {
+            if !taken.insert(name.clone()) {
                 return Err(ModelError::new(place, format!("there is a probe `{name}` already: rename one")));
             }
-            let within = |&e: &usize| Some((e, coordinates(model, e, at)?));
-            let found: Vec<(usize, [f64; 2])> = elements.iter().filter_map(within).collect();
+            let is_meant = |e: &usize| body.is_none_or(|body| model.body_of_element[*e] == body);
+            let within = |e: usize| Some((e, coordinates(model, e, at)?));
+            let near = reaches.meeting(&Box2 { low: at, high: at });
+            let found: Vec<(usize, [f64; 2])> = near.into_iter().filter(is_meant).filter_map(within).collect();
             let bodies: BTreeSet<usize> = found.iter().map(|(e, _)| model.body_of_element[*e]).collect();
             let Some(&(element, coordinates)) = found.first() else {
                 return Err(ModelError::new(place, outside(model, at, gauge.body.as_deref())));
@@ -108,11 +115,18 @@ pub fn probes(gauges: &[Gauge], model: &Model) -> Checked<Vec<Probe>> {
     Ok(probes)
 }
 
-/// Elements in which the points of a gauge may lie.
-fn candidates(gauge: &Gauge, model: &Model) -> Checked<Vec<usize>> {
-    let Some(name) = &gauge.body else { return Ok((0..model.solids.len()).collect()) };
-    match model.bodies.iter().find(|body| body.name == *name) {
-        Some(body) => Ok(body.elements.clone()),
+/// A box that no point of an element lies outside of.
+fn reach(model: &Model, element: usize) -> Box2 {
+    let nodes = model.mesh.elements[element].nodes.iter().map(|&node| model.mesh.nodes[node]);
+    let own = Box2::around(nodes).unwrap_or(Box2 { low: Vector2::zeros(), high: Vector2::zeros() });
+    own.wider(BULGE * own.size().max())
+}
+
+/// The body that the points of a gauge are to lie in, if it is said.
+fn body(gauge: &Gauge, model: &Model) -> Checked<Option<usize>> {
+    let Some(name) = &gauge.body else { return Ok(None) };
+    match model.bodies.iter().position(|body| body.name == *name) {
+        Some(body) => Ok(Some(body)),
         None => {
             let known: Vec<&str> = model.bodies.iter().map(|body| body.name.as_str()).collect();
             let message = format!("there is no body `{name}`; the bodies are {}", known.join(", "));

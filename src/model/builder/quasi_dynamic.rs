@@ -4,7 +4,6 @@ use std::collections::BTreeSet;
 
 use super::error::{Checked, ModelError};
 use crate::contact::pair::ContactPair;
-use crate::laws::friction::FrictionLaw;
 use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::scheme::Scheme;
 use crate::model::support::{Inclined, Motion, Prescribed};
@@ -61,15 +60,11 @@ fn check_contact(pair: &ContactPair) -> Checked<()> {
             "is not for quasi_dynamic steps, which know no change of pressure: take static steps with radiation_damping",
         );
     }
-    if let Some(name) = pair.laws.iter().find_map(|law| law.offsets().first()) {
+    if let Some(name) = pair.laws.iter().find_map(|law| law.start().offsets().first()) {
         let key = if *name == "wear" { ".wear" } else { ".dilatancy" };
         return refused(key, "is not for quasi_dynamic steps, which know no change of pressure: leave it out");
     }
-    let has_rates = |law: &dyn FrictionLaw| match law.during([0.0, 0.0]) {
-        Ok(Some(law)) => law.rates().is_some(),
-        _ => law.rates().is_some(),
-    };
-    if pair.laws.iter().any(|law| !has_rates(&**law)) {
+    if pair.laws.iter().any(|law| law.start().rates().is_none()) {
         let message = "has no slip rate that follows from traction and state, as quasi_dynamic steps need it: take \
                        rate_and_state or prescribed, or static steps with radiation_damping and dt.error";
         return refused(".friction", message);

@@ -79,7 +79,6 @@ impl Schedule<'_> {
         for (k, load) in given.loads.iter().enumerate() {
             self.loads.change(load, &format!("{place}.loads[{k}]"), span, self.model)?;
         }
-        let damping = self.damping.clone();
         self.damp(&given.damping, place)?;
         temperatures(&mut self.temperatures, given, place, span, self.model)?;
         defined::check(place, given, (scheme, span), self.model)?;
@@ -96,7 +95,6 @@ impl Schedule<'_> {
             released,
             loads: self.loads.all(),
             damping: self.damping.clone(),
-            damps_anew: damping != self.damping,
             until: None,
             temperatures: in_force(&self.temperatures),
             stabilization,

@@ -4,22 +4,28 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::contact::{Contact, MasterSide};
 use crate::contact::master::Master;
+use crate::contact::pair::ContactPair;
 use crate::contact::rigid::Rigid;
 use crate::contact::surface::{SlavePoint, lone_point};
 use crate::laws::bulk::Material;
 use crate::mesh::{Group, Mesh};
 use crate::model::Model;
 
-/// Nodes of the surface of the slave's bodies that are not on the slave and outside a rigid master at the start: inside, they would not
-/// be seen.
-pub fn unseen(contact: &Contact, master: &Master, model: &Model) -> Vec<SlavePoint> {
-    let (Master::Rigid(rigid), Ok(Group::Edges(slave))) = (master, model.mesh.group(&contact.slave)) else {
-        return Vec::new();
-    };
-    let bodies: BTreeSet<usize> = slave.iter().map(|edge| model.body_of_element[edge.element]).collect();
-    let seen: BTreeSet<usize> = slave.iter().flat_map(|edge| &edge.nodes).copied().collect();
-    let others = surface_nodes(model, &bodies).into_iter().filter(|node| !seen.contains(node));
-    others.map(|node| lone_point(node, 0.0)).filter(|point| is_outside(rigid, point, &model.mesh)).collect()
+/// Find nodes of the surface of the slave's bodies that are not on the slave and outside a rigid master at the start: inside,
+/// they would not be seen.
+pub fn unseen(contacts: &[Contact], pairs: &mut [ContactPair], model: &Model) {
+    // Many contacts may be of the same bodies.
+    let mut surfaces: BTreeMap<BTreeSet<usize>, BTreeSet<usize>> = BTreeMap::new();
+    for (contact, pair) in contacts.iter().zip(pairs) {
+        let (Master::Rigid(rigid), Ok(Group::Edges(slave))) = (&pair.master, model.mesh.group(&contact.slave)) else {
+            continue;
+        };
+        let bodies: BTreeSet<usize> = slave.iter().map(|edge| model.body_of_element[edge.element]).collect();
+        let seen: BTreeSet<usize> = slave.iter().flat_map(|edge| &edge.nodes).copied().collect();
+        let surface = surfaces.entry(bodies).or_insert_with_key(|bodies| surface_nodes(model, bodies));
+        let others = surface.iter().filter(|node| !seen.contains(node)).map(|&node| lone_point(node, 0.0));
+        pair.unseen = others.filter(|point| is_outside(rigid, point, &model.mesh)).collect();
+    }
 }
 
 fn is_outside(rigid: &Rigid, point: &SlavePoint, mesh: &Mesh) -> bool {

@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 use serde_json::{Map, Value, json};
 
 use super::codec::{Number, THOROUGH};
+use crate::output::csv::failed;
+use crate::run::error::Error;
 
 /// The store's own files.
 pub const GROUP: &str = ".zgroup";
@@ -37,11 +39,35 @@ pub struct Series {
     pub is: Description,
     /// numbers of a record, in each dimension behind that of the records
     pub width: Option<usize>,
+    /// checksum of the files of its complete chunks, one after the other
+    pub complete: crc32fast::Hasher,
     /// bytes of the records since the last complete chunk
     pub chunk: Vec<u8>,
 }
 
 impl Series {
+    /// One without records.
+    pub fn new(is: Description, width: Option<usize>) -> Self {
+        Self { is, width, complete: crc32fast::Hasher::new(), chunk: Vec::new() }
+    }
+
+    /// Whether the first chunks still are what was written.
+    ///
+    /// # Errors
+    /// [`Error::Output`] with the first one that is gone, or the array if its chunks were changed.
+    pub fn check(&self, store: &Path, chunks: usize, crc: u32) -> Result<(), Error> {
+        let mut found = crc32fast::Hasher::new();
+        for path in (0..chunks).map(|number| store.join(self.file(number))) {
+            if !path.is_file() {
+                return Err(failed(&path, &"was there when the checkpoint was written, and is gone"));
+            }
+            found.update(&fs::read(&path).map_err(|cause| failed(&path, &cause))?);
+        }
+        let changed = "was changed since the checkpoint was written: its chunks have another checksum; put it back as it was, \
+                       or begin anew in another folder";
+        if found.finalize() == crc { Ok(()) } else { Err(failed(&store.join(&self.is.name), &changed)) }
+    }
+
     /// Bytes of a record.
     pub fn record(&self) -> usize {
         self.width.unwrap_or(1) * self.is.number.size()

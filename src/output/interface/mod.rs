@@ -79,7 +79,7 @@ impl InterfaceStore {
 
     /// The store that is there, to be restored.
     pub fn reopen(folder: &Path, model: &Model, start: &State, units: &BTreeMap<String, String>) -> Self {
-        let further = |pair: &ContactPair| observables::further(pair.laws.iter().map(|law| &**law));
+        let further = |pair: &ContactPair| observables::further(pair.laws.iter().map(|law| law.start()));
         let in_fluid = |pair: &ContactPair| pair.fluid.as_ref().map(|_| "p_w");
         let own = QUANTITIES.iter().map(|(name, ..)| *name);
         let names: Vec<Vec<&str>> = model
@@ -119,7 +119,9 @@ impl InterfaceStore {
     fn record_of(&self, model: &Model, state: &State) -> Record {
         let mut record = vec![vec![state.time]];
         for ((pair, states), names) in model.contacts.iter().zip(&state.contacts).zip(&self.names) {
-            let values = |name: &&str| pair.points.iter().zip(states).map(|(p, s)| value(pair, p, s, name)).collect();
+            let values = |name: &&str| {
+                pair.points.iter().zip(states).map(|(p, s)| value(pair, p, (s, state.time), name)).collect()
+            };
             record.extend(names.iter().map(values));
         }
         record
@@ -165,6 +167,10 @@ impl Observer for InterfaceStore {
         memory::written(&(self.store.save()?, &self.rows, &self.held, &self.last))
     }
 
+    fn check(&self, memory: &[u8]) -> Result<(), Error> {
+        self.store.check(&memory::read(memory)?)
+    }
+
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
         let saved;
         (saved, self.rows, self.held, self.last) = memory::read(memory)?;
@@ -177,7 +183,7 @@ impl Observer for InterfaceStore {
 }
 
 /// A quantity at a point; slip rates come later.
-fn value(pair: &ContactPair, slave: &SlavePoint, state: &ContactState, name: &str) -> f64 {
+fn value(pair: &ContactPair, slave: &SlavePoint, (state, time): (&ContactState, f64), name: &str) -> f64 {
     let friction = &state.friction;
     match name {
         "slip" => friction.plastic_slip,
@@ -187,6 +193,6 @@ fn value(pair: &ContactPair, slave: &SlavePoint, state: &ContactState, name: &st
         "q" => friction.traction,
         "gap" => state.gap,
         "p_w" => state.fluid,
-        _ => observables::value(pair.law(slave), name, friction),
+        _ => pair.observed(slave, name, (friction, time)),
     }
 }

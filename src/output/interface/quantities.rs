@@ -1,6 +1,6 @@
 //! What the arrays of the store are called, and what they are.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Map, Value, json};
 
@@ -51,14 +51,14 @@ pub enum Unit {
 
 /// Names of the contacts as they can stand in names of files, each one once.
 pub fn prefixes(model: &Model) -> Vec<String> {
-    let mut prefixes: Vec<String> = Vec::new();
+    let (mut prefixes, mut taken) = (Vec::new(), BTreeSet::new());
     for pair in &model.contacts {
         let plain = |c: char| if c.is_alphanumeric() || "_-. +()=".contains(c) { c } else { '_' };
         let mut prefix: String = pair.name.chars().map(plain).collect();
         if prefix.starts_with('.') {
             prefix.replace_range(..1, "_");
         }
-        while prefixes.iter().any(|other| other.to_lowercase() == prefix.to_lowercase()) {
+        while !taken.insert(prefix.to_lowercase()) {
             prefix.push('_');
         }
         prefixes.push(prefix);
@@ -103,7 +103,7 @@ pub fn along(
 /// A quantity of a contact.
 pub fn quantity(pair: &ContactPair, prefix: &str, name: &str, units: &BTreeMap<String, String>) -> Description {
     let known = QUANTITIES.iter().chain(&OF_SOME).find(|(known, ..)| *known == name);
-    let free = pair.laws.iter().all(|law| law.is_frictionless()) && ["slip", "total_slip"].contains(&name);
+    let free = pair.laws.iter().all(|law| law.start().is_frictionless()) && ["slip", "total_slip"].contains(&name);
     let long_name = if free { FREE_MOTION } else { known.map_or(name, |(_, long_name, _)| long_name) };
     let mut attributes: Map<String, Value> = Map::new();
     attributes.insert("long_name".into(), json!(format!("{}: {long_name}", pair.name)));

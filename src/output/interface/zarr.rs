@@ -36,8 +36,8 @@ const BLINK: Duration = Duration::from_millis(50);
 /// See [`BLINK`].
 const REST: u32 = 40;
 
-/// Number of records, and the bytes of those since the last complete chunk, array by array.
-pub type Saved = (u64, Vec<Vec<u8>>);
+/// Number of records; array by array the checksum of the complete chunks, and the bytes of the records since.
+pub type Saved = (u64, Vec<(u32, Vec<u8>)>);
 
 /// A store being written.
 #[derive(Debug)]
@@ -70,7 +70,7 @@ impl Store {
         growing: Vec<(Description, Option<usize>)>,
     ) -> Self {
         let widest = growing.iter().filter_map(|(_, width)| *width).max().unwrap_or(1);
-        let series = growing.into_iter().map(|(is, width)| Series { is, width, chunk: Vec::new() }).collect();
+        let series = growing.into_iter().map(|(is, width)| Series::new(is, width)).collect();
         Self {
             folder,
             attributes: Value::Object(attributes),
@@ -166,26 +166,36 @@ impl Store {
         for path in std::mem::take(&mut self.young) {
             File::open(&path).and_then(|file| file.sync_all()).map_err(|cause| failed(&path, &cause))?;
         }
-        Ok((self.records as u64, self.series.iter().map(|series| series.chunk.clone()).collect()))
+        let saved = |series: &Series| (series.complete.clone().finalize(), series.chunk.clone());
+        Ok((self.records as u64, self.series.iter().map(saved).collect()))
+    }
+
+    /// Whether the records that were saved are there as they were.
+    ///
+    /// # Errors
+    /// [`Error::Output`] with what is gone or was changed.
+    pub fn check(&self, (records, saved): &Saved) -> Result<(), Error> {
+        let records = usize::try_from(*records).unwrap_or(usize::MAX);
+        let (chunks, length) = (records / self.chunk, records % self.chunk);
+        for (series, (crc, chunk)) in self.series.iter().zip(saved) {
+            if chunk.len() != length * series.record() {
+                return Err(failed(&self.folder, &"its checkpoint is one of another store"));
+            }
+            series.check(&self.folder, chunks, *crc)?;
+        }
+        Ok(())
     }
 
     /// Go on from what was saved, with the values of the arrays that do not grow; later records are taken back.
     ///
     /// # Errors
-    /// [`Error::Output`] when the records are not there, or what follows cannot be taken away.
-    pub fn restore(&mut self, fixed: &[Vec<f64>], (records, chunks): Saved) -> Result<(), Error> {
+    /// [`Error::Output`] when what follows cannot be taken away.
+    pub fn restore(&mut self, fixed: &[Vec<f64>], (records, saved): Saved) -> Result<(), Error> {
         self.records = usize::try_from(records).unwrap_or(usize::MAX);
         let complete = self.records / self.chunk;
         let length = self.records % self.chunk;
-        for (series, chunk) in self.series.iter_mut().zip(chunks) {
-            let gone = (0..complete).map(|number| self.folder.join(series.file(number))).find(|path| !path.is_file());
-            if let Some(path) = gone {
-                return Err(failed(&path, &"was there when the checkpoint was written, and is gone"));
-            }
-            if chunk.len() != length * series.record() {
-                return Err(failed(&self.folder, &"its checkpoint is one of another store"));
-            }
-            series.chunk = chunk;
+        for (series, (crc, chunk)) in self.series.iter_mut().zip(saved) {
+            (series.complete, series.chunk) = (crc32fast::Hasher::new_with_initial(crc), chunk);
         }
         self.describe(fixed)?;
         self.settled = false;
@@ -231,14 +241,18 @@ impl Store {
 
     fn write_chunks(&mut self, number: usize, level: u8) -> Result<(), Error> {
         for k in 0..self.series.len() {
-            let series = &self.series[k];
-            let mut bytes = series.chunk.clone();
-            while bytes.len() < series.record() * self.chunk {
+            let series = &mut self.series[k];
+            let (mut bytes, whole) = (series.chunk.clone(), series.record() * self.chunk);
+            let is_complete = bytes.len() == whole;
+            while bytes.len() < whole {
                 series.is.number.write(f64::NAN, &mut bytes);
             }
             let bytes = packed(&bytes, series.is.number.size(), level);
             let path = self.folder.join(series.file(number));
             put(&path, &bytes)?;
+            if is_complete {
+                series.complete.update(&bytes);
+            }
             if level == THOROUGH {
                 self.young.push(path);
             }

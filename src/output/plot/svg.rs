@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use crate::mesh::names::is_unwritable;
+
 /// By this a figure of ours is known.
 pub const OURS: &str = "data-drawn-by=\"fecontact\"";
 
@@ -179,5 +181,6 @@ fn attributes(Stroke { colour, width, dashes }: Stroke) -> String {
 }
 
 fn escaped(text: &str) -> String {
+    let text = text.replace(is_unwritable, "\u{fffd}");
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

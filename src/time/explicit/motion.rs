@@ -12,8 +12,8 @@ use crate::model::state::State;
 use crate::model::support::Direction;
 use crate::model::{Model, Step};
 use crate::solve::failure::IncrementFailure;
-use crate::time::accept::{accept, take_stock};
-use crate::time::increment::launch;
+use crate::time::accept::{accept, heat, take_stock};
+use crate::time::increment::{keep_to_supports, launch};
 
 impl Explicit {
     /// Give nodes the velocities that they take when the step begins; what that changes of ½ Σ m v² is work from outside.
@@ -26,18 +26,37 @@ impl Explicit {
         launch(model, step, state);
         // The audit of a run begins with what moves then.
         if state.increment > 0 {
-            state.energy.external_work += energy_of_motion(model, &mass, &state.velocity) - before;
+            let change = energy_of_motion(model, &mass, &state.velocity) - before;
+            state.energy.external_work += change;
+            state.energy.kinetic += change;
+        }
+    }
+
+    /// After implicit increments the same velocities have the kinetic energy of lumped masses: what that changes of the energy of a
+    /// motion counts as work from outside.
+    pub fn lump(&self, state: &mut State) {
+        if state.energy.kinetic > 0.0 {
+            let kinetic = self.kinetic_energy(state, self.stable);
+            state.energy.external_work += kinetic - state.energy.kinetic;
+            state.energy.kinetic = kinetic;
         }
     }
 
     /// The forces and accelerations at the start of the step.
     pub(super) fn start(&mut self, state: &mut State, assembler: &mut Assembler) -> Result<(), IncrementFailure> {
         let (model, step) = (&*self.model.clone(), &*self.step.clone());
+        keep_to_supports(model, (step, self.stable), state);
         let still = Trial::new(state, step, state.time, 0.0);
         assembler.evaluation.damping.fill(0.0);
-        let velocity = model.is_viscous(step).then_some(&state.velocity[..]);
+        if model.is_viscous(step) {
+            // The stress of viscous bodies is that of the increment that led here: v₁ = v½ + ½ Δt a₁.
+            let rates = state.velocity.iter().zip(&state.acceleration);
+            self.mean_velocity.iter_mut().zip(rates).for_each(|(mean, (v, a))| *mean = v - 0.5 * state.dt * a);
+        }
+        let velocity = model.is_viscous(step).then_some(&self.mean_velocity[..]);
         assembler.forces(still, &state.displacement, velocity).map_err(IncrementFailure::Start)?;
         let found = &mut assembler.evaluation;
+        heat(step, found, state);
         self.add_pulls(state.time, &state.velocity, found);
         let accelerations = found.force.iter().enumerate().map(|(dof, force)| -force / self.mass[dof / 2]);
         state.acceleration = accelerations.collect();

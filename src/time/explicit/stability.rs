@@ -16,7 +16,7 @@ use crate::contact::master::Master;
 use crate::contact::surface::SegmentWeights;
 use crate::equations::failure::TrialFailure;
 use crate::model::state::State;
-use crate::model::{Body, Model, Step};
+use crate::model::{Model, Step};
 use crate::solve::failure::IncrementFailure;
 
 /// Share of its size by which an element may change before it is looked at again: its bound is exact to about as much.
@@ -159,9 +159,10 @@ impl Stability {
     /// Look at some elements again.
     pub(super) fn look(&mut self, elements: &[usize], state: &State) -> Result<(), IncrementFailure> {
         let (model, retardation, u) = (&self.model, &self.retardation, &state.displacement);
-        let memories = if model.bodies.iter().any(Body::is_imposed) { model.memories() } else { Vec::new() };
-        let memory = |e: usize| memories.get(e).map_or(&[][..], |own| &state.memory[own.clone()]);
-        let look = |&e: &usize| Element::at(model, retardation[model.body_of_element[e]], e, (u, memory(e)));
+        let look = |&e: &usize| {
+            let memory = model.memories.of(e, &state.memory);
+            Element::at(model, retardation[model.body_of_element[e]], e, (u, memory))
+        };
         let found: Vec<Result<Element, TrialFailure>> = elements.par_iter().with_min_len(64).map(look).collect();
         for (&e, element) in elements.iter().zip(found) {
             self.elements[e] = element.map_err(IncrementFailure::Start)?;

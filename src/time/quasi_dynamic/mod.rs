@@ -95,7 +95,7 @@ impl QuasiDynamic {
     /// Some steps from a state on, the first of length `dt`; the state moves on with them.
     ///
     /// # Errors
-    /// [`IncrementFailure::Slip`] where no step is short enough.
+    /// [`IncrementFailure::Slip`] where a point opens or its law has no slip rate, or no step is short enough.
     pub fn go(&mut self, dt: f64, state: &mut State) -> Result<Gone, IncrementFailure> {
         let Scheme::QuasiDynamic { tolerance, every } = self.step.scheme else {
             return Ok(Gone { steps: 0, next: dt });
@@ -105,7 +105,7 @@ impl QuasiDynamic {
         let mut steps = Steps::new(interface, old.time, tolerance);
         let (mut gone, mut next, mut last, mut ended) = (0, dt, 0.0, false);
         if let Some(worst) = steps.now().iter().position(|rates| !rates.is_good()) {
-            return Err(self.failure(&old, worst, &steps.now()[worst]));
+            return Err(self.failure(&old, worst, &steps.now()[worst], 0.0));
         }
         while gone < every && !ended {
             let left = self.step.span.end - old.time - steps.since;
@@ -124,7 +124,7 @@ impl QuasiDynamic {
                         if gone > 0 {
                             break;
                         }
-                        return Err(self.failure(&old, worst, &rates));
+                        return Err(self.failure(&old, worst, &rates, h));
                     }
                     next = share * h;
                 }
@@ -210,17 +210,25 @@ impl QuasiDynamic {
         Ok(())
     }
 
-    fn failure(&self, state: &State, number: usize, rates: &Rates) -> IncrementFailure {
+    /// Why a point cannot go on from a state by a step of length `dt`, the shortest; from the state itself where that is 0.
+    fn failure(&self, state: &State, number: usize, rates: &Rates, dt: f64) -> IncrementFailure {
         let (pair, slave, _) = self.interface(state).points[number];
         let at = slave.at(&self.model.configuration(&state.displacement));
         let why = if rates.pressure <= 0.0 {
-            format!("the pressure is {:e}, and quasi_dynamic steps keep every point closed", rates.pressure)
+            format!(
+                "the pressure has come to {:e}, and quasi_dynamic steps keep every point closed: press harder, or take static steps \
+                 with radiation_damping",
+                rates.pressure
+            )
         } else if !rates.is_good() {
-            format!("the law has no slip rate under the traction {:e}", rates.traction)
+            let Rates { traction, pressure, .. } = rates;
+            format!("the law has no slip rate under the traction {traction:e} and the pressure {pressure:e}")
         } else {
             let Rates { slip_rate, pressure, .. } = rates;
             format!(
-                "at the slip rate {slip_rate:e} and the pressure {pressure:e} no step is short enough for the tolerance"
+                "at the slip rate {slip_rate:e} and the pressure {pressure:e} the error of a step of {dt:.3e} is above the tolerance, and \
+                 none may be shorter (dt.min = {:e}): lower dt.min, or allow a larger tolerance",
+                self.step.increments.min
             )
         };
         IncrementFailure::Slip { contact: pair.name.clone(), x: at.x, y: at.y, why }

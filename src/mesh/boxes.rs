@@ -1,0 +1,116 @@
+//! Which of many boxes meet another one: a tree of boxes around boxes, each divided in halves along its longer side.
+
+use nalgebra::Vector2;
+
+/// A box along the axes [L].
+#[derive(Clone, Copy, Debug)]
+pub struct Box2 {
+    /// lower left corner
+    pub low: Vector2<f64>,
+    /// upper right corner
+    pub high: Vector2<f64>,
+}
+
+impl Box2 {
+    /// The smallest box around places; none around nothing.
+    pub fn around(places: impl IntoIterator<Item = Vector2<f64>>) -> Option<Self> {
+        places.into_iter().map(|at| Self { low: at, high: at }).reduce(Self::with)
+    }
+
+    /// The smallest box around two.
+    fn with(self, other: Self) -> Self {
+        Self { low: self.low.inf(&other.low), high: self.high.sup(&other.high) }
+    }
+
+    /// One that is larger by a margin on every side.
+    #[must_use]
+    pub fn wider(self, margin: f64) -> Self {
+        Self { low: self.low.add_scalar(-margin), high: self.high.add_scalar(margin) }
+    }
+
+    /// Its sides.
+    pub fn size(&self) -> Vector2<f64> {
+        self.high - self.low
+    }
+
+    fn meets(&self, other: &Self) -> bool {
+        (0..2).all(|i| self.low[i] <= other.high[i] && other.low[i] <= self.high[i])
+    }
+}
+
+/// Boxes in a tree; each has the number of its place among those that were given.
+#[derive(Debug)]
+pub struct Tree {
+    /// leaf by leaf
+    boxes: Vec<(Box2, usize)>,
+    /// the box around each part of the tree; the halves of part k are 2 k + 1 and 2 k + 2
+    around: Vec<Option<Box2>>,
+}
+
+impl Tree {
+    /// The tree of boxes, O(n log n).
+    pub fn new(boxes: impl Iterator<Item = Box2>) -> Self {
+        let mut boxes: Vec<(Box2, usize)> = boxes.zip(0..).collect();
+        let mut around = vec![None; 2 * boxes.len().next_power_of_two()];
+        divide(&mut boxes, 0, &mut around);
+        Self { boxes, around }
+    }
+
+    /// The numbers of those that meet a box, ascending.
+    pub fn meeting(&self, other: &Box2) -> Vec<usize> {
+        let mut found = Vec::new();
+        let mut parts = vec![(0, 0..self.boxes.len())];
+        while let Some((part, leaves)) = parts.pop() {
+            if !self.around[part].is_some_and(|around| around.meets(other)) {
+                continue;
+            }
+            if leaves.len() == 1 {
+                found.push(self.boxes[leaves.start].1);
+                continue;
+            }
+            let middle = leaves.start + leaves.len() / 2;
+            parts.extend([(2 * part + 1, leaves.start..middle), (2 * part + 2, middle..leaves.end)]);
+        }
+        found.sort_unstable();
+        found
+    }
+}
+
+/// Put the boxes of a part into two halves, and so on down to single ones.
+fn divide(boxes: &mut [(Box2, usize)], part: usize, around: &mut [Option<Box2>]) {
+    let Some(all) = boxes.iter().map(|(own, _)| *own).reduce(Box2::with) else { return };
+    around[part] = Some(all);
+    if boxes.len() == 1 {
+        return;
+    }
+    let axis = usize::from(all.size().y > all.size().x);
+    let middle = boxes.len() / 2;
+    let centre = |own: &Box2| own.low[axis] + own.high[axis];
+    boxes.select_nth_unstable_by(middle, |(a, _), (b, _)| centre(a).total_cmp(&centre(b)));
+    let (first, second) = boxes.split_at_mut(middle);
+    divide(first, 2 * part + 1, around);
+    divide(second, 2 * part + 2, around);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The same as going through all, for boxes strewn about by a congruence.
+    #[test]
+    fn none_is_missed() {
+        let boxes: Vec<Box2> = (0..200u32)
+            .map(|k| {
+                let at = |m: u32| f64::from(k * m % 211) / 211.0;
+                let low = Vector2::new(at(97), at(53));
+                Box2 { low, high: low + 0.1 * Vector2::new(at(31), at(17)) }
+            })
+            .collect();
+        let tree = Tree::new(boxes.iter().copied());
+        for own in &boxes {
+            let all: Vec<usize> = (0..boxes.len()).filter(|k| boxes[*k].meets(own)).collect();
+            assert_eq!(tree.meeting(own), all);
+        }
+        assert!(Tree::new(std::iter::empty()).meeting(&boxes[0]).is_empty());
+    }
+}
