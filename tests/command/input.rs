@@ -1235,11 +1235,13 @@ fn control_characters_are_never_printed() {
         assert_eq!(raw, None, "{text:?}");
         assert!(text.contains("\\u{1b}[2J") || text.contains("\\u{202e}"), "{text:?}");
     };
-    let [printed, _] = outcome("check", &[("/title", json!(steering))]);
+    let [printed, _] = outcome("check", &[("/title", json!("\u{202e}turned"))]);
     plain(&printed);
     let folder = TempDir::new().unwrap();
     for edit in [
         (format!("/{steering}"), json!(1)),
+        ("/title".into(), json!(steering)),
+        ("/units".into(), json!({"length": steering})),
         (format!("/bodies/{steering}"), good()["bodies"]["block"].clone()),
         ("/mesh".into(), json!(format!("{steering}.msh"))),
         ("/watch".into(), json!([steering])),
@@ -1255,6 +1257,83 @@ fn control_characters_are_never_printed() {
     // A file name with a line break makes no line of its own.
     write(folder.path(), "bad.json", with(&[("/mesh", json!("a\nerror: b.msh"))]).to_string());
     assert_eq!(stderr(&fecontact(folder.path(), &["check", "bad.json"])).lines().count(), 1);
+}
+
+/// Names become columns and files, titles and units stand in figures: what could not be written, or not be read again, is refused
+/// before anything is.
+#[test]
+fn names_that_no_file_can_have_are_refused() {
+    let long = "n".repeat(200);
+    let wide = "接".repeat(40);
+    let renamed = |pointer: &str, from: &str, to: &str| {
+        let mut case = good();
+        let object = case.pointer_mut(pointer).and_then(Value::as_object_mut).expect("an object");
+        let value = object.remove(from).expect("it is there");
+        object.insert(to.into(), value);
+        case
+    };
+    let body = |name: &str| {
+        let text = renamed("/bodies", "block", name).to_string();
+        let mut case: Value = serde_json::from_str(&text).expect("JSON");
+        let elements = case["mesh"]["elements"].as_object_mut().expect("elements");
+        let own = elements.remove("block").expect("a body");
+        elements.insert(name.into(), own);
+        case
+    };
+    let with_probe = |name: &str| with(&[("/probes", json!({name: {"at": [0.5, 0.5]}}))]);
+    let refused: [(Value, &[&str]); 12] = [
+        (
+            renamed("/contacts", "base", &long),
+            &["contacts: the name \"nnnnnnnnnnnnnnnnnnnn\"… is 200 bytes long", "take at most 100"],
+        ),
+        (renamed("/contacts", "base", &wide), &["contacts: the name", "is 120 bytes long"]),
+        (renamed("/contacts", "base", "a\u{1}b"), &["contacts: the name", "'\\u{1}'"]),
+        (renamed("/contacts", "base", "a\u{ffff}"), &["contacts: the name", "'\\u{ffff}'"]),
+        (body(&long), &["bodies: the name", "is 200 bytes long"]),
+        (body("a,b"), &["bodies: the name \"a,b\" has ',' in it"]),
+        (body("a\"b"), &["bodies: the name", "has '\"' in it"]),
+        (with(&[("/steps/0/name", json!(long))]), &["steps[0].name: the name", "is 200 bytes long"]),
+        (with_probe(&long), &["probes.", "is 200 bytes long"]),
+        (with_probe("a\nb"), &["probes.", "'\\n'"]),
+        (with(&[("/title", json!("a\u{1}b"))]), &["title: \"a\\u{1}b\" has '\\u{1}' in it"]),
+        (with(&[("/units", json!({"length": "m\u{0}"}))]), &["units.length: ", "has '\\0' in it"]),
+    ];
+    for (case, expected) in refused {
+        let folder = TempDir::new().unwrap();
+        write(folder.path(), "bad.json", case.to_string());
+        for command in [&["check", "bad.json"][..], &["run", "bad.json", "--out", "out"]] {
+            let output = fecontact(folder.path(), command);
+            let told = stderr(&output);
+            assert_eq!(output.status.code(), Some(2), "{told}");
+            assert!(expected.iter().all(|part| told.contains(part)), "{expected:?}: {told}");
+        }
+        assert!(!folder.path().join("out").exists());
+    }
+}
+
+/// Names that look like paths, or differ by case alone, stay in the folder, each with arrays of its own; so does the longest.
+#[test]
+fn names_of_contacts_never_leave_the_folder() {
+    let longest = "n".repeat(100);
+    let names = ["a/b", "A/B", "..", "../../up", ".hidden", "a b", "é", longest.as_str(), "con", "a\\b", "<&>'"];
+    let mut case = good();
+    let base = case["contacts"]["base"].clone();
+    case["contacts"] =
+        names.iter().map(|name| ((*name).to_string(), base.clone())).collect::<serde_json::Map<_, _>>().into();
+    case["title"] = json!("<&> \u{202e}");
+    let folder = TempDir::new().unwrap();
+    write(folder.path(), "case.json", case.to_string());
+    let output = fecontact(folder.path(), &["run", "case.json", "--quiet", "--out", "out"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let beside: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(beside.len(), 2, "{beside:?}");
+    let arrays: Vec<String> = fs::read_dir(folder.path().join("out/interface.zarr"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap().to_lowercase())
+        .filter(|name| name.ends_with(".slip"))
+        .collect();
+    let different: std::collections::BTreeSet<&String> = arrays.iter().collect();
+    assert_eq!((arrays.len(), different.len()), (names.len(), names.len()), "{arrays:?}");
 }
 
 /// "Did you mean" only where it may be true.

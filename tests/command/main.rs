@@ -8,6 +8,7 @@ mod delayed;
 mod convergence;
 mod input;
 mod law;
+mod many;
 mod mutations;
 mod outputs;
 mod plot;

@@ -387,6 +387,81 @@ fn probes_are_exact_in_a_linear_field() {
     }
 }
 
+/// A body that is held under its initial stress, beside one that remembers more and comes after it: frames, frames of the integration
+/// points and probes all show the stress that it was given.
+#[test]
+fn every_output_of_bodies_that_remember_shows_their_own() {
+    let folder = TempDir::new().expect("a folder");
+    let stress = [-10.3, 4.2, 1.7];
+    run(
+        folder.path(),
+        &json!({
+            "mesh": Blocks::default().rectangle("aaa", [3, 2], [12.0, 0.0], [14.0, 1.0])
+                .rectangle("soft", [4, 2], [0.0, 0.0], [2.0, 1.0]).json(),
+            "bodies": {
+                "aaa": {"material": {"model": "linear", "E": 500, "nu": 0.2},
+                    "initial_stress": {"components": {"xx": stress[0], "yy": stress[1], "zz": stress[2]}}},
+                "soft": {"material": {"model": "viscoelastic", "E": 100, "nu": 0.3, "E_1": 100, "tau": 2}},
+            },
+            "steps": [{"name": "stretch", "duration": 1, "dt": {"initial": 0.25}, "supports": [
+                {"on": "soft_left", "ux": 0, "uy": 0}, {"on": "soft_right", "ux": 0.1}, {"on": "aaa", "ux": 0, "uy": 0}]}],
+            "probes": {"gauge": {"at": [13.1, 0.6]}},
+            "output": {"points": true, "checkpoint": 0}
+        }),
+    );
+    let out = folder.path().join("out");
+    let last = |collection: &str| {
+        let text = fs::read_to_string(out.join(collection)).expect("a collection");
+        let file = text.split("file=\"").last().expect("a frame").split('"').next().expect("its name").to_string();
+        frame(&out.join(file))
+    };
+    let read = table(&out.join("probes.csv"));
+    for (k, name) in ["xx", "yy", "zz"].into_iter().enumerate() {
+        read[&format!("gauge.stress_{name}")].iter().for_each(|value| close(name, *value, stress[k], 1e-11));
+    }
+    for collection in ["solid.pvd", "points.pvd"] {
+        let shown = last(collection);
+        let (places, stresses) =
+            (shown.points.clone().cast_into::<f64>().expect("places"), values(&shown.data.point, "stress"));
+        let mut seen = 0;
+        for (place, found) in places.chunks_exact(3).zip(stresses.chunks_exact(4)).filter(|(place, _)| place[0] > 11.0)
+        {
+            (0..3).for_each(|k| close(&format!("{collection} {place:?}"), found[k], stress[k], 1e-11));
+            seen += 1;
+        }
+        assert!(seen >= 12, "{collection}: {seen}");
+    }
+}
+
+/// As many probes as a line may have, 100 000 in 2500 elements that remember: each is found among the few elements near it, and finds
+/// what its element remembers without a walk over the others. What they read is the even strain, and there are as many columns.
+#[test]
+fn a_line_may_have_a_hundred_thousand_probes() {
+    const NUMBER: usize = 100_000;
+    let folder = TempDir::new().expect("a folder");
+    run(
+        folder.path(),
+        &json!({
+            "mesh": Blocks::default().rectangle("body", [50, 50], [0.0, 0.0], [2.0, 1.0]).json(),
+            "bodies": {"body": {"material": {"model": "viscoelastic", "E": 100, "nu": 0.3, "E_1": 100, "tau": 2}}},
+            "steps": [{"name": "stretch", "duration": 1, "dt": {"initial": 1}, "supports": [
+                {"on": "body_left", "ux": 0}, {"on": "body_right", "ux": 0.02}, {"on": "body_bottom", "uy": 0}]}],
+            "probes": {"line": {"from": [0, 0], "to": [2, 1], "number": NUMBER}},
+            "output": {"fields": false, "checkpoint": 0, "report": false}
+        }),
+    );
+    let text = fs::read_to_string(folder.path().join("out/probes.csv")).expect("a table");
+    let mut lines = text.lines();
+    assert_eq!(lines.next().expect("a header").split(',').count(), 1 + 11 * NUMBER);
+    let row: Vec<f64> = lines.next().expect("a row").split(',').map(|cell| cell.parse().expect("a number")).collect();
+    for (k, probe) in row[1..].chunks_exact(11).enumerate() {
+        close("u_x", probe[0], 0.02 * k as f64 / (NUMBER - 1) as f64, 1e-9);
+        // Green and Lagrange's strain of an even stretch by 1 %.
+        close("E_xx", probe[4], 0.01 + 0.5e-4, 1e-9);
+        close("the same stress", probe[7], row[1 + 7], 1e-7);
+    }
+}
+
 /// Places of probes that cannot be meant.
 #[test]
 fn bad_places_of_probes_are_named() {

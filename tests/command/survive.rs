@@ -8,6 +8,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::common::{Blocks, store};
+use fecontact::output::checkpoint;
 use fecontact::output::interface::read;
 use fecontact::output::lock::Lock;
 use serde_json::{Value, json};
@@ -743,6 +744,13 @@ fn a_damaged_checkpoint_is_told() {
     assert!(results(&folder.path().join("straight")) == results(&out));
 }
 
+/// What fuzzing of checkpoints begins with would else be refused at its head.
+#[test]
+fn the_seed_of_a_checkpoint_has_the_format_of_now() {
+    let seed = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds/checkpoint/0");
+    assert!(checkpoint::read(&seed).is_ok_and(|checkpoint| checkpoint.complete));
+}
+
 /// Results that were changed behind the program's back cannot be gone on with.
 #[test]
 fn results_that_are_missing_are_told() {
@@ -752,6 +760,94 @@ fn results_that_are_missing_are_told() {
         let told = told(&run(folder.path(), "out", &["--resume"]), 2);
         assert!(told.contains(name) && told.contains(reason), "{told}");
     }
+}
+
+/// What is gone on with is what was written: a byte changed since in a table or in a complete chunk of the store, a column that
+/// the case no longer asks for or a frame that is gone ends the command before anything is written or taken back, and put back
+/// it goes on to the bytes of a run in one go.
+#[test]
+fn results_that_were_altered_are_not_gone_on_with() {
+    let folder = TempDir::new().expect("a folder");
+    let mut case = explicit();
+    // So many points that the store has a complete chunk well before the end, and time between frames and checkpoints.
+    case["mesh"] = Blocks::default()
+        .rectangle("ground", [10, 2], [0.0, -0.5], [3.0, 0.0])
+        .rectangle("block", [50, 1], [0.4, 0.01], [1.4, 0.51])
+        .json();
+    case["output"] = json!({"checkpoint": 1e-3, "interval": 1e-4, "every": 100});
+    case["steps"][1]["duration"] = json!(0.05);
+    case["probes"] = json!({"gauge": {"at": [0.9, 0.3]}});
+    written(folder.path(), &case);
+    done(&run(folder.path(), "straight", &[]));
+    let out = folder.path().join("out");
+    let mut child = command(folder.path(), "out", &[]).spawn().expect("it runs");
+    wait_for_rows(&mut child, &out, 400);
+    child.kill().expect("it is killed");
+    child.wait().expect("it ends");
+    let all = || {
+        let mut all = results(&out);
+        // The lock of the run that was killed goes.
+        all.remove(Path::new("fecontact.lock"));
+        let further = ["summary.json", "checkpoint.bin", "checkpoint_prev.bin"].map(PathBuf::from);
+        all.extend(further.map(|name| (name.clone(), fs::read(out.join(&name)).expect("a file"))));
+        all
+    };
+    let before = all();
+    assert_eq!(summary(&out)["status"], "running", "it is killed on its way");
+    let refused = |name: &str, reason: &str| {
+        let changed = all();
+        let told = told(&run(folder.path(), "out", &["--resume"]), 2);
+        assert!(told.contains(&format!("out/{name}: ")) && told.contains(reason), "{name}: {told}");
+        assert!(all() == changed, "{name}: something else was changed");
+    };
+    let change = "was changed since the checkpoint was written";
+    for (name, told_of) in [
+        ("history.csv", "history.csv"),
+        ("newton.csv", "newton.csv"),
+        ("probes.csv", "probes.csv"),
+        ("interface.zarr/base.slip/0.0", "interface.zarr/base.slip"),
+    ] {
+        let whole = &before[Path::new(name)];
+        let mut altered = whole.clone();
+        // A digit of the second row; anything in a chunk.
+        let row = whole.iter().position(|byte| *byte == b'\n').filter(|_| name.ends_with("csv")).unwrap_or(100);
+        let digit = row + whole[row..].iter().position(u8::is_ascii_digit).expect("a digit");
+        altered[digit] ^= 1;
+        fs::write(out.join(name), altered).expect("a file");
+        refused(told_of, change);
+        fs::write(out.join(name), &whole[..whole.len() / 4]).expect("a file");
+        refused(told_of, change);
+        fs::write(out.join(name), whole).expect("a file");
+    }
+    let frame = "solid/00001.vtu";
+    fs::remove_file(out.join(frame)).expect("it was there");
+    refused(frame, "and is gone");
+    fs::write(out.join(frame), &before[Path::new(frame)]).expect("a file");
+    let mut other = case.clone();
+    other["probes"] = json!({"other": {"at": [0.9, 0.3]}});
+    written(folder.path(), &other);
+    refused("probes.csv", "has the column `gauge.ux`, which would be lost");
+    written(folder.path(), &case);
+    done(&run(folder.path(), "out", &["--resume"]));
+    same(&folder.path().join("straight"), &out);
+}
+
+/// A table that is asked for anew is not begun where another cannot be gone on with: it would be in the way afterwards.
+#[test]
+fn nothing_is_begun_beside_altered_results() {
+    let folder = TempDir::new().expect("a folder");
+    let mut case = dragged(json!("static"), 6);
+    written(folder.path(), &case);
+    done(&run(folder.path(), "out", &[]));
+    let history = folder.path().join("out/history.csv");
+    let whole = fs::read_to_string(&history).expect("a table");
+    fs::write(&history, whole.replacen("press", "Press", 1)).expect("a file");
+    case["probes"] = json!({"gauge": {"at": [0.9, 0.3]}});
+    written(folder.path(), &case);
+    told(&run(folder.path(), "out", &["--resume"]), 2);
+    assert!(!folder.path().join("out/probes.csv").exists());
+    fs::write(&history, whole).expect("a file");
+    done(&run(folder.path(), "out", &["--resume"]));
 }
 
 /// Columns of a history whose names begin so, but for heat, which is counted from the start of a run as energies are.

@@ -2,7 +2,12 @@
 
 use std::path::Path;
 
-use crate::common::{Finished, close, finish, model};
+use crate::common::{Blocks, Finished, close, finish, floor, linear, model, run_through};
+use fecontact::contact::fields;
+use fecontact::laws::friction::{Answer, Coulomb, CoulombParameters, FrictionLaw, FrictionState, Sliding};
+use fecontact::model::Model;
+use fecontact::model::boundary::{Drive, Expression, Profile};
+use fecontact::model::builder::{Contact, Friction, LoadStep, Support};
 use serde_json::{Value, json};
 
 /// Points on a plane, one law for those beyond x = 1.5, each pressed with 4 and held by a spring of 10 to a driver.
@@ -75,11 +80,34 @@ fn strength_follows_the_time() {
             close("q", contact.friction.traction, mu * 2.0, 1e-10);
         }
         let pair = &run.model.contacts[0];
-        let observed = fecontact::contact::fields::value(pair, &pair.points[1], &state.contacts[0][1], state.dt, "R");
+        let observed = fecontact::contact::fields::value(
+            pair,
+            &pair.points[1],
+            &state.contacts[0][1],
+            (state.time, state.dt),
+            "R",
+        );
         close("R", observed, 1.0, 1e-12);
     }
     // From Coulomb's law with a constant coefficient it differs by far.
     assert!(run.at(2.0).contacts[0][0].friction.traction < 0.41);
+}
+
+/// So it does in explicit increments.
+#[test]
+fn strength_follows_the_time_of_explicit_increments() {
+    let mu = "0.4 - 0.2*exp(0 - (t - 2)^2)";
+    let mut case = points(&json!({"mu": mu}), &coulomb(0.5), 4.0, 1e-3);
+    case["steps"][0]["scheme"] = json!({"explicit": {}});
+    case["steps"][0]["loads"] = json!([{"on": "block", "force": {"y": "-4"}}]);
+    case["steps"][0]["supports"] = json!([{"on": "block", "ux": {"rate": 0.1}}]);
+    let run = finish(&case);
+    for state in run.states.iter().filter(|state| state.time >= 1.0) {
+        let mu = 0.4 - 0.2 * (-(state.time - 2.0).powi(2)).exp();
+        for contact in &state.contacts[0] {
+            close("q", contact.friction.traction, mu * 2.0, 1e-9);
+        }
+    }
 }
 
 /// What is wrong is told with its place.
@@ -132,4 +160,99 @@ fn a_parameter_that_leaves_its_range_stops_the_run() {
     let told = result.err().expect("it stops").to_string();
     assert!(told.contains("the parameters of the friction law") && told.contains("along"), "{told}");
     assert!((0.4..0.5).contains(&run.state().time), "{}", run.state().time);
+}
+
+/// Where the parameters are those of another law that holds at all times, the run has the same bits: also where points touch
+/// on the way, which the law of the increment has to judge, and not that of t = 0.
+#[test]
+fn touch_is_judged_by_the_law_of_its_time() {
+    // It comes down on the plane at t = 0.67.
+    let landing = |mu: Value| {
+        let mut case = points(&json!({"mu": mu}), &coulomb(0.5), 1.0, 0.1);
+        let contact = case["contacts"]["base"].as_object_mut().expect("a contact");
+        contact.remove("initial");
+        case["mesh"]["nodes"] = json!([[0, 0.067], [1, 0.067], [2, 0.067]]);
+        case["steps"][0]["loads"] = json!([{"on": "block", "spring": {"kx": 100, "ky": 100,
+            "driver": {"x": {"rate": 0.5}, "y": {"rate": -0.1}}}}]);
+        finish(&case)
+    };
+    let [always, then] = [json!(0.3), json!("0.3 + 100*max(0.25 - t, 0)")].map(landing);
+    assert!(always.last().contacts[0][0].friction.plastic_slip > 0.05, "it touches and slides");
+    assert_eq!([always.report.rejected, always.report.increments], [then.report.rejected, then.report.increments]);
+    assert!(always.last() == then.last(), "the same law, other bits");
+}
+
+/// A law that keeps four numbers of its own: Coulomb's, which counts its answers in each of them, and says that it dilates.
+#[derive(Clone, Copy, Debug)]
+struct Counting(Coulomb);
+
+impl FrictionLaw for Counting {
+    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
+        let mut answer = self.0.respond(old, sliding)?;
+        answer.state.variables = old.variables.map(|count| count + 1.0);
+        Ok(answer)
+    }
+
+    fn stiffness(&self) -> f64 {
+        self.0.stiffness()
+    }
+
+    fn variables(&self) -> &'static [&'static str] {
+        &["first", "second", "third", "fourth"]
+    }
+
+    fn offsets(&self) -> &'static [&'static str] {
+        &["dilation"]
+    }
+
+    fn starting_limit(&self, pressure: f64) -> f64 {
+        self.0.starting_limit(pressure)
+    }
+}
+
+fn expression(text: &str) -> Expression {
+    Expression::parse(text).expect("an expression")
+}
+
+/// A law whose parameters vary in time is asked as it is: all four of its variables are its own, and it names all it has. What is
+/// observed has the parameters of its time.
+#[test]
+fn a_law_that_varies_in_time_keeps_all_that_it_says() {
+    let dragged = |mu: &str| {
+        let friction = Friction::varying([("along.mu", Profile::Expression(expression(mu)))], |values, alpha_t| {
+            Ok(Box::new(Counting(Coulomb::new(&CoulombParameters::new(values[0]), alpha_t)?)))
+        });
+        let drawn = Support::on("slab_top").ux(Drive::Rate(0.01)).uy(0.0);
+        run_through(
+            Model::builder(Blocks::default().rectangle("slab", [3, 2], [0.0, 0.0], [1.0, 1.0]).mesh())
+                .body("slab", linear(260.0, 0.3, 100.0))
+                .contact(Contact::new("base", "slab_bottom", floor(), friction).alpha_n(1e4).initial(1.0, 0.0))
+                .step(LoadStep::new("draw", 1.0).dt(0.25).support(drawn)),
+        )
+    };
+    for mu in ["0.3", "0.3 + 0.1*t"] {
+        let run = dragged(mu);
+        for point in &run.last().contacts[0] {
+            assert_eq!(point.friction.variables, [4.0; 4], "{mu}");
+        }
+        let names = fields::names(&run.model.contacts);
+        assert!(["first", "fourth", "dilation"].iter().all(|name| names.contains(name)), "{mu}: {names:?}");
+    }
+}
+
+/// Friction that comes down to the dilatancy in time ends the run where it does, with both numbers, t = (0.5 − 0.35)/0.3.
+#[test]
+fn friction_that_falls_below_the_dilatancy_stops_the_run() {
+    let mut case = points(&json!({"mu": "0.5 - 0.3*t"}), &coulomb(0.5), 1.0, 0.1);
+    case["contacts"]["base"]["dilatancy"] = json!({"rate": 0.35});
+    let mut run = fecontact::run::Simulation::new(model(&case));
+    let told = loop {
+        match run.next_increment() {
+            Ok(Some(_)) => {}
+            Ok(None) => panic!("it goes on where sliding yields work"),
+            Err(error) => break error.to_string(),
+        }
+    };
+    assert!(["dilatancy.rate", "0.35", "along"].iter().all(|what| told.contains(what)), "{told}");
+    assert!((0.48..=0.5).contains(&run.state().time), "{}", run.state().time);
 }

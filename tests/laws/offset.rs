@@ -81,6 +81,23 @@ fn to_and_fro_dilation_goes_on_and_wear_adds_up() {
     assert_eq!((parted.opening, parted.wear), (state.opening, state.wear));
 }
 
+/// Sliding must take work however far friction has come down: tan ψ is held against the least coefficient that a law can come to,
+/// μ_k, μ_d or μ, and both are told.
+#[test]
+fn dilatancy_stays_below_the_least_friction() {
+    for (text, least) in [(LAWS[0], 0.4), (LAWS[1], 0.3), (LAWS[2], 0.3)] {
+        let offset = |rate: f64| Offset::new(law(text), Some(Dilatancy { rate, limit: None }), None);
+        assert!(offset(0.99 * least).is_ok(), "{text}");
+        for rate in [least, 1.1 * least] {
+            let error = offset(rate).expect_err("sliding would yield work");
+            assert_eq!((error.name, error.value), ("dilatancy.rate", rate));
+            assert!(error.allowed.contains(&least.to_string()), "{text}: {error}");
+        }
+    }
+    // Steady friction of rate and state falls with the logarithm of the rate, without end: a run watches it.
+    assert!(Offset::new(law(LAWS[3]), Some(Dilatancy { rate: 0.55, limit: None }), None).is_ok());
+}
+
 /// What has no meaning is refused by name.
 #[test]
 fn bad_parameters_are_named() {

@@ -6,15 +6,17 @@ use std::path::{Path, PathBuf};
 use crate::common::{
     self, Blocks, elastic, expression, finish_at, finished, floor, linear, model, model_at, neo_hookean,
 };
+use fecontact::case::law_test;
 use fecontact::laws::bulk::{Material, NeoHookean, SaintVenantKirchhoff};
 use fecontact::laws::friction::{
-    Coulomb, CoulombParameters, Frictionless, SlipWeakening, SlipWeakeningParameters, SuperSubloadingParameters,
+    Coulomb, CoulombParameters, FrictionLaw, FrictionResponse, FrictionState, Frictionless, LawFailure, Sliding,
+    SlipWeakening, SlipWeakeningParameters, SuperSubloadingParameters, register,
 };
 use fecontact::mesh::gmsh;
 use fecontact::model::boundary::{Drive, Profile};
 use fecontact::model::builder::{
-    Action, Builder, Change, Components, Contact, Friction, IncrementSettings, InitialTractions, Link, Load, LoadStep,
-    MasterSide, Place, Support,
+    Action, Builder, Change, Checked, Components, Contact, Friction, IncrementSettings, InitialTractions, Link, Load,
+    LoadStep, MasterSide, Place, Support,
 };
 use fecontact::model::method::Method;
 use fecontact::model::scheme::Scheme;
@@ -353,13 +355,83 @@ fn materials_of_ones_own_serve() {
     assert!(apart < 1e-12 * largest, "{apart:e} of {largest}");
 }
 
+/// Friction without any, which gives names to what it remembers and shows: a law of a user.
+#[derive(Clone, Debug)]
+struct Named {
+    variables: &'static [&'static str],
+    offsets: &'static [&'static str],
+}
+
+impl FrictionLaw for Named {
+    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Result<FrictionResponse, LawFailure> {
+        FrictionResponse::elastic(old.stuck(0.0, sliding.pressure.max(0.0)), 0.0).checked(1.0)
+    }
+
+    fn variables(&self) -> &'static [&'static str] {
+        self.variables
+    }
+
+    fn offsets(&self) -> &'static [&'static str] {
+        self.offsets
+    }
+
+    fn stiffness(&self) -> f64 {
+        0.0
+    }
+}
+
+/// Names of a law become those of columns, arrays and files: they must be fit for that, and their own. So it is with laws that are
+/// handed to the builder, and with those that are registered, in a case and alone.
+#[test]
+fn names_that_a_law_gives_are_checked() {
+    let named = |variables: &'static [&'static str]| Named { variables, offsets: &["dilation"] };
+    let told = |law: Named| {
+        let model = small().contact(Contact::new("other", "block_left", floor(), law)).build();
+        model.map_or_else(|error| error.to_string(), |_| String::new())
+    };
+    assert_eq!(told(named(&["mu", "T", "ψ_1", "weakening_slip"])), "");
+    for (law, words) in [
+        (named(&["q"]), "a variable cannot be named `q`: results have something else of that name"),
+        (named(&["dilation"]), "a variable cannot be named `dilation`"),
+        (named(&["slip_Rate"]), "a variable cannot be named `slip_Rate`"),
+        (
+            named(&["../a"]),
+            "the name \"../a\" of a variable must begin with a letter, and have letters, digits and _ alone",
+        ),
+        (named(&[""]), "the name \"\" of a variable must begin"),
+        (named(&["a\u{1b}[31m"]), "the name \"a\\u{1b}[31m\" of a variable must begin"),
+        (named(&["a", "b", "a"]), "`a` and `a` are told apart by capitals at most"),
+        (named(&["MU"]), "`mu` and `MU` are told apart by capitals at most"),
+        (named(&["a", "b", "c", "d", "e"]), "has 5 variables: 4 are the most"),
+        (
+            Named { variables: &[], offsets: &["rise"] },
+            "an opening has no part `rise`: outputs show `dilation` and `wear`",
+        ),
+    ] {
+        let told = told(law);
+        assert!(told.starts_with("contacts.other.friction: the names of the law: ") && told.contains(words), "{told}");
+    }
+    // Parameters that vary in time take the place of none.
+    let fades = Profile::Expression(parsed("1 - t"));
+    let four = move |_: &[f64], _: f64| -> Checked<Box<dyn FrictionLaw>> { Ok(Box::new(named(&["a", "b", "c", "d"]))) };
+    let varying = Friction::varying([("along.mu", fades)], four);
+    assert!(small().contact(Contact::new("other", "block_left", floor(), varying)).build().is_ok());
+    register("of the tests", move |_, _| Ok(Box::new(named(&["p"]))));
+    let friction = json!({"law": "registered", "name": "of the tests", "alpha_t": 1});
+    let alone = json!({"friction": friction, "table": [[0, 0, 1], [1, 1, 1]]}).to_string();
+    let alone =
+        law_test::from_text(&alone, Path::new("test")).and_then(|input| law_test::build(&input, Path::new("test")));
+    let alone = alone.map_or_else(|error| error.to_string(), |_| String::new());
+    assert!(alone.contains("test: friction: the names of the law: a variable cannot be named `p`"), "{alone}");
+}
+
 /// The defaults of the documentation: α_n = 10 (λ + 2G)/h, α_t = α_n/2, with λ + 2G = E (1 − ν)/((1 + ν)(1 − 2ν)).
 #[test]
 fn penalties_follow_from_the_softer_side() {
     let model = built(small());
     let modulus = 100.0 * 0.7 / (1.3 * 0.4);
     common::close("alpha_n", model.contacts[0].alpha_n, 10.0 * modulus, 1e-9 * modulus);
-    common::close("alpha_t", model.contacts[0].laws[0].stiffness(), 5.0 * modulus, 1e-9 * modulus);
+    common::close("alpha_t", model.contacts[0].laws[0].start().stiffness(), 5.0 * modulus, 1e-9 * modulus);
 }
 
 /// What is wrong with a model from code is told with its place and what to do.
@@ -477,5 +549,29 @@ fn what_is_wrong_is_named() {
     ] {
         let told = model.build().err().map(|error| error.to_string()).unwrap_or_default();
         assert!(told.starts_with(words), "`{words}` is not in `{told}`");
+    }
+}
+
+/// Two bodies that share nodes, one after the other along a floor: the waves are those of the body whose edge is the slave's, whatever
+/// the names.
+#[test]
+fn wave_speeds_are_those_of_the_slaves_own_body() {
+    for [left, right] in [["a", "b"], ["b", "a"]] {
+        let body = |young: f64| json!({"material": {"model": "linear", "E": young, "nu": 0.25, "density": 1}});
+        for (slave, young) in [([0, 1], 10.0), ([1, 2], 1000.0)] {
+            let model = model(&json!({
+                "mesh": {
+                    "nodes": [[0, 0], [1, 0], [2, 0], [0, 1], [1, 1], [2, 1]],
+                    "elements": {left: [[0, 1, 4, 3]], right: [[1, 2, 5, 4]]}, "edges": {"slave": [slave], "top": [[4, 3], [5, 4]]},
+                },
+                "bodies": {left: body(10.0), right: body(1000.0)},
+                "contacts": {"base": {"slave": "slave", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+                    "friction": {"law": "coulomb", "mu": 0.5}}},
+                "steps": [{"name": "rest", "duration": 1, "dt": {"initial": 1}, "supports": [{"on": "top", "ux": 0, "uy": 0}]}],
+            }));
+            // c_s = √(G/ρ) with G = E/2.5.
+            let shear = fecontact::output::wave_speeds::wave_speeds(&model)[1];
+            common::close("c_s", shear, (young / 2.5f64).sqrt(), 1e-12 * shear);
+        }
     }
 }

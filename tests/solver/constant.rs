@@ -106,7 +106,7 @@ fn direct(model: &Model, u: &[f64], v: &[f64]) -> Direct {
         let dofs: Vec<usize> = element.nodes.iter().flat_map(|node| [2 * node, 2 * node + 1]).collect();
         let (mut force, mut tangent) = (vec![0.0; dofs.len()], vec![0.0; dofs.len() * dofs.len()]);
         let solid = &model.solids[e];
-        let old = &memory[model.memory_of(e)];
+        let old = model.memories.of(e, &memory);
         sum.energy += match old {
             [] => solid.force_and_tangent(&*body.material, &local_u, &mut force, &mut tangent).expect("finite"),
             _ => {

@@ -43,7 +43,7 @@ fn stresses(run: &Finished) -> Vec<CauchyStress> {
         let u = nodes.map(|&n| nalgebra::Vector2::new(state.displacement[2 * n], state.displacement[2 * n + 1]));
         let material = &*model.bodies[model.body_of_element[e]].material;
         model.solids[e]
-            .stresses(material, &state.memory[model.memory_of(e)], &u.collect::<Vec<_>>())
+            .stresses(material, model.memories.of(e, &state.memory), &u.collect::<Vec<_>>())
             .expect("an answer")
     };
     (0..model.solids.len()).flat_map(of).collect()
@@ -382,7 +382,7 @@ fn ground_at_rest_stays_at_rest() {
                 let (values, u) =
                     (run.model.quadrature_positions(e), vec![nalgebra::Vector2::zeros(); element.nodes.len()]);
                 let material = &*run.model.bodies[run.model.body_of_element[e]].material;
-                let memory = &run.last().memory[run.model.memory_of(e)];
+                let memory = run.model.memories.of(e, &run.last().memory);
                 let found = run.model.solids[e].stresses(material, memory, &u).expect("an answer");
                 for (at, stress) in values.zip(found) {
                     let vertical = -9.81 * (3.0 - at.y);

@@ -18,6 +18,7 @@ mod invariance;
 mod joints;
 mod linear;
 mod loading;
+mod memory;
 mod mesh;
 mod newton;
 mod plates;

@@ -341,6 +341,67 @@ fn an_increment_is_rejected_by_its_caller_and_a_run_stopped() {
     close("held", simulation.displacement("square_top").unwrap().y, 0.002, 1e-12);
     simulation.stop();
     assert!(simulation.next().is_none() && simulation.is_complete());
+    // What is saved of it has not been stopped.
+    let saved = simulation.save();
+    assert!(!saved.is_complete() && saved.begun() == 1);
+    let again = Simulation::resume(simulation.model().clone(), saved);
+    let times = again.map(|increment| increment.expect("it is solved").state.time);
+    assert_eq!(times.collect::<Vec<_>>(), [4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0]);
+}
+
+/// What its caller has changed of a step holds to its end: after the last one nothing is changed that a file could not hold.
+#[test]
+fn a_run_that_was_led_to_its_end_is_saved_in_a_file() {
+    let mut simulation = Simulation::new(pulled_square().build().expect("a good model"));
+    simulation.lead("square_top", Axis::Y, 0.01, 10.0).expect("a support");
+    assert_eq!(simulation.save().begun(), 1, "a step that is led has begun");
+    while simulation.next_increment().expect("it is solved").is_some() {}
+    let bytes = simulation.save().bytes().expect("it can be written");
+    assert!(Saved::from_bytes(&bytes, simulation.model()).expect("it can be read").is_complete());
+}
+
+/// A run goes on with another model: in its own step as it was led, in those to come as the other one has them.
+#[test]
+fn a_run_goes_on_with_steps_that_have_changed_since() {
+    let longer = |y: f64| pulled_square().step(LoadStep::new("further", 1.0).support(Support::on("square_top").uy(y)));
+    let [first, second] = [0.02, 0.03].map(|y| Arc::new(longer(y).build().expect("a good model")));
+    let mut simulation = Simulation::new(first);
+    simulation.lead("square_top", Axis::Y, 0.01, 10.0).expect("a support");
+    simulation.next_increment().expect("it is solved");
+    let saved = simulation.save().on(&second).expect("a run of this model");
+    let mut again = Simulation::resume(second, saved);
+    let top = |run: &Simulation| run.displacement("square_top").expect("a group").y;
+    for _ in 0..9 {
+        again.next_increment().expect("it is solved");
+    }
+    close("led", top(&again), 0.01, 1e-12);
+    while again.next_increment().expect("it is solved").is_some() {}
+    close("the other model's", top(&again), 0.03, 1e-12);
+    let other = Arc::new(common::model(&dragged(json!({}), json!("static"))));
+    assert!(simulation.save().on(&other).is_err());
+}
+
+/// Bounds of increments are refused as those of a step are, and those that were there stay.
+#[test]
+fn bounds_of_increments_are_checked() {
+    let mut simulation = Simulation::new(pulled_square().build().expect("a good model"));
+    for (max, min, words) in [
+        (Some(1e-300), None, "increments.max: is 1e-300: at the time 1e1 increments below"),
+        (None, Some(1e-300), "increments.min: is 1e-300: at the time 1e1 increments below"),
+        (Some(1e-10), None, "increments: increments of at most 1e-10 make 1.0e11 of them"),
+        (Some(0.1), Some(0.2), "increments: min = 0.2 is above max = 0.1"),
+        (Some(f64::NAN), None, "increments.max: is NaN: must be positive"),
+        (None, Some(0.0), "increments.min: is 0: must be positive"),
+    ] {
+        let told = simulation.bound_increments(max, min).expect_err("bad bounds").to_string();
+        assert!(told.starts_with(words), "{told}");
+    }
+    assert!(simulation.save().bytes().is_ok(), "nothing was changed");
+    // A min above the new max comes down to it.
+    simulation.bound_increments(Some(1e-4), None).expect("good bounds");
+    assert_eq!(simulation.step().increments.min, 1e-4);
+    let increment = simulation.next_increment().expect("it is solved").expect("an increment");
+    close("its length", increment.state.dt, 1e-4, 1e-15);
 }
 
 #[test]

@@ -388,6 +388,7 @@ fn an_interface_that_opens_stops_the_run() {
         }
     };
     assert!(told.contains("contact `fault` at (") && told.contains("keep every point closed"), "{told}");
+    assert!(!told.contains("smallest allowed"), "no increment is to blame: {told}");
     let pressure =
         run.state().contacts[0].iter().map(|contact| contact.friction.pressure).fold(f64::INFINITY, f64::min);
     assert!((0.0..0.1).contains(&pressure), "{pressure}");
@@ -401,4 +402,24 @@ fn given_rates_may_vary_in_time() {
     let run = finish_at(&case, Path::new("test.json"));
     let slip = run.last().contacts[0][0].friction.plastic_slip;
     close("slip", slip, 1e-3 * (10.0 + 1.0 - 10f64.cos()), 1e-8);
+}
+
+/// Where no step may be as short as its error asks for, the run says how long the shortest was, and what the least is.
+#[test]
+fn steps_that_may_not_be_short_enough_are_told_of() {
+    let mut case = slider("ageing", 20.0, &quasi_dynamic(1e-6, 10));
+    case["steps"][0]["dt"] = json!({"initial": 1e4, "min": 1e4});
+    let mut run = Simulation::new(model(&case));
+    let told = loop {
+        match run.next_increment() {
+            Ok(Some(_)) => {}
+            Ok(None) => panic!("a rupture in steps of three hours"),
+            Err(error) => break error.to_string(),
+        }
+    };
+    assert!(
+        ["a step of 1.000e4 is above the tolerance", "dt.min = 1e4"].iter().all(|what| told.contains(what)),
+        "{told}"
+    );
+    assert!(!told.contains("smallest allowed"), "{told}");
 }

@@ -159,3 +159,24 @@ fn bad_dampings_are_refused() {
     let told = refused(&|case| case["contacts"]["fault"]["radiation_damping"] = json!("yes"));
     assert!(told.contains("true, false or a number"), "{told}");
 }
+
+/// The forces of a contact count what slip radiates, in sum and node by node, as the reactions do that hold against them:
+/// k (V t − x) = (q + η v) A with q = μ p.
+#[test]
+fn forces_of_a_contact_count_what_slip_radiates() {
+    let law = json!({"law": "coulomb", "mu": 0.25, "alpha_t": 1e4});
+    let run = finish(&slider(&law, &json!("static"), 0.02));
+    let last = run.last();
+    let pull = SPRING * (DRIVER * DURATION - last.displacement[0]);
+    let pair = &run.model.contacts[0];
+    let x = run.model.configuration(&last.displacement);
+    let sum = pair.resultant(&last.contacts[0], &x, nalgebra::Vector2::new(0.0, -1.0));
+    assert!(last.contacts[0][0].radiation > 0.1, "it slides");
+    close("force_x", sum.force.x, -pull, 1e-10);
+    close("force_y", sum.force.y, 4.0, 1e-10);
+    // About a point one below the plane, and as far behind as the block has come.
+    close("moment", sum.moment, last.displacement[0] * 4.0 + (1.0 + last.displacement[1]) * pull, 1e-9);
+    let on_node: nalgebra::Vector2<f64> =
+        pair.forces_on_nodes(&last.contacts[0], &x).iter().map(|(_, force)| *force).sum();
+    close("contact_force", on_node.x, -pull, 1e-10);
+}
