@@ -10,7 +10,8 @@ use fecontact::linear::Multifrontal;
 use fecontact::linear::system::Request;
 use fecontact::solve::Workspace;
 use fecontact::solve::contact_iteration::ContactIteration;
-use fecontact::time::increment::{advance, begin};
+use fecontact::time::beginning::begin;
+use fecontact::time::increment::advance;
 
 fn assembly(criterion: &mut Criterion) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/coulomb_drag_20k.json");

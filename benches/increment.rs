@@ -9,7 +9,8 @@ use fecontact::linear::Multifrontal;
 use fecontact::model::Model;
 use fecontact::model::state::State;
 use fecontact::solve::Workspace;
-use fecontact::time::increment::{advance, begin};
+use fecontact::time::beginning::begin;
+use fecontact::time::increment::advance;
 
 fn model() -> Model {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/coulomb_drag_5k.json");

@@ -54,8 +54,11 @@ impl<'a> Trial<'a> {
 
     /// ū of a support at the end of the increment; not finite where its expression has no value [L].
     pub fn prescribed(&self, support: &Prescribed, model: &Model) -> f64 {
+        if self.beyond.is_some() {
+            return self.thirds(support, model)[3];
+        }
         let (position, start) = self.place(support, model);
-        support.value(position, self.moment(), self.step.span, start)
+        support.value(position, self.time, self.step.span, start)
     }
 
     /// ū of a support at the start, thirds and end of the increment [L].

@@ -163,6 +163,25 @@ impl SparseMatrix {
             .collect()
     }
 
+    /// Mark, beside the nodes that are marked, all that values couple with them, over however many others.
+    pub fn reach(&self, marked: &mut [bool]) {
+        let couples = |row: usize, column: usize| {
+            let of = |block: BlockPosition| (0..4).any(|k| self.values[block.value(k / 2, k % 2)] != 0.0);
+            [(row, column), (column, row)]
+                .into_iter()
+                .any(|(row, column)| self.pattern.block(row, column).is_some_and(of))
+        };
+        let mut next: Vec<usize> = (0..marked.len()).filter(|&node| marked[node]).collect();
+        while let Some(node) = next.pop() {
+            for &other in self.pattern.neighbours(node) {
+                if !marked[other] && couples(other, node) {
+                    marked[other] = true;
+                    next.push(other);
+                }
+            }
+        }
+    }
+
     /// Replace the row of `dof` by `diagonal` on the diagonal and zeros elsewhere.
     pub fn replace_row(&mut self, dof: usize, diagonal: f64) {
         let (node, d) = (dof / 2, dof % 2);

@@ -118,11 +118,11 @@ impl Drive {
         }
     }
 
-    /// Value at a reference position and run time, `start` being the value at the start of the step. Beyond an increment a straight
-    /// line goes on as it does within, wherever it bends or the step ends; rates and expressions say themselves what comes.
+    /// Value at a reference position and run time, `start` being the value at the start of the step. Beyond an increment it
+    /// goes on in a straight line through the increment's start and end, wherever it bends or the step ends.
     pub fn value(&self, position: Vector2<f64>, at: impl Into<Moment>, span: Span, start: f64) -> f64 {
         let Moment { time, beyond } = at.into();
-        if let (Self::Constant(_) | Self::Table(_) | Self::ByPlace(..), Some([from, to])) = (self, beyond) {
+        if let Some([from, to]) = beyond {
             let [first, last] = [from, to].map(|time| self.value(position, time, span, start));
             return first + (time - from) / (to - from) * (last - first);
         }

@@ -22,8 +22,8 @@
 //! ```text
 //! a₁ = a₀ + (a_θ − a₀)/θ                                                                                     (4)
 //! ```
-//! and (2), (3) over Δt give u₁ and v₁. Ramps and tables go on to t + θ Δt as they go from t to t + Δt, wherever they bend or the
-//! step ends; rates and expressions say themselves where they go. At t + Δt equilibrium is met only to the order of the scheme. It is stable for
+//! and (2), (3) over Δt give u₁ and v₁. Loads go on to t + θ Δt in a straight line, f_θ = f₀ + θ (f₁ − f₀), and supports as the cubic
+//! through where they are at the start, thirds and end of the increment, wherever they bend or the step ends. At t + Δt equilibrium is met only to the order of the scheme. It is stable for
 //! every Δt from θ = (1 + √3)/2 = 1.366 on.
 //!
 //! # Central differences

@@ -119,19 +119,19 @@ impl Prescribed {
     }
 
     /// ū at a time within `step`, for the node's reference position and its displacement at the start of the step [L].
-    pub fn value(&self, position: Vector2<f64>, at: impl Into<Moment>, step: Span, start: Vector2<f64>) -> f64 {
-        let (component, at) = (self.at.dof % 2, at.into());
+    pub fn value(&self, position: Vector2<f64>, time: f64, step: Span, start: Vector2<f64>) -> f64 {
+        let component = self.at.dof % 2;
         match &self.motion {
-            Motion::Displacement(drive, span) => drive.value(position, at, *span, start[component]),
+            Motion::Displacement(drive, span) => drive.value(position, time, *span, start[component]),
             Motion::Inclined(parts) => {
                 let part = |Inclined { share, direction, drive, span }: &Inclined| {
-                    share * drive.value(position, at, *span, direction.dot(&start))
+                    share * drive.value(position, time, *span, direction.dot(&start))
                 };
                 parts.iter().map(part).sum()
             }
             Motion::Rotation { about, angle } => {
                 let arm = (position - about) + start;
-                let turn = angle.value(position, at) - angle.at_start_of(step, position);
+                let turn = angle.value(position, time) - angle.at_start_of(step, position);
                 // Q − I, to the last digit of small angles as well
                 let (sine, versed) = (turn.sin(), 2.0 * (0.5 * turn).sin().powi(2));
                 let moved = Vector2::new(-versed * arm.x - sine * arm.y, sine * arm.x - versed * arm.y);
@@ -140,24 +140,43 @@ impl Prescribed {
         }
     }
 
-    /// ū at the start, thirds and end of an increment, from a time to a moment. What is linear in time is taken straight from end to end: the kinks
-    /// of a table are jumps of the velocity and no accelerations [L].
+    /// ū at the start, thirds and end of an increment, from a time to a moment. What is linear in time is taken straight from end to
+    /// end: the kinks of a table are jumps of the velocity and no accelerations. Beyond an increment the motion goes on as the cubic
+    /// through its start, thirds and end: what comes after has no say in it [L].
     pub fn thirds(
         &self,
         position: Vector2<f64>,
-        (t0, end): (f64, Moment),
+        (start_time, end): (f64, Moment),
         step: Span,
         start: Vector2<f64>,
     ) -> [f64; 4] {
-        let at = |time: f64| self.value(position, Moment { time, ..end }, step, start);
-        let t1 = end.time;
-        let [first, last] = [t0, t1].map(at);
+        let [from, to] = end.beyond.unwrap_or([start_time, end.time]);
+        let at = |time: f64| self.value(position, time, step, start);
+        let [first, last] = [from, to].map(at);
         let curved = match &self.motion {
             Motion::Displacement(drive, _) => matches!(drive, Drive::Expression(_)),
             Motion::Inclined(parts) => parts.iter().any(|part| matches!(part.drive, Drive::Expression(_))),
             Motion::Rotation { .. } => true,
         };
-        let within = |share: f64| if curved { at(t0 + share * (t1 - t0)) } else { first + share * (last - first) };
-        [first, within(1.0 / 3.0), within(2.0 / 3.0), last]
+        let straight = |share: f64| first + share * (last - first);
+        let within = |share: f64| if curved { at(from + share * (to - from)) } else { straight(share) };
+        let places = [first, within(THIRDS[1]), within(THIRDS[2]), last];
+        if end.beyond.is_none() {
+            return places;
+        }
+        let reach = (end.time - from) / (to - from);
+        THIRDS.map(|third| if curved { cubic(places, third * reach) } else { straight(third * reach) })
     }
+}
+
+/// Start, thirds and end as shares.
+const THIRDS: [f64; 4] = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
+
+/// The cubic through four places at the start, thirds and end, at a share of the whole (Lagrange).
+fn cubic(places: [f64; 4], share: f64) -> f64 {
+    let factor = |k: usize| {
+        let others = THIRDS.into_iter().enumerate().filter(|(j, _)| *j != k);
+        others.map(|(_, third)| (share - third) / (THIRDS[k] - third)).product::<f64>()
+    };
+    (0..4).map(|k| places[k] * factor(k)).sum()
 }

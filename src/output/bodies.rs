@@ -6,13 +6,13 @@
 //! L = ∫ ρ (x − c) × v dV                          angular momentum about the centre of mass
 //! tan θ = ∫ ρ (X − C) × (x − c) dV / ∫ ρ (X − C)·(x − c) dV      mean rotation: that of the rigid body nearest to it
 //! ```
-//! Integrals go by the consistent mass of the body's elements, with what is moved away from massless nodes; point masses are
-//! not of the body. A body without density has the centre of its volume. Of rings they go over the full turn: x components
+//! Integrals go by the consistent mass of the body's elements, with what is moved away from massless nodes, but P and L after
+//! explicit increments by the lumped masses, which are those that keep them; point masses are not of the body. A body without density has the centre of its volume. Of rings they go over the full turn: x components
 //! sum up radial parts, c_x is the mean radius, and L and θ tell of the section alone.
 
-use nalgebra::{DMatrix, Vector2};
+use nalgebra::{DMatrix, DVector, Vector2};
 
-use crate::model::element::{consistent_mass, redistributed};
+use crate::model::element::{consistent_mass, lumped_mass, redistributed};
 use crate::model::state::State;
 use crate::model::{Body, Model};
 
@@ -22,12 +22,23 @@ pub struct BodyMeans {
     density: f64,
     /// ∫ N_a N_b dV of its nodes, a ≤ b
     pairs: Vec<(usize, usize, f64)>,
-    /// ∫ N_a dV, and ∫ N_a (X − C) dV, of its nodes
-    shares: Vec<(usize, f64, Vector2<f64>)>,
+    shares: Vec<Share>,
     volume: f64,
     centre: Vector2<f64>,
     /// ∫ |X − C|² dV
     inertia: f64,
+}
+
+/// What of a body goes with one of its nodes.
+#[derive(Clone, Debug)]
+struct Share {
+    node: usize,
+    /// ∫ N_a dV
+    volume: f64,
+    /// ∫ N_a (X − C) dV
+    moment: Vector2<f64>,
+    /// Volume of the lumped mass
+    lumped: f64,
 }
 
 /// How a body moves.
@@ -48,7 +59,7 @@ impl BodyMeans {
     pub fn new(model: &Model, body: &Body) -> Self {
         let place = |node: usize| model.mesh.nodes[node];
         let origin = body.nodes.first().map_or_else(Vector2::zeros, |&node| place(node));
-        let mut lengths = vec![(0.0, Vector2::zeros()); body.nodes.len()];
+        let mut lengths = vec![(0.0, Vector2::zeros(), 0.0); body.nodes.len()];
         let local = |node: &usize| body.nodes.binary_search(node).unwrap_or(0);
         let mut pairs = Vec::new();
         for &element in &body.elements {
@@ -56,48 +67,60 @@ impl BodyMeans {
             let both = |a: usize| (0..nodes.len()).map(move |b| (a, b));
             let ordered = (0..nodes.len()).flat_map(both).filter(|&(a, b)| nodes[a] <= nodes[b]);
             pairs.extend(ordered.map(|(a, b)| (nodes[a], nodes[b], matrix[(a, b)])));
+            let lumped = lumped_volumes(model, element);
             for (a, node) in nodes.iter().enumerate() {
-                let (volume, moment) = &mut lengths[local(node)];
+                let (volume, moment, concentrated) = &mut lengths[local(node)];
+                *concentrated += lumped[a];
                 for (b, other) in nodes.iter().enumerate() {
                     *volume += matrix[(a, b)];
                     *moment += (place(*other) - origin) * matrix[(a, b)];
                 }
             }
         }
-        let volume: f64 = lengths.iter().map(|(volume, _)| volume).sum();
-        let moment: Vector2<f64> = lengths.iter().map(|(_, moment)| moment).sum();
+        let volume: f64 = lengths.iter().map(|(volume, ..)| volume).sum();
+        let moment: Vector2<f64> = lengths.iter().map(|(_, moment, _)| moment).sum();
         let from_origin = moment / volume;
-        let share =
-            |(&node, (volume, moment)): (&usize, (f64, Vector2<f64>))| (node, volume, moment - from_origin * volume);
-        let shares: Vec<(usize, f64, Vector2<f64>)> = body.nodes.iter().zip(lengths).map(share).collect();
+        let share = |(&node, (volume, moment, lumped)): (&usize, (f64, Vector2<f64>, f64))| {
+            let moment = moment - from_origin * volume;
+            Share { node, volume, moment, lumped }
+        };
+        let shares: Vec<Share> = body.nodes.iter().zip(lengths).map(share).collect();
         let pairs = summed(pairs);
-        let inertia = shares.iter().map(|(node, _, arm)| arm.dot(&(place(*node) - origin - from_origin))).sum();
+        let inertia = shares.iter().map(|share| share.moment.dot(&(place(share.node) - origin - from_origin))).sum();
         let density = body.material.density();
         Self { density, pairs, shares, volume, centre: origin + from_origin, inertia }
     }
 
     /// How it moves in a state.
     pub fn motion(&self, model: &Model, state: &State) -> Motion {
-        let at = |values: &[f64], node: usize| Vector2::new(values[2 * node], values[2 * node + 1]);
+        let is_lumped = state.is_of_explicit();
         let (mut shift, mut momentum) = (Vector2::zeros(), Vector2::zeros());
         let (mut turned, mut stayed) = (0.0, self.inertia);
-        for &(node, volume, arm) in &self.shares {
+        for &Share { node, volume, moment, lumped } in &self.shares {
             let u = at(&state.displacement, node);
             shift += u * (volume / self.volume);
-            momentum += at(&state.velocity, node) * (volume * self.density);
-            turned += arm.perp(&u);
-            stayed += arm.dot(&u);
+            momentum += at(&state.velocity, node) * (self.density * if is_lumped { lumped } else { volume });
+            turned += moment.perp(&u);
+            stayed += moment.dot(&u);
         }
         let mut angular_momentum = 0.0;
         if self.density > 0.0 && state.velocity.iter().any(|v| *v != 0.0) {
             let arm = |node: usize| (model.mesh.nodes[node] - self.centre) + (at(&state.displacement, node) - shift);
-            for &(a, b, shared) in &self.pairs {
-                let other = if a == b { 0.0 } else { arm(b).perp(&at(&state.velocity, a)) };
-                angular_momentum += self.density * shared * (arm(a).perp(&at(&state.velocity, b)) + other);
-            }
+            let spin = |a: usize, b: usize| arm(a).perp(&at(&state.velocity, b));
+            let volumes: f64 = if is_lumped {
+                self.shares.iter().map(|share| share.lumped * spin(share.node, share.node)).sum()
+            } else {
+                let of = |a, b| if a == b { spin(a, a) } else { spin(a, b) + spin(b, a) };
+                self.pairs.iter().map(|&(a, b, shared)| shared * of(a, b)).sum()
+            };
+            angular_momentum = self.density * volumes;
         }
         Motion { momentum, angular_momentum, centre: self.centre + shift, rotation: f64::atan2(turned, stayed) }
     }
+}
+
+fn at(values: &[f64], node: usize) -> Vector2<f64> {
+    Vector2::new(values[2 * node], values[2 * node + 1])
 }
 
 /// One entry a pair of nodes.
@@ -107,6 +130,14 @@ fn summed(mut pairs: Vec<(usize, usize, f64)>) -> Vec<(usize, usize, f64)> {
         (entries[0].0, entries[0].1, entries.iter().map(|(_, _, shared)| shared).sum())
     };
     pairs.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).map(entry).collect()
+}
+
+/// Volume of the lumped mass of each node of an element.
+fn lumped_volumes(model: &Model, element: usize) -> DVector<f64> {
+    let element = &model.mesh.elements[element];
+    let positions: Vec<Vector2<f64>> = element.nodes.iter().map(|&node| model.mesh.nodes[node]).collect();
+    lumped_mass(element.kind, model.mesh.section, &positions, 1.0)
+        .expect("elements are checked when the model is built")
 }
 
 /// ∫ N_a N_b dV of an element, as its mass is distributed.

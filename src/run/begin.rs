@@ -9,8 +9,8 @@ use super::simulation::Simulation;
 use crate::model::scheme::Scheme;
 use crate::model::state::State;
 use crate::solve::failure::IncrementFailure;
+use crate::time::beginning::{begin, go_on, led};
 use crate::time::explicit::Explicit;
-use crate::time::increment::{begin, go_on, led};
 use crate::time::quasi_dynamic::QuasiDynamic;
 use crate::time::touching::Touching;
 

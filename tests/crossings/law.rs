@@ -19,7 +19,8 @@ impl FrictionLaw for Viscous {
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Result<FrictionResponse, LawFailure> {
         let Sliding { slip, pressure, dt } = sliding.checked()?;
         if pressure <= self.threshold || dt == 0.0 {
-            return FrictionResponse::elastic(old.stuck(0.0, pressure.max(0.0)), 0.0).checked(1.0);
+            let traction = if pressure > self.threshold { old.traction } else { 0.0 };
+            return FrictionResponse::elastic(old.stuck(traction, pressure.max(0.0)), 0.0).checked(1.0);
         }
         // What it remembers makes it more viscous; a variable that is lost is seen in forces.
         let [slipped, loads, closed, last] = old.variables;

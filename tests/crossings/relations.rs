@@ -220,7 +220,7 @@ fn bystander(base: &Base) -> Outcome {
         return Outcome::Idle;
     }
     let energies = |column: &str| !column.contains('.') && column != "dt" && column != "time" || is_aside(column);
-    base.same(Ways { bystander: true, ..base.ways.clone() }, SAME, &energies)
+    base.same(Ways { bystander: true, flight: true, ..base.ways.clone() }, SAME, &energies)
 }
 
 /// A free body flies on with the momentum that its springs have left it.

@@ -13,7 +13,8 @@ use fecontact::run::error::Error;
 use fecontact::run::observer::{Attempt, Observer};
 use fecontact::run::{Simulation, run};
 use fecontact::solve::Workspace;
-use fecontact::time::increment::{advance, begin};
+use fecontact::time::beginning::begin;
+use fecontact::time::increment::advance;
 use serde_json::{Value, json};
 
 /// c_R/c_s and c_p/c_s for ν = 0.3.

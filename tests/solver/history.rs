@@ -5,7 +5,8 @@ use fecontact::linear::SparseLu;
 use fecontact::model::Model;
 use fecontact::model::state::State;
 use fecontact::solve::Workspace;
-use fecontact::time::increment::{advance, begin};
+use fecontact::time::beginning::begin;
+use fecontact::time::increment::advance;
 use serde_json::{Value, json};
 use std::sync::Arc;
 

@@ -11,7 +11,8 @@ use fecontact::mesh::shape::ElementKind;
 use fecontact::model::element::SolidElement;
 use fecontact::model::state::Energy;
 use fecontact::solve::Workspace;
-use fecontact::time::increment::{advance, begin};
+use fecontact::time::beginning::begin;
+use fecontact::time::increment::advance;
 use nalgebra::{Complex, DMatrix, Rotation2, Vector2};
 use serde_json::{Value, json};
 

@@ -145,7 +145,8 @@ pub type Answer = Result<FrictionResponse, LawFailure>;
 /// Units: q, p [F/L²], Δu_t, d [L], α_t [F/L³], Δt [T]. A law is asked for the pressure it answers to, so that it never sees
 /// penalty or multiplier; the contact finds the pressure that goes with the opening.
 ///
-/// Where Δt = 0 the law answers to slip and pressure that come up at once; with p ≤ 0 the surfaces have parted.
+/// Where Δt = 0 the law answers to slip and pressure that come up at once, and q stays as it was if neither does: a step begins with
+/// the traction that the one before has ended with. With p ≤ 0 the surfaces have parted.
 ///
 /// A law of one parameter, a film of oil, is written like this. A law that can be cloned is friction of a contact as it is,
 /// `Contact::new("base", "block_bottom", "ground_top", Oil { viscosity: 2.0 })`; nothing has to be registered. What it remembers
@@ -166,7 +167,8 @@ pub type Answer = Result<FrictionResponse, LawFailure>;
 ///     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Result<FrictionResponse, LawFailure> {
 ///         let Sliding { slip, pressure, dt } = sliding.checked()?;
 ///         if pressure <= 0.0 || dt == 0.0 {
-///             return FrictionResponse::elastic(old.stuck(0.0, pressure.max(0.0)), 0.0).checked(1.0);
+///             let traction = if pressure > 0.0 { old.traction } else { 0.0 };
+///             return FrictionResponse::elastic(old.stuck(traction, pressure.max(0.0)), 0.0).checked(1.0);
 ///         }
 ///         let dtraction_dslip = self.viscosity / dt;
 ///         let traction = dtraction_dslip * slip;

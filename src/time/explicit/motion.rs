@@ -13,7 +13,7 @@ use crate::model::support::Direction;
 use crate::model::{Model, Step};
 use crate::solve::failure::IncrementFailure;
 use crate::time::accept::{accept, heat, take_stock};
-use crate::time::increment::{keep_to_supports, launch};
+use crate::time::beginning::{keep_to_supports, launch};
 
 impl Explicit {
     /// Give nodes the velocities that they take when the step begins; what that changes of ½ Σ m v² is work from outside.

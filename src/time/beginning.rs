@@ -1,0 +1,273 @@
+//! How a step begins: velocities that are given, and accelerations where what acts jumps.
+//!
+//! ```text
+//! M a₀ = −F₀ at the free dofs; a₀ of the supports at the prescribed ones, whose reaction is F₀ + M a₀               (1)
+//! ```
+//! Within a step no acceleration is found anew: HHT, generalized-α and Wilson-θ carry one that belongs to another moment, and lose
+//! their order without it. So where loads, dampers or temperatures jump as a step begins, (1) holds for the nodes that the mass
+//! couples with those where they do, and the others keep the acceleration they have.
+
+use super::accept::{heat, take_stock};
+use super::increment::kinetic;
+use crate::equations::Trial;
+use crate::equations::links;
+use crate::equations::supports::{hold, tie, turn};
+use crate::linear;
+use crate::model::scheme::{Scheme, start_acceleration, start_velocity};
+use crate::model::state::State;
+use crate::model::support::{Direction, Prescribed};
+use crate::model::{Model, Step};
+use crate::solve::Workspace;
+use crate::solve::failure::IncrementFailure;
+
+/// Begin a step: remember displacements and reactions, and find the forces and accelerations that the run or dynamics
+/// starts with.
+///
+/// # Errors
+/// [`IncrementFailure`] when the initial state cannot be evaluated or a body has no mass.
+pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> Result<State, IncrementFailure> {
+    let mut state = old.clone();
+    state.begin_step();
+    // Explicit increments leave the forces of copies with them.
+    model.ties.gather(2, &mut state.force);
+    // The reaction of a freed support has become a load.
+    step.released.iter().for_each(|at| at.add(-at.of(&old.reaction), &mut state.force));
+    launch(model, step, &mut state);
+    if step.scheme.is_dynamic() {
+        let dt = step.increments.initial;
+        keep_to_supports(model, (step, dt), &mut state);
+        let is_new = rests(old) || old.is_of_explicit() || !step.launch.is_empty();
+        let anew = if is_new { vec![true; model.mesh.nodes.len()] } else { jumps(step, old, &state, work)? };
+        start_dynamics(model, step, anew, &mut state, work)?;
+    } else {
+        state.stop();
+        if old.increment == 0 && model.starts_loaded() {
+            start_loaded(step, &mut state, work)?;
+        }
+    }
+    if state.increment == 0 {
+        let kinetic = kinetic(step, &state, work);
+        take_stock(model, kinetic, &mut state);
+    } else if !step.launch.is_empty() || old.is_of_explicit() {
+        moves_anew(step, &mut state, work);
+    }
+    Ok(state)
+}
+
+/// What velocities that are given, or masses that are lumped no longer, change of the kinetic energy counts as work from outside.
+fn moves_anew(step: &Step, state: &mut State, work: &mut Workspace) {
+    let kinetic = kinetic(step, state, work);
+    state.energy.external_work += kinetic - state.energy.kinetic;
+    state.energy.kinetic = kinetic;
+}
+
+/// New accelerations within a step if whoever leads the run has changed its loads or dampers, or freed a support; none if they go
+/// on.
+///
+/// # Errors
+/// As [`begin`].
+pub fn led(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> Result<Option<State>, IncrementFailure> {
+    if !step.scheme.is_dynamic() {
+        return Ok(None);
+    }
+    let anew = jumps(step, old, old, work)?;
+    if !anew.contains(&true) {
+        return Ok(None);
+    }
+    let mut state = old.clone();
+    start_dynamics(model, step, anew, &mut state, work)?;
+    Ok(Some(state))
+}
+
+/// Give what supports hold when a run begins, and was given a velocity with its body, that of the support.
+pub fn keep_to_supports(model: &Model, (step, dt): (&Step, f64), state: &mut State) {
+    if state.increment > 0 {
+        return;
+    }
+    let first = Trial::new(state, step, state.time + dt, dt);
+    let own = |support: &Prescribed| {
+        let (given, own) = (support.at.of(&state.velocity), start_velocity(first.thirds(support, model), dt));
+        (given != 0.0 && (own - given).abs() > ROUNDED * given.abs()).then_some((support.at, own))
+    };
+    let held: Vec<(Direction, f64)> = step.supports.iter().filter_map(own).collect();
+    if !held.is_empty() {
+        held.into_iter().for_each(|(at, velocity)| at.set(velocity, &mut state.velocity));
+        model.ties.spread(2, &mut state.velocity);
+        links::stiffen_velocities(model, &state.displacement, &mut state.velocity);
+    }
+}
+
+/// Give nodes the velocities that they take when a step begins, where no support says how they move.
+pub fn launch(model: &Model, step: &Step, state: &mut State) {
+    let inclined = step.supports.iter().map(|support| support.at).filter(|at| at.inclined.is_some());
+    let held: Vec<(Direction, f64)> = inclined.map(|at| (at, at.of(&state.velocity))).collect();
+    for (dof, velocity) in step.launch.iter().flat_map(|&(node, [x, y])| [(2 * node, x), (2 * node + 1, y)]) {
+        if step.support_at(dof).is_none_or(|support| support.at.inclined.is_some()) {
+            state.velocity[dof] = velocity;
+        }
+    }
+    held.into_iter().for_each(|(at, velocity)| at.set(velocity, &mut state.velocity));
+    if !step.launch.is_empty() {
+        model.ties.spread(2, &mut state.velocity);
+        links::stiffen_velocities(model, &state.displacement, &mut state.velocity);
+    }
+}
+
+/// Whether nothing accelerates.
+fn rests(state: &State) -> bool {
+    state.acceleration.iter().all(|a| *a == 0.0)
+}
+
+/// Share of a value that round-off may leave of it: of a reaction across its direction, of a load that does not jump.
+const ROUNDED: f64 = 1e-12;
+
+/// Share of the largest force that round-off may leave of any.
+const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
+
+/// At which nodes loads, dampers or temperatures are others in the state that begins than those with which the last increment ended
+/// there, whatever their kind, or a reaction is gone: without new accelerations the old ones would go on for half an increment.
+/// Where a step is cut in two nothing jumps.
+fn jumps(step: &Step, old: &State, state: &State, work: &mut Workspace) -> Result<Vec<bool>, IncrementFailure> {
+    let mut now = state.clone();
+    evaluate_forces(step, &mut now, work)?;
+    let model = work.assembler.model();
+    let memory = &work.assembler.evaluation.memory;
+    // Reactions count as loads in a state.
+    let given: Vec<f64> =
+        state.external.iter().zip(&state.reaction).map(|(external, reaction)| external - reaction).collect();
+    let forces = [&state.force, &state.external, &state.damping, &now.external].map(|forces| largest(forces));
+    let force = forces.into_iter().fold(0.0, f64::max);
+    let mut anew: Vec<bool> = (0..model.mesh.nodes.len())
+        .map(|node| {
+            [2 * node, 2 * node + 1].into_iter().any(|dof| {
+                differ([given[dof], now.external[dof]], state.reaction[dof], force)
+                    || differ([state.damping[dof], now.damping[dof]], 0.0, force)
+            })
+        })
+        .collect();
+    let most = largest(&state.memory);
+    for (e, element) in model.mesh.elements.iter().enumerate() {
+        let [before, after] = [&state.memory, memory].map(|memory| model.memories.of(e, memory));
+        if before.iter().zip(after).any(|(&before, &after)| differ([before, after], 0.0, most)) {
+            element.nodes.iter().for_each(|&node| anew[node] = true);
+        }
+    }
+    freed(step, old).for_each(|node| anew[node] = true);
+    Ok(anew)
+}
+
+/// Whether a value jumps, by more than round-off of it, of another `beside` it and of the largest of its kind.
+fn differ([before, after]: [f64; 2], beside: f64, largest: f64) -> bool {
+    let size = before.abs().max(after.abs()).max(beside.abs());
+    (after - before).abs() > ROUNDED * size + ROUND_OFF * largest
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
+}
+
+/// Nodes with a reaction that is free from now on: without it, accelerations jump.
+fn freed(step: &Step, old: &State) -> impl Iterator<Item = usize> {
+    let reaction = |at: Direction| at.of(&old.reaction).abs();
+    let held = move |dof: usize| {
+        let at = step.support_at(dof)?.at;
+        // Along an inclined direction the components are rounded.
+        Some(at.across().is_none_or(|across| reaction(across) <= ROUNDED * reaction(at)))
+    };
+    let free = move |dof: &usize| old.reaction[*dof] != 0.0 && !held(*dof).unwrap_or(false);
+    (0..old.reaction.len()).filter(free).map(|dof| dof / 2)
+}
+
+/// Take up a step again after explicit increments within it.
+///
+/// # Errors
+/// [`IncrementFailure`] when the state cannot be evaluated or a body has no mass.
+pub fn go_on(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> Result<State, IncrementFailure> {
+    let mut state = State { last_increment: None, ..old.clone() };
+    if step.scheme.is_dynamic() {
+        start_dynamics(model, step, vec![true; model.mesh.nodes.len()], &mut state, work)?;
+        moves_anew(step, &mut state, work);
+        return Ok(state);
+    }
+    model.ties.gather(2, &mut state.force);
+    state.stop();
+    Ok(state)
+}
+
+/// Accelerations by (1), and the forces that go with them, of the nodes `anew` and of all that the mass couples with them: loads may
+/// set in with a jump.
+fn start_dynamics(
+    model: &Model,
+    step: &Step,
+    mut anew: Vec<bool>,
+    state: &mut State,
+    work: &mut Workspace,
+) -> Result<(), IncrementFailure> {
+    if !anew.contains(&true) {
+        return Ok(());
+    }
+    let mut now = state.clone();
+    evaluate_forces(step, &mut now, work)?;
+    let mut right: Vec<f64> = now.force.iter().map(|f| -f).collect();
+    let mut mass = work.assembler.mass().clone();
+    links::gather_rows(model, &mut mass);
+    links::gather_residual(model, &mut right);
+    let scale = mass.diagonal().into_iter().fold(0.0, f64::max);
+    let dt = step.increments.initial;
+    let first = Trial::new(state, step, state.time + dt, dt);
+    // Nodes without mass are in equilibrium from the first increment on.
+    let without = |dof: &usize| model.massless[dof / 2] && mass.diagonal()[*dof] == 0.0;
+    for dof in (0..model.dofs()).filter(without).collect::<Vec<_>>() {
+        mass.replace_row(dof, scale);
+        right[dof] = 0.0;
+    }
+    for support in &step.supports {
+        hold(support.at, scale, &mut mass);
+        turn(support.at, scale * start_acceleration(first.thirds(support, model), dt), &mut right);
+    }
+    tie(model, &mut mass, scale);
+    links::begin(model, scale, state, &mut mass, &mut right);
+    now.acceleration = linear::solve(&mut *work.solver, &mass, &right).map_err(IncrementFailure::Mass)?.x;
+    let mut inertia = work.assembler.mass().multiply(&now.acceleration);
+    model.linkage.gather(&mut inertia);
+    let [force, inertia] = [&now.force, &inertia].map(|forces| links::relieved(model, &state.displacement, forces));
+    for support in &step.supports {
+        support.at.add(support.at.of(&force) + support.at.of(&inertia), &mut now.external);
+    }
+    mass.reach(&mut anew);
+    take_over(model, &anew, now, state);
+    heat(step, &work.assembler.evaluation, state);
+    Ok(())
+}
+
+/// What was found `now` at the nodes that begin anew; the others stay to the bit.
+fn take_over(model: &Model, anew: &[bool], now: State, state: &mut State) {
+    for dof in (0..model.dofs()).filter(|dof| anew[dof / 2]) {
+        state.force[dof] = now.force[dof];
+        state.external[dof] = now.external[dof];
+        state.damping[dof] = now.damping[dof];
+        state.acceleration[dof] = now.acceleration[dof];
+    }
+}
+
+/// The forces at the start of a static run whose bodies are stressed or contacts closed already: loads and reactions balance
+/// them.
+fn start_loaded(step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), IncrementFailure> {
+    // Statics bring temperatures in with the first increment.
+    evaluate_forces(&Step { temperatures: Vec::new(), ..step.clone() }, state, work)?;
+    let force = links::relieved(work.assembler.model(), &state.displacement, &state.force);
+    step.supports.iter().for_each(|support| support.at.add(support.at.of(&force), &mut state.external));
+    Ok(())
+}
+
+/// Forces of the state as it is, under the loads that the step puts on it at this time.
+fn evaluate_forces(step: &Step, state: &mut State, work: &mut Workspace) -> Result<(), IncrementFailure> {
+    let quasi_static = Step { scheme: Scheme::Static, ..step.clone() };
+    let trial = Trial::new(state, &quasi_static, state.time, 0.0);
+    work.assembler.residual(trial, &state.displacement, &mut work.system).map_err(IncrementFailure::Start)?;
+    let evaluation = &work.assembler.evaluation;
+    state.force.clone_from(&evaluation.force);
+    state.external.clone_from(&evaluation.loads);
+    state.damping.clone_from(&evaluation.damping);
+    Ok(())
+}
