@@ -40,6 +40,7 @@ fn surfaces(n: usize) -> Surfaces {
         body: None,
         small: None,
         mortar: None,
+        touch: 1e-9,
         penetration: None,
         radiation: 0.0,
         fluid: None,

@@ -89,7 +89,7 @@ impl<'a> Loading<'a> {
         let alpha_n = pair.normal_stiffness(increment.during.stiffening);
         let free = old.multiplier - alpha_n * (place.gap - old.friction.opening);
         let sliding = Sliding { slip: 0.0, pressure: 0.0, dt: increment.during.dt };
-        let apart = place.closes && old.apart(kinematics.length);
+        let apart = place.closes && old.apart(pair.touch);
         let compliance = apart.then(|| pair.compliance_after_touch(increment.during.settles));
         let whole = kinematics.slip;
         let mut loading = Self {
@@ -116,10 +116,10 @@ impl<'a> Loading<'a> {
     /// Ask for the pressure of a point that is closed by its gap or, where surfaces ride up on each other, by its slip.
     fn close(&mut self) -> Result<(), LawFailure> {
         let Presumption { kept, presume, .. } = self.increment.presumption;
-        let (length, clearance) = (self.kinematics.length, self.place.gap - self.old.friction.opening);
-        if may_ride(self.pair, self.slave, self.old, || length) {
+        let clearance = self.place.gap - self.old.friction.opening;
+        if may_ride(self.pair, self.slave, self.old) {
             self.lift = self.alpha_n * (self.parting()? - self.old.friction.opening);
-            self.place.closes = kept > 0.0 || !self.parts() || touches(clearance, length, self.old, presume);
+            self.place.closes = kept > 0.0 || !self.parts() || touches(self.pair, clearance, self.old, presume);
         }
         if self.place.closes {
             let (lifted, before) = (self.free + self.lift, self.old.friction.pressure);
@@ -191,7 +191,7 @@ impl<'a> Loading<'a> {
         }
         let clearance = gap - response.state.opening;
         // At p = 0 the law has no answer to give, and near it round-off decides which.
-        if touches(clearance, kinematics.length, old, increment.presumption.presume) {
+        if touches(pair, clearance, old, increment.presumption.presume) {
             response.dtraction_dslip = stiffness;
         }
         kinematics.slip = sliding.slip;

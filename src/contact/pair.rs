@@ -34,6 +34,9 @@ pub struct ContactPair {
     /// c: how far a pressure pushes the bodies in, about the depth of an element over λ + 2G; 0 for points without elements
     /// [L³/F]
     pub compliance: f64,
+    /// Gap of an open point from which on it is apart from the master, far above the round-off of positions and far below an edge:
+    /// within it surfaces touch, whatever the last digit says [L]
+    pub touch: f64,
     /// Largest penetration left by the augmented Lagrangian; plain penalty if not given [L]
     pub penetration: Option<f64>,
     /// η: radiation damping in static steps, 0 for none [F T/L³]
@@ -185,7 +188,7 @@ impl ContactPair {
         (time, dt): (f64, f64),
     ) -> Result<Option<Arrival>, LawFailure> {
         let pressure = now.friction.pressure;
-        if pressure <= 0.0 || !old.apart(now.length) {
+        if pressure <= 0.0 || !old.apart(self.touch) {
             return Ok(None);
         }
         let met = foreseen.friction.pressure > 0.0 && foreseen.clearance() < 0.0;

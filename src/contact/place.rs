@@ -5,7 +5,7 @@ use super::pair::ContactPair;
 use super::point::{MasterPoint, SlavePoint};
 use super::presumption::{PointIncrement, Presume};
 use super::projection::Projection;
-use super::state::{ContactState, TOUCH};
+use super::state::ContactState;
 use crate::mesh::configuration::Configuration;
 
 /// Where a point is at the end of an increment.
@@ -34,7 +34,7 @@ pub fn place(
 ) -> PointPlace {
     let Some(projection) = projection else { return PointPlace::default() };
     let gap = slave.gap(projection.gap, increment.during.fading);
-    let closes = closes(pair, slave, gap, old, increment, x);
+    let closes = closes(pair, slave, gap, old, increment);
     let fluid = pair.fluid_pressure(slave, x, increment.during.time);
     if closes || fluid != 0.0 {
         kinematics(slave, &pair.master, &projection, old.foot, x, k);
@@ -46,35 +46,21 @@ pub fn place(
 }
 
 /// Whether a point with this gap carries pressure, or is presumed to.
-pub fn closes(
-    pair: &ContactPair,
-    slave: &SlavePoint,
-    gap: f64,
-    old: &ContactState,
-    increment: PointIncrement,
-    x: &Configuration,
-) -> bool {
+pub fn closes(pair: &ContactPair, slave: &SlavePoint, gap: f64, old: &ContactState, increment: PointIncrement) -> bool {
     let kept = increment.presumption.kept > 0.0;
     let clearance = gap - old.friction.opening;
     let pressure = old.multiplier - pair.normal_stiffness(increment.during.stiffening) * clearance;
     let presume = increment.presumption.presume;
-    // The length is not worth computing where nothing is presumed.
-    let touch = || presume == Presume::Touch && touches(clearance, slave.current_length(x), old, presume);
-    kept || pressure > 0.0 || touch() || may_ride(pair, slave, old, || slave.current_length(x))
+    kept || pressure > 0.0 || touches(pair, clearance, old, presume) || may_ride(pair, slave, old)
 }
 
 /// Whether slip may keep a point closed, or part it, whatever its gap says: that is known once its slip is.
-pub(super) fn may_ride(
-    pair: &ContactPair,
-    slave: &SlavePoint,
-    old: &ContactState,
-    length: impl FnOnce() -> f64,
-) -> bool {
-    old.foot.is_some() && !pair.law(slave).start().offsets().is_empty() && !old.apart(length())
+pub(super) fn may_ride(pair: &ContactPair, slave: &SlavePoint, old: &ContactState) -> bool {
+    old.foot.is_some() && !pair.law(slave).start().offsets().is_empty() && !old.apart(pair.touch)
 }
 
 /// Whether a zero gap is presumed to be closed, and to stick.
-pub fn touches(clearance: f64, length: f64, old: &ContactState, presume: Presume) -> bool {
+pub fn touches(pair: &ContactPair, clearance: f64, old: &ContactState, presume: Presume) -> bool {
     let presumed = presume == Presume::Touch && old.foot.is_some();
-    presumed && [old.clearance(), clearance].iter().all(|gap| gap.abs() <= TOUCH * length)
+    presumed && [old.clearance(), clearance].iter().all(|gap| gap.abs() <= pair.touch)
 }

@@ -5,9 +5,6 @@ use serde::{Deserialize, Serialize};
 use super::point::MasterPoint;
 use crate::laws::friction::{FrictionState, Regime};
 
-/// Contact closes at a zero gap when it is below this share of the length the point stands for.
-pub(super) const TOUCH: f64 = 1e-9;
-
 /// Memory of one contact point between increments.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactState {
@@ -43,9 +40,9 @@ impl ContactState {
         [self.friction.pressure, self.friction.traction + self.radiation]
     }
 
-    /// Whether a point that stands for this length is open at a gap that counts.
-    pub fn apart(&self, length: f64) -> bool {
-        self.friction.pressure == 0.0 && self.clearance() > TOUCH * length
+    /// Whether a point is open at a gap that counts, more than [`ContactPair::touch`](super::pair::ContactPair::touch).
+    pub fn apart(&self, touch: f64) -> bool {
+        self.friction.pressure == 0.0 && self.clearance() > touch
     }
 
     /// Open, stick or slip, as the law says; a point that only a promise keeps closed is open.

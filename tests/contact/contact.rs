@@ -59,6 +59,7 @@ pub fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
         mortar: None,
         alpha_n: 1000.0,
         compliance: 2e-3,
+        touch: 1e-9,
         penetration: None,
         radiation: 0.0,
         fluid: None,
@@ -827,7 +828,7 @@ fn check_mortar_tangent(
         let mut kinematics = Kinematics::new(true);
         let met = mortar.meet(k, surface, &is, weights.as_ref(), &x, (&mut kinematics, &mut Room::default()));
         let met = met.expect("the master faces the point");
-        closes(pair, &pair.points[k], met.gap, &old, increment, &x).then(|| {
+        closes(pair, &pair.points[k], met.gap, &old, increment).then(|| {
             let place = PointPlace { gap: met.gap, foot: Some(met.foot), closes: true, fluid: 0.0 };
             finish(pair, k, &old, increment, place, &mut kinematics).1.expect("a closed point").contribution
         })

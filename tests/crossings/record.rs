@@ -63,6 +63,11 @@ pub enum Lead {
 
 /// Run a case in a folder of its own.
 pub fn run(document: &Value, ways: &Ways, lead: Lead) -> Record {
+    if let Some(folder) = std::env::var_os("DUMP") {
+        static COUNT: std::sync::atomic::AtomicUsize = std::sync::atomic::AtomicUsize::new(0);
+        let k = COUNT.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        std::fs::write(Path::new(&folder).join(format!("{k}.json")), document.to_string()).unwrap();
+    }
     let refused =
         |ended| Record { ended, tables: Vec::new(), rows: Vec::new(), increments: 0, closed: false, slipped: false };
     let model = match built(document) {

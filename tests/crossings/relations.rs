@@ -290,10 +290,11 @@ fn mirrored(base: &Base) -> Outcome {
     base.same(Ways { frame: base.ways.frame.clone().mirrored(axis), ..base.ways.clone() }, SAME, NOTHING)
 }
 
+/// Units that are powers of two apart: no digit may change, so that chatter has no excuse.
 fn units(base: &Base) -> Outcome {
-    let [length, stress, time] =
-        [[1000.0, 1.0, 1.0], [1.0, 1e6, 1.0], [1.0, 1.0, 1e-3], [0.0078125, 1048576.0, 32.0], [1e-3, 1e-6, 3600.0]]
-            [(hash(base.draft.seed, "units") % 5) as usize];
+    let [length, stress, time] = [[10, 0, 0], [0, 20, 0], [0, 0, -10], [-7, 20, 5], [-10, -20, 12]]
+        [(hash(base.draft.seed, "units") % 5) as usize]
+        .map(|power| 2f64.powi(power));
     base.same(Ways { frame: base.ways.frame.clone().units(length, stress, time), ..base.ways.clone() }, SAME, NOTHING)
 }
 

@@ -17,6 +17,7 @@ use crate::contact::surface::{
     SlavePoint, Surface, gauss_points, in_order, lone_point, nodal_points, nodal_points_of_rings,
 };
 use crate::laws::friction::Offsets;
+use crate::mesh::section::Section;
 use crate::mesh::{Edge, Group, Mesh};
 use crate::model::Model;
 use crate::model::method::{Chosen, Method, choose};
@@ -46,6 +47,7 @@ fn pair(contact: &Contact, model: &Model) -> Checked<ContactPair> {
     let mut pair = ContactPair {
         name: contact.name.clone(),
         body: body(contact, points.first(), model),
+        touch: TOUCH * size(&points, model),
         points,
         mortar,
         alpha_n,
@@ -72,6 +74,22 @@ fn pair(contact: &Contact, model: &Model) -> Checked<ContactPair> {
     fluid::check(&pair, &place, model)?;
     start(&mut pair, contact, model, &place)?;
     Ok(pair)
+}
+
+/// Share of the shortest edge of the slave within which surfaces touch.
+const TOUCH: f64 = 1e-9;
+
+/// The shortest edge that a slave point belongs to; of points of no edge the length of one that has their area [L].
+fn size(points: &[SlavePoint], model: &Model) -> f64 {
+    let undeformed = model.mesh.undeformed();
+    let of = |point: &SlavePoint| {
+        point.edge_length(&undeformed).unwrap_or_else(|| match model.mesh.section {
+            Section::Axisymmetric => point.area.sqrt(),
+            Section::PlaneStress { thickness } => point.area / thickness,
+            _ => point.area,
+        })
+    };
+    points.iter().map(of).fold(f64::INFINITY, f64::min)
 }
 
 /// The body of the slave's edge at its first point. Where two bodies meet a node is one of both: the edge tells, not the node.

@@ -25,7 +25,7 @@ pub mod touch;
 pub mod valley;
 
 use crate::contact::force::{Closed, ContactState, Presume, Tractions};
-use crate::contact::pair::Presumption;
+use crate::contact::pair::{ContactPair, Presumption};
 use crate::contact::response::PairResponse;
 use crate::equations::failure::TrialFailure;
 use crate::equations::{Assembler, Trial};
@@ -64,7 +64,14 @@ impl Point {
     }
 
     /// Count the aids that act on the point in a linear solve.
-    fn count(&self, aids: Aids, (state, closed): (&ContactState, &Closed), old: &ContactState, acted: &mut Acted) {
+    fn count(
+        &self,
+        aids: Aids,
+        pair: &ContactPair,
+        (state, closed): (&ContactState, &Closed),
+        old: &ContactState,
+        acted: &mut Acted,
+    ) {
         let presumption = self.presumption(aids);
         let sticks = self.presume == Presume::Stick;
         acted.promise += usize::from(promise::acts(&presumption, closed));
@@ -72,7 +79,7 @@ impl Point {
         acted.keep += usize::from(keep::acts(&presumption, closed));
         acted.pull += usize::from(self.pulled && keep::acts(&presumption, closed));
         acted.carried += usize::from(presumption.carried.is_some());
-        acted.touch += usize::from(touch::acts(&presumption, state, old));
+        acted.touch += usize::from(touch::acts(pair, &presumption, state, old));
         acted.stick += usize::from(sticks && !self.slipping.stuck);
         acted.stick_again += usize::from(sticks && self.slipping.stuck);
         acted.valley += usize::from(valley::acts(&presumption, state));
@@ -140,7 +147,7 @@ impl ContactIteration {
             self.respond(assembler, trial, u, request)?;
         }
         assemble(assembler, &self.next)?;
-        self.take_over(u, trial.old, aids);
+        self.take_over(assembler.model(), u, trial.old, aids);
         Ok(())
     }
 
@@ -203,15 +210,16 @@ impl ContactIteration {
     }
 
     /// Keep the points as the next linear solve sees them, and count those on which an aid acts.
-    fn take_over(&mut self, u: &[f64], old: &State, aids: Aids) {
+    fn take_over(&mut self, model: &Model, u: &[f64], old: &State, aids: Aids) {
         std::mem::swap(&mut self.linearized, &mut self.next);
         self.linearized_at.clear();
         self.linearized_at.extend_from_slice(u);
         self.acted = Acted::default();
-        for (points, (response, old)) in self.points.iter().zip(self.linearized.iter().zip(&old.contacts)) {
+        let responses = self.linearized.iter().zip(&old.contacts);
+        for ((points, pair), (response, old)) in self.points.iter().zip(&model.contacts).zip(responses) {
             for (k, (point, (state, old))) in points.iter().zip(response.states.iter().zip(old)).enumerate() {
                 if let Some(closed) = response.closed(k) {
-                    point.count(aids, (state, &closed), old, &mut self.acted);
+                    point.count(aids, pair, (state, &closed), old, &mut self.acted);
                 }
             }
         }

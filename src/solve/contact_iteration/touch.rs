@@ -6,9 +6,9 @@
 //! its branches whose tangent is not singular at p = 0.
 
 use crate::contact::force::{ContactState, touches};
-use crate::contact::pair::Presumption;
+use crate::contact::pair::{ContactPair, Presumption};
 
 /// Whether a closed point sticks because it touches.
-pub(super) fn acts(presumption: &Presumption, state: &ContactState, old: &ContactState) -> bool {
-    touches(state.clearance(), state.length, old, presumption.presume)
+pub(super) fn acts(pair: &ContactPair, presumption: &Presumption, state: &ContactState, old: &ContactState) -> bool {
+    touches(pair, state.clearance(), old, presumption.presume)
 }
