@@ -275,7 +275,8 @@ impl Mortar {
         for &(e, a) in &self.at[point] {
             let edge = &self.edges[e];
             let chord = frame.at(edge[1]).minus(frame.at(edge[0]));
-            whole += chord.dot(&chord).value().sqrt();
+            let depths = [0, 1].map(|end| frame.depth(frame.at(edge[end])).map_or(1.0, |depth| depth.value()));
+            whole += chord.dot(&chord).value().sqrt() * 0.5 * (depths[0] + depths[1]);
             let along = chord.normalized();
             for overlap in &overlaps.0[e].overlaps {
                 averages.integrate(edge, a, overlap, &surface.segments[overlap.segment], &along, frame);

@@ -73,8 +73,10 @@ pub struct CondensedEquations<'a> {
     share: f64,
     /// Whether a dof has an equation of forces, not of its support or of a copy
     free: Vec<bool>,
-    /// Norm of what round-off can leave at the nodes of each contact [F]
+    /// Square of what round-off in the bodies can leave at the nodes of each contact [F²]
     hidden: Vec<f64>,
+    /// |u|² of these nodes, as far as round-off of it counts [L²]
+    ways: Vec<Vec<f64>>,
     /// Norm of the forces in the bodies [F]
     forces: f64,
 }
@@ -92,9 +94,10 @@ impl<'a> CondensedEquations<'a> {
         let free = nodes.nodes.iter().flat_map(|&node| [!fixed[2 * node], !fixed[2 * node + 1]]).collect();
         let share = contact_share(trial.step);
         let round_off = assembler.round_off(trial, u);
-        let hidden = |side: &Vec<usize>| side.iter().map(|&node| round_off[node]).sum::<f64>().sqrt();
+        let hidden = |side: &Vec<usize>| side.iter().map(|&node| round_off[node]).sum::<f64>();
         let hidden = nodes.sides.iter().map(hidden).collect();
-        Self { nodes, bodies, start: nodes.gather(u), constant, share, free, hidden, forces: system.forces }
+        let ways = nodes.sides.iter().map(|side| assembler.ways(trial, u, side)).collect();
+        Self { nodes, bodies, start: nodes.gather(u), constant, share, free, hidden, ways, forces: system.forces }
     }
 
     /// ρ at `x` with the given responses of the contact points, and its tangent on request.
@@ -166,8 +169,9 @@ impl<'a> CondensedEquations<'a> {
         system.forces = self.forces + norm(assembler.contact_forces());
         let share = |dof: usize| self.nodes.jumps.share(self.nodes.nodes[dof / 2]);
         let square = |dof: usize| if self.free[dof] { share(dof) * system.residual[dof].powi(2) } else { 0.0 };
-        let parts = self.nodes.parts.iter().zip(assembler.contact_forces().iter().zip(&self.hidden));
-        for (part, (forces, hidden)) in parts {
+        let own = self.nodes.sides.iter().zip(&self.ways).map(|(side, ways)| assembler.contact_round_off(side, ways));
+        let hidden = self.hidden.iter().zip(own).map(|(of_bodies, of_contact)| (of_bodies + of_contact).sqrt());
+        for (part, (forces, hidden)) in self.nodes.parts.iter().zip(assembler.contact_forces().iter().zip(hidden)) {
             let residual = part.iter().map(|&k| square(2 * k) + square(2 * k + 1)).sum::<f64>().sqrt();
             let share = if residual == 0.0 { 0.0 } else { residual / forces.max(hidden / tolerance) };
             // Not a number is no equilibrium.

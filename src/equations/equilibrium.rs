@@ -24,6 +24,7 @@ use crate::linear::system::System;
 use crate::linear::{SparseMatrix, norm};
 use crate::mesh::configuration::Configuration;
 use crate::model::boundary::Absorber;
+use crate::model::state::State;
 use crate::model::{Damping, Model, Step};
 
 /// Errors of a force in units of ε: every element adds a few to each node.
@@ -130,9 +131,7 @@ impl Equilibrium {
 
     /// Keep how large the forces of every contact are, and how stiff it is.
     pub(super) fn note_contacts(&mut self, model: &Model, trial: Trial, responses: &[PairResponse]) {
-        if !responses.is_empty() {
-            self.contact_stiffness.fill([0.0; 2]);
-        }
+        self.contact_stiffness.fill([0.0; 2]);
         for (k, (pair, responses)) in model.contacts.iter().zip(responses).enumerate() {
             let alpha_n = pair.normal_stiffness(trial.stiffening);
             for (state, closed) in responses.all_acting() {
@@ -199,6 +198,26 @@ impl Equilibrium {
         &self.contact_forces
     }
 
+    /// The largest displacement of which round-off counts: beyond it no solution lies [L].
+    fn farthest(&self, old: &State) -> f64 {
+        LOST * (self.diagonal + old.displacement.iter().fold(0.0, |most: f64, u| most.max(u.abs())))
+    }
+
+    /// |u|² of some nodes, as far as it counts [L²].
+    pub(super) fn ways(&self, old: &State, u: &[f64], nodes: &[usize]) -> Vec<f64> {
+        let farthest = self.farthest(old);
+        nodes.iter().map(|&node| square(u, node).min(farthest * farthest)).collect()
+    }
+
+    /// What the contacts that were noted last add to ρ², at nodes that have gone these [`ways`](Self::ways) [F²].
+    pub(super) fn contact_round_off(&self, nodes: &[usize], ways: &[f64]) -> f64 {
+        let of = |(&node, way): (&usize, &f64)| {
+            let [apart, slid] = self.contact_stiffness[node];
+            apart + slid * way
+        };
+        ROUND_OFF * ROUND_OFF * nodes.iter().zip(ways).map(of).sum::<f64>()
+    }
+
     /// ρ² at every node [F²].
     pub(super) fn round_off(
         &self,
@@ -208,13 +227,13 @@ impl Equilibrium {
         magnitudes: &[f64],
     ) -> Vec<f64> {
         let Trial { old, step, dt, .. } = trial;
-        let Self { stiffness, contact_stiffness, diagonal, .. } = self;
-        let farthest = LOST * (diagonal + old.displacement.iter().fold(0.0, |most: f64, u| most.max(u.abs())));
+        let stiffness = &self.stiffness;
+        let farthest = self.farthest(old);
         let nodes = 0..model.mesh.nodes.len();
         let mut squares: Vec<f64> = nodes
             .map(|node| {
                 let [strained, moved, _] = stiffness[node];
-                let [apart, slid] = contact_stiffness[node];
+                let [apart, slid] = self.contact_stiffness[node];
                 let way = square(u, node).min(farthest * farthest);
                 strained + apart + (moved + slid) * way + square(magnitudes, node)
             })

@@ -62,6 +62,16 @@ impl Assembler {
         self.equilibrium.contact_forces()
     }
 
+    /// |u|² of some nodes, as far as round-off of it counts [L²].
+    pub fn ways(&self, trial: Trial, u: &[f64], nodes: &[usize]) -> Vec<f64> {
+        self.equilibrium.ways(trial.old, u, nodes)
+    }
+
+    /// Square of what round-off of the contacts that were noted last can leave at nodes that have gone these ways [F²].
+    pub fn contact_round_off(&self, nodes: &[usize], ways: &[f64]) -> f64 {
+        self.equilibrium.contact_round_off(nodes, ways)
+    }
+
     /// Square of what round-off can leave at every node, at the displacement that was evaluated last [F²].
     pub fn round_off(&self, trial: Trial, u: &[f64]) -> Vec<f64> {
         let mass = self.mass.as_ref().filter(|_| trial.step.scheme.coefficients().is_some());
