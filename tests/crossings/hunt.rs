@@ -15,8 +15,8 @@ struct Finding {
     seed: u64,
     relation: &'static str,
     difference: Difference,
-    /// the features with which it still does
-    smallest: Draft,
+    /// the features with which it still does, and what differs then
+    smallest: (Draft, Difference),
 }
 
 /// What all seeds came to.
@@ -86,7 +86,7 @@ fn try_seed(seed: u64, tally: &Mutex<Tally>) {
                 Outcome::Idle => held.push((relation.name, 1)),
                 Outcome::Holds => held.push((relation.name, 0)),
                 Outcome::Broken(difference) => {
-                    let smallest = smallest(&draft, relation);
+                    let smallest = smallest(&draft, difference.clone(), relation);
                     findings.push(Finding { seed, relation: relation.name, difference, smallest });
                 }
             }
@@ -118,30 +118,32 @@ fn try_seed(seed: u64, tally: &Mutex<Tally>) {
 }
 
 /// Take features away one by one while the relation is still broken.
-fn smallest(draft: &Draft, relation: &Relation) -> Draft {
-    let breaks = |draft: &Draft| {
-        let base = Base::new(draft);
-        !matches!(base.record.ended, Ended::Refused(_)) && matches!((relation.check)(&base), Outcome::Broken(_))
+fn smallest(draft: &Draft, difference: Difference, relation: &Relation) -> (Draft, Difference) {
+    let broken = |draft: Draft| {
+        let base = Base::new(&draft);
+        match (relation.check)(&base) {
+            Outcome::Broken(difference) if !matches!(base.record.ended, Ended::Refused(_)) => Some((draft, difference)),
+            _ => None,
+        }
     };
-    let mut draft = draft.clone();
+    let mut smallest = (draft.clone(), difference);
     loop {
         let less = SLOTS
             .iter()
-            .filter(|(slot, _)| draft.has(slot))
-            .find_map(|(slot, _)| draft.with(slot, plain(slot)).filter(&breaks));
+            .filter(|(slot, _)| smallest.0.has(slot))
+            .find_map(|(slot, _)| smallest.0.with(slot, plain(slot)).and_then(broken));
         match less {
-            Some(less) => draft = less,
-            None => return draft,
+            Some(less) => smallest = less,
+            None => return smallest,
         }
     }
 }
 
 impl Finding {
     fn print(&self) {
-        let Self { seed, relation, difference, smallest } = self;
-        let Difference { share, place, values: [a, b] } = difference;
-        println!("seed {seed}: {relation} is broken: {place}: {a:.12e} and {b:.12e}, {share:.2e} of the largest");
-        println!("    with {}", smallest.told());
+        let Self { seed, relation, difference, smallest: (smallest, least) } = self;
+        println!("seed {seed}: {relation} is broken: {difference}");
+        println!("    with {}: {least}", smallest.told());
         if std::env::var_os("CASES").is_some() {
             println!("{}", model::case(smallest, &Ways::plain(smallest)));
         }

@@ -66,7 +66,8 @@ pub fn run(document: &Value, ways: &Ways, lead: Lead) -> Record {
     if let Some(folder) = std::env::var_os("DUMP") {
         static COUNT: std::sync::atomic::AtomicUsize = std::sync::atomic::AtomicUsize::new(0);
         let k = COUNT.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-        std::fs::write(Path::new(&folder).join(format!("{k}.json")), document.to_string()).unwrap();
+        std::fs::write(Path::new(&folder).join(format!("{k}.json")), document.to_string())
+            .expect("a folder to dump cases in");
     }
     let refused =
         |ended| Record { ended, tables: Vec::new(), rows: Vec::new(), increments: 0, closed: false, slipped: false };
@@ -430,6 +431,13 @@ pub struct Difference {
     pub share: f64,
     pub place: String,
     pub values: [f64; 2],
+}
+
+impl std::fmt::Display for Difference {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let Self { share, place, values: [a, b] } = self;
+        write!(f, "{place}: {a:.12e} and {b:.12e}, {share:.2e} of the largest")
+    }
 }
 
 /// Compare what two records say at the same times of the columns that both have. `skip` leaves columns out.
