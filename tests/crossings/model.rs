@@ -957,6 +957,11 @@ impl Writer<'_> {
                 time(change.start)
             )),
             "rate" => json!({"rate": (to - from) * scale / time(span)}),
+            // At rest at both ends.
+            "smooth" => {
+                let share = format!("max(0,min(1,(t-({}))/({})))", time(change.start), time(span));
+                json!(format!("({})+({})*{share}^2*(3-2*{share})", from * scale, (to - from) * scale))
+            }
             _ => json!(to * scale),
         }
     }
