@@ -44,6 +44,13 @@ impl Model {
         }
     }
 
+    /// T − T₀ at the points of an element in the memory of all elements; none where temperatures do nothing.
+    pub fn temperatures<'a>(&self, element: usize, memory: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        let of =
+            |(count, rise)| self.memories.of(element, memory).chunks_exact(count).map(move |point: &[f64]| point[rise]);
+        self.rises(element).map(of).into_iter().flatten()
+    }
+
     /// Work that a change of temperature does on an element in an increment, −½ (τ₀ + τ₁) α ΔT with the expansion stress τ: what
     /// it changes of the energy that a body stores without moving [F·L].
     pub fn heating(&self, element: usize, [old, new]: [&[f64]; 2]) -> f64 {

@@ -145,10 +145,12 @@ fn jumps(step: &Step, old: &State, state: &State, work: &mut Workspace) -> Resul
             })
         })
         .collect();
-    let most = largest(&state.memory);
+    let elements = 0..model.mesh.elements.len();
+    let hottest =
+        elements.flat_map(|e| model.temperatures(e, memory)).fold(0.0, |most: f64, rise| most.max(rise.abs()));
     for (e, element) in model.mesh.elements.iter().enumerate() {
-        let [before, after] = [&state.memory, memory].map(|memory| model.memories.of(e, memory));
-        if before.iter().zip(after).any(|(&before, &after)| differ([before, after], 0.0, most)) {
+        let [old, new] = [&state.memory, memory].map(|memory| model.temperatures(e, memory));
+        if old.zip(new).any(|(old, new)| differ([old, new], 0.0, hottest)) {
             element.nodes.iter().for_each(|&node| anew[node] = true);
         }
     }

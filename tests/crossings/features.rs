@@ -402,11 +402,6 @@ impl Draft {
         self.of(slot) != plain(slot)
     }
 
-    /// Whether it has one of some features, `slot:value`.
-    pub fn has_any(&self, words: &[&str]) -> bool {
-        self.chosen.iter().any(|(slot, value)| words.iter().any(|word| names(word, (slot, value))))
-    }
-
     /// All its features, without those that options lack.
     pub fn features(&self) -> Vec<Feature> {
         self.chosen.iter().map(|(slot, value)| (*slot, *value)).filter(|(_, value)| *value != "no").collect()

