@@ -266,7 +266,6 @@ fn form(column: &str, header: &[&str]) -> Form {
         | "frictional_heat" => Form::Scalar(Kind::Energy),
         "normal_force" | "fluid_force" => Form::Scalar(Kind::Force),
         "tangential_force" => Form::Signed(Kind::Force),
-        "contact_length" => Form::Scalar(Kind::Area),
         "slip_fraction" | "contact_length" => Form::Scalar(Kind::Share),
         "mean_slip" | "mean_elastic_slip" => Form::Signed(Kind::Length),
         "max_penetration" | "max_elastic_slip" | "mean_dilation" | "mean_wear" => Form::Scalar(Kind::Length),
