@@ -16,4 +16,5 @@ mod progress;
 mod report;
 mod results;
 mod schema;
+mod surface;
 mod survive;
