@@ -11,7 +11,6 @@ mod law;
 mod many;
 mod mutations;
 mod outputs;
-mod plot;
 mod progress;
 mod report;
 mod results;

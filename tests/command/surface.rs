@@ -254,7 +254,7 @@ fn stored(store: &Path) -> Vec<String> {
 /// Keys of `summary.json` and of what stands there under a fixed name.
 fn keys(path: &Path) -> Vec<String> {
     let summary: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
-    let inner = ["wall_s", "energy", "peaks"];
+    let inner = ["wall_s", "energy", "peak"];
     let of = |(key, value): (&String, &Value)| match value.as_object().filter(|_| inner.contains(&key.as_str())) {
         Some(object) => object.keys().map(|below| format!("{key}.{below}")).collect(),
         None => vec![key.clone()],
