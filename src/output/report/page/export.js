@@ -65,7 +65,9 @@ function svg(chart) {
   const { x: bx, y: by, w, h } = box;
   plot.axes.forEach((axis, k) => {
     const values = axis._values || [];
-    (axis._splits || []).forEach((split, i) => {
+    const splits = axis._splits || [];
+    ((k === 0 ? chart.x : chart.y).log ? powers(splits) : splits).forEach((split, i) => {
+      if (split == null) return;
       const at = plot.valToPos(split, axis.scale) + (k === 0 ? bx : by);
       if (k === 0 ? at < bx - 0.5 || at > bx + w + 0.5 : at < by - 0.5 || at > by + h + 0.5) return;
       const [x2, y2] = k === 0 ? [at, by] : [bx + w, at];

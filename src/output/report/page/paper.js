@@ -54,7 +54,7 @@ class Paper {
 
   clip() {
     this.clipped = `c${(this.clips += 1)}`;
-    this.parts.push(`<clipPath id="${this.clipped}"><path d="${this.way}"/></clipPath>`);
+    this.parts.push(`<clipPath id="${this.clipped}"><path d="${this.way}"${this.moved()}/></clipPath>`);
   }
 
   fill() {
@@ -91,10 +91,13 @@ class Paper {
   }
 
   add(element, attributes, content = "") {
-    const moved = this.transform ? ` transform="${this.transform.trim()}"` : "";
-    // What is clipped stays where it is, however it is turned.
-    const part = `<${element} ${attributes}${moved}>${content}</${element}>`;
+    const part = `<${element} ${attributes}${this.moved()}>${content}</${element}>`;
+    // By a group, which is not moved: the clip was, when it was made.
     this.parts.push(this.clipped ? `<g clip-path="url(#${this.clipped})">${part}</g>` : part);
+  }
+
+  moved() {
+    return this.transform ? ` transform="${this.transform.trim()}"` : "";
   }
 
   /** The picture. */
