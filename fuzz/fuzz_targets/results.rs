@@ -11,7 +11,7 @@ use libfuzzer_sys::fuzz_target;
 const SOUND: [(&str, &[u8]); 5] = [
     ("history.csv", include_bytes!("../seeds/tables/history.csv")),
     ("newton.csv", include_bytes!("../seeds/tables/newton.csv")),
-    ("slip_map.csv", include_bytes!("../seeds/tables/slip_map.csv")),
+    ("law.csv", include_bytes!("../seeds/tables/law.csv")),
     ("fronts.csv", include_bytes!("../seeds/tables/fronts.csv")),
     ("summary.json", include_bytes!("../seeds/tables/summary.json")),
 ];

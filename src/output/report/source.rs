@@ -51,8 +51,8 @@ pub fn sources(folders: &[PathBuf]) -> Result<Vec<Source>, ReportError> {
         Source { folder: folder.clone(), name, about: about(folder) }
     };
     let sources: Vec<Source> = folders.iter().zip(&names).map(source).collect();
-    for pair in sources.windows(2) {
-        check_units(&pair[0], &pair[1])?;
+    for (k, one) in sources.iter().enumerate() {
+        sources[k + 1..].iter().try_for_each(|other| check_units(one, other))?;
     }
     Ok(sources)
 }
