@@ -47,6 +47,7 @@ for name in ("mu_s", "mu_k"):
     friction.plot(time, law[name] * normal, "k:", lw=0.8)
     friction.annotate(f"{name} × normal force", (time[-1], law[name] * normal[-1]), ha="right", va="bottom", fontsize=8)
 friction.set(ylabel="friction")
+friction.margins(y=0.1)
 friction.legend(loc="upper left")
 elastic.set(ylabel="elastic slip")
 plastic.set(ylabel="plastic slip", xlabel="time")

@@ -119,8 +119,9 @@ class Chart {
 
   options() {
     const [ink, grid] = [styled("--ink"), styled("--grid")];
+    const line = (of) => ({ stroke: grid, width: 1, ...(of.log && { filter: (u, splits) => powers(splits) }) });
     const axis = (of, size) => ({
-      stroke: ink, grid: { stroke: grid, width: 1, ...(of.log && { filter: (u, splits) => powers(splits) }) }, ticks: { stroke: grid, width: 1 }, label: of.label, size, labelSize: 20,
+      stroke: ink, grid: line(of), ticks: line(of), label: of.label, size, labelSize: 20,
       font: "11px sans-serif", labelFont: "12px sans-serif",
       values: (u, splits) => (of.log ? splits.map((value) => (value == null ? "" : told(value, 2))) : tickTexts(splits)),
     });

@@ -130,7 +130,7 @@ function contactCharts(runs, contact) {
     overTime(runs, `Normal force in ${contact}`, of([["normal_force", "normal"]]), "normal force", force),
     path.some((one) => sizeOf([one]) > 0) && new Chart({ title: `Friction path of ${contact}`, x: { label: withUnit("normal force", force), include: [0] },
       y: { label: withUnit("tangential force", force), include: [0] }, series: path, path: true }),
-    overTime(runs, `Share of ${contact} that slips`, of([["slip_fraction", "slipping share of the closed surface"]]), "slipping share of the closed surface", "", { include: [0, 1], always: true }),
+    overTime(runs, `Share of ${contact} that slips`, of([["slip_fraction", "slipping share of what is closed"]]), "slipping share", "", { include: [0, 1], always: true }),
     overTime(runs, `Slip in ${contact}`, of([["mean_slip", "plastic slip"], ["mean_elastic_slip", "elastic slip"]]), "mean slip", unitOf("length")),
     overTime(runs, `Length of ${contact} that is closed`, of([["contact_length", "closed length"]]), "closed length", unitOf("length")),
     overTime(runs, `Penetration in ${contact}`, of([["max_penetration", "largest penetration"]]), "penetration", unitOf("length")),
