@@ -86,29 +86,31 @@ async function eventsByRates(run, map) {
   const [rates, slips] = ["slip_rate", "slip"].map((name) => map.quantities.find((one) => one.name === name));
   if (!rates || !slips) return [];
   const [times, places, rate, slip] = await Promise.all([unpack(map.times, "f64"), unpack(map.positions, "f64"), unpack(rates.chunk), unpack(slips.chunk)]);
-  const points = places.length;
+  const points = [...places.keys()];
+  const rows = (of, first, last = first) => of.subarray(first * points.length, (last + 1) * points.length);
   const largest = (of) => Math.max(...bounds(of).map(Math.abs));
-  const fast = run.summary.front_slip_rate ?? FAST * largest(rate);
+  const mean = (row) => (row < 0 ? 0 : rows(slip, row).reduce((sum, value) => sum + value, 0) / points.length);
   const start = (row) => (row > 0 ? times[row - 1] : Math.max(0, 2 * times[0] - (times[1] ?? times[0])));
-  const lasts = ([first, last]) => times[last] - start(first);
-  const isFast = (row, k) => Math.abs(rate[row * points + k]) > fast;
+  const lasts = ({ first, last }) => times[last] - start(first);
+  const fast = run.summary.front_slip_rate ?? FAST * largest(rate);
+  const isFast = (row, k) => Math.abs(rate[row * points.length + k]) > fast;
   const found = [];
-  for (let row = 0; row < times.length; row++) {
-    if (![...places.keys()].some((k) => isFast(row, k))) continue;
+  times.forEach((_, row) => {
+    if (!points.some((k) => isFast(row, k))) return;
     const before = found[found.length - 1];
-    if (before && (before[1] === row - 1 || start(row) - times[before[1]] < lasts(before))) before[1] = row;
-    else found.push([row, row]);
-  }
-  const mean = (row) => (row < 0 ? 0 : slip.subarray(row * points, (row + 1) * points).reduce((sum, value) => sum + value, 0) / points);
-  const run_lasts = times[times.length - 1] - start(0);
-  return found.map(([first, last]) => {
-    const reached = [...places.keys()].filter((k) => Array.from({ length: last - first + 1 }, (_, i) => first + i).some((row) => isFast(row, k)));
-    const peak = largest(rate.subarray(first * points, (last + 1) * points));
+    if (before && (before.last === row - 1 || start(row) - times[before.last] < lasts(before))) before.last = row;
+    else found.push({ first: row, last: row });
+  });
+  const enough = LITTLE * largest(slip);
+  const short = SHORT * lasts({ first: 0, last: times.length - 1 });
+  return found.map(({ first, last }) => {
+    const among = Array.from({ length: last - first + 1 }, (_, i) => first + i);
     return {
-      contact: map.contact, onset: start(first), duration: lasts([first, last]), place: places[reached.find((k) => isFast(first, k))],
-      share: reached.length / points, slip: Math.abs(mean(last) - mean(first - 1)), peak,
+      contact: map.contact, onset: start(first), duration: lasts({ first, last }), place: places[points.find((k) => isFast(first, k))],
+      share: points.filter((k) => among.some((row) => isFast(row, k))).length / points.length,
+      slip: Math.abs(mean(last) - mean(first - 1)), peak: largest(rows(rate, first, last)),
     };
-  }).filter((event) => event.slip > LITTLE * largest(slip) && event.duration < SHORT * run_lasts);
+  }).filter(({ slip, duration }) => slip > enough && duration < short);
 }
 
 async function showEvents() {
