@@ -123,7 +123,7 @@ async function showEvents() {
       const columns = events.names.map((key) => [key, (row) => events.get(key)[row], spoken(key)]);
       const time = ["onset", "time", "start"].find((key) => events.get(key));
       const rows = Array.from({ length: events.rows }, (_, row) => row);
-      section.append(el("h3", {}, `${name}${events.rows} events`), tableOf(columns, rows, (row) => time && jump(run, events.get(time)[row],
+      section.append(el("h3", {}, `${name}${events.rows} event${events.rows > 1 ? "s" : ""}`), tableOf(columns, rows, (row) => time && jump(run, events.get(time)[row],
         events.get("duration")?.[row], events.get("contact")?.[row])));
     } else if (fronts && fronts.rows) {
       const found = eventsOf(fronts);

@@ -78,8 +78,8 @@ class Interface extends InterfacePicture {
     if (this.quantity !== quantity || this.map !== map) return;
     const lut = lutOf("viridis");
     const series = rows.flatMap((row, k) => {
-      // The lightest colours of the map cannot be seen on paper.
-      const from = 4 * Math.round((210 * k) / Math.max(1, rows.length - 1));
+      // The lightest colours of the map cannot be seen on white, the darkest not on black.
+      const from = 4 * Math.round(60 + (150 * k) / Math.max(1, rows.length - 1));
       const colour = `rgb(${lut.slice(from, from + 3).join(" ")})`;
       const along = (of) => Float64Array.from(places, (_, i) => of(row * places.length + i));
       const name = `t = ${told(this.times[row], 7)}`;
