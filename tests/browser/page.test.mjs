@@ -271,6 +271,11 @@ test("charts turn logarithmic and back, and curves that are no functions are zoo
   assert.equal((await scale(turned, "y")).distr, 3);
   await chart(turned).getByText("log", { exact: true }).click();
   assert.notEqual((await scale(turned, "y")).distr, 3);
+  // What is chosen stays when other curves are shown.
+  await page.evaluate(() => interfaceView.history.turn());
+  await page.locator("#interface .map").press("ArrowLeft");
+  await page.waitForFunction(() => interfaceView.history.title.includes(told(interfaceView.places[interfaceView.chosen.point])));
+  assert.equal(await page.evaluate(() => interfaceView.history.draw().plot.scales.y.distr), 3);
   assert.equal((await scale("Residuals", "y")).distr, 3);
   const residuals = await scale("Residuals", "y");
   assert.ok(residuals.min <= 1e-9 && residuals.max >= 1e-2, JSON.stringify(residuals));

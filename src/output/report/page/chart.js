@@ -63,7 +63,7 @@ class Chart {
     this.host.style.minHeight = `${height}px`;
     this.host.addEventListener("keydown", (event) => this.key(event));
     const tools = el("span", { class: "tools" },
-      button("log", "Logarithmic or linear", () => this.turn()),
+      button("log", "Logarithmic, as far as it is positive, or linear", () => this.turn()),
       button("⤢", "Show all again", () => this.reset()),
       button("SVG", "Save this chart as SVG", () => this.draw().plot && saveSvg(this.title, svg(this))),
       button("PNG", "Save this chart as PNG", () => this.draw().plot && savePng(this.title, svg(this))),
@@ -93,9 +93,9 @@ class Chart {
     this.draw();
   }
 
-  /** Other curves. */
-  set(series, title = this.title, y = this.y) {
-    Object.assign(this, { series, title, y });
+  /** Other curves; the axis stays logarithmic, or linear. */
+  set(series, title, y) {
+    Object.assign(this, { series, title, y: { ...y, log: this.y.log } });
     this.caption.textContent = title;
     if (this.plot) this.redraw();
     else if (this.seen) this.draw();
