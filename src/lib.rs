@@ -48,7 +48,7 @@
 //! |---|---|
 //! | [`cli`] | commands, arguments, progress |
 //! | [`case`] | the JSON of a case: read, translated to the builder of a model, and run into a folder ([`case::job`]) |
-//! | [`output`] | observers of a run and the files they write; figures; the page of results |
+//! | [`output`] | observers of a run and the files they write; the page of results |
 //! | [`run`] | steps, increments accepted and cut, observers |
 //! | [`time`] | one increment, implicit or explicit: old state → new state; how long the next one is |
 //! | [`solve`] | Newton's method; bodies that float |

@@ -1,5 +1,6 @@
 //! The command line: prints the error, sets the exit code.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -46,14 +47,11 @@ enum Command {
         #[arg(long)]
         out: Option<PathBuf>,
     },
-    /// Draw figures (SVG) of a result folder; several folders are overlaid
+    // Whoever still asks for it is told what to use instead.
+    #[command(hide = true, disable_help_flag = true)]
     Plot {
-        /// Folders of results, finished or still growing
-        #[arg(required = true)]
-        folders: Vec<PathBuf>,
-        /// Folder of the figures [default: the folder of the results, out/overlay for several]
-        #[arg(long)]
-        out: Option<PathBuf>,
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        anything: Vec<OsString>,
     },
     /// Write one page (HTML) to look at results in a browser; several folders are overlaid
     Report {
@@ -91,7 +89,7 @@ fn run() -> Result<(), Failure> {
         Command::Run { case, out, threads, quiet, resume } => cli::run(&case, Options { out, threads, quiet, resume }),
         Command::Check { case } => cli::check(&case),
         Command::Law { test, out } => cli::law(&test, out),
-        Command::Plot { folders, out } => cli::plot(&folders, out),
+        Command::Plot { .. } => Err(cli::plot()),
         Command::Report { folders, out } => cli::report(&folders, out),
         Command::Schema { of } => cli::schema(of),
     }

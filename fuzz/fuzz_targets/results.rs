@@ -1,17 +1,17 @@
-//! Tables of results as `plot` reads them: the first byte says which table is replaced by the rest.
+//! Tables of results as `report` reads them: the first byte says which table is replaced by the rest.
 #![no_main]
 
 use std::fs;
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
-use fecontact::output::plot;
+use fecontact::output::report;
 use libfuzzer_sys::fuzz_target;
 
 const SOUND: [(&str, &[u8]); 5] = [
     ("history.csv", include_bytes!("../seeds/tables/history.csv")),
     ("newton.csv", include_bytes!("../seeds/tables/newton.csv")),
-    ("slip_map.csv", include_bytes!("../seeds/tables/slip_map.csv")),
+    ("law.csv", include_bytes!("../seeds/tables/law.csv")),
     ("fronts.csv", include_bytes!("../seeds/tables/fronts.csv")),
     ("summary.json", include_bytes!("../seeds/tables/summary.json")),
 ];
@@ -28,7 +28,7 @@ fuzz_target!(|bytes: &[u8]| {
         let content = if usize::from(*which) % SOUND.len() == k { table } else { sound };
         fs::write(FOLDER.join(name), content).expect("a file");
     }
-    if let Err(error) = plot::draw(std::slice::from_ref(&*FOLDER), &FOLDER) {
+    if let Err(error) = report::page(std::slice::from_ref(&*FOLDER)) {
         assert!(!error.to_string().trim().is_empty());
     }
 });

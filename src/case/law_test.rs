@@ -24,7 +24,7 @@ pub struct LawTestInput {
     /// What the test shows, in a line
     #[serde(default)]
     pub title: String,
-    /// Labels of the units used, for the figure: length, force, time, stress; any consistent set will do
+    /// Labels of the units used, for the page: length, force, time, stress; any consistent set will do
     #[serde(default)]
     pub units: BTreeMap<String, String>,
     /// Friction law, with its alpha_t

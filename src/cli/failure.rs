@@ -2,7 +2,7 @@
 
 use crate::case::CaseError;
 use crate::case::job::{Failed, Refused, defect};
-use crate::output::plot::PlotError;
+use crate::output::report::ReportError;
 use crate::run::error::Error;
 
 /// Why a command did not end well.
@@ -33,11 +33,11 @@ impl From<CaseError> for Failure {
     }
 }
 
-impl From<PlotError> for Failure {
-    fn from(error: PlotError) -> Self {
+impl From<ReportError> for Failure {
+    fn from(error: ReportError) -> Self {
         match error {
-            PlotError::Output(error) => error.into(),
-            PlotError::Unreadable { .. } => Self::BadInput(error.to_string()),
+            ReportError::Output(error) => error.into(),
+            ReportError::Unreadable { .. } => Self::BadInput(error.to_string()),
         }
     }
 }

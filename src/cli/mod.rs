@@ -21,9 +21,9 @@ use self::threads::use_threads;
 pub use crate::case::job::defect;
 use crate::case::{self, Opened, Written, law_test};
 use crate::output::law::LawTable;
-use crate::output::plot;
 use crate::output::report;
 use crate::output::summary::{self, About, Ending, LawSummary};
+use crate::run::error::Error;
 use crate::run::law_report::{Hold, LawReport, PathPoint};
 
 /// What a schema describes.
@@ -55,7 +55,7 @@ pub fn law(path: &Path, out: Option<PathBuf>) -> Result<(), Failure> {
     let input = law_test::read(path)?;
     let test = law_test::build(&input, path)?;
     let folder = out.unwrap_or_else(|| default_folder(path));
-    let mut folder = claim(&folder, &[path.to_owned()], &["law.csv"], false)?;
+    let mut folder = claim(&folder, &[path.to_owned()], &["law.csv", report::FILE], false)?;
     let about = About {
         case: path.display().to_string(),
         title: input.title,
@@ -75,9 +75,12 @@ pub fn law(path: &Path, out: Option<PathBuf>) -> Result<(), Failure> {
     folder.make_room_after(&result);
     let summary = LawSummary { ending: Ending::new(result.as_ref().err(), &folder.files), about, report };
     let written = summary::write(&summary, &folder.path);
+    // The first failure is the one to be told; where a table found no room a page finds none, either.
+    let wants_page = written.is_ok() && !matches!(result, Err(Error::Output { .. }));
+    let page = wants_page.then(|| report::write(std::slice::from_ref(&folder.path), &folder.path.join(report::FILE)));
     result?;
     written?;
-    plot::draw(std::slice::from_ref(&folder.path), &folder.path)?;
+    page.transpose()?;
     conclude_law(&summary.report, &folder.path);
     Ok(())
 }
@@ -99,18 +102,13 @@ fn conclude_law(report: &LawReport, folder: &Path) {
     say!("results in {}", folder.display());
 }
 
-/// `fecontact plot`.
-///
-/// # Errors
-/// [`Failure`].
-pub fn plot(folders: &[PathBuf], out: Option<PathBuf>) -> Result<(), Failure> {
-    use_threads(None)?;
-    let folder = out.unwrap_or_else(|| match folders {
-        [folder] => folder.clone(),
-        _ => Path::new("out").join("overlay"),
-    });
-    let figures = plot::draw(folders, &folder)?;
-    figures.iter().try_for_each(|figure| print(&format!("{}\n", figure.display())))
+/// `fecontact plot`, which is no command any more: what to use instead.
+pub fn plot() -> Failure {
+    Failure::BadInput(
+        "`fecontact plot` is gone: `fecontact report DIR…` writes a page whose pictures are saved as SVG, PNG and CSV; from Python, \
+         `fecontact.plot.friction(fecontact.Result.open(DIR))` and the functions beside it draw them"
+            .into(),
+    )
 }
 
 /// `fecontact report`.

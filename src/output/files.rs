@@ -2,7 +2,7 @@
 //! might look at them half written.
 
 use std::fs::{self, File};
-use std::io::{self, ErrorKind, Write};
+use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// A new file in the place of an earlier one.
@@ -33,6 +33,14 @@ pub fn remove(path: &Path) -> io::Result<()> {
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
         Err(error) => Err(error),
     }
+}
+
+/// Whether a file of its own has these words among its first: by them what we have written is told from a user's file of that name.
+pub fn bears(path: &Path, words: &str) -> bool {
+    let mut start = Vec::new();
+    let read = |file: File| file.take(1024).read_to_end(&mut start);
+    plain(path).and_then(|()| File::open(path)).and_then(read).is_ok()
+        && String::from_utf8_lossy(&start).contains(words)
 }
 
 /// Whether it is a file of its own.

@@ -11,11 +11,10 @@ use super::checkpoint;
 use super::files;
 use super::interface;
 use super::lock::Lock;
-use super::plot;
 use super::report;
 use crate::run::error::Error;
 
-/// What commands write beside figures; a folder ends in `/` and holds numbered frames.
+/// What commands write; a folder ends in `/` and holds numbered frames.
 const KNOWN: [&str; 17] = [
     "history.csv",
     "newton.csv",
@@ -35,6 +34,23 @@ const KNOWN: [&str; 17] = [
     checkpoint::PREVIOUS,
     report::FILE,
 ];
+
+/// Figures that earlier versions have drawn beside results: of these names, ...
+const FIGURES: [&str; 11] = [
+    "law.svg",
+    "displacement.svg",
+    "friction.svg",
+    "friction_path.svg",
+    "slip.svg",
+    "slip_fraction.svg",
+    "energy.svg",
+    "newton.svg",
+    "slip_rate.svg",
+    "events.svg",
+    "traction.svg",
+];
+/// ... and with these words at their beginning, unless they are a user's own.
+const OUR_FIGURE: &str = "data-drawn-by=\"fecontact\"";
 
 /// The store of the interfaces, a folder of its own kind.
 pub const INTERFACE: &str = "interface.zarr/";
@@ -164,8 +180,8 @@ fn clear(folder: &Path, earlier: &[String]) -> Result<(), (PathBuf, std::io::Err
             }
         }
     }
-    let figures = plot::FIGURES.iter().map(|name| folder.join(name));
-    figures.filter(|path| plot::is_figure(path)).try_for_each(remove)?;
+    let figures = FIGURES.iter().map(|name| folder.join(name));
+    figures.filter(|path| files::bears(path, OUR_FIGURE)).try_for_each(remove)?;
     Some(folder.join(report::FILE)).filter(|path| report::is_page(path)).map_or(Ok(()), remove)
 }
 

@@ -21,7 +21,6 @@ mod measures;
 mod memory;
 pub mod newton_log;
 mod passages;
-pub mod plot;
 pub mod probes;
 pub mod report;
 mod results;

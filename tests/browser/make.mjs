@@ -42,6 +42,13 @@ run("stopped", "tube.json", (written) => {
 });
 page("two", "tube", "tube_soft");
 
+/** A committed test of a law. */
+const law = (name) => execFileSync(program, ["law", join(cases, "law", `${name}.json`), "--out", join(work, name)], { stdio: "ignore" });
+law("hold_slide_hold");
+law("pressure_steps");
+page("two_laws", "hold_slide_hold", "pressure_steps");
+page("run_and_law", "spring_mass_3", "pressure_steps");
+
 /** A copy of a folder with a fault put into it. */
 function fault(name, from, change) {
   const folder = join(work, name);
@@ -68,6 +75,7 @@ fault("killed", "tube", (folder) => {
   for (const frame of readdirSync(join(folder, "solid")).slice(20)) rmSync(join(folder, "solid", frame));
   writeFileSync(join(folder, "newton.csv"), readFileSync(join(folder, "newton.csv"), "utf8").slice(0, -40) + "\nhalf,a,line\n");
 });
+fault("no_fronts", "slip_front", (folder) => ["fronts.csv", "events.csv"].forEach((name) => rmSync(join(folder, name))));
 fault("no_frames", "tube", (folder) => {
   for (const name of ["solid", "contact", "solid.pvd", "contact.pvd"]) rmSync(join(folder, name), { recursive: true });
 });

@@ -160,15 +160,11 @@ test("charts zoom by the mouse and by keys, are read off, and are saved as SVG a
   await chart.locator(".plot").press("Home");
   await chart.locator(".plot").press("ArrowRight");
   assert.match(await chart.locator(".u-legend .u-value").first().innerText(), /\d/);
-  const saved = async (kind) => {
-    const [download] = await Promise.all([page.waitForEvent("download"), chart.getByText(kind, { exact: true }).click()]);
-    return readFileSync(await download.path(), "utf8");
-  };
-  const svg = await saved("SVG");
+  const svg = (await saved(page, chart, "SVG")).toString();
   assert.match(svg, /^<svg[^]*<path d="M[^"]{40,}"[^]*<\/svg>\s*$/);
   assert.ok(svg.includes("tangential force"));
   // The data are those of history.csv, to single precision.
-  const rows = (await saved("CSV")).trimEnd().split("\n").map((line) => line.split(","));
+  const rows = (await saved(page, chart, "CSV")).toString().trimEnd().split("\n").map((line) => line.split(","));
   const history = readFileSync(join(PAGES, "tube", "history.csv"), "utf8").trimEnd().split("\n").map((line) => line.split(","));
   const column = history[0].indexOf("bar.tangential_force");
   assert.equal(rows.length, history.length);
@@ -189,6 +185,132 @@ test("an event of the table is shown close up, with its fronts, at its time", as
   assert.ok(window[0] < first && first < window[1] && window[1] - window[0] < 0.01, `${window} about ${first}`);
   assert.ok(Math.abs(time - first) < 1e-9 && Math.abs(onset - first) < 1e-4);
   await close(page, "slip_front_event");
+});
+
+test("of a run without a table of events they are those that the slip rates tell", async () => {
+  const page = await open(made("no_fronts"));
+  assert.match(await page.locator("#events h3").innerText(), /by the slip rates/);
+  const shown = await page.locator("#events tbody tr").evaluateAll((rows) => rows.map((row) => [...row.children].map((cell) => cell.innerText)));
+  const known = readFileSync(join(PAGES, "slip_front", "events.csv"), "utf8").trimEnd().split("\n").map((line) => line.split(","));
+  const column = (name) => known[0].indexOf(name);
+  // Those of events.csv that slipped more than a little, at their onsets.
+  const largest = Math.max(...known.slice(1).map((row) => Math.abs(+row[column("mean_slip")])));
+  for (const row of known.slice(1).filter((row) => Math.abs(+row[column("mean_slip")]) > 0.1 * largest)) {
+    const near = shown.map((cells) => Math.abs(+cells[1] - +row[column("onset")]));
+    assert.ok(Math.min(...near) < 1e-4, `${row[column("onset")]} is not among ${shown.map((cells) => cells[1])}`);
+  }
+  await page.locator("#events tbody tr").first().click();
+  await page.waitForFunction(() => interfaceView.window.t[1] - interfaceView.window.t[0] < 0.01);
+  await close(page, "no_fronts");
+});
+
+test("snapshots are rows of the interface at times of the picture, and follow it", async () => {
+  const page = await open(of("block_on_ground"));
+  const drawn = () => page.evaluate(() => {
+    const { snapshots, values, places, times } = interfaceView;
+    return snapshots.series.filter((one) => !one.unlisted).map((one) => {
+      const row = times.findIndex((time) => one.name === `t = ${told(time, 7)}`);
+      return { row, same: Array.from(one.y).every((value, k) => value === values[row * places.length + k]) };
+    });
+  });
+  const before = await drawn();
+  assert.ok(before.length === 6 && before.every(({ same }) => same), JSON.stringify(before));
+  assert.deepEqual([before[0].row, before[5].row], [0, await page.evaluate(() => interfaceView.times.length - 1)]);
+  await page.getByRole("button", { name: "Zoom in at the chosen time and place" }).click();
+  await page.waitForFunction((row) => !interfaceView.snapshots.series[0].name.endsWith(`= ${told(interfaceView.times[row], 7)}`), before[0].row);
+  assert.ok((await drawn()).every(({ same }) => same));
+  await close(page);
+});
+
+/** What a button saves. */
+async function saved(page, place, kind) {
+  const [download] = await Promise.all([page.waitForEvent("download"), place.getByText(kind, { exact: true }).click()]);
+  return readFileSync(await download.path());
+}
+
+/** Whether a browser can read a picture, and of how many colours it is. */
+const colours = (page, bytes, type) => page.evaluate(async ([text, type]) => {
+  const picture = new Image();
+  picture.src = `data:${type};base64,${text}`;
+  await picture.decode();
+  const canvas = el("canvas", { width: picture.width, height: picture.height });
+  const context = canvas.getContext("2d");
+  context.drawImage(picture, 0, 0);
+  return new Set(new Uint32Array(context.getImageData(0, 0, canvas.width, canvas.height).data.buffer)).size;
+}, [bytes.toString("base64"), type]);
+
+test("every picture is saved as SVG, PNG and CSV", async () => {
+  const page = await open(of("block_on_ground"));
+  await page.evaluate(() => charts.forEach((chart) => chart.draw()));
+  const histories = page.locator("#histories figure.chart").first();
+  for (const [place, least, words] of [[page.locator("#bodies"), 100, "von Mises"], [page.locator("#interface > .controls"), 100, "position along"],
+    [histories, 3, "tangential force"]]) {
+    const svg = await saved(page, place, "SVG");
+    assert.ok(svg.toString().includes(words) && /^<svg[^]*<\/svg>\s*$/.test(svg.toString()), words);
+    assert.ok(await colours(page, svg, "image/svg+xml") >= least, words);
+    assert.ok(await colours(page, await saved(page, place, "PNG"), "image/png") >= least, words);
+    assert.ok((await saved(page, place, "CSV")).toString().split("\n").length > 20, words);
+  }
+  // The bodies as they stand in the frame.
+  const rows = (await saved(page, page.locator("#bodies"), "CSV")).toString().trimEnd().split("\n").map((line) => line.split(","));
+  assert.equal(rows.length - 1, await page.evaluate(() => bodiesView.solid.points));
+  assert.deepEqual(rows.slice(1).map((row) => +row[4]), await page.evaluate(() => Array.from(bodiesView.values)));
+  await close(page);
+});
+
+test("charts turn logarithmic and back, and curves that are no functions are zoomed along x", async () => {
+  const page = await open(of("block_on_ground"));
+  const chart = (title) => page.locator("figure.chart").filter({ hasText: title }).first();
+  const scale = (title, axis) => page.evaluate(([title, axis]) => {
+    const { min, max, distr } = charts.find((one) => one.title.startsWith(title)).plot.scales[axis];
+    return { min, max, distr };
+  }, [title, axis]);
+  await page.evaluate(() => charts.forEach((chart) => chart.draw()));
+  const [turned, path] = ["External work", "Friction path"];
+  await chart(turned).getByText("log", { exact: true }).click();
+  assert.equal((await scale(turned, "y")).distr, 3);
+  await chart(turned).getByText("log", { exact: true }).click();
+  assert.notEqual((await scale(turned, "y")).distr, 3);
+  // What is chosen stays when other curves are shown.
+  await page.evaluate(() => interfaceView.history.turn());
+  await page.locator("#interface .map").press("ArrowLeft");
+  await page.waitForFunction(() => interfaceView.history.title.includes(told(interfaceView.places[interfaceView.chosen.point])));
+  assert.equal(await page.evaluate(() => interfaceView.history.draw().plot.scales.y.distr), 3);
+  assert.equal((await scale("Residuals", "y")).distr, 3);
+  const residuals = await scale("Residuals", "y");
+  assert.ok(residuals.min <= 1e-9 && residuals.max >= 1e-2, JSON.stringify(residuals));
+  const whole = await scale(path, "x");
+  await chart(path).locator(".plot").press("+");
+  const zoomed = await scale(path, "x");
+  assert.ok(zoomed.max - zoomed.min < 0.6 * (whole.max - whole.min), JSON.stringify([whole, zoomed]));
+  await chart(path).locator(".plot").press("0");
+  assert.deepEqual(await scale(path, "x"), whole);
+  await close(page);
+});
+
+test("a law driven alone is shown", async () => {
+  const page = await open(of("hold_slide_hold"));
+  const titles = () => page.locator("#law figcaption > span:first-child").allInnerTexts();
+  for (const title of ["Traction over slip", "Friction coefficient over time", "Slip over time", "State over time", "Peak after a hold over its length"]) {
+    assert.ok((await titles()).includes(title), title);
+  }
+  assert.ok(!(await titles()).includes("Pressure over time"));
+  assert.match(await page.locator("#law").innerText(), /super subloading: .*mu_s = 0\.6/);
+  const { holds } = JSON.parse(readFileSync(join(PAGES, "hold_slide_hold", "summary.json"), "utf8"));
+  const ageing = await page.evaluate(() => {
+    const chart = charts.find((one) => one.title.startsWith("Peak after")).draw();
+    return { y: chart.series[0].y, distr: chart.plot.scales.x.distr };
+  });
+  assert.deepEqual(ageing, { y: holds.map((hold) => hold.peak.coefficient), distr: 3 });
+  await close(page, "hold_slide_hold");
+  const both = await open(made("two_laws"));
+  const names = await both.evaluate(() => charts.find((one) => one.title === "Traction over slip").series.map((one) => one.name));
+  assert.deepEqual(names, ["hold_slide_hold", "pressure_steps"]);
+  assert.ok(await both.getByText("Traction over pressure").count());
+  await close(both, "two_laws");
+  const mixed = await open(made("run_and_law"));
+  assert.ok(await mixed.locator("#law").isVisible() && await mixed.locator("#histories").isVisible());
+  await close(mixed);
 });
 
 test("two runs are overlaid, and told apart", async () => {

@@ -110,7 +110,7 @@ fn rows_have_the_promised_columns_and_the_start() {
     assert_eq!(text.lines().next(), Some(header));
     assert_eq!(text.lines().count(), 1 + 1 + 100);
     assert!(text.lines().nth(1).unwrap().starts_with("0.0,0.0,98.1,-10.25,0.2612"), "{text:.300}");
-    assert!(results.join("law.svg").exists());
+    assert!(results.join("report.html").exists());
     // The same again, over the old results.
     assert_eq!(law(folder.path(), &test).status.code(), Some(0));
     assert_eq!(fs::read_to_string(results.join("law.csv")).unwrap(), text);
@@ -380,7 +380,7 @@ fn a_pressure_past_the_uniqueness_limit_is_told() {
     assert_eq!(done.summary["warnings"].as_array().unwrap().len(), 1);
 }
 
-/// A step that the law cannot answer stops the test: what was computed is kept, and the reason told.
+/// A step that the law cannot answer stops the test: what was computed is kept and shown, and the reason told.
 #[test]
 fn a_test_that_stops_keeps_its_rows() {
     let folder = TempDir::new().unwrap();
@@ -393,6 +393,7 @@ fn a_test_that_stops_keeps_its_rows() {
     assert_eq!(done.column("time").len(), 51);
     assert_eq!(done.summary["status"], "stopped");
     assert!(done.summary["reason"].as_str().unwrap().contains("the law stopped after time 0.5"));
+    assert!(folder.path().join("out/test/report.html").exists());
 }
 
 /// Nine days of sticking and slipping without end in one step, far beyond the limit of uniqueness: an answer to the

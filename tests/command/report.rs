@@ -301,9 +301,107 @@ fn a_folder_of_something_else_is_refused_by_name() {
         assert!(!folder.path().join("page.html").exists());
     };
     refused(&folder.path().join("nowhere"), "is not a folder");
-    refused(folder.path(), "neither history.csv nor summary.json");
-    fs::write(folder.path().join("law.csv"), "time\n").unwrap();
-    refused(folder.path(), "holds a law driven alone");
+    refused(folder.path(), "neither history.csv nor law.csv nor summary.json");
+}
+
+/// Millimetres are not drawn over metres.
+#[test]
+fn folders_of_other_units_are_refused() {
+    let ((_one, first), (_two, second)) = (run(json!({"report": false})), run(json!({"report": false})));
+    let summary = second.join("summary.json");
+    let text = fs::read_to_string(&summary).unwrap().replace("\"mm\"", "\"m\"");
+    fs::write(&summary, text).unwrap();
+    let page = second.with_file_name("page.html");
+    let told = report(&[&first, &second], &page);
+    assert_eq!(told.status.code(), Some(2), "{}", stderr(&told));
+    let places = [&first, &second].map(|folder| folder.to_str().unwrap());
+    for what in ["length is in m, but in mm in", places[0], places[1]] {
+        assert!(stderr(&told).contains(what), "{what}: {}", stderr(&told));
+    }
+    assert!(!page.exists());
+}
+
+/// A run that is going on, or was killed: no summary yet, and the last line may be cut anywhere.
+#[test]
+fn a_line_that_is_being_written_is_left_out() {
+    let (_kept, out) = run(json!({"report": false}));
+    fs::remove_file(out.join("summary.json")).unwrap();
+    let whole = fs::read_to_string(out.join("history.csv")).unwrap();
+    let last = whole.trim_end().rfind('\n').unwrap() + 1;
+    for cut in [0, 1, 7, 40, whole.len() - last - 1] {
+        fs::write(out.join("history.csv"), &whole[..last + cut]).unwrap();
+        let page = Page::of(&out);
+        assert_eq!(page.run()["history"]["rows"], whole.lines().count() - 2, "{cut}");
+        assert!(!page.notes().contains("history.csv"), "{cut}: {}", page.notes());
+    }
+}
+
+/// Of a test of a law.
+fn law(folder: &Path, name: &str) -> PathBuf {
+    let test = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("cases/law/{name}.json"));
+    let out = folder.join(name);
+    let told = fecontact(&["law", test.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert!(told.status.success(), "{}", stderr(&told));
+    out
+}
+
+#[test]
+fn a_law_driven_alone_has_its_page() {
+    let folder = TempDir::new().unwrap();
+    let outs = ["hold_slide_hold", "pressure_steps"].map(|name| law(folder.path(), name));
+    let page = Page::read(&outs[0].join("report.html"));
+    assert_eq!(page.notes(), "");
+    let summary: Value = serde_json::from_str(&fs::read_to_string(outs[0].join("summary.json")).unwrap()).unwrap();
+    assert!(summary["files"].as_array().unwrap().contains(&"report.html".into()));
+    assert_eq!(page.run()["summary"], summary);
+    assert!(summary["holds"].as_array().unwrap().len() > 3);
+    let (names, rows) = table(&outs[0].join("law.csv"));
+    assert_eq!(page.run()["law"]["rows"], rows.len());
+    for (k, column) in page.run()["law"]["columns"].as_array().unwrap().iter().enumerate() {
+        assert_eq!(column["name"], names[k]);
+        let exact = column["type"] == "f64";
+        let shown = if exact { page.doubles(&column["chunk"]) } else { page.singles(&column["chunk"]) };
+        for (row, shown) in rows.iter().zip(shown) {
+            let value: f64 = row[k].parse().unwrap();
+            assert_eq!(shown, if exact { value } else { f64::from(value as f32) }, "{}", names[k]);
+        }
+    }
+    // Written again it is the same, and several are laid over each other, beside a run if need be.
+    let written = fs::read(outs[0].join("report.html")).unwrap();
+    assert!(fecontact(&["report", outs[0].to_str().unwrap()]).status.success());
+    assert_eq!(fs::read(outs[0].join("report.html")).unwrap(), written);
+    let (_kept, ran) = run(json!({"report": false}));
+    let file = folder.path().join("all.html");
+    let told = report(&[&outs[0], &outs[1]], &file);
+    assert!(told.status.success(), "{}", stderr(&told));
+    assert_eq!(Page::read(&file).data["runs"].as_array().unwrap().len(), 2);
+    let told = report(&[&ran, &outs[0]], &file);
+    assert!(told.status.success(), "{}", stderr(&told));
+    let page = Page::read(&file);
+    assert!(page.data["runs"][0]["law"].is_null() && page.data["runs"][1]["history"].is_null());
+}
+
+/// Figures that an earlier version has drawn go with the results of the next run; a user's of the same name stay.
+#[test]
+fn stale_figures_are_removed() {
+    let (folder, out) = run(json!({}));
+    fs::write(out.join("friction.svg"), "<svg data-drawn-by=\"fecontact\">").unwrap();
+    fs::write(out.join("slip.svg"), "<svg>mine</svg>").unwrap();
+    let file = folder.path().join("case.json");
+    let told = fecontact(&["run", file.to_str().unwrap(), "--out", out.to_str().unwrap(), "--quiet"]);
+    assert!(told.status.success(), "{}", stderr(&told));
+    assert!(!out.join("friction.svg").exists() && out.join("slip.svg").exists());
+}
+
+#[test]
+fn plot_says_what_to_use_instead() {
+    for arguments in [&["plot"][..], &["plot", "out/blocks", "--out", "figures"], &["plot", "--help"]] {
+        let told = fecontact(arguments);
+        assert_eq!(told.status.code(), Some(2), "{arguments:?}");
+        assert!(told.stdout.is_empty());
+        assert_eq!(stderr(&told).lines().count(), 1, "{}", stderr(&told));
+        assert!(["fecontact report", "fecontact.plot"].iter().all(|what| stderr(&told).contains(what)));
+    }
 }
 
 /// Attempts that were given up are those of which `newton.csv` says so: an accepted one is none, although the run ended after it

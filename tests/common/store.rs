@@ -1,8 +1,7 @@
-//! A store of zarr version 2, read by the words of its specification, and written without compression. It shares nothing with
-//! the program but the inflating of zlib.
+//! A store of zarr version 2, read by the words of its specification. It shares nothing with the program but the inflating of
+//! zlib.
 #![allow(dead_code, reason = "each test program uses a part")]
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
@@ -60,30 +59,4 @@ fn chunked(folder: &Path, is: &Value) -> (Vec<usize>, Vec<f64>) {
 /// Attributes of an array, or of the store.
 pub fn attributes(store: &Path, name: &str) -> Value {
     described(&store.join(name).join(".zattrs"))
-}
-
-/// A store of one contact whose points lie on y = 0, with its quantities as lists of records, in one chunk each.
-pub fn write(store: &Path, contact: &str, times: &[f64], positions: &[f64], quantities: &BTreeMap<&str, Vec<f64>>) {
-    let mut metadata = serde_json::Map::new();
-    metadata.insert(".zgroup".into(), json!({"zarr_format": 2}));
-    metadata.insert(".zattrs".into(), json!({"contacts": [contact], "prefixes": [contact]}));
-    let mut put = |name: String, shape: Vec<usize>, values: &[f64]| {
-        let folder = store.join(&name);
-        fs::create_dir_all(&folder).expect("a folder");
-        let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
-        fs::write(folder.join(if shape.len() == 2 { "0.0" } else { "0" }), bytes).expect("a chunk");
-        let is = json!({"zarr_format": 2, "shape": shape, "chunks": shape, "dtype": "<f8", "fill_value": "NaN",
-                        "order": "C", "filters": null, "compressor": null});
-        metadata.insert(format!("{name}/.zarray"), is);
-    };
-    put("time".into(), vec![times.len()], times);
-    let zeros = vec![0.0; positions.len()];
-    for (name, values) in [("position", positions), ("x", positions), ("y", &zeros[..]), ("line", &zeros[..])] {
-        put(format!("{contact}.{name}"), vec![positions.len()], values);
-    }
-    for (name, values) in quantities {
-        put(format!("{contact}.{name}"), vec![times.len(), positions.len()], values);
-    }
-    let all = json!({"metadata": metadata, "zarr_consolidated_format": 1});
-    fs::write(store.join(".zmetadata"), all.to_string()).expect("a file");
 }

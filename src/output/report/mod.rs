@@ -4,24 +4,24 @@
 //! Where there are too many, some are left out; the page says which. Faults in a folder are told on the page and hide no more
 //! than they must.
 
-mod attempts;
 mod maps;
+mod newton;
 pub mod pack;
 mod run;
 mod series;
-mod sheet;
+mod source;
+mod table;
 
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
 use self::pack::Pack;
 use self::run::Run;
+pub use self::source::ReportError;
+use self::source::sources;
 use super::csv::failed;
 use super::files;
-use super::plot::error::PlotError;
-use super::plot::source::sources_of;
 
 /// Name of the page in a folder of results.
 pub const FILE: &str = "report.html";
@@ -33,12 +33,13 @@ const OURS: &str = "<meta name=\"generator\" content=\"fecontact report\">";
 const ROOM: usize = 28_000_000;
 
 /// What draws the page, in the order in which it is run.
-const SCRIPTS: [&str; 16] = [
+const SCRIPTS: [&str; 18] = [
     include_str!("page/uplot/uPlot.iife.min.js"),
     include_str!("page/dom.js"),
     include_str!("page/data.js"),
     include_str!("page/colours.js"),
     include_str!("page/export.js"),
+    include_str!("page/paper.js"),
     include_str!("page/chart.js"),
     include_str!("page/head.js"),
     include_str!("page/scene.js"),
@@ -46,6 +47,7 @@ const SCRIPTS: [&str; 16] = [
     include_str!("page/stage.js"),
     include_str!("page/bodies.js"),
     include_str!("page/histories.js"),
+    include_str!("page/law.js"),
     include_str!("page/map.js"),
     include_str!("page/interface.js"),
     include_str!("page/events.js"),
@@ -54,17 +56,14 @@ const SCRIPTS: [&str; 16] = [
 
 /// Whether a file is a page of ours: one that a user has under the same name is not.
 pub fn is_page(path: &Path) -> bool {
-    let plain = path.symlink_metadata().is_ok_and(|known| known.is_file());
-    let mut start = Vec::new();
-    let read = |file: std::fs::File| file.take(1024).read_to_end(&mut start);
-    plain && std::fs::File::open(path).and_then(read).is_ok() && String::from_utf8_lossy(&start).contains(OURS)
+    files::bears(path, OURS)
 }
 
 /// Write the page of result folders, finished or still growing; several are overlaid.
 ///
 /// # Errors
-/// [`PlotError`].
-pub fn write(folders: &[PathBuf], file: &Path) -> Result<(), PlotError> {
+/// [`ReportError`].
+pub fn write(folders: &[PathBuf], file: &Path) -> Result<(), ReportError> {
     if file.is_dir() {
         return Err(failed(file, &"is a folder: give the name of the page").into());
     }
@@ -82,21 +81,19 @@ pub fn write(folders: &[PathBuf], file: &Path) -> Result<(), PlotError> {
 /// The page of result folders.
 ///
 /// # Errors
-/// [`PlotError::Unreadable`].
-pub fn page(folders: &[PathBuf]) -> Result<String, PlotError> {
-    let unreadable = |path: &Path, cause: &str| PlotError::Unreadable { path: path.to_owned(), cause: cause.into() };
+/// [`ReportError::Unreadable`].
+pub fn page(folders: &[PathBuf]) -> Result<String, ReportError> {
+    let unreadable = |path: &Path, cause: &str| ReportError::Unreadable { path: path.to_owned(), cause: cause.into() };
     for folder in folders {
         if !folder.is_dir() {
             return Err(unreadable(folder, "is not a folder; give a folder of results"));
         }
-        if folder.join("law.csv").is_file() && !folder.join("history.csv").is_file() {
-            return Err(unreadable(folder, "holds a law driven alone: `fecontact plot` draws it"));
-        }
-        if !["history.csv", "summary.json"].iter().any(|file| folder.join(file).is_file()) {
-            return Err(unreadable(folder, "has neither history.csv nor summary.json: it is no folder of results"));
+        if !["history.csv", "law.csv", "summary.json"].iter().any(|file| folder.join(file).is_file()) {
+            let cause = "has neither history.csv nor law.csv nor summary.json: it is no folder of results";
+            return Err(unreadable(folder, cause));
         }
     }
-    let sources = sources_of(folders)?;
+    let sources = sources(folders)?;
     let mut pack = Pack::default();
     let share = ROOM / sources.len().max(1);
     let runs: Vec<Value> = sources.iter().map(|source| Run::new(source, share).show(&mut pack)).collect();

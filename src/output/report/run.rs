@@ -2,17 +2,14 @@
 
 use serde_json::{Value, json};
 
-use super::attempts::attempts;
 use super::maps::map;
+use super::newton::{HARDEST, attempts, increments, residuals, solves};
 use super::pack::Pack;
 use super::series::Series;
-use super::sheet::{Column, not_numbers, read, rows, sheet, some};
+use super::source::{ReportError, Source};
+use super::table::{Column, Columns, read, sheet};
 use crate::laws::friction::FrictionParameters;
 use crate::output::lock;
-use crate::output::plot::convergence::{HARDEST, increments, residuals, solves};
-use crate::output::plot::error::PlotError;
-use crate::output::plot::read::Columns;
-use crate::output::plot::source::Source;
 use crate::output::results::InterfaceMap;
 
 /// Rows of a table at most.
@@ -48,7 +45,8 @@ impl<'a> Run<'a> {
         let summary = self.summary();
         let status = summary["status"].as_str().unwrap_or("unknown").to_owned();
         let start = pack.text.len();
-        let history = self.history(pack);
+        let history = self.over_time("history.csv", pack);
+        let law = self.over_time("law.csv", pack);
         let newton = self.newton(status == "completed", pack);
         let fronts = self.small_table("fronts.csv", pack);
         let events = self.small_table("events.csv", pack);
@@ -65,6 +63,7 @@ impl<'a> Run<'a> {
             "units": about.units,
             "bounds": bounds.collect::<serde_json::Map<String, Value>>(),
             "history": history,
+            "law": law,
             "newton": newton,
             "fronts": fronts,
             "events": events,
@@ -84,27 +83,28 @@ impl<'a> Run<'a> {
         })
     }
 
-    fn history(&mut self, pack: &mut Pack) -> Value {
-        let Some(history) = read(&self.source.folder, "history.csv", &mut self.notes) else { return Value::Null };
-        if history.get("time").is_err() {
-            self.notes.push("history.csv has no column `time`; it is not shown".into());
+    /// A table whose rows follow each other in time: the history of a run, or the path of a law driven alone.
+    fn over_time(&mut self, file: &str, pack: &mut Pack) -> Value {
+        let Some(table) = read(&self.source.folder, file, &mut self.notes) else { return Value::Null };
+        if table.get("time").is_err() {
+            self.notes.push(format!("{file} has no column `time`; it is not shown"));
             return Value::Null;
         }
-        if history.is_empty() {
-            self.notes.push("history.csv has no rows yet".into());
+        let all = table.rows();
+        if all == 0 {
+            self.notes.push(format!("{file} has no rows yet"));
             return Value::Null;
         }
-        for (name, count) in not_numbers(&history) {
-            self.notes.push(format!("history.csv: {count} values of {name} are no numbers; they are left blank"));
+        for (name, count) in table.not_numbers() {
+            self.notes.push(format!("{file}: {count} values of {name} are no numbers; they are left blank"));
         }
-        let shown = rows(&history, self.fit(0.2, history.names().count()).min(ROWS));
-        let all = history.get("time").map_or(0, <[f64]>::len);
+        let shown = table.spread(self.fit(0.2, table.count()).min(ROWS));
         if shown.len() < all {
             let shown = shown.len();
             self.notes
-                .push(format!("history.csv: {shown} of {all} rows are shown, the extremes of every column among them"));
+                .push(format!("{file}: {shown} of {all} rows are shown, the extremes of every column among them"));
         }
-        sheet(some(&history, &shown), pack)
+        table.sheet(&shown, pack)
     }
 
     /// Residuals of the hardest increments, solves of all, and the attempts that were given up.
@@ -116,7 +116,7 @@ impl<'a> Run<'a> {
         })
     }
 
-    fn convergence(&mut self, newton: &Columns, complete: bool, pack: &mut Pack) -> Result<Value, PlotError> {
+    fn convergence(&mut self, newton: &Columns, complete: bool, pack: &mut Pack) -> Result<Value, ReportError> {
         let all = increments(newton)?;
         if all.is_empty() {
             return Ok(Value::Null);
@@ -134,8 +134,8 @@ impl<'a> Run<'a> {
             times.push(time);
             counts.push(count);
         }
-        let residuals: Vec<Column> = vec![("iteration", None, iterations), ("residual", None, of_increment)];
-        let solves: Vec<Column> = vec![("time", None, times), ("solves", None, counts)];
+        let residuals = [Column::numbers("iteration", iterations), Column::numbers("residual", of_increment)];
+        let solves = [Column::numbers("time", times), Column::numbers("solves", counts)];
         Ok(json!({
             "increments": all.len(),
             "hardest": all.len().min(HARDEST),
@@ -148,13 +148,13 @@ impl<'a> Run<'a> {
     /// A table that is written at the end of a run, whole but for the rows there is no room for.
     fn small_table(&mut self, file: &str, pack: &mut Pack) -> Value {
         let Some(table) = read(&self.source.folder, file, &mut self.notes) else { return Value::Null };
-        let all = table.names().next().and_then(|name| table.get(name).ok()).map_or(0, <[f64]>::len);
-        let most = self.fit(0.1, table.names().count()).min(ROWS);
+        let all = table.rows();
+        let most = self.fit(0.1, table.count()).min(ROWS);
         if all > most {
             self.notes.push(format!("{file}: the first {most} of {all} rows are shown"));
         }
         let shown: Vec<usize> = (0..all.min(most)).collect();
-        sheet(some(&table, &shown), pack)
+        table.sheet(&shown, pack)
     }
 
     /// Values of a quantity of each map at most.

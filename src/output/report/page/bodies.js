@@ -104,7 +104,7 @@ class Bodies extends BodiesPicture {
       this.contact && this.contact.largest > 0 ? check("tractions", options.tractions, redraw((on) => (options.tractions = on))) : null,
       button("+", "Zoom in", () => this.zoom(1.4)), button("−", "Zoom out", () => this.zoom(1 / 1.4)),
       button("⤢", "Show all of the bodies", () => this.fit().then(() => this.draw())),
-      button("PNG", "Save the picture", () => this.picture())].filter(Boolean));
+      ...exports(() => `${this.title()} ${this.frame}`, () => this.svg(), () => this.csv())].filter(Boolean));
     this.showLimits();
   }
 

@@ -7,8 +7,8 @@ const watcher = new IntersectionObserver((entries) => {
 }, { rootMargin: "300px" });
 
 /** Rows of several curves under one ascending x: `undefined` where a curve has no row, `null` where it has no number. */
-function aligned(series, log) {
-  const clean = (y) => Array.from(y, (value) => (Number.isFinite(value) && !(log && value <= 0) ? value : null));
+function aligned(series, shown) {
+  const clean = (y) => Array.from(y, (value) => (shown(value) ? value : null));
   const groups = new Map();
   series.forEach((one, k) => {
     if (!groups.has(one.x)) groups.set(one.x, []);
@@ -23,13 +23,13 @@ function aligned(series, log) {
 }
 
 /** Curves that are no functions of x, one behind the other. */
-function consecutive(series) {
+function consecutive(series, shown) {
   const x = series.flatMap((one) => Array.from(one.x));
   const data = [x];
   let start = 0;
   for (const one of series) {
     const y = new Array(x.length).fill(undefined);
-    one.y.forEach((value, k) => (y[start + k] = Number.isFinite(value) && Number.isFinite(one.x[k]) ? value : null));
+    one.y.forEach((value, k) => (y[start + k] = shown(value) && Number.isFinite(one.x[k]) ? value : null));
     data.push(y);
     start += one.x.length;
   }
@@ -55,7 +55,7 @@ const ownWay = (u, k) => {
 };
 
 class Chart {
-  /** series: {name, x, y, colour, dash, points}; x, y: {label, log, include}; path: curves are no functions of x;
+  /** series: {name, x, y, colour, dash, points, unlisted: not in the legend}; x, y: {label, log, include}; path: curves are no functions of x;
    * time: x is time. */
   constructor({ title, x, y, series, path = false, time = false, click = null, height = 250 }) {
     Object.assign(this, { title, x, y, series, path, time, click, height, plot: null });
@@ -63,8 +63,10 @@ class Chart {
     this.host.style.minHeight = `${height}px`;
     this.host.addEventListener("keydown", (event) => this.key(event));
     const tools = el("span", { class: "tools" },
+      button("log", "Logarithmic, as far as it is positive, or linear", () => this.turn()),
       button("⤢", "Show all again", () => this.reset()),
-      button("SVG", "Save this chart as SVG", () => this.draw().plot && save(fileName(this.title, "svg"), svg(this), "image/svg+xml")),
+      button("SVG", "Save this chart as SVG", () => this.draw().plot && saveSvg(this.title, svg(this))),
+      button("PNG", "Save this chart as PNG", () => this.draw().plot && savePng(this.title, svg(this))),
       button("CSV", "Save its data as CSV", () => this.series.length && save(fileName(this.title, "csv"), this.csv(), "text/csv")));
     this.caption = el("span", {}, title);
     this.element = el("figure", { class: "chart" }, el("figcaption", {}, this.caption, tools), this.host);
@@ -91,16 +93,23 @@ class Chart {
     this.draw();
   }
 
-  /** Other curves. */
-  set(series, title = this.title, y = this.y) {
-    Object.assign(this, { series, title, y });
+  /** Other curves; the axis stays logarithmic, or linear. */
+  set(series, title, y) {
+    Object.assign(this, { series, title, y: { ...y, log: this.y.log } });
     this.caption.textContent = title;
     if (this.plot) this.redraw();
     else if (this.seen) this.draw();
   }
 
   data() {
-    return this.path ? consecutive(this.series) : aligned(this.series, this.y.log);
+    const shown = (value) => Number.isFinite(value) && !(this.y.log && value <= 0);
+    return (this.path ? consecutive : aligned)(this.series, shown);
+  }
+
+  /** From a linear axis to a logarithmic one, which shows what is positive, and back. */
+  turn() {
+    this.y = { ...this.y, log: !this.y.log };
+    this.redraw();
   }
 
   csv() {
@@ -110,8 +119,9 @@ class Chart {
 
   options() {
     const [ink, grid] = [styled("--ink"), styled("--grid")];
+    const line = (of) => ({ stroke: grid, width: 1, ...(of.log && { filter: (u, splits) => powers(splits) }) });
     const axis = (of, size) => ({
-      stroke: ink, grid: { stroke: grid, width: 1 }, ticks: { stroke: grid, width: 1 }, label: of.label, size, labelSize: 20,
+      stroke: ink, grid: line(of), ticks: line(of), label: of.label, size, labelSize: 20,
       font: "11px sans-serif", labelFont: "12px sans-serif",
       values: (u, splits) => (of.log ? splits.map((value) => (value == null ? "" : told(value, 2))) : tickTexts(splits)),
     });
@@ -123,11 +133,14 @@ class Chart {
     }));
     const include = this.y.include || [];
     return {
-      width: this.width(), height: this.height, padding: [8, 14, 0, 0],
+      width: this.width(), height: this.height, padding: [8, 24, 0, 0],
       legend: { live: true },
       scales: {
-        x: { time: false, ...(this.path && { range: () => this.extent() }) },
-        y: this.y.log ? { distr: 3 } : { range: (u, low, high) => padded(Math.min(low, ...include), Math.max(high, ...include)) },
+        x: { time: false, ...(this.x.log && { distr: 3 }), ...(this.path && { range: (u, low, high) => this.across(u, low, high) }) },
+        y: {
+          ...(this.y.log && { distr: 3 }),
+          ...((this.path || !this.y.log) && { range: (u, low, high) => this.upwards(low, high, include) }),
+        },
       },
       axes: [axis(this.x, 42), axis(this.y, 62)],
       series: [{ label: this.x.label, value: (u, value) => told(value, 8) }, ...series],
@@ -138,7 +151,11 @@ class Chart {
       },
       hooks: {
         draw: [(u) => this.time && marked(u)],
-        ready: [(u) => u.over.addEventListener("click", () => this.clicked(u))],
+        ready: [(u) => {
+          u.over.addEventListener("click", () => this.clicked(u));
+          const rows = u.root.querySelectorAll(".u-legend .u-series");
+          this.series.forEach((one, k) => one.unlisted && (rows[k + 1].hidden = true));
+        }],
       },
     };
   }
@@ -151,9 +168,20 @@ class Chart {
     else if (this.time) now.set(x, this);
   }
 
-  extent() {
-    const [low, high] = bounds(this.series.flatMap((one) => [...bounds(one.x), ...(this.x.include || [])]));
-    return padded(low, high);
+  /** What is seen along x of curves that are no functions of it: all, unless it is told. */
+  across(u, low, high) {
+    // uPlot takes the first and the last for the least and the largest; the first is no number where a curve begins with a break.
+    const [first, last] = [u.data[0][0], u.data[0][u.data[0].length - 1]];
+    if (!Object.is(low, first) || !Object.is(high, last)) return [low, high];
+    return padded(...bounds(this.series.flatMap((one) => [...bounds(one.x), ...(this.x.include || [])])));
+  }
+
+  /** What is seen along y; uPlot takes the rows between two of ascending x, which such curves do not have. */
+  upwards(low, high, include) {
+    const { log } = this.y;
+    if (this.path) [low, high] = bounds(this.series.flatMap((one) => [...bounds(log ? one.y.filter((value) => value > 0) : one.y)]));
+    if (log) return low > 0 ? [10 ** Math.floor(Math.log10(low)), 10 ** Math.ceil(Math.log10(high * (1 + 1e-9)))] : [0.1, 1];
+    return padded(Math.min(low, ...include), Math.max(high, ...include));
   }
 
   /** The point of a curve that is nearest to the cursor. */
@@ -200,6 +228,12 @@ class Chart {
     event.preventDefault();
     keys[event.key]();
   }
+}
+
+/** Over many decades powers of ten alone have lines. */
+function powers(splits) {
+  const isPower = (value) => Math.abs(Math.log10(value) - Math.round(Math.log10(value))) < 1e-6;
+  return splits.filter(isPower).length > 4 ? splits.map((value) => (isPower(value) ? value : null)) : splits;
 }
 
 /** A little more than what is between two numbers. */

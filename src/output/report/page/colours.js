@@ -50,5 +50,18 @@ class ColourBar {
     this.canvas.setAttribute("aria-label", `colours from ${texts[0]} to ${texts[texts.length - 1]}`);
     this.title.textContent = title;
     this.texts.replaceChildren(...texts.map((text) => el("span", {}, text)));
+    this.shown = { title, texts };
+  }
+
+  /** The same in a picture, so wide. */
+  paint(context, x, width) {
+    const { title, texts } = this.shown;
+    context.fillStyle = context.strokeStyle = styled("--ink");
+    context.textAlign = "left";
+    context.fillText(title, x, 10);
+    context.drawImage(this.canvas, x, 15, width, 13);
+    context.strokeRect(x, 15, width, 13);
+    context.textAlign = "center";
+    texts.forEach((text, k) => context.fillText(text, x + (k / (texts.length - 1)) * width, 42));
   }
 }

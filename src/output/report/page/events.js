@@ -1,5 +1,14 @@
 "use strict";
-// Events as a table that jumps there: from events.csv, or else put together from the passages of fronts.
+// Events as a table that jumps there: from events.csv, or else put together from the passages of fronts, or from slip rates.
+
+/** Where no slip rate is given that makes an event: this share of the highest. */
+const FAST = 0.01;
+
+/** Mean slip of an event worth showing, over the largest slip of a point. */
+const LITTLE = 1e-3;
+
+/** Part of the run that an event must fall short of. */
+const SHORT = 0.2;
 
 /** A table that can be sorted; columns are [key, value of a row, heading]. A click on a row goes there. */
 function tableOf(columns, rows, go) {
@@ -71,6 +80,39 @@ function eventsOf(fronts) {
   }).sort((a, b) => a.onset - b.onset);
 }
 
+/** Events of an interface by its slip rates: rows in which some point is fast. What slips again before it has rested as long as it
+ * slipped is one event. */
+async function eventsByRates(run, map) {
+  const [rates, slips] = ["slip_rate", "slip"].map((name) => map.quantities.find((one) => one.name === name));
+  if (!rates || !slips) return [];
+  const [times, places, rate, slip] = await Promise.all([unpack(map.times, "f64"), unpack(map.positions, "f64"), unpack(rates.chunk), unpack(slips.chunk)]);
+  const points = [...places.keys()];
+  const rows = (of, first, last = first) => of.subarray(first * points.length, (last + 1) * points.length);
+  const largest = (of) => Math.max(...bounds(of).map(Math.abs));
+  const mean = (row) => (row < 0 ? 0 : rows(slip, row).reduce((sum, value) => sum + value, 0) / points.length);
+  const start = (row) => (row > 0 ? times[row - 1] : Math.max(0, 2 * times[0] - (times[1] ?? times[0])));
+  const lasts = ({ first, last }) => times[last] - start(first);
+  const fast = run.summary.front_slip_rate ?? FAST * largest(rate);
+  const isFast = (row, k) => Math.abs(rate[row * points.length + k]) > fast;
+  const found = [];
+  times.forEach((_, row) => {
+    if (!points.some((k) => isFast(row, k))) return;
+    const before = found[found.length - 1];
+    if (before && (before.last === row - 1 || start(row) - times[before.last] < lasts(before))) before.last = row;
+    else found.push({ first: row, last: row });
+  });
+  const enough = LITTLE * largest(slip);
+  const short = SHORT * lasts({ first: 0, last: times.length - 1 });
+  return found.map(({ first, last }) => {
+    const among = Array.from({ length: last - first + 1 }, (_, i) => first + i);
+    return {
+      contact: map.contact, onset: start(first), duration: lasts({ first, last }), place: places[points.find((k) => isFast(first, k))],
+      share: points.filter((k) => among.some((row) => isFast(row, k))).length / points.length,
+      slip: Math.abs(mean(last) - mean(first - 1)), peak: largest(rows(rate, first, last)),
+    };
+  }).filter(({ slip, duration }) => slip > enough && duration < short);
+}
+
 async function showEvents() {
   const section = document.getElementById("events");
   for (const run of DATA.runs) {
@@ -81,7 +123,7 @@ async function showEvents() {
       const columns = events.names.map((key) => [key, (row) => events.get(key)[row], spoken(key)]);
       const time = ["onset", "time", "start"].find((key) => events.get(key));
       const rows = Array.from({ length: events.rows }, (_, row) => row);
-      section.append(el("h3", {}, `${name}${events.rows} events`), tableOf(columns, rows, (row) => time && jump(run, events.get(time)[row],
+      section.append(el("h3", {}, `${name}${events.rows} event${events.rows > 1 ? "s" : ""}`), tableOf(columns, rows, (row) => time && jump(run, events.get(time)[row],
         events.get("duration")?.[row], events.get("contact")?.[row])));
     } else if (fronts && fronts.rows) {
       const found = eventsOf(fronts);
@@ -96,7 +138,19 @@ async function showEvents() {
       ];
       section.append(el("h3", {}, `${name}${found.length} event${found.length > 1 ? "s" : ""}, from ${fronts.rows} passages of fronts`),
         tableOf(columns, found, (row) => jump(run, row.onset, row.duration, row.contact)));
-    } else continue;
+    } else {
+      const found = (await Promise.all(run.interfaces.map((map) => eventsByRates(run, map)))).flat();
+      if (!found.length) continue;
+      const [time, length, velocity] = ["time", "length", "velocity"].map(unitOf);
+      const columns = [
+        ["contact", (row) => row.contact, "contact"], ["onset", (row) => row.onset, withUnit("onset", time)],
+        ["duration", (row) => row.duration, withUnit("duration", time)], ["place", (row) => row.place, withUnit("place", length)],
+        ["share", (row) => row.share, "share of the points"], ["slip", (row) => row.slip, withUnit("mean slip", length)],
+        ["peak", (row) => row.peak, withUnit("peak slip rate", velocity)],
+      ];
+      section.append(el("h3", {}, `${name}${found.length} event${found.length > 1 ? "s" : ""}, by the slip rates of the interface`),
+        tableOf(columns, found, (row) => jump(run, row.onset, row.duration, row.contact)));
+    }
     section.hidden = false;
   }
 }

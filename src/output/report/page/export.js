@@ -1,5 +1,5 @@
 "use strict";
-// What is on the page as files: charts as SVG, their data as CSV, pictures as PNG.
+// What is on the page as files: pictures as SVG and PNG, their data as CSV.
 
 function save(name, content, type) {
   const url = content instanceof Blob ? URL.createObjectURL(content) : URL.createObjectURL(new Blob([content], { type }));
@@ -11,6 +11,26 @@ function save(name, content, type) {
 }
 
 const fileName = (title, ending) => `${title.replace(/[^\p{L}\p{N}]+/gu, "_").replace(/^_+|_+$/g, "").slice(0, 80)}.${ending}`;
+
+const saveSvg = (title, text) => save(fileName(title, "svg"), text, "image/svg+xml");
+const saveCsv = (title, text) => save(fileName(title, "csv"), text, "text/csv");
+
+/** A picture as PNG, with two pixels for one of the page. */
+async function savePng(title, text) {
+  const picture = new Image();
+  picture.src = `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text)}`;
+  await picture.decode();
+  const canvas = el("canvas", { width: 2 * picture.width, height: 2 * picture.height });
+  canvas.getContext("2d").drawImage(picture, 0, 0, canvas.width, canvas.height);
+  canvas.toBlob((blob) => save(fileName(title, "png"), blob));
+}
+
+/** The buttons that save a picture: what draws it as SVG, and what has its data as CSV. */
+const exports = (title, svg, data) => [
+  button("SVG", "Save the picture as SVG", () => saveSvg(title(), svg())),
+  button("PNG", "Save the picture as PNG", () => savePng(title(), svg())),
+  button("CSV", "Save what is in the picture as CSV", () => saveCsv(title(), data())),
+];
 
 /** A cell of a CSV file. */
 const cell = (value) => {
@@ -35,7 +55,8 @@ function svg(chart) {
   const box = { x: plot.bbox.left / ratio, y: plot.bbox.top / ratio, w: plot.bbox.width / ratio, h: plot.bbox.height / ratio };
   const title = 24;
   const shown = plot.series.map((series, k) => ({ series, k })).filter(({ series, k }) => k > 0 && series.show);
-  const height = plot.height + title + 18 * shown.length + 8;
+  const listed = shown.filter(({ k }) => !chart.series[k - 1].unlisted);
+  const height = plot.height + title + 18 * listed.length + 8;
   const parts = [];
   const text = (x, y, words, anchor = "middle", more = "") =>
     parts.push(`<text x="${x.toFixed(1)}" y="${y.toFixed(1)}" text-anchor="${anchor}" ${more}>${escaped(words)}</text>`);
@@ -44,7 +65,9 @@ function svg(chart) {
   const { x: bx, y: by, w, h } = box;
   plot.axes.forEach((axis, k) => {
     const values = axis._values || [];
-    (axis._splits || []).forEach((split, i) => {
+    const splits = axis._splits || [];
+    ((k === 0 ? chart.x : chart.y).log ? powers(splits) : splits).forEach((split, i) => {
+      if (split == null) return;
       const at = plot.valToPos(split, axis.scale) + (k === 0 ? bx : by);
       if (k === 0 ? at < bx - 0.5 || at > bx + w + 0.5 : at < by - 0.5 || at > by + h + 0.5) return;
       const [x2, y2] = k === 0 ? [at, by] : [bx + w, at];
@@ -62,10 +85,11 @@ function svg(chart) {
   for (const { series, k } of shown) {
     const colour = chart.series[k - 1].colour;
     const dashes = (chart.series[k - 1].dash || []).join(" ");
-    parts.push(`<path d="${outline(chart, k, box)}" fill="none" stroke="${colour}" stroke-width="1.6" stroke-dasharray="${dashes}"/>`);
+    if (chart.series[k - 1].points) parts.push(...spots(chart, k, box).filter(Boolean).map(([x, y]) => `<circle cx="${x.toFixed(1)}" cy="${y.toFixed(1)}" r="3.5" fill="${colour}"/>`));
+    else parts.push(`<path d="${outline(chart, k, box)}" fill="none" stroke="${colour}" stroke-width="1.6" stroke-dasharray="${dashes}"/>`);
   }
   parts.push("</g></g>");
-  shown.forEach(({ k }, i) => {
+  listed.forEach(({ k }, i) => {
     const y = plot.height + title + 18 * i + 6;
     const { colour, name, dash } = chart.series[k - 1];
     parts.push(`<line x1="${bx}" x2="${bx + 26}" y1="${y}" y2="${y}" stroke="${colour}" stroke-width="2" stroke-dasharray="${(dash || []).join(" ")}"/>`);
@@ -75,21 +99,24 @@ function svg(chart) {
     `font-family="sans-serif" font-size="11.5"><rect width="100%" height="100%" fill="white"/>${parts.join("\n")}</svg>\n`;
 }
 
+/** The points of a curve in pixels: `null` where it is broken. */
+function spots(chart, k, box) {
+  const [xs, ys] = [chart.plot.data[0], chart.plot.data[k]];
+  const at = (x, y) => [box.x + chart.plot.valToPos(x, "x"), box.y + chart.plot.valToPos(y, "y")];
+  return Array.from(xs, (x, i) => (ys[i] == null ? ys[i] : at(x, ys[i]))).filter((spot) => spot !== undefined);
+}
+
 /** The way of a curve in pixels. */
 function outline(chart, k, box) {
-  const [xs, ys] = [chart.plot.data[0], chart.plot.data[k]];
   const way = [];
   let pen = "M";
   let last = "";
-  for (let i = 0; i < xs.length; i++) {
-    if (ys[i] === undefined) continue;
-    if (ys[i] === null) {
+  for (const spot of spots(chart, k, box)) {
+    if (!spot) {
       pen = "M";
       continue;
     }
-    const x = box.x + chart.plot.valToPos(xs[i], "x");
-    const y = box.y + chart.plot.valToPos(ys[i], "y");
-    const place = `${x.toFixed(1)} ${y.toFixed(1)}`;
+    const place = spot.map((pixel) => pixel.toFixed(1)).join(" ");
     if (place !== last || pen === "M") way.push(pen + place);
     [pen, last] = ["L", place];
   }

@@ -34,10 +34,13 @@ function facts(run) {
     count(summary.elements, "element"), count(summary.point_masses, "point mass")?.replace("masss", "masses"),
     count(summary.dofs, "dof"), count(summary.contact_points, "contact point"), count(summary.increments, "increment"),
     count(summary.cutbacks, "cut-back"), count(summary.rejected, "rejection"),
-    count(summary.newton_iterations, "linear solve"), duration(summary.wall_s?.total),
+    count(summary.newton_iterations, "linear solve"), count(summary.steps, "step"), peakOf(summary.peak), duration(summary.wall_s?.total),
     summary.peak_memory_mib ? `${told(summary.peak_memory_mib, 3)} MiB` : null,
   ].filter(Boolean);
 }
+
+/** The peak of a law driven alone. */
+const peakOf = (peak) => (peak ? `peak |q|/p = ${told(peak.coefficient)} at t = ${told(peak.time)}` : null);
 
 const REASONS = {
   killed: "Its summary says that it runs, but no process of this computer writes here any more: it was killed, or runs on " +

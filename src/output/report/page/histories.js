@@ -36,12 +36,17 @@ function timeAxis() {
   return { label: withUnit("time", unitOf("time")) };
 }
 
+/** Charts beside each other, and in a line below them what never changes; nothing if there is neither. */
+function grid(made) {
+  const [all, constants] = [made.filter((one) => one instanceof Chart), made.filter((one) => typeof one === "string")];
+  const charts = all.length ? [el("div", { class: "grid" }, all.map((chart) => chart.element))] : [];
+  return constants.length ? [...charts, el("p", { class: "facts" }, `Always the same: ${constants.join("; ")}`)] : charts;
+}
+
 /** Charts under a heading; the first few stand open. */
 function group(host, title, made, open) {
-  const [all, constants] = [made.filter((one) => one instanceof Chart), made.filter((one) => typeof one === "string")];
-  if (!all.length && !constants.length) return;
-  const still = constants.length ? el("p", { class: "facts" }, `Always the same: ${constants.join("; ")}`) : null;
-  host.append(el("details", { open }, el("summary", {}, title), el("div", { class: "grid" }, all.map((chart) => chart.element)), still || ""));
+  const inside = grid(made);
+  if (inside.length) host.append(el("details", { open }, el("summary", {}, title), ...inside));
 }
 
 function overTime(runs, title, columns, label, unit, more = {}) {
@@ -125,7 +130,7 @@ function contactCharts(runs, contact) {
     overTime(runs, `Normal force in ${contact}`, of([["normal_force", "normal"]]), "normal force", force),
     path.some((one) => sizeOf([one]) > 0) && new Chart({ title: `Friction path of ${contact}`, x: { label: withUnit("normal force", force), include: [0] },
       y: { label: withUnit("tangential force", force), include: [0] }, series: path, path: true }),
-    overTime(runs, `Share of ${contact} that slips`, of([["slip_fraction", "slipping share of the closed surface"]]), "slipping share of the closed surface", "", { include: [0, 1], always: true }),
+    overTime(runs, `Share of ${contact} that slips`, of([["slip_fraction", "slipping share of what is closed"]]), "slipping share", "", { include: [0, 1], always: true }),
     overTime(runs, `Slip in ${contact}`, of([["mean_slip", "plastic slip"], ["mean_elastic_slip", "elastic slip"]]), "mean slip", unitOf("length")),
     overTime(runs, `Length of ${contact} that is closed`, of([["contact_length", "closed length"]]), "closed length", unitOf("length")),
     overTime(runs, `Penetration in ${contact}`, of([["max_penetration", "largest penetration"]]), "penetration", unitOf("length")),
@@ -162,10 +167,9 @@ async function showConvergence(runs) {
       series: [{ name: "solves", x: solves.get("time"), y: solves.get("solves"), colour }], time: true,
     }));
     const what = newton.hardest < newton.increments ? `the ${newton.hardest} hardest of ${newton.increments} increments` : "every increment";
-    const logs = residuals.get("residual").map((value) => (value > 0 ? Math.log10(value) : NaN));
     charts.push(new Chart({
-      title: title(`Residuals of ${what}`), x: { label: "iteration" }, y: { label: "log₁₀ ‖r‖/‖forces at work‖" },
-      series: [{ name: "residual", x: residuals.get("iteration"), y: logs, colour }], path: true,
+      title: title(`Residuals of ${what}`), x: { label: "iteration" }, y: { label: "‖r‖/‖forces at work‖", log: true },
+      series: [{ name: "residual", x: residuals.get("iteration"), y: residuals.get("residual"), colour: `${colour}80`, plain: true }], path: true,
     }));
     if (newton.attempts?.total) attempts.push(givenUp(run, newton.attempts));
   }

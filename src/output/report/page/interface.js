@@ -1,5 +1,9 @@
 "use strict";
-// An interface over place and time as a picture: a click chooses a time and a place, and shows the profile and the history there.
+// An interface over place and time as a picture: a click chooses a time and a place, and shows the profile and the history there;
+// snapshots show profiles at some times of the picture.
+
+/** Profiles of a picture, from its first time to its last. */
+const SNAPSHOTS = 6;
 
 class Interface extends InterfacePicture {
   constructor(host) {
@@ -17,8 +21,9 @@ class Interface extends InterfacePicture {
     const place = { label: withUnit("position along the slave", unitOf("length")) };
     this.profile = new Chart({ title: "Profile", x: place, y: { label: "" }, series: [], click: (x) => this.choose(null, x) });
     this.history = new Chart({ title: "History", x: timeAxis(), y: { label: "" }, series: [], time: true });
+    this.snapshots = new Chart({ title: "Snapshots", x: place, y: { label: "" }, series: [] });
     this.picture = el("div", {}, this.view, this.probe, this.bar.element);
-    host.append(this.controls, this.picture, el("div", { class: "grid" }, this.profile.element, this.history.element));
+    host.append(this.controls, this.picture, el("div", { class: "grid" }, this.profile.element, this.history.element, this.snapshots.element));
     this.listen();
     now.hear(this, (time) => this.choose(time, null, true));
     addEventListener("theme", () => this.draw());
@@ -50,8 +55,40 @@ class Interface extends InterfacePicture {
     if (this.fresh) this.chosen.point = this.busiest();
     this.fresh = false;
     this.makeControls();
-    this.draw();
+    this.look();
     await this.charts();
+  }
+
+  /** The picture of another window, and the profiles in it. */
+  look() {
+    this.draw();
+    this.showSnapshots();
+  }
+
+  /** Profiles of the picture at times evenly apart in it, the peak of friction beside a traction. */
+  async showSnapshots() {
+    const { map, quantity, places, window } = this;
+    this.snapshots.element.hidden = map.points < 2 || map.rows < 2;
+    if (this.snapshots.element.hidden) return;
+    const [low, high] = window.t;
+    const shares = Array.from({ length: SNAPSHOTS }, (_, k) => k / (SNAPSHOTS - 1));
+    const rows = [...new Set(shares.map((share) => this.rowAt(low + share * (high - low))))];
+    const strength = ["mu", "pressure"].map((name) => quantity.name === "traction" && map.quantities.find((one) => one.name === name));
+    const [values, ...factors] = await Promise.all([quantity, ...strength.filter(Boolean)].map((one) => unpack(one.chunk)));
+    if (this.quantity !== quantity || this.map !== map) return;
+    const lut = lutOf("viridis");
+    const series = rows.flatMap((row, k) => {
+      // The lightest colours of the map cannot be seen on white, the darkest not on black.
+      const from = 4 * Math.round(60 + (150 * k) / Math.max(1, rows.length - 1));
+      const colour = `rgb(${lut.slice(from, from + 3).join(" ")})`;
+      const along = (of) => Float64Array.from(places, (_, i) => of(row * places.length + i));
+      const name = `t = ${told(this.times[row], 7)}`;
+      const profile = { name, x: places, y: along((i) => values[i]), colour, plain: true };
+      if (factors.length < 2) return [profile];
+      return [profile, { name: `μ p, ${name}`, x: places, y: along((i) => factors[0][i] * factors[1][i]), colour, dash: [3, 3], plain: true, unlisted: true }];
+    });
+    const title = `Snapshots of ${map.contact}${factors.length < 2 ? "" : ", q and μ p (dotted)"}`;
+    this.snapshots.set(series, title, { label: withUnit(spoken(quantity.name), fieldUnit(quantity.name)) });
   }
 
   makeControls() {
@@ -76,15 +113,11 @@ class Interface extends InterfacePicture {
         choice("upwards", [["time", "time"], ["row", "output after output"]], settings.axis, (axis) => {
           settings.axis = axis;
           this.all();
-          this.draw();
+          this.look();
         }), ...boxes,
         button("+", "Zoom in at the chosen time and place", () => this.zoom(0.5)), button("−", "Zoom out", () => this.zoom(2)),
-        button("⤢", "Show all", () => {
-          this.all();
-          this.draw();
-        }),
-        button("PNG", "Save the picture", () => this.canvas.toBlob((blob) => save(fileName(`${map.contact} ${this.quantity.name}`, "png"), blob))),
-        button("CSV", "Save what is in the picture as CSV", () => save(fileName(`${map.contact} ${this.quantity.name}`, "csv"), this.csv(), "text/csv")),
+        button("⤢", "Show all", () => this.whole()),
+        ...exports(() => this.title(), () => this.svg(), () => this.csv()),
       ] : []),
     ].filter(Boolean));
   }
@@ -145,7 +178,13 @@ class Interface extends InterfacePicture {
     this.window.t = [onset - 0.15 * length, onset + 1.6 * length];
     this.makeControls();
     this.choose(onset, null, true);
+    this.showSnapshots();
     this.host.scrollIntoView({ behavior: "smooth" });
+  }
+
+  whole() {
+    this.all();
+    this.look();
   }
 
   zoom(factor) {
@@ -153,7 +192,7 @@ class Interface extends InterfacePicture {
     const about = { s: this.places[chosen.point], t: this.up(chosen.row) };
     for (const axis of ["s", "t"]) window[axis] = window[axis].map((end) => about[axis] + (end - about[axis]) * factor);
     this.limit();
-    this.draw();
+    this.look();
   }
 
   csv() {
@@ -197,12 +236,9 @@ class Interface extends InterfacePicture {
       if (!dragged) return this.choose(this.times[this.rowAt(t1)], s1);
       if (Math.abs(s1 - s0) > 0 && Math.abs(t1 - t0) > 0) this.window = { s: [s0, s1].sort((a, b) => a - b), t: [t0, t1].sort((a, b) => a - b) };
       this.limit();
-      this.draw();
+      this.look();
     });
-    view.addEventListener("dblclick", () => {
-      this.all();
-      this.draw();
-    });
+    view.addEventListener("dblclick", () => this.whole());
     view.addEventListener("keydown", (event) => {
       const step = event.shiftKey ? 10 : 1;
       const to = (row, point) => this.choose(this.times[Math.max(0, Math.min(this.times.length - 1, this.chosen.row + row))],
@@ -210,7 +246,7 @@ class Interface extends InterfacePicture {
       const keys = {
         ArrowUp: () => to(step, 0), ArrowDown: () => to(-step, 0), ArrowLeft: () => to(0, -step), ArrowRight: () => to(0, step),
         "+": () => this.zoom(0.5), "=": () => this.zoom(0.5), "-": () => this.zoom(2),
-        0: () => this.all() || this.draw(), Escape: () => this.all() || this.draw(),
+        0: () => this.whole(), Escape: () => this.whole(),
       };
       if (!keys[event.key] || event.ctrlKey || event.metaKey) return;
       event.preventDefault();

@@ -28,6 +28,7 @@ async function showAll() {
   part("case", showCase);
   const bodies = part("bodies", showBodies);
   const runs = await part("histories", showHistories);
+  await part("law", showLaw);
   await part("interface", showInterface);
   await part("events", showEvents);
   await part("convergence", () => showConvergence(runs));

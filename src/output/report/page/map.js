@@ -67,15 +67,7 @@ class InterfacePicture {
     context.fillStyle = styled("--paper");
     context.fillRect(0, 0, w, h);
     this.box = { x: 66, y: 8, w: w - 80, h: h - 54 };
-    this.image(context, ratio);
-    this.axes(context);
-    context.save();
-    context.beginPath();
-    context.rect(this.box.x, this.box.y, this.box.w, this.box.h);
-    context.clip();
-    if (this.settings.fronts && this.fronts) this.passages(context);
-    this.cross(context);
-    context.restore();
+    this.paint(context, ratio);
     const { low, high } = this.scale();
     const powers = [0, 1, 2, 3].map((third) => told(10 ** (low + (third / 3) * (high - low)), 2));
     if (this.settings.log) powers[0] = `≤ ${powers[0]}`;
@@ -84,8 +76,32 @@ class InterfacePicture {
     this.bar.show(withUnit(size, fieldUnit(this.quantity.name)), texts, this.settings.colours);
   }
 
+  /** The picture itself: colours, axes, fronts, and what is chosen. */
+  paint(context, ratio) {
+    const { x, y, w, h } = this.box;
+    context.drawImage(this.image(ratio), x, y, w, h);
+    this.axes(context);
+    context.save();
+    context.beginPath();
+    context.rect(x, y, w, h);
+    context.clip();
+    if (this.settings.fronts && this.fronts) this.passages(context);
+    this.cross(context);
+    context.restore();
+  }
+
+  /** The picture as SVG. */
+  svg() {
+    return pictured(this.title(), this.bar, [this.view.clientWidth, this.view.clientHeight], (context) => this.paint(context, 1));
+  }
+
+  /** What is in the picture. */
+  title() {
+    return `${several ? `${this.run.name}: ` : ""}${spoken(this.quantity.name)} of ${this.map.contact}`;
+  }
+
   /** Every pixel: what happened last in its time, or the fastest slip. */
-  image(context, ratio) {
+  image(ratio) {
     const { box, places, values, window } = this;
     const points = places.length;
     const [width, height] = [Math.max(1, Math.round(box.w * ratio)), Math.max(1, Math.round(box.h * ratio))];
@@ -113,7 +129,9 @@ class InterfacePicture {
         picture.data[to + 3] = 255;
       }
     }
-    context.putImageData(picture, Math.round(box.x * ratio), Math.round(box.y * ratio));
+    const canvas = el("canvas", { width, height });
+    canvas.getContext("2d").putImageData(picture, 0, 0);
+    return canvas;
   }
 
   /** Where a place and a height are [px]. */

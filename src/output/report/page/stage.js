@@ -27,7 +27,10 @@ class BodiesPicture {
     const view = [sx, sy, -centre[0] * sx, -centre[1] * sy];
     const ink = document.documentElement.dataset.theme === "dark" || styled("--paper") !== "#fff" ? [0.85, 0.87, 0.9, 1] : [0.1, 0.1, 0.12, 1];
     this.scene.draw({ view, scale: this.scale, range, edges: this.options.edges, ink });
-    this.decorate(w, h);
+    const context = this.over.getContext("2d");
+    context.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+    context.clearRect(0, 0, w, h);
+    this.decorate(context, w, h);
     const texts = rangeTexts(range, span(this.solid, this.field, this));
     this.bar.show(this.solid.cells ? withUnit(this.field.label, this.field.unit) : "", texts, this.options.map);
     this.bar.element.hidden = !this.solid.cells;
@@ -41,10 +44,7 @@ class BodiesPicture {
   }
 
   /** Tractions, point masses, a scale, and by how much displacements are enlarged. */
-  decorate(w, h) {
-    const context = this.over.getContext("2d");
-    context.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
-    context.clearRect(0, 0, w, h);
+  decorate(context, w, h) {
     context.font = "12px sans-serif";
     if (!this.solid.cells) this.masses(context, w, h);
     if (this.options.tractions && this.contact && this.contact.largest > 0) this.tractions(context, w, h);
@@ -168,13 +168,27 @@ class BodiesPicture {
       `node ${best} at (${at.join(", ")}): ${this.field.label} ${value} ${this.field.unit}, displacement (${u.join(", ")}) ${unitOf("length")}`;
   }
 
-  picture() {
-    const canvas = el("canvas", { width: this.canvas.width, height: this.canvas.height });
-    const context = canvas.getContext("2d");
-    context.fillStyle = styled("--paper");
-    context.fillRect(0, 0, canvas.width, canvas.height);
+  /** The picture as SVG; the bodies in it are pixels, as the graphics card has drawn them. */
+  svg() {
+    const size = [this.stage.clientWidth, this.stage.clientHeight];
     this.draw();
-    for (const layer of [this.canvas, this.over]) context.drawImage(layer, 0, 0);
-    canvas.toBlob((blob) => save(fileName(`${this.run.name} ${this.field.label} ${this.frame}`, "png"), blob));
+    return pictured(`${this.title()}, ${this.clock.value}`, this.solid.cells ? this.bar : null, size, (paper) => {
+      paper.drawImage(this.canvas, 0, 0, ...size);
+      this.decorate(paper, ...size);
+    });
+  }
+
+  /** What is in the picture. */
+  title() {
+    return several ? `${this.run.name}: ${this.field.label}` : this.field.label;
+  }
+
+  /** Places, displacements and values of all nodes of the frame. */
+  csv() {
+    const { places, moved, solid, values } = this;
+    const of = (array, i, shift = 0) => Float64Array.from({ length: solid.points }, (_, k) => array[2 * k + i] + shift);
+    const both = (array, shift) => [0, 1].map((i) => of(array, i, shift?.[i]));
+    const shown = Array.from(values, (value) => (isNumber(value) ? value : NaN));
+    return csv(["x", "y", "displacement x", "displacement y", this.field.label], [...both(places, solid.origin), ...both(moved), shown]);
   }
 }

@@ -1,0 +1,211 @@
+//! Tables of results for the page: read as far as they go, with fewer rows where there are too many, columns packed.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+
+use super::pack::{Pack, Packed};
+use super::source::ReportError;
+
+/// Columns of words; their values are the numbers of the words.
+const WORDS: [&str; 4] = ["step", "contact", "verdict", "reason"];
+
+/// Columns in which single precision would not tell rows apart.
+const EXACT: [&str; 6] = ["time", "onset", "arrival", "place", "position", "increment"];
+
+/// A column of numbers, or of words.
+#[derive(Clone, Debug)]
+pub struct Column {
+    /// its name
+    pub name: String,
+    /// row by row; of words their numbers
+    pub values: Vec<f64>,
+    /// the words by their numbers; `None` if it is one of numbers
+    pub words: Option<Vec<String>>,
+}
+
+impl Column {
+    /// A column of numbers.
+    pub fn numbers(name: &str, values: Vec<f64>) -> Self {
+        Self { name: name.into(), values, words: None }
+    }
+
+    /// Read a cell; `None` if it is no number.
+    fn read(&mut self, cell: &str) -> Option<()> {
+        self.values.push(match &mut self.words {
+            None => cell.parse().ok()?,
+            Some(words) => {
+                // The same word as in the row before, mostly.
+                let before = self.values.last().map(|&number| number as usize).filter(|&number| words[number] == cell);
+                let known = before.or_else(|| words.iter().rposition(|word| word == cell));
+                known.unwrap_or_else(|| {
+                    words.push(cell.into());
+                    words.len() - 1
+                }) as f64
+            }
+        });
+        Some(())
+    }
+}
+
+/// The columns of a CSV file, in its order.
+#[derive(Clone, Debug)]
+pub struct Columns {
+    path: PathBuf,
+    columns: Vec<Column>,
+}
+
+impl Columns {
+    /// Read a file line by line, up to one that cannot be understood, if there is one. A last line without its end is left out: it
+    /// is being written, or its writer was killed.
+    ///
+    /// # Errors
+    /// [`ReportError::Unreadable`] when there is not even a header.
+    fn read(path: &Path) -> Result<(Self, Option<ReportError>), ReportError> {
+        let unreadable = |cause: String| ReportError::Unreadable { path: path.to_owned(), cause };
+        let file = File::open(path).map_err(|cause| unreadable(format!("cannot be read: {cause}")))?;
+        let mut lines = BufReader::with_capacity(1 << 16, file);
+        let mut line = String::new();
+        let mut next = |line: &mut String| -> Result<bool, ReportError> {
+            line.clear();
+            lines.read_line(line).map_err(|cause| unreadable(format!("cannot be read: {cause}")))?;
+            Ok(line.ends_with('\n'))
+        };
+        if !next(&mut line)? {
+            return Err(unreadable("has no header line: nothing was written yet".into()));
+        }
+        let column =
+            |name: &str| Column { words: WORDS.contains(&name).then(Vec::new), ..Column::numbers(name, Vec::new()) };
+        let mut columns: Vec<Column> = line.trim_end().split(',').map(column).collect();
+        let mut number = 1;
+        let fault = loop {
+            match next(&mut line) {
+                Ok(true) => number += 1,
+                Ok(false) => break None,
+                Err(fault) => break Some(fault),
+            }
+            if let Err(cause) = row(line.trim_end(), &mut columns) {
+                break Some(unreadable(format!("line {number}{cause}")));
+            }
+        };
+        let whole = columns.iter().map(|column| column.values.len()).min().unwrap_or(0);
+        columns.iter_mut().for_each(|column| column.values.truncate(whole));
+        Ok((Self { path: path.to_owned(), columns }, fault))
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.columns.first().map_or(0, |column| column.values.len())
+    }
+
+    /// Number of columns.
+    pub fn count(&self) -> usize {
+        self.columns.len()
+    }
+
+    fn find(&self, name: &str) -> Option<&Column> {
+        self.columns.iter().find(|column| column.name == name)
+    }
+
+    /// A column.
+    ///
+    /// # Errors
+    /// [`ReportError::Unreadable`] when the file does not have it.
+    pub fn get(&self, name: &str) -> Result<&[f64], ReportError> {
+        self.find(name).map(|column| &column.values[..]).ok_or_else(|| ReportError::Unreadable {
+            path: self.path.clone(),
+            cause: format!("has no column `{name}`: was it written by another version?"),
+        })
+    }
+
+    /// What the values of a column of words stand for; nothing for a column of numbers.
+    pub fn words(&self, name: &str) -> Option<&[String]> {
+        self.find(name)?.words.as_deref()
+    }
+
+    /// How many values are not numbers, by column.
+    pub fn not_numbers(&self) -> impl Iterator<Item = (&str, usize)> {
+        let bad = |column: &Column| column.values.iter().filter(|value| !value.is_finite()).count();
+        self.columns.iter().map(move |column| (column.name.as_str(), bad(column))).filter(|(_, count)| *count > 0)
+    }
+
+    /// The rows that are shown: all, or the first, last, lowest and highest of every column in each of as many groups of rows as
+    /// there is room for.
+    pub fn spread(&self, most: usize) -> Vec<usize> {
+        let count = self.rows();
+        if count <= most {
+            return (0..count).collect();
+        }
+        // Columns that never change, and the ones that only grow, have their extremes at the ends of the groups.
+        let swinging = |column: &&Column| column.words.is_none() && !column.values.is_sorted();
+        let swinging: Vec<&Column> = self.columns.iter().filter(swinging).collect();
+        let group = (count * (2 + 2 * swinging.len())).div_ceil(most).max(1);
+        let mut kept = Vec::with_capacity(most);
+        for start in (0..count).step_by(group) {
+            let rows = start..(start + group).min(count);
+            let mut some = vec![rows.start, rows.end - 1];
+            for Column { values, .. } in &swinging {
+                let by_value = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
+                some.extend(rows.clone().min_by(by_value));
+                some.extend(rows.clone().max_by(by_value));
+            }
+            some.sort_unstable();
+            some.dedup();
+            kept.extend(some);
+        }
+        kept
+    }
+
+    /// Some rows, for the page.
+    pub fn sheet(&self, rows: &[usize], pack: &mut Pack) -> Value {
+        let some = |column: &Column| Column {
+            values: rows.iter().map(|&row| column.values[row]).collect(),
+            name: column.name.clone(),
+            words: column.words.clone(),
+        };
+        sheet(self.columns.iter().map(some), pack)
+    }
+}
+
+/// Read a row; the error goes on behind the number of its line.
+fn row(line: &str, columns: &mut [Column]) -> Result<(), String> {
+    let mut cells = line.split(',');
+    for column in columns {
+        let cell = cells.next().ok_or_else(|| format!(" ends before {}", column.name))?;
+        column.read(cell).ok_or_else(|| format!(": {} is no number: {cell}", column.name))?;
+    }
+    Ok(())
+}
+
+/// Read a table up to what cannot be understood, which goes to the notes; nothing if there is no such table.
+pub fn read(folder: &Path, file: &str, notes: &mut Vec<String>) -> Option<Columns> {
+    let path = folder.join(file);
+    if !path.is_file() {
+        return None;
+    }
+    match Columns::read(&path) {
+        Ok((columns, fault)) => {
+            notes.extend(fault.map(|fault| format!("{fault}; only the rows before it are shown")));
+            Some(columns)
+        }
+        Err(fault) => {
+            notes.push(format!("{fault}; it is not shown"));
+            None
+        }
+    }
+}
+
+/// Columns of a table for the page.
+pub fn sheet(columns: impl IntoIterator<Item = Column>, pack: &mut Pack) -> Value {
+    let mut rows = 0;
+    let mut column = |Column { name, values, words }: Column| {
+        rows = values.len();
+        let exact = EXACT.contains(&name.as_str());
+        let packed = if exact { Packed::exact(&values) } else { Packed::single(&values) };
+        json!({ "name": name, "words": words, "type": if exact { "f64" } else { "f32" }, "chunk": pack.add(&packed) })
+    };
+    let packed: Vec<Value> = columns.into_iter().map(&mut column).collect();
+    json!({ "rows": rows, "columns": packed })
+}
