@@ -453,6 +453,10 @@ fn falls(draft: &Draft, pair: &dyn Fn(f64) -> [Ways; 2], order: f64, skip: &dyn 
         if records.iter().any(|record| record.ended != Ended::Complete || record.rows.is_empty()) {
             return Outcome::Idle;
         }
+        // In other increments friction has another history.
+        if records[0].increments != records[1].increments {
+            return Outcome::Idle;
+        }
         let difference = compare(&records[0], &records[1], skip);
         shares.push(difference.share);
         place = difference.place;

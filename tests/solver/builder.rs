@@ -575,3 +575,24 @@ fn wave_speeds_are_those_of_the_slaves_own_body() {
         }
     }
 }
+
+/// Surfaces touch within 1e-9 of the slave's shortest edge, whatever the rings or the plate weigh an edge with.
+#[test]
+fn surfaces_touch_within_a_share_of_an_edge() {
+    for section in [json!("plane_strain"), json!("axisymmetric"), json!({"plane_stress": {"thickness": 40}})] {
+        for method in ["node_to_segment", "gauss_to_segment", "mortar"] {
+            let mesh = Blocks::default().rectangle("block", [4, 1], [1000.0, 0.1], [1002.0, 1.0]);
+            let case = json!({
+                "mesh": mesh.rectangle("ground", [3, 1], [1000.0, -1.0], [1003.0, 0.0]).json(),
+                "section": section,
+                "bodies": {"block": {"material": {"model": "linear", "E": 1, "nu": 0}},
+                           "ground": {"material": {"model": "linear", "E": 1, "nu": 0}}},
+                "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "method": method,
+                                      "friction": {"law": "coulomb", "mu": 0.3}}},
+                "steps": [{"name": "press", "duration": 1, "dt": {"initial": 1},
+                           "supports": [{"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0, "uy": -0.1}]}],
+            });
+            common::close(&format!("{section} {method}"), model(&case).contacts[0].touch, 0.5e-9, 1e-18);
+        }
+    }
+}

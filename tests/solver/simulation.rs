@@ -99,6 +99,38 @@ fn every_increment_of_static_and_implicit_runs_can_be_redone_and_resumed() {
     }
 }
 
+/// What a dropped attempt leaves behind has no say in the next one, not even in the residuals that its iterations are told with.
+#[test]
+fn a_dropped_attempt_leaves_the_iterations_as_they_are() {
+    for (contact, scheme) in [
+        (json!({}), json!("static")),
+        (json!({"normal": {"penetration": 1e-6}}), json!({"newmark": {}})),
+        (json!({"method": "node_to_segment"}), json!({"wilson": {}})),
+    ] {
+        let mut case = dragged(contact, scheme.clone());
+        // Contact on linear bodies is condensed.
+        for body in ["ground", "block"] {
+            case["bodies"][body]["material"]["model"] = json!("linear");
+        }
+        let model = Arc::new(common::model(&case));
+        let iterations = |drops: bool| {
+            let mut simulation = Simulation::new(model.clone());
+            let mut all = Vec::new();
+            loop {
+                if drops {
+                    drop(simulation.attempt().expect("it begins"));
+                }
+                let Some(candidate) = simulation.attempt().expect("it begins") else { return all };
+                all.extend_from_slice(candidate.iterations());
+                simulation.follow(candidate).expect("it goes on");
+            }
+        };
+        let (straight, dropped) = (iterations(false), iterations(true));
+        assert!(straight == dropped, "{scheme}");
+        assert!(straight.iter().any(|iteration| iteration.acted.condense > 0), "{scheme}");
+    }
+}
+
 /// Plates and rings whose left side lies on the axis, static, implicit and explicit.
 #[test]
 fn every_increment_of_plates_and_rings_can_be_redone_and_resumed() {

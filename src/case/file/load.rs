@@ -42,8 +42,9 @@ pub struct LoadInput {
     #[serde(default, deserialize_with = "present")]
     pub dashpot: Option<Option<DashpotInput>>,
     /// true: a side of a body absorbs waves, as if the body went on (Lysmer-Kuhlemeyer: dashpots rho c_p along the normal
-    /// and rho c_s along the side, of the undeformed body); false ends it
-    pub absorbing: Option<bool>,
+    /// and rho c_s along the side, of the undeformed body); false or null ends it
+    #[serde(default, deserialize_with = "present")]
+    pub absorbing: Option<Option<bool>>,
 }
 
 /// A spring.

@@ -177,7 +177,7 @@ fn written_load(load: &LoadInput, place: impl Fn(&Place) -> String) -> Entry {
     } else if let Some(moment) = moment {
         ("moment", moment.as_ref().map(drive))
     } else if let Some(absorbing) = absorbing {
-        ("absorbing side", absorbing.then(|| "rho c_p and rho c_s of its body".into()))
+        ("absorbing side", absorbing.filter(|absorbs| *absorbs).map(|_| "rho c_p and rho c_s of its body".into()))
     } else if let Some(spring) = spring {
         let stiffness = |SpringInput { kx, ky, driver }: &SpringInput| {
             format!("kx {}, ky {}{}", number(*kx), number(*ky), driven("moved by", driver))

@@ -105,7 +105,9 @@ pub fn load(place: &str, input: &LoadInput) -> Checked<Load> {
         change(&input.moment, |given| drive(given, &format!("{place}.moment")))?.map(Action::Moment),
         change(&input.spring, spring)?.map(Action::Spring),
         change(&input.dashpot, dashpot)?.map(Action::Dashpot),
-        input.absorbing.map(|absorbs| Action::Absorbing(if absorbs { Change::To(()) } else { Change::End })),
+        input
+            .absorbing
+            .map(|absorbs| Action::Absorbing(if absorbs == Some(true) { Change::To(()) } else { Change::End })),
     ];
     let mut given = given.into_iter().flatten();
     match (given.next(), given.next()) {
