@@ -92,7 +92,7 @@ pub fn drive<'py>(
     pressure: PyReadonlyArray2<f64>,
     initial: &str,
     by: Vec<String>,
-    threads: Option<usize>,
+    threads: Option<i64>,
 ) -> PyResult<Vec<(String, Bound<'py, PyArray2<f64>>)>> {
     let parameters = documents(&parameters)?;
     let initial = document(initial)?;

@@ -81,14 +81,14 @@ pub struct Pool {
 
 impl Pool {
     /// So many threads; all cores, or `RAYON_NUM_THREADS`, unless given.
-    pub fn new(threads: Option<usize>) -> PyResult<Self> {
+    pub fn new(threads: Option<i64>) -> PyResult<Self> {
         let bad = |message: String| PyValueError::new_err(message);
-        if let Some(threads) = threads.filter(|threads| !(1..=MOST).contains(threads)) {
+        if let Some(threads) = threads.filter(|threads| !(1..=MOST as i64).contains(threads)) {
             return Err(bad(format!("threads {threads}: give 1 to {MOST}, or leave it out for all cores")));
         }
         let raised = Raised::default();
         let own = raised.clone();
-        let pool = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0));
+        let pool = ThreadPoolBuilder::new().num_threads(threads.map_or(0, |threads| threads as usize));
         let pool = pool.start_handler(move |_| OF_THIS_POOL.set(Some(own.clone()))).build();
         let threads = pool.map_err(|error| bad(format!("threads: {error}; give fewer")))?;
         Ok(Self { threads, raised, process: std::process::id() })

@@ -48,7 +48,7 @@ pub fn run<'py>(
     py: Python<'py>,
     case: &Bound<'py, Case>,
     out: PathBuf,
-    threads: Option<usize>,
+    threads: Option<i64>,
     resume: bool,
     report: bool,
     poll: Bound<'py, PyAny>,

@@ -62,7 +62,7 @@ struct UnderWay {
 #[pymethods]
 impl Simulation {
     #[new]
-    fn new(py: Python, case: &Bound<Case>, threads: Option<usize>) -> PyResult<Self> {
+    fn new(py: Python, case: &Bound<Case>, threads: Option<i64>) -> PyResult<Self> {
         let (pool, case) = (Pool::new(threads)?, case.get());
         let made = pool.short(py, || {
             let mut opened = case.opened()?;

@@ -28,7 +28,7 @@ pub fn ride<'py>(
     pressure: PyReadonlyArray2<f64>,
     start: (f64, f64),
     by: Vec<String>,
-    threads: Option<usize>,
+    threads: Option<i64>,
 ) -> PyResult<Vec<(String, Bound<'py, PyArray2<f64>>)>> {
     let parameters = documents(&parameters)?;
     let (machine, time) = (machine.as_array().to_owned(), time.as_array().to_vec());

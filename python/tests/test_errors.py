@@ -93,8 +93,9 @@ def test_folders_in_use_are_told(document: dict[str, Any], tmp_path: Path) -> No
     with pytest.raises(fc.CaseError, match="history.csv.*is in the way"):
         fc.Case(document).run(tmp_path, progress=False)
     assert (tmp_path / "history.csv").read_text() == "mine"
-    with pytest.raises(ValueError, match="threads 0: give 1 to 1024"):
-        fc.Case(document).run(threads=0)
+    for threads in (0, -1):
+        with pytest.raises(ValueError, match=f"threads {threads}: give 1 to 1024"):
+            fc.Case(document).run(threads=threads)
     with pytest.raises(fc.CaseError, match="there is none"):
         fc.Case(document).run(tmp_path / "new", resume=True, progress=False)
 
