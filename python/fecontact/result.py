@@ -50,8 +50,18 @@ class Result:
 
     @cached_property
     def summary(self) -> dict[str, Any]:
-        """``summary.json``: status, reason, counts, times, warnings."""
-        summary: dict[str, Any] = json.loads((self.folder / "summary.json").read_text())
+        """``summary.json``: status, reason, counts, times, warnings.
+
+        Raises:
+            ValueError: the file is damaged.
+        """
+        path = self.folder / "summary.json"
+        try:
+            summary = json.loads(path.read_text())
+        except ValueError as error:
+            raise ValueError(f"{path}: is damaged ({error}); resume the run, or run it again") from None
+        if not isinstance(summary, dict):
+            raise ValueError(f"{path}: is damaged (no JSON object); resume the run, or run it again")
         return summary
 
     @property

@@ -88,6 +88,13 @@ def test_bad_meshes(change: dict[str, Any], message: str) -> None:
         fc.Mesh(**{**good, **change})
 
 
+@pytest.mark.parametrize("text", ["{\"status\": \"comp", "[1]", "\xff"])
+def test_a_damaged_summary_is_told(tmp_path: Path, text: str) -> None:
+    (tmp_path / "summary.json").write_text(text, encoding="latin-1")
+    with pytest.raises(ValueError, match=r"summary.json: is damaged"):
+        _ = fc.Result.open(tmp_path).status
+
+
 def test_folders_in_use_are_told(document: dict[str, Any], tmp_path: Path) -> None:
     (tmp_path / "history.csv").write_text("mine")
     with pytest.raises(fc.CaseError, match="history.csv.*is in the way"):
