@@ -46,7 +46,7 @@ impl<'a> Base<'a> {
             let record = self.run(&Ways { noise: Some(noise), ..self.ways.clone() });
             if record.ended == self.record.ended { compare(&self.record, &record, skip).share } else { f64::INFINITY }
         };
-        (1..=4).map(of).fold(0.0, f64::max)
+        (1..=NOISES).map(of).fold(0.0, f64::max)
     }
 
     /// The same problem written in another way has the same answer.
@@ -97,6 +97,9 @@ fn ended(of: &Ended) -> u8 {
         Ended::Refused(_) => 2,
     }
 }
+
+/// So many runs with numbers that differ in the 12th digit tell what round-off can do.
+const NOISES: u64 = 12;
 
 /// A relation may miss by so many times what a change in the 12th digit of its numbers does.
 const AMPLIFIED: f64 = 100.0;
