@@ -105,8 +105,13 @@ impl BodyMeans {
         }
         let mut angular_momentum = 0.0;
         if self.density > 0.0 && state.velocity.iter().any(|v| *v != 0.0) {
-            let arm = |node: usize| (model.mesh.nodes[node] - self.centre) + (at(&state.displacement, node) - shift);
-            let spin = |a: usize, b: usize| arm(a).perp(&at(&state.velocity, b));
+            let place = |node: usize| (model.mesh.nodes[node] - self.centre) + (at(&state.displacement, node) - shift);
+            // Lumped masses have their centre where they put it.
+            let centre = match is_lumped {
+                true => self.shares.iter().map(|share| place(share.node) * (share.lumped / self.volume)).sum(),
+                false => Vector2::zeros(),
+            };
+            let spin = |a: usize, b: usize| (place(a) - centre).perp(&at(&state.velocity, b));
             let volumes: f64 = if is_lumped {
                 self.shares.iter().map(|share| share.lumped * spin(share.node, share.node)).sum()
             } else {
