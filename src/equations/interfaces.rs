@@ -3,9 +3,8 @@
 use super::dependence::Dependence;
 use super::sums::{Sums, add_blocks};
 use super::trial::Trial;
-use crate::contact::fluid::BadPressure;
 use crate::contact::force::ContactState;
-use crate::contact::pair::{ContactIncrement, Presumption};
+use crate::contact::pair::{BadPressure, ContactIncrement, Presumption};
 use crate::contact::response::PairResponse;
 use crate::equations::failure::TrialFailure;
 use crate::linear::system::Request;

@@ -40,7 +40,7 @@ pub struct Contact {
     pub wear: Option<f64>,
     /// Radiation damping in static steps, if there is any
     pub radiation: Option<Radiation>,
-    /// p_w of a fluid that pushes the surfaces apart, if there is one ([`crate::contact::fluid`]) [F/L²]
+    /// p_w of a fluid that pushes the surfaces apart, if there is one ([`crate::contact::pair`]) [F/L²]
     pub fluid_pressure: Option<Profile>,
     /// Tractions of a contact that starts closed
     pub initial: Option<InitialTractions>,

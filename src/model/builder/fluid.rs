@@ -3,8 +3,7 @@
 use super::contact::Contact;
 use super::error::{Checked, ModelError};
 use super::friction::check_in_time;
-use crate::contact::fluid::{BadPressure, Fluid};
-use crate::contact::pair::ContactPair;
+use crate::contact::pair::{BadPressure, ContactPair, Fluid};
 use crate::model::Model;
 
 /// The fluid of a contact, if it has one.

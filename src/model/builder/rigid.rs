@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use super::contact::MasterSide;
 use super::error::{Checked, ModelError};
 use super::limits::check_finite;
-use crate::contact::rigid::{Circle, Plane, Polyline, Rigid};
+use crate::contact::master::{Circle, Plane, Polyline, Rigid};
 
 /// The body of a rigid master.
 pub fn rigid(side: &MasterSide, place: &str) -> Checked<Rigid> {

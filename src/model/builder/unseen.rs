@@ -3,9 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::contact::{Contact, MasterSide};
-use crate::contact::master::Master;
+use crate::contact::master::{Master, Rigid};
 use crate::contact::pair::ContactPair;
-use crate::contact::rigid::Rigid;
 use crate::contact::surface::{SlavePoint, lone_point};
 use crate::laws::bulk::Material;
 use crate::mesh::{Group, Mesh};
