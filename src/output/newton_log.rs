@@ -11,7 +11,7 @@ use crate::model::Model;
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer, Verdict};
 use crate::solve::IterationRecord;
-use crate::solve::acted::Acted;
+use crate::solve::contact_iteration::Acted;
 
 /// Writes `newton.csv`.
 #[derive(Debug)]

@@ -2,11 +2,10 @@
 
 use super::accept::{accept, take_stock};
 use crate::equations::inertia::kinetic_energy;
-use crate::equations::turning;
-use crate::equations::{Evaluation, Trial};
+use crate::equations::{Evaluation, Trial, turning};
 use crate::model::state::{LastIncrement, State};
 use crate::model::{Model, Step};
-use crate::solve::augmented::augment;
+use crate::solve::equilibrium::augment;
 use crate::solve::failure::IncrementFailure;
 use crate::solve::newton::NewtonFailure;
 use crate::solve::{IterationRecord, Workspace};
