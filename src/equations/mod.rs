@@ -10,7 +10,7 @@
 //! threads.
 //!
 //! The terms add up in [`assembler`], each in a file: its forces, its tangent on request, what that depends on
-//! ([`dependence::Dependence`]), and its share of the [`audit`] of energies.
+//! ([`sums::Dependence`]), and its share of the [`audit`] of energies.
 //!
 //! | term | what it adds to F or r | its share of the audit |
 //! |---|---|---|
@@ -25,31 +25,22 @@
 //! | [`links`] | the equations of nodes that follow others; `turning`: rigid plates in motion | none |
 
 pub mod assembler;
-pub mod audit;
 pub mod condensed;
-pub mod contact_nodes;
 mod coupling;
-pub mod dampers;
-mod damping;
-pub mod dependence;
+pub mod damping;
 mod equilibrium;
 pub mod evaluation;
 mod evolving;
-pub mod failure;
 pub mod inertia;
 pub mod interfaces;
-mod jumps;
 pub mod links;
 mod loads;
-mod rates;
 pub mod slip_operator;
 pub mod solids;
-pub mod stabilization;
-mod sums;
+pub mod sums;
 pub mod supports;
 pub mod term;
 pub mod trial;
-pub mod turning;
 
 pub use assembler::Assembler;
 pub use coupling::Coupling;

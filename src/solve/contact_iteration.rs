@@ -96,7 +96,7 @@
 use crate::contact::force::{Closed, ContactState, Presume, Tractions, touches};
 use crate::contact::pair::{ContactPair, Presumption};
 use crate::contact::response::PairResponse;
-use crate::equations::failure::TrialFailure;
+use crate::equations::sums::TrialFailure;
 use crate::equations::{Assembler, Trial};
 use crate::laws::friction::{FrictionState, Regime};
 use crate::linear::system::{Request, System};

@@ -28,7 +28,7 @@ use super::interface::{Interface, Round, Rung};
 use super::newton::{self, NewtonFailure};
 use super::{IterationRecord, Workspace};
 use crate::contact::force::ContactState;
-use crate::equations::failure::TrialFailure;
+use crate::equations::sums::TrialFailure;
 use crate::equations::{Assembler, ContactCounts, Trial};
 use crate::linear::system::Request;
 use crate::linear::{LinearFailure, SparseMatrix};

@@ -11,7 +11,7 @@ use super::Workspace;
 use super::newton::NewtonFailure;
 use crate::contact::master::Master;
 use crate::contact::pair::ContactPair;
-use crate::equations::failure::TrialFailure;
+use crate::equations::sums::TrialFailure;
 use crate::linear::LinearFailure;
 use crate::model::told::number;
 use crate::model::{Body, Model, Step};

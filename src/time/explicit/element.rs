@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector, Vector2};
 use serde::{Deserialize, Serialize};
 
-use crate::equations::failure::TrialFailure;
+use crate::equations::sums::TrialFailure;
 use crate::model::Model;
 use crate::model::element::Memory;
 

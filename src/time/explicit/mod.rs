@@ -37,8 +37,8 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use super::accept::take_stock;
-use crate::equations::dampers::{self, NodeDamper};
-use crate::equations::failure::TrialFailure;
+use crate::equations::damping::{self, NodeDamper};
+use crate::equations::sums::TrialFailure;
 use crate::equations::{Assembler, Trial};
 use crate::model::state::State;
 use crate::model::support::Prescribed;
@@ -146,7 +146,7 @@ impl Explicit {
             step: step.clone(),
             plates: Plates::new(model, step, &mass),
             mass,
-            dampers: dampers::by_node(model, step),
+            dampers: damping::by_node(model, step),
             pulls: Vec::new(),
             mean_velocity: vec![0.0; if model.is_viscous(step) { model.dofs() } else { 0 }],
             stability,

@@ -9,7 +9,7 @@
 use nalgebra::Vector2;
 
 use super::rigid::Rigid;
-use crate::equations::dampers::NodeDamper;
+use crate::equations::damping::NodeDamper;
 use crate::model::state::State;
 use crate::model::support::Direction;
 use crate::model::{Model, Step};

@@ -9,7 +9,7 @@
 
 use nalgebra::{Matrix2, Matrix2x3, Matrix3, Rotation2, RowVector3, Vector2, Vector3};
 
-use crate::equations::dampers::NodeDamper;
+use crate::equations::damping::NodeDamper;
 use crate::equations::links::{give, perpendicular, relative};
 use crate::model::state::State;
 use crate::model::support::Direction;

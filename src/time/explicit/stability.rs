@@ -14,7 +14,7 @@ use super::alike::alike;
 use super::element::Element;
 use crate::contact::master::Master;
 use crate::contact::surface::SegmentWeights;
-use crate::equations::failure::TrialFailure;
+use crate::equations::sums::TrialFailure;
 use crate::model::state::State;
 use crate::model::{Model, Step};
 use crate::solve::failure::IncrementFailure;

@@ -1,24 +1,29 @@
 //! Residual and tangent of a model: the terms added up.
-
-mod contacts;
-mod parts;
+//!
+//! # Contacts
+//!
+//! What the assembler asks of the contacts, and what it keeps of their answers.
+//!
+//! # Parts
+//!
+//! Parts of the equations by themselves: the masses, and the tangent of one term.
 
 use std::sync::Arc;
 use std::time::Instant;
 
+use crate::contact::pair::Presumption;
 use crate::contact::response::PairResponse;
 use crate::equations::coupling::{Coupling, Layout};
 use crate::equations::damping::ByMass;
 use crate::equations::equilibrium::Equilibrium;
 use crate::equations::evaluation::{ContactCounts, Evaluation, Seconds};
 use crate::equations::evolving::Evolving;
-use crate::equations::failure::TrialFailure;
-use crate::equations::inertia::Inertia;
+use crate::equations::inertia::{self, Inertia};
 use crate::equations::solids::Solids;
-use crate::equations::sums::Sums;
+use crate::equations::sums::{Sums, TrialFailure};
 use crate::equations::term::Term;
 use crate::equations::trial::Trial;
-use crate::equations::{dampers, damping, inertia, interfaces, links, loads, stabilization, supports};
+use crate::equations::{damping, interfaces, links, loads, supports};
 use crate::linear::SparseMatrix;
 use crate::linear::system::{Request, System};
 use crate::model::Model;
@@ -219,11 +224,11 @@ impl Assembler {
                     loads::add(model, trial, u, loads, &mut sums)?;
                     interfaces::add_fluids(model, responses, loads);
                 }
-                Term::Dampers => dampers::add(model, trial, u, damping, &mut sums)?,
-                Term::Stabilization => *stabilization = stabilization::add(trial, u, damping, &mut sums),
+                Term::Dampers => damping::add_dampers(model, trial, u, damping, &mut sums)?,
+                Term::Stabilization => *stabilization = damping::add_stabilization(trial, u, damping, &mut sums),
                 Term::Damping => {
                     let momentum = damping::momentum(model, trial.step, layout, damping_mass);
-                    damping::add(model, solids, momentum, (trial, u), damping, &mut sums);
+                    damping::add_damping(model, solids, momentum, (trial, u), damping, &mut sums);
                 }
                 // Blended with the forces of before, once all of these are known.
                 Term::Inertia => {}
@@ -266,5 +271,125 @@ impl Assembler {
         if self.layout.cover(responses, trial.old) {
             (self.mass, self.damping_mass) = (None, None);
         }
+    }
+}
+
+impl Assembler {
+    /// Do something with the responses of all contact points where nothing is presumed.
+    ///
+    /// # Errors
+    /// [`TrialFailure`] when a friction law fails, and those of what is done.
+    pub fn with_responses<T>(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        request: Request,
+        act: impl FnOnce(&mut Self, &[PairResponse]) -> Result<T, TrialFailure>,
+    ) -> Result<T, TrialFailure> {
+        let mut responses = std::mem::take(&mut self.responses);
+        let found = self.interfaces(trial, u, |_, _| Presumption::default(), request, &mut responses);
+        let done = found.and_then(|()| act(self, &responses));
+        self.responses = responses;
+        done
+    }
+
+    /// Responses of all contact points at the displacement `u`, with what is presumed about a point of a pair: for a tangent
+    /// alone, a residual that may be accepted knows no presumptions. They come in `responses`, whose memory is used again.
+    ///
+    /// # Errors
+    /// [`TrialFailure`] when a friction law fails.
+    pub fn interfaces(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        presumed: impl Fn(usize, usize) -> Presumption + Sync,
+        request: Request,
+        responses: &mut Vec<PairResponse>,
+    ) -> Result<(), TrialFailure> {
+        if self.model.contacts.is_empty() {
+            return Ok(());
+        }
+        let clock = Instant::now();
+        let answer = interfaces::respond(&self.model, trial, u, presumed, request, responses);
+        self.seconds.contact += clock.elapsed().as_secs_f64();
+        answer
+    }
+
+    /// Keep the states of the contact points, and how large their forces are.
+    pub fn note_contacts(&mut self, trial: Trial, responses: &[PairResponse]) {
+        self.equilibrium.note_contacts(&self.model, trial, responses);
+        self.keep_states(responses);
+    }
+
+    /// Norm of the nodal forces of each contact at the last evaluation [F].
+    pub fn contact_forces(&self) -> &[f64] {
+        self.equilibrium.contact_forces()
+    }
+
+    /// |u|² of some nodes, as far as round-off of it counts [L²].
+    pub fn ways(&self, trial: Trial, u: &[f64], nodes: &[usize]) -> Vec<f64> {
+        self.equilibrium.ways(trial.old, u, nodes)
+    }
+
+    /// Square of what round-off of the contacts that were noted last can leave at nodes that have gone these ways [F²].
+    pub fn contact_round_off(&self, nodes: &[usize], ways: &[f64]) -> f64 {
+        self.equilibrium.contact_round_off(nodes, ways)
+    }
+
+    /// Square of what round-off can leave at every node, at the displacement that was evaluated last [F²].
+    pub fn round_off(&self, trial: Trial, u: &[f64]) -> Vec<f64> {
+        let mass = self.mass.as_ref().filter(|_| trial.step.scheme.coefficients().is_some());
+        self.equilibrium.round_off((&self.model, mass), trial, u, &self.magnitudes)
+    }
+
+    /// Keep the trial states of the contact points for the accepted state.
+    fn keep_states(&mut self, responses: &[PairResponse]) {
+        let contacts = &mut self.evaluation.contacts;
+        contacts.resize_with(responses.len(), Vec::new);
+        contacts.iter_mut().zip(responses).for_each(|(states, pair)| states.clone_from(&pair.states));
+    }
+}
+
+impl Assembler {
+    /// Number of the distinct stiffness matrices that the elements whose tangent never changes share.
+    pub fn stored_matrices(&self) -> usize {
+        self.solids.matrices()
+    }
+
+    /// The mass matrix on the current pattern.
+    pub fn mass(&mut self) -> &SparseMatrix {
+        let Self { model, layout, mass, .. } = self;
+        mass.get_or_insert_with(|| inertia::mass(model, layout))
+    }
+
+    /// The tangent of one term by itself, with no supports: see [`Term::dependence`].
+    ///
+    /// # Errors
+    /// As [`Assembler::residual`].
+    pub fn tangent_of(&mut self, term: Term, trial: Trial, u: &[f64]) -> Result<SparseMatrix, TrialFailure> {
+        self.with_responses(trial, u, Request::Tangent, |assembler, responses| {
+            assembler.tangent_with(term, trial, u, responses)
+        })
+    }
+
+    fn tangent_with(
+        &mut self,
+        term: Term,
+        trial: Trial,
+        u: &[f64],
+        responses: &[PairResponse],
+    ) -> Result<SparseMatrix, TrialFailure> {
+        self.cover(trial, responses);
+        let mut tangent = self.layout.matrix();
+        if term == Term::Inertia {
+            let mass = self.mass().clone();
+            let inertia = Inertia::at(&self.model, trial, u, &mass);
+            inertia.into_iter().for_each(|inertia| inertia.stiffen(&self.model, &mass, &mut tangent));
+            return Ok(tangent);
+        }
+        let kept = std::mem::take(&mut self.evaluation);
+        let added = self.add(&[term], (trial, u, None), responses, false, Some(&mut tangent));
+        self.evaluation = kept;
+        added.map(|()| tangent)
     }
 }
