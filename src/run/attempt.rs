@@ -13,9 +13,8 @@ use crate::model::until::{Course, Until};
 use crate::solve::IterationRecord;
 use crate::solve::failure::{IncrementFailure, suspicion};
 use crate::time::increment::advance;
-use crate::time::ladder::on_ladder;
 use crate::time::quasi_dynamic::Gone;
-use crate::time::step_size::{Judgement, bounded, fastest_slip, judge};
+use crate::time::step_size::{Judgement, bounded, fastest_slip, judge, on_ladder};
 use crate::time::touching::Touching;
 
 /// Cut of the increment after one that could not be solved.

@@ -23,12 +23,8 @@
 //! Source: Irons & Treharne (1971), Proc. 3rd Conf. Matrix Methods in Struct. Mech., WPAFB; Belytschko, Liu, Moran &
 //! Elkhodary (2014), Nonlinear Finite Elements for Continua and Structures, §6.2.
 
-mod alike;
-mod element;
-mod memory;
 mod motion;
 mod plates;
-mod rigid;
 mod stability;
 
 use std::sync::Arc;
@@ -44,9 +40,9 @@ use crate::model::state::State;
 use crate::model::support::Prescribed;
 use crate::model::{Model, Step};
 use crate::solve::failure::IncrementFailure;
-pub use memory::ExplicitMemory;
 use motion::masses;
 use plates::Plates;
+pub use stability::ExplicitMemory;
 use stability::Stability;
 
 /// Share of its size that no element changes by more than in an increment: what strikes it is stopped by its stiffness
