@@ -1,7 +1,5 @@
-//! Small meshes from code, and as they are written in the case file itself: a few nodes, or blocks of Q4 elements, side by side or one on the
-//! other.
-//!
-//! Simple meshes from code: blocks of Q4 elements, side by side or one on the other.
+//! Small meshes from code: blocks of Q4 elements, side by side or one on the other; and a mesh of a few nodes, written in the
+//! case file itself.
 
 use std::collections::BTreeMap;
 

@@ -28,8 +28,8 @@ use crate::output::friction_course::FrictionCourse;
 use crate::output::fronts::Fronts;
 use crate::output::summary::{self, About, Ending, Summary};
 use crate::output::wave_speeds;
+use crate::run::control::RunReport;
 use crate::run::error::Error;
-use crate::run::report::RunReport;
 use crate::run::{SavedRun, Simulation, watch_with};
 
 /// Why a job cannot begin; nothing was written.
