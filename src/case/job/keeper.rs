@@ -8,7 +8,7 @@ use super::company::{Ends, Warn};
 use crate::case::again::Opened;
 use crate::model::Model;
 use crate::output::checkpoint::{self, Checkpoint, MeshPrint};
-use crate::output::lock::Lock;
+use crate::output::files::Lock;
 use crate::run::error::Error;
 use crate::run::observer::Observer;
 use crate::run::simulation::Pause;

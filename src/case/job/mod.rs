@@ -23,11 +23,11 @@ use super::report::understood;
 use super::{CaseError, Opened};
 use crate::model::Model;
 use crate::output::checkpoint::{self, Checkpoint};
+use crate::output::events;
 use crate::output::folder::Folder;
 use crate::output::friction_course::FrictionCourse;
 use crate::output::fronts::Fronts;
 use crate::output::summary::{self, About, Ending, Summary};
-use crate::output::wave_speeds;
 use crate::run::control::RunReport;
 use crate::run::error::Error;
 use crate::run::{SavedRun, Simulation, watch_with};
@@ -168,7 +168,7 @@ impl Job {
             section: Some(self.model.mesh.section.to_string()),
             units: case.units.clone(),
             friction: case.contacts.iter().map(|(name, contact)| (name.clone(), contact.friction.clone())).collect(),
-            wave_speeds: wave_speeds::wave_speeds(&self.model),
+            wave_speeds: events::wave_speeds(&self.model),
             front_slip_rate: case.output.fronts.map(|fronts| fronts.slip_rate),
             understood: understood(case, &self.model),
         }
