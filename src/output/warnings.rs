@@ -284,7 +284,7 @@ pub fn several_answers(pressure: f64, limit: f64) -> String {
 }
 
 /// What is worth a warning at one closed point after an increment up to a time.
-pub fn concerns(
+fn concerns(
     (pair, point, time): (&ContactPair, &SlavePoint, f64),
     [old, contact]: [&ContactState; 2],
     x: &Configuration,

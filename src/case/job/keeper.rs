@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::company::{Ends, Warn};
+use super::{Ends, Warn};
 use crate::case::again::Opened;
 use crate::model::Model;
 use crate::output::checkpoint::{self, Checkpoint, MeshPrint};

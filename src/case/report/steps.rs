@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use super::parameters::plain;
+use super::contact::plain;
 use crate::case::file::{
     Case, Components, DampingInput, DashpotInput, DriveInput, LoadInput, Place, SpringInput, StepInput,
     TemperatureInput, TemperatureVariation, TimeInput,
