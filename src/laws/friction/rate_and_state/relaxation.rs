@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::LawFailure;
-use super::root::{Argument, bracketed_root};
+use crate::laws::friction::LawFailure;
+use crate::laws::friction::root::{Argument, bracketed_root};
 
 /// Evolution of the state θ of rate-and-state friction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

@@ -1,11 +1,23 @@
-use super::peak::{Integration, PeakEvolution};
+//! Super/subloading friction: the law, and what a case may say of it.
+mod approach;
+mod increment;
+mod onset;
+mod path;
+mod peak;
+mod sensitivity;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 use super::sensitivity::SensitiveLaw;
-use super::sliding_curve::SlidingCurve;
-use super::slip_equation::{ROUND_OFF, SlipEquation};
-use super::sub_step::{Directions, mean_traction};
-use super::super_subloading_parameters::SuperSubloadingParameters;
-use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, Onset, Regime, Sliding};
+use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, Regime, Sliding};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
+pub use approach::Approach;
+use approach::SlidingCurve;
+use increment::{Directions, ROUND_OFF, SlipEquation, mean_traction};
+pub use onset::{Onset, Rise};
+pub use peak::Integration;
+use peak::PeakEvolution;
 
 /// Super/subloading friction: slip weakens the interface, rest heals it.
 ///
@@ -31,8 +43,8 @@ use crate::laws::parameter::{InvalidParameter, require, require_not_negative, re
 /// [`Integration`] says where μ of (4) comes from. *Backward Euler* takes one step of (3) and of (4) an increment. The
 /// *controlled* integration solves (3) for slip and time that pass in step with one another, which leaves no error
 /// where μ only weakens or only recovers (m = n = 1). How much the order of weakening and recovery matters is bounded for
-/// short increments, which one step answers (`short_step.rs`), and else found by halving the increment, and halving again,
-/// until q, μ p and the mean of q are right to the tolerance (`path.rs`).
+/// short increments, which one step answers (`path.rs`), and else found by halving the increment, and halving again,
+/// until q, μ p and the mean of q are right to the tolerance (there as well).
 /// The dissipation is ∫ |q| dλ, over a step with R along its curve and μ p linear in ∫ R dλ, or where |q| falls with |q|
 /// linear in λ; the work of the increment, ∫ q du, is this and what the contact has stored. The tangent is that of what was computed; for one step
 /// ```text
@@ -46,14 +58,14 @@ use crate::laws::parameter::{InvalidParameter, require, require_not_negative, re
 /// Ozaki & Hashiguchi (2010), Tribology International 43:2120.
 #[derive(Clone, Copy, Debug)]
 pub struct SuperSubloading {
-    pub(super) alpha_t: f64,
+    alpha_t: f64,
     initial_mu: f64,
     /// 1/R*₀, if it is given
-    pub(super) structure: Option<f64>,
-    pub(super) curve: SlidingCurve,
-    pub(super) evolution: PeakEvolution,
+    structure: Option<f64>,
+    curve: SlidingCurve,
+    evolution: PeakEvolution,
     integration: Integration,
-    pub(super) tolerance: f64,
+    tolerance: f64,
 }
 
 impl SuperSubloading {
@@ -99,11 +111,11 @@ impl SuperSubloading {
 pub const SLIPPING: f64 = 0.9;
 
 /// A traction above the strength μ p by more than this, relative, has not come from this law.
-pub(super) const EXCESS: f64 = 1e-12;
+const EXCESS: f64 = 1e-12;
 
 impl SuperSubloading {
     /// The state with a traction above the strength μ p brought down to it, at once and by plastic slip alone.
-    pub(super) fn within_strength(&self, old: &FrictionState) -> FrictionState {
+    fn within_strength(&self, old: &FrictionState) -> FrictionState {
         let mu = self.evolution.clamp(mu_of(old));
         let old = FrictionState { plastic_increment: 0.0, ..*old }.with_variables([mu]);
         let strength = mu * old.pressure.max(0.0);
@@ -182,13 +194,13 @@ impl SuperSubloading {
 }
 
 /// Whether R can only fall on the way to the trial traction.
-pub(super) fn falls(old: &FrictionState, trial: f64, pressure: f64) -> bool {
+fn falls(old: &FrictionState, trial: f64, pressure: f64) -> bool {
     let ratio_falls = trial.abs() * old.pressure <= old.traction.abs() * pressure * (1.0 + ROUND_OFF);
     trial * old.traction.signum() >= 0.0 && ratio_falls && old.pressure > 0.0
 }
 
 /// μ, the one variable of the law [-]
-pub(super) fn mu_of(state: &FrictionState) -> f64 {
+fn mu_of(state: &FrictionState) -> f64 {
     state.variables[0]
 }
 
@@ -265,4 +277,71 @@ impl FrictionLaw for SuperSubloading {
     fn onset(&self) -> Option<Onset> {
         Some(Onset::of(&self.curve, &self.evolution, self.initial_mu))
     }
+}
+
+/// Parameters of [`SuperSubloading`](super::SuperSubloading) as the case file writes them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SuperSubloadingParameters {
+    /// μ_s: static friction coefficient, μ_s ≥ μ_k [-]
+    pub mu_s: f64,
+    /// μ_k: kinetic friction coefficient, μ_k > 0 [-]
+    pub mu_k: f64,
+    /// α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies [F/L³]
+    #[serde(default)]
+    pub alpha_t: Option<f64>,
+    /// r: rate at which R approaches 1 with plastic slip, r > 0 [1/L]
+    pub r: f64,
+    /// κ: loss of structure with plastic slip, κ ≥ 0 [1/L]
+    #[serde(default)]
+    pub kappa: f64,
+    /// ξ: recovery of structure with time, ξ ≥ 0 [1/T]
+    #[serde(default)]
+    pub xi: f64,
+    /// m: exponent of the loss, m > 0 [-]
+    #[serde(default = "one")]
+    pub m: f64,
+    /// n: exponent of the recovery, n > 0 [-]
+    #[serde(default = "one")]
+    pub n: f64,
+    /// 1/R*₀: structure at first touch, from 1 (μ = μ_k) to μ_s/μ_k (μ = μ_s, the default) [-]
+    #[serde(default)]
+    pub structure: Option<f64>,
+    /// U(R): how R approaches 1
+    #[serde(default)]
+    pub approach: Approach,
+    /// R_e: elastic core, no plastic slip for R ≤ R_e, 0 ≤ R_e < 1 [-]
+    #[serde(default)]
+    pub elastic_core: f64,
+    /// How an increment is integrated
+    #[serde(default)]
+    pub integration: Integration,
+    /// Error allowed to the controlled integration, as a share of μ_s p, from 1e-12 to 0.1; 1e-6 by default [-]
+    #[serde(default)]
+    pub tolerance: Option<f64>,
+}
+
+impl SuperSubloadingParameters {
+    /// Neither weakening nor recovery, the tangential stiffness left to the contact, all else as in a case that says no more.
+    pub fn new(mu_s: f64, mu_k: f64, r: f64) -> Self {
+        Self {
+            mu_s,
+            mu_k,
+            alpha_t: None,
+            r,
+            kappa: 0.0,
+            xi: 0.0,
+            m: one(),
+            n: one(),
+            structure: None,
+            approach: Approach::default(),
+            elastic_core: 0.0,
+            integration: Integration::default(),
+            tolerance: None,
+        }
+    }
+}
+
+fn one() -> f64 {
+    1.0
 }

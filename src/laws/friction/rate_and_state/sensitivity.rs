@@ -1,12 +1,11 @@
 //! How the answers of rate-and-state friction vary with its parameters.
 
-use super::rate_and_state::RateAndState;
-use super::rate_and_state_path::Ramp;
 use super::relaxation::{Coefficients, Relaxation, Relaxed, StateEvolution, arsinh_of_exp};
-use super::sensitivity::{Direction, SensitiveLaw, Variation};
-use super::{FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Sliding};
+use super::{Ramp, RateAndState};
+use crate::laws::friction::sensitivity::{Direction, SensitiveLaw, Variation};
+use crate::laws::friction::{FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Sliding};
 
-/// As [`RateAndStateParameters`](super::RateAndStateParameters) names them.
+/// As [`RateAndStateParameters`](crate::laws::friction::RateAndStateParameters) names them.
 const PARAMETERS: [&str; 7] = ["f_0", "V_0", "a", "b", "D_c", "alpha_t", "theta"];
 
 impl SensitiveLaw for RateAndState {

@@ -2,8 +2,8 @@
 
 use std::f64::consts::LN_2;
 
+use super::approach::{Reach, SlidingCurve};
 use super::peak::{PeakEvolution, scaled};
-use super::sliding_curve::{Reach, SlidingCurve};
 
 /// What the parameters of a law mean for the coefficient q/p, with slip so fast that nothing heals meanwhile.
 #[derive(Clone, Copy, Debug, PartialEq)]

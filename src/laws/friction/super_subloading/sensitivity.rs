@@ -1,12 +1,12 @@
 //! How the answers of super/subloading friction vary with its parameters, by the controlled integration.
 
-use super::peak_sensitivity::{PeakShift, Shift};
-use super::sensitivity::{Direction, SensitiveLaw, Variation};
-use super::sub_step::Directions;
-use super::super_subloading::{EXCESS, SuperSubloading, falls, mu_of};
-use super::{FrictionState, LawFailure, Sliding};
+use super::increment::Directions;
+use super::peak::{PeakShift, Shift};
+use super::{EXCESS, SuperSubloading, falls, mu_of};
+use crate::laws::friction::sensitivity::{Direction, SensitiveLaw, Variation};
+use crate::laws::friction::{FrictionState, LawFailure, Sliding};
 
-/// As [`SuperSubloadingParameters`](super::SuperSubloadingParameters) names them.
+/// As [`SuperSubloadingParameters`](crate::laws::friction::SuperSubloadingParameters) names them.
 const PARAMETERS: [&str; 10] = ["mu_s", "mu_k", "alpha_t", "r", "kappa", "xi", "m", "n", "elastic_core", "structure"];
 
 fn shift(direction: &Direction) -> Shift {
