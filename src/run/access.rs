@@ -11,7 +11,7 @@ use crate::mesh::UnknownGroup;
 use crate::model::Step;
 use crate::model::boundary::{Drive, Span};
 use crate::model::builder::ModelError;
-use crate::model::builder::increments::check_bounds;
+use crate::model::builder::schedule::check_bounds;
 use crate::model::support::{Direction, Motion, Prescribed};
 
 /// A name that a run does not know.
