@@ -7,7 +7,7 @@ use super::links;
 use super::sums::{Dependence, Sums};
 use super::trial::Trial;
 use crate::equations::sums::TrialFailure;
-use crate::model::element::pressure::follower_pressure;
+use crate::model::element::follower_pressure;
 use crate::model::{Model, Step};
 
 /// A pressure is linear in the displacements and grows with time; springs are constant.

@@ -9,9 +9,8 @@ use nalgebra::{Matrix2, Vector2};
 use super::csv;
 use super::csv::{Opening, Rows, Table};
 use crate::laws::bulk::CauchyStress;
-use crate::model::Model;
-use crate::model::probe::Probe;
 use crate::model::state::State;
+use crate::model::{Model, Probe};
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};
 

@@ -18,7 +18,7 @@ use crate::laws::friction::{FrictionLaw, FrictionState, Regime};
 use crate::mesh::configuration::Configuration;
 use crate::model::scheme::{Scheme, told};
 use crate::model::state::State;
-use crate::model::until::Until;
+use crate::model::step::Until;
 use crate::model::{Model, Step};
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};

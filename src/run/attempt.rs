@@ -13,7 +13,7 @@ use super::simulation::Simulation;
 use crate::model::Step;
 use crate::model::scheme::Scheme;
 use crate::model::state::State;
-use crate::model::until::{Course, Until};
+use crate::model::step::{Course, Until};
 use crate::solve::IterationRecord;
 use crate::solve::failure::{IncrementFailure, suspicion};
 use crate::time::beginning::{begin, go_on, led};

@@ -3,8 +3,8 @@
 //! Why an attempt was given up: in a sentence, and in so few words that they can be counted.
 
 use crate::model::state::State;
+use crate::model::step::{Course, Until};
 use crate::model::told::{count, number};
-use crate::model::until::{Course, Until};
 use crate::model::{Model, Step};
 use crate::run::error::Error;
 use crate::solve::IterationRecord;

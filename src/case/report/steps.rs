@@ -10,8 +10,8 @@ use crate::case::file::{
     TemperatureInput, TemperatureVariation, TimeInput,
 };
 use crate::case::translate;
+use crate::model::step::Until;
 use crate::model::told::{count, number};
-use crate::model::until::Until;
 use crate::model::{Model, Step};
 use crate::time::step_size::EVENT_LOCATION;
 

@@ -15,7 +15,7 @@ use crate::model::builder::{
     Action, Change, Components, IncrementSettings, Link, Load, LoadStep, Place, Rotation, RuptureSettings, Support,
     UntilSettings,
 };
-use crate::model::until::Part;
+use crate::model::step::Part;
 
 /// A step; `place` is where it stands.
 pub fn step(place: &str, input: &StepInput) -> Checked<LoadStep> {

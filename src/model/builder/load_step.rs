@@ -4,7 +4,7 @@ use super::groups::Place;
 use crate::model::Damping;
 use crate::model::boundary::Drive;
 use crate::model::scheme::{Scheme, nine_tenths};
-use crate::model::until::Part;
+use crate::model::step::Part;
 
 /// Share of a force within which it is met unless told otherwise.
 pub const MET: f64 = 1e-6;

@@ -8,8 +8,7 @@ use super::error;
 use super::error::{Checked, ModelError};
 use crate::mesh::boxes::{Box2, Tree};
 use crate::mesh::shape::ElementKind;
-use crate::model::Model;
-use crate::model::probe::Probe;
+use crate::model::{Model, Probe};
 
 /// A point, or points along a line, at which motion, strain and stress are asked for; places are undeformed ones.
 #[derive(Clone, Debug, PartialEq)]

@@ -18,8 +18,8 @@ use super::supports::{InForce, freed, supports};
 use crate::contact::pair::ContactPair;
 use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::scheme::Scheme;
+use crate::model::step::{Part, Until};
 use crate::model::support::{Motion, Prescribed};
-use crate::model::until::{Part, Until};
 use crate::model::{Body, Damping, Increments, Model, Rupture, Step};
 
 /// The steps of a run.
