@@ -217,7 +217,7 @@ fn near(time: f64) -> f64 {
     16.0 * f64::EPSILON * time
 }
 
-/// A point that moves with a body.
+/// A point that moves with a body, at which motion, strain and stress are asked for, as a gauge there would read them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Probe {
     /// its name in results
