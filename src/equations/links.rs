@@ -5,7 +5,7 @@
 //! r_A + r_B = 0,   (J e)·r_B/L = 0         a rigid plate: forces, and moments about A
 //! w (|e|² − L²)/(2 L) = 0                  its length
 //! ```
-//! In motion r has the inertia ([`self`]), and e in the moments is weighted with α_f, as the forces are.
+//! In motion r has the inertia (below), and e in the moments is weighted with α_f, as the forces are.
 //!
 //! # Rigid plates in motion
 //!

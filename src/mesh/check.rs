@@ -51,7 +51,7 @@ fn add_bodies(mesh: &mut Mesh, numbers: &NodeNumbers, bodies: BTreeMap<String, V
             let nodes = numbers.of("element", &name, &cell)?;
             let element = counter_clockwise(Element { kind: kind(&name, &cell)?, nodes }, &mesh.nodes);
             check_area(&element, cell.tag, &name, &mesh.nodes, &gradients)?;
-            refuse(&element, (cell.tag, &name), &mesh.nodes, &mesh.node_tags)?;
+            refuse(&element, cell.tag, &name, &mesh.nodes, &mesh.node_tags)?;
             mesh.elements.push(element);
             mesh.element_tags.push(cell.tag);
         }
@@ -341,9 +341,10 @@ const SHORT: f64 = 1e-8;
 const VAGUE: f64 = 1e-3;
 
 /// Refuse an element of a group, and tell by which nodes.
-pub(super) fn refuse(
+fn refuse(
     element: &Element,
-    (tag, group): (u64, &str),
+    tag: u64,
+    group: &str,
     positions: &[Vector2<f64>],
     node_tags: &[u64],
 ) -> Result<(), MeshError> {

@@ -72,7 +72,7 @@ impl Observer for Warnings {
         for (number, (pair, states)) in model.contacts.iter().zip(&state.contacts).enumerate() {
             let points = pair.points.iter().zip(attempt.old.contacts[number].iter().zip(states));
             for (point, (old, contact)) in points.filter(|(_, (_, new))| new.friction.pressure > 0.0) {
-                for (kind, message) in concerns((pair, point, state.time), [old, contact], &x) {
+                for (kind, message) in concerns(pair, point, state.time, old, contact, &x) {
                     if self.given.insert((number, kind)) {
                         let at = point.at(&x);
                         let place =
@@ -285,8 +285,11 @@ pub fn several_answers(pressure: f64, limit: f64) -> String {
 
 /// What is worth a warning at one closed point after an increment up to a time.
 fn concerns(
-    (pair, point, time): (&ContactPair, &SlavePoint, f64),
-    [old, contact]: [&ContactState; 2],
+    pair: &ContactPair,
+    point: &SlavePoint,
+    time: f64,
+    old: &ContactState,
+    contact: &ContactState,
     x: &Configuration,
 ) -> impl Iterator<Item = (Kind, String)> {
     let (gap, pressure) = (contact.clearance(), contact.friction.pressure);

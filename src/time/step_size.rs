@@ -20,7 +20,7 @@
 //!   So a contact that swings to and fro in stick has no events.
 //! - An increment after a repeated one does not grow. Halves that are accepted thus walk up to the event and never jump
 //!   over it, and every attempt either moves on or halves the increment.
-//! - Where linear bodies are condensed on contacts, lengths are those of a ladder ([`self`]).
+//! - Where linear bodies are condensed on contacts, lengths are those of a ladder (below).
 //! - The shortest increment is accepted whatever its error, which is told as a warning if it exceeds ε.
 //!
 //! Nothing much larger than ε can be stepped over unseen: e is a fixed share, a quarter or more unless β is near 1/6, of

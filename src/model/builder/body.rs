@@ -244,19 +244,14 @@ pub fn temperatures(
         let at_rest = || Amplitude { drive: Drive::Table(vec![[0.0, thermal.reference]]), span, before: None };
         let before = in_force.remove(&number).unwrap_or_else(at_rest);
         let amplitude = Amplitude { drive: drive.clone(), span, before: Some(Box::new(before)) };
-        check_expansion(&amplitude, (number, thermal), &place, model)?;
+        check_expansion(&amplitude, number, thermal, &place, model)?;
         in_force.insert(number, amplitude);
     }
     Ok(())
 }
 
 /// A temperature must have a value throughout the step, at which the body does not shrink to nothing.
-fn check_expansion(
-    amplitude: &Amplitude,
-    (body, thermal): (usize, Thermal),
-    place: &str,
-    model: &Model,
-) -> Checked<()> {
+fn check_expansion(amplitude: &Amplitude, body: usize, thermal: Thermal, place: &str, model: &Model) -> Checked<()> {
     let (nodes, Span { start, end }) = (&model.bodies[body].nodes, amplitude.span);
     let step = nodes.len().div_ceil(PLACES).max(1);
     for at in nodes.iter().step_by(step).map(|&node| model.mesh.nodes[node]) {

@@ -102,7 +102,7 @@ impl Friction {
             numbers.insert(key, laws.len());
             let first = friction.varying.first().map(|(name, _)| format!("{place}.{name} at ({}, {})", at.x, at.y));
             let law = friction.law(&values, default_alpha_t, place, first)?;
-            laws.push(friction.through_the_run(law, at, (default_alpha_t, offsets), place)?);
+            laws.push(friction.through_the_run(law, at, default_alpha_t, offsets, place)?);
         }
         Ok(laws)
     }
@@ -116,7 +116,8 @@ impl Friction {
         &self,
         start: Box<dyn FrictionLaw>,
         at: Vector2<f64>,
-        (alpha_t, offsets): (Option<f64>, Offsets),
+        alpha_t: Option<f64>,
+        offsets: Offsets,
         place: &str,
     ) -> Checked<LawInTime> {
         let takes_means = start.takes_means();

@@ -42,7 +42,7 @@ impl SuperSubloading {
         };
         let start = if reversed {
             let share = old.traction / (old.traction - trial);
-            self.pass_zero(&mut path, (mu_of(old), trial), share, by)
+            self.pass_zero(&mut path, mu_of(old), trial, share, by)
         } else {
             path.start((old.traction.abs(), by.traction), (mu_of(old), by.mu), old.ratio(mu_of(old)).min(1.0))
         };
@@ -50,7 +50,7 @@ impl SuperSubloading {
     }
 
     /// Leave to the path what comes after the share of the increment at which the traction passes 0; its first station.
-    fn pass_zero(&self, path: &mut LoadPath, (old_mu, trial): (f64, f64), share: f64, by: &Directions) -> Station {
+    fn pass_zero(&self, path: &mut LoadPath, old_mu: f64, trial: f64, share: f64, by: &Directions) -> Station {
         let (alpha_t, slip, dt) = (self.alpha_t, path.slip, path.time);
         let dstiffness = [0, 1].map(|i| by.parameters.map_or(0.0, |shifts| shifts[i].alpha_t));
         let dshare = [0, 1]
