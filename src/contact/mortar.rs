@@ -55,7 +55,7 @@ pub struct Mortar {
     /// Edges at each point, with the number of its shape function there
     at: Vec<Vec<(usize, usize)>>,
     /// Points of Gauss's rule around each point, their lengths times φ_j
-    pub(super) around: Vec<Vec<SlavePoint>>,
+    around: Vec<Vec<SlavePoint>>,
 }
 
 /// The weights of all points in the committed configuration. They stay as they are while an increment is iterated.
@@ -312,7 +312,7 @@ fn hat(n: usize, a: usize, xi: f64) -> (f64, f64) {
 
 /// A_j and W_ja.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Averages<N> {
+struct Averages<N> {
     pub weights: Vec<N>,
     pub length: N,
 }
@@ -369,20 +369,20 @@ impl<N: Number> Averages<N> {
 /// Memory for the averages around one point after the other.
 #[derive(Clone, Debug, Default)]
 pub struct Room {
-    pub(super) values: Averaging<f64>,
+    values: Averaging<f64>,
     duals: Averaging<Dual>,
     /// What a point of Gauss's rule has against a rigid body, and the variations of the mean normal
-    pub(super) around: Kinematics,
-    pub(super) turns: [Vec<f64>; 2],
+    around: Kinematics,
+    turns: [Vec<f64>; 2],
 }
 
 /// What an average is taken over, and its parts.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Averaging<N> {
-    pub(super) frame: Frame<N>,
-    pub(super) averages: Averages<N>,
+struct Averaging<N> {
+    frame: Frame<N>,
+    averages: Averages<N>,
     /// W_ja/A_j
-    pub(super) relative: Vec<N>,
+    relative: Vec<N>,
 }
 
 /// The mean place of a slave node on the master.

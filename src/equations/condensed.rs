@@ -205,12 +205,12 @@ pub struct ContactNodes {
     /// The nodes, ascending
     pub nodes: Vec<usize>,
     /// Place of each node among them
-    pub(super) places: Vec<Option<u32>>,
-    pub(super) jumps: Jumps,
+    places: Vec<Option<u32>>,
+    jumps: Jumps,
     /// Places of the nodes of each contact
-    pub(super) parts: Vec<Vec<usize>>,
+    parts: Vec<Vec<usize>>,
     /// All nodes of each contact
-    pub(super) sides: Vec<Vec<usize>>,
+    sides: Vec<Vec<usize>>,
 }
 
 impl ContactNodes {
@@ -362,14 +362,14 @@ struct Jump {
 }
 
 /// The slave nodes that are counted from what they face.
-pub(super) struct Jumps {
+struct Jumps {
     jumps: Vec<Jump>,
     /// Number of each node's jump
     numbers: Vec<Option<u32>>,
 }
 
 /// Dofs that have an equation of their own in a step, not one of forces: supported ones, and copies.
-pub(super) fn fixed(model: &Model, step: &Step) -> Vec<bool> {
+fn fixed(model: &Model, step: &Step) -> Vec<bool> {
     let mut fixed = vec![false; model.dofs()];
     step.supports.iter().for_each(|support| fixed[support.at.dof] = true);
     model.ties.pairs().iter().for_each(|&(copy, _)| fixed[2 * copy..2 * copy + 2].fill(true));

@@ -129,7 +129,7 @@ pub fn kinetic_energy(mass: &SparseMatrix, velocity: &[f64]) -> f64 {
 }
 
 /// Velocity and acceleration at `u`; prescribed dofs have those of their supports.
-pub(super) fn rates(model: &Model, trial: Trial, u: &[f64], scheme: Coefficients) -> (Vec<f64>, Vec<f64>) {
+fn rates(model: &Model, trial: Trial, u: &[f64], scheme: Coefficients) -> (Vec<f64>, Vec<f64>) {
     let Trial { old, step, dt, .. } = trial;
     let free =
         |dof: usize| scheme.rates(u[dof] - old.displacement[dof], (old.velocity[dof], old.acceleration[dof]), dt);
@@ -158,7 +158,7 @@ pub(super) fn rates(model: &Model, trial: Trial, u: &[f64], scheme: Coefficients
 
 /// Dofs that follow supported ones: where their leaders are to be, and how their values follow. What follows a free one has the
 /// rates of its own displacement, which are the same in the solution.
-pub(super) fn followed<'a>(
+fn followed<'a>(
     model: &'a Model,
     trial: Trial<'a>,
     u: &'a [f64],

@@ -35,7 +35,7 @@ use crate::model::scheme::Coefficients;
 use crate::model::state::State;
 
 /// e of a rigid plate at the start, and what has come to it at the displacements `u`.
-pub(super) fn arms(model: &Model, [a, b]: [usize; 2], u: &[f64]) -> [Vector2<f64>; 2] {
+fn arms(model: &Model, [a, b]: [usize; 2], u: &[f64]) -> [Vector2<f64>; 2] {
     [model.mesh.nodes[b] - model.mesh.nodes[a], relative([a, b], u)]
 }
 
@@ -50,7 +50,7 @@ pub fn perpendicular(e: Vector2<f64>) -> Vector2<f64> {
 }
 
 /// Weighted with α_f.
-pub(super) fn blended(scheme: Coefficients, [before, after]: [Vector2<f64>; 2]) -> Vector2<f64> {
+fn blended(scheme: Coefficients, [before, after]: [Vector2<f64>; 2]) -> Vector2<f64> {
     before * scheme.alpha_f + after * (1.0 - scheme.alpha_f)
 }
 

@@ -304,7 +304,7 @@ pub(super) struct RawCell {
 }
 
 /// From the tag of a node to its number.
-pub(super) struct NodeNumbers(HashMap<u64, usize>);
+struct NodeNumbers(HashMap<u64, usize>);
 
 impl NodeNumbers {
     /// Numbers by tag, in the order given.

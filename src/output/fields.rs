@@ -285,7 +285,7 @@ const PER_NODE: usize = 600;
 
 /// The room that a frame takes while it is made.
 #[derive(Debug)]
-pub(super) struct Room {
+struct Room {
     folder: PathBuf,
     bytes: usize,
 }

@@ -254,7 +254,7 @@ const PROCESS_ZONE: f64 = 9.0 * std::f64::consts::PI / 32.0;
 
 /// What a contact is warned of, once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub(super) enum Kind {
+enum Kind {
     /// A point lies deep in the master
     DeepPenetration,
     /// A node of the master lies deep in the slave
@@ -346,7 +346,7 @@ fn unresolved(
 }
 
 /// What is to be said of a point that has left what small sliding keeps.
-pub(super) fn left(departure: Option<Departure>) -> impl Iterator<Item = (Kind, String)> {
+fn left(departure: Option<Departure>) -> impl Iterator<Item = (Kind, String)> {
     let Some(Departure { slid, share, turned, stretched }) = departure else {
         let message = "the surface has slid past the end of the rigid master, and small sliding holds it there";
         return [Some((Kind::SlidFar, message.into())), None, None].into_iter().flatten();

@@ -281,7 +281,7 @@ const LONGEST_SEARCH: usize = 12;
 /// How far a correction leads downhill, as a share of it: to where `slope` is near 0, or all of it if that is not beyond. It
 /// is not a number where the equations cannot be evaluated. By regula falsi (Illinois), halving where that fails: forces
 /// that stick in a narrow range make the slope steep there.
-pub(super) fn downhill(start: f64, mut slope: impl FnMut(f64) -> f64) -> f64 {
+fn downhill(start: f64, mut slope: impl FnMut(f64) -> f64) -> f64 {
     let level = |s: f64| s.abs() <= LEVEL * start.abs();
     let end = slope(1.0);
     // A correction that does not start downhill was not made for this.

@@ -262,18 +262,18 @@ fn same(a: &[f64], b: &[f64]) -> bool {
 }
 
 /// Most nodes of a block.
-pub(super) const NODES: usize = 512;
+const NODES: usize = 512;
 
 /// Cells along each side of the mesh that Morton's curve tells apart.
 const CELLS: f64 = 65535.0;
 
 /// Rows of the matrix of an element of n nodes as it is kept, filled up with zeros to whole registers.
-pub(super) const fn rows(n: usize) -> usize {
+const fn rows(n: usize) -> usize {
     (2 * n).next_multiple_of(4)
 }
 
 /// Elements that are evaluated together.
-pub(super) struct Block {
+struct Block {
     pub body: usize,
     pub kind: ElementKind,
     /// Nodes, ascending
@@ -287,7 +287,7 @@ pub(super) struct Block {
 }
 
 /// Blocks of the elements that have a matrix, and which it is.
-pub(super) fn blocks(model: &Model, matrices: &[Option<u32>]) -> Vec<Block> {
+fn blocks(model: &Model, matrices: &[Option<u32>]) -> Vec<Block> {
     let mut order = Vec::with_capacity(matrices.len());
     let curve = curve(model);
     for (e, &matrix) in matrices.iter().enumerate() {
@@ -385,7 +385,7 @@ pub(super) enum Pass<'a> {
 
 /// The first node whose columns are kept. Motions count against the first node, whose own columns then are not needed, but
 /// along x in rings: there a motion of all nodes stretches the hoops.
-pub(super) const fn first(ring: bool) -> usize {
+const fn first(ring: bool) -> usize {
     if ring { 0 } else { 1 }
 }
 

@@ -247,7 +247,7 @@ impl Places {
 }
 
 /// Forces at their places, and where each node finds its own.
-pub(super) type Source<'a> = (&'a Places, &'a [Vector2<f64>]);
+type Source<'a> = (&'a Places, &'a [Vector2<f64>]);
 
 /// Write the sums at the nodes over `force`, those of the elements before those of the blocks.
 pub(super) fn gather([elements, blocks]: [Source; 2], force: &mut [f64]) {

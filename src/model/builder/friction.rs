@@ -240,10 +240,10 @@ pub fn check_in_time(profile: &Profile, place: &str) -> Checked<()> {
 const MEAN: usize = 3;
 
 /// The law of a point: from what varies along the slave there, and the α_t that serves where none is given.
-pub(super) type LawAt = dyn Fn(&[f64], f64) -> Checked<Box<dyn FrictionLaw>> + Send + Sync;
+type LawAt = dyn Fn(&[f64], f64) -> Checked<Box<dyn FrictionLaw>> + Send + Sync;
 
 /// The law of a point whose parameters vary in time.
-pub(super) struct InTime {
+struct InTime {
     pub profiles: Vec<Profile>,
     pub at: Vector2<f64>,
     pub law: Arc<LawAt>,

@@ -177,7 +177,7 @@ impl Alike {
 
 /// A rigid plate.
 #[derive(Clone)]
-pub(super) struct Rigid {
+struct Rigid {
     /// A and B
     pub leaders: [usize; 2],
     /// e at rest [L]

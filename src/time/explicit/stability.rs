@@ -48,25 +48,25 @@ const FEW: usize = 2048;
 #[derive(Clone)]
 pub(super) struct Stability {
     pub(super) model: Arc<Model>,
-    pub(super) retardation: Vec<f64>,
+    retardation: Vec<f64>,
     pub(super) elements: Vec<Element>,
     /// Nodes of the elements, `stride` places an element, filled up with the first one
-    pub(super) nodes: Vec<usize>,
+    nodes: Vec<usize>,
     /// Their displacements against the first one when the element was looked at [L]
-    pub(super) seen: Vec<Vector2<f64>>,
-    pub(super) stride: usize,
+    seen: Vec<Vector2<f64>>,
+    stride: usize,
     /// k/m of (3) at every node [1/T²]
-    pub(super) softness: Vec<f64>,
+    softness: Vec<f64>,
     /// Segment that every contact point met
-    pub(super) segments: Vec<Option<usize>>,
+    segments: Vec<Option<usize>>,
     /// Increments since contacts were looked at
-    pub(super) since: usize,
+    since: usize,
     /// Whether some elements were looked at again since
     relooked: bool,
     /// How far nodes may move against each other until an element may have changed [L]
-    pub(super) margin: f64,
+    margin: f64,
     /// Elements whose stiffness depends on a temperature
-    pub(super) heated: Vec<usize>,
+    heated: Vec<usize>,
 }
 
 impl Stability {
@@ -237,13 +237,13 @@ impl Stability {
 }
 
 /// Elements of bodies that expand when they are heated; those of a linear law are as stiff as before.
-pub(super) fn heated(model: &Model) -> Vec<usize> {
+fn heated(model: &Model) -> Vec<usize> {
     let bodies = model.bodies.iter().filter(|body| body.thermal.is_some() && !body.material.is_linear());
     bodies.flat_map(|body| body.elements.iter().copied()).collect()
 }
 
 /// The nodes of an element and as often the first one as it takes to fill `stride` places.
-pub(super) fn filled(nodes: &[usize], stride: usize) -> impl Iterator<Item = usize> {
+fn filled(nodes: &[usize], stride: usize) -> impl Iterator<Item = usize> {
     let first = nodes.iter().take(1).cycle();
     nodes.iter().chain(first).take(stride).copied()
 }
@@ -265,9 +265,9 @@ const CRUSHED: f64 = 1e-3;
 #[derive(Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Element {
     /// λ_e and c [1/T², 1/T]
-    pub(super) bounds: [f64; 2],
+    bounds: [f64; 2],
     /// Area over diagonal; infinite where the law is linear, and the bounds depend on no displacement [L]
-    pub(super) size: f64,
+    size: f64,
 }
 
 impl Element {
@@ -350,7 +350,7 @@ fn largest_eigenvalue(matrix: &DMatrix<f64>, mass: &DVector<f64>) -> f64 {
 
 /// The first of the elements of a linear body that have the same shape and masses as each one in every bit, and so the same
 /// bounds at any displacement; itself if its law is not linear.
-pub(super) fn alike(model: &Model) -> Vec<usize> {
+fn alike(model: &Model) -> Vec<usize> {
     let mut seen = HashMap::new();
     let first = |e: usize| {
         let (body, solid) = (model.body_of_element[e], &model.solids[e]);

@@ -219,7 +219,7 @@ impl Approach {
     /// cotangent:    y T − ∫ T dy,   T = −(2/π) ln sin(π z/2),   z = 1 − y
     ///               ln sin(π z/2) = ln(π z/2) − Σ ζ(2k) (z/2)^(2k)/k
     /// ```
-    pub(super) fn area(self, zeta: f64, y: f64, distance: f64) -> f64 {
+    fn area(self, zeta: f64, y: f64, distance: f64) -> f64 {
         match self {
             Self::Logarithmic => e1(2.0 * (-zeta).exp(), LN_2 - zeta, y * y),
             Self::Cotangent => {
@@ -284,7 +284,7 @@ const EULER: f64 = 0.577_215_664_901_532_9;
 ///
 /// Source: Abramowitz & Stegun, section 5.1.
 #[inline(always)]
-pub(super) fn e1(w: f64, ln_w: f64, exp_of_minus_w: f64) -> f64 {
+fn e1(w: f64, ln_w: f64, exp_of_minus_w: f64) -> f64 {
     if w <= SPLIT { w * rational(w, &ENTIRE) - ln_w - EULER } else { exp_of_minus_w / w * rational(1.0 / w, &TAIL) }
 }
 

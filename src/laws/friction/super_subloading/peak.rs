@@ -136,7 +136,7 @@ impl PeakEvolution {
     /// μ = μ₀ − κ Δλ (μ/μ_k − 1)^m + ξ Δt (1 − μ/μ_s)^n
     /// ```
     #[inline(always)]
-    pub(super) fn backward_euler(&self, old: f64, slip: f64, dt: f64) -> Peak {
+    fn backward_euler(&self, old: f64, slip: f64, dt: f64) -> Peak {
         let (weakening, recovery) = (self.kappa * slip, self.xi * dt);
         if self.is_linear() {
             let share = 1.0 / (1.0 + weakening * self.per_mu_k + recovery * self.per_mu_s);
@@ -231,7 +231,7 @@ impl PeakEvolution {
 }
 
 /// What is left of a deviation after Z relaxation times.
-pub(super) struct Decay {
+struct Decay {
     /// e^(−Z)
     left: f64,
     /// φ = (1 − e^(−Z))/Z
@@ -245,7 +245,7 @@ pub(super) struct Decay {
 /// e^(−Z) and φ(Z) for Z ≥ 0. The round-off of φ and its derivatives is of the order ε/Z, ε/Z², ε/Z³, and harmless as
 /// they are used times Z, Z and Z².
 #[inline]
-pub(super) fn decay(z: f64) -> Decay {
+fn decay(z: f64) -> Decay {
     if z < 1e-3 {
         let mean = 1.0 - z * (0.5 - z * (1.0 / 6.0 - z / 24.0));
         let slope = -0.5 + z * (1.0 / 3.0 - z / 8.0);
@@ -259,7 +259,7 @@ pub(super) fn decay(z: f64) -> Decay {
 
 /// x^k and its derivative, which is infinite at x = 0 for k < 1.
 #[inline]
-pub(super) fn power(x: f64, k: f64) -> (f64, f64) {
+fn power(x: f64, k: f64) -> (f64, f64) {
     if k == 1.0 {
         (x, 1.0)
     } else if x > 0.0 {
