@@ -64,7 +64,7 @@
 //! [`solve::newton`] → [`equations`] → {[`model::element`] → [`laws::bulk`]} and {[`contact`] → [`laws::friction`]}; then up
 //! again: accepted [`model::state`] → [`output`].
 //!
-//! A law alone: [`cli`] → [`case`] → [`run::law`] along a [`run::law_path`] → [`laws::friction`] → [`output`].
+//! A law alone: [`cli`] → [`case`] → [`run::law`] along a path of slip, pressure and time → [`laws::friction`] → [`output`].
 //!
 //! # The way of one number
 //!

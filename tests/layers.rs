@@ -1,5 +1,5 @@
-//! The layers of the house: a room imports only from lower ones, and no files import each other in a circle. Files and
-//! functions are short, or say why not.
+//! The layers of the house: a room imports only from lower ones, and no files import each other in a circle. A file is one
+//! idea, and no longer than that takes.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -132,64 +132,18 @@ fn only_the_laws_know_each_other_by_name() {
     }
 }
 
-/// Lines of a file, and what a longer one says in its first comment, with the reason behind.
-const LONGEST_FILE: (usize, &str) = (300, "Over 300 lines: ");
-
-/// Lines of a function, and what the comment before a longer one says, with the reason behind.
-const LONGEST_FUNCTION: (usize, &str) = (50, "Over 50 lines: ");
-
-/// Whether a line begins a function.
-fn begins_function(line: &str) -> bool {
-    let words = line.split_whitespace().take_while(|word| *word != "fn");
-    let before = |word: &str| ["const", "async", "unsafe"].contains(&word) || word.starts_with("pub");
-    line.split_whitespace().any(|word| word == "fn") && words.into_iter().all(|word| before(word) || word == "in")
-}
-
-/// Functions of a formatted text that are too long and give no reason: their first lines and lengths.
-fn long_functions(text: &str) -> Vec<(String, usize)> {
-    let lines: Vec<&str> = text.lines().collect();
-    let mut long = Vec::new();
-    for (k, line) in lines.iter().enumerate().filter(|(_, line)| begins_function(line)) {
-        let end = format!("{}}}", &line[..line.len() - line.trim_start().len()]);
-        let length = lines[k..].iter().position(|line| *line == end).map_or(1, |last| last + 1);
-        // What has no body ends on its own line.
-        let body = lines[k..k + length].iter().find(|line| line.ends_with(['{', ';', '}']));
-        let length = if body.is_some_and(|line| line.ends_with('{')) { length } else { 1 };
-        let comments = lines[..k].iter().rev().map(|line| line.trim_start());
-        let reason = comments.take_while(|line| line.starts_with("//") || line.starts_with('#'));
-        if length > LONGEST_FUNCTION.0 && !reason.into_iter().any(|line| line.contains(LONGEST_FUNCTION.1)) {
-            long.push((line.trim().into(), length));
-        }
-    }
-    long
-}
+/// A file is one idea; a longer one is two.
+const LONGEST_FILE: usize = 600;
 
 #[test]
-fn files_and_functions_are_short_or_say_why_not() {
-    let mut long = Vec::new();
-    for file in sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src")) {
-        let text = std::fs::read_to_string(&file).expect("a source file");
-        let length = text.lines().count();
-        let mut comment = text.lines().take_while(|line| line.starts_with("//!"));
-        if length > LONGEST_FILE.0 && !comment.any(|line| line.contains(LONGEST_FILE.1)) {
-            long.push(format!("{}: {length} lines", file.display()));
-        }
-        let functions = long_functions(&text).into_iter();
-        long.extend(functions.map(|(line, length)| format!("{}: {length} lines: {line}", file.display())));
-    }
-    assert!(long.is_empty(), "long, with no reason given:\n{}", long.join("\n"));
-}
-
-#[test]
-fn long_functions_are_found() {
-    let of = |before: &str, lines: usize| {
-        long_functions(&format!(
-            "{before}    pub(super) fn f(\n        x: f64,\n    ) {{\n{}    }}\n",
-            "        x;\n".repeat(lines)
-        ))
-    };
-    assert_eq!(of("", 46), []);
-    assert_eq!(of("", 47), [("pub(super) fn f(".into(), 51)]);
-    assert_eq!(of("    /// Over 50 lines: one formula.\n    #[inline]\n", 47), []);
-    assert_eq!(of("    fn without(body: f64) -> f64;\n", 46), []);
+fn a_file_is_one_idea_and_no_longer() {
+    let lines = |file: &PathBuf| std::fs::read_to_string(file).expect("a source file").lines().count();
+    let files = sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src")).into_iter();
+    let measured =
+        files.filter(|file| file.extension().is_some_and(|end| end == "rs")).map(|file| (lines(&file), file));
+    let long: Vec<String> = measured
+        .filter(|(length, _)| *length > LONGEST_FILE)
+        .map(|(length, file)| format!("{}: {length} lines", file.display()))
+        .collect();
+    assert!(long.is_empty(), "of more than {LONGEST_FILE} lines:\n{}", long.join("\n"));
 }

@@ -14,8 +14,7 @@ use super::schema::schema_of;
 use super::translate::drive;
 use crate::laws::friction::{FrictionLaw, FrictionParameters, FrictionState, observables};
 use crate::model::boundary::{Drive, Span};
-use crate::run::law::LawTest;
-use crate::run::law_path::{Course, Phase, Undefined};
+use crate::run::law::{Course, LawTest, Phase, Undefined};
 
 /// A test of a friction law alone: the law, and the path of slip and pressure it is driven along.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]

@@ -1,10 +1,10 @@
 //! The case: JSON as written, translated to the builder of a model ([`crate::model::builder`]), and run ([`job`]).
+//!
+//! A case as it is written, in a file or by a program.
 
 mod again;
 mod choice;
-mod differences;
 mod error;
-mod explain;
 pub mod file;
 pub mod job;
 mod labels;
@@ -13,23 +13,19 @@ pub mod loading;
 mod read;
 mod report;
 mod schema;
-mod strict;
 mod translate;
-mod written;
 
-pub use again::Opened;
-pub use error::CaseError;
-pub use report::{report, understood};
-pub use written::Written;
-
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
 use crate::mesh::{Mesh, gmsh};
 use crate::model::Model;
+pub use again::Opened;
+pub use error::CaseError;
 use error::{Checked, Complaint};
 use file::{Case, MeshSource};
+pub use report::{report, understood};
 
 /// Read a case file.
 ///
@@ -107,4 +103,35 @@ pub fn blocks_from_text(text: &str) -> Result<Mesh, CaseError> {
 /// The JSON Schema of a case file.
 pub fn schema() -> Value {
     schema::schema_of::<Case>()
+}
+
+/// A case as it is written.
+#[derive(Clone, Debug)]
+pub struct Written {
+    /// its file, or where it would stand
+    pub path: PathBuf,
+    /// the case as JSON
+    pub document: Value,
+    /// what it says
+    pub case: Case,
+}
+
+impl Written {
+    /// Read a case file.
+    ///
+    /// # Errors
+    /// [`CaseError`] when the file cannot be read or is not a case.
+    pub fn read(path: &Path) -> Result<Self, CaseError> {
+        let (document, case) = read::read_document(path)?;
+        Ok(Self { path: path.to_owned(), document, case })
+    }
+
+    /// A case from its text; `path` is where it would stand.
+    ///
+    /// # Errors
+    /// As [`Written::read`].
+    pub fn from_text(text: &str, path: &Path) -> Result<Self, CaseError> {
+        let (document, case) = read::read_document_text(text, path)?;
+        Ok(Self { path: path.to_owned(), document, case })
+    }
 }

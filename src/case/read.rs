@@ -2,19 +2,26 @@
 //!
 //! The text becomes a JSON document first, in which no key may stand twice; the document becomes a `Case` or a
 //! `LawTestInput`, and what does not fit is named by its place.
+//!
+//! A JSON document whose lists are no objects: serde's derived types would take a list for their keys in order.
+//!
+//! serde's complaints in the words of somebody who writes a case.
 
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-use serde::de::{Deserialize, DeserializeOwned, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde::de::value::{MapAccessDeserializer, MapDeserializer, SeqDeserializer};
+use serde::de::{
+    Deserialize, DeserializeOwned, Deserializer, Error, IntoDeserializer, MapAccess, SeqAccess, Unexpected, Visitor,
+};
+use serde::forward_to_deserialize_any;
 use serde_json::error::Category;
 use serde_json::{Map, Value};
 use serde_path_to_error::{Path as KeyPath, Segment};
 
 use super::error::{CaseError, Complaint};
-use super::explain::{SEVERAL_KEYS, clipped, explain};
-use super::strict::Strict;
+use crate::mesh::names::{in_line, nearest};
 
 /// No case is larger: large meshes have files of their own [MiB].
 const LARGEST: u64 = 16;
@@ -214,4 +221,190 @@ fn object_at<'v>(document: &'v mut Value, path: &KeyPath) -> Option<&'v mut Map<
         Segment::Unknown => None,
     };
     path.iter().try_fold(document, step)?.as_object_mut()
+}
+
+/// A value whose lists are taken for lists only.
+#[derive(Clone, Copy)]
+pub struct Strict<'de>(pub &'de Value);
+
+/// What a type that is chosen by a tag expects, in serde's words: all else that takes lists says so by its request.
+const TAGGED: &str = "internally tagged enum ";
+
+/// The entries of an object.
+type Entries<'de> = MapDeserializer<'de, Box<dyn Iterator<Item = (&'de str, Strict<'de>)> + 'de>, serde_json::Error>;
+
+impl<'de> Strict<'de> {
+    fn list<V: Visitor<'de>>(list: &'de [Value], visitor: V) -> Result<V::Value, serde_json::Error> {
+        let mut entries = SeqDeserializer::new(list.iter().map(Strict));
+        let value = visitor.visit_seq(&mut entries)?;
+        match entries.end() {
+            Ok(()) => Ok(value),
+            Err(_) => Err(serde_json::Error::invalid_length(list.len(), &"fewer elements in array")),
+        }
+    }
+
+    fn entries(object: &'de Map<String, Value>) -> Entries<'de> {
+        MapDeserializer::new(Box::new(object.iter().map(|(key, value)| (key.as_str(), Strict(value)))))
+    }
+}
+
+impl<'de> Deserializer<'de> for Strict<'de> {
+    type Error = serde_json::Error;
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, serde_json::Error> {
+        let expected = |visitor: &V| (visitor as &dyn serde::de::Expected).to_string();
+        match self.0 {
+            Value::Array(_) if expected(&visitor).starts_with(TAGGED) => {
+                Err(serde_json::Error::invalid_type(Unexpected::Seq, &visitor))
+            }
+            Value::Array(list) => Self::list(list, visitor),
+            Value::Object(object) => {
+                let mut entries = Self::entries(object);
+                let value = visitor.visit_map(&mut entries)?;
+                match entries.end() {
+                    Ok(()) => Ok(value),
+                    Err(_) => Err(serde_json::Error::invalid_length(object.len(), &"fewer elements in map")),
+                }
+            }
+            scalar => scalar.deserialize_any(visitor),
+        }
+    }
+
+    fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, serde_json::Error> {
+        match self.0 {
+            Value::Array(_) => Err(serde_json::Error::invalid_type(Unexpected::Seq, &visitor)),
+            _ => self.deserialize_any(visitor),
+        }
+    }
+
+    fn deserialize_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, serde_json::Error> {
+        self.deserialize_map(visitor)
+    }
+
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, serde_json::Error> {
+        if self.0.is_null() { visitor.visit_none() } else { visitor.visit_some(self) }
+    }
+
+    fn deserialize_newtype_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        visitor: V,
+    ) -> Result<V::Value, serde_json::Error> {
+        visitor.visit_newtype_struct(self)
+    }
+
+    fn deserialize_enum<V: Visitor<'de>>(
+        self,
+        name: &'static str,
+        variants: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, serde_json::Error> {
+        match self.0 {
+            Value::Object(object) if object.len() != 1 => Err(serde_json::Error::custom(SEVERAL_KEYS)),
+            Value::Object(object) => {
+                MapAccessDeserializer::new(Self::entries(object)).deserialize_enum(name, variants, visitor)
+            }
+            other => other.deserialize_enum(name, variants, visitor),
+        }
+    }
+
+    forward_to_deserialize_any! {
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf unit unit_struct seq tuple
+        tuple_struct identifier ignored_any
+    }
+}
+
+impl<'de> IntoDeserializer<'de, serde_json::Error> for Strict<'de> {
+    type Deserializer = Self;
+
+    fn into_deserializer(self) -> Self {
+        self
+    }
+}
+
+/// Longest piece of the user's own text that a message repeats.
+const LONGEST: usize = 100;
+
+const OBJECT: &str = "an object {…}";
+
+/// serde's complaint of an object whose only key should choose a variant.
+pub const SEVERAL_KEYS: &str = "invalid value: map, expected map with a single key";
+
+/// A complaint of serde as a sentence; unknown names come with the nearest known one.
+pub fn explain(message: &str) -> String {
+    if message.starts_with("unknown field") || message.starts_with("unknown variant") {
+        return unknown(message);
+    }
+    if let Some(rest) = message.strip_prefix("missing field ") {
+        return format!("the key {rest} is missing here");
+    }
+    if message == SEVERAL_KEYS {
+        return "has several keys, but must be an object {…} with exactly one key".into();
+    }
+    let Some((found, expected)) = message.split_once(", expected ") else { return clipped(message) };
+    let expected = plain_expected(expected);
+    if let Some(found) = found.strip_prefix("invalid type: ").or_else(|| found.strip_prefix("invalid value: ")) {
+        return format!("is {}, but must be {expected}", plain_found(found));
+    }
+    match found.strip_prefix("invalid length ") {
+        Some(_) if expected == OBJECT => format!("is a list […], but must be {OBJECT}"),
+        Some(length) => format!("has {length} entries, but must have {expected}"),
+        None => clipped(message),
+    }
+}
+
+/// serde quotes the unknown name first, and then all known ones.
+fn unknown(message: &str) -> String {
+    let mut quoted = message.split('`').skip(1).step_by(2);
+    let name = quoted.next().unwrap_or_default();
+    let known: Vec<&str> = quoted.collect();
+    let name_shown = clipped(name);
+    if known.is_empty() {
+        return format!("`{name_shown}` is not known here: leave it out, nothing more may stand in this object");
+    }
+    let meant =
+        nearest(name, known.iter().copied()).map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+    let stop = if meant.is_empty() { "." } else { "" };
+    format!("`{name_shown}` is not known here{meant}{stop} Known are `{}`", known.join("`, `"))
+}
+
+fn plain_found(found: &str) -> String {
+    let value = found.split_once('`').map(|(_, value)| value.trim_end_matches('`'));
+    match (found, value) {
+        ("map", _) => "an object {…}".into(),
+        ("sequence", _) => "a list […]".into(),
+        (_, Some(value)) => clipped(value),
+        _ => clipped(found.strip_prefix("string ").unwrap_or(found)),
+    }
+}
+
+fn plain_expected(expected: &str) -> &str {
+    match expected {
+        "f64" => "a number",
+        "u64" | "usize" => "a whole number, 0 or more",
+        "a string" => "text in quotes",
+        "a boolean" => "true or false",
+        "a map" => OBJECT,
+        "a sequence" => "a list […]",
+        "an array of length 2" => "2 numbers",
+        "an array of length 4" => "4",
+        "fewer elements in array" | "fewer elements in map" => "fewer",
+        "enum" => "an object {…} with exactly one key",
+        "string or map" | "variant identifier" => "a name in quotes, or an object {…} with one key",
+        _ if ["struct ", "internally tagged enum "].iter().any(|kind| expected.starts_with(kind)) => OBJECT,
+        _ => expected,
+    }
+}
+
+/// The text in one line, cut where it is too long for a message.
+pub fn clipped(text: &str) -> String {
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}…", in_line(&text[..end])),
+        None => in_line(text).into(),
+    }
 }

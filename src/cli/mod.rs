@@ -24,7 +24,7 @@ use crate::output::law::LawTable;
 use crate::output::report;
 use crate::output::summary::{self, About, Ending, LawSummary};
 use crate::run::error::Error;
-use crate::run::law_report::{Hold, LawReport, PathPoint};
+use crate::run::law::{Hold, LawReport, PathPoint};
 
 /// What a schema describes.
 #[derive(Clone, Copy, Debug, ValueEnum)]

@@ -15,7 +15,7 @@
 //! p̄ − α_n (g − d(Δu_t, p → 0)) > 0
 //! ```
 //!
-//! A fluid adds its pressure p_w to p in the forces and in nothing else, see `fluid.rs`; it acts on open points too.
+//! A fluid adds its pressure p_w to p in the forces and in nothing else, see `pair.rs`; it acts on open points too.
 //!
 //! With radiation damping, q + η Δu_t/Δt stands for q in static increments: without inertia slip could be as fast as it likes;
 //! the bodies, were they unbounded, would take η v from the traction by the shear waves that slip sends into them.
@@ -36,19 +36,21 @@
 //! What is accepted depends on c by no more than the control of static increments allows: it repeats those in which friction
 //! would change with the share that counts. Without c a point that comes in with a high pressure would stick for its stiff
 //! penalty alone, and spring away by all it has missed in the increment after.
+//!
+//! # Open or closed
+//!
+//! Where a contact point is at the end of an increment, and whether it is closed there.
 
-use super::closed::Beside;
-pub use super::closed::{Closed, ClosedPoints, nodal_forces};
-use super::kinematics::Kinematics;
 pub use super::kinematics::Meeting;
+use super::kinematics::{Kinematics, kinematics};
+use super::nodal_forces::Beside;
+pub use super::nodal_forces::{Closed, ClosedPoints, nodal_forces};
 use super::pair::ContactPair;
-use super::place::may_ride;
-pub use super::place::{PointPlace, closes, place, touches};
-use super::point::SlavePoint;
-use super::presumption::Presumption;
-pub use super::presumption::{PointIncrement, Presume, Tractions};
-pub use super::state::ContactState;
+pub use super::point::{ContactState, PointIncrement, Presume, Tractions};
+use super::point::{MasterPoint, Presumption, SlavePoint};
+use super::projection::Projection;
 use crate::laws::friction::{Answer, FrictionLaw, FrictionResponse, LawFailure, Sliding};
+use crate::mesh::configuration::Configuration;
 
 /// A point on the way through its law: first what the law is asked for, then what follows from its answer.
 #[derive(Debug)]
@@ -275,4 +277,61 @@ const AGREE: f64 = 1e-14;
 /// where its answer goes on in a straight line.
 fn carried(pressure: f64, Presumption { carried, kept, .. }: Presumption) -> f64 {
     carried.unwrap_or(if pressure > 0.0 { pressure } else { kept })
+}
+
+/// Where a point is at the end of an increment.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PointPlace {
+    /// g; 0 where nothing faces it [L]
+    pub gap: f64,
+    /// The foot, if the master faces it
+    pub foot: Option<MasterPoint>,
+    /// Whether it is closed, and has kinematics
+    pub closes: bool,
+    /// p_w; it has kinematics where this is not 0, too [F/L²]
+    pub fluid: f64,
+}
+
+/// Where a point is whose projection is known, in the committed configuration and that of the trial, and its kinematics if it
+/// is closed.
+pub fn place(
+    pair: &ContactPair,
+    slave: &SlavePoint,
+    projection: Option<Projection>,
+    old: &ContactState,
+    increment: PointIncrement,
+    [before, x]: [&Configuration; 2],
+    k: &mut Kinematics,
+) -> PointPlace {
+    let Some(projection) = projection else { return PointPlace::default() };
+    let gap = slave.gap(projection.gap, increment.during.fading);
+    let closes = closes(pair, slave, gap, old, increment);
+    let fluid = pair.fluid_pressure(slave, x, increment.during.time);
+    if closes || fluid != 0.0 {
+        kinematics(slave, &pair.master, &projection, old.foot, x, k);
+        if old.foot.is_none() {
+            k.count_from(before, x);
+        }
+    }
+    PointPlace { gap, foot: Some(projection.foot), closes, fluid }
+}
+
+/// Whether a point with this gap carries pressure, or is presumed to.
+pub fn closes(pair: &ContactPair, slave: &SlavePoint, gap: f64, old: &ContactState, increment: PointIncrement) -> bool {
+    let kept = increment.presumption.kept > 0.0;
+    let clearance = gap - old.friction.opening;
+    let pressure = old.multiplier - pair.normal_stiffness(increment.during.stiffening) * clearance;
+    let presume = increment.presumption.presume;
+    kept || pressure > 0.0 || touches(pair, clearance, old, presume) || may_ride(pair, slave, old)
+}
+
+/// Whether slip may keep a point closed, or part it, whatever its gap says: that is known once its slip is.
+fn may_ride(pair: &ContactPair, slave: &SlavePoint, old: &ContactState) -> bool {
+    old.foot.is_some() && !pair.law(slave).start().offsets().is_empty() && !old.apart(pair.touch)
+}
+
+/// Whether a zero gap is presumed to be closed, and to stick.
+pub fn touches(pair: &ContactPair, clearance: f64, old: &ContactState, presume: Presume) -> bool {
+    let presumed = presume == Presume::Touch && old.foot.is_some();
+    presumed && [old.clearance(), clearance].iter().all(|gap| gap.abs() <= pair.touch)
 }

@@ -20,9 +20,8 @@
 
 use nalgebra::Vector2;
 
-use super::master::Master;
+use super::master::{Master, Rigid};
 use super::projection::{Bound, FACING, Projection, normal_of, tangent_of};
-use super::rigid::Rigid;
 use super::surface::{MasterPoint, Path, SlavePoint, Surface};
 use crate::mesh::configuration::Configuration;
 use crate::mesh::shape;

@@ -1,7 +1,15 @@
 //! The master side of a contact.
+//!
+//! # Rigid masters
+//!
+//! Rigid masters at rest, given by formula: the foot of a point, and how it moves with the point.
 
-use super::rigid::Rigid;
+use nalgebra::Vector2;
+
+use super::point::{MasterPoint, SlavePoint};
+use super::projection::{Bound, FACING, Projection, normal_of, tangent_of};
 use super::surface::Surface;
+use crate::mesh::configuration::Configuration;
 
 /// The master side.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,4 +18,166 @@ pub enum Master {
     Mesh(Surface),
     /// A rigid body at rest
     Rigid(Rigid),
+}
+
+/// A rigid body.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Rigid {
+    /// A half-space
+    Plane(Plane),
+    /// A disk, or everything but a disk
+    Circle(Circle),
+    /// A body bounded by straight lines
+    Polyline(Polyline),
+}
+
+/// A rigid half-space: a point of its surface and its unit normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane {
+    /// A point of the surface [L]
+    pub point: Vector2<f64>,
+    /// Unit normal, out of the solid
+    pub normal: Vector2<f64>,
+}
+
+/// A rigid circle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Circle {
+    /// Centre [L]
+    pub centre: Vector2<f64>,
+    /// Radius [L]
+    pub radius: f64,
+    /// Whether the solid is outside: a hole
+    pub hole: bool,
+}
+
+/// A rigid body bounded by straight lines, the solid on their right: they run along s.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polyline {
+    corners: Vec<Vector2<f64>>,
+    /// Arc length from the first corner to each [L]
+    arcs: Vec<f64>,
+}
+
+impl Rigid {
+    /// The foot of a slave point; `None` past the end of a polyline.
+    ///
+    /// X and u are kept apart: what a displacement changes is exact, however far away a plane's point or a circle's centre
+    /// lies.
+    pub fn project(&self, slave: &SlavePoint, x: &Configuration) -> Option<Projection> {
+        match self {
+            Self::Plane(plane) => Some(plane.project(x.apart(&slave.position, plane.point))),
+            Self::Circle(circle) => circle.project(x.apart(&slave.position, circle.centre)),
+            Self::Polyline(polyline) => polyline.project(|corner| x.apart(&slave.position, corner), slave.outward(x)),
+        }
+    }
+
+    /// The way of a slave point's foot from one place to another along s [L].
+    pub fn way(&self, slave: &SlavePoint, from: MasterPoint, to: MasterPoint, x: &Configuration) -> f64 {
+        let way = to.xi - from.xi;
+        let round_trip = |way: f64, round: f64| way - round * (way / round).round();
+        match self {
+            Self::Plane(_) => way,
+            Self::Circle(circle) => round_trip(way, 2.0 * std::f64::consts::PI * circle.radius),
+            Self::Polyline(polyline) => {
+                let start = |line: usize| {
+                    let [reference, _] = x.apart(&slave.position, polyline.corners[line]);
+                    polyline.arcs[line] + reference.dot(&polyline.direction(line))
+                };
+                let apart = if from.segment == to.segment { 0.0 } else { start(to.segment) - start(from.segment) };
+                match polyline.is_closed() {
+                    true => round_trip(way + apart, polyline.arcs[polyline.arcs.len() - 1]),
+                    false => way + apart,
+                }
+            }
+        }
+    }
+}
+
+impl Plane {
+    fn project(&self, [reference, displacement]: [Vector2<f64>; 2]) -> Projection {
+        let (n, s) = (self.normal, tangent_of(self.normal));
+        let foot = MasterPoint { segment: 0, xi: displacement.dot(&s) };
+        let bound = Bound::Rigid { advance: 1.0, turn: 0.0 };
+        Projection { foot, gap: reference.dot(&n) + displacement.dot(&n), normal: n, bound }
+    }
+}
+
+impl Circle {
+    /// Polar coordinates: g = ±(d − r), δ(arc) = r/d s·δx, δθ = ∓1/d s·δx. The centre has no foot.
+    ///
+    /// d − r = (|X| − r) + (2 X·u + u·u)/(d + |X|), so that a large radius does not cancel what u changes.
+    fn project(&self, [reference, displacement]: [Vector2<f64>; 2]) -> Option<Projection> {
+        let offset = reference + displacement;
+        let (distance, start) = (offset.norm(), reference.norm());
+        let sign = if self.hole { -1.0 } else { 1.0 };
+        let farther = displacement.dot(&(reference + offset)) / (distance + start);
+        let angle = reference.perp(&displacement).atan2(reference.dot(&offset));
+        (distance > 0.0).then(|| Projection {
+            foot: MasterPoint { segment: 0, xi: -sign * self.radius * angle },
+            gap: sign * ((start - self.radius) + farther),
+            normal: offset * (sign / distance),
+            bound: Bound::Rigid { advance: self.radius / distance, turn: -sign / distance },
+        })
+    }
+}
+
+impl Polyline {
+    /// A polyline through two or more different corners.
+    pub fn new(corners: Vec<Vector2<f64>>) -> Self {
+        let lengths = corners.windows(2).map(|pair| (pair[1] - pair[0]).norm());
+        let arcs = std::iter::once(0.0).chain(lengths.scan(0.0, |sum, length| {
+            *sum += length;
+            Some(*sum)
+        }));
+        Self { arcs: arcs.collect(), corners }
+    }
+
+    fn is_closed(&self) -> bool {
+        self.corners.first() == self.corners.last()
+    }
+
+    /// s of a line.
+    fn direction(&self, line: usize) -> Vector2<f64> {
+        (self.corners[line + 1] - self.corners[line]).normalize()
+    }
+
+    /// The nearest line that faces a point, given by X and u from any corner. Between two lines the foot is their corner;
+    /// past the ends there is none.
+    fn project(
+        &self,
+        from: impl Fn(Vector2<f64>) -> [Vector2<f64>; 2],
+        outward: Option<Vector2<f64>>,
+    ) -> Option<Projection> {
+        let last = self.corners.len() - 2;
+        let faces = |k: usize| outward.is_none_or(|outward| normal_of(self.direction(k)).dot(&outward) < FACING);
+        let nearest = (0..=last).filter(|&k| faces(k)).map(|k| {
+            let [reference, displacement] = from(self.corners[k]);
+            let (s, offset) = (self.direction(k), reference + displacement);
+            let along = offset.dot(&s).clamp(0.0, self.arcs[k + 1] - self.arcs[k]);
+            (k, along, (offset - s * along).norm())
+        });
+        let (k, along, distance) = nearest.min_by(|a, b| a.2.total_cmp(&b.2))?;
+        let [reference, displacement] = from(self.corners[k]);
+        let (s, offset, length) = (self.direction(k), reference + displacement, self.arcs[k + 1] - self.arcs[k]);
+        let (past_start, past_end) = (offset.dot(&s) < 0.0, offset.dot(&s) > length);
+        let neighbour = match (past_start, past_end) {
+            (true, _) if k > 0 || self.is_closed() => Some(k.checked_sub(1).unwrap_or(last)),
+            (_, true) if k < last || self.is_closed() => Some(if k < last { k + 1 } else { 0 }),
+            (false, false) => None,
+            _ => return None,
+        };
+        let Some(neighbour) = neighbour else {
+            let normal = normal_of(s);
+            let gap = reference.dot(&normal) + displacement.dot(&normal);
+            let foot = MasterPoint { segment: k, xi: displacement.dot(&s) };
+            return Some(Projection { foot, gap, normal, bound: Bound::Rigid { advance: 1.0, turn: 0.0 } });
+        };
+        let arm = offset - s * along;
+        let mean = normal_of(s + self.direction(neighbour)).normalize();
+        let gap = if arm.dot(&mean) < 0.0 { -distance } else { distance };
+        let (normal, turn) = if gap == 0.0 { (mean, 0.0) } else { (arm / gap, -1.0 / gap) };
+        let foot = MasterPoint { segment: k, xi: along - reference.dot(&s) };
+        Some(Projection { foot, gap, normal, bound: Bound::Rigid { advance: 0.0, turn } })
+    }
 }

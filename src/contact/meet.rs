@@ -5,14 +5,14 @@ use std::collections::BTreeSet;
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::closed::nodal_forces;
 use super::kinematics::{Kinematics, Meeting, kinematics};
 use super::master::Master;
 use super::mortar::{Overlaps, Room};
+use super::nodal_forces::nodal_forces;
 use super::pair::{ContactPair, InitialTraction, Reverse};
+use super::point::ContactState;
 use super::search::Index;
 use super::small_sliding::{SmallPoint, SmallSliding};
-use super::state::ContactState;
 use super::surface::{SlavePoint, Weights};
 use crate::mesh::configuration::Configuration;
 

@@ -11,29 +11,19 @@
 //! the traction on the slave is t = p n − q s.
 
 pub mod boxes;
-pub mod closed;
-mod cuts;
 pub mod dual;
-pub mod fields;
-pub mod fluid;
 pub mod force;
 pub mod kinematics;
-mod lines;
 pub mod master;
 mod meet;
 pub mod mortar;
-mod mortar_averages;
-mod mortar_rigid;
+mod mortar_segments;
+pub mod nodal_forces;
 pub mod pair;
-mod place;
 pub mod point;
-pub mod presumption;
 pub mod projection;
 pub mod response;
-pub mod resultant;
-pub mod rigid;
 pub mod search;
 pub mod sight;
 pub mod small_sliding;
-pub mod state;
 pub mod surface;

@@ -17,20 +17,30 @@
 //! count once a side.
 //! All variations come with [`Dual`] numbers.
 //!
-//! Against a rigid body nothing is cut, see `mortar_rigid.rs`.
+//! Against a rigid body nothing is cut, see below.
+//!
+//! # Averages
+//!
+//! What mortar contact averages around a slave node, and what the averages say about its place.
+//!
+//! # Rigid masters
+//!
+//! Mortar contact with a rigid body: nothing is cut. g_j and Δu_t,j are the means of what the points of Gauss's rule between
+//! two nodes have, each with its own foot, and n_j is the direction of the mean of their normals. One function sums them up:
+//! every value comes with its variation.
+
+use std::iter::repeat;
 
 use nalgebra::Vector2;
 use rayon::prelude::*;
 
-pub use super::cuts::Overlaps;
-use super::cuts::{CutEdge, Overlap};
-use super::dual::{DualVector, Number};
-use super::kinematics::{Kinematics, Meeting};
-use super::lines::Frame;
-use super::master::Master;
-pub use super::mortar_averages::Room;
-use super::mortar_averages::{Averages, Averaging, MeanPlace, hat};
+use super::dual::{Dual, DualVector, Number};
+use super::kinematics::{Kinematics, Meeting, past_rigid};
+use super::master::{Master, Rigid};
+pub use super::mortar_segments::Overlaps;
+use super::mortar_segments::{CutEdge, Frame, Line, Overlap};
 use super::point::{LengthShare, MasterPoint, SlavePoint, Weights, edge_point, lone_point};
+use super::projection::{Projection, tangent_of};
 use super::search::{Index, Trees};
 use super::surface::{CORNER, Segment, Surface};
 use crate::mesh::configuration::Configuration;
@@ -45,7 +55,7 @@ pub struct Mortar {
     /// Edges at each point, with the number of its shape function there
     at: Vec<Vec<(usize, usize)>>,
     /// Points of Gauss's rule around each point, their lengths times φ_j
-    pub(super) around: Vec<Vec<SlavePoint>>,
+    around: Vec<Vec<SlavePoint>>,
 }
 
 /// The weights of all points in the committed configuration. They stay as they are while an increment is iterated.
@@ -289,3 +299,242 @@ impl Mortar {
 /// A point whose average is taken over less than this share of its edges is not in contact: the mean over a sliver is
 /// lost in round-off.
 const NEGLIGIBLE: f64 = 1e-9;
+
+/// φ_a at ξ on an edge of n nodes, and its derivative: linear from node to node.
+fn hat(n: usize, a: usize, xi: f64) -> (f64, f64) {
+    let (place, width) = ([-1.0, 1.0, 0.0][a], if n == 2 { 2.0 } else { 1.0 });
+    let away: f64 = xi - place;
+    match away.abs() < width {
+        true => (1.0 - away.abs() / width, -away.signum() / width),
+        false => (0.0, 0.0),
+    }
+}
+
+/// A_j and W_ja.
+#[derive(Clone, Debug, Default)]
+struct Averages<N> {
+    pub weights: Vec<N>,
+    pub length: N,
+}
+
+impl<N: Number> Averages<N> {
+    /// Nothing summed up yet for so many nodes.
+    pub fn clear(&mut self, nodes: usize) {
+        self.weights.clear();
+        self.weights.resize(nodes, N::default());
+        self.length = N::default();
+    }
+
+    /// Add the integrals over one overlap.
+    pub fn integrate(
+        &mut self,
+        edge: &[usize],
+        a: usize,
+        overlap: &Overlap,
+        segment: &Segment,
+        along: &DualVector<N>,
+        frame: &Frame<N>,
+    ) {
+        let ends = overlap.ends.map(|cut| match cut.node {
+            None => N::constant(cut.xi),
+            Some(node) => Line::Edge(edge).coordinate(frame.at(node), along, cut.xi, frame),
+        });
+        let (half, middle) = (ends[1].minus(&ends[0]).scaled(0.5), ends[0].plus(&ends[1]).scaled(0.5));
+        let points = if edge.len() == 2 && segment.middle.is_none() { 2 } else { 4 };
+        for (at, weight) in shape::gauss(points) {
+            let xi = middle.plus(&half.scaled(at));
+            let slave = Line::Edge(edge);
+            let values = slave.values(&xi);
+            let slope = slave.slope(&xi, frame);
+            let (value, rate) = hat(edge.len(), a, xi.value());
+            let position = frame.position(edge.iter().copied(), &values);
+            let share = slope.dot(&slope).sqrt().times(&half.scaled(weight)).times(&xi.map(value, rate));
+            let share = match frame.depth(&position) {
+                Some(depth) => share.times(&depth),
+                None => share,
+            };
+            let master = Line::Segment(segment);
+            let eta = master.coordinate(&position, along, 0.5, frame);
+            self.length.accumulate(1.0, &share);
+            for (&node, value) in edge.iter().zip(&values) {
+                self.weights[frame.local(node)].accumulate(1.0, &share.times(value));
+            }
+            for (node, value) in segment.nodes().zip(master.values(&eta)) {
+                self.weights[frame.local(node)].accumulate(-1.0, &share.times(&value));
+            }
+        }
+    }
+}
+
+/// Memory for the averages around one point after the other.
+#[derive(Clone, Debug, Default)]
+pub struct Room {
+    values: Averaging<f64>,
+    duals: Averaging<Dual>,
+    /// What a point of Gauss's rule has against a rigid body, and the variations of the mean normal
+    around: Kinematics,
+    turns: [Vec<f64>; 2],
+}
+
+/// What an average is taken over, and its parts.
+#[derive(Clone, Debug, Default)]
+struct Averaging<N> {
+    frame: Frame<N>,
+    averages: Averages<N>,
+    /// W_ja/A_j
+    relative: Vec<N>,
+}
+
+/// The mean place of a slave node on the master.
+struct MeanPlace<'a, N> {
+    pub nodes: &'a [usize],
+    /// W_ja/A_j
+    pub relative: &'a [N],
+    pub gap: N,
+    pub slip: N,
+    pub length: N,
+    /// s and n
+    pub axes: [DualVector<N>; 2],
+}
+
+impl<N: Number> MeanPlace<'_, N> {
+    /// Write it, and how it varies if that is asked for, over the kinematics of the point.
+    pub fn write(self, k: &mut Kinematics) {
+        let Self { nodes, relative, gap, slip, length, axes: [s, n] } = self;
+        k.begin(Vector2::new(n.x.value(), n.y.value()));
+        k.nodes.extend_from_slice(nodes);
+        k.clear();
+        k.tangent = Vector2::new(s.x.value(), s.y.value());
+        (k.slip, k.length) = (slip.value(), length.value());
+        k.relative.iter_mut().zip(relative).for_each(|(value, w)| *value = w.value());
+        if !k.varied {
+            return;
+        }
+        let set = |row: &mut Vec<f64>, d: &N| row[..d.gradient().len()].copy_from_slice(d.gradient());
+        set(&mut k.dgap, &gap);
+        set(&mut k.dslip, &slip);
+        set(&mut k.dlength, &length);
+        let [dx, dy] = [&s.x, &s.y].map(|d| d.gradient().iter().copied().chain(repeat(0.0)));
+        let turns = k.drotation.iter_mut().zip(dx.zip(dy));
+        turns.for_each(|(turn, (dx, dy))| *turn = dx * k.normal.x + dy * k.normal.y);
+        for (a, w) in relative.iter().enumerate() {
+            k.changing.push(a);
+            k.drelative.extend(w.gradient().iter().copied().chain(repeat(0.0)).take(k.dgap.len()));
+        }
+    }
+}
+
+/// Sums of ℓ and of ℓ times gap, slip and n.
+#[derive(Default)]
+struct Sums {
+    length: f64,
+    gap: f64,
+    slip: f64,
+    along: Vector2<f64>,
+    foot: Option<MasterPoint>,
+}
+
+impl Mortar {
+    /// Where a point meets a rigid body, and its kinematics; `None` where that faces none of its surroundings. The
+    /// configurations are the committed one and that of the trial.
+    pub fn meet_rigid(
+        &self,
+        point: usize,
+        body: &Rigid,
+        [before, x]: [&Configuration; 2],
+        (mean, room): (&mut Kinematics, &mut Room),
+    ) -> Option<Meeting> {
+        let around = &self.around[point];
+        let meet = |slave: &SlavePoint, k: &mut Kinematics| meet(slave, body, [before, x], k);
+        let Room { around: k, turns, .. } = room;
+        k.varied = mean.varied;
+        mean.begin(Vector2::zeros());
+        for slave in around {
+            if meet(slave, k).is_some() {
+                mean.list(k.nodes.iter().copied());
+            }
+        }
+        mean.clear();
+        let dofs = mean.dgap.len();
+        mean.changing.extend((0..mean.nodes.len()).filter(|_| mean.varied));
+        mean.drelative.resize(mean.changing.len() * dofs, 0.0);
+        let mut sums = Sums::default();
+        turns.iter_mut().for_each(|turn| *turn = zeros(std::mem::take(turn), dofs));
+        for slave in around {
+            if let Some(projection) = meet(slave, k) {
+                sums.foot.get_or_insert(projection.foot);
+                sums.add(k, projection.gap, mean, turns);
+            }
+        }
+        let Sums { length, gap, slip, along, foot } = sums;
+        let foot = foot?;
+        mean.normal = along.normalize();
+        mean.tangent = tangent_of(mean.normal);
+        (mean.length, mean.slip) = (length, slip / length);
+        let Kinematics { relative, dgap, dslip, drotation, dlength, drelative, tangent, .. } = mean;
+        let vary = |row: &mut [f64], mean: f64| {
+            row.iter_mut().zip(&*dlength).for_each(|(rate, dlength)| *rate = (*rate - dlength * mean) / length);
+        };
+        vary(dgap, gap / length);
+        vary(dslip, slip / length);
+        relative.iter_mut().for_each(|w| *w /= length);
+        if dofs > 0 {
+            drelative.chunks_exact_mut(dofs).zip(&*relative).for_each(|(row, w)| vary(row, *w));
+        }
+        let rates = drotation.iter_mut().zip(turns[0].iter().zip(&turns[1]));
+        rates.for_each(|(turn, (dx, dy))| *turn = -(dx * tangent.x + dy * tangent.y) / along.norm());
+        Some(Meeting { gap: gap / length, foot })
+    }
+}
+
+impl Sums {
+    /// Add what a point of Gauss's rule has; its weights and variations to those of the `mean`, those of n to the `turns`.
+    fn add(&mut self, k: &Kinematics, gap: f64, mean: &mut Kinematics, turns: &mut [Vec<f64>; 2]) {
+        let Kinematics { nodes, relative, dgap, dslip, dlength, drelative, .. } = mean;
+        let local = |node: usize| nodes.iter().position(|other| *other == node).unwrap_or_default();
+        let add = |sum: &mut [f64], factor: f64, row: &[f64]| {
+            for (dof, value) in row.iter().enumerate() {
+                sum[2 * local(k.nodes[dof / 2]) + dof % 2] += factor * value;
+            }
+        };
+        self.length += k.length;
+        self.gap += k.length * gap;
+        self.slip += k.length * k.slip;
+        self.along += k.length * k.normal;
+        add(dlength, 1.0, &k.dlength);
+        for (sum, value, row) in [(&mut *dgap, gap, &k.dgap), (&mut *dslip, k.slip, &k.dslip)] {
+            add(sum, value, &k.dlength);
+            add(sum, k.length, row);
+        }
+        for (sum, n, s) in [(0, k.normal.x, k.tangent.x), (1, k.normal.y, k.tangent.y)] {
+            add(&mut turns[sum], n, &k.dlength);
+            add(&mut turns[sum], -k.length * s, &k.drotation);
+        }
+        let dofs = dgap.len();
+        for (&node, &w) in k.nodes.iter().zip(&k.relative) {
+            let at = local(node);
+            relative[at] += k.length * w;
+            if k.varied {
+                add(&mut drelative[dofs * at..dofs * (at + 1)], w, &k.dlength);
+            }
+        }
+    }
+}
+
+/// So many zeros in the memory of other values.
+fn zeros(mut values: Vec<f64>, count: usize) -> Vec<f64> {
+    values.clear();
+    values.resize(count, 0.0);
+    values
+}
+
+/// Where one point of Gauss's rule meets the body.
+fn meet(slave: &SlavePoint, body: &Rigid, [before, x]: [&Configuration; 2], k: &mut Kinematics) -> Option<Projection> {
+    let projection = body.project(slave, x)?;
+    let from = body.project(slave, before).map(|was| was.foot);
+    past_rigid(slave, body, &projection, from, x, k);
+    if from.is_none() {
+        k.count_from(before, x);
+    }
+    Some(projection)
+}

@@ -1,16 +1,34 @@
 //! A slave surface, its master, and the laws between them.
+//!
+//! # Fluid
+//!
+//! A fluid between the surfaces of a contact, which pushes them apart.
+//!
+//! ```text
+//! p_total = p + p_w        p: what the surfaces themselves carry (penalty or multiplier), under which friction answers
+//! f_a = −w_a p_w n ℓ       beside that of p and q, wherever the master faces the point, closed or open
+//! ```
+//!
+//! p_w is given, by the reference position of a slave point and the time: the fluid does not flow. That friction knows the
+//! effective pressure p alone is the principle of effective stress (K. Terzaghi, Theoretical Soil Mechanics, 1943, §6).
+//! Where p_w exceeds what the bodies press with, the surfaces open and the fluid goes on pushing, which makes nothing jump
+//! there. Its work is that of a load.
+//!
+//! # Fields
+//!
+//! Fields of a contact by name, point by point: what outputs show and callers ask for.
 
+use std::fmt;
 use std::ops::Range;
 
 use nalgebra::Vector2;
 use rayon::prelude::*;
 
-use super::fluid::{BadPressure, Fluid};
 use super::master::Master;
 use super::mortar::Mortar;
-pub use super::presumption::{ContactIncrement, Presumption};
+use super::point::ContactState;
+pub use super::point::{ContactIncrement, Presumption};
 use super::small_sliding::SmallSliding;
-use super::state::ContactState;
 use super::surface::SlavePoint;
 use crate::laws::friction::{FrictionState, Held, LawFailure, LawInTime, Regime, Resolved, Sliding, observables};
 use crate::mesh::configuration::Configuration;
@@ -244,5 +262,87 @@ impl ContactPair {
             }
         }
         lines
+    }
+}
+
+/// p_w by reference position and time [F/L²].
+pub type PressureAt = dyn Fn(Vector2<f64>, f64) -> f64 + Send + Sync;
+
+/// Pressure of the fluid in a contact.
+pub struct Fluid(Box<PressureAt>);
+
+impl Fluid {
+    /// Of a pressure p_w ≥ 0 by reference position and time.
+    pub fn new(pressure: impl Fn(Vector2<f64>, f64) -> f64 + Send + Sync + 'static) -> Self {
+        Self(Box::new(pressure))
+    }
+
+    /// p_w at a reference position [F/L²]
+    pub fn pressure(&self, at: Vector2<f64>, time: f64) -> f64 {
+        (self.0)(at, time)
+    }
+}
+
+impl fmt::Debug for Fluid {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.write_str("a fluid")
+    }
+}
+
+/// Where a fluid has no pressure that it could have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BadPressure {
+    /// Reference position of the slave point
+    pub at: Vector2<f64>,
+    /// p_w there, negative or not finite [F/L²]
+    pub pressure: f64,
+}
+
+/// Names of the fields of some contacts: those that all have, and what their laws remember or let observe besides.
+pub fn field_names(pairs: &[ContactPair]) -> Vec<&'static str> {
+    let laws = pairs.iter().flat_map(|pair| &pair.laws).map(|law| law.start());
+    let always = observables::ALWAYS.iter().map(|(name, _)| *name);
+    let of_surfaces = ["gap", "pressure", "traction", "slip", "elastic_slip", "slip_rate"].into_iter();
+    let further = observables::further(laws);
+    let fluid = pairs.iter().any(|pair| pair.fluid.is_some()).then_some("fluid_pressure");
+    of_surfaces.chain(always).chain(["state", "dissipation"]).chain(further).chain(fluid).collect()
+}
+
+/// Value of a field at a point, at a time after an increment of length Δt. Where a law has none, `R` and `mu` are 0 and `structure` is
+/// 1; any other name that it does not know is NaN.
+///
+/// | name | meaning |
+/// |---|---|
+/// | `gap` | g [L] |
+/// | `pressure`, `traction` | p, q [F/L²] |
+/// | `slip`, `elastic_slip` | total plastic slip, q/α_t [L] |
+/// | `slip_rate` | plastic slip of the increment over its length [L/T] |
+/// | `state` | 0 open, 1 sticking (or closed without friction), 2 slipping, as the law says |
+/// | `dissipation` | work of friction so far per area [F/L] |
+/// | `fluid_pressure` | p_w, beside `pressure`, where a contact has a fluid [F/L²] |
+/// | any other | what the law observes under this name, such as `R`, `mu`, `structure`, `theta` |
+pub fn field_value(
+    pair: &ContactPair,
+    slave: &SlavePoint,
+    state: &ContactState,
+    (time, dt): (f64, f64),
+    name: &str,
+) -> f64 {
+    let friction = &state.friction;
+    match name {
+        "gap" => state.gap,
+        "pressure" => friction.pressure,
+        "traction" => friction.traction,
+        "slip" => friction.plastic_slip,
+        "elastic_slip" => pair.elastic_slip(slave, friction),
+        "slip_rate" => friction.plastic_increment * if dt > 0.0 { 1.0 / dt } else { 0.0 },
+        "dissipation" => friction.dissipation,
+        "fluid_pressure" => state.fluid,
+        "state" => match pair.regime(slave, state) {
+            Regime::Open => 0.0,
+            Regime::Stick => 1.0,
+            Regime::Slip => 2.0,
+        },
+        _ => pair.observed(slave, name, (friction, time)),
     }
 }

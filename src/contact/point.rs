@@ -1,8 +1,21 @@
+//! A contact point: where it is on both sides, what it remembers, and what a linear solve presumes about it.
+//!
+//! # Points
+//!
 //! Points of the two sides of a contact: where it is evaluated on the slave, and where they meet the master.
+//!
+//! # State
+//!
+//! What a contact point remembers between increments, and what it says of itself.
+//!
+//! # Presumptions
+//!
+//! The increment in which a contact is evaluated, and what a linear solve presumes about a point of it.
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
+use crate::laws::friction::{FrictionState, Regime};
 use crate::mesh::configuration::Configuration;
 use crate::mesh::few::Few;
 use crate::mesh::shape;
@@ -151,4 +164,143 @@ pub struct MasterPoint {
     /// 0 … 1 along the segment; on a rigid body the way along s (of line number `segment`) from where the point's
     /// reference position has its foot [-] or [L]
     pub xi: f64,
+}
+
+/// Memory of one contact point between increments.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ContactState {
+    /// What friction remembers
+    pub friction: FrictionState,
+    /// Foot on the master, open or closed; `None` where no part of the master faces the point
+    pub foot: Option<MasterPoint>,
+    /// Length the point stands for: its own or, by mortar, the part of it that the master faces; once open, the last one
+    /// (that of now where a fluid acts) [L]
+    pub length: f64,
+    /// g at the foot; a contact that starts closed counts it from where its points touch [L]
+    pub gap: f64,
+    /// Δu_t of the last increment, what came before touch included; 0 while open [L]
+    pub slip: f64,
+    /// η v of the last increment, what slip radiates; 0 without radiation damping, and in dynamic steps [F/L²]
+    pub radiation: f64,
+    /// Energy radiated so far per contact area [F/L]
+    pub radiated: f64,
+    /// p̄: pressure at zero gap, raised until the penetration is small enough; 0 for the plain penalty [F/L²]
+    pub multiplier: f64,
+    /// p_w: pressure of the fluid where the master faces the point [F/L²]
+    pub fluid: f64,
+}
+
+impl ContactState {
+    /// g − d: what parts the surfaces beyond the opening of the law, negative under the penalty [L]
+    pub fn clearance(&self) -> f64 {
+        self.gap - self.friction.opening
+    }
+
+    /// p and q + η v: what the surfaces put on each other, friction and what slip radiates together [F/L²]
+    pub fn tractions(&self) -> [f64; 2] {
+        [self.friction.pressure, self.friction.traction + self.radiation]
+    }
+
+    /// Whether a point is open at a gap that counts, more than [`ContactPair::touch`](super::pair::ContactPair::touch).
+    pub fn apart(&self, touch: f64) -> bool {
+        self.friction.pressure == 0.0 && self.clearance() > touch
+    }
+
+    /// Open, stick or slip, as the law says; a point that only a promise keeps closed is open.
+    pub fn regime(&self) -> Regime {
+        if self.friction.pressure > 0.0 { self.friction.regime } else { Regime::Open }
+    }
+}
+
+/// When a pair is evaluated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactIncrement {
+    /// t at its end [T]
+    pub time: f64,
+    /// Δt [T]
+    pub dt: f64,
+    /// Whether slip radiates, where the contact has a radiation damping: in motions without inertia
+    pub radiates: bool,
+    /// Share of an initial overlap that does not count yet
+    pub fading: f64,
+    /// α_n under the augmented Lagrangian is this many times the one given
+    pub stiffening: f64,
+    /// Whether the bodies give way under the pressures that come up within the increment
+    pub settles: bool,
+}
+
+impl ContactIncrement {
+    /// From when to when.
+    pub fn span(&self) -> [f64; 2] {
+        [self.time - self.dt, self.time]
+    }
+}
+
+/// Increment of a contact point, and what the iteration presumes about it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointIncrement {
+    /// Length of the increment, and what it changes about every point
+    pub during: ContactIncrement,
+    /// What the linear solve presumes about the point
+    pub presumption: Presumption,
+}
+
+/// What one linear solve takes over for a point from those before; an accepted state presumes nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Presumption {
+    /// Presumption about its state
+    pub presume: Presume,
+    /// Tractions that the tangent turns and stretches with the surface; those of the trial state unless given
+    pub promised: Option<Tractions>,
+    /// Pressure of a point that is closed whatever its gap, and under which friction answers unless its own is positive;
+    /// none if it is 0
+    pub kept: f64,
+    /// Pressure under which friction answers, and from where its answer goes on in a straight line, at a point that has just
+    /// closed: a stiff penalty presses a point far too hard that goes too deep in one iterate, and would make it stick
+    /// where it is to slip.
+    pub carried: Option<f64>,
+    /// Two segments between which its foot goes to and fro
+    pub astride: Option<[usize; 2]>,
+}
+
+/// What the next linear solve presumes about a point, for the sake of convergence; an accepted state presumes nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Presume {
+    /// The laws answer as they are
+    #[default]
+    Nothing,
+    /// A zero gap is closed and sticks: it would open and close for ever at p = 0
+    Touch,
+    /// The point sticks, q = q₀ + α_t Δu_t whatever its size. From one iterate to the next it slipped one way and then
+    /// the other, past the narrow and stiff range of sticking that lies between: the tangents on both sides are soft,
+    /// and Newton's method would jump to and fro for ever. It is presumed again where the point then slips although the
+    /// tractions that were promised would have held it.
+    Stick,
+}
+
+/// Pressure and traction of a point, as one linear solve promised them to the next.
+///
+/// A stiff penalty turns every error of a displacement into a pressure far too high, and that into a geometric stiffness
+/// p δn ℓ that leads the next iterate astray, or opens a point that should be closed. The promise p + δp of the linear
+/// solve is off by the square of the correction only: it makes the geometric stiffness, and says which points stay closed.
+/// The residual that a solution must meet knows no promises.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tractions {
+    /// p [F/L²]
+    pub pressure: f64,
+    /// q [F/L²]
+    pub traction: f64,
+}
+
+impl Tractions {
+    /// Those of a state.
+    pub fn of(friction: &FrictionState) -> Self {
+        Self { pressure: friction.pressure, traction: friction.traction }
+    }
+
+    /// Both in proportion, so that the pressure is not above a limit.
+    pub fn limited(self, most: f64) -> Self {
+        let share = if self.pressure > most { most / self.pressure } else { 1.0 };
+        Self { pressure: share * self.pressure, traction: share * self.traction }
+    }
 }

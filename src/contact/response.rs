@@ -2,15 +2,14 @@
 
 use rayon::prelude::*;
 
-use super::closed::{Closed, ClosedPoints};
 use super::force::{Loading, PointPlace, closes, place};
 use super::kinematics::{Kinematics, Meeting};
 use super::master::Master;
 use super::mortar::{Committed, Overlaps, Room};
+use super::nodal_forces::{Closed, ClosedPoints};
 use super::pair::ContactPair;
-use super::presumption::{ContactIncrement, PointIncrement, Presumption};
+use super::point::{ContactIncrement, ContactState, PointIncrement, Presumption};
 use super::search::{Index, Trees};
-use super::state::ContactState;
 use super::surface::SlavePoint;
 use crate::laws::friction::{Answer, FrictionResponse, FrictionState, LawFailure, Resolved, Sliding};
 use crate::linear::system::Request;

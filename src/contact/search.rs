@@ -5,10 +5,9 @@ use std::borrow::Cow;
 use nalgebra::Vector2;
 
 use super::boxes::{Box2, Boxes};
-use super::master::Master;
+use super::master::{Master, Rigid};
 pub use super::projection::FACING;
 use super::projection::{Bound, Projection, at_node, normal_of, on_curve, on_segment};
-use super::rigid::Rigid;
 use super::sight::{Branches, Sight};
 use super::surface::{MasterPoint, Path, SlavePoint, Surface};
 use crate::mesh::configuration::Configuration;

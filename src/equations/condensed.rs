@@ -8,24 +8,43 @@
 //! x are the displacements of K, x₀ and u₀ those to start from. r = 0 where ρ(x) = 0 and the others follow x; how far the
 //! bodies are from the origin, or have moved, does not enter.
 //!
-//! In small sliding, nodes of the slave are counted from what they face for good, and x are their jumps (see `jumps.rs`): with
+//! In small sliding, nodes of the slave are counted from what they face for good, and x are their jumps (see below): with
 //! equal nodes on both sides ρ has half as many equations, and its tangent takes an eighth of the operations.
 //!
 //! Where all nodes are counted so, nothing opens and the pressure is linear, the equations of the jumps along the normal do not
 //! vary, and are eliminated as well ([`crate::linear::Eliminated`]): an eighth of the operations again.
+//!
+//! # Nodes at contacts
+//!
+//! The nodes at contacts, on which linear bodies are condensed.
+//!
+//! # Jumps
+//!
+//! Slave nodes counted from what they face, where that never changes: contact then acts on their jumps alone.
+//!
+//! ```text
+//! u_s = J_s + Σ N_a u_a        u = T y: J in place of u_s         N_a: weights of the foot, in small sliding
+//! r_a ← r_a + N_a r_s          L r: what contact puts on s, and −N_a of it on a, cancels in a
+//! L A T y = L b                                                   only where s and a are free: a support's equation stays
+//! ```
+//!
+//! So the nodes of the master need not be among those on which linear bodies are condensed, and a body that contact alone
+//! holds is held by its jumps. A node has none where it takes part in more than its own point, moves with another, or is
+//! supported while what it faces is not: what contact puts on that would be left over.
+
+use std::sync::Arc;
 
 use super::Assembler;
-use super::contact_nodes::{ContactNodes, contact_share};
-use super::dependence::Dependence;
-use super::jumps::fixed;
+use super::sums::Dependence;
 use super::term::Term;
 use super::trial::Trial;
-use crate::contact::closed::Closed;
 use crate::contact::master::Master;
+use crate::contact::nodal_forces::Closed;
 use crate::contact::pair::ContactPair;
 use crate::contact::response::PairResponse;
+use crate::contact::small_sliding::SmallPoint;
 use crate::linear::system::{Request, System};
-use crate::linear::{Condensed, norm};
+use crate::linear::{Condensed, Eliminated, Pattern, SparseMatrix, Steady, norm};
 use crate::model::{Model, Step};
 
 /// Whether everything but contact adds the same tangent in all increments of one length in a step.
@@ -178,4 +197,316 @@ impl<'a> CondensedEquations<'a> {
             system.imbalance = if share.is_nan() { f64::INFINITY } else { system.imbalance.max(share) };
         }
     }
+}
+
+/// The nodes at contacts: those of the slaves, and all that they may slide to unless the slaves are counted from these. Copies
+/// come with the nodes they move with.
+pub struct ContactNodes {
+    /// The nodes, ascending
+    pub nodes: Vec<usize>,
+    /// Place of each node among them
+    places: Vec<Option<u32>>,
+    jumps: Jumps,
+    /// Places of the nodes of each contact
+    parts: Vec<Vec<usize>>,
+    /// All nodes of each contact
+    sides: Vec<Vec<usize>>,
+}
+
+impl ContactNodes {
+    /// The nodes of all contacts of a model.
+    pub fn new(model: &Model) -> Self {
+        let together: Vec<Vec<Vec<usize>>> = model.contacts.iter().map(|pair| nodes_of(model, pair)).collect();
+        let jumps = Jumps::new(model, &together.concat());
+        Self::counted_by(model, &together, jumps)
+    }
+
+    /// The same with both sides of all contacts, no node counted from another.
+    pub fn of_both_sides(model: &Model) -> Self {
+        let together: Vec<Vec<Vec<usize>>> = model.contacts.iter().map(|pair| nodes_of(model, pair)).collect();
+        Self::counted_by(model, &together, Jumps::none(model))
+    }
+
+    fn counted_by(model: &Model, together: &[Vec<Vec<usize>>], jumps: Jumps) -> Self {
+        // A point that has a jump is alone with it: none of the nodes it is counted from has equations of contact.
+        let own = |nodes: &Vec<usize>| match nodes.iter().find(|node| jumps.has(**node)) {
+            Some(slave) => vec![*slave],
+            None => nodes.clone(),
+        };
+        let of_pairs: Vec<Vec<usize>> =
+            together.iter().map(|pair| sorted(pair.iter().flat_map(own).collect())).collect();
+        let copies = model.ties.pairs().iter().filter(|(_, original)| of_pairs.iter().flatten().any(|n| n == original));
+        let nodes = sorted(of_pairs.iter().flatten().copied().chain(copies.map(|(copy, _)| *copy)).collect());
+        let mut places = vec![None; model.mesh.nodes.len()];
+        nodes.iter().enumerate().for_each(|(place, &node)| places[node] = Some(place as u32));
+        let place = |node: &usize| places[*node].map(|place| place as usize);
+        let parts = of_pairs.iter().map(|nodes| nodes.iter().filter_map(place).collect()).collect();
+        let sides = together.iter().map(|pair| sorted(pair.concat())).collect();
+        Self { nodes, places, jumps, parts, sides }
+    }
+
+    /// Place of a node among them.
+    pub(super) fn place(&self, node: usize) -> Option<usize> {
+        self.places[node].map(|place| place as usize)
+    }
+
+    /// A system of their equations, all coupled with each other: the values of a matrix are those of a dense one, column by
+    /// column.
+    pub fn system(&self) -> System {
+        let all: Vec<usize> = (0..self.nodes.len()).collect();
+        let pattern = Arc::new(Pattern::new(all.len(), std::iter::once(&all[..])));
+        System {
+            residual: vec![0.0; 2 * self.nodes.len()],
+            tangent: SparseMatrix::zero(pattern),
+            forces: 0.0,
+            imbalance: f64::INFINITY,
+        }
+    }
+
+    /// x from the displacements of all nodes.
+    pub fn gather(&self, u: &[f64]) -> Vec<f64> {
+        self.nodes.iter().flat_map(|&node| self.jumps.of(node, u)).collect()
+    }
+
+    /// Write what goes with x over the displacements of these nodes; the others stay.
+    pub fn scatter(&self, x: &[f64], u: &mut [f64]) {
+        for (values, &node) in x.chunks_exact(2).zip(&self.nodes) {
+            u[2 * node..2 * node + 2].copy_from_slice(values);
+        }
+        self.jumps.resolve(u);
+    }
+
+    /// The pattern of the equations of all nodes, these coupled with each other, from that of the bodies.
+    pub fn around(&self, bodies: &Pattern) -> Arc<Pattern> {
+        Arc::new(self.jumps.pattern(bodies, &self.nodes))
+    }
+
+    /// The matrix on that pattern from the tangent of the bodies.
+    pub fn counted(
+        &self,
+        (model, step): (&Model, &Step),
+        bodies: &SparseMatrix,
+        pattern: &Arc<Pattern>,
+    ) -> SparseMatrix {
+        let mut sum = SparseMatrix::zero(pattern.clone());
+        self.jumps.matrix(bodies, &fixed(model, step), &mut sum);
+        sum
+    }
+
+    /// Whether all of them are jumps: half of their equations do not vary while nothing opens.
+    pub fn halves(&self) -> bool {
+        self.nodes.iter().all(|node| self.jumps.has(*node))
+    }
+
+    /// Their equations along the normal eliminated from S of the bodies, if all of them are jumps.
+    pub fn eliminated(&self, (model, step): (&Model, &Step), bodies: &Condensed) -> Option<Eliminated> {
+        let (fixed, share) = (fixed(model, step), contact_share(step));
+        let steady = |&node: &usize| {
+            let steady = self.jumps.steady(node, &fixed)?;
+            Some(Steady { stiffness: share * steady.stiffness, ..steady })
+        };
+        Eliminated::new(&bodies.stiffness, self.nodes.iter().map(steady).collect::<Option<_>>()?).ok()
+    }
+
+    /// The right-hand side that goes with it.
+    pub fn balanced(&self, (model, step): (&Model, &Step), residual: &[f64]) -> Vec<f64> {
+        let mut balanced = residual.to_vec();
+        self.jumps.balance(&fixed(model, step), &mut balanced);
+        balanced
+    }
+
+    /// Displacements of all nodes from a solution of it.
+    pub fn resolved(&self, mut solution: Vec<f64>) -> Vec<f64> {
+        self.jumps.resolve(&mut solution);
+        solution
+    }
+}
+
+/// 1 − α_f
+fn contact_share(step: &Step) -> f64 {
+    step.scheme.coefficients().map_or(1.0, |scheme| 1.0 - scheme.alpha_f)
+}
+
+/// Ascending, each once.
+fn sorted(mut nodes: Vec<usize>) -> Vec<usize> {
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
+}
+
+/// Nodes that a contact couples, or may come to couple: those of each point by itself if they never change.
+fn nodes_of(model: &Model, pair: &ContactPair) -> Vec<Vec<usize>> {
+    let original = |node: usize| model.ties.original(node);
+    if let Some(small) = &pair.small {
+        let of_point = |point: &SmallPoint| sorted(point.nodes.iter().map(|node| original(*node)).collect());
+        return small.points.iter().flatten().map(of_point).collect();
+    }
+    let mut nodes: Vec<usize> = Vec::new();
+    for point in &pair.points {
+        nodes.extend(point.position.iter().map(|&(node, _)| node));
+        nodes.extend(point.length.iter().flat_map(|share| share.tangent.iter().map(|&(node, _)| node)));
+    }
+    if let Master::Mesh(surface) = &pair.master {
+        nodes.extend(surface.segments.iter().flat_map(|segment| segment.nodes()));
+    }
+    vec![sorted(nodes.into_iter().map(original).collect())]
+}
+
+/// A slave node, and what it is counted from.
+struct Jump {
+    slave: usize,
+    /// Nodes of the master and N_a, which sum to one; none on a rigid body
+    feet: Vec<(usize, f64)>,
+    /// What contact adds to its equation along the normal while it is closed: n and α_n ℓ
+    steady: Steady,
+}
+
+/// The slave nodes that are counted from what they face.
+struct Jumps {
+    jumps: Vec<Jump>,
+    /// Number of each node's jump
+    numbers: Vec<Option<u32>>,
+}
+
+/// Dofs that have an equation of their own in a step, not one of forces: supported ones, and copies.
+fn fixed(model: &Model, step: &Step) -> Vec<bool> {
+    let mut fixed = vec![false; model.dofs()];
+    step.supports.iter().for_each(|support| fixed[support.at.dof] = true);
+    model.ties.pairs().iter().for_each(|&(copy, _)| fixed[2 * copy..2 * copy + 2].fill(true));
+    model.linkage.followers.iter().flat_map(|follower| follower.dofs()).for_each(|(_, dof)| fixed[dof] = true);
+    fixed
+}
+
+impl Jumps {
+    /// Those of a model in all its steps; `together` are the nodes that contacts couple, each point of small sliding by itself.
+    pub fn new(model: &Model, together: &[Vec<usize>]) -> Self {
+        let mut uses = vec![0; model.mesh.nodes.len()];
+        together.iter().flatten().for_each(|&node| uses[node] += 1);
+        let mut tied = vec![false; uses.len()];
+        model.ties.pairs().iter().for_each(|&(copy, original)| (tied[copy], tied[original]) = (true, true));
+        let fixed: Vec<Vec<bool>> = model.steps.iter().map(|step| fixed(model, step)).collect();
+        let left_over = |slave: usize, foot: usize| {
+            fixed.iter().any(|fixed| (0..2).any(|i| fixed[2 * slave + i] && !fixed[2 * foot + i]))
+        };
+        let fits = |Jump { slave, feet, .. }: &Jump| {
+            let free = uses[*slave] == 1 && !tied[*slave];
+            free && feet.iter().all(|&(foot, _)| !tied[foot] && !left_over(*slave, foot))
+        };
+        let jumps: Vec<Jump> = model.contacts.iter().flat_map(of_pair).filter(fits).collect();
+        let mut numbers = vec![None; uses.len()];
+        jumps.iter().enumerate().for_each(|(number, jump)| numbers[jump.slave] = Some(number as u32));
+        Self { jumps, numbers }
+    }
+
+    /// None at all.
+    pub fn none(model: &Model) -> Self {
+        Self { jumps: Vec::new(), numbers: vec![None; model.mesh.nodes.len()] }
+    }
+
+    /// Whether a node is counted from what it faces.
+    pub fn has(&self, node: usize) -> bool {
+        self.numbers[node].is_some()
+    }
+
+    fn feet(&self, node: usize) -> &[(usize, f64)] {
+        self.numbers[node].map_or(&[], |number| &self.jumps[number as usize].feet)
+    }
+
+    /// What contact adds to the equation of a node's jump along the normal while it is closed, in the equations that are not
+    /// `fixed`.
+    pub fn steady(&self, node: usize, fixed: &[bool]) -> Option<Steady> {
+        let Steady { direction, stiffness } = self.jumps[self.numbers[node]? as usize].steady;
+        let share: f64 = (0..2).filter(|i| !fixed[2 * node + i]).map(|i| direction[i].powi(2)).sum();
+        Some(Steady { direction, stiffness: share * stiffness })
+    }
+
+    /// 1 + Σ N_a²: the residual of all equations is that of a jump times the root of this, if the master's is zero in L r.
+    pub fn share(&self, node: usize) -> f64 {
+        1.0 + self.feet(node).iter().map(|(_, weight)| weight * weight).sum::<f64>()
+    }
+
+    /// J of a node, or u of one that has none.
+    pub fn of(&self, node: usize, u: &[f64]) -> [f64; 2] {
+        let at = |node: usize| [u[2 * node], u[2 * node + 1]];
+        let base = self.base(node, u);
+        [0, 1].map(|i| at(node)[i] - base[i])
+    }
+
+    /// Σ N_a u_a. The motion of the first node is taken out: a common one leaves no round-off.
+    fn base(&self, node: usize, u: &[f64]) -> [f64; 2] {
+        let Some((&(first, _), others)) = self.feet(node).split_first() else { return [0.0; 2] };
+        [0, 1].map(|i| {
+            let common = u[2 * first + i];
+            common + others.iter().map(|&(foot, weight)| weight * (u[2 * foot + i] - common)).sum::<f64>()
+        })
+    }
+
+    /// u from y, in place.
+    pub fn resolve(&self, y: &mut [f64]) {
+        for &Jump { slave, .. } in &self.jumps {
+            let base = self.base(slave, y);
+            (0..2).for_each(|i| y[2 * slave + i] += base[i]);
+        }
+    }
+
+    /// L r, in place.
+    pub fn balance(&self, fixed: &[bool], r: &mut [f64]) {
+        for Jump { slave, feet, .. } in &self.jumps {
+            for &(foot, weight) in feet {
+                let free = |i: &usize| !fixed[2 * slave + i] && !fixed[2 * foot + i];
+                (0..2).filter(free).for_each(|i| r[2 * foot + i] += weight * r[2 * slave + i]);
+            }
+        }
+    }
+
+    /// Which nodes L A T couples if A has the pattern `plain`, all `kept` ones with each other.
+    pub fn pattern(&self, plain: &Pattern, kept: &[usize]) -> Pattern {
+        let with_feet = |node: usize| std::iter::once(node).chain(self.feet(node).iter().map(|&(foot, _)| foot));
+        let groups = (0..plain.nodes()).flat_map(|column| {
+            let coupled = plain.neighbours(column).iter().filter(move |row| **row <= column);
+            coupled.map(move |&row| with_feet(row).chain(with_feet(column)).collect::<Vec<_>>())
+        });
+        let groups: Vec<Vec<usize>> = groups.chain([kept.to_vec()]).collect();
+        Pattern::new(plain.nodes(), groups.iter().map(|group| &group[..]))
+    }
+
+    /// L A T, added to a matrix that has room for it.
+    pub fn matrix(&self, plain: &SparseMatrix, fixed: &[bool], sum: &mut SparseMatrix) {
+        let nodes = plain.pattern.nodes();
+        let pairs =
+            (0..nodes).flat_map(|column| plain.pattern.neighbours(column).iter().map(move |&row| (row, column)));
+        for (row, column) in pairs {
+            let Some(from) = plain.pattern.block(row, column) else { continue };
+            let itself = |node: usize| std::iter::once((node, 1.0)).chain(self.feet(node).iter().copied());
+            for (to_column, by_column) in itself(column) {
+                for (to_row, by_row) in itself(row) {
+                    let to = sum.pattern.block(to_row, to_column).expect("coupled with the feet");
+                    let balanced = |i: &usize| to_row == row || !fixed[2 * row + i] && !fixed[2 * to_row + i];
+                    for i in (0..2).filter(balanced) {
+                        for j in 0..2 {
+                            sum.values[to.value(i, j)] += by_row * by_column * plain.values[from.value(i, j)];
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The points of a pair whose own position is one node that faces the same for good.
+fn of_pair(pair: &ContactPair) -> impl Iterator<Item = Jump> {
+    let points = pair.small.iter().flat_map(|small| &small.points).zip(&pair.points);
+    points.filter_map(|(point, slave)| match slave.position[..] {
+        [(node, _)] => jump(node, point.as_ref()?, pair.alpha_n),
+        _ => None,
+    })
+}
+
+fn jump(slave: usize, point: &SmallPoint, alpha_n: f64) -> Option<Jump> {
+    let (mut own, mut feet) = (0.0, Vec::new());
+    for (&node, &weight) in point.nodes.iter().zip(&point.weights) {
+        if node == slave { own += weight } else { feet.push((node, -weight)) }
+    }
+    let steady = Steady { direction: point.normal, stiffness: alpha_n * point.length };
+    (own == 1.0).then_some(Jump { slave, feet, steady })
 }

@@ -1,8 +1,24 @@
 //! What an evaluation of the equations leaves for the accepted state.
+//!
+//! # Audit of energies
+//!
+//! The audit of energies: what flows in an increment, and what is stored at its end, each as its term says.
+//!
+//! ```text
+//! work       ½ (f₀ + f₁)·Δu of loads and reactions; drivers of dashpots; overlaps of shrink fits
+//! damping    −½ (d₀ + d₁)·Δu of the forces of dashpots on the nodes; drivers; what statics takes out of a motion
+//! friction   ∫ q v^p ds dt
+//! radiated   ½ (r₀ + r₁) Δu_t of the tractions r = η v of radiation damping
+//! ```
+//! Whatever the scheme, forces are taken at both ends of the increment.
 
+use super::{damping, interfaces, links};
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::laws::friction::Regime;
+use crate::model::state::State;
+use crate::model::support::Direction;
+use crate::model::{Model, Step};
 
 /// What was found at the last evaluated displacement, for the accepted state.
 #[derive(Clone, Debug, Default)]
@@ -69,4 +85,73 @@ pub struct Seconds {
     pub assembly: f64,
     /// search, friction and contact forces
     pub contact: f64,
+}
+
+/// Degrees of freedom whose work one thread sums up.
+const CHUNK: usize = 8192;
+
+/// What flows in an increment [F·L].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Flows {
+    /// work of what acts from outside
+    pub work: f64,
+    /// dissipated by dashpots and viscous bodies
+    pub damping: f64,
+    /// dissipated by dashpots that stabilize, a part of it
+    pub stabilization: f64,
+    /// dissipated by friction
+    pub friction: f64,
+    /// radiated by slip
+    pub radiated: f64,
+}
+
+impl Flows {
+    /// From a state to what was found at the displacement `u` at the end of an increment, the reactions being among the
+    /// loads.
+    pub fn between(model: &Model, step: &Step, (old, time): (&State, f64), u: &[f64], found: &Evaluation) -> Self {
+        let (times, ends) = ([old.time, time], [&old.displacement, u]);
+        let way = |dof: usize| u[dof] - old.displacement[dof];
+        let driven = damping::driven(model, step, times, way);
+        let damped = if model.is_damped(step) { mean_work([&old.damping, &found.damping], ends) } else { 0.0 };
+        let fitted = interfaces::fitted(model, [&old.contacts, &found.contacts], times);
+        Self {
+            work: mean_work([&old.external, &found.loads], ends) + driven + fitted,
+            damping: driven - damped + relaxed(model, step, old, u),
+            stabilization: damping::stabilization_dissipated(step, times, way),
+            friction: interfaces::dissipated(&old.contacts, &found.contacts),
+            radiated: interfaces::radiated(&old.contacts, &found.contacts),
+        }
+    }
+}
+
+/// What forces out of balance at the start of a static increment, left by motion before it, would have set in motion.
+fn relaxed(model: &Model, step: &Step, old: &State, u: &[f64]) -> f64 {
+    if step.scheme.is_dynamic() {
+        return 0.0;
+    }
+    let force = links::relieved(model, &old.displacement, &old.force);
+    let work = |dof: usize| force[dof] * (u[dof] - old.displacement[dof]);
+    let all: f64 = (0..u.len()).map(work).sum();
+    let along = |at: Direction| match at.inclined {
+        None => work(at.dof),
+        Some(_) => at.of(&force) * (at.of(u) - at.of(&old.displacement)),
+    };
+    let supported: f64 = step.supports.iter().map(|support| along(support.at)).sum();
+    -0.5 * (all - supported)
+}
+
+/// Σ ½ (f₀ + f₁) (u₁ − u₀): the work of forces known at both ends of an increment [F·L]. Halves are summed up in parallel,
+/// always the same ones.
+fn mean_work([f0, f1]: [&[f64]; 2], [u0, u1]: [&[f64]; 2]) -> f64 {
+    if u0.len() > CHUNK {
+        let half = u0.len() / 2;
+        let part = |k: usize| {
+            let of = |values: &'_ [f64]| if k == 0 { 0..half } else { half..values.len() };
+            mean_work([&f0[of(f0)], &f1[of(f1)]], [&u0[of(u0)], &u1[of(u1)]])
+        };
+        let (first, second) = rayon::join(|| part(0), || part(1));
+        return first + second;
+    }
+    let forces = f0.iter().zip(f1).map(|(f0, f1)| 0.5 * (f0 + f1));
+    forces.zip(u0.iter().zip(u1)).map(|(force, (u0, u1))| force * (u1 - u0)).sum()
 }

@@ -3,8 +3,7 @@
 use nalgebra::Vector2;
 use rayon::prelude::*;
 
-use super::failure::TrialFailure;
-use super::sums::Sums;
+use super::sums::{Sums, TrialFailure};
 use super::trial::Trial;
 use crate::laws::bulk::InvertedElement;
 use crate::linear::system::Contribution;

@@ -1,13 +1,11 @@
 //! Contact and friction: what the responses of all contact points add, and what they store, dissipate and take in.
 
-use super::dependence::Dependence;
-use super::sums::{Sums, add_blocks};
+use super::sums::{Dependence, Sums, add_blocks};
 use super::trial::Trial;
-use crate::contact::fluid::BadPressure;
 use crate::contact::force::ContactState;
-use crate::contact::pair::{ContactIncrement, Presumption};
+use crate::contact::pair::{BadPressure, ContactIncrement, Presumption};
 use crate::contact::response::PairResponse;
-use crate::equations::failure::TrialFailure;
+use crate::equations::sums::TrialFailure;
 use crate::linear::system::Request;
 use crate::model::Model;
 

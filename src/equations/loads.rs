@@ -1,14 +1,13 @@
 //! Loads: dead loads, pressures that follow the surface, springs, initial stress, and the reactions of freed supports.
-//! Their work is that of all external forces, see [`super::audit`].
+//! Their work is that of all external forces, see [`super::evaluation`].
 
 use nalgebra::Vector2;
 
-use super::dependence::Dependence;
 use super::links;
-use super::sums::Sums;
+use super::sums::{Dependence, Sums};
 use super::trial::Trial;
-use crate::equations::failure::TrialFailure;
-use crate::model::element::pressure::follower_pressure;
+use crate::equations::sums::TrialFailure;
+use crate::model::element::follower_pressure;
 use crate::model::{Model, Step};
 
 /// A pressure is linear in the displacements and grows with time; springs are constant.

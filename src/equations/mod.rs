@@ -9,47 +9,38 @@
 //! Elements and contact points are evaluated in parallel and added in a fixed order: the same bits on any number of
 //! threads.
 //!
-//! The terms add up in [`assembler`], each in a file: its forces, its tangent on request, what that depends on
-//! ([`dependence::Dependence`]), and its share of the [`audit`] of energies.
+//! The terms add up in [`assembler`], each with its forces, its tangent on request, what that depends on
+//! ([`sums::Dependence`]), and its share of the audit of energies ([`evaluation`]).
 //!
 //! | term | what it adds to F or r | its share of the audit |
 //! |---|---|---|
 //! | `solids` | stress of the bodies | strain energy |
 //! | [`interfaces`] | contact and friction | stored in penalties, friction, shrink fits |
 //! | `loads` | −loads, springs, initial stress | work |
-//! | [`dampers`] | dashpots, absorbing sides | damping, work of drivers |
-//! | [`stabilization`] | dashpots that fade | a part of damping |
-//! | `damping` | viscous bodies | damping |
+//! | [`damping`] | dashpots, absorbing sides | damping, work of drivers |
+//! | [`damping`] | dashpots that fade | a part of damping |
+//! | [`damping`] | viscous bodies | damping |
 //! | [`inertia`] | M a | kinetic energy |
 //! | [`supports`] | the equations of prescribed dofs and copies | work of reactions |
-//! | [`links`] | the equations of nodes that follow others; `turning`: rigid plates in motion | none |
+//! | [`links`] | the equations of nodes that follow others, and rigid plates in motion | none |
 
 pub mod assembler;
-pub mod audit;
 pub mod condensed;
-pub mod contact_nodes;
 mod coupling;
-pub mod dampers;
-mod damping;
-pub mod dependence;
+pub mod damping;
 mod equilibrium;
 pub mod evaluation;
 mod evolving;
-pub mod failure;
 pub mod inertia;
 pub mod interfaces;
-mod jumps;
 pub mod links;
 mod loads;
-mod rates;
 pub mod slip_operator;
 pub mod solids;
-pub mod stabilization;
-mod sums;
+pub mod sums;
 pub mod supports;
 pub mod term;
 pub mod trial;
-pub mod turning;
 
 pub use assembler::Assembler;
 pub use coupling::Coupling;

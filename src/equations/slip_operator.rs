@@ -19,8 +19,8 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 use rayon::prelude::*;
 
-use super::contact_nodes::ContactNodes;
-use super::failure::TrialFailure;
+use super::condensed::ContactNodes;
+use super::sums::TrialFailure;
 use super::trial::Trial;
 use super::{Assembler, Coupling};
 use crate::contact::pair::ContactPair;

@@ -7,7 +7,7 @@
 
 use super::links;
 use super::trial::Trial;
-use crate::equations::failure::TrialFailure;
+use crate::equations::sums::TrialFailure;
 use crate::linear::SparseMatrix;
 use crate::linear::system::System;
 use crate::model::Model;

@@ -1,7 +1,7 @@
 //! The terms of the equations.
 
-use super::dependence::Dependence;
-use super::{dampers, damping, inertia, interfaces, loads, solids, stabilization};
+use super::sums::Dependence;
+use super::{damping, inertia, interfaces, loads, solids};
 use crate::model::{Model, Step};
 
 /// A term of the equations.
@@ -34,9 +34,9 @@ impl Term {
             Self::Solids => solids::dependence(model),
             Self::Interfaces => interfaces::dependence(model),
             Self::Loads => loads::dependence(step),
-            Self::Dampers => dampers::dependence(step),
-            Self::Stabilization => stabilization::dependence(step),
-            Self::Damping => damping::dependence(model, step),
+            Self::Dampers => damping::damper_dependence(step),
+            Self::Stabilization => damping::stabilization_dependence(step),
+            Self::Damping => damping::damping_dependence(model, step),
             Self::Inertia => inertia::dependence(step),
         }
     }

@@ -1,15 +1,13 @@
 //! Sparse matrices of two unknowns a node, and the linear solvers behind one trait.
 
 mod dense;
-mod halved;
 mod lu;
 pub mod memory;
 mod multifrontal;
 mod sparse;
 pub mod system;
 
-pub use dense::DenseLu;
-pub use halved::{Eliminated, HalvedLu, Steady};
+pub use dense::{DenseLu, Eliminated, HalvedLu, Steady};
 pub use lu::SparseLu;
 pub use multifrontal::{Condensation, Condensed, Forwarded, Multifrontal};
 pub use sparse::{BlockPosition, Pattern, SparseMatrix};

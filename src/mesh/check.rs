@@ -1,11 +1,14 @@
 //! The gate that every mesh passes: from what a reader found to a [`Mesh`] that keeps its promises.
+//!
+//! A mesh as readers find it, before it is checked.
+//!
+//! Elements that have an area and still cannot be computed with: sides of no length, and nodes nearer to each other than their
+//! positions are known.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use nalgebra::Vector2;
 
-use super::degenerate;
-use super::raw::{NodeNumbers, RawCell, RawMesh};
 use super::{Edge, Element, Group, Mesh, MeshError};
 use crate::mesh::shape::ElementKind;
 
@@ -48,7 +51,7 @@ fn add_bodies(mesh: &mut Mesh, numbers: &NodeNumbers, bodies: BTreeMap<String, V
             let nodes = numbers.of("element", &name, &cell)?;
             let element = counter_clockwise(Element { kind: kind(&name, &cell)?, nodes }, &mesh.nodes);
             check_area(&element, cell.tag, &name, &mesh.nodes, &gradients)?;
-            degenerate::refuse(&element, (cell.tag, &name), &mesh.nodes, &mesh.node_tags)?;
+            refuse(&element, cell.tag, &name, &mesh.nodes, &mesh.node_tags)?;
             mesh.elements.push(element);
             mesh.element_tags.push(cell.tag);
         }
@@ -277,5 +280,86 @@ fn renumber_nodes(mesh: &mut Mesh, number: &[usize]) {
             Group::Edges(edges) => edges.iter_mut().for_each(|edge| renumber(&mut edge.nodes)),
             Group::Nodes(nodes) => renumber(nodes),
         }
+    }
+}
+
+/// A mesh as it was read. Cells name their nodes by tag; nothing is checked.
+#[derive(Debug, Default)]
+pub(super) struct RawMesh {
+    /// tag and position of each node
+    pub nodes: Vec<(u64, Vector2<f64>)>,
+    /// elements by body
+    pub bodies: BTreeMap<String, Vec<RawCell>>,
+    /// lines by name of the curve
+    pub edges: BTreeMap<String, Vec<RawCell>>,
+    /// points, cells of one node, by name of the set
+    pub points: BTreeMap<String, Vec<RawCell>>,
+}
+
+/// A solid element, a line or a point: its own tag and those of its nodes.
+#[derive(Clone, Debug)]
+pub(super) struct RawCell {
+    pub tag: u64,
+    pub nodes: Vec<u64>,
+}
+
+/// From the tag of a node to its number.
+struct NodeNumbers(HashMap<u64, usize>);
+
+impl NodeNumbers {
+    /// Numbers by tag, in the order given.
+    pub(super) fn new(nodes: &[(u64, Vector2<f64>)]) -> Result<Self, MeshError> {
+        let mut numbers = HashMap::with_capacity(nodes.len());
+        for (number, (tag, at)) in nodes.iter().enumerate() {
+            if !at.iter().all(|x| x.is_finite()) {
+                return Err(MeshError::NotFinite(*tag));
+            }
+            if numbers.insert(*tag, number).is_some() {
+                return Err(MeshError::SameNodeTag(*tag));
+            }
+        }
+        Ok(Self(numbers))
+    }
+
+    /// Numbers of the nodes of a cell; `what` ("element", "line", "point") and `group` are for the message.
+    pub(super) fn of(&self, what: &str, group: &str, cell: &RawCell) -> Result<Vec<usize>, MeshError> {
+        let number = |&node: &u64| {
+            self.0.get(&node).copied().ok_or_else(|| MeshError::UnknownNode {
+                cell: format!("{what} {}", cell.tag),
+                group: group.into(),
+                node,
+            })
+        };
+        cell.nodes.iter().map(number).collect()
+    }
+}
+
+/// A side that is shorter than this share of its element is none: a strain over it would be the round-off of others.
+const SHORT: f64 = 1e-8;
+
+/// Round-off of the positions as a share of a side beyond which the shape of the element is not known.
+const VAGUE: f64 = 1e-3;
+
+/// Refuse an element of a group, and tell by which nodes.
+fn refuse(
+    element: &Element,
+    tag: u64,
+    group: &str,
+    positions: &[Vector2<f64>],
+    node_tags: &[u64],
+) -> Result<(), MeshError> {
+    let corners = &element.nodes[..element.kind.corners()];
+    let ends = || corners.iter().zip(corners.iter().cycle().skip(1));
+    let length = |(a, b): &(&usize, &usize)| (positions[**b] - positions[**a]).norm();
+    let size = ends().map(|side| length(&side)).fold(0.0, f64::max);
+    let Some((a, b)) = ends().min_by(|one, other| length(one).total_cmp(&length(other))) else { return Ok(()) };
+    let (shortest, group, ends) = (length(&(a, b)), group.to_string(), [*a, *b].map(|node| node_tags[node]));
+    if shortest <= SHORT * size {
+        return Err(MeshError::ShortSide { element: tag, group, ends, length: shortest, size });
+    }
+    let known = f64::EPSILON * corners.iter().fold(0.0, |most: f64, &node| most.max(positions[node].amax()));
+    match known <= VAGUE * shortest {
+        true => Ok(()),
+        false => Err(MeshError::Vague { element: tag, group, known, side: shortest }),
     }
 }

@@ -3,18 +3,15 @@
 //! A mesh comes from a gmsh file ([`gmsh::read`]), from blocks ([`Blocks`]), or node by node from the case file or from code
 //! ([`InlineMesh::build`]). Readers only fill in a raw mesh; one check turns it into a [`Mesh`], so that a mesh keeps its promises wherever it comes from.
 
-mod blocks;
 pub mod boxes;
 mod check;
 pub mod configuration;
-mod degenerate;
 mod error;
 pub mod few;
 pub mod gmsh;
 mod inline;
 pub mod joined;
 pub mod names;
-mod raw;
 pub mod section;
 pub mod shape;
 pub mod ties;

@@ -6,25 +6,25 @@
 /// What goes wrong without an aid, and where it comes from, is told in its file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Aids {
-    /// An increment starts as the last one went on: [`crate::solve::start`]
+    /// An increment starts as the last one went on: [`crate::solve::equilibrium`]
     pub start: bool,
-    /// Promised tractions turn and stretch with the surface: [`crate::solve::contact_iteration::promise`]
+    /// Promised tractions turn and stretch with the surface: [`crate::solve::contact_iteration`]
     pub promise: bool,
-    /// At the start of an increment they are limited: [`crate::solve::contact_iteration::promise`]
+    /// At the start of an increment they are limited: [`crate::solve::contact_iteration`]
     pub limit: bool,
-    /// Points with a promised pressure are closed: [`crate::solve::contact_iteration::keep`]
+    /// Points with a promised pressure are closed: [`crate::solve::contact_iteration`]
     pub keep: bool,
-    /// At the start of an increment, points that were closed are: [`crate::solve::contact_iteration::keep`]
+    /// At the start of an increment, points that were closed are: [`crate::solve::contact_iteration`]
     pub pull: bool,
-    /// Friction answers to a carried pressure: [`crate::solve::contact_iteration::carried`]
+    /// Friction answers to a carried pressure: [`crate::solve::contact_iteration`]
     pub carried: bool,
-    /// A point that touches is closed and sticks: [`crate::solve::contact_iteration::touch`]
+    /// A point that touches is closed and sticks: [`crate::solve::contact_iteration`]
     pub touch: bool,
-    /// A point that slips to and fro sticks: [`crate::solve::contact_iteration::stick`]
+    /// A point that slips to and fro sticks: [`crate::solve::contact_iteration`]
     pub stick: bool,
-    /// It does so again if it slips for its own error: [`crate::solve::contact_iteration::stick`]
+    /// It does so again if it slips for its own error: [`crate::solve::contact_iteration`]
     pub stick_again: bool,
-    /// A foot that goes to and fro between two segments lies between them: [`crate::solve::contact_iteration::valley`]
+    /// A foot that goes to and fro between two segments lies between them: [`crate::solve::contact_iteration`]
     pub valley: bool,
     /// Increments of linear bodies are solved on the nodes at contacts: [`crate::solve::interface`]
     pub condense: bool,
@@ -32,7 +32,7 @@ pub struct Aids {
     pub old_tangents: bool,
     /// Corrections go only downhill where the residual stalls: [`crate::solve::newton`]
     pub downhill: bool,
-    /// The augmented Lagrangian stiffens where it is slow: [`crate::solve::augmented`]
+    /// The augmented Lagrangian stiffens where it is slow: [`crate::solve::equilibrium`]
     pub stiffening: bool,
 }
 

@@ -9,8 +9,7 @@
 use nalgebra::Vector2;
 
 use super::boundary::Loads;
-use super::element::Memory;
-use super::element::pressure::follower_pressure;
+use super::element::{Memory, follower_pressure};
 use super::told::number;
 use super::{Body, Model, Step};
 

@@ -1,6 +1,6 @@
-//! Bodies and point masses.
+//! Bodies and point masses: their damping, and where each element finds what its material remembers.
 
-use super::damping::Damping;
+use super::element::SolidElement;
 use super::imposed::{InitialStress, Thermal};
 use crate::laws::bulk::Material;
 
@@ -39,4 +39,56 @@ pub struct PointMass {
     pub mass: f64,
     /// its nodes, ascending
     pub nodes: Vec<usize>,
+}
+
+/// Rayleigh's damping of a body: C = η M + τ K, K being that of [`crate::laws::bulk`]'s viscous stress. A vibration ω of a
+/// body that only this damps has the damping ratio ½ (η/ω + τ ω).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Damping {
+    /// η: share of the masses [1/T]
+    pub mass: f64,
+    /// τ: share of the stiffness, Kelvin–Voigt's time of retardation [T]
+    pub retardation: f64,
+}
+
+/// The part of every element in [`State::memory`](super::state::State::memory): one behind the other in the elements' order, as long
+/// as its points and variables ask for, and of no length where a material remembers nothing.
+#[derive(Clone, Debug)]
+pub struct Memories {
+    /// Where each part starts, and where the last one ends
+    starts: Vec<usize>,
+}
+
+impl Memories {
+    /// Of all elements, with the body of each.
+    pub fn new(solids: &[SolidElement], bodies: &[Body], body_of_element: &[usize]) -> Self {
+        let mut starts = vec![0];
+        let mut end = 0;
+        for (solid, &body) in solids.iter().zip(body_of_element) {
+            end += solid.quadrature_points() * bodies[body].material.variables().len();
+            starts.push(end);
+        }
+        Self { starts }
+    }
+
+    /// Number of values of all elements together.
+    pub fn total(&self) -> usize {
+        self.starts[self.starts.len() - 1]
+    }
+
+    /// The part of one element.
+    pub fn of<'a>(&self, element: usize, memory: &'a [f64]) -> &'a [f64] {
+        &memory[self.starts[element]..self.starts[element + 1]]
+    }
+
+    /// The parts of all elements in their order, to be written over. Whoever wants some of them passes over the others: no part can
+    /// be handed to the wrong one.
+    pub fn each_mut<'a>(&'a self, memory: &'a mut [f64]) -> impl Iterator<Item = &'a mut [f64]> {
+        let mut rest = memory;
+        self.starts.windows(2).map(move |ends| {
+            let (own, after) = std::mem::take(&mut rest).split_at_mut(ends[1] - ends[0]);
+            rest = after;
+            own
+        })
+    }
 }

@@ -1,8 +1,10 @@
-//! What is imposed on bodies: an initial stress, and temperatures.
+//! What is imposed on bodies, and on each of their elements: an initial stress, temperatures and their work.
 
 use nalgebra::Vector2;
 
-use super::boundary::{Amplitude, Profile};
+use super::boundary::{Amplitude, Moment, Profile};
+use super::{Model, Step};
+use crate::laws::bulk::{INITIAL_STRESS, TEMPERATURE};
 
 /// Stress of an undeformed body at the start of a run, tension positive, by reference position.
 #[derive(Clone, Debug)]
@@ -58,4 +60,79 @@ pub struct Temperature {
     pub body: usize,
     /// T [Θ]
     pub amplitude: Amplitude,
+}
+
+impl Model {
+    /// What the materials remember at the start: the initial stress of the bodies that have one, and zero.
+    pub fn initial_memory(&self) -> Vec<f64> {
+        let mut memory = vec![0.0; self.memories.total()];
+        for (e, own) in self.memories.each_mut(&mut memory).enumerate() {
+            let body = &self.bodies[self.body_of_element[e]];
+            let Some(stress) = &body.initial_stress else { continue };
+            let count = body.material.variables().len();
+            let last = count - body.thermal.map_or(0, |_| TEMPERATURE.len());
+            for (point, at) in own.chunks_exact_mut(count).zip(self.quadrature_positions(e)) {
+                let stress @ [xx, yy, _, zz] = stress.at(at, self.mesh.section.is_plate());
+                point[last - INITIAL_STRESS.len()..last].copy_from_slice(&stress);
+                if body.thermal.is_some() {
+                    point[last + 1] = xx + yy + zz;
+                }
+            }
+        }
+        memory
+    }
+
+    /// Write T − T₀ over the variables of an element's material at a moment of a step. A body to which no step has given a
+    /// temperature stays as it is.
+    pub fn write_temperatures(&self, (step, at): (&Step, Moment), element: usize, old: &[f64], new: &mut [f64]) {
+        let (body, Some((count, rise))) = (self.body_of_element[element], self.rises(element)) else { return };
+        let reference = self.bodies[body].thermal.map_or(0.0, |thermal| thermal.reference);
+        let given = step.temperatures.iter().find(|temperature| temperature.body == body);
+        let points = new.chunks_exact_mut(count).zip(old.chunks_exact(count));
+        match given {
+            Some(Temperature { amplitude, .. }) => {
+                for ((new, _), place) in points.zip(self.quadrature_positions(element)) {
+                    new[rise] = amplitude.value(place, at) - reference;
+                }
+            }
+            None => points.for_each(|(new, old)| new[rise] = old[rise]),
+        }
+    }
+
+    /// T − T₀ at the points of an element in the memory of all elements; none where temperatures do nothing.
+    pub fn temperatures<'a>(&self, element: usize, memory: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        let of =
+            |(count, rise)| self.memories.of(element, memory).chunks_exact(count).map(move |point: &[f64]| point[rise]);
+        self.rises(element).map(of).into_iter().flatten()
+    }
+
+    /// Work that a change of temperature does on an element in an increment, −½ (τ₀ + τ₁) α ΔT with the expansion stress τ: what
+    /// it changes of the energy that a body stores without moving [F·L].
+    pub fn heating(&self, element: usize, [old, new]: [&[f64]; 2]) -> f64 {
+        let (Some((count, rise)), Some(thermal)) =
+            (self.rises(element), self.bodies[self.body_of_element[element]].thermal)
+        else {
+            return 0.0;
+        };
+        let of = |(volume, (old, new)): (&f64, (&[f64], &[f64]))| {
+            -0.5 * (old[rise + 1] + new[rise + 1]) * thermal.expansion * (new[rise] - old[rise]) * volume
+        };
+        let points = old.chunks_exact(count).zip(new.chunks_exact(count));
+        self.solids[element].point_volumes().iter().zip(points).map(of).sum()
+    }
+
+    /// Number of variables of an element's material at a point, and which of them is T − T₀; none if it is not heated.
+    fn rises(&self, element: usize) -> Option<(usize, usize)> {
+        let body = &self.bodies[self.body_of_element[element]];
+        let count = body.material.variables().len();
+        body.thermal.map(|_| (count, count - TEMPERATURE.len()))
+    }
+
+    /// Reference positions of an element's quadrature points.
+    pub fn quadrature_positions(&self, element: usize) -> impl Iterator<Item = Vector2<f64>> {
+        let element = &self.mesh.elements[element];
+        element.kind.quadrature().into_iter().map(move |point| {
+            element.nodes.iter().zip(element.kind.values(point.at)).map(|(&node, n)| self.mesh.nodes[node] * n).sum()
+        })
+    }
 }

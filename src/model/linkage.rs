@@ -8,8 +8,12 @@
 //!
 //! α and β follow from the places at the start, so that a rigid plate is linear in the displacements of two of its nodes but for the
 //! length between them. Forces on c go to its leaders by Gᵀ: the work is the same.
+//!
+//! Of loading plates it is here as well whose their reactions are.
 
 use nalgebra::{Matrix2, Vector2};
+
+use super::Model;
 
 /// A node that follows others.
 #[derive(Clone, Debug, PartialEq)]
@@ -134,4 +138,16 @@ pub fn rigid(nodes: &[usize], [a, b]: [usize; 2], place: impl Fn(usize) -> Vecto
         Follower { node, components: [true; 2], leaders: vec![(a, Matrix2::identity() - of_b), (b, of_b)] }
     };
     nodes.iter().filter(|node| **node != a && **node != b).map(follower).collect()
+}
+
+impl Model {
+    /// Those of some nodes, ascending, whose reactions along x (0) or y (1) are theirs: that of a plate is with one of its nodes, and
+    /// is theirs if the whole plate is.
+    pub fn held(&self, nodes: &[usize], component: usize) -> Vec<usize> {
+        let linked = self.linkage.plates.iter().filter(|(_, components)| components[component]).map(|(plate, _)| plate);
+        let plates: Vec<&Vec<usize>> = self.plates.iter().chain(linked).collect();
+        let all = |plate: &Vec<usize>| plate.iter().all(|node| nodes.binary_search(node).is_ok());
+        let partly = |node: &usize| plates.iter().any(|plate| plate.binary_search(node).is_ok() && !all(plate));
+        nodes.iter().copied().filter(|node| !partly(node)).collect()
+    }
 }

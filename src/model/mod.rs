@@ -5,45 +5,34 @@ mod balance;
 mod body;
 pub mod boundary;
 pub mod builder;
-mod damping;
 pub mod element;
 mod expression;
-mod heat;
 pub mod imposed;
 pub mod linkage;
-mod memories;
 pub mod method;
-mod moment;
-mod plates;
-pub mod probe;
 pub mod scheme;
 pub mod state;
-mod step;
+pub mod step;
 pub mod support;
 pub mod told;
-pub mod until;
 pub mod warnings;
 
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector, Vector2};
 
-pub use body::{Body, PointMass};
-
 use crate::contact::pair::ContactPair;
 use crate::mesh::configuration::Configuration;
 use crate::mesh::ties::Ties;
 use crate::mesh::{Element, Mesh};
-use crate::model::aids::Aids;
-use crate::model::boundary::Loads;
-pub use crate::model::damping::Damping;
-use crate::model::element::{SolidElement, consistent_mass, lumped_mass, redistributed};
-use crate::model::linkage::Linkage;
-pub use crate::model::memories::Memories;
-use crate::model::method::Chosen;
-use crate::model::probe::Probe;
-use crate::model::state::{Energy, State, StepStart};
-pub use crate::model::step::{Increments, Rupture, Step};
+use aids::Aids;
+pub use body::{Body, Damping, Memories, PointMass};
+use boundary::Loads;
+use element::{SolidElement, consistent_mass, lumped_mass, redistributed};
+use linkage::Linkage;
+use method::Chosen;
+use state::{Energy, State, StepStart};
+pub use step::{Increments, Rupture, Step};
 
 /// When Newton's method stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -226,4 +215,15 @@ impl Model {
 /// What two times may differ by and be the same [T].
 fn near(time: f64) -> f64 {
     16.0 * f64::EPSILON * time
+}
+
+/// A point that moves with a body, at which motion, strain and stress are asked for, as a gauge there would read them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Probe {
+    /// its name in results
+    pub name: String,
+    /// the element it lies in
+    pub element: usize,
+    /// its coordinates (ξ, η) in it
+    pub at: [f64; 2],
 }

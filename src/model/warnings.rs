@@ -4,9 +4,8 @@ use nalgebra::Vector2;
 
 use super::balance;
 use super::told::{count, number};
-use crate::contact::master::Master;
+use crate::contact::master::{Master, Rigid};
 use crate::contact::pair::ContactPair;
-use crate::contact::rigid::Rigid;
 use crate::contact::surface::SlavePoint;
 use crate::mesh::Mesh;
 use crate::model::method::Chosen;

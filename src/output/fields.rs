@@ -1,5 +1,7 @@
 //! `solid.pvd`, `contact.pvd` and `points.pvd`: what ParaView shows, one VTU file a frame. A frame is listed soon after it is
 //! whole, and no longer listed before it is taken back: a list is valid at any moment of a run.
+//!
+//! Whether there is memory for a frame, before it is made.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -7,13 +9,11 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use super::csv::failed;
-use super::files;
+use super::csv::{Row, Rows, failed};
 use super::frames::{Shown, contact_frame, points_frame, solid_frame};
-use super::memory;
-use super::room::Room;
-use super::rows::{Row, Rows};
 use super::vtu::Grid;
+use super::{csv, files};
+use crate::linear::memory::room_for;
 use crate::model::Model;
 use crate::model::state::State;
 use crate::run::error::Error;
@@ -183,11 +183,11 @@ impl Observer for Fields {
 
     fn save(&mut self) -> Result<Vec<u8>, Error> {
         self.settle()?;
-        memory::written(&(&self.rows, &self.times))
+        csv::remembered(&(&self.rows, &self.times))
     }
 
     fn check(&self, memory: &[u8]) -> Result<(), Error> {
-        let (_, times): ((Rows, usize), Vec<f64>) = memory::read(memory)?;
+        let (_, times): ((Rows, usize), Vec<f64>) = csv::recalled(memory)?;
         let frames =
             self.names.iter().flat_map(|name| (0..times.len()).map(|number| self.folder.join(file(name, number))));
         match frames.into_iter().find(|path| !path.is_file()) {
@@ -197,7 +197,7 @@ impl Observer for Fields {
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        (self.rows, self.times) = memory::read(memory)?;
+        (self.rows, self.times) = csv::recalled(memory)?;
         self.ask(Task::Keep(self.times.clone()))?;
         self.settle()
     }
@@ -277,5 +277,32 @@ impl Collection {
         let path = self.folder.join(format!("{}.pvd", self.name));
         self.listed = (self.times.len(), Some(Instant::now()));
         files::replace(&path, text.as_bytes()).map_err(|cause| failed(&path, &cause))
+    }
+}
+
+/// Bytes a node or contact point takes in a frame: its state once more, fourteen numbers, and their text.
+const PER_NODE: usize = 600;
+
+/// The room that a frame takes while it is made.
+#[derive(Debug)]
+struct Room {
+    folder: PathBuf,
+    bytes: usize,
+}
+
+impl Room {
+    /// Of a model's frames in a folder.
+    pub fn of(folder: &Path, model: &Model) -> Self {
+        let points: usize = model.contacts.iter().map(|pair| pair.points.len()).sum();
+        Self { folder: folder.join("solid"), bytes: PER_NODE * (model.mesh.nodes.len() + points) }
+    }
+
+    /// Refuse a frame that does not fit.
+    ///
+    /// # Errors
+    /// [`Error::Output`] with what it takes and what is free.
+    pub fn check(&self) -> Result<(), Error> {
+        let told = |cause| failed(&self.folder, &format!("a frame takes {cause}; leave them out (\"fields\": false)"));
+        room_for(self.bytes, 0).map_err(told)
     }
 }

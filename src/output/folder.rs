@@ -7,11 +7,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::checkpoint;
-use super::files;
-use super::interface;
-use super::lock::Lock;
-use super::report;
+use super::files::Lock;
+use super::{checkpoint, files, interface, report};
 use crate::run::error::Error;
 
 /// What commands write; a folder ends in `/` and holds numbered frames.

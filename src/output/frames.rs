@@ -5,8 +5,8 @@ use std::io;
 use nalgebra::Vector2;
 
 use super::vtu::{CellType, Grid, cell_type};
-use crate::contact::fields;
 use crate::contact::force::ContactState;
+use crate::contact::pair;
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
 use crate::laws::bulk::CauchyStress;
@@ -179,9 +179,9 @@ pub fn contact_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid
     let all: Vec<(Place, &ContactState)> = states.collect();
     grid.begin(|| (reference, lines))?;
     grid.vectors("displacement", &displacement);
-    for name in fields::names(&model.contacts) {
+    for name in pair::field_names(&model.contacts) {
         let value = |(place, s): &(Place, &ContactState)| {
-            fields::value(place.pair, place.slave, s, (state.time, state.dt), name)
+            pair::field_value(place.pair, place.slave, s, (state.time, state.dt), name)
         };
         grid.at_points(name, 1, all.iter().map(value));
     }

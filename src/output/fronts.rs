@@ -18,13 +18,10 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use super::csv;
 use super::csv::Table;
-use super::events::{Energies, Mark};
-use super::measures::Measures;
-use super::memory;
-pub use super::passages::Arrive;
-use super::passages::{Interface, Passing};
-use super::wave_speeds::WaveSpeeds;
+pub use super::events::Arrive;
+use super::events::{Energies, Interface, Mark, Measures, Passing, WaveSpeeds};
 use crate::model::Model;
 use crate::model::state::State;
 use crate::run::error::Error;
@@ -168,11 +165,11 @@ impl Observer for Fronts {
     }
 
     fn save(&mut self) -> Result<Vec<u8>, Error> {
-        memory::written(&(&self.interfaces, self.start, self.last))
+        csv::remembered(&(&self.interfaces, self.start, self.last))
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        (self.interfaces, self.start, self.last) = memory::read(memory)?;
+        (self.interfaces, self.start, self.last) = csv::recalled(memory)?;
         Ok(())
     }
 

@@ -1,4 +1,4 @@
-//! `history.csv`: a row per accepted increment, or those that an interval leaves (`rows.rs`).
+//! `history.csv`: a row per accepted increment, or those that an interval leaves (`csv.rs`).
 
 use std::path::Path;
 use std::slice;
@@ -7,13 +7,12 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::bodies::{BodyMeans, Motion};
-use super::csv::{Opening, Table};
+use super::csv;
+use super::csv::{Opening, Rows, Table};
 use super::friction_course::FrictionCourse;
-use super::memory;
-use super::rows::Rows;
 use crate::contact::force::ContactState;
+use crate::contact::nodal_forces::Resultant;
 use crate::contact::pair::ContactPair;
-use crate::contact::resultant::Resultant;
 use crate::equations::interfaces;
 use crate::laws::friction::{Regime, observables};
 use crate::mesh::{Group, shape};
@@ -202,15 +201,15 @@ impl Observer for History {
     }
 
     fn save(&mut self) -> Result<Vec<u8>, Error> {
-        memory::written(&(self.table.standing()?, &self.memory))
+        csv::remembered(&(self.table.standing()?, &self.memory))
     }
 
     fn check(&self, memory: &[u8]) -> Result<(), Error> {
-        memory::check_table(&self.table, memory)
+        csv::check_table(&self.table, memory)
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        self.memory = memory::cut_table(&mut self.table, memory)?;
+        self.memory = csv::cut_table(&mut self.table, memory)?;
         Ok(())
     }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::csv::Table;
 use crate::laws::friction::{FrictionLaw, FrictionResponse, observables};
 use crate::run::error::Error;
-use crate::run::law_report::LawRow;
+use crate::run::law::LawRow;
 
 /// The columns of `law.csv` that every law has.
 const COLUMNS: [&str; 12] = [

@@ -4,14 +4,14 @@
 
 use std::path::Path;
 
+use super::csv;
 use super::csv::{Opening, Table};
-use super::memory;
 use crate::mesh::names::in_line;
 use crate::model::Model;
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer, Verdict};
 use crate::solve::IterationRecord;
-use crate::solve::acted::Acted;
+use crate::solve::contact_iteration::Acted;
 
 /// Writes `newton.csv`.
 #[derive(Debug)]
@@ -108,15 +108,15 @@ impl Observer for NewtonLog {
     }
 
     fn save(&mut self) -> Result<Vec<u8>, Error> {
-        memory::of_table(&mut self.0)
+        csv::table_memory(&mut self.0)
     }
 
     fn check(&self, memory: &[u8]) -> Result<(), Error> {
-        memory::check_table(&self.0, memory)
+        csv::check_table(&self.0, memory)
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        memory::cut_table(&mut self.0, memory)
+        csv::cut_table(&mut self.0, memory)
     }
 
     fn finish(&mut self) -> Result<(), Error> {

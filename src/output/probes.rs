@@ -1,13 +1,16 @@
 //! `probes.csv`: what gauges at points of the bodies read, at the rows of the history.
+//!
+//! What a gauge at a point of a body reads.
 
 use std::path::Path;
 
-use super::csv::{Opening, Table};
-use super::gauge::Reading;
-use super::memory;
-use super::rows::Rows;
+use nalgebra::{Matrix2, Vector2};
+
+use super::csv;
+use super::csv::{Opening, Rows, Table};
 use crate::laws::bulk::CauchyStress;
-use crate::model::Model;
+use crate::model::state::State;
+use crate::model::{Model, Probe};
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};
 
@@ -76,19 +79,81 @@ impl Observer for Probes {
     }
 
     fn save(&mut self) -> Result<Vec<u8>, Error> {
-        memory::written(&(self.table.standing()?, &self.rows))
+        csv::remembered(&(self.table.standing()?, &self.rows))
     }
 
     fn check(&self, memory: &[u8]) -> Result<(), Error> {
-        memory::check_table(&self.table, memory)
+        csv::check_table(&self.table, memory)
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        self.rows = memory::cut_table(&mut self.table, memory)?;
+        self.rows = csv::cut_table(&mut self.table, memory)?;
         Ok(())
     }
 
     fn finish(&mut self) -> Result<(), Error> {
         self.table.flush()
+    }
+}
+
+/// What a probe reads.
+///
+/// ```text
+/// u = Σ N_a u_a,  v likewise                    by the shape functions of the element
+/// E = ½ (FᵀF − 1)                               Green–Lagrange; of `linear` materials ε = sym grad u
+/// ```
+/// Strain and Cauchy stress are the (bi)linear functions of the element nearest to their values at the integration points.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Reading {
+    /// u [L]
+    pub displacement: Vector2<f64>,
+    /// v [L/T]
+    pub velocity: Vector2<f64>,
+    /// E_xx, E_yy, E_xy, referred to the undeformed axes [-]
+    pub strain: [f64; 3],
+    /// E_zz of rings, along the hoops; 0 of other sections [-]
+    pub hoop_strain: f64,
+    /// σ [F/L²]
+    pub stress: CauchyStress,
+}
+
+impl Reading {
+    /// Of a probe in a state. Where the material has no answer stress and strain are no numbers; it always has in an
+    /// accepted state.
+    pub fn of(probe: &Probe, model: &Model, state: &State) -> Self {
+        let (element, solid) = (&model.mesh.elements[probe.element], &model.solids[probe.element]);
+        let nodal = |values: &[f64]| -> Vec<Vector2<f64>> {
+            element.nodes.iter().map(|&node| Vector2::new(values[2 * node], values[2 * node + 1])).collect()
+        };
+        let values = element.kind.values(probe.at);
+        let mean = |of: &[Vector2<f64>]| of.iter().zip(&values).map(|(of, n)| of * *n).sum::<Vector2<f64>>();
+        let (u, v) = (nodal(&state.displacement), nodal(&state.velocity));
+        let material = &*model.bodies[model.body_of_element[probe.element]].material;
+        let memory = model.memories.of(probe.element, &state.memory);
+        let strain = |f: &Matrix2<f64>| {
+            let gradient = f - Matrix2::identity();
+            let square = if material.is_linear() { Matrix2::zeros() } else { gradient.transpose() * gradient };
+            let strain = 0.5 * (gradient + gradient.transpose() + square);
+            [strain.m11, strain.m22, strain.m12]
+        };
+        let strains: Vec<[f64; 3]> = solid.deformations(&u).iter().map(strain).collect();
+        let hoop_strain = |h: &f64| match material.is_linear() {
+            true => [h - 1.0],
+            false => [0.5 * (h - 1.0) * (h + 1.0)],
+        };
+        let hoops: Option<Vec<[f64; 1]>> = solid.hoops(&u).map(|hoops| hoops.iter().map(hoop_strain).collect());
+        let stress = solid.stresses(material, memory, &u).map(|stresses| {
+            let all: Vec<[f64; 4]> = stresses.iter().map(|s| [s.xx, s.yy, s.zz, s.xy]).collect();
+            let [xx, yy, zz, xy] = solid.fitted(&all, probe.at);
+            CauchyStress { xx, yy, zz, xy }
+        });
+        let none = CauchyStress { xx: f64::NAN, yy: f64::NAN, zz: f64::NAN, xy: f64::NAN };
+        Self {
+            displacement: mean(&u),
+            velocity: mean(&v),
+            strain: solid.fitted(&strains, probe.at),
+            hoop_strain: hoops.map_or(0.0, |hoops| solid.fitted(&hoops, probe.at)[0]),
+            stress: stress.unwrap_or(none),
+        }
     }
 }

@@ -10,9 +10,9 @@ use super::files;
 use super::friction_course::FrictionCourse;
 use crate::laws::friction::FrictionParameters;
 use crate::model::Model;
+use crate::run::control::RunReport;
 use crate::run::error::Error;
-use crate::run::law_report::LawReport;
-use crate::run::report::RunReport;
+use crate::run::law::LawReport;
 
 /// Where results come from, and what their readers need to know of it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -4,14 +4,14 @@ use nalgebra::Vector2;
 use thiserror::Error;
 
 use super::simulation::Simulation;
-use crate::contact::fields;
 use crate::contact::force::ContactState;
+use crate::contact::pair;
 use crate::contact::pair::ContactPair;
 use crate::mesh::UnknownGroup;
 use crate::model::Step;
 use crate::model::boundary::{Drive, Span};
 use crate::model::builder::ModelError;
-use crate::model::builder::increments::check_bounds;
+use crate::model::builder::schedule::check_bounds;
 use crate::model::support::{Direction, Motion, Prescribed};
 
 /// A name that a run does not know.
@@ -89,19 +89,19 @@ impl Simulation {
         Ok(sum / nodes.len() as f64)
     }
 
-    /// A field of a contact by its name, see [`fields::value`], one value a slave point in their order.
+    /// A field of a contact by its name, see [`pair::field_value`], one value a slave point in their order.
     ///
     /// # Errors
     /// [`Unknown::Contact`], [`Unknown::Field`].
     pub fn contact_field(&self, contact: &str, field: &str) -> Result<Vec<f64>, Unknown> {
         let (pair, states) = self.contact(contact)?;
-        let names = fields::names(&self.model().contacts);
+        let names = pair::field_names(&self.model().contacts);
         if !names.contains(&field) {
             return Err(Unknown::Field { name: field.into(), known: names.join(", ") });
         }
         let points = pair.points.iter().zip(states);
         Ok(points
-            .map(|(slave, point)| fields::value(pair, slave, point, (self.state().time, self.state().dt), field))
+            .map(|(slave, point)| pair::field_value(pair, slave, point, (self.state().time, self.state().dt), field))
             .collect())
     }
 

@@ -1,5 +1,8 @@
 //! Where a run is between two increments, and what an attempt at the next one found.
+//!
+//! Counts and times of a run.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -11,7 +14,7 @@ use crate::contact::master::Master;
 use crate::contact::pair::ContactPair;
 use crate::equations::Coupling;
 use crate::model::boundary::Span;
-use crate::model::state::State;
+use crate::model::state::{Energy, State};
 use crate::model::{Model, Step};
 use crate::solve::IterationRecord;
 use crate::solve::failure::IncrementFailure;
@@ -284,4 +287,57 @@ impl Candidate {
     pub fn iterations(&self) -> &[IterationRecord] {
         &self.iterations
     }
+}
+
+/// Counts and times of a run.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct RunReport {
+    /// accepted increments
+    pub increments: usize,
+    /// attempts that could not be solved
+    pub cutbacks: usize,
+    /// attempts that were solved, and repeated because their error was too large or they met an event of contact
+    pub rejected: usize,
+    /// the same attempts, solved or not, by why they were given up
+    pub given_up: BTreeMap<String, usize>,
+    /// times that a step turned to explicit increments because a contact slipped fast
+    pub ruptures: usize,
+    /// linear solves, those of failed attempts included
+    pub newton_iterations: usize,
+    /// matrix factorizations
+    pub factorizations: usize,
+    /// energies at the end
+    pub energy: Energy,
+    /// energy that went into the stabilization of floating bodies [F·L]
+    pub stabilization_work: f64,
+    /// wall time by phase
+    pub wall_s: WallSeconds,
+}
+
+impl RunReport {
+    /// Count an attempt if it was given up.
+    pub(super) fn note(&mut self, outcome: &Outcome) {
+        let (count, kind) = match outcome {
+            Outcome::Rejected(why, _) => (&mut self.rejected, why.kind()),
+            Outcome::Cut(cause, _) | Outcome::Collapsed(_, cause) => (&mut self.cutbacks, cause.kind()),
+            Outcome::Accepted(_) | Outcome::Paused(_) | Outcome::Stopped(_) => return,
+        };
+        *count += 1;
+        *self.given_up.entry(kind.into()).or_default() += 1;
+    }
+}
+
+/// Wall time by phase [s].
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub struct WallSeconds {
+    /// everything
+    pub total: f64,
+    /// solids, loads, sums
+    pub assembly: f64,
+    /// search, friction, contact forces
+    pub contact: f64,
+    /// factorization and solution
+    pub linear: f64,
+    /// observers
+    pub output: f64,
 }

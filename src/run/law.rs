@@ -1,9 +1,20 @@
 //! A friction law alone, driven along a path of slip, pressure and time.
+//!
+//! # Path
+//!
+//! The path along which a friction law is driven: slip and pressure as functions of time, and the times at which they
+//! turn.
+//!
+//! # Report
+//!
+//! What a friction law driven alone answered, and what its answers amount to.
+
+use nalgebra::Vector2;
+use serde::Serialize;
 
 use crate::laws::friction::{FrictionLaw, FrictionResponse, FrictionState, Sliding, observables};
+use crate::model::boundary::{Drive, Span};
 use crate::run::error::Error;
-use crate::run::law_path::Phase;
-use crate::run::law_report::{LawReport, LawRow};
 
 /// A test of a law: where it starts and where it is led.
 #[derive(Debug)]
@@ -62,5 +73,348 @@ impl LawTest {
                  contact stiffness and the answer snaps; raise alpha_t"
             ));
         }
+    }
+}
+
+/// One stretch of the path.
+#[derive(Clone, Debug)]
+pub struct Phase {
+    span: Span,
+    slip: Course,
+    pressure: Course,
+    /// longest step [T]
+    dt: f64,
+    /// times closer than this are the same [T]
+    resolution: f64,
+    /// ascending, the end of the phase last
+    stops: Vec<f64>,
+}
+
+/// Slip or pressure over one phase.
+#[derive(Clone, Debug)]
+pub struct Course {
+    /// how it varies
+    pub drive: Drive,
+    /// value at the start of the phase, from which a constant and a rate count
+    pub start: f64,
+}
+
+/// A quantity of the path has no finite value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Undefined {
+    /// "slip" or "pressure"
+    pub quantity: &'static str,
+    /// t [T]
+    pub time: f64,
+}
+
+/// A phase is searched for turning points with at least this many samples, ...
+const FEWEST_SAMPLES: usize = 1 << 12;
+
+/// ... a sample for every step, and at most this many.
+const MOST_SAMPLES: usize = 1 << 20;
+
+/// Times closer than this share of a step are the same.
+const SAME: f64 = 1e-6;
+
+impl Phase {
+    /// Slip and pressure over a span; the turning points are found here.
+    ///
+    /// # Errors
+    /// [`Undefined`] where an expression has no finite value.
+    pub fn new(span: Span, slip: Course, pressure: Course, dt: f64) -> Result<Self, Undefined> {
+        let mut phase = Self { span, slip, pressure, dt, resolution: 0.0, stops: Vec::new() };
+        let mut knots: Vec<f64> = [&phase.slip, &phase.pressure].iter().flat_map(|course| course.knots(span)).collect();
+        knots.sort_by(f64::total_cmp);
+        knots.dedup();
+        let apart = knots.windows(2).map(|pair| pair[1] - pair[0]).fold(dt, f64::min);
+        phase.resolution = SAME * apart.min(span.end - span.start);
+        phase.stops = phase.find_stops(knots)?;
+        Ok(phase)
+    }
+
+    /// Total slip since the start of the path [L].
+    pub fn slip(&self, time: f64) -> f64 {
+        self.slip.value(time, self.span)
+    }
+
+    /// p; the surfaces are apart where it is not positive [F/L²].
+    pub fn pressure(&self, time: f64) -> f64 {
+        self.pressure.value(time, self.span)
+    }
+
+    /// t at the start [T].
+    pub fn start(&self) -> f64 {
+        self.span.start
+    }
+
+    /// t at the end [T].
+    pub fn end(&self) -> f64 {
+        self.span.end
+    }
+
+    /// Ends of the steps: multiples of dt since the start of the phase, and the stops.
+    pub fn times(&self) -> impl Iterator<Item = f64> {
+        let mut stops = self.stops.iter().copied().peekable();
+        let mut step = 1.0;
+        std::iter::from_fn(move || {
+            let stop = *stops.peek()?;
+            let regular = self.span.start + step * self.dt;
+            if regular <= stop + self.resolution {
+                step += 1.0;
+            }
+            if regular < stop - self.resolution { Some(regular) } else { stops.next() }
+        })
+    }
+
+    /// Times to step onto, never over: knots of tables, turning points, touch and parting, the end.
+    fn find_stops(&self, knots: Vec<f64>) -> Result<Vec<f64>, Undefined> {
+        let samples = self.samples(&knots);
+        let mut found = knots;
+        for (quantity, course) in [("slip", &self.slip), ("pressure", &self.pressure)] {
+            let value = |time| course.value(time, self.span);
+            let samples = sampled(&samples, value).map_err(|time| Undefined { quantity, time })?;
+            if matches!(course.drive, Drive::Expression(_)) {
+                found.extend(turning_points(&samples, value));
+            }
+            if quantity == "pressure" {
+                found.extend(touches(&samples, value));
+            }
+        }
+        found.sort_by(f64::total_cmp);
+        let Span { start, end } = self.span;
+        let mut stops: Vec<f64> = Vec::new();
+        for time in found.into_iter().map(|time| self.regular(time)) {
+            let last = stops.last().copied().unwrap_or(start);
+            if time > last + self.resolution && time < end - self.resolution {
+                stops.push(time);
+            }
+        }
+        stops.push(end);
+        Ok(stops)
+    }
+
+    /// The regular end of a step next to a time, if it is the same.
+    fn regular(&self, time: f64) -> f64 {
+        let near = self.span.start + ((time - self.span.start) / self.dt).round() * self.dt;
+        if (near - time).abs() <= self.resolution { near } else { time }
+    }
+
+    fn samples(&self, knots: &[f64]) -> Vec<f64> {
+        let Span { start, end } = self.span;
+        let count = (((end - start) / self.dt) as usize).clamp(FEWEST_SAMPLES, MOST_SAMPLES);
+        let even = (0..=count).map(|k| start + (end - start) * (k as f64 / count as f64));
+        let mut samples: Vec<f64> = even.chain(knots.iter().copied()).collect();
+        samples.sort_by(f64::total_cmp);
+        samples
+    }
+}
+
+impl Course {
+    /// Value at a time of the span.
+    pub fn value(&self, time: f64, span: Span) -> f64 {
+        self.drive.value(Vector2::zeros(), time, span, self.start)
+    }
+
+    fn knots(&self, span: Span) -> Vec<f64> {
+        match &self.drive {
+            Drive::Table(table) => {
+                let times = table.iter().map(|[time, _]| *time);
+                times.filter(|time| (span.start..=span.end).contains(time)).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// (t, f(t)) at the samples, and in the middle between two where f is the same; the time at which f is not finite.
+fn sampled(times: &[f64], f: impl Fn(f64) -> f64) -> Result<Vec<[f64; 2]>, f64> {
+    let mut samples: Vec<[f64; 2]> = Vec::with_capacity(times.len());
+    for &time in times {
+        let value = f(time);
+        if !value.is_finite() {
+            return Err(time);
+        }
+        if let Some(&[before, earlier]) = samples.last()
+            && direction(earlier, value) == 0.0
+        {
+            let middle = 0.5 * (before + time);
+            samples.push([middle, f(middle)]);
+        }
+        samples.push([time, value]);
+    }
+    Ok(samples)
+}
+
+/// Sign of b − a; 0 if they differ by round-off.
+fn direction(a: f64, b: f64) -> f64 {
+    if (b - a).abs() <= 4.0 * f64::EPSILON * a.abs().max(b.abs()) { 0.0 } else { (b - a).signum() }
+}
+
+/// Times at which the slope of f changes its sign, becomes zero or ceases to be.
+fn turning_points(samples: &[[f64; 2]], f: impl Fn(f64) -> f64) -> Vec<f64> {
+    let turn = |window: &[[f64; 2]]| {
+        let [[t0, f0], [t1, f1], [t2, f2]] = [window[0], window[1], window[2]];
+        let (before, after) = (direction(f0, f1), direction(f1, f2));
+        if before == after {
+            None
+        } else if before == 0.0 {
+            Some(last_time(t1, t2, |t| direction(f1, f(t)) == 0.0))
+        } else if after == 0.0 {
+            Some(last_time(t0, t1, |t| direction(f1, f(t)) != 0.0))
+        } else {
+            Some(highest(t0, t2, |t| before * f(t)))
+        }
+    };
+    samples.windows(3).filter_map(turn).collect()
+}
+
+/// Times at which the pressure becomes positive, or ceases to be.
+fn touches(samples: &[[f64; 2]], pressure: impl Fn(f64) -> f64) -> Vec<f64> {
+    let pressed = |p: f64| p > 0.0;
+    let change = |window: &[[f64; 2]]| {
+        let [[t0, p0], [t1, p1]] = [window[0], window[1]];
+        (pressed(p0) != pressed(p1)).then(|| last_time(t0, t1, |t| pressed(pressure(t)) == pressed(p0)))
+    };
+    samples.windows(2).filter_map(change).collect()
+}
+
+/// The last time in [low, high] at which something holds that holds at `low` and no longer at `high`.
+fn last_time(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            return low;
+        }
+        if holds(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+}
+
+/// Where f is highest in [low, high], by golden sections: found to the square root of the round-off where f is smooth,
+/// which is all that can be seen in f.
+fn highest(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
+    const SECTION: f64 = 0.618_033_988_749_894_8;
+    const SECTIONS: usize = 70;
+    let (mut left, mut right) = (high - SECTION * (high - low), low + SECTION * (high - low));
+    let (mut at_left, mut at_right) = (f(left), f(right));
+    for _ in 0..SECTIONS {
+        if at_left < at_right {
+            (low, left, at_left) = (left, right, at_right);
+            right = low + SECTION * (high - low);
+            at_right = f(right);
+        } else {
+            (high, right, at_right) = (right, left, at_left);
+            left = high - SECTION * (high - low);
+            at_left = f(left);
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// One step along the path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LawRow {
+    /// t [T]
+    pub time: f64,
+    /// total slip since the start [L]
+    pub slip: f64,
+    /// what the law answered
+    pub response: FrictionResponse,
+    /// μ: what the interface could carry over p [-]
+    pub mu: f64,
+}
+
+/// A point of the path, as far as peaks and holds are concerned.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PathPoint {
+    /// t [T]
+    pub time: f64,
+    /// total slip [L]
+    pub slip: f64,
+    /// |q|/p: apparent friction coefficient [-]
+    pub coefficient: f64,
+    /// μ: what the interface could carry [-]
+    pub mu: f64,
+}
+
+impl PathPoint {
+    /// From the numbers of a row; without pressure there is no coefficient.
+    pub fn new([time, slip, pressure, traction, mu]: [f64; 5]) -> Self {
+        let coefficient = if pressure > 0.0 { traction.abs() / pressure } else { 0.0 };
+        Self { time, slip, coefficient, mu }
+    }
+}
+
+/// A time without slip, and the peak of friction in the slip that follows.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Hold {
+    /// its length [T]
+    pub duration: f64,
+    /// the highest |q|/p until the next hold
+    pub peak: PathPoint,
+}
+
+/// Peaks of |q|/p: over all steps, and after every hold.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Peaks {
+    /// the highest |q|/p at the end of a step, the first where several are equal
+    pub peak: Option<PathPoint>,
+    /// holds that slip has followed
+    pub holds: Vec<Hold>,
+    #[serde(skip)]
+    last: Option<PathPoint>,
+    /// start of the hold that is going on
+    #[serde(skip)]
+    rest_since: Option<f64>,
+}
+
+impl Peaks {
+    /// Take note of the next row.
+    pub fn note(&mut self, now: PathPoint) {
+        let higher = |than: &PathPoint| now.coefficient > than.coefficient;
+        let Some(last) = self.last.replace(now) else { return };
+        if self.peak.as_ref().is_none_or(higher) {
+            self.peak = Some(now);
+        }
+        if now.slip == last.slip {
+            self.rest_since.get_or_insert(last.time);
+        } else if let Some(start) = self.rest_since.take() {
+            self.holds.push(Hold { duration: last.time - start, peak: now });
+        } else if let Some(hold) = self.holds.last_mut().filter(|hold| higher(&hold.peak)) {
+            hold.peak = now;
+        }
+    }
+}
+
+/// What a test of a law amounts to.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct LawReport {
+    /// steps answered
+    pub steps: usize,
+    /// most evaluations of the law's scalar equation in one step
+    pub most_evaluations: usize,
+    /// peak of |q|/p, and holds
+    #[serde(flatten)]
+    pub peaks: Peaks,
+    /// work dissipated by friction [F/L]
+    pub dissipation: f64,
+    /// warnings
+    pub warnings: Vec<String>,
+}
+
+impl LawReport {
+    /// Take note of the next row.
+    pub fn note(&mut self, row: &LawRow) {
+        let FrictionResponse { state, evaluations, .. } = row.response;
+        let FrictionState { pressure, traction, dissipation, .. } = state;
+        // The first row is the start.
+        self.steps += usize::from(self.peaks.last.is_some());
+        self.peaks.note(PathPoint::new([row.time, row.slip, pressure, traction, row.mu]));
+        self.most_evaluations = self.most_evaluations.max(evaluations);
+        self.dissipation = dissipation;
     }
 }

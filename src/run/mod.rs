@@ -2,16 +2,10 @@
 
 pub mod access;
 mod attempt;
-mod begin;
 pub mod control;
 pub mod error;
 pub mod law;
-pub mod law_path;
-pub mod law_report;
 pub mod observer;
-mod reason;
-pub mod report;
-pub mod saved;
 pub mod simulation;
 
 use std::sync::Arc;
@@ -23,11 +17,10 @@ use crate::model::Model;
 use crate::model::state::State;
 use crate::run::error::Error;
 use crate::run::observer::Observer;
-use crate::run::report::RunReport;
 pub use access::{Axis, Unknown};
+use control::RunReport;
 pub use control::{Candidate, Increment};
-pub use saved::Saved;
-pub use simulation::Simulation;
+pub use simulation::{Saved, Simulation};
 
 /// Run all steps of a model. The report comes back from a stopped run as well.
 ///

@@ -1,20 +1,39 @@
 //! Equilibrium at the time of a trial, from the start value on.
+//!
+//! # Start value
+//!
+//! Where the iterations of an increment start.
+//!
+//! ```text
+//! u = u₀ + Δt/Δt₀ Δu₀                                 the last increment of the step goes on at its pace
+//! u = u₀ + Δt v₀ + ½ Δt² a₀                           in dynamics under error control
+//! ```
+//!
+//! Without it every increment starts at u₀, and the points that have to slip, open or close find that out once more. Where the
+//! last increment ended in touch the next one is not like it. In dynamics no accepted increment under error control
+//! leaves the second start by much more than the allowed error; where increments do not resolve the motion it would be far off.
+//! Nodes whose mass was moved away have accelerations that mean nothing: they go on at their pace. Switch `start`;
+//! `aid_start` is 1 in an iteration that begins there.
+//!
+//! Source: the predictor of Newmark (1959) in dynamics; in statics the secant predictor of path following.
+//!
+//! # Augmented Lagrangian
+//!
+//! The augmented Lagrangian: multipliers that leave no more penetration than allowed.
 
-use super::acted::Acted;
-use super::contact_iteration::flips::Flips;
+use super::contact_iteration::{Acted, Flips};
 use super::failure::IncrementFailure;
 use super::floating::null_motion;
 use super::interface::{Interface, Round, Rung};
 use super::newton::{self, NewtonFailure};
-use super::start::start_value;
 use super::{IterationRecord, Workspace};
 use crate::contact::force::ContactState;
-use crate::equations::failure::TrialFailure;
+use crate::equations::sums::TrialFailure;
 use crate::equations::{Assembler, ContactCounts, Trial};
 use crate::linear::system::Request;
 use crate::linear::{LinearFailure, SparseMatrix};
 use crate::model::Model;
-use crate::model::state::State;
+use crate::model::state::{LastIncrement, State};
 
 /// Equilibrium at the time of a trial, wherever the scheme asks for it; from the start value of a new increment unless
 /// another is given.
@@ -258,4 +277,81 @@ fn records(iterations: Vec<newton::Iteration>, mut seen: Vec<Seen>) -> Vec<Itera
         acted: Acted { downhill: usize::from(newton.searched), ..acted },
     };
     iterations.into_iter().zip(seen).map(record).collect()
+}
+
+/// The start value of an increment, and whether it is another one than the committed displacement.
+pub fn start_value(model: &Model, trial: Trial) -> (Vec<f64>, bool) {
+    let Trial { old, step, dt, .. } = trial;
+    let State { displacement, velocity, acceleration, .. } = old;
+    let rest = || (displacement.clone(), false);
+    if !model.aids.start {
+        return rest();
+    }
+    let last = goes_on(old);
+    if !(step.scheme.is_dynamic() && step.increments.error.is_some()) {
+        let Some(last) = last else { return rest() };
+        let share = dt / last.dt;
+        return (displacement.iter().zip(&last.displacement).map(|(u, du)| u + share * du).collect(), true);
+    }
+    let way = |dof: usize| match last {
+        _ if !model.massless[dof / 2] => dt * (velocity[dof] + 0.5 * dt * acceleration[dof]),
+        Some(last) => dt / last.dt * last.displacement[dof],
+        None => 0.0,
+    };
+    ((0..displacement.len()).map(|dof| displacement[dof] + way(dof)).collect(), true)
+}
+
+/// The last increment of the step, if the next one is expected to be like it.
+fn goes_on(old: &State) -> Option<&LastIncrement> {
+    old.last_increment.as_ref().filter(|last| !last.ends_in_touch)
+}
+
+/// Solutions with better and better multipliers before an increment of the augmented Lagrangian is given up.
+const MOST_PASSES: usize = 100;
+
+/// A pass that leaves more than this share of the penetration is slow: the next one is stiffer.
+const SLOW: f64 = 0.25;
+
+/// How much stiffer.
+const STIFFER: f64 = 10.0;
+
+/// α_n is not raised to more than this many times the given one.
+const STIFFEST: f64 = 1e4;
+
+/// Equilibrium at the time of a trial; where a contact asks for the augmented Lagrangian, with multipliers that leave no
+/// more penetration than allowed: Uzawa's method, with a penalty that is raised for the increment while passes gain little: without that a soft
+/// penalty takes passes by the dozen, each of which leaves nearly all of the penetration (switch `stiffening`;
+/// `aid_stiffening` is 1 in iterations of a raised one).
+///
+/// Source of the rule and its factors: Bertsekas (1982), Constrained Optimization and Lagrange Multiplier Methods, 2.2.
+pub fn augment(
+    model: &Model,
+    trial: Trial,
+    work: &mut Workspace,
+) -> (Vec<IterationRecord>, Result<Vec<f64>, IncrementFailure>) {
+    let (mut iterations, mut result) = equilibrium(model, trial, None, work);
+    let (mut stiffening, mut before) = (1.0, f64::INFINITY);
+    for pass in 1.. {
+        let Ok(u) = &result else { break };
+        let found = &work.assembler.evaluation.contacts;
+        let excess = model.contacts.iter().zip(found).map(|(pair, found)| pair.excess(found)).fold(0.0, f64::max);
+        if excess <= 1.0 {
+            break;
+        }
+        if pass == MOST_PASSES {
+            result = Err(IncrementFailure::Penetration { passes: pass });
+            break;
+        }
+        if model.aids.stiffening && excess > SLOW * before {
+            stiffening = (STIFFER * stiffening).min(STIFFEST);
+        }
+        before = excess;
+        let multiplied = model.contacts.iter().zip(trial.old.contacts.iter().zip(found));
+        let contacts = multiplied.map(|(pair, (old, found))| pair.multiplied(old, found)).collect();
+        let old = State { contacts, ..trial.old.clone() };
+        let (more, again) = equilibrium(model, Trial { old: &old, stiffening, ..trial }, Some(u.clone()), work);
+        iterations.extend(more.into_iter().map(|iteration| IterationRecord { pass: pass + 1, ..iteration }));
+        result = again;
+    }
+    (iterations, result)
 }

@@ -46,7 +46,7 @@ fn null_motion_of_bodies(model: &Model, u: &[f64], tangent: &SparseMatrix) -> Op
     resistance.groups().iter().find_map(|group| {
         let motion = resistance.null_motion(group)?;
         // Followers of plates have equations that are no forces: Φᵀ K Φ may vanish where K Φ does not.
-        if !model.linkage.is_empty() && resistance.moves_equations(model, &parts, u, tangent, (group, &motion)) {
+        if !model.linkage.is_empty() && resistance.moves_equations(model, &parts, u, tangent, group, &motion) {
             return None;
         }
         Some(describe(model, &parts, group, &motion))
@@ -157,7 +157,8 @@ impl Resistance {
         parts: &Parts,
         u: &[f64],
         tangent: &SparseMatrix,
-        (group, motion): (&[usize], &DVector<f64>),
+        group: &[usize],
+        motion: &DVector<f64>,
     ) -> bool {
         let motions = rigid_motions(parts, &model.configuration(u));
         let mut of_part = vec![Vector3::zeros(); self.parts];

@@ -14,9 +14,8 @@
 
 use std::sync::Arc;
 
-use crate::equations::condensed::{CondensedEquations, depends_on_length, is_linear};
-use crate::equations::contact_nodes::ContactNodes;
-use crate::equations::failure::TrialFailure;
+use crate::equations::condensed::{CondensedEquations, ContactNodes, depends_on_length, is_linear};
+use crate::equations::sums::TrialFailure;
 use crate::equations::{Assembler, Trial};
 use crate::linear::memory::available_memory;
 use crate::linear::system::{Request, System};

@@ -1,17 +1,12 @@
 //! Solving the equations of one increment: Newton's method, the contact iteration, the augmented Lagrangian, and what
 //! holds bodies that float.
 
-pub mod acted;
-pub mod augmented;
 pub mod contact_iteration;
-mod downhill;
 pub mod equilibrium;
 pub mod failure;
 pub mod floating;
 pub mod interface;
 pub mod newton;
-pub mod start;
-pub mod suspect;
 
 use std::sync::Arc;
 
@@ -21,8 +16,7 @@ use crate::equations::{Assembler, ContactCounts};
 use crate::linear::LinearSolver;
 use crate::linear::system::System;
 use crate::model::{Model, Step};
-use acted::Acted;
-use contact_iteration::ContactIteration;
+use contact_iteration::{Acted, ContactIteration};
 use interface::Interface;
 use newton::Iteration;
 

@@ -1,9 +1,8 @@
 //! Accepting an increment, whatever the scheme: what was evaluated at its end becomes the state, and the audit of energies
 //! is kept.
 
-use crate::equations::Evaluation;
-use crate::equations::audit::Flows;
-use crate::equations::interfaces;
+use crate::equations::evaluation::Flows;
+use crate::equations::{Evaluation, interfaces};
 use crate::model::state::State;
 use crate::model::{Model, Step};
 

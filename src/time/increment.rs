@@ -2,11 +2,10 @@
 
 use super::accept::{accept, take_stock};
 use crate::equations::inertia::kinetic_energy;
-use crate::equations::turning;
-use crate::equations::{Evaluation, Trial};
+use crate::equations::{Evaluation, Trial, links};
 use crate::model::state::{LastIncrement, State};
 use crate::model::{Model, Step};
-use crate::solve::augmented::augment;
+use crate::solve::equilibrium::augment;
 use crate::solve::failure::IncrementFailure;
 use crate::solve::newton::NewtonFailure;
 use crate::solve::{IterationRecord, Workspace};
@@ -46,7 +45,7 @@ fn reach_end(model: &Model, end: Trial, beyond: Vec<f64>, work: &mut Workspace) 
         support.at.set(end.prescribed(support, model), &mut u);
     }
     model.ties.spread(2, &mut u);
-    turning::reach_end(model, end, [&beyond, ahead], scheme, &mut u);
+    links::turning_at_end(model, end, [&beyond, ahead], scheme, &mut u);
     let evaluated = work.assembler.residual(end, &u, &mut work.system);
     evaluated.map_err(|failure| IncrementFailure::Newton(NewtonFailure::Evaluation(failure)))?;
     Ok(u)

@@ -4,7 +4,6 @@ mod accept;
 pub mod beginning;
 pub mod explicit;
 pub mod increment;
-pub mod ladder;
 pub mod quasi_dynamic;
 pub mod step_size;
 pub mod touching;

@@ -9,8 +9,8 @@ use std::time::{Duration, Instant};
 
 use crate::common::{Blocks, store};
 use fecontact::output::checkpoint;
+use fecontact::output::files::Lock;
 use fecontact::output::interface::read;
-use fecontact::output::lock::Lock;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 

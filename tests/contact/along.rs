@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::common::{Blocks, Finished, close, finish, floor, linear, model, run_through};
-use fecontact::contact::fields;
+use fecontact::contact::pair;
 use fecontact::laws::friction::{Answer, Coulomb, CoulombParameters, FrictionLaw, FrictionState, Sliding};
 use fecontact::model::Model;
 use fecontact::model::boundary::{Drive, Expression, Profile};
@@ -80,7 +80,7 @@ fn strength_follows_the_time() {
             close("q", contact.friction.traction, mu * 2.0, 1e-10);
         }
         let pair = &run.model.contacts[0];
-        let observed = fecontact::contact::fields::value(
+        let observed = fecontact::contact::pair::field_value(
             pair,
             &pair.points[1],
             &state.contacts[0][1],
@@ -235,7 +235,7 @@ fn a_law_that_varies_in_time_keeps_all_that_it_says() {
         for point in &run.last().contacts[0] {
             assert_eq!(point.friction.variables, [4.0; 4], "{mu}");
         }
-        let names = fields::names(&run.model.contacts);
+        let names = pair::field_names(&run.model.contacts);
         assert!(["first", "fourth", "dilation"].iter().all(|name| names.contains(name)), "{mu}: {names:?}");
     }
 }

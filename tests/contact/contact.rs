@@ -4,12 +4,11 @@ use fecontact::contact::force::{
     Closed, ClosedPoints, ContactState, Loading, PointIncrement, PointPlace, Tractions, closes, place,
 };
 use fecontact::contact::kinematics::{Kinematics, kinematics};
-use fecontact::contact::master::Master;
+use fecontact::contact::master::{Circle, Master, Plane, Polyline, Rigid};
 use fecontact::contact::mortar::{Mortar, Overlaps, Room, mortar_points};
 use fecontact::contact::pair::{ContactIncrement, ContactPair, InitialTraction, Presumption};
 use fecontact::contact::projection::{Bound, nearest};
 use fecontact::contact::response::PairResponse;
-use fecontact::contact::rigid::{Circle, Plane, Polyline, Rigid};
 use fecontact::contact::search::Index;
 use fecontact::contact::surface::{MasterPoint, Segment, SlavePoint, Surface, gauss_points, lone_point, nodal_points};
 use fecontact::laws::friction::{

@@ -361,7 +361,7 @@ fn body_in_two(base: &Base) -> Outcome {
 
 /// Energies balance, or the error of their balance falls with the increments at their order. What does not fall is less than what the
 /// contacts store: friction acts across the gap of the penalty without a couple, tractions go by the length of now, and points
-/// come and go (`src/equations/audit.rs`).
+/// come and go (`src/equations/evaluation.rs`).
 fn energies(base: &Base) -> Outcome {
     let draft = base.draft;
     // Implicit schemes damp what increments do not resolve, or create energy where contact chatters; the stress of F-bar has no

@@ -2,9 +2,8 @@
 
 use super::random::Random;
 use crate::strokes::strokes;
-use fecontact::laws::friction::rate_law::Loading;
 use fecontact::laws::friction::{
-    FrictionLaw, FrictionResponse, FrictionState, PrescribedSlip, PrescribedSlipParameters, RateAndState,
+    FrictionLaw, FrictionResponse, FrictionState, Loading, PrescribedSlip, PrescribedSlipParameters, RateAndState,
     RateAndStateParameters, STEEPEST, Sliding, SlipWeakening, SlipWeakeningParameters, StateEvolution,
 };
 

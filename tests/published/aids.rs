@@ -14,7 +14,7 @@ use fecontact::model::state::State;
 use fecontact::run::error::Error;
 use fecontact::run::observer::{Attempt, Observer};
 use fecontact::run::run;
-use fecontact::solve::acted::Acted;
+use fecontact::solve::contact_iteration::Acted;
 use serde_json::{Value, json};
 
 use crate::common::{Blocks, model, model_at};

@@ -8,9 +8,9 @@ use std::sync::Arc;
 
 use crate::common::{close, model_at};
 use fecontact::model::Model;
+use fecontact::run::control::RunReport;
 use fecontact::run::error::Error;
 use fecontact::run::observer::{Attempt, Observer};
-use fecontact::run::report::RunReport;
 use fecontact::run::run;
 use serde_json::{Value, json};
 

@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use crate::common::{Blocks, Finished, close, distance, finish};
 use fecontact::mesh::configuration::Configuration;
 use fecontact::model::boundary::{Expression, Profile};
-use fecontact::model::element::pressure::follower_pressure;
+use fecontact::model::element::follower_pressure;
 use fecontact::model::state::State;
 use nalgebra::Vector2;
 use serde_json::{Value, json};

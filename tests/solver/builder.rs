@@ -570,7 +570,7 @@ fn wave_speeds_are_those_of_the_slaves_own_body() {
                 "steps": [{"name": "rest", "duration": 1, "dt": {"initial": 1}, "supports": [{"on": "top", "ux": 0, "uy": 0}]}],
             }));
             // c_s = √(G/ρ) with G = E/2.5.
-            let shear = fecontact::output::wave_speeds::wave_speeds(&model)[1];
+            let shear = fecontact::output::events::wave_speeds(&model)[1];
             common::close("c_s", shear, (young / 2.5f64).sqrt(), 1e-12 * shear);
         }
     }

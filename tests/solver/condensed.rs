@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::common::{self, Blocks};
 use crate::grids::{Grids, noise};
 use crate::simulation::check;
-use fecontact::equations::contact_nodes::ContactNodes;
+use fecontact::equations::condensed::ContactNodes;
 use fecontact::linear::{
     Condensation, DenseLu, Eliminated, HalvedLu, LinearFailure, LinearSolver, Pattern, SparseLu, SparseMatrix, Steady,
     norm,

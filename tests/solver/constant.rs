@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::elements::lattices;
 use crate::common::{Blocks, elastic, linear, neo_hookean};
-use fecontact::equations::dependence::Dependence;
+use fecontact::equations::sums::Dependence;
 use fecontact::equations::term::Term;
 use fecontact::equations::{Assembler, Trial};
 use fecontact::laws::bulk::{InvertedElement, Linear, Material, MaterialResponse, Viscoelastic, ViscoelasticConstants};
@@ -425,7 +425,7 @@ fn strains_that_are_no_numbers_name_their_element() {
     let first = model.mesh.elements.iter().position(|element| element.nodes.contains(&node)).expect("an element");
     let failure = assembler.forces(Trial::new(&state, &model.steps[0], 0.1, 0.1), &u, None).expect_err("no number");
     let element = model.mesh.element_tags[first];
-    let fecontact::equations::failure::TrialFailure::Inverted { element: told, .. } = failure else {
+    let fecontact::equations::sums::TrialFailure::Inverted { element: told, .. } = failure else {
         panic!("{failure:?}")
     };
     assert_eq!(told, element);

@@ -7,7 +7,7 @@ use crate::common::{self, Blocks, Finished, close, finish, half_way, quadratic};
 use fecontact::case;
 use fecontact::contact::force::ContactState;
 use fecontact::laws::bulk::CauchyStress;
-use fecontact::output::gauge::Reading;
+use fecontact::output::probes::Reading;
 use serde_json::{Value, json};
 
 const E: f64 = 200.0;

@@ -16,7 +16,7 @@ use fecontact::model::builder::{Builder, Change, Contact, Load, LoadStep, Master
 use fecontact::model::imposed::Thermal;
 use fecontact::model::scheme::Scheme;
 use fecontact::model::state::State;
-use fecontact::model::until::Part;
+use fecontact::model::step::Part;
 use fecontact::model::{Damping, Model, NewtonSettings};
 use fecontact::run::run;
 use serde_json::{Value, json};

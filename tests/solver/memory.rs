@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::common::{self, Blocks, Finished, close, distance, finish};
 use crate::simulation;
 use fecontact::laws::bulk::CauchyStress;
-use fecontact::output::gauge::Reading;
+use fecontact::output::probes::Reading;
 use nalgebra::Vector2;
 use serde_json::{Value, json};
 

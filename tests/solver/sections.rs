@@ -128,7 +128,7 @@ fn a_hole_in_a_plate_is_kirschs() {
     let run = finish(&case);
     close("along", at(&run, [a, 0.0])[0], 3.0 * s * a / E, 3e-3 * s / E);
     close("across", at(&run, [0.0, a])[1], -s * a / E, 3e-3 * s / E);
-    let read = |k: usize| fecontact::output::gauge::Reading::of(&run.model.probes[k], &run.model, run.last());
+    let read = |k: usize| fecontact::output::probes::Reading::of(&run.model.probes[k], &run.model, run.last());
     let names: Vec<&str> = run.model.probes.iter().map(|probe| probe.name.as_str()).collect();
     let of = |name: &str| read(names.iter().position(|other| *other == name).expect("a probe")).stress;
     close("3 S", of("side").xx, 3.0 * s, 0.02 * s);
@@ -311,7 +311,7 @@ fn penalties_and_speeds_know_the_section() {
         }});
         let model = common::model(&case);
         close("alpha_n", model.contacts[0].alpha_n, 10.0 * modulus / 0.5, 1e-9);
-        let [rayleigh, shear, pressure] = fecontact::output::wave_speeds::wave_speeds(&model);
+        let [rayleigh, shear, pressure] = fecontact::output::events::wave_speeds(&model);
         close("c_p", pressure, modulus.sqrt(), 1e-12);
         close("c_s", shear, (E / (2.0 * (1.0 + NU))).sqrt(), 1e-12);
         // Rayleigh's equation.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::common::{self, Blocks, close};
 use fecontact::case;
-use fecontact::equations::dependence::Dependence;
+use fecontact::equations::sums::Dependence;
 use fecontact::equations::term::Term;
 use fecontact::equations::{Assembler, Trial};
 use fecontact::linear::system::Request;

@@ -1,11 +1,16 @@
 //! Contacts as they are written.
+//!
+//! Friction that varies along a contact, as it is written.
+//!
+//! Profiles along a surface as they are written.
+
+use std::collections::BTreeMap;
+use std::fmt;
 
 use schemars::JsonSchema;
-use serde::de::Visitor;
+use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use super::along::AlongInput;
-use super::profile::ProfileInput;
 use crate::case::choice::Choice;
 use crate::laws::friction::FrictionParameters;
 use crate::model::method::Method;
@@ -239,4 +244,102 @@ pub struct NormalInput {
     /// Largest penetration left [L]: the pressure is raised until no closed gap is larger (augmented Lagrangian by Uzawa's
     /// method), so that the answer does not depend on alpha_n; penalty alone unless given
     pub penetration: Option<f64>,
+}
+
+/// What of friction varies along the slave, and in time: expressions may have the run time t besides x and y.
+#[derive(Clone, Debug, Default, JsonSchema)]
+pub struct AlongInput {
+    /// Other laws than `friction` on parts of the slave; where several say so, the first holds
+    #[schemars(default)]
+    pub law: Vec<LawChoiceInput>,
+    /// Parameters of `friction`, by name: they replace the numbers given there. A rate enters by its mean over an increment,
+    /// any other parameter by its value at the end. Those of the start (structure, theta) and alpha_t do not vary in time
+    #[schemars(flatten)]
+    pub parameters: BTreeMap<String, ProfileInput>,
+}
+
+impl AlongInput {
+    /// Whether nothing varies.
+    pub fn is_empty(&self) -> bool {
+        self.law.is_empty() && self.parameters.is_empty()
+    }
+}
+
+/// A law on a part of the slave.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LawChoiceInput {
+    /// It holds where this is positive
+    #[serde(rename = "where")]
+    pub place: ProfileInput,
+    /// Friction law
+    pub friction: FrictionParameters,
+    /// Its parameters that vary along the slave, and in time, by name
+    #[serde(default)]
+    pub along: BTreeMap<String, ProfileInput>,
+}
+
+impl<'de> Deserialize<'de> for AlongInput {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(Entries)
+    }
+}
+
+/// Reads entry by entry, so that a complaint about one names its place.
+struct Entries;
+
+impl<'de> Visitor<'de> for Entries {
+    type Value = AlongInput;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.write_str("parameters of the friction law by name")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<AlongInput, A::Error> {
+        let mut along = AlongInput::default();
+        while let Some(name) = entries.next_key::<String>()? {
+            match name.as_str() {
+                "law" => along.law = entries.next_value()?,
+                _ => drop(along.parameters.insert(name, entries.next_value()?)),
+            }
+        }
+        Ok(along)
+    }
+}
+
+/// How a quantity varies along a surface.
+#[derive(Clone, Debug, JsonSchema)]
+#[schemars(untagged)]
+pub enum ProfileInput {
+    /// The same everywhere
+    Constant(f64),
+    /// Expression in the reference position x, y
+    Expression(String),
+    /// Table by a coordinate
+    Table(ProfileTable),
+}
+
+impl Default for ProfileInput {
+    fn default() -> Self {
+        Self::Constant(0.0)
+    }
+}
+
+impl<'de> Deserialize<'de> for ProfileInput {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let expecting = "a number, an expression in x, y such as \"1 + 0.1*x\", or {\"x\": [[x, v], …]}";
+        Choice { expecting, number: Some(Self::Constant), text: Self::Expression, object: Self::Table }
+            .read(deserializer)
+    }
+}
+
+/// Values by a coordinate of the reference position: linear between, constant outside. The same coordinate twice is a
+/// jump.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ProfileTable {
+    /// Pairs of x and value, x ascending
+    X(Vec<[f64; 2]>),
+    /// Pairs of y and value, y ascending
+    Y(Vec<[f64; 2]>),
 }

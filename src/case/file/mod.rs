@@ -1,18 +1,14 @@
 //! The case file as it is written: JSON types, with the text that the schema shows.
+//!
+//! Damping as it is written.
+//!
+//! What the plane stands for.
+//!
+//! Loading plates as they are written.
 
-mod along;
 mod blocks;
 mod contact;
-mod damping;
-mod drive;
-mod imposed;
-mod load;
 mod output;
-mod place;
-mod plate;
-mod probe;
-mod profile;
-mod section;
 mod step;
 
 use std::collections::BTreeMap;
@@ -20,30 +16,21 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer};
 
-pub use along::{AlongInput, LawChoiceInput};
-pub use blocks::{Amount, BlockInput, BlocksInput, GradingInput, MeshInPlace, MiddleInput};
-pub use contact::{
-    CircleInput, ContactInput, DilatancyInput, InitialInput, MasterInput, NormalInput, PlaneInput, PolylineInput,
-    RadiationInput, RigidInput, SlidingInput,
-};
-pub use damping::DampingInput;
-pub use drive::{Components, DriveInput, TimeInput};
-pub use imposed::{
-    GeostaticInput, InitialStressInput, StressInput, TemperatureInput, TemperatureVariation, ThermalInput,
-};
-pub use load::{DashpotInput, LoadInput, SpringInput};
-pub use output::{ArrivalInput, FrontsInput, OutputInput};
-pub use place::{Place, SpotInput};
-pub use plate::{LoadingPlateInput, PlateMotion};
-pub use probe::ProbeInput;
-pub use profile::{ProfileInput, ProfileTable};
-pub use section::{PlateInput, SectionInput};
-pub use step::{IncrementsInput, RotationInput, RuptureInput, StepInput, SupportInput, UntilInput};
-
 use crate::case::choice::Choice;
 use crate::laws::bulk::MaterialParameters;
 use crate::mesh::InlineMesh;
 use crate::model::NewtonSettings;
+pub use blocks::{Amount, BlockInput, BlocksInput, GradingInput, MeshInPlace, MiddleInput};
+pub use contact::{
+    AlongInput, CircleInput, ContactInput, DilatancyInput, InitialInput, LawChoiceInput, MasterInput, NormalInput,
+    PlaneInput, PolylineInput, ProfileInput, ProfileTable, RadiationInput, RigidInput, SlidingInput,
+};
+pub use output::{ArrivalInput, FrontsInput, OutputInput, ProbeInput};
+pub use step::{
+    Components, DashpotInput, DriveInput, GeostaticInput, IncrementsInput, InitialStressInput, LoadInput, Place,
+    RotationInput, RuptureInput, SpotInput, SpringInput, StepInput, StressInput, SupportInput, TemperatureInput,
+    TemperatureVariation, ThermalInput, TimeInput, UntilInput,
+};
 
 /// A case: mesh, bodies, contacts and steps.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -181,5 +168,92 @@ impl Default for NewtonInput {
     fn default() -> Self {
         let NewtonSettings { tolerance, max_iterations } = NewtonSettings::default();
         Self { tolerance, max_iterations }
+    }
+}
+
+/// Rayleigh damping. A vibration of angular frequency w decays with the damping ratio (mass/w + stiffness w)/2.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct DampingInput {
+    /// Force per momentum: damps slow motions most, free flight included [1/T]
+    pub mass: f64,
+    /// Kelvin-Voigt: viscous stress, this time times the elastic stress of the rate of strain; damps fast vibrations most,
+    /// and makes explicit increments shorter [T]
+    pub stiffness: f64,
+}
+
+/// What the plane stands for in space.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SectionInput {
+    /// A slice of thickness 1 of bodies that go on without end across the plane: forces, masses and energies per unit of
+    /// thickness
+    #[default]
+    PlaneStrain,
+    /// A plate, free of stress across the plane: forces, masses and energies of its whole thickness. Pressures and tractions,
+    /// those of contact included, count the undeformed thickness
+    PlaneStress(PlateInput),
+    /// Rings about the axis x = 0: x is the radius and y the axis. Forces, masses and energies are per full turn, pressures
+    /// and tractions per area, and zz is the hoop direction. No node may have x < 0, and nodes on the axis keep ux = 0 without
+    /// being told. A contact's length is the area of its full turn
+    Axisymmetric,
+}
+
+/// A plate.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlateInput {
+    /// Undeformed thickness, above 0 [L]
+    pub thickness: f64,
+}
+
+/// A loading plate.
+#[derive(Clone, Debug, JsonSchema)]
+#[schemars(untagged)]
+pub enum LoadingPlateInput {
+    /// Group that moves as one, without turning
+    Group(String),
+    /// Group that moves in another way
+    Moving(MovingPlateInput),
+}
+
+impl<'de> Deserialize<'de> for LoadingPlateInput {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let expecting = "the name of a group, or {\"on\": group, \"moves\": \"ux_alike\", \"uy_alike\" or \"rigid\"}";
+        Choice { expecting, number: None, text: Self::Group, object: Self::Moving }.read(deserializer)
+    }
+}
+
+/// A loading plate that moves in another way than as one.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MovingPlateInput {
+    /// Group of its nodes
+    pub on: String,
+    /// How they move
+    pub moves: PlateMotion,
+}
+
+/// How the nodes of a loading plate move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PlateMotion {
+    /// Alike, without turning: what the name of the group alone says
+    AsOne,
+    /// Alike in x, each as it will in y: a greased plate
+    UxAlike,
+    /// Alike in y, each as it will in x
+    UyAlike,
+    /// As a rigid body, which turns under forces, springs and a `moment`; supports hold at most one of its nodes
+    Rigid,
+}
+
+impl LoadingPlateInput {
+    /// Its group, and how it moves.
+    pub fn parts(&self) -> (&str, PlateMotion) {
+        match self {
+            Self::Group(name) => (name, PlateMotion::AsOne),
+            Self::Moving(MovingPlateInput { on, moves }) => (on, *moves),
+        }
     }
 }

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::company::{Ends, Warn};
+use super::{Ends, Warn};
 use crate::case::again::Opened;
 use crate::model::Model;
 use crate::output::checkpoint::{self, Checkpoint, MeshPrint};
-use crate::output::lock::Lock;
+use crate::output::files::Lock;
 use crate::run::error::Error;
 use crate::run::observer::Observer;
 use crate::run::simulation::Pause;

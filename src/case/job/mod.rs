@@ -2,9 +2,9 @@
 //!
 //! [`Job::open`] reads, checks and locks the folder; [`Job::run`] solves and leaves results behind however it ends. Who asked for
 //! it hears warnings, shows progress and may end it ([`Company`]).
+//!
+//! Who watches a run.
 
-mod aloud;
-mod company;
 pub mod defect;
 mod keeper;
 mod outputs;
@@ -15,22 +15,21 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use self::aloud::Aloud;
-pub use self::company::{Company, Ends, Warn};
-use self::keeper::Keeper;
-use self::outputs::{Outputs, files};
 use super::report::understood;
 use super::{CaseError, Opened};
 use crate::model::Model;
 use crate::output::checkpoint::{self, Checkpoint};
+use crate::output::events;
 use crate::output::folder::Folder;
 use crate::output::friction_course::FrictionCourse;
 use crate::output::fronts::Fronts;
 use crate::output::summary::{self, About, Ending, Summary};
-use crate::output::wave_speeds;
+use crate::run::control::RunReport;
 use crate::run::error::Error;
-use crate::run::report::RunReport;
+use crate::run::observer::Observer;
 use crate::run::{SavedRun, Simulation, watch_with};
+use keeper::Keeper;
+use outputs::{Aloud, Outputs, files};
 
 /// Why a job cannot begin; nothing was written.
 #[derive(Debug, Error)]
@@ -168,7 +167,7 @@ impl Job {
             section: Some(self.model.mesh.section.to_string()),
             units: case.units.clone(),
             friction: case.contacts.iter().map(|(name, contact)| (name.clone(), contact.friction.clone())).collect(),
-            wave_speeds: wave_speeds::wave_speeds(&self.model),
+            wave_speeds: events::wave_speeds(&self.model),
             front_slip_rate: case.output.fronts.map(|fronts| fronts.slip_rate),
             understood: understood(case, &self.model),
         }
@@ -230,4 +229,20 @@ impl Work {
         self.warnings.extend(keeper.concern);
         result
     }
+}
+
+/// Who is told a warning.
+pub type Warn = Arc<dyn Fn(&str) + Send + Sync>;
+
+/// Why a run is to end before its time, if it is.
+pub type Ends = Arc<dyn Fn() -> Option<Error> + Send + Sync>;
+
+/// Who watches a run.
+pub struct Company<'a> {
+    /// is told warnings as they come, but for those of the model
+    pub warn: Warn,
+    /// is asked between two increments, and within explicit ones
+    pub ends: Ends,
+    /// shows how far it is
+    pub progress: Option<Box<dyn Observer + 'a>>,
 }

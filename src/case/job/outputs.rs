@@ -1,13 +1,14 @@
 //! The observers of a run, and the files they write.
+//!
+//! Warnings that are told as they come, each once.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::aloud::Aloud;
+use super::Warn;
 use crate::case::file::{ArrivalInput, Case};
 use crate::model::Model;
-use crate::output::checkpoint;
 use crate::output::fields::{Fields, Frames};
 use crate::output::folder::INTERFACE;
 use crate::output::friction_course::FrictionCourse;
@@ -16,10 +17,11 @@ use crate::output::history::History;
 use crate::output::interface::InterfaceStore;
 use crate::output::newton_log::NewtonLog;
 use crate::output::probes::Probes;
-use crate::output::report;
+use crate::output::warnings::Warnings;
+use crate::output::{checkpoint, report};
 use crate::run::SavedRun;
 use crate::run::error::Error;
-use crate::run::observer::Observer;
+use crate::run::observer::{Attempt, Observer};
 
 /// What a run writes beside `summary.json`; folders of frames end in `/`.
 pub(super) fn files(case: &Case, model: &Model) -> Vec<&'static str> {
@@ -163,5 +165,57 @@ impl Outputs {
         observers.extend(self.fields.as_mut().map(|fields| fields as &mut dyn Observer));
         observers.extend(self.fronts.as_mut().map(|fronts| fronts as &mut dyn Observer));
         observers
+    }
+}
+
+/// The warnings of a run, and who tells them.
+pub(super) struct Aloud {
+    pub warnings: Warnings,
+    warn: Warn,
+    /// how many have been told
+    told: usize,
+}
+
+impl Aloud {
+    /// With the warnings that have been told already.
+    pub fn new(list: Vec<String>, warn: Warn) -> Self {
+        let told = list.len();
+        let mut warnings = Warnings::default();
+        warnings.list = list;
+        Self { warnings, warn, told }
+    }
+
+    fn tell(&mut self) {
+        self.warnings.list[self.told..].iter().for_each(|warning| (self.warn)(warning));
+        self.told = self.warnings.list.len();
+    }
+}
+
+impl Observer for Aloud {
+    fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
+        let recorded = self.warnings.record(model, attempt);
+        self.tell();
+        recorded
+    }
+
+    fn name(&self) -> &'static str {
+        self.warnings.name()
+    }
+
+    fn save(&mut self) -> Result<Vec<u8>, Error> {
+        self.warnings.save()
+    }
+
+    fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
+        self.warnings.restore(memory)?;
+        // Those were told when they came.
+        self.told = self.warnings.list.len();
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<(), Error> {
+        let finished = self.warnings.finish();
+        self.tell();
+        finished
     }
 }

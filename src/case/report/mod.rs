@@ -1,13 +1,11 @@
 //! What `check` prints: how the case was understood.
 
 mod contact;
-mod parameters;
 mod steps;
 
 use std::fmt::Write;
 
-use contact::{contacts, pressed_too_hard};
-use parameters::parameters;
+use contact::{contacts, parameters, pressed_too_hard};
 use steps::steps;
 
 use super::file::{

@@ -4,14 +4,14 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use super::parameters::plain;
+use super::contact::plain;
 use crate::case::file::{
     Case, Components, DampingInput, DashpotInput, DriveInput, LoadInput, Place, SpringInput, StepInput,
     TemperatureInput, TemperatureVariation, TimeInput,
 };
 use crate::case::translate;
+use crate::model::step::Until;
 use crate::model::told::{count, number};
-use crate::model::until::Until;
 use crate::model::{Model, Step};
 use crate::time::step_size::EVENT_LOCATION;
 

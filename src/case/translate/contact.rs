@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use super::drive::profile;
+use super::step::profile;
 use crate::case::error::{Checked, Complaint};
-use crate::case::explain::explain;
 use crate::case::file::{
     CircleInput, ContactInput, DilatancyInput, InitialInput, LawChoiceInput, MasterInput, PlaneInput, PolylineInput,
     ProfileInput, RadiationInput, RigidInput, SlidingInput,
 };
+use crate::case::read::explain;
 use crate::laws::friction::{Dilatancy, FrictionParameters};
 use crate::model::boundary::Profile;
 use crate::model::builder::{Contact, Friction, InitialTractions, MasterSide, ModelError, Radiation};

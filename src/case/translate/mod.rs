@@ -2,13 +2,11 @@
 
 mod blocks;
 mod contact;
-mod drive;
 mod step;
 
 pub use blocks::blocks;
-use drive::profile;
-pub use drive::{drive, place};
-pub use step::{load, step};
+use step::profile;
+pub use step::{drive, load, place, step};
 
 use super::error::{Checked, Complaint};
 use super::file::{

@@ -1,16 +1,21 @@
 //! Steps as written: `null` ends what an earlier step gave.
+//!
+//! Drives, profiles and places as written.
 
-use super::drive::{components, drive, place as at, temperature};
+use self::place as at;
 use crate::case::error::{Checked, Complaint};
 use crate::case::file::{
-    Components, DampingInput, DashpotInput, IncrementsInput, LoadInput, RotationInput, RuptureInput, SpringInput,
-    StepInput, SupportInput, UntilInput,
+    Components as Written, DampingInput, DashpotInput, DriveInput, IncrementsInput, LoadInput, Place as Where,
+    ProfileInput, ProfileTable, RotationInput, RuptureInput, SpotInput, SpringInput, StepInput, SupportInput,
+    TemperatureInput, TemperatureVariation, TimeInput, UntilInput,
 };
 use crate::model::Damping;
+use crate::model::boundary::{Drive, Expression, Profile};
 use crate::model::builder::{
-    Action, Change, IncrementSettings, Link, Load, LoadStep, Rotation, RuptureSettings, Support, UntilSettings,
+    Action, Change, Components, IncrementSettings, Link, Load, LoadStep, Place, Rotation, RuptureSettings, Support,
+    UntilSettings,
 };
-use crate::model::until::Part;
+use crate::model::step::Part;
 
 /// A step; `place` is where it stands.
 pub fn step(place: &str, input: &StepInput) -> Checked<LoadStep> {
@@ -85,10 +90,10 @@ fn support(place: &str, input: &SupportInput) -> Checked<Support> {
 
 /// A load; `place` is where it stands.
 pub fn load(place: &str, input: &LoadInput) -> Checked<Load> {
-    let vector = |key: &str, of: &Option<Option<Components>>| {
+    let vector = |key: &str, of: &Option<Option<Written>>| {
         change(of, |given| components(given, ["x", "y"].map(|name| format!("{place}.{key}.{name}"))))
     };
-    let link = |key: &str, coefficients: [f64; 2], driver: &Option<Components>| {
+    let link = |key: &str, coefficients: [f64; 2], driver: &Option<Written>| {
         let driver = driver.as_ref().map(|given| components(given, [(); 2].map(|()| format!("{place}.{key}.driver"))));
         Ok(Link { coefficients, driver: driver.transpose()? })
     };
@@ -117,4 +122,58 @@ pub fn load(place: &str, input: &LoadInput) -> Checked<Load> {
             "must give exactly one of pressure, dead_pressure, traction, gravity, force, total_force, moment, spring, dashpot, absorbing",
         )),
     }
+}
+
+/// How a quantity varies in time; its expression is read.
+pub fn drive(input: &DriveInput, place: &str) -> Checked<Drive> {
+    Ok(match input {
+        DriveInput::Constant(value) => Drive::Constant(*value),
+        DriveInput::Expression(text) => Drive::Expression(expression(text, place)?),
+        DriveInput::InTime(TimeInput::Rate(rate)) => Drive::Rate(*rate),
+        DriveInput::InTime(TimeInput::Table(table)) => Drive::Table(table.clone()),
+    })
+}
+
+/// How warm a body is; its expression is read.
+pub fn temperature(input: &TemperatureInput, place: &str) -> Checked<Drive> {
+    Ok(match input {
+        TemperatureInput::Constant(value) => Drive::Constant(*value),
+        TemperatureInput::Expression(text) => Drive::Expression(expression(text, place)?),
+        TemperatureInput::Varying(TemperatureVariation::Rate(rate)) => Drive::Rate(*rate),
+        TemperatureInput::Varying(TemperatureVariation::Table(table)) => Drive::Table(table.clone()),
+        TemperatureInput::Varying(TemperatureVariation::X(table)) => Drive::ByPlace(0, table.clone()),
+        TemperatureInput::Varying(TemperatureVariation::Y(table)) => Drive::ByPlace(1, table.clone()),
+    })
+}
+
+/// How a quantity varies along a surface; its expression is read.
+pub fn profile(input: &ProfileInput, place: &str) -> Checked<Profile> {
+    Ok(match input {
+        ProfileInput::Constant(value) => Profile::Constant(*value),
+        ProfileInput::Expression(text) => Profile::Expression(expression(text, place)?),
+        ProfileInput::Table(ProfileTable::X(table)) => Profile::Table(0, table.clone()),
+        ProfileInput::Table(ProfileTable::Y(table)) => Profile::Table(1, table.clone()),
+    })
+}
+
+/// Components of a vector; each is named by `places`.
+pub fn components(input: &Written, places: [String; 2]) -> Checked<Components> {
+    let [x, y] = places;
+    Ok(Components {
+        x: input.x.as_ref().map(|input| drive(input, &x)).transpose()?,
+        y: input.y.as_ref().map(|input| drive(input, &y)).transpose()?,
+    })
+}
+
+/// Where something acts.
+pub fn place(on: &Where) -> Place {
+    match on {
+        Where::Group(name) => Place::Group(name.clone()),
+        Where::Spot(SpotInput::Node(tag)) => Place::Node(*tag),
+        Where::Spot(SpotInput::Near(point)) => Place::Near(*point),
+    }
+}
+
+fn expression(text: &str, place: &str) -> Checked<Expression> {
+    Expression::parse(text).map_err(|message| Complaint::new(place, message))
 }

@@ -8,6 +8,18 @@
 //! Motions are taken against the element's first node: a displacement of all nodes costs no digits, and K_e's columns of that
 //! node are not needed (in rings only motions along the axis are, and all columns are kept). An element keeps them if none before it has the same ones: 384 bytes for Q4, 256 for T3, 960 for T6,
 //! 1792 for Q8, 2560 for Q9. Equal elements of a regular mesh differ in the last bits of their nodes' places unless these are round.
+//!
+//! # Blocks
+//!
+//! Constant elements in blocks: neighbours of one kind and body, so few that all that their nodes need stays at hand.
+//!
+//! A block gathers its nodes' motions once and adds up its elements' forces by itself; a node finds its sum in one block, or
+//! in a few where blocks meet. Which elements form a block depends on the mesh alone: elements follow each other along
+//! Morton's curve through their centres, whatever their numbers are.
+//!
+//! # Kernel
+//!
+//! The loop over the elements of a block.
 
 use std::collections::HashMap;
 use std::collections::hash_map::{DefaultHasher, Entry};
@@ -15,18 +27,16 @@ use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
 use nalgebra::{Matrix2, Vector2, Vector4};
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::blocks::{Block, blocks, rows};
-use super::kernel::{Pass, first};
-use super::places::{BATCH, Places};
-use super::runs::nodal;
+use super::runs::{BATCH, Places, nodal};
 use crate::equations::coupling::Layout;
-use crate::equations::failure::TrialFailure;
-use crate::equations::sums::add_blocks;
+use crate::equations::sums::{TrialFailure, add_blocks};
 use crate::laws::bulk::{INITIAL_STRESS, Material};
 use crate::linear::SparseMatrix;
 use crate::mesh::shape::ElementKind;
+use crate::model::element::Memory;
 use crate::model::{Body, Model};
 
 /// Blocks that are done sooner than another thread wakes up.
@@ -249,4 +259,292 @@ fn hash(values: &[f64]) -> u64 {
 
 fn same(a: &[f64], b: &[f64]) -> bool {
     a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits())
+}
+
+/// Most nodes of a block.
+const NODES: usize = 512;
+
+/// Cells along each side of the mesh that Morton's curve tells apart.
+const CELLS: f64 = 65535.0;
+
+/// Rows of the matrix of an element of n nodes as it is kept, filled up with zeros to whole registers.
+const fn rows(n: usize) -> usize {
+    (2 * n).next_multiple_of(4)
+}
+
+/// Elements that are evaluated together.
+struct Block {
+    pub body: usize,
+    pub kind: ElementKind,
+    /// Nodes, ascending
+    pub nodes: Vec<u32>,
+    /// Place in `nodes` of each element's nodes
+    pub places: Vec<u16>,
+    /// Number of each element's matrix
+    pub matrices: Vec<u32>,
+    /// f_0 of each element, filled up with zeros as its matrix is, if the body has an initial stress [F]
+    pub initial: Vec<f64>,
+}
+
+/// Blocks of the elements that have a matrix, and which it is.
+fn blocks(model: &Model, matrices: &[Option<u32>]) -> Vec<Block> {
+    let mut order = Vec::with_capacity(matrices.len());
+    let curve = curve(model);
+    for (e, &matrix) in matrices.iter().enumerate() {
+        let Some(matrix) = matrix else { continue };
+        let kind = model.mesh.elements[e].kind;
+        order.push(((model.body_of_element[e], kind as usize, curve(e), e), matrix));
+    }
+    order.sort_unstable();
+    // Block in which each node was seen last
+    let mut seen = vec![usize::MAX; model.mesh.nodes.len()];
+    let mut blocks: Vec<Block> = Vec::new();
+    for &((body, _, _, e), matrix) in &order {
+        let element = &model.mesh.elements[e];
+        let fits = |block: &Block| {
+            let new = element.nodes.iter().filter(|&&node| seen[node] != blocks.len() - 1).count();
+            block.body == body && block.kind == element.kind && block.nodes.len() + new <= NODES
+        };
+        if !blocks.last().is_some_and(fits) {
+            let [nodes, matrices] = [Vec::new(), Vec::new()];
+            let (places, initial) = (Vec::new(), Vec::new());
+            blocks.push(Block { body, kind: element.kind, nodes, matrices, places, initial });
+        }
+        let number = blocks.len() - 1;
+        let block = &mut blocks[number];
+        for &node in &element.nodes {
+            if std::mem::replace(&mut seen[node], number) != number {
+                block.nodes.push(node as u32);
+            }
+        }
+        block.matrices.push(matrix);
+    }
+    let mut elements = order.iter().map(|((.., e), _)| *e);
+    let elements: Vec<Vec<usize>> =
+        blocks.iter().map(|block| elements.by_ref().take(block.matrices.len()).collect()).collect();
+    find_places(model, &elements, &mut blocks);
+    find_initial(model, &elements, &mut blocks);
+    blocks
+}
+
+/// Sort the nodes of every block, and find the places of its elements' nodes.
+fn find_places(model: &Model, elements: &[Vec<usize>], blocks: &mut [Block]) {
+    let mut place = vec![0u16; model.mesh.nodes.len()];
+    for (block, own) in blocks.iter_mut().zip(elements) {
+        block.nodes.sort_unstable();
+        block.nodes.iter().enumerate().for_each(|(k, &node)| place[node as usize] = k as u16);
+        block.places = own.iter().flat_map(|&e| model.mesh.elements[e].nodes.iter().map(|&node| place[node])).collect();
+    }
+}
+
+/// Find what the initial stress of bodies puts on the nodes of their elements.
+fn find_initial(model: &Model, elements: &[Vec<usize>], blocks: &mut [Block]) {
+    let stressed = |block: &Block| model.bodies[block.body].initial_stress.is_some();
+    if !blocks.iter().any(stressed) {
+        return;
+    }
+    let all = model.initial_memory();
+    blocks.par_iter_mut().zip(elements).filter(|(block, _)| stressed(block)).for_each(|(block, elements)| {
+        let (n, material) = (block.kind.nodes(), &*model.bodies[block.body].material);
+        block.initial = vec![0.0; rows(n) * elements.len()];
+        for (&e, force) in elements.iter().zip(block.initial.chunks_exact_mut(rows(n))) {
+            let old = model.memories.of(e, &all);
+            let (memory, still) = (Memory { dt: 0.0, old, new: &mut old.to_vec() }, [Vector2::zeros(); 9]);
+            // An element that has a matrix has an answer where nothing has moved.
+            let _ = model.solids[e].evolve(material, memory, &still[..n], &mut force[..2 * n], None);
+        }
+    });
+}
+
+/// Where an element lies on Morton's curve: the digits of its centre's coordinates in turn.
+fn curve(model: &Model) -> impl Fn(usize) -> u64 {
+    let nodes = &model.mesh.nodes;
+    let [low, high] = [f64::min, f64::max].map(|choose| {
+        let first = nodes.first().copied().unwrap_or_default();
+        nodes.iter().fold(first, |so_far, x| so_far.zip_map(x, choose))
+    });
+    move |e| {
+        let element = &model.mesh.elements[e].nodes;
+        let sum: Vector2<f64> = element.iter().map(|&node| model.mesh.nodes[node] - low).sum();
+        let cell = |i: usize| (CELLS * (sum[i] / element.len() as f64 / (high - low)[i])) as u64;
+        let digit = |number: u64, k: u32| (number >> k & 1) << (2 * k);
+        (0..16).map(|k| digit(cell(0), k) | digit(cell(1), k) << 1).sum()
+    }
+}
+
+/// What the blocks are asked for.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Pass<'a> {
+    /// Forces at displacements, and the sums of their magnitudes if wanted
+    Elastic { u: &'a [f64], scaled: bool },
+    /// Viscous forces at velocities, and the sums of their magnitudes if wanted
+    Viscous { v: &'a [f64], scaled: bool },
+    /// Forces at displacements, and viscous ones at velocities
+    Both { u: &'a [f64], v: &'a [f64] },
+}
+
+/// The first node whose columns are kept. Motions count against the first node, whose own columns then are not needed, but
+/// along x in rings: there a motion of all nodes stretches the hoops.
+const fn first(ring: bool) -> usize {
+    if ring { 0 } else { 1 }
+}
+
+/// Motions by nodes.
+fn all(motion: &[f64]) -> &[[f64; 2]] {
+    motion.as_chunks().0
+}
+
+impl Block {
+    /// Write what the elements put on the nodes, and what the pass asks for besides, over `sums`; returns what the first of
+    /// its motions stores.
+    pub fn evaluate(
+        &self,
+        (stiffness, ring): (&[f64], bool),
+        tau: f64,
+        pass: Pass,
+        sums: [&mut [Vector2<f64>]; 2],
+    ) -> f64 {
+        match ring {
+            false => self.of_section::<false>(stiffness, tau, pass, sums),
+            true => self.of_section::<true>(stiffness, tau, pass, sums),
+        }
+    }
+
+    fn of_section<const RING: bool>(
+        &self,
+        stiffness: &[f64],
+        tau: f64,
+        pass: Pass,
+        sums: [&mut [Vector2<f64>]; 2],
+    ) -> f64 {
+        let (elastic, viscous) = ((stiffness, &self.initial[..]), (stiffness, &[][..]));
+        match pass {
+            Pass::Elastic { u, scaled: false } => self.of_kind::<1, false, RING>(elastic, [(all(u), 1.0)], sums),
+            Pass::Elastic { u, scaled: true } => self.of_kind::<1, true, RING>(elastic, [(all(u), 1.0)], sums),
+            Pass::Viscous { v, scaled: false } => self.of_kind::<1, false, RING>(viscous, [(all(v), tau)], sums),
+            Pass::Viscous { v, scaled: true } => self.of_kind::<1, true, RING>(viscous, [(all(v), tau)], sums),
+            Pass::Both { u, v } => self.of_kind::<2, false, RING>(elastic, [(all(u), 1.0), (all(v), tau)], sums),
+        }
+    }
+
+    fn of_kind<const M: usize, const SCALED: bool, const RING: bool>(
+        &self,
+        matrices: (&[f64], &[f64]),
+        motions: [(&[[f64; 2]], f64); M],
+        sums: [&mut [Vector2<f64>]; 2],
+    ) -> f64 {
+        match self.kind {
+            ElementKind::T3 => self.dispatched::<3, { rows(3) }, M, SCALED, RING>(matrices, motions, sums),
+            ElementKind::T6 => self.dispatched::<6, { rows(6) }, M, SCALED, RING>(matrices, motions, sums),
+            ElementKind::Q4 => self.dispatched::<4, { rows(4) }, M, SCALED, RING>(matrices, motions, sums),
+            ElementKind::Q8 => self.dispatched::<8, { rows(8) }, M, SCALED, RING>(matrices, motions, sums),
+            ElementKind::Q9 => self.dispatched::<9, { rows(9) }, M, SCALED, RING>(matrices, motions, sums),
+        }
+    }
+
+    fn dispatched<const N: usize, const R: usize, const M: usize, const SCALED: bool, const RING: bool>(
+        &self,
+        (stiffness, initial): (&[f64], &[f64]),
+        motions: [(&[[f64; 2]], f64); M],
+        sums: [&mut [Vector2<f64>]; 2],
+    ) -> f64 {
+        let mut moved = [[[0.0; 2]; M]; NODES];
+        for (moved, &node) in moved.iter_mut().zip(&self.nodes) {
+            moved.iter_mut().zip(&motions).for_each(|(moved, (motion, _))| *moved = motion[node as usize]);
+        }
+        let factors = motions.map(|(_, factor)| factor);
+        let mut total = [[[0.0; 2]; 2]; NODES];
+        let elements = Elements::<N, R, M, SCALED, RING> {
+            block: self,
+            stiffness,
+            initial,
+            moved: &moved,
+            factors,
+            total: &mut total,
+        };
+        let energy = Arch::new().dispatch(elements);
+        let [forces, others] = sums;
+        for (place, total) in total[..self.nodes.len()].iter().enumerate() {
+            forces[place] = Vector2::from(total[0]);
+            if SCALED || M == 2 {
+                others[place] = Vector2::from(total[1]);
+            }
+        }
+        energy
+    }
+}
+
+/// Elements of N nodes with R rows of numbers, at M motions of their nodes.
+struct Elements<'a, const N: usize, const R: usize, const M: usize, const SCALED: bool, const RING: bool> {
+    block: &'a Block,
+    stiffness: &'a [f64],
+    /// Forces of each element on its nodes that the first motion adds to, if there are any
+    initial: &'a [f64],
+    /// The motions of the block's nodes
+    moved: &'a [[[f64; 2]; M]; NODES],
+    /// The factors of their forces
+    factors: [f64; M],
+    /// The forces of the first motion, and those of the second or the magnitudes
+    total: &'a mut [[[f64; 2]; 2]; NODES],
+}
+
+impl<const N: usize, const R: usize, const M: usize, const SCALED: bool, const RING: bool> WithSimd
+    for Elements<'_, N, R, M, SCALED, RING>
+{
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> f64 {
+        let Self { block, stiffness, initial, moved, factors, total } = self;
+        let mut initial = initial.as_chunks::<R>().0.iter();
+        let length = 2 * (N - first(RING)) * R;
+        let mut twice = simd.splat_f64s(0.0);
+        for (places, &matrix) in block.places.as_chunks::<N>().0.iter().zip(&block.matrices) {
+            // The remainder only tells the compiler that the place is one of the block's.
+            let places = places.map(|place| place as usize % NODES);
+            let matrix = &stiffness[length * matrix as usize..][..length];
+            let mut motions = [[0.0; R]; M];
+            for (m, motion) in motions.iter_mut().enumerate() {
+                for (a, &place) in places.iter().enumerate().skip(first(RING)) {
+                    let against = |i: usize| match RING && i == 0 {
+                        true => moved[place][m][i],
+                        false => moved[place][m][i] - moved[places[0]][m][i],
+                    };
+                    (0..2).for_each(|i| motion[2 * a + i] = factors[m] * against(i));
+                }
+            }
+            let mut forces = [[simd.splat_f64s(0.0); R]; M];
+            if let Some(initial) = initial.next().map(|own| S::as_simd_f64s(own).0) {
+                forces[0].iter_mut().zip(initial).for_each(|(f, own)| *f = *own);
+                twice = dot(simd, initial, S::as_simd_f64s(&motions[0]).0, twice);
+            }
+            for (dof, column) in matrix.as_chunks::<R>().0.iter().enumerate() {
+                let column = S::as_simd_f64s(column).0;
+                for (forces, motion) in forces.iter_mut().zip(&motions) {
+                    let moved = simd.splat_f64s(motion[2 * first(RING) + dof]);
+                    forces.iter_mut().zip(column).for_each(|(f, k)| *f = simd.mul_add_e_f64s(*k, moved, *f));
+                }
+            }
+            twice = dot(simd, &forces[0], S::as_simd_f64s(&motions[0]).0, twice);
+            for (m, forces) in forces.iter().enumerate() {
+                let mut own = [0.0; R];
+                S::as_mut_simd_f64s(&mut own).0.iter_mut().zip(forces).for_each(|(own, f)| *own = *f);
+                for (a, &place) in places.iter().enumerate() {
+                    for i in 0..2 {
+                        total[place][m][i] += own[2 * a + i];
+                        if SCALED {
+                            total[place][1][i] += own[2 * a + i].abs();
+                        }
+                    }
+                }
+            }
+        }
+        0.5 * simd.reduce_sum_f64s(twice)
+    }
+}
+
+/// sum + a·x, register by register.
+#[inline(always)]
+fn dot<S: Simd>(simd: S, a: &[S::f64s], x: &[S::f64s], sum: S::f64s) -> S::f64s {
+    a.iter().zip(x).fold(sum, |sum, (a, x)| simd.mul_add_e_f64s(*a, *x, sum))
 }

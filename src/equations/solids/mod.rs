@@ -4,26 +4,20 @@
 //! follow each other in a run and are evaluated each time (`runs.rs`). Then every node sums up what its elements and blocks put there,
 //! in their order: the same bits on any number of threads, and nothing is written twice.
 
-mod blocks;
 mod constant;
-mod kernel;
-mod places;
 mod runs;
 
 use std::sync::Arc;
 
 use super::coupling::Layout;
-use super::dependence::Dependence;
-use super::sums::Sums;
-use crate::equations::failure::TrialFailure;
+use super::sums::{Dependence, Sums};
+use crate::equations::sums::TrialFailure;
 use crate::linear::SparseMatrix;
 use crate::model::{Model, Step};
-use constant::Constant;
 pub(super) use constant::damps_by_stiffness;
 pub use constant::is_constant;
-use kernel::Pass;
-use places::{gather, gather_magnitudes};
-use runs::Runs;
+use constant::{Constant, Pass};
+use runs::{Runs, gather, gather_magnitudes};
 
 /// It is the same matrix throughout if all elements are constant.
 pub(super) fn dependence(model: &Model) -> Dependence {

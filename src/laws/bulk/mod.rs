@@ -37,7 +37,6 @@ mod isotropic;
 mod linear;
 mod neo_hookean;
 mod parameters;
-mod plane_stress;
 mod saint_venant_kirchhoff;
 pub(crate) mod spatial;
 mod viscoelastic;
@@ -47,9 +46,8 @@ pub use imposed::{INITIAL_STRESS, Imposed, TEMPERATURE};
 pub use linear::Linear;
 pub use neo_hookean::NeoHookean;
 pub use parameters::{ElasticConstants, Lame, MaterialParameters};
-pub use plane_stress::PlaneStress;
 pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
-pub use spatial::{Spatial, Stretched};
+pub use spatial::{PlaneStress, Spatial, Stretched};
 pub use viscoelastic::{Viscoelastic, ViscoelasticConstants};
 
 /// Stress, tangent and stored energy at one deformation gradient (plane strain: F₃₃ = 1).

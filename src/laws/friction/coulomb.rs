@@ -2,8 +2,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::sensitivity::{Direction, SensitiveLaw, Variation};
-use super::yielding::traction_at_yield;
-use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Sliding};
+use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Sliding, traction_at_yield};
 use crate::laws::parameter::{InvalidParameter, require_positive};
 
 /// Parameters of [`Coulomb`] as the case file writes them.

@@ -8,65 +8,39 @@
 //! Laws: [`SuperSubloading`], [`SlipWeakening`], [`RateAndState`], [`Coulomb`], [`Frictionless`], [`PrescribedSlip`]; [`Offset`]
 //! adds dilatancy and wear to any of them; [`FrictionParameters`]
 //! reads any of them from a case, and laws from elsewhere that are [registered](register).
+//!
+//! What a law is asked is [`Sliding`], the increment of one point; why it could not answer is a [`LawFailure`]. Laws whose slip
+//! rate follows from traction and state are [`RateLaw`]s as well.
 
-mod approach;
 mod coulomb;
-mod exponential_integral;
-mod failure;
 mod frictionless;
 mod in_time;
 pub mod observables;
 mod offset;
-mod onset;
 mod parameters;
-mod path;
-mod peak;
-mod peak_sensitivity;
 mod prescribed;
 mod rate_and_state;
-mod rate_and_state_law;
-mod rate_and_state_path;
-mod rate_and_state_sensitivity;
-pub mod rate_law;
-mod registered;
-mod relaxation;
 mod root;
 pub mod sensitivity;
-mod short_step;
-mod sliding;
-mod sliding_curve;
-mod slip_equation;
 mod slip_weakening;
 pub mod state;
-mod sub_step;
 mod super_subloading;
-mod super_subloading_parameters;
-mod super_subloading_path;
-mod super_subloading_sensitivity;
-mod yielding;
 
 use std::fmt::Debug;
 
-pub use approach::Approach;
+use thiserror::Error;
+
 pub use coulomb::{Coulomb, CoulombParameters};
-pub use failure::LawFailure;
 pub use frictionless::Frictionless;
 pub use in_time::{Held, LawInTime, LawOf, Resolved};
 pub use offset::{Dilatancy, Offset, Offsets};
-pub use onset::{Onset, Rise};
-pub use parameters::FrictionParameters;
-pub use peak::Integration;
+pub use parameters::{FrictionParameters, RegisteredParameters, register};
 pub use prescribed::{PrescribedSlip, PrescribedSlipParameters};
-pub use rate_and_state::{RateAndState, RateAndStateParameters};
-pub use rate_law::RateLaw;
-pub use registered::{RegisteredParameters, register};
-pub use relaxation::StateEvolution;
+pub use rate_and_state::{RateAndState, RateAndStateParameters, StateEvolution};
 pub use sensitivity::SensitiveLaw;
-pub use sliding::Sliding;
 pub use slip_weakening::{SlipWeakening, SlipWeakeningParameters};
 pub use state::{FrictionState, Regime};
-pub use super_subloading::SuperSubloading;
-pub use super_subloading_parameters::SuperSubloadingParameters;
+pub use super_subloading::{Approach, Integration, Onset, Rise, SuperSubloading, SuperSubloadingParameters};
 
 /// No law answers a tangent |∂q/∂Δu_t| above this many times α_t, or |∂q/∂p| above it. Where two roots of a law's equation
 /// of plastic slip merge the traction snaps, and just before it the derivative grows without bound, like the inverse of the
@@ -298,4 +272,159 @@ pub trait FrictionLaw: Debug + Send + Sync {
         let pressure = self.stiffness() / self.weakening();
         pressure.is_finite().then_some(pressure)
     }
+}
+
+/// Relative motion of the two surfaces during one increment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sliding {
+    /// Δu_t: slip increment of the slave relative to the master along +s [L]
+    pub slip: f64,
+    /// p: effective pressure at the end of the increment, ≤ 0 where the point is open [F/L²]
+    pub pressure: f64,
+    /// Δt: length of the increment [T]
+    pub dt: f64,
+}
+
+impl Sliding {
+    /// Refuses what no law can answer.
+    ///
+    /// # Errors
+    /// [`LawFailure`] when a number is not finite, or time goes backwards.
+    pub fn checked(self) -> Result<Self, LawFailure> {
+        let Self { slip, pressure, dt } = self;
+        if !(slip.is_finite() && pressure.is_finite() && dt.is_finite()) {
+            return Err(LawFailure::NotFinite { slip, pressure, dt });
+        }
+        if dt < 0.0 {
+            return Err(LawFailure::NegativeTime { dt });
+        }
+        Ok(self)
+    }
+}
+
+/// Why a law could not answer; the increment is tried again with a smaller step.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum LawFailure {
+    /// The increment itself is not a finite number.
+    #[error("friction was asked for a slip {slip}, pressure {pressure} and time {dt} that are not all finite")]
+    NotFinite {
+        /// slip increment [L]
+        slip: f64,
+        /// pressure [F/L²]
+        pressure: f64,
+        /// increment length [T]
+        dt: f64,
+    },
+    /// The increment goes back in time.
+    #[error("friction was asked for an increment of negative time {dt}")]
+    NegativeTime {
+        /// increment length [T]
+        dt: f64,
+    },
+    /// The equation of plastic slip was not solved, or the sub-steps of the increment did not come to agree.
+    #[error(
+        "friction did not converge within {evaluations} evaluations: {rest:.3e} of the trial traction {trial:.3e} is left"
+    )]
+    NotConverged {
+        /// evaluations of the equation of plastic slip
+        evaluations: usize,
+        /// what is left out of balance, or the difference between sub-steps [F/L²]
+        rest: f64,
+        /// |q_tr|: traction without plastic slip [F/L²]
+        trial: f64,
+    },
+    /// The opening of a law that dilates grows faster with the pressure than the contact gives way.
+    #[error("the opening {opening:.6e} of the friction law and the pressure {pressure:.6e} did not come to agree")]
+    Opening {
+        /// d [L]
+        opening: f64,
+        /// p [F/L²]
+        pressure: f64,
+    },
+    /// Parameters that vary in time have no good value at a time.
+    #[error("the parameters of the friction law are not finite, or out of their range, at t = {time}: look at `along`")]
+    Undefined {
+        /// t [T]
+        time: f64,
+    },
+    /// Parameters that vary in time let the surfaces dilate more than they rub.
+    #[error(
+        "the opening per slip {rate} (dilatancy.rate) is not below the least friction coefficient {least} that the law can come to \
+         at t = {time}, and sliding would yield work: lower dilatancy.rate, or see that `along` stays above it"
+    )]
+    Dilates {
+        /// t [T]
+        time: f64,
+        /// tan ψ [-]
+        rate: f64,
+        /// least coefficient of the law then [-]
+        least: f64,
+    },
+    /// The state was not finite, or the increment is so large that it no longer is.
+    #[error("the friction state is not finite: the traction is {traction}")]
+    Overflow {
+        /// q: traction [F/L²]
+        traction: f64,
+    },
+    /// A registered law has failed; whoever registered it knows why.
+    #[error("a registered friction law gave no answer")]
+    Registered,
+}
+
+/// What acts on a point of an interface that radiates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Loading {
+    /// τ = q + η V: what friction and radiation damping carry together [F/L²]
+    pub traction: f64,
+    /// p [F/L²]
+    pub pressure: f64,
+    /// η [F T/L³]
+    pub damping: f64,
+}
+
+/// A law whose slip rate follows from traction and state, so that an interface can be integrated by itself.
+///
+/// ```text
+/// τ = q(V, x, p) + η V          solved for V, which has the sign of τ; x: the state, a number without dimension
+/// ẋ = ẋ(V, x)
+/// ```
+pub trait RateLaw: Debug + Send + Sync {
+    /// V; not a number where the law has no answer [L/T].
+    fn slip_rate(&self, x: f64, loading: Loading) -> f64;
+
+    /// ẋ at a slip rate [1/T].
+    fn evolution(&self, _x: f64, _slip_rate: f64) -> f64 {
+        0.0
+    }
+
+    /// x of what a point remembers.
+    fn evolving(&self, _state: &FrictionState) -> f64 {
+        0.0
+    }
+
+    /// The state with x in its variables.
+    fn remember(&self, _x: f64, state: FrictionState) -> FrictionState {
+        state
+    }
+
+    /// |∂(q/p)/∂x|: what an error of x does to the coefficient of friction [-].
+    fn weight(&self) -> f64 {
+        0.0
+    }
+
+    /// Stick or slip.
+    fn regime(&self, x: f64, slip_rate: f64) -> Regime;
+}
+
+/// |q| where plastic slip sets in, in an increment along which the elastic traction and the strength both go evenly from
+/// their first value to their second, and the traction ends above. One that is above from the start slips from there.
+///
+/// Both lines are counted along the sign of the trial, so a traction of the other sign unloads elastically, passes zero,
+/// and loads elastically up to the strength.
+fn traction_at_yield(elastic: [f64; 2], strength: [f64; 2]) -> f64 {
+    let (below, above) = (strength[0] - elastic[0], elastic[1] - strength[1]);
+    if below <= 0.0 || above <= 0.0 {
+        return elastic[0].max(0.0);
+    }
+    strength[0] + below / (below + above) * (strength[1] - strength[0])
 }

@@ -1,14 +1,18 @@
 //! The friction law as the case file writes it.
+//!
+//! Laws that a program which calls the library registers by a name, so that cases can use them.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, PoisonError, RwLock};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
     Coulomb, CoulombParameters, FrictionLaw, Frictionless, PrescribedSlip, PrescribedSlipParameters, RateAndState,
-    RateAndStateParameters, RegisteredParameters, SlipWeakening, SlipWeakeningParameters, SuperSubloading,
-    SuperSubloadingParameters,
+    RateAndStateParameters, SlipWeakening, SlipWeakeningParameters, SuperSubloading, SuperSubloadingParameters,
 };
-use crate::laws::parameter::InvalidParameter;
+use crate::laws::parameter::{InvalidParameter, require_positive};
 
 /// A friction law and its parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -103,5 +107,72 @@ impl From<RateAndStateParameters> for FrictionParameters {
 impl From<PrescribedSlipParameters> for FrictionParameters {
     fn from(parameters: PrescribedSlipParameters) -> Self {
         Self::Prescribed(parameters)
+    }
+}
+
+/// Makes a law from its parameters and α_t.
+pub type Maker = dyn Fn(&BTreeMap<String, f64>, f64) -> Result<Box<dyn FrictionLaw>, InvalidParameter> + Send + Sync;
+
+static REGISTER: RwLock<BTreeMap<String, Arc<Maker>>> = RwLock::new(BTreeMap::new());
+
+/// Let cases that are built in this process from now on use a law by a name; one of this name is replaced.
+///
+/// ```
+/// use fecontact::laws::friction::{Coulomb, CoulombParameters, FrictionParameters, register};
+///
+/// register("half", |parameters, alpha_t| {
+///     Ok(Box::new(Coulomb::new(&CoulombParameters::new(0.5 * parameters["mu"]), alpha_t)?))
+/// });
+/// let friction: FrictionParameters =
+///     serde_json::from_str(r#"{"law": "registered", "name": "half", "parameters": {"mu": 0.6}}"#)?;
+/// assert_eq!(friction.build(1e3)?.starting_limit(10.0), 3.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn register(
+    name: impl Into<String>,
+    maker: impl Fn(&BTreeMap<String, f64>, f64) -> Result<Box<dyn FrictionLaw>, InvalidParameter> + Send + Sync + 'static,
+) {
+    REGISTER.write().unwrap_or_else(PoisonError::into_inner).insert(name.into(), Arc::new(maker));
+}
+
+/// A registered law as the case file writes it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RegisteredParameters {
+    /// The name by which the program that calls the library has registered it
+    pub name: String,
+    /// Its parameters by their names
+    #[serde(default)]
+    pub parameters: BTreeMap<String, f64>,
+    /// α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies [F/L³]
+    #[serde(default)]
+    pub alpha_t: Option<f64>,
+}
+
+impl RegisteredParameters {
+    /// The law; `default_alpha_t` serves where the case gives no `alpha_t`.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`] when a parameter is out of its range, or nobody has registered the law.
+    pub fn build(&self, default_alpha_t: f64) -> Result<Box<dyn FrictionLaw>, InvalidParameter> {
+        let alpha_t = self.alpha_t.unwrap_or(default_alpha_t);
+        require_positive("alpha_t", alpha_t)?;
+        if let Some(&value) = self.parameters.get("alpha_t") {
+            let allowed = "the stiffness stands beside the parameters, as \"alpha_t\" of the law".into();
+            return Err(InvalidParameter { name: "parameters.alpha_t", value, allowed });
+        }
+        let maker = REGISTER.read().unwrap_or_else(PoisonError::into_inner).get(&self.name).cloned();
+        let allowed = "it must be the name of a law that is registered".into();
+        let maker = maker.ok_or(InvalidParameter { name: "name", value: f64::NAN, allowed })?;
+        maker(&self.parameters, alpha_t)
+    }
+
+    /// What is wrong where nobody has registered the law.
+    pub fn unknown(&self) -> Option<String> {
+        let register = REGISTER.read().unwrap_or_else(PoisonError::into_inner);
+        let known: Vec<&str> = register.keys().map(String::as_str).collect();
+        let known = if known.is_empty() { "none is".into() } else { format!("there are `{}`", known.join("`, `")) };
+        (!register.contains_key(&self.name))
+            .then(|| format!("no law `{}` is registered in this program; {known}", self.name))
     }
 }

@@ -1,8 +1,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::rate_law::{Loading, RateLaw};
-use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, Regime, Sliding};
+use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, Loading, RateLaw, Regime, Sliding};
 use crate::laws::parameter::{InvalidParameter, require, require_positive};
 
 /// Parameters of [`PrescribedSlip`] as the case file writes them.

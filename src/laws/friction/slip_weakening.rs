@@ -2,8 +2,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::sensitivity::{Direction, SensitiveLaw, Variation};
-use super::yielding::traction_at_yield;
-use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Sliding};
+use super::{
+    Answer, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Sliding, traction_at_yield,
+};
 use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
 
 /// Parameters of [`SlipWeakening`] as the case file writes them.

@@ -15,16 +15,10 @@
 mod condensation;
 mod dense;
 mod factor;
-mod forest;
 mod front;
-mod jobs;
-mod order;
-mod reuse;
 mod scale;
 mod solve;
-mod stacks;
 mod symbolic;
-mod tree;
 
 use std::sync::Arc;
 

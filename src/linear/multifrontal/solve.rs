@@ -3,10 +3,8 @@
 use pulp::{Arch, NullaryFnOnce};
 
 use super::dense::{exchange, subtract};
-use super::factor::Factors;
-use super::forest::Forest;
-use super::front::Front;
-use super::jobs::{Job, Waiting};
+use super::factor::{Factors, Job, Waiting};
+use super::front::{Forest, Front};
 use super::symbolic::Symbolic;
 
 /// x ← L⁻¹ x in the order of elimination.

@@ -17,7 +17,6 @@
 
 mod grid;
 mod join;
-mod spacing;
 
 use std::collections::BTreeMap;
 
@@ -26,8 +25,8 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::InlineMesh;
+pub use grid::Grading;
 use grid::Grid;
-pub use spacing::Grading;
 
 /// Most elements of all blocks together: more than a computer solves for, and few enough to be counted.
 const MOST: f64 = 4e6;

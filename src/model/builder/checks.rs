@@ -1,9 +1,16 @@
 //! What does not go together, and settings out of range.
+//!
+//! What quasi-dynamic steps ask of a model.
+
+use std::collections::BTreeSet;
 
 use super::contact::Contact;
 use super::error::{Checked, ModelError};
-use super::increments::MOST_INCREMENTS;
+use super::schedule::MOST_INCREMENTS;
+use crate::contact::pair::ContactPair;
+use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::scheme::Scheme;
+use crate::model::support::{Inclined, Motion, Prescribed};
 use crate::model::{Model, NewtonSettings, Step};
 
 /// Largest number of Newton iterations that makes sense to allow.
@@ -100,5 +107,168 @@ pub fn check_schemes(contacts: &[Contact], model: &Model) -> Checked<()> {
             refused(&pair.name, "normal.penetration", message)
         }
         None => Ok(()),
+    }
+}
+
+/// Linear bodies, contacts in small sliding whose nodes face each other and whose slip rates follow from tractions, and nothing
+/// that changes otherwise than evenly within a step.
+pub fn check_quasi_dynamic(model: &Model) -> Checked<()> {
+    let steps = model.steps.iter().enumerate();
+    for (k, step) in steps.filter(|(_, step)| matches!(step.scheme, Scheme::QuasiDynamic { .. })) {
+        let place = format!("steps[{k}]");
+        let of_scheme = |message: String| Err(ModelError::new(format!("{place}.scheme"), message));
+        if model.contacts.is_empty() {
+            return of_scheme("quasi_dynamic integrates the slip of contacts, and there is none".into());
+        }
+        if let Some(body) = model.bodies.iter().find(|body| !body.material.is_linear()) {
+            return of_scheme(format!(
+                "quasi_dynamic takes linear bodies, and `{}` is not: take material linear",
+                body.name
+            ));
+        }
+        if let Some(body) = model.bodies.iter().find(|body| body.is_imposed()) {
+            let key = if body.initial_stress.is_some() { "initial_stress" } else { "thermal" };
+            let message = "is not for quasi_dynamic steps: leave it out, and give the tractions of the contacts (initial, \
+                           balanced), on top of whose stress the run counts";
+            return Err(ModelError::new(format!("bodies.{}.{key}", body.name), message));
+        }
+        if !(model.plates.is_empty() && model.linkage.is_empty()) {
+            return Err(ModelError::new("plates", "are not for quasi_dynamic steps: lead the side by supports"));
+        }
+        model.contacts.iter().try_for_each(check_contact)?;
+        check_nodes(model)?;
+        check_supports(&place, step, model)?;
+        check_loads(&place, step)?;
+    }
+    Ok(())
+}
+
+fn check_contact(pair: &ContactPair) -> Checked<()> {
+    let refused =
+        |key: &str, message: &str| Err(ModelError::new(format!("contacts.{}{key}", pair.name), message.to_string()));
+    if pair.small.is_none() {
+        return refused(".sliding", "is finite, and quasi_dynamic steps need small");
+    }
+    if pair.radiation == 0.0 {
+        return refused(".radiation_damping", "is missing: without it slip in quasi_dynamic steps has no bound");
+    }
+    if pair.penetration.is_some() {
+        return refused(".normal.penetration", "is not for quasi_dynamic steps: leave it out, and raise alpha_n");
+    }
+    if pair.fluid.is_some() {
+        return refused(
+            ".fluid_pressure",
+            "is not for quasi_dynamic steps, which know no change of pressure: take static steps with radiation_damping",
+        );
+    }
+    if let Some(name) = pair.laws.iter().find_map(|law| law.start().offsets().first()) {
+        let key = if *name == "wear" { ".wear" } else { ".dilatancy" };
+        return refused(key, "is not for quasi_dynamic steps, which know no change of pressure: leave it out");
+    }
+    if pair.laws.iter().any(|law| law.start().rates().is_none()) {
+        let message = "has no slip rate that follows from traction and state, as quasi_dynamic steps need it: take \
+                       rate_and_state or prescribed, or static steps with radiation_damping and dt.error";
+        return refused(".friction", message);
+    }
+    Ok(())
+}
+
+/// Every point must be a node that faces a node, or a rigid body, and no node may take part twice.
+fn check_nodes(model: &Model) -> Checked<()> {
+    let mut seen = BTreeSet::new();
+    for pair in &model.contacts {
+        let refused = |message: String| Err(ModelError::new(format!("contacts.{}", pair.name), message));
+        for (slave, point) in pair.points.iter().zip(pair.small.iter().flat_map(|small| &small.points)) {
+            let tags = |nodes: &[usize]| -> String {
+                let tags: BTreeSet<String> = nodes.iter().map(|&node| model.mesh.node_tags[node].to_string()).collect();
+                tags.into_iter().collect::<Vec<_>>().join(", ")
+            };
+            let Some(point) = point else {
+                let own: Vec<usize> = slave.position.iter().map(|(node, _)| *node).collect();
+                return refused(format!(
+                    "nothing faces the slave at node {}, as quasi_dynamic steps need it",
+                    tags(&own)
+                ));
+            };
+            let Some((own, master)) = point.facing() else {
+                return refused(format!(
+                    "nodes {} meet in one point: quasi_dynamic steps need every slave node to face a master node (and \
+                     method node_to_segment or mortar)",
+                    tags(&point.nodes)
+                ));
+            };
+            for node in std::iter::once(own).chain(master).map(|node| model.ties.original(node)) {
+                if !seen.insert(node) {
+                    return refused(format!("node {} faces two others: quasi_dynamic steps need pairs", tags(&[node])));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Supports move evenly, and hold no node of a contact.
+fn check_supports(place: &str, step: &Step, model: &Model) -> Checked<()> {
+    let at_contacts: BTreeSet<usize> = model
+        .contacts
+        .iter()
+        .flat_map(|pair| pair.small.iter().flat_map(|small| small.points.iter().flatten()))
+        .flat_map(|point| point.nodes.iter().map(|&node| model.ties.original(node)))
+        .collect();
+    for Prescribed { at, motion } in &step.supports {
+        let node = at.node();
+        let refused = |message: &str| {
+            let tag = model.mesh.node_tags[node];
+            Err(ModelError::new(format!("{place}.supports"), format!("node {tag}: {message}")))
+        };
+        if at_contacts.contains(&node) {
+            return refused(
+                "in quasi_dynamic steps no node of a contact is supported: let the supports end before it, and friction \
+                 (law prescribed) say how it slips",
+            );
+        }
+        let is_even = match motion {
+            Motion::Rotation { .. } => return refused("quasi_dynamic steps have no rotating supports"),
+            Motion::Displacement(drive, span) => is_even(drive, *span, step.span),
+            Motion::Inclined(parts) => {
+                parts.iter().all(|Inclined { drive, span, .. }| is_even(drive, *span, step.span))
+            }
+        };
+        if !is_even {
+            return refused(
+                "supports go evenly within a quasi_dynamic step: give a value or a rate, and a step a kink",
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Loads grow evenly, and none depends on rates or on the deformation.
+fn check_loads(place: &str, step: &Step) -> Checked<()> {
+    let loads = &step.loads;
+    let refused = |message: &str| Err(ModelError::new(format!("{place}.loads"), message.to_string()));
+    if !(loads.dashpots.is_empty() && loads.absorbers.is_empty()) {
+        return refused("dashpots and absorbing sides are not for quasi_dynamic steps: end them by null");
+    }
+    if !loads.pressures.is_empty() {
+        return refused(
+            "pressures turn with the surface, and are not for quasi_dynamic steps: take a dead_pressure or a traction",
+        );
+    }
+    let of_springs = loads.springs.iter().filter_map(|spring| spring.driver.as_ref());
+    let mut amplitudes = loads.dead.iter().map(|load| &load.amplitude).chain(of_springs);
+    if amplitudes.any(|Amplitude { drive, span, .. }| !is_even(drive, *span, step.span)) {
+        return refused("loads grow evenly within a quasi_dynamic step: give a value or a rate, and a step a kink");
+    }
+    Ok(())
+}
+
+/// Whether a drive is linear in time within a step.
+fn is_even(drive: &Drive, own: Span, step: Span) -> bool {
+    match drive {
+        Drive::Constant(_) | Drive::ByPlace(..) => own.end >= step.end || own.end <= step.start,
+        Drive::Rate(_) => true,
+        Drive::Table(table) => table.iter().all(|[time, _]| *time <= step.start || *time >= step.end),
+        Drive::Expression(expression) => !expression.depends_on_time(),
     }
 }

@@ -1,7 +1,13 @@
-//! A contact as it is given.
+//! A contact as it is given; its fluid, and its rigid master with its geometry checked.
 
-use super::friction::Friction;
+use nalgebra::Vector2;
+
+use super::error::{Checked, ModelError, check_finite};
+use super::friction::{Friction, check_in_time};
+use crate::contact::master::{Circle, Plane, Polyline, Rigid};
+use crate::contact::pair::{BadPressure, ContactPair, Fluid};
 use crate::laws::friction::Dilatancy;
+use crate::model::Model;
 use crate::model::boundary::Profile;
 use crate::model::method::Method;
 
@@ -40,7 +46,7 @@ pub struct Contact {
     pub wear: Option<f64>,
     /// Radiation damping in static steps, if there is any
     pub radiation: Option<Radiation>,
-    /// p_w of a fluid that pushes the surfaces apart, if there is one ([`crate::contact::fluid`]) [F/L²]
+    /// p_w of a fluid that pushes the surfaces apart, if there is one ([`crate::contact::pair`]) [F/L²]
     pub fluid_pressure: Option<Profile>,
     /// Tractions of a contact that starts closed
     pub initial: Option<InitialTractions>,
@@ -199,4 +205,61 @@ impl Contact {
     pub(super) fn is_own(&self) -> bool {
         matches!(&self.master, MasterSide::Group(group) if *group == self.slave)
     }
+}
+
+/// The fluid of a contact, if it has one.
+pub fn fluid(place: &str, contact: &Contact) -> Checked<Option<Fluid>> {
+    let Some(pressure) = contact.fluid_pressure.clone() else { return Ok(None) };
+    check_in_time(&pressure, &format!("{place}.fluid_pressure"))?;
+    Ok(Some(Fluid::new(move |at, time| pressure.value_at(at, time))))
+}
+
+/// A fluid pushes, and does not pull; what it does later a run sees.
+pub fn check_fluid(pair: &ContactPair, place: &str, model: &Model) -> Checked<()> {
+    let Some(BadPressure { at, pressure }) = pair.bad_fluid_pressure(&model.mesh.undeformed(), 0.0) else {
+        return Ok(());
+    };
+    let message = format!(
+        "is {pressure} at ({}, {}) and t = 0: must be a finite number, zero or positive, which pushes the surfaces apart",
+        at.x, at.y
+    );
+    Err(ModelError::new(format!("{place}.fluid_pressure"), message))
+}
+
+/// The body of a rigid master.
+pub fn rigid(side: &MasterSide, place: &str) -> Checked<Rigid> {
+    match side {
+        MasterSide::Group(group) => Err(ModelError::new(place, format!("`{group}` is a group, not a rigid body"))),
+        MasterSide::Plane { point, normal } => plane(*point, *normal, place),
+        MasterSide::Circle { centre, radius, hole } => {
+            check_finite(&format!("{place}.circle.centre"), *centre)?;
+            if !(*radius > 0.0 && radius.is_finite()) {
+                let message = format!("is {radius}: must be positive");
+                return Err(ModelError::new(format!("{place}.circle.radius"), message));
+            }
+            Ok(Rigid::Circle(Circle { centre: Vector2::from(*centre), radius: *radius, hole: *hole }))
+        }
+        MasterSide::Polyline(points) => {
+            let place = format!("{place}.polyline.points");
+            check_finite(&place, points.iter().flatten().copied())?;
+            if points.len() < 2 {
+                return Err(ModelError::new(place, format!("has {} points: must have two or more", points.len())));
+            }
+            if let Some(k) = points.windows(2).position(|pair| pair[0] == pair[1]) {
+                let message = format!("points {} and {} are the same: leave one out", k, k + 1);
+                return Err(ModelError::new(place, message));
+            }
+            Ok(Rigid::Polyline(Polyline::new(points.iter().map(|&point| Vector2::from(point)).collect())))
+        }
+    }
+}
+
+fn plane(point: [f64; 2], normal: [f64; 2], place: &str) -> Checked<Rigid> {
+    check_finite(&format!("{place}.plane.point"), point)?;
+    let given = Vector2::from(normal);
+    let Some(normal) = given.try_normalize(0.0).filter(|normal| normal.norm() > 0.5) else {
+        let message = format!("is [{}, {}]: must have a direction, such as [0, 1]", given.x, given.y);
+        return Err(ModelError::new(format!("{place}.plane.normal"), message));
+    };
+    Ok(Rigid::Plane(Plane { point: Vector2::from(point), normal }))
 }

@@ -1,4 +1,6 @@
 //! Friction of a contact before the contact is known: the same everywhere, or varying along the slave.
+//!
+//! Friction whose parameters vary in time: patches that weaken and recover, creep that sets in.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -6,14 +8,14 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::error::{Checked, ModelError};
-use super::in_time::{InTime, LawAt};
 use crate::contact::surface::SlavePoint;
 use crate::laws::friction::{
-    CoulombParameters, FrictionLaw, FrictionParameters, LawInTime, Offset, Offsets, PrescribedSlipParameters,
-    RateAndStateParameters, SlipWeakeningParameters, SuperSubloadingParameters, observables,
+    CoulombParameters, FrictionLaw, FrictionParameters, LawFailure, LawInTime, Offset, Offsets,
+    PrescribedSlipParameters, RateAndStateParameters, SlipWeakeningParameters, SuperSubloadingParameters, observables,
 };
 use crate::laws::parameter::InvalidParameter;
 use crate::mesh::Mesh;
+use crate::mesh::shape::gauss;
 use crate::model::boundary::Profile;
 
 /// Friction of a contact. A law is friction, and so are parameters of one, whose α_t is α_n/2 unless they give it.
@@ -100,7 +102,7 @@ impl Friction {
             numbers.insert(key, laws.len());
             let first = friction.varying.first().map(|(name, _)| format!("{place}.{name} at ({}, {})", at.x, at.y));
             let law = friction.law(&values, default_alpha_t, place, first)?;
-            laws.push(friction.through_the_run(law, at, (default_alpha_t, offsets), place)?);
+            laws.push(friction.through_the_run(law, at, default_alpha_t, offsets, place)?);
         }
         Ok(laws)
     }
@@ -114,7 +116,8 @@ impl Friction {
         &self,
         start: Box<dyn FrictionLaw>,
         at: Vector2<f64>,
-        (alpha_t, offsets): (Option<f64>, Offsets),
+        alpha_t: Option<f64>,
+        offsets: Offsets,
         place: &str,
     ) -> Checked<LawInTime> {
         let takes_means = start.takes_means();
@@ -230,5 +233,51 @@ pub fn check_in_time(profile: &Profile, place: &str) -> Checked<()> {
             let message = format!("the coordinates of the table must ascend: {} follows {}", pair[1][0], pair[0][0]);
             Err(ModelError::new(format!("{place}.{name}"), message))
         }
+    }
+}
+
+/// Points of time over which the mean of a rate is taken: exact for polynomials of the fifth order.
+const MEAN: usize = 3;
+
+/// The law of a point: from what varies along the slave there, and the α_t that serves where none is given.
+type LawAt = dyn Fn(&[f64], f64) -> Checked<Box<dyn FrictionLaw>> + Send + Sync;
+
+/// The law of a point whose parameters vary in time.
+struct InTime {
+    pub profiles: Vec<Profile>,
+    pub at: Vector2<f64>,
+    pub law: Arc<LawAt>,
+    /// α_t of a law that has none of its own [F/L³]
+    pub alpha_t: f64,
+    /// How its surfaces move apart with slip
+    pub offsets: Offsets,
+    /// Whether parameters enter by their mean over an increment
+    pub takes_means: bool,
+}
+
+impl InTime {
+    /// The law that holds from one time to another.
+    pub fn during(&self, [from, to]: [f64; 2]) -> Result<Box<dyn FrictionLaw>, LawFailure> {
+        if !(self.takes_means && to > from) {
+            return self.of(&[(to, 1.0)], to);
+        }
+        let times = gauss(MEAN).into_iter().map(|(xi, w)| (from + 0.5 * (1.0 + xi) * (to - from), 0.5 * w));
+        self.of(&times.collect::<Vec<_>>(), to)
+    }
+
+    /// The law with the parameters that are the mean of those at some times, up to the last.
+    fn of(&self, times: &[(f64, f64)], time: f64) -> Result<Box<dyn FrictionLaw>, LawFailure> {
+        let mean = |profile: &Profile| times.iter().map(|&(time, w)| w * profile.value_at(self.at, time)).sum();
+        let values: Vec<f64> = self.profiles.iter().map(mean).collect();
+        let law = if values.iter().all(|value: &f64| value.is_finite()) {
+            (self.law)(&values, self.alpha_t).ok()
+        } else {
+            None
+        };
+        let law = law.ok_or(LawFailure::Undefined { time })?;
+        if let Some([rate, least]) = self.offsets.beyond(&*law) {
+            return Err(LawFailure::Dilates { time, rate, least });
+        }
+        Offset::over(law, self.offsets).map_err(|_| LawFailure::Undefined { time })
     }
 }

@@ -6,9 +6,8 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::body::GivenMass;
 use super::contact::{Contact, InitialTractions};
-use super::error::{Checked, ModelError};
+use super::error::{Checked, ModelError, check_finite};
 use super::friction::{check_profile, defined, position};
-use super::limits::check_finite;
 use super::load_step::LoadStep;
 use super::section::check_velocities;
 use crate::contact::pair::{ContactPair, InitialTraction};

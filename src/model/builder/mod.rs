@@ -29,52 +29,33 @@
 //! place, in the words of a case file: `steps[1].supports[0].on: the mesh has no group …`.
 
 mod body;
-mod change;
 mod checks;
 mod contact;
-mod defined;
 mod error;
-mod fluid;
 mod friction;
 mod groups;
-mod imposed;
-mod in_time;
-mod inclined;
-pub(crate) mod increments;
 mod initial;
-mod limits;
-mod linkage;
-mod load;
 mod load_step;
 mod loads;
-mod names;
-mod normals;
-mod of_bodies;
 mod pair;
-mod penalty;
-mod periodic;
-mod plate;
+mod plates;
 mod probes;
-mod quasi_dynamic;
-mod radiation;
-mod rigid;
-mod schedule;
+pub(crate) mod schedule;
 mod section;
 mod shares;
 mod supported;
 mod supports;
-mod unseen;
-mod until;
 
-pub use change::Change;
 pub use contact::{Contact, InitialTractions, MasterSide, Radiation};
 pub use error::{Checked, ModelError};
 pub use friction::Friction;
 pub use groups::Place;
-pub use load::{Action, Components, Link, Load};
-pub use load_step::{IncrementSettings, LoadStep, MET, Rotation, RuptureSettings, Support, UntilSettings};
+pub use load_step::{
+    Action, Change, Components, IncrementSettings, Link, Load, LoadStep, MET, Rotation, RuptureSettings, Support,
+    UntilSettings,
+};
 pub use loads::LoadsInForce;
-pub use plate::Plate;
+pub use plates::Plate;
 pub use probes::Gauge;
 
 use crate::laws::bulk::Material;
@@ -278,10 +259,10 @@ impl Builder {
             probes: Vec::new(),
         };
         model.point_masses = body::point_masses(&self.point_masses, &model.mesh)?;
-        model.plates = periodic::plates(&self.plates, &model.mesh)?;
-        model.ties = periodic::ties(&self.periodic, &model.plates, &model.mesh)?;
+        model.plates = plates::plates(&self.plates, &model.mesh)?;
+        model.ties = plates::ties(&self.periodic, &model.plates, &model.mesh)?;
         model.massless = pair::massless(&self.contacts, &model.mesh)?;
-        model.linkage = linkage::linkage(&self.plates, &self.steps, &model)?;
+        model.linkage = plates::linkage(&self.plates, &self.steps, &model)?;
         model.contacts = pair::pairs(&self.contacts, &model)?;
         model.methods = self.contacts.iter().map(|contact| pair::evaluation(contact, &model.mesh)).collect();
         model.prestress = initial::prestress(&self.contacts, &model);
@@ -293,7 +274,7 @@ impl Builder {
         model.probes = probes::probes(&self.gauges, &model)?;
         checks::check_schemes(&self.contacts, &model)?;
         checks::check_rows(&model)?;
-        quasi_dynamic::check(&model)?;
+        checks::check_quasi_dynamic(&model)?;
         supported::check(&self.steps, &model)?;
         Ok(model)
     }

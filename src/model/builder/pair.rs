@@ -1,21 +1,45 @@
 //! From a contact as it is given to the pair of surfaces that is evaluated.
+//!
+//! # Radiation damping
+//!
+//! Radiation damping: what inertia would do to slip, in motions that leave it out.
+//!
+//! ```text
+//! τ = τ_static − Z₁ v₁ = τ_static − Z₂ v₂,   v₁ + v₂ = v     plane shear waves leave on both sides,    Z = ρ c_s = G/c_s     (1)
+//! τ = τ_static − η v,   1/η = 1/Z₁ + 1/Z₂                     v₁ and v₂ eliminated; alike: η = G/(2 c_s)                   (2)
+//! ```
+//! A side that slips away with v₁ sends off a wave that changes the traction by Z₁ v₁; both sides see the same traction, so
+//! that the slip rate is shared between them as between dashpots in series. A rigid master takes no share: η = Z of the slave.
+//!
+//! Source: Rice (1993), J. Geophys. Res. 98, 9885.
+//!
+//! # Penalties
+//!
+//! Default penalties: stiff beside the elements that they hold, soft enough to be solved with.
+//!
+//! ```text
+//! α_n = 10 (λ + 2G)/h,   α_t = α_n/2                                                             (1)
+//! ```
+//! λ + 2G is that of the softer side, which is the one that the penalty must not give way beside, h the depth of the element
+//! behind the slave's edge; (λ + 2G)/h is the mean over the slave's edges.
+//!
+//! # What points do not tell
+//!
+//! What the points of a contact do not tell of themselves: nodes that no point stands for, and how stiff the bodies are.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
-use super::contact::{Contact, MasterSide};
-use super::error::{Checked, ModelError};
+use super::contact::{Contact, MasterSide, Radiation};
+use super::error::{Checked, ModelError, check_size};
 use super::groups::{edges, group, node_lists};
-use super::limits::check_size;
-use super::penalty::{Penalty, depth_behind, penalty};
-use super::radiation::radiation;
-use super::unseen::{modulus, unseen};
-use super::{fluid, initial, rigid};
-use crate::contact::master::Master;
+use super::{contact, initial};
+use crate::contact::master::{Master, Rigid};
 use crate::contact::mortar::{Mortar, mortar_points};
 use crate::contact::pair::{ContactPair, Reverse};
 use crate::contact::surface::{
     SlavePoint, Surface, gauss_points, in_order, lone_point, nodal_points, nodal_points_of_rings,
 };
+use crate::laws::bulk::Material;
 use crate::laws::friction::Offsets;
 use crate::mesh::section::Section;
 use crate::mesh::{Edge, Group, Mesh};
@@ -54,7 +78,7 @@ fn pair(contact: &Contact, model: &Model) -> Checked<ContactPair> {
         compliance,
         penetration: contact.penetration,
         radiation: radiation(&place, contact, model)?,
-        fluid: fluid::fluid(&place, contact)?,
+        fluid: contact::fluid(&place, contact)?,
         laws,
         initial: None,
         unseen: Vec::new(),
@@ -71,7 +95,7 @@ fn pair(contact: &Contact, model: &Model) -> Checked<ContactPair> {
         }
         pair.slide_little(&model.mesh.undeformed());
     }
-    fluid::check(&pair, &place, model)?;
+    contact::check_fluid(&pair, &place, model)?;
     start(&mut pair, contact, model, &place)?;
     Ok(pair)
 }
@@ -226,7 +250,7 @@ fn master(place: &str, contact: &Contact, points: &[SlavePoint], model: &Model) 
         if contact.smooth {
             return refused("is for a master of mesh edges, and a rigid body needs none: leave it out");
         }
-        return rigid::rigid(&contact.master, &format!("{place}.master")).map(Master::Rigid);
+        return contact::rigid(&contact.master, &format!("{place}.master")).map(Master::Rigid);
     };
     let master = edges(mesh, group, &format!("{place}.master"))?;
     let mut surface = Surface::new(&node_lists(master));
@@ -272,4 +296,171 @@ fn check_disjoint(
         tags.join(" and ")
     );
     Err(ModelError::new(place, message))
+}
+
+/// η of a contact, 0 for none.
+pub fn radiation(place: &str, contact: &Contact, model: &Model) -> Checked<f64> {
+    let at = format!("{place}.radiation_damping");
+    let damping = match contact.radiation {
+        None => return Ok(0.0),
+        Some(Radiation::Given(damping)) => damping,
+        Some(Radiation::OfBodies) => of_bodies(place, &at, contact, model)?,
+    };
+    if !(damping > 0.0 && damping.is_finite()) {
+        return Err(ModelError::new(at, format!("is {damping}: must be positive (leave it out for none)")));
+    }
+    check_size(place, "radiation_damping", damping)?;
+    Ok(damping)
+}
+
+/// η of (2); on each side the mean over its edges.
+fn of_bodies(place: &str, at: &str, contact: &Contact, model: &Model) -> Checked<f64> {
+    if contact.area.is_some() {
+        let message = "has no default for a slave group of points, behind which there is no body: give a number";
+        return Err(ModelError::new(at, message));
+    }
+    let impedance = |edge: &Edge| {
+        let body = &model.bodies[model.body_of_element[edge.element]];
+        let (density, modulus) = (body.material.density(), body.material.shear_modulus());
+        if density > 0.0 {
+            return Ok((density * modulus).sqrt());
+        }
+        let message =
+            format!("needs the density of body `{}`, which is {density}: give it, or a number here", body.name);
+        Err(ModelError::new(at, message))
+    };
+    let side = |name: &str, key: &str| -> Checked<f64> {
+        let edges = edges(&model.mesh, name, &format!("{place}.{key}"))?;
+        let all = edges.iter().map(impedance).collect::<Checked<Vec<f64>>>()?;
+        Ok(all.iter().sum::<f64>() / all.len() as f64)
+    };
+    let slave = side(&contact.slave, "slave")?;
+    let MasterSide::Group(master) = &contact.master else { return Ok(slave) };
+    let master = side(master, "master")?;
+    Ok(slave * master / (slave + master))
+}
+
+/// α_n over (λ + 2G)/h [-]
+const NORMAL: f64 = 10.0;
+
+/// α_t over α_n [-]
+const TANGENTIAL: f64 = 0.5;
+
+/// Stiffnesses of a contact.
+pub struct Penalty {
+    /// α_n [F/L³]
+    pub alpha_n: f64,
+    /// α_t of a law that has none of its own; none for a slave group of points [F/L³]
+    pub alpha_t: Option<f64>,
+    /// h/(λ + 2G): how far a pressure pushes the bodies in; 0 where no elements are behind the slave [L³/F]
+    pub compliance: f64,
+}
+
+/// The penalties of a contact, those given checked.
+pub fn penalty(place: &str, contact: &Contact, model: &Model) -> Checked<Penalty> {
+    let elastic = elastic_stiffness(place, contact, model)?;
+    let at = format!("{place}.normal.alpha_n");
+    let alpha_n = match (contact.alpha_n, elastic) {
+        (Some(alpha_n), _) => alpha_n,
+        (None, Some(elastic)) => NORMAL * elastic,
+        (None, None) => {
+            let message =
+                format!("is missing: there are no elements behind the points of `{}` to choose it by", contact.slave);
+            return Err(ModelError::new(at, message));
+        }
+    };
+    if alpha_n <= 0.0 {
+        let message = format!("is {alpha_n}: must be positive (leave it out for 10 (λ + 2G)/h)");
+        return Err(ModelError::new(at, message));
+    }
+    check_size(&format!("{place}.normal"), "alpha_n", alpha_n)?;
+    let alpha_t = contact.area.is_none().then_some(TANGENTIAL * alpha_n);
+    Ok(Penalty { alpha_n, alpha_t, compliance: elastic.map_or(0.0, |elastic| 1.0 / elastic) })
+}
+
+/// (λ + 2G)/h of (1); none where the slave has no edges [F/L³].
+fn elastic_stiffness(place: &str, contact: &Contact, model: &Model) -> Checked<Option<f64>> {
+    if contact.area.is_some() {
+        return Ok(None);
+    }
+    let slave = edges(&model.mesh, &contact.slave, &format!("{place}.slave"))?;
+    let modulus = |edge: &Edge| model.bodies[model.body_of_element[edge.element]].material.p_wave_modulus();
+    let master = match &contact.master {
+        MasterSide::Group(group) => edges(&model.mesh, group, &format!("{place}.master"))?,
+        _ => &[],
+    };
+    let softest = master.iter().map(modulus).fold(f64::INFINITY, f64::min);
+    let stiffness = |edge: &Edge| modulus(edge).min(softest) / depth_behind(edge, model);
+    Ok(Some(slave.iter().map(stiffness).sum::<f64>() / slave.len() as f64))
+}
+
+/// Depth of the element behind an edge [L].
+pub fn depth_behind(edge: &Edge, model: &Model) -> f64 {
+    let [a, b] = [0, 1].map(|end| model.mesh.nodes[edge.nodes[end]]);
+    model.solids[edge.element].area() / (b - a).norm()
+}
+
+/// Find nodes of the surface of the slave's bodies that are not on the slave and outside a rigid master at the start: inside,
+/// they would not be seen.
+pub fn unseen(contacts: &[Contact], pairs: &mut [ContactPair], model: &Model) {
+    // Many contacts may be of the same bodies.
+    let mut surfaces: BTreeMap<BTreeSet<usize>, BTreeSet<usize>> = BTreeMap::new();
+    for (contact, pair) in contacts.iter().zip(pairs) {
+        let (Master::Rigid(rigid), Ok(Group::Edges(slave))) = (&pair.master, model.mesh.group(&contact.slave)) else {
+            continue;
+        };
+        let bodies: BTreeSet<usize> = slave.iter().map(|edge| model.body_of_element[edge.element]).collect();
+        let seen: BTreeSet<usize> = slave.iter().flat_map(|edge| &edge.nodes).copied().collect();
+        let surface = surfaces.entry(bodies).or_insert_with_key(|bodies| surface_nodes(model, bodies));
+        let others = surface.iter().filter(|node| !seen.contains(node)).map(|&node| lone_point(node, 0.0));
+        pair.unseen = others.filter(|point| is_outside(rigid, point, &model.mesh)).collect();
+    }
+}
+
+fn is_outside(rigid: &Rigid, point: &SlavePoint, mesh: &Mesh) -> bool {
+    rigid.project(point, &mesh.undeformed()).is_none_or(|projection| projection.gap > 0.0)
+}
+
+/// Nodes on sides that belong to one element only.
+fn surface_nodes(model: &Model, bodies: &BTreeSet<usize>) -> BTreeSet<usize> {
+    let mut sides: BTreeMap<[usize; 2], Option<Vec<usize>>> = BTreeMap::new();
+    for (element, body) in model.mesh.elements.iter().zip(&model.body_of_element) {
+        if !bodies.contains(body) {
+            continue;
+        }
+        for side in 0..element.kind.corners() {
+            let (corners, middle) = element.kind.edge(side);
+            let nodes: Vec<usize> = corners.into_iter().chain(middle).map(|local| element.nodes[local]).collect();
+            let ends = [nodes[0].min(nodes[1]), nodes[0].max(nodes[1])];
+            sides.entry(ends).and_modify(|known| *known = None).or_insert(Some(nodes));
+        }
+    }
+    sides.into_values().flatten().flatten().collect()
+}
+
+/// G*: what slip that varies along the interface is resisted with, 0 for points without bodies [F/L²]
+///
+/// ```text
+/// 1/G* = ½ (1/G₁* + 1/G₂*),   Gᵢ* = Gᵢ/(1 − νᵢ),   a rigid master has 1/G₂* = 0
+/// ```
+pub fn modulus(contact: &Contact, model: &Model) -> f64 {
+    let compliance = |name: &str| match model.mesh.group(name) {
+        Ok(Group::Edges(edges)) => {
+            let of = |element: usize| 1.0 / plane(&*model.bodies[model.body_of_element[element]].material);
+            edges.iter().map(|edge| of(edge.element)).reduce(f64::max)
+        }
+        _ => None,
+    };
+    let Some(slave) = compliance(&contact.slave) else { return 0.0 };
+    let master = match &contact.master {
+        MasterSide::Group(group) => compliance(group).unwrap_or(0.0),
+        _ => 0.0,
+    };
+    2.0 / (slave + master)
+}
+
+/// G/(1 − ν) = 2 G (M − G)/M,   M = λ + 2 G
+fn plane(material: &dyn Material) -> f64 {
+    let (shear, constrained) = (material.shear_modulus(), material.p_wave_modulus());
+    2.0 * shear * (constrained - shear) / constrained
 }

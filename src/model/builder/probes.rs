@@ -4,12 +4,11 @@ use std::collections::BTreeSet;
 
 use nalgebra::{Matrix2, Vector2};
 
+use super::error;
 use super::error::{Checked, ModelError};
-use super::names;
 use crate::mesh::boxes::{Box2, Tree};
 use crate::mesh::shape::ElementKind;
-use crate::model::Model;
-use crate::model::probe::Probe;
+use crate::model::{Model, Probe};
 
 /// A point, or points along a line, at which motion, strain and stress are asked for; places are undeformed ones.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,7 +89,7 @@ pub fn probes(gauges: &[Gauge], model: &Model) -> Checked<Vec<Probe>> {
     let reaches = Tree::new((0..model.solids.len()).map(|element| reach(model, element)));
     for gauge in gauges {
         let place = format!("probes.{}", gauge.name);
-        names::check_name(&place, &gauge.name)?;
+        error::check_name(&place, &gauge.name)?;
         let body = body(gauge, model)?;
         for (name, at) in gauge.points()? {
             if !taken.insert(name.clone()) {

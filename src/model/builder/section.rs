@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::error::{Checked, ModelError};
-use super::limits::check_size;
+use super::error::{Checked, ModelError, check_size};
 use crate::laws::bulk::Material;
 use crate::mesh::Mesh;
 use crate::mesh::section::Section;

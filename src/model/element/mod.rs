@@ -2,17 +2,31 @@
 //!
 //! Degrees of freedom of an element are ordered by node: component i of node a is 2a + i. Integrals are
 //! weighted as the [`Section`](crate::mesh::section::Section) says.
+//!
+//! # Mass
+//!
+//! Mass of one element, per direction: component i of node a and component j of node b share M_ab δ_ij.
+//!
+//! # Follower pressure
+//!
+//! Pressure on an edge that follows the surface.
+//!
+//! ```text
+//! f_a = p ∫ N_a w n̂ |x'| dξ,   n̂ |x'| = (x'_y, −x'_x) out of the body (on the left of the edge)
+//! ```
+//!
+//! as internal force: the load −p n̂ w da moved to the left-hand side, w being the weight of the section at x.
 
-use nalgebra::{Matrix2, Vector2};
-use thiserror::Error;
-
-use crate::mesh::shape::ElementKind;
-
-mod mass;
-pub mod pressure;
 mod solid;
 
-pub use mass::{consistent_mass, lumped_mass, redistributed};
+use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+use thiserror::Error;
+
+use crate::linear::system::Contribution;
+use crate::mesh::configuration::Configuration;
+use crate::mesh::section::Section;
+use crate::mesh::shape;
+use crate::mesh::shape::ElementKind;
 pub use solid::{Memory, SolidElement};
 
 /// An element that cannot be built on its nodes.
@@ -52,4 +66,111 @@ fn gradients(
         Some(inverse) if jacobian > 0.0 => Ok((derivatives.iter().map(|d| inverse * d).collect(), jacobian)),
         _ => Err(ElementError::Degenerate { jacobian }),
     }
+}
+
+/// Consistent mass, n × n.
+///
+/// ```text
+/// M_ab = ∫ ρ₀ N_a N_b dV
+/// ```
+///
+/// # Errors
+/// [`ElementError::Degenerate`] when the element has no positive area at a quadrature point.
+pub fn consistent_mass(
+    kind: ElementKind,
+    section: Section,
+    positions: &[Vector2<f64>],
+    density: f64,
+) -> Result<DMatrix<f64>, ElementError> {
+    let mut mass = DMatrix::zeros(kind.nodes(), kind.nodes());
+    for point in kind.mass_quadrature() {
+        let (_, jacobian) = gradients(kind, point.at, positions)?;
+        let values = DVector::from_vec(kind.values(point.at));
+        let place = positions.iter().zip(values.iter()).map(|(x, n)| x * *n).sum();
+        mass.ger(density * point.weight * jacobian * section.weight(place), &values, &values, 1.0);
+    }
+    Ok(mass)
+}
+
+/// Lumped mass of each node; all positive, and their sum is the mass of the element.
+///
+/// ```text
+/// m_a = Σ_b M_ab                              linear elements: row sums                       (1)
+/// m_a = M_aa (Σ_bc M_bc) / (Σ_b M_bb)         quadratic elements: scaled diagonal             (2)
+/// ```
+///
+/// The row sums of quadratic elements are zero or negative at the corners, hence (2).
+///
+/// # Errors
+/// As [`consistent_mass`].
+///
+/// Source: Hinton, Rock & Zienkiewicz (1976), Earthq. Engng Struct. Dyn. 4, 245, doi:10.1002/eqe.4290040305.
+pub fn lumped_mass(
+    kind: ElementKind,
+    section: Section,
+    positions: &[Vector2<f64>],
+    density: f64,
+) -> Result<DVector<f64>, ElementError> {
+    let mass = consistent_mass(kind, section, positions, 1.0)?;
+    let linear = kind.nodes() == kind.corners();
+    let volumes = if linear { mass.column_sum() } else { mass.diagonal() * (mass.sum() / mass.trace()) };
+    Ok(density * volumes)
+}
+
+/// An element's mass without any at the nodes that are `massless`: in its kinetic energy they move with the mean of the
+/// others.
+///
+/// ```text
+/// M̃ = Tᵀ M T,   (T v)_a = v_a, or the mean of all v_b that have mass if a is massless
+/// ```
+///
+/// The mass as a whole and the momentum stay. A surface without inertia follows the contact at once, as in statics; with
+/// inertia its nodes bounce on the penalty stiffness faster than increments resolve, and schemes without damping then create
+/// energy. An element all of whose nodes are massless keeps its mass.
+///
+/// Source: Khenous, Laborde & Renard (2008), Eur. J. Mech. A 27, 918; Hager, Hüeber & Wohlmuth (2008), Int. J. Numer. Meth.
+/// Eng. 73, 205 (mass kept in the strip of elements).
+pub fn redistributed(mass: DMatrix<f64>, massless: impl Fn(usize) -> bool) -> DMatrix<f64> {
+    let n = mass.nrows();
+    let heavy: Vec<usize> = (0..n).filter(|&node| !massless(node)).collect();
+    if heavy.len() == n || heavy.is_empty() {
+        return mass;
+    }
+    let mut motion = DMatrix::zeros(n, n);
+    for node in 0..n {
+        match massless(node) {
+            true => heavy.iter().for_each(|&other| motion[(node, other)] = 1.0 / heavy.len() as f64),
+            false => motion[(node, node)] = 1.0,
+        }
+    }
+    motion.transpose() * mass * motion
+}
+
+/// Internal force and tangent of pressure `p` (positive toward the body) on one edge at the nodal positions `x`.
+pub fn follower_pressure(edge: &[usize], p: f64, x: &Configuration) -> Contribution {
+    let mut result = Contribution::zero(edge.to_vec());
+    for (xi, weight) in shape::gauss(edge.len()) {
+        let values = shape::edge_values(edge.len(), xi);
+        let slopes = shape::edge_derivatives(edge.len(), xi);
+        let along = x.combine(&edge.iter().copied().zip(slopes.iter().copied()).collect::<Vec<_>>());
+        let place: Vec<(usize, f64)> = edge.iter().copied().zip(values.iter().copied()).collect();
+        let (depth, slope) = (x.weight(&place), x.weight_slope(&place));
+        for (a, n) in values.iter().enumerate() {
+            let factor = p * n * weight * depth;
+            result.force[2 * a] += factor * along.y;
+            result.force[2 * a + 1] -= factor * along.x;
+            for (b, d) in slopes.iter().enumerate() {
+                result.tangent[(2 * a, 2 * b + 1)] += factor * d;
+                result.tangent[(2 * a + 1, 2 * b)] -= factor * d;
+            }
+            for (b, (m, slope)) in values.iter().zip(slope.iter().cycle()).enumerate() {
+                for (j, rate) in slope.iter().enumerate() {
+                    let varied = p * n * weight * m * rate;
+                    result.tangent[(2 * a, 2 * b + j)] += varied * along.y;
+                    result.tangent[(2 * a + 1, 2 * b + j)] -= varied * along.x;
+                }
+            }
+        }
+    }
+    result
 }

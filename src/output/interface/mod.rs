@@ -14,7 +14,6 @@
 //!
 //! Times and places are as computed; what varies over time is rounded, with a relative error of 2⁻¹⁶ ([`codec`]).
 
-mod array;
 pub mod codec;
 mod quantities;
 pub mod read;
@@ -25,11 +24,10 @@ use std::path::Path;
 
 use serde_json::{Map, json};
 
-pub use self::array::{files_of, forget, is_own};
 use self::quantities::{QUANTITIES, SLIP, SLIP_RATE, along, prefixes, quantity, time};
 use self::zarr::Store;
-use super::memory;
-use super::rows::{Row, Rows};
+use super::csv;
+use super::csv::{Row, Rows};
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
@@ -38,6 +36,7 @@ use crate::model::Model;
 use crate::model::state::State;
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};
+pub use zarr::{files_of, forget, is_own};
 
 /// Folder of the store in that of the results.
 pub const STORE: &str = "interface.zarr";
@@ -164,16 +163,16 @@ impl Observer for InterfaceStore {
     }
 
     fn save(&mut self) -> Result<Vec<u8>, Error> {
-        memory::written(&(self.store.save()?, &self.rows, &self.held, &self.last))
+        csv::remembered(&(self.store.save()?, &self.rows, &self.held, &self.last))
     }
 
     fn check(&self, memory: &[u8]) -> Result<(), Error> {
-        self.store.check(&memory::read(memory)?)
+        self.store.check(&csv::recalled(memory)?)
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
         let saved;
-        (saved, self.rows, self.held, self.last) = memory::read(memory)?;
+        (saved, self.rows, self.held, self.last) = csv::recalled(memory)?;
         self.store.restore(&self.places, saved)
     }
 

@@ -4,11 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Map, Value, json};
 
-use super::array::Description;
 use super::codec::{Number, RELATIVE_ERROR};
+use super::zarr::Description;
 use crate::contact::pair::ContactPair;
 use crate::model::Model;
-use crate::output::passages::{Interface, Point};
+use crate::output::events::{Interface, Point};
 
 /// Quantities of every contact: name, CF-like long name, units as powers of length, force and time.
 pub const QUANTITIES: [(&str, &str, Option<Unit>); 9] = [

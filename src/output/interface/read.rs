@@ -11,8 +11,8 @@ use serde_json::Value;
 use thiserror::Error;
 
 use super::STORE;
-use super::array::{ARRAY, ATTRIBUTES, METADATA};
 use super::codec::{Number, unpacked, unshuffled};
+use super::zarr::{ARRAY, ATTRIBUTES, METADATA};
 
 /// What one contact did.
 #[derive(Clone, Debug, Default, PartialEq)]

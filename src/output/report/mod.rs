@@ -1,27 +1,25 @@
 //! One page to look at results in a browser, without a network and without another program.
 //!
-//! The numbers of the folders are packed into the page ([`pack`]), and unpacked and drawn there by what stands in `page/`.
+//! The numbers of the folders are packed into the page ([`table`]), and unpacked and drawn there by what stands in `page/`.
 //! Where there are too many, some are left out; the page says which. Faults in a folder are told on the page and hide no more
 //! than they must.
 
-mod maps;
 mod newton;
-pub mod pack;
 mod run;
 mod series;
 mod source;
-mod table;
+pub mod table;
 
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use self::pack::Pack;
 use self::run::Run;
 pub use self::source::ReportError;
 use self::source::sources;
 use super::csv::failed;
 use super::files;
+use table::Pack;
 
 /// Name of the page in a folder of results.
 pub const FILE: &str = "report.html";

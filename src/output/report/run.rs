@@ -2,14 +2,12 @@
 
 use serde_json::{Value, json};
 
-use super::maps::map;
 use super::newton::{HARDEST, attempts, increments, residuals, solves};
-use super::pack::Pack;
-use super::series::Series;
+use super::series::{Series, map};
 use super::source::{ReportError, Source};
-use super::table::{Column, Columns, read, sheet};
+use super::table::{Column, Columns, Pack, read, sheet};
 use crate::laws::friction::FrictionParameters;
-use crate::output::lock;
+use crate::output::files;
 use crate::output::results::InterfaceMap;
 
 /// Rows of a table at most.
@@ -59,7 +57,7 @@ impl<'a> Run<'a> {
             "name": self.source.name,
             "folder": self.source.folder.display().to_string(),
             "summary": summary,
-            "at_work": lock::at_work(&self.source.folder),
+            "at_work": files::at_work(&self.source.folder),
             "units": about.units,
             "bounds": bounds.collect::<serde_json::Map<String, Value>>(),
             "history": history,

@@ -23,12 +23,8 @@
 //! Source: Irons & Treharne (1971), Proc. 3rd Conf. Matrix Methods in Struct. Mech., WPAFB; Belytschko, Liu, Moran &
 //! Elkhodary (2014), Nonlinear Finite Elements for Continua and Structures, §6.2.
 
-mod alike;
-mod element;
-mod memory;
 mod motion;
 mod plates;
-mod rigid;
 mod stability;
 
 use std::sync::Arc;
@@ -37,16 +33,16 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use super::accept::take_stock;
-use crate::equations::dampers::{self, NodeDamper};
-use crate::equations::failure::TrialFailure;
+use crate::equations::damping::{self, NodeDamper};
+use crate::equations::sums::TrialFailure;
 use crate::equations::{Assembler, Trial};
 use crate::model::state::State;
 use crate::model::support::Prescribed;
 use crate::model::{Model, Step};
 use crate::solve::failure::IncrementFailure;
-pub use memory::ExplicitMemory;
 use motion::masses;
 use plates::Plates;
+pub use stability::ExplicitMemory;
 use stability::Stability;
 
 /// Share of its size that no element changes by more than in an increment: what strikes it is stopped by its stiffness
@@ -146,7 +142,7 @@ impl Explicit {
             step: step.clone(),
             plates: Plates::new(model, step, &mass),
             mass,
-            dampers: dampers::by_node(model, step),
+            dampers: damping::by_node(model, step),
             pulls: Vec::new(),
             mean_velocity: vec![0.0; if model.is_viscous(step) { model.dofs() } else { 0 }],
             stability,

@@ -4,8 +4,8 @@ use nalgebra::Matrix2;
 use rayon::prelude::*;
 
 use super::{CHUNK, Explicit};
-use crate::equations::dampers::{self, NodeDamper};
-use crate::equations::failure::TrialFailure;
+use crate::equations::damping::{self, NodeDamper};
+use crate::equations::sums::TrialFailure;
 use crate::equations::{Assembler, Evaluation, Trial};
 use crate::model::scheme::{start_acceleration, supported_rates};
 use crate::model::state::State;
@@ -167,7 +167,7 @@ impl Explicit {
     /// (8) for dofs with dashpots, of which [`Explicit::accelerate`] knows nothing: (M + ½ Δt C) (a − a_free) = C (v_driver
     /// − v_free) with what it found.
     fn damp(&mut self, time: f64, dt: f64, state: &mut State) {
-        dampers::pull(&self.model, &self.step, &self.dampers, time, &state.velocity, &mut self.pulls);
+        damping::pull(&self.model, &self.step, &self.dampers, time, &state.velocity, &mut self.pulls);
         let alone = self.dampers.iter().zip(&self.pulls).filter(|(damper, _)| !self.plates.has(damper.node));
         for (NodeDamper { node, coefficients }, pull) in alone {
             let inertia = Matrix2::identity() * self.mass[*node] + coefficients * (0.5 * dt);
@@ -184,7 +184,7 @@ impl Explicit {
 
     /// Subtract the forces of the dampers at a velocity from what was found, and count them as damping.
     pub(super) fn add_pulls(&mut self, time: f64, velocity: &[f64], found: &mut Evaluation) {
-        dampers::pull(&self.model, &self.step, &self.dampers, time, velocity, &mut self.pulls);
+        damping::pull(&self.model, &self.step, &self.dampers, time, velocity, &mut self.pulls);
         for (damper, pull) in self.dampers.iter().zip(&self.pulls) {
             for i in 0..2 {
                 found.force[2 * damper.node + i] -= pull[i];

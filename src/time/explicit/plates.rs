@@ -5,11 +5,22 @@
 //! ```
 //!
 //! The masses of a plate are no smaller than those of its nodes by themselves: the bound of the increment holds.
+//!
+//! # Rigid plates
+//!
+//! A rigid plate in explicit increments.
+//!
+//! ```text
+//! [m 1, m J c; (m J c)ᵀ, J_R] [a_R; θ̈] = [−F + ω² m c; −M_R]       c = x_C − x_R,   J_R = Σ m_c |x_c − x_R|²
+//! ```
+//!
+//! R is the center of mass C, or the node A if a support holds it, whose equations are then the support's. (7) and (8) of
+//! [`crate::model::scheme`] hold for x_R and the angle, so that the plate is turned and not stretched.
 
-use nalgebra::Vector2;
+use nalgebra::{Matrix2, Matrix2x3, Matrix3, Rotation2, RowVector3, Vector2, Vector3};
 
-use super::rigid::Rigid;
-use crate::equations::dampers::NodeDamper;
+use crate::equations::damping::NodeDamper;
+use crate::equations::links::{give, perpendicular, relative};
 use crate::model::state::State;
 use crate::model::support::Direction;
 use crate::model::{Model, Step};
@@ -161,5 +172,173 @@ impl Alike {
     /// Whether a component of a node is its.
     fn leads(&self, node: usize, component: usize) -> bool {
         component == self.component && self.nodes.binary_search(&node).is_ok()
+    }
+}
+
+/// A rigid plate.
+#[derive(Clone)]
+struct Rigid {
+    /// A and B
+    pub leaders: [usize; 2],
+    /// e at rest [L]
+    arm: Vector2<f64>,
+    /// Its nodes and their G − G_R
+    nodes: Vec<(usize, Matrix2<f64>)>,
+    /// G_R
+    reference: Matrix2<f64>,
+    /// Supports that hold A, and their numbers
+    held: Vec<(usize, Direction)>,
+    /// m [M]
+    mass: f64,
+    /// c = shift e
+    shift: Matrix2<f64>,
+    /// J_R [M L²]
+    inertia: f64,
+    /// v_R and ω, a_R and θ̈
+    rates: [Vector3<f64>; 2],
+}
+
+impl Rigid {
+    /// The plate of a model in a step, with the lumped mass of every node.
+    pub fn new(model: &Model, step: &Step, mass: &[f64], [a, b]: [usize; 2]) -> Self {
+        let own = model.linkage.turning().filter(|follower| follower.leaders[0].0 == a);
+        let followers = own.map(|follower| (follower.node, follower.leaders[1].1));
+        let mut nodes: Vec<(usize, Matrix2<f64>)> =
+            followers.chain([(a, Matrix2::zeros()), (b, Matrix2::identity())]).collect();
+        let supports = step.supports.iter().map(|support| support.at).enumerate();
+        let held: Vec<(usize, Direction)> = supports.filter(|(_, at)| at.node() == a).collect();
+        let total: f64 = nodes.iter().map(|(node, _)| mass[*node]).sum();
+        let center = nodes.iter().fold(Matrix2::zeros(), |sum, (node, share)| sum + share * mass[*node]) / total;
+        let reference = if held.is_empty() { center } else { Matrix2::zeros() };
+        let arm = model.mesh.nodes[b] - model.mesh.nodes[a];
+        nodes.iter_mut().for_each(|(_, share)| *share -= reference);
+        let inertia = nodes.iter().map(|(node, share)| mass[*node] * (share * arm).norm_squared()).sum();
+        let (shift, rates) = (center - reference, [Vector3::zeros(); 2]);
+        Self { leaders: [a, b], arm, nodes, reference, held, mass: total, shift, inertia, rates }
+    }
+
+    /// (7): where it is turned to in `dt`; R is where it goes already.
+    pub fn turn(&self, dt: f64, state: &State, u: &mut [f64]) {
+        let e = self.arm + relative(self.leaders, &state.displacement);
+        let [spin, angular] = self.turning(e, state);
+        let turned = Rotation2::new(dt * (spin + 0.5 * dt * angular)) * e;
+        let turned = turned * (self.arm.norm() / turned.norm());
+        give(self.leaders, self.reference, turned - self.arm, u);
+    }
+
+    /// The first half of (8).
+    pub fn begin(&mut self, dt: f64, state: &State) {
+        let e = self.arm + relative(self.leaders, &state.displacement);
+        let [v, a] = self.known(e, state);
+        self.rates = [v + a * (0.5 * dt), a];
+    }
+
+    /// Give A the rates found.
+    pub fn tell(&self, u: &[f64], state: &mut State) {
+        let values = [&mut state.velocity, &mut state.acceleration];
+        for ((rates, along), values) in self.rates.iter().zip(self.relative(u)).zip(values) {
+            let first = rates.xy() - self.reference * along;
+            (0..2).for_each(|i| values[2 * self.leaders[0] + i] = first[i]);
+        }
+    }
+
+    /// Give B the rates found, as A has its own.
+    pub fn spread(&self, u: &[f64], state: &mut State) {
+        let [a, b] = self.leaders;
+        for (values, along) in [&mut state.velocity, &mut state.acceleration].into_iter().zip(self.relative(u)) {
+            (0..2).for_each(|i| values[2 * b + i] = values[2 * a + i] + along[i]);
+        }
+    }
+
+    /// F + m a_C along a direction.
+    pub fn reaction(&self, at: Direction, force: &[f64], acceleration: &[f64]) -> f64 {
+        let [a, b] = self.leaders;
+        let of = |values: &[f64], node: usize| Vector2::new(values[2 * node], values[2 * node + 1]);
+        let center = of(acceleration, a) + (self.shift + self.reference) * relative([a, b], acceleration);
+        at.vector().dot(&(of(force, a) + of(force, b) + center * self.mass))
+    }
+
+    /// What ½ v₋ᵀ M v₊ counts too little, node by node [F·L].
+    pub fn turning_energy(&self, state: &State, dt: f64) -> f64 {
+        let e = self.arm + relative(self.leaders, &state.displacement);
+        0.125 * dt * dt * self.inertia * self.turning(e, state)[0].powi(4)
+    }
+
+    /// ω and θ̈ of a state.
+    fn turning(&self, e: Vector2<f64>, state: &State) -> [f64; 2] {
+        [&state.velocity, &state.acceleration].map(|values| e.perp(&relative(self.leaders, values)) / e.norm_squared())
+    }
+
+    /// v_R and ω, a_R and θ̈ of a state.
+    fn known(&self, e: Vector2<f64>, state: &State) -> [Vector3<f64>; 2] {
+        let turning = self.turning(e, state);
+        let a = self.leaders[0];
+        let of = |values: &[f64], turning: f64| {
+            let middle =
+                Vector2::new(values[2 * a], values[2 * a + 1]) + self.reference * relative(self.leaders, values);
+            Vector3::new(middle.x, middle.y, turning)
+        };
+        [of(&state.velocity, turning[0]), of(&state.acceleration, turning[1])]
+    }
+
+    /// Velocity and acceleration of B against A.
+    fn relative(&self, u: &[f64]) -> [Vector2<f64>; 2] {
+        let e = self.arm + relative(self.leaders, u);
+        let [spin, angular] = [self.rates[0].z, self.rates[1].z];
+        [perpendicular(e) * spin, perpendicular(e) * angular - e * (spin * spin)]
+    }
+
+    /// The rest of (8) at the displacement `u` under the gathered forces, where supports accelerate as told.
+    pub fn accelerate(&mut self, dt: f64, (u, force): (&[f64], &[f64]), supported: &impl Fn(usize) -> f64) {
+        let [a, b] = self.leaders;
+        let e = self.arm + relative(self.leaders, u);
+        let of = |node: usize| Vector2::new(force[2 * node], force[2 * node + 1]);
+        let total = of(a) + of(b);
+        let moment = e.perp(&of(b)) - (self.reference * e).perp(&total);
+        let spin = self.rates[0].z + 0.5 * dt * self.rates[1].z;
+        let pulled = self.shift * e * (spin * spin * self.mass) - total;
+        let found = self.solve(e, Matrix3::zeros(), Vector3::new(pulled.x, pulled.y, -moment), supported);
+        self.rates = [self.rates[0] + found * (0.5 * dt), found];
+    }
+
+    /// (8) for its dampers.
+    pub fn damp(&mut self, dt: f64, (dampers, pulls): (&[NodeDamper], &[Vector2<f64>]), u: &[f64]) {
+        let e = self.arm + relative(self.leaders, u);
+        let (mut resisting, mut pulled) = (Matrix3::zeros(), Vector3::zeros());
+        for (node, share) in &self.nodes {
+            let Ok(k) = dampers.binary_search_by_key(node, |damper| damper.node) else { continue };
+            let turned = perpendicular(share * e);
+            let motion = Matrix2x3::new(1.0, 0.0, turned.x, 0.0, 1.0, turned.y);
+            resisting += motion.transpose() * dampers[k].coefficients * motion;
+            pulled += motion.transpose() * pulls[k];
+        }
+        let found = self.solve(e, resisting * (0.5 * dt), pulled, &|_| 0.0);
+        self.rates = [self.rates[0] + found * (0.5 * dt), self.rates[1] + found];
+    }
+
+    /// a_R and θ̈ from forces and moment, with what resists them besides the masses; where A is held, they are as told.
+    fn solve(
+        &self,
+        e: Vector2<f64>,
+        resisting: Matrix3<f64>,
+        mut right: Vector3<f64>,
+        supported: &impl Fn(usize) -> f64,
+    ) -> Vector3<f64> {
+        let turned = perpendicular(self.shift * e) * self.mass;
+        let m = self.mass;
+        let mut matrix = Matrix3::new(m, 0.0, turned.x, 0.0, m, turned.y, turned.x, turned.y, self.inertia) + resisting;
+        for &(k, at) in &self.held {
+            let (row, d) = (at.dof % 2, at.vector());
+            if at.inclined.is_some() {
+                let across = Vector2::new(-d.y, d.x);
+                let kept = matrix.row(0) * across.x + matrix.row(1) * across.y;
+                matrix.set_row(1 - row, &kept);
+                right[1 - row] = across.dot(&right.xy());
+            }
+            matrix.set_row(row, &RowVector3::new(d.x, d.y, 0.0));
+            right[row] = supported(k);
+        }
+        // Masses are positive definite, and what resists adds to them.
+        matrix.lu().solve(&right).unwrap_or_default()
     }
 }

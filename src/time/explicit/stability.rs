@@ -4,17 +4,30 @@
 //! [`CHANGED`] of the element's size, which is its area over its diagonal. That is told before the increment in which it
 //! happens, from the displacements at its end, which are known. All elements are compared as soon as nodes may have moved
 //! so far against each other that one has changed by [`LATEST`]. What contacts add is found again when a point meets another segment.
+//!
+//! # Elements
+//!
+//! The bounds (2) of one element, of [`super`].
+//!
+//! Elements that are equal, and have the same bounds of the stable increment.
+//!
+//! # Memory
+//!
+//! What explicit increments remember that follows neither from the model nor from the state: when each element was looked at,
+//! and what was found then. A run that goes on from a file takes the same increments with it.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
-use nalgebra::Vector2;
+use nalgebra::{DMatrix, DVector, Vector2};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
-use super::alike::alike;
-use super::element::Element;
+use super::Explicit;
 use crate::contact::master::Master;
 use crate::contact::surface::SegmentWeights;
-use crate::equations::failure::TrialFailure;
+use crate::equations::sums::TrialFailure;
+use crate::model::element::Memory;
 use crate::model::state::State;
 use crate::model::{Model, Step};
 use crate::solve::failure::IncrementFailure;
@@ -35,25 +48,25 @@ const FEW: usize = 2048;
 #[derive(Clone)]
 pub(super) struct Stability {
     pub(super) model: Arc<Model>,
-    pub(super) retardation: Vec<f64>,
+    retardation: Vec<f64>,
     pub(super) elements: Vec<Element>,
     /// Nodes of the elements, `stride` places an element, filled up with the first one
-    pub(super) nodes: Vec<usize>,
+    nodes: Vec<usize>,
     /// Their displacements against the first one when the element was looked at [L]
-    pub(super) seen: Vec<Vector2<f64>>,
-    pub(super) stride: usize,
+    seen: Vec<Vector2<f64>>,
+    stride: usize,
     /// k/m of (3) at every node [1/T²]
-    pub(super) softness: Vec<f64>,
+    softness: Vec<f64>,
     /// Segment that every contact point met
-    pub(super) segments: Vec<Option<usize>>,
+    segments: Vec<Option<usize>>,
     /// Increments since contacts were looked at
-    pub(super) since: usize,
+    since: usize,
     /// Whether some elements were looked at again since
-    pub(super) relooked: bool,
+    relooked: bool,
     /// How far nodes may move against each other until an element may have changed [L]
-    pub(super) margin: f64,
+    margin: f64,
     /// Elements whose stiffness depends on a temperature
-    pub(super) heated: Vec<usize>,
+    heated: Vec<usize>,
 }
 
 impl Stability {
@@ -224,13 +237,13 @@ impl Stability {
 }
 
 /// Elements of bodies that expand when they are heated; those of a linear law are as stiff as before.
-pub(super) fn heated(model: &Model) -> Vec<usize> {
+fn heated(model: &Model) -> Vec<usize> {
     let bodies = model.bodies.iter().filter(|body| body.thermal.is_some() && !body.material.is_linear());
     bodies.flat_map(|body| body.elements.iter().copied()).collect()
 }
 
 /// The nodes of an element and as often the first one as it takes to fill `stride` places.
-pub(super) fn filled(nodes: &[usize], stride: usize) -> impl Iterator<Item = usize> {
+fn filled(nodes: &[usize], stride: usize) -> impl Iterator<Item = usize> {
     let first = nodes.iter().take(1).cycle();
     nodes.iter().chain(first).take(stride).copied()
 }
@@ -243,4 +256,172 @@ fn segments(state: &State) -> impl Iterator<Item = Option<usize>> {
 /// (4) from ω² and c [T].
 fn longest(square: f64, viscous: f64) -> f64 {
     4.0 / (viscous + (viscous * viscous + 4.0 * square).sqrt())
+}
+
+/// Share of its size to which an element may be crushed: increments would become shorter without end.
+const CRUSHED: f64 = 1e-3;
+
+/// One element, as last looked at.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+pub(super) struct Element {
+    /// λ_e and c [1/T², 1/T]
+    bounds: [f64; 2],
+    /// Area over diagonal; infinite where the law is linear, and the bounds depend on no displacement [L]
+    size: f64,
+}
+
+impl Element {
+    /// Look at an element at the displacement `u`, with what its material remembers if something is imposed on it.
+    pub(super) fn at(
+        model: &Model,
+        retardation: f64,
+        e: usize,
+        (u, memory): (&[f64], &[f64]),
+    ) -> Result<Self, TrialFailure> {
+        let nodes = &model.mesh.elements[e].nodes;
+        let body = &model.bodies[model.body_of_element[e]];
+        let local: Vec<Vector2<f64>> = nodes.iter().map(|&node| Vector2::new(u[2 * node], u[2 * node + 1])).collect();
+        let size = if body.material.is_linear() { f64::INFINITY } else { size(model, e, &local) };
+        let undeformed = size_at_rest(model, e);
+        if size < CRUSHED * undeformed {
+            return Err(TrialFailure::crushed(model, e, size / undeformed));
+        }
+        Ok(Self { bounds: bounds(model, retardation, e, (&local, memory))?, size })
+    }
+}
+
+fn size_at_rest(model: &Model, e: usize) -> f64 {
+    size(model, e, &vec![Vector2::zeros(); model.mesh.elements[e].nodes.len()])
+}
+
+/// Area of the polygon of an element's corners over its longest diagonal or side, at nodal displacements [L].
+fn size(model: &Model, e: usize, u: &[Vector2<f64>]) -> f64 {
+    let element = &model.mesh.elements[e];
+    let corners = element.kind.corners();
+    let place = |a: usize| model.mesh.nodes[element.nodes[a]] - model.mesh.nodes[element.nodes[0]] + (u[a] - u[0]);
+    let places: Vec<Vector2<f64>> = (0..corners).map(place).collect();
+    let area: f64 = (0..corners).map(|a| 0.5 * places[a].perp(&places[(a + 1) % corners])).sum();
+    let pairs = (0..corners).flat_map(|a| (0..a).map(move |b| (a, b)));
+    area.abs() / pairs.map(|(a, b)| (places[a] - places[b]).norm()).fold(f64::MIN_POSITIVE, f64::max)
+}
+
+/// λ_e and c of an element at nodal displacements and what its material remembers [1/T², 1/T].
+fn bounds(
+    model: &Model,
+    retardation: f64,
+    e: usize,
+    (local, memory): (&[Vector2<f64>], &[f64]),
+) -> Result<[f64; 2], TrialFailure> {
+    let body = &model.bodies[model.body_of_element[e]];
+    let n = 2 * local.len();
+    let (mut force, mut tangent) = (vec![0.0; n], DMatrix::zeros(n, n));
+    let (solid, law) = (&model.solids[e], &*body.material);
+    let answer = match body.is_imposed() {
+        false => solid.force_and_tangent(law, local, &mut force, tangent.as_mut_slice()).map(drop),
+        // What is imposed stiffens.
+        true => {
+            let memory = Memory { dt: 0.0, old: memory, new: &mut memory.to_vec() };
+            solid.evolve(law, memory, local, &mut force, Some(tangent.as_mut_slice())).map(drop)
+        }
+    };
+    answer.map_err(|inverted| TrialFailure::inverted(model, e, inverted))?;
+    let mass = model.element_lumped_mass(e);
+    let elastic = largest_eigenvalue(&tangent, &mass);
+    if retardation == 0.0 {
+        return Ok([elastic, 0.0]);
+    }
+    // What remains of the viscous tangent at rest is its derivative with respect to the velocities.
+    let (law, still) = ((&*body.material, retardation), vec![Vector2::zeros(); local.len()]);
+    model.solids[e].viscous_tangent(law, [local, &still], &vec![1.0; n], tangent.as_mut_slice());
+    Ok([elastic, largest_eigenvalue(&tangent, &mass)])
+}
+
+/// The bound (2) of a matrix and the lumped masses of its nodes.
+fn largest_eigenvalue(matrix: &DMatrix<f64>, mass: &DVector<f64>) -> f64 {
+    let n = matrix.nrows();
+    let scaled = DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] / (mass[i / 2] * mass[j / 2]).sqrt());
+    let largest = scaled.amax();
+    if largest == 0.0 {
+        return 0.0;
+    }
+    let square = (&scaled / largest).pow(2);
+    largest * (&square * &square).norm().powf(0.25)
+}
+
+/// The first of the elements of a linear body that have the same shape and masses as each one in every bit, and so the same
+/// bounds at any displacement; itself if its law is not linear.
+fn alike(model: &Model) -> Vec<usize> {
+    let mut seen = HashMap::new();
+    let first = |e: usize| {
+        let (body, solid) = (model.body_of_element[e], &model.solids[e]);
+        if !model.bodies[body].material.is_linear() || solid.is_f_bar() {
+            return e;
+        }
+        let mass = model.element_lumped_mass(e);
+        let (first, like) = seen.entry((body, solid.volume().to_bits())).or_insert_with(|| (e, mass.clone()));
+        if *solid == model.solids[*first] && mass == *like { *first } else { e }
+    };
+    (0..model.solids.len()).map(first).collect()
+}
+
+/// What explicit increments remember.
+#[derive(Serialize, Deserialize)]
+pub struct ExplicitMemory {
+    care: f64,
+    stable: f64,
+    elements: Vec<Element>,
+    seen: Vec<[f64; 2]>,
+    softness: Vec<f64>,
+    segments: Vec<Option<usize>>,
+    since: usize,
+    relooked: bool,
+    margin: f64,
+}
+
+impl ExplicitMemory {
+    /// Whether it is one of this model.
+    pub fn fits(&self, model: &Model) -> bool {
+        let elements = model.mesh.elements.len();
+        let points: usize = model.contacts.iter().map(|pair| pair.points.len()).sum();
+        self.elements.len() == elements
+            && self.seen.len() == elements * stride(model)
+            && self.softness.len() == model.mesh.nodes.len()
+            && self.segments.len() == points
+    }
+}
+
+impl Explicit {
+    /// What it remembers.
+    pub fn memory(&self) -> ExplicitMemory {
+        let Stability { elements, seen, softness, segments, since, relooked, margin, .. } = self.stability.clone();
+        let seen = seen.into_iter().map(Into::into).collect();
+        let (care, stable) = (self.care, self.stable);
+        ExplicitMemory { care, stable, elements, seen, softness, segments, since, relooked, margin }
+    }
+
+    /// Go on from what was remembered.
+    pub fn again(model: &Arc<Model>, step: &Arc<Step>, memory: ExplicitMemory) -> Self {
+        let ExplicitMemory { care, stable, elements, seen, softness, segments, since, relooked, margin } = memory;
+        let stride = stride(model);
+        let stability = Stability {
+            model: model.clone(),
+            retardation: model.retardations(step),
+            elements,
+            nodes: model.mesh.elements.iter().flat_map(|element| filled(&element.nodes, stride)).collect(),
+            seen: seen.into_iter().map(Vector2::from).collect(),
+            stride,
+            softness,
+            segments,
+            since,
+            relooked,
+            margin,
+            heated: heated(model),
+        };
+        Self { stable, ..Self::of(model, step, stability, care) }
+    }
+}
+
+/// Most nodes of an element.
+fn stride(model: &Model) -> usize {
+    model.mesh.elements.iter().map(|element| element.nodes.len()).max().unwrap_or(0)
 }

@@ -12,8 +12,7 @@ use rayon::prelude::*;
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
-use crate::laws::friction::RateLaw;
-use crate::laws::friction::rate_law::Loading;
+use crate::laws::friction::{Loading, RateLaw};
 
 /// Points that one thread takes at a time; their order does not matter to any sum.
 const PART: usize = 32;

@@ -8,7 +8,6 @@
 
 mod interface;
 mod steps;
-mod tableau;
 
 use std::sync::Arc;
 

@@ -1,19 +1,18 @@
 //! A solid element at large displacements: total Lagrangian, fully integrated, with F-bar for Q4.
+//!
+//! Here are F-bar, (4) to (6) of [`SolidElement`], the viscous stress of a damped body, and elements whose material remembers,
+//! or whose tangent is not symmetric; in `stress.rs` their stress and reference geometry, in `ring.rs` axisymmetry.
 
-mod f_bar;
-mod geometry;
-mod memory;
 mod ring;
 mod stress;
-mod viscous;
 
 use nalgebra::{Matrix2, Matrix4, Vector2};
 
-pub use memory::Memory;
-use ring::Hoop;
-
-use crate::laws::bulk::{InvertedElement, Material};
+use crate::laws::bulk::{
+    Evolution, InvertedElement, Material, MaterialResponse, Straining, cofactor, positive_jacobian,
+};
 use crate::mesh::shape::ElementKind;
+use ring::Hoop;
 
 /// A solid element: what its reference geometry says at the quadrature points.
 ///
@@ -243,5 +242,176 @@ fn add_blocks<const N: usize>(blocks: &[[[[f64; 2]; 2]; N]; N], tangent: &mut [f
                 }
             }
         }
+    }
+}
+
+/// The centre of an F-bar element at the current displacements.
+struct Centre<'a> {
+    gradients: &'a [Vector2<f64>],
+    jacobian: f64,
+    /// F₀⁻ᵀ
+    inverse_transpose: Matrix2<f64>,
+}
+
+impl SolidElement {
+    fn centre(&self, u: &[Vector2<f64>]) -> Result<Option<Centre<'_>>, InvertedElement> {
+        let Some(gradients) = &self.centre else { return Ok(None) };
+        let deformation = deformation_gradient(gradients, u);
+        let jacobian = positive_jacobian(&deformation)?;
+        Ok(Some(Centre { gradients, jacobian, inverse_transpose: cofactor(&deformation) / jacobian }))
+    }
+}
+
+impl Centre<'_> {
+    /// r = √(J₀/J) of (4)
+    fn stretch(&self, deformation: &Matrix2<f64>) -> Result<f64, InvertedElement> {
+        Ok((self.jacobian / positive_jacobian(deformation)?).sqrt())
+    }
+
+    /// The law at F̄, with the stress (5).
+    fn respond(
+        &self,
+        material: &dyn Material,
+        deformation: &Matrix2<f64>,
+    ) -> Result<MaterialResponse, InvertedElement> {
+        let stretch = self.stretch(deformation)?;
+        let mut response = material.respond(&(stretch * deformation))?;
+        response.stress /= stretch;
+        Ok(response)
+    }
+
+    /// Adds the second term of (6), a dyad of a nodal force and a nodal volume change.
+    fn add_tangent(
+        &self,
+        gradients: &[Vector2<f64>],
+        deformation: &Matrix2<f64>,
+        volume: f64,
+        response: &MaterialResponse,
+        tangent: &mut [f64],
+    ) {
+        let inverse_transpose = cofactor(deformation) / deformation.determinant();
+        let stress = 0.5 * volume * (contract(&response.tangent, deformation) - response.stress);
+        let columns = tangent.chunks_exact_mut(4 * gradients.len());
+        for ((columns, at_centre), here) in columns.zip(self.gradients).zip(gradients) {
+            let volume_change = self.inverse_transpose * at_centre - inverse_transpose * here;
+            for (column, change) in columns.chunks_exact_mut(2 * gradients.len()).zip(&volume_change) {
+                add_force(gradients, &(*change * stress), column);
+            }
+        }
+    }
+}
+
+/// A_iJkL F_kL
+fn contract(tangent: &Matrix4<f64>, f: &Matrix2<f64>) -> Matrix2<f64> {
+    let stress =
+        tangent.column(0) * f.m11 + tangent.column(1) * f.m21 + tangent.column(2) * f.m12 + tangent.column(3) * f.m22;
+    Matrix2::new(stress[0], stress[2], stress[1], stress[3])
+}
+
+impl SolidElement {
+    /// Forces on the nodes at displacements `u` and velocities `v` of a viscous stress of the time τ (Kelvin–Voigt), by
+    /// the element's own gradients, F-bar or not.
+    pub fn viscous_forces(
+        &self,
+        (material, tau): (&dyn Material, f64),
+        [u, v]: [&[Vector2<f64>]; 2],
+        forces: &mut [Vector2<f64>],
+    ) {
+        if self.hoop.is_some() {
+            return self.ring_viscous_forces((material, tau), [u, v], forces);
+        }
+        forces.fill(Vector2::zeros());
+        for (gradients, volume) in self.points() {
+            let (deformation, rate) = (deformation_gradient(gradients, u), rate_gradient(gradients, v));
+            let stress = tau * volume * material.viscous_stress([&deformation, &rate]);
+            forces.iter_mut().zip(gradients).for_each(|(force, gradient)| *force += stress * gradient);
+        }
+    }
+
+    /// Derivative of the viscous forces with respect to `u`, column by column, where the velocity of each dof varies
+    /// `dvelocity` times as much as its displacement.
+    pub fn viscous_tangent(
+        &self,
+        (material, tau): (&dyn Material, f64),
+        [u, v]: [&[Vector2<f64>]; 2],
+        dvelocity: &[f64],
+        tangent: &mut [f64],
+    ) {
+        if self.hoop.is_some() {
+            return self.ring_viscous_tangent((material, tau), [u, v], dvelocity, tangent);
+        }
+        tangent.fill(0.0);
+        let n = 2 * u.len();
+        for (gradients, volume) in self.points() {
+            let (deformation, rate) = (deformation_gradient(gradients, u), rate_gradient(gradients, v));
+            for (dof, (column, dvelocity)) in tangent.chunks_exact_mut(n).zip(dvelocity).enumerate() {
+                let varied = Vector2::ith(dof % 2, 1.0) * gradients[dof / 2].transpose();
+                let stress = material.viscous_variation([&deformation, &rate], [&varied, &(*dvelocity * varied)]);
+                add_force(gradients, &(tau * volume * stress), column);
+            }
+        }
+    }
+}
+
+/// Ḟ = Σ_a v_a ⊗ ∂N_a/∂X
+fn rate_gradient(gradients: &[Vector2<f64>], v: &[Vector2<f64>]) -> Matrix2<f64> {
+    v.iter().zip(gradients).fold(Matrix2::zeros(), |sum, (v, gradient)| sum + v * gradient.transpose())
+}
+
+/// What an element's material remembers over an increment: its variables at the first quadrature point, then at the second, …
+#[derive(Debug)]
+pub struct Memory<'a> {
+    /// Δt [T]
+    pub dt: f64,
+    /// Committed
+    pub old: &'a [f64],
+    /// Of the trial, written over
+    pub new: &'a mut [f64],
+}
+
+impl SolidElement {
+    /// Force (2) and, on request, tangent (3) of a material with memory, or whose tangent is not symmetric; returns the stored
+    /// energy, and what the increment dissipated.
+    ///
+    /// # Errors
+    /// [`InvertedElement`] when the material is turned inside out at a quadrature point.
+    pub fn evolve(
+        &self,
+        material: &dyn Material,
+        memory: Memory,
+        u: &[Vector2<f64>],
+        force: &mut [f64],
+        mut tangent: Option<&mut [f64]>,
+    ) -> Result<[f64; 2], InvertedElement> {
+        if self.hoop.is_some() {
+            return self.ring(material, memory, u, force, tangent);
+        }
+        let Memory { dt, old, new } = memory;
+        force.fill(0.0);
+        if let Some(tangent) = tangent.as_deref_mut() {
+            tangent.fill(0.0);
+        }
+        let (centre, count) = (self.centre(u)?, material.variables().len());
+        let [mut energy, mut dissipated] = [0.0; 2];
+        for (k, (gradients, volume)) in self.points().enumerate() {
+            let deformation = deformation_gradient(gradients, u);
+            let r = centre.as_ref().map_or(Ok(1.0), |centre| centre.stretch(&deformation))?;
+            let own = k * count..(k + 1) * count;
+            let straining = Straining { deformation: r * deformation, stretch: 1.0, dt, old: &old[own.clone()] };
+            let Evolution { mut response, dissipation } = material.evolve(&straining, &mut new[own])?;
+            response.stress /= r;
+            energy += volume * response.energy;
+            dissipated += volume * dissipation;
+            add_force(gradients, &(volume * response.stress), force);
+            let Some(tangent) = tangent.as_deref_mut() else { continue };
+            for (dof, column) in tangent.chunks_exact_mut(2 * u.len()).enumerate() {
+                let varied = Vector2::ith(dof % 2, 1.0) * gradients[dof / 2].transpose();
+                add_force(gradients, &(volume * contract(&response.tangent, &varied)), column);
+            }
+            if let Some(centre) = &centre {
+                centre.add_tangent(gradients, &deformation, volume, &response, tangent);
+            }
+        }
+        Ok([energy, dissipated])
     }
 }

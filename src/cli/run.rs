@@ -1,0 +1,152 @@
+//! `fecontact run`: a case from its beginning, from the end of another, or from its last checkpoint.
+//!
+//! What stderr is told at the start and at the end of a run.
+
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::failure::Failure;
+use super::interrupt::Interrupt;
+use super::place::default_folder;
+use super::progress::{Progress, Voice};
+use super::threads::use_threads;
+use crate::case::job::{Company, Job, Outcome, last};
+use crate::case::{Opened, Written};
+use crate::model::Model;
+use crate::model::scheme::told;
+use crate::model::state::Energy;
+use crate::output::report;
+use crate::output::summary::Summary;
+use crate::run::error::Error;
+use crate::run::observer::Observer;
+
+/// How a case is run.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// folder of the results
+    pub out: Option<PathBuf>,
+    /// threads
+    pub threads: Option<usize>,
+    /// whether nothing is told
+    pub quiet: bool,
+    /// whether it goes on from the last checkpoint
+    pub resume: bool,
+}
+
+/// `fecontact run`.
+///
+/// # Errors
+/// [`Failure`].
+pub fn run(path: &Path, options: Options) -> Result<(), Failure> {
+    let Options { out, threads, quiet, resume } = options;
+    use_threads(threads)?;
+    let voice = Voice::new(quiet);
+    let place = out.unwrap_or_else(|| default_folder(path));
+    let (opened, damage) = match resume {
+        true => last(&place, |checkpoint| Opened::resume(Written::read(path)?, checkpoint), &|text| voice.warn(text))?,
+        false => (Opened::begin(Written::read(path)?)?, None),
+    };
+    let mut job = Job::open(opened, damage, &place)?;
+    let told = Told::start(&job, &voice);
+    let outcome = job.run(company(&voice))?;
+    told.end(&outcome, &job);
+    // The first failure is the one to be told.
+    let wants_page = job.opened.case.output.report && outcome.is_readable();
+    let page = wants_page.then(|| report::write(std::slice::from_ref(&job.folder.path), &place.join(report::FILE)));
+    let Outcome { ended, written, .. } = outcome;
+    ended?;
+    page.transpose()?;
+    Ok(written?)
+}
+
+/// Warnings and progress on stderr; signals end the run.
+fn company(voice: &Voice) -> Company<'static> {
+    let (speaker, interrupt) = (voice.clone(), Interrupt::watch());
+    let progress =
+        (!matches!(voice, Voice::Silent)).then(|| Box::new(Progress::new(voice.clone())) as Box<dyn Observer>);
+    Company {
+        warn: Arc::new(move |warning| speaker.warn(warning)),
+        ends: Arc::new(move || interrupt.came().then_some(Error::Interrupted)),
+        progress,
+    }
+}
+
+/// What is told at the start and at the end, and where.
+struct Told(Voice);
+
+impl Told {
+    /// Before the first increment: warnings and choices, or from where a run goes on.
+    pub fn start(Job { opened, model, saved, damage, .. }: &Job, voice: &Voice) -> Self {
+        let saved = saved.as_ref().filter(|_| opened.resumes());
+        if let Some(damage) = damage {
+            voice.warn(&format!("{damage}; the checkpoint before it is taken"));
+        }
+        match saved.map(|saved| saved.simulation().state()) {
+            Some(state) => {
+                voice.say(&format!("going on from t = {} after {} increments", told(state.time), state.increment));
+            }
+            None => {
+                model.warnings().iter().for_each(|warning| voice.warn(warning));
+                model.choices().iter().for_each(|choice| voice.say(choice));
+            }
+        }
+        Self(voice.clone())
+    }
+
+    /// After the last one.
+    pub fn end(&self, Outcome { summary, supplied, .. }: &Outcome, job: &Job) {
+        if !matches!(self.0, Voice::Silent) {
+            conclude(summary, &job.model, &job.folder.path, *supplied);
+        }
+    }
+}
+
+/// The last lines of a run on stderr.
+fn conclude(summary: &Summary, model: &Model, folder: &Path, supplied: f64) {
+    let report = &summary.report;
+    say!(
+        "{} increments, {} cut-backs, {} rejected, {} linear solves of {} dofs in {:.2} s; results in {}",
+        report.increments,
+        report.cutbacks,
+        report.rejected,
+        report.newton_iterations,
+        model.dofs(),
+        report.wall_s.total,
+        folder.display()
+    );
+    summary.friction_course.iter().for_each(|(name, course)| say!("contact `{name}` {course}"));
+    if !report.given_up.is_empty() {
+        say!("given up: {}; `reason` in newton.csv tells of each", most_first(&report.given_up));
+    }
+    if model.steps.iter().any(|step| step.scheme.is_dynamic() || step.rupture.is_some()) {
+        audit(&report.energy, supplied);
+    }
+}
+
+/// Why attempts were given up, the most frequent reason first.
+fn most_first(given_up: &BTreeMap<String, usize>) -> String {
+    let mut reasons: Vec<_> = given_up.iter().collect();
+    reasons.sort_by_key(|(_, count)| Reverse(**count));
+    reasons.iter().map(|(reason, count)| format!("{count} × {reason}")).collect::<Vec<_>>().join(", ")
+}
+
+/// Where the energy of a dynamic run came from and went; `supplied` is the most that there was.
+fn audit(energy: &Energy, supplied: f64) {
+    let share = if supplied > 0.0 { 100.0 * energy.error() / supplied } else { 0.0 };
+    let radiated = if energy.radiated > 0.0 { format!(", {:.6e} radiated", energy.radiated) } else { String::new() };
+    say!("energy: {:.6e} at the start, {:.6e} from outside", energy.initial, energy.external_work);
+    say!(
+        "        {:.6e} kinetic, {:.6e} strain, {:.6e} in contacts",
+        energy.kinetic,
+        energy.strain,
+        energy.contact_elastic
+    );
+    say!(
+        "        {:.6e} taken by friction, {:.6e} by damping{radiated}, {:.1e} ({share:.4} %) unaccounted for",
+        energy.friction_dissipation,
+        energy.damping_dissipation,
+        energy.error()
+    );
+}

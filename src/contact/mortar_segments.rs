@@ -1,0 +1,279 @@
+//! The segments over which mortar contact integrates.
+//!
+//! # Cuts
+//!
+//! Slave edges cut where master nodes project on them: which part of an edge each master segment faces.
+//!
+//! # Lines
+//!
+//! Slave edges and master segments as functions of ξ, in numbers that carry their variations.
+
+use nalgebra::Vector2;
+
+use super::dual::{DualVector, Number};
+use super::projection::normal_of;
+use super::search::Index;
+use super::surface::{Segment, Surface};
+use crate::mesh::configuration::Configuration;
+use crate::mesh::few::Few;
+use crate::mesh::section::Section;
+use crate::mesh::shape;
+
+/// Master segments farther from a slave edge than this many of its lengths are not looked at: far enough for the deep
+/// penetrations of first iterates, which must not pass for contact lost.
+const REACH: f64 = 10.0;
+
+/// A slave edge and a master segment face each other when the cosine between their outward normals is below this.
+const EDGE_ON: f64 = -0.01;
+
+/// A segment both of whose ends project farther beyond an end of a straight edge than this faces none of it [half an edge]
+const BESIDE: f64 = 1e-3;
+
+/// A part of a slave edge that one master segment faces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Overlap {
+    pub segment: usize,
+    pub ends: [Cut; 2],
+}
+
+/// Where a slave edge is cut.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Cut {
+    pub xi: f64,
+    /// The master node that projects there; none at the ends of the edge
+    pub node: Option<usize>,
+}
+
+/// The cuts of all slave edges in one configuration, written again and again in the same memory.
+#[derive(Clone, Debug, Default)]
+pub struct Overlaps(pub(super) Vec<CutEdge>);
+
+/// A slave edge, cut.
+#[derive(Clone, Debug, Default)]
+pub(super) struct CutEdge {
+    /// Its parts that are faced, in order
+    pub overlaps: Vec<Overlap>,
+    /// What each segment around it faces, whatever lies in between
+    candidates: Vec<Overlap>,
+    cuts: Vec<Cut>,
+    /// Segments around it
+    around: Vec<usize>,
+}
+
+impl CutEdge {
+    /// Cut an edge where master nodes project on it; of several segments that face a part the nearest counts.
+    pub fn cut(&mut self, edge: &[usize], surface: &Surface, index: &Index, x: &Configuration) {
+        let Self { overlaps, candidates, cuts, around } = self;
+        candidates.clear();
+        facing(edge, surface, index, x, (around, candidates));
+        cuts.clear();
+        cuts.extend(candidates.iter().flat_map(|overlap| overlap.ends));
+        if edge.len() == 3 {
+            cuts.push(Cut { xi: 0.0, node: None });
+        }
+        cuts.sort_by(|a, b| a.xi.total_cmp(&b.xi));
+        let distance = |overlap: &Overlap, xi: f64| {
+            let values = shape::edge_values(edge.len(), xi);
+            let [a, b] = surface.segments[overlap.segment].ends;
+            edge.iter()
+                .zip(values)
+                .map(|(&node, w)| w * x.between(a, node))
+                .sum::<Vector2<f64>>()
+                .dot(&normal_of(x.between(a, b).normalize()))
+                .abs()
+        };
+        overlaps.clear();
+        for pair in cuts.windows(2).filter(|pair| pair[0].xi < pair[1].xi) {
+            let middle = 0.5 * (pair[0].xi + pair[1].xi);
+            let facing = candidates.iter().filter(|overlap| overlap.ends[0].xi < middle && middle < overlap.ends[1].xi);
+            let nearest = facing.min_by(|a, b| distance(a, middle).total_cmp(&distance(b, middle)));
+            overlaps.extend(nearest.map(|overlap| Overlap { segment: overlap.segment, ends: [pair[0], pair[1]] }));
+        }
+    }
+}
+
+/// The part of a slave edge that each segment around it faces, whatever lies in between, added to the `candidates`.
+fn facing(
+    edge: &[usize],
+    surface: &Surface,
+    index: &Index,
+    x: &Configuration,
+    (around, candidates): (&mut Vec<usize>, &mut Vec<Overlap>),
+) {
+    let along = x.between(edge[0], edge[1]);
+    let reach = REACH * along.norm();
+    let normal = -normal_of(along.normalize());
+    let levels = |node: usize| -> Few<f64, 3> { edge.iter().map(|&own| x.between(node, own).dot(&along)).collect() };
+    let chord = |levels: &[f64]| 2.0 * levels[0] / (levels[0] - levels[1]) - 1.0;
+    let coordinate = |node: usize| {
+        let levels = levels(node);
+        root(|xi| Line::Edge(edge).shapes(xi), &levels, chord(&levels))
+    };
+    index.around(edge, reach, x, around);
+    for &segment in &*around {
+        let [a, b] = surface.segments[segment].ends;
+        // On a straight edge the chord is the coordinate, but for round-off.
+        let [start, end] = [a, b].map(|node| chord(&levels(node)));
+        if edge.len() == 2 && (start.min(end) > 1.0 + BESIDE || start.max(end) < -1.0 - BESIDE) {
+            continue;
+        }
+        // A segment is taken in nearly edge-on, where it faces next to nothing: the average must not jump as it turns.
+        if normal_of(x.between(a, b).normalize()).dot(&normal) >= EDGE_ON {
+            continue;
+        }
+        // Both run along s, so the start of the segment comes first.
+        let [mut first, mut last] = [a, b].map(|node| Cut { xi: coordinate(node), node: Some(node) });
+        if first.xi <= -1.0 {
+            first = Cut { xi: -1.0, node: None };
+        }
+        if last.xi >= 1.0 {
+            last = Cut { xi: 1.0, node: None };
+        }
+        if first.xi < last.xi {
+            candidates.push(Overlap { segment, ends: [first, last] });
+        }
+    }
+}
+
+/// A slave edge, ξ from −1 to 1, or a master segment, ξ from 0 to 1.
+#[derive(Clone, Copy)]
+pub(super) enum Line<'a> {
+    Edge(&'a [usize]),
+    Segment(&'a Segment),
+}
+
+impl Line<'_> {
+    pub fn nodes(&self) -> Few<usize, 5> {
+        match self {
+            Self::Edge(edge) => edge.iter().copied().collect(),
+            Self::Segment(segment) => segment.nodes().collect(),
+        }
+    }
+
+    /// Shape functions, first and second derivatives, as numbers.
+    pub fn shapes(&self, xi: f64) -> [Few<f64, 3>; 3] {
+        let count = self.nodes().len();
+        let (at, rate) = match self {
+            Self::Edge(_) => (xi, 1.0),
+            Self::Segment(_) => (2.0 * xi - 1.0, 2.0),
+        };
+        let scaled = |values: Few<f64, 3>, factor: f64| values.into_iter().map(|v| factor * v).collect();
+        let bend = if count == 2 { [0.0; 2].into() } else { [1.0, 1.0, -2.0].into() };
+        [shape::edge_values(count, at), scaled(shape::edge_derivatives(count, at), rate), scaled(bend, rate * rate)]
+    }
+
+    pub fn values<N: Number>(&self, xi: &N) -> [N; 3] {
+        let [values, slopes, _] = self.shapes(xi.value());
+        let mut values = values.into_iter().zip(slopes).map(|(value, slope)| xi.map(value, slope));
+        std::array::from_fn(|_| values.next().unwrap_or_default())
+    }
+
+    pub fn slope<N: Number>(&self, xi: &N, frame: &Frame<N>) -> DualVector<N> {
+        let [_, slopes, bends] = self.shapes(xi.value());
+        let mut slopes = slopes.into_iter().zip(bends).map(|(slope, bend)| xi.map(slope, bend));
+        let slopes: [N; 3] = std::array::from_fn(|_| slopes.next().unwrap_or_default());
+        frame.position(self.nodes().into_iter(), &slopes)
+    }
+
+    /// ξ where the line is level with a point, (x(ξ) − point)·along = 0, near `start`. One Newton step from the solution
+    /// brings the exact variation.
+    pub fn coordinate<N: Number>(
+        &self,
+        point: &DualVector<N>,
+        along: &DualVector<N>,
+        start: f64,
+        frame: &Frame<N>,
+    ) -> N {
+        let vector = |v: &DualVector<N>| Vector2::new(v.x.value(), v.y.value());
+        let (t, p) = (vector(along), vector(point));
+        let level = |node: usize| {
+            let at = frame.at(node);
+            (vector(at) - p).dot(&t)
+        };
+        let levels: Few<f64, 5> = self.nodes().into_iter().map(level).collect();
+        let xi = root(|xi| self.shapes(xi), &levels, start);
+        let fixed = N::constant(xi);
+        let residual = frame.position(self.nodes().into_iter(), &self.values(&fixed)).minus(point).dot(along);
+        let slope = self.slope(&fixed, frame).dot(along);
+        fixed.minus(&residual.over(&slope))
+    }
+}
+
+/// ξ where Σ N_a(ξ) level_a = 0, by Newton's method: one step on a straight line, a few on a parabola.
+fn root(shapes: impl Fn(f64) -> [Few<f64, 3>; 3], levels: &[f64], start: f64) -> f64 {
+    let sum = |values: &[f64]| values.iter().zip(levels).map(|(v, l)| v * l).sum::<f64>();
+    let mut xi = start;
+    for _ in 0..20 {
+        let [values, slopes, _] = shapes(xi);
+        let step = sum(&values) / sum(&slopes);
+        xi -= step;
+        if step.abs() < f64::EPSILON * (1.0 + xi.abs()) {
+            break;
+        }
+    }
+    xi
+}
+
+/// Positions of some nodes relative to the first, as unknowns.
+#[derive(Clone, Debug)]
+pub(super) struct Frame<N> {
+    pub nodes: Vec<usize>,
+    /// x of the first, and the section
+    origin: (Vector2<f64>, Section),
+    pub positions: Vec<DualVector<N>>,
+}
+
+impl<N> Default for Frame<N> {
+    fn default() -> Self {
+        Self { nodes: Vec::new(), origin: (Vector2::zeros(), Section::default()), positions: Vec::new() }
+    }
+}
+
+impl<N: Number> Frame<N> {
+    /// Find the positions of its nodes.
+    pub fn place(&mut self, x: &Configuration) {
+        let Self { nodes, origin, positions } = self;
+        let n = 2 * nodes.len();
+        *origin = (x.at(nodes[0]), x.section());
+        positions.clear();
+        positions.extend(nodes.iter().enumerate().map(|(k, &node)| {
+            let at = x.between(nodes[0], node);
+            DualVector { x: N::unknown(at.x, 2 * k, n), y: N::unknown(at.y, 2 * k + 1, n) }
+        }));
+    }
+
+    /// w of the section at a position; `None` in plane strain, where it is 1 everywhere.
+    pub fn depth(&self, position: &DualVector<N>) -> Option<N> {
+        let (origin, section) = self.origin;
+        if section == Section::PlaneStrain {
+            return None;
+        }
+        let at = origin + Vector2::new(position.x.value(), position.y.value());
+        let mut depth = N::constant(section.weight(at));
+        let slope = section.slope(at).unwrap_or_default();
+        for (rate, moved) in [(slope.x, &position.x), (slope.y, &position.y)] {
+            depth.accumulate(rate, &moved.map(0.0, 1.0));
+        }
+        Some(depth)
+    }
+
+    pub fn local(&self, node: usize) -> usize {
+        self.nodes.iter().position(|&n| n == node).expect("every node of an average is listed when it is built")
+    }
+
+    pub fn at(&self, node: usize) -> &DualVector<N> {
+        &self.positions[self.local(node)]
+    }
+
+    pub fn position(&self, nodes: impl Iterator<Item = usize>, weights: &[N]) -> DualVector<N> {
+        let mut sum = DualVector::default();
+        for (node, weight) in nodes.zip(weights) {
+            sum.add_scaled(weight, self.at(node));
+        }
+        sum
+    }
+
+    pub fn combine(&self, weights: &[N]) -> DualVector<N> {
+        self.position(self.nodes.iter().copied(), weights)
+    }
+}

@@ -1,0 +1,327 @@
+//! From the tractions of contact points to forces at the nodes.
+//!
+//! # Closed points
+//!
+//! What a closed point, or one in a fluid, adds to the equations: the forces of its traction on the nodes, and their derivative.
+//!
+//! # Resultants
+//!
+//! What the tractions of a contact put on the nodes, and their resultant on the slave.
+
+use std::collections::BTreeSet;
+
+use nalgebra::Vector2;
+
+use super::kinematics::{Kinematics, kinematics};
+use super::pair::ContactPair;
+use super::point::{ContactState, Tractions, Weights};
+use super::search::Index;
+use crate::laws::friction::FrictionResponse;
+use crate::mesh::configuration::Configuration;
+
+/// A point that is closed, or in a fluid: what it adds to the equations, and how its tractions vary with its nodes. Two dofs a
+/// node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Closed<'a> {
+    /// The nodes, in the order of the entries
+    pub nodes: &'a [usize],
+    /// Internal force [F]
+    pub force: &'a [f64],
+    /// ∂force/∂u, column by column; it and the next two are empty where only forces were asked for [F/L]
+    pub tangent: &'a [f64],
+    /// δp [F/L³]
+    pub dpressure: &'a [f64],
+    /// δq [F/L³]
+    pub dtraction: &'a [f64],
+    /// The fluid's part of the force, as a load has it, −1 times that of an internal one; empty without a fluid [F]
+    pub fluid: &'a [f64],
+    /// p and q
+    pub tractions: Tractions,
+    /// Whether only a fluid acts, and the point is open
+    pub is_open: bool,
+}
+
+/// What acts at a point beside pressure and friction.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Beside {
+    /// What slip radiates, η v and its derivative by slip
+    pub radiates: [f64; 2],
+    /// p_w
+    pub fluid: f64,
+}
+
+impl Closed<'_> {
+    /// p + δp and q + δq for a correction of the nodes' displacements; none where the pressure would be negative.
+    pub fn promise(&self, correction: impl Fn(usize) -> f64) -> Tractions {
+        let dofs = || self.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
+        let along = |rates: &[f64]| dofs().zip(rates).map(|(dof, rate)| rate * correction(dof)).sum::<f64>();
+        let pressure = self.tractions.pressure + along(self.dpressure);
+        let traction = self.tractions.traction + along(self.dtraction);
+        if pressure > 0.0 { Tractions { pressure, traction } } else { Tractions::default() }
+    }
+}
+
+/// What points one after the other add, all in the same few lists, which are used again in the next evaluation.
+#[derive(Clone, Debug, Default)]
+pub struct ClosedPoints {
+    points: Vec<Option<Place>>,
+    nodes: Vec<usize>,
+    force: Vec<f64>,
+    tangent: Vec<f64>,
+    dpressure: Vec<f64>,
+    dtraction: Vec<f64>,
+    /// Forces of a fluid, of all points as soon as one has any
+    fluid: Vec<f64>,
+    /// δ(t ℓ) of the point at hand, its two components
+    rows: [Vec<f64>; 2],
+}
+
+/// Where a closed point is in the lists.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    tractions: Tractions,
+    is_open: bool,
+    /// Its first node, and how many there are
+    nodes: [usize; 2],
+    /// Where its tangent begins
+    tangent: usize,
+}
+
+impl ClosedPoints {
+    /// No points yet.
+    pub fn clear(&mut self) {
+        let Self { points, nodes, force, tangent, dpressure, dtraction, fluid, .. } = self;
+        points.clear();
+        nodes.clear();
+        [force, tangent, dpressure, dtraction, fluid].into_iter().for_each(Vec::clear);
+    }
+
+    /// What a point added, if it is closed.
+    pub fn get(&self, point: usize) -> Option<Closed<'_>> {
+        let Place { tractions, is_open, nodes: [first, count], tangent } = (*self.points.get(point)?)?;
+        let dofs = 2 * first..2 * (first + count);
+        let varied =
+            |values: &'_ [f64]| -> std::ops::Range<usize> { if values.is_empty() { 0..0 } else { dofs.clone() } };
+        let size = if self.tangent.is_empty() { 0 } else { 4 * count * count };
+        Some(Closed {
+            nodes: &self.nodes[first..first + count],
+            force: &self.force[dofs.clone()],
+            tangent: &self.tangent[tangent..tangent + size],
+            dpressure: &self.dpressure[varied(&self.dpressure)],
+            dtraction: &self.dtraction[varied(&self.dtraction)],
+            fluid: self.fluid.get(dofs.clone()).unwrap_or_default(),
+            tractions,
+            is_open,
+        })
+    }
+
+    /// A point that is open, and what a fluid does to it; the length on which that acts.
+    pub(super) fn push_open(&mut self, k: &Kinematics, fluid: f64) -> Option<f64> {
+        if fluid == 0.0 {
+            self.points.push(None);
+            return None;
+        }
+        if k.varied {
+            self.push_dpressure(k, [0.0; 2]);
+        }
+        self.push(k, &FrictionResponse::default(), Beside { fluid, ..Beside::default() }, None);
+        if let Some(Some(place)) = self.points.last_mut() {
+            place.is_open = true;
+        }
+        Some(k.length)
+    }
+
+    /// A closed point: nodal forces of the traction and their derivative, the exact one unless tractions are promised or a
+    /// pressure carried. The variation of the pressure was added to [`ClosedPoints::dpressure`] before.
+    /// What acts beside is part of the forces and no part of what friction promises.
+    pub(super) fn push(
+        &mut self,
+        k: &Kinematics,
+        response: &FrictionResponse,
+        Beside { radiates, fluid }: Beside,
+        promised: Option<Tractions>,
+    ) {
+        let tractions = Tractions::of(&response.state);
+        let whole = |of: Tractions| Tractions { pressure: of.pressure + fluid, traction: of.traction + radiates[0] };
+        self.points.push(Some(Place {
+            tractions,
+            is_open: false,
+            nodes: [self.nodes.len(), k.nodes.len()],
+            tangent: self.tangent.len(),
+        }));
+        self.nodes.extend_from_slice(&k.nodes);
+        let traction = turned(k, whole(tractions));
+        self.push_fluid(k, fluid);
+        for &w in &k.relative {
+            self.force.extend([0, 1].map(|i| -w * traction[i] * k.length));
+        }
+        if k.varied {
+            self.push_tangent(k, response, radiates[1], whole(promised.unwrap_or(tractions)));
+        }
+    }
+
+    /// The forces of a fluid on the nodes of the point at hand; those of all points before it have none where this is the first.
+    fn push_fluid(&mut self, k: &Kinematics, fluid: f64) {
+        if fluid == 0.0 && self.fluid.is_empty() {
+            return;
+        }
+        self.fluid.resize(self.force.len(), 0.0);
+        let traction = k.normal * fluid;
+        self.fluid.extend(k.relative.iter().flat_map(|&w| [0, 1].map(|i| w * traction[i] * k.length)));
+    }
+
+    /// δp = a δg + b δΔu_t of the next point.
+    pub(super) fn push_dpressure(&mut self, k: &Kinematics, [by_gap, by_slip]: [f64; 2]) {
+        let rate =
+            |(dgap, dslip): (&f64, &f64)| if by_slip == 0.0 { dgap * by_gap } else { dgap * by_gap + dslip * by_slip };
+        self.dpressure.extend(k.dgap.iter().zip(&k.dslip).map(rate));
+    }
+
+    fn push_tangent(&mut self, k: &Kinematics, response: &FrictionResponse, damping: f64, promised: Tractions) {
+        let Self { tangent, dpressure, dtraction, rows, .. } = self;
+        let dofs = 2 * k.nodes.len();
+        let dpressure = &dpressure[dtraction.len()..];
+        let first = dtraction.len();
+        let by = |(dslip, dp): (&f64, &f64)| dslip * response.dtraction_dslip + dp * response.dtraction_dpressure;
+        dtraction.extend(k.dslip.iter().zip(dpressure).map(by));
+        let dtraction = &dtraction[first..];
+        let force = turned(k, promised);
+        for (i, row) in rows.iter_mut().enumerate() {
+            row.clear();
+            row.extend((0..dofs).map(|c| {
+                let along_normal = dpressure[c] - k.drotation[c] * promised.traction;
+                let resisting = dtraction[c] + damping * k.dslip[c];
+                let along_tangent = -(resisting + k.drotation[c] * promised.pressure);
+                (along_normal * k.normal[i] + along_tangent * k.tangent[i]) * k.length + k.dlength[c] * force[i]
+            }));
+        }
+        let first = tangent.len();
+        for c in 0..dofs {
+            let rows = [rows[0][c], rows[1][c]];
+            k.relative.iter().for_each(|&w| tangent.extend(rows.map(|row| -w * row)));
+        }
+        let columns = tangent[first..].chunks_exact_mut(dofs);
+        for (c, column) in columns.enumerate() {
+            for (&a, dw) in k.changing.iter().zip(k.drelative.chunks_exact(dofs)) {
+                (0..2).for_each(|i| column[2 * a + i] += -force[i] * k.length * dw[c]);
+            }
+        }
+    }
+}
+
+/// t = p n − q s.
+fn turned(k: &Kinematics, Tractions { pressure: p, traction: q }: Tractions) -> Vector2<f64> {
+    k.normal * p - k.tangent * q
+}
+
+/// What a traction puts on the nodes: w_a (p n − q s) ℓ [F].
+pub fn nodal_forces(k: &Kinematics, p: f64, q: f64) -> Vec<(usize, Vector2<f64>)> {
+    let force = turned(k, Tractions { pressure: p, traction: q }) * k.length;
+    k.nodes.iter().zip(&k.relative).map(|(&node, &w)| (node, force * w)).collect()
+}
+
+/// Force and moment that the master puts on the slave.
+///
+/// ```text
+/// F = Σ_j t_j ℓ_j,   M = Σ_j (x_j − x₀) × t_j ℓ_j,   t = p n − (q + η v) s
+/// ```
+/// What slip radiates, η v, is a traction of the surfaces like friction, 0 without radiation damping. The pressure p_w of a fluid is
+/// a load, and left out.
+///
+/// Of rings F_x sums up the radial parts of the full turn, and M is that of the section.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Resultant {
+    /// F [F]
+    pub force: Vector2<f64>,
+    /// M about x₀, counter-clockwise [F·L]
+    pub moment: f64,
+}
+
+/// A closed point: where its traction acts on the slave, and the kinematics that say on which nodes.
+struct Acting {
+    point: usize,
+    place: Weights,
+    kinematics: Kinematics,
+}
+
+impl ContactPair {
+    /// x₀: the middle of the slave surface in the configuration `x`, the undeformed one if moments are to be about a point
+    /// that stays.
+    pub fn middle(&self, x: &Configuration) -> Vector2<f64> {
+        let Some(first) = self.points.first().map(|point| point.at(x)) else { return Vector2::zeros() };
+        let shares = self.points.iter().map(|point| (point.current_length(x), point.at(x) - first));
+        let (length, sum) =
+            shares.fold((0.0, Vector2::zeros()), |(all, sum), (length, at)| (all + length, sum + at * length));
+        first + sum / length
+    }
+
+    /// What accepted tractions put on the nodes of both sides in the configuration `x` where they were accepted [F].
+    pub fn forces_on_nodes(&self, states: &[ContactState], x: &Configuration) -> Vec<(usize, Vector2<f64>)> {
+        let acting = self.acting(states, x);
+        let forces = acting.iter().flat_map(|acting| {
+            let [pressure, traction] = states[acting.point].tractions();
+            nodal_forces(&acting.kinematics, pressure, traction)
+        });
+        forces.collect()
+    }
+
+    /// What they put on the slave, the moment about a point.
+    pub fn resultant(&self, states: &[ContactState], x: &Configuration, about: Vector2<f64>) -> Resultant {
+        let mut sum = Resultant::default();
+        for Acting { point, place, kinematics: k } in self.acting(states, x) {
+            let [pressure, traction] = states[point].tractions();
+            let force = (k.normal * pressure - k.tangent * traction) * k.length;
+            let [reference, displacement] = x.apart(&place, about);
+            sum.force += force;
+            sum.moment += (reference + displacement).perp(&force);
+        }
+        sum
+    }
+
+    /// The closed points.
+    fn acting(&self, states: &[ContactState], x: &Configuration) -> Vec<Acting> {
+        let closed: Vec<usize> = (0..states.len()).filter(|&k| states[k].friction.pressure > 0.0).collect();
+        if closed.is_empty() {
+            return Vec::new();
+        }
+        if self.small.is_some() || self.mortar.is_some() {
+            let mut met = self.meetings(x, false);
+            let acting = |k: usize| met[k].take().map(|(_, kinematics)| (k, kinematics));
+            let found: Vec<(usize, Kinematics)> = closed.into_iter().filter_map(acting).collect();
+            let place = |(point, kinematics): (usize, Kinematics)| {
+                let place = if self.mortar.is_some() {
+                    self.mean_place(&kinematics)
+                } else {
+                    self.points[point].position.clone()
+                };
+                Acting { point, place, kinematics }
+            };
+            return found.into_iter().map(place).collect();
+        }
+        let index = Index::new(&self.master, x);
+        let acting = |point: usize| {
+            let slave = &self.points[point];
+            let projection = index.project(slave, states[point].foot, x)?;
+            let mut k = Kinematics::new(false);
+            kinematics(slave, &self.master, &projection, None, x, &mut k);
+            Some(Acting { point, place: slave.position.clone(), kinematics: k })
+        };
+        closed.into_iter().filter_map(acting).collect()
+    }
+
+    /// Where the mean of the slave lies that a mortar point stands for: the slave's part of its weights.
+    fn mean_place(&self, k: &Kinematics) -> Weights {
+        let slaves = self.points.iter().flat_map(|point| &point.length).flat_map(|share| &share.at);
+        let slaves: BTreeSet<usize> = slaves.map(|(node, _)| *node).collect();
+        let meets_itself = self.meets_itself();
+        let own = |(&node, &w): (&usize, &f64)| {
+            let is_slave = if meets_itself { w > 0.0 } else { slaves.contains(&node) };
+            is_slave.then_some((node, w))
+        };
+        k.nodes.iter().zip(&k.relative).filter_map(own).collect()
+    }
+
+    fn meets_itself(&self) -> bool {
+        matches!(&self.master, super::master::Master::Mesh(surface) if surface.own_depth.is_some())
+    }
+}

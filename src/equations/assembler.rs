@@ -1,0 +1,395 @@
+//! Residual and tangent of a model: the terms added up.
+//!
+//! # Contacts
+//!
+//! What the assembler asks of the contacts, and what it keeps of their answers.
+//!
+//! # Parts
+//!
+//! Parts of the equations by themselves: the masses, and the tangent of one term.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use crate::contact::pair::Presumption;
+use crate::contact::response::PairResponse;
+use crate::equations::coupling::{Coupling, Layout};
+use crate::equations::damping::ByMass;
+use crate::equations::equilibrium::Equilibrium;
+use crate::equations::evaluation::{ContactCounts, Evaluation, Seconds};
+use crate::equations::evolving::Evolving;
+use crate::equations::inertia::{self, Inertia};
+use crate::equations::solids::Solids;
+use crate::equations::sums::{Sums, TrialFailure};
+use crate::equations::term::Term;
+use crate::equations::trial::Trial;
+use crate::equations::{damping, interfaces, links, loads, supports};
+use crate::linear::SparseMatrix;
+use crate::linear::system::{Request, System};
+use crate::model::Model;
+
+/// Assembles a model; owns the pattern and the buffers that are used again.
+pub struct Assembler {
+    model: Arc<Model>,
+    layout: Layout,
+    solids: Solids,
+    evolving: Evolving,
+    mass: Option<SparseMatrix>,
+    /// η M of the bodies' damping, and their η
+    damping_mass: Option<ByMass>,
+    /// w of prescribed dofs [F/L]
+    weight: f64,
+    /// Sum of the forces' magnitudes at each dof [F]
+    magnitudes: Vec<f64>,
+    equilibrium: Equilibrium,
+    /// Contacts where nothing is presumed, kept for their memory
+    responses: Vec<PairResponse>,
+    /// What was found at the last evaluated displacement
+    pub evaluation: Evaluation,
+    /// Time spent
+    pub seconds: Seconds,
+}
+
+/// Terms that the displacements alone decide, whatever the scheme.
+const OF_PLACE: [Term; 3] = [Term::Solids, Term::Interfaces, Term::Loads];
+
+/// With those that the velocities decide, which in implicit schemes follow from the displacements.
+const OF_PLACE_AND_MOTION: [Term; 6] =
+    [Term::Solids, Term::Interfaces, Term::Loads, Term::Dampers, Term::Stabilization, Term::Damping];
+
+impl Assembler {
+    /// Numbers of contact points by status, as last evaluated.
+    pub fn contact_counts(&self) -> ContactCounts {
+        ContactCounts::of(&self.model.contacts, &self.evaluation.contacts)
+    }
+
+    /// An assembler of a model.
+    pub fn new(model: &Arc<Model>) -> Self {
+        let solids = Solids::new(model);
+        Self {
+            model: model.clone(),
+            layout: Layout::new(model),
+            evolving: Evolving::new(model, solids.constant()),
+            solids,
+            mass: None,
+            damping_mass: None,
+            weight: supports::weight(model),
+            magnitudes: vec![0.0; model.dofs()],
+            equilibrium: Equilibrium::new(model),
+            responses: Vec::new(),
+            evaluation: Evaluation::default(),
+            seconds: Seconds::default(),
+        }
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Which nodes are coupled at present.
+    pub fn coupling(&self) -> Arc<Coupling> {
+        self.layout.coupling.clone()
+    }
+
+    /// Couple the nodes as they were coupled before.
+    pub fn couple(&mut self, coupling: &Arc<Coupling>) {
+        if self.layout.couple(coupling) {
+            (self.mass, self.damping_mass) = (None, None);
+        }
+    }
+
+    /// A system on the current pattern.
+    pub fn system(&self) -> System {
+        System {
+            residual: vec![0.0; self.model.dofs()],
+            tangent: self.layout.matrix(),
+            forces: 0.0,
+            imbalance: f64::INFINITY,
+        }
+    }
+
+    /// Residual at the displacement `u`, no presumption made.
+    ///
+    /// # Errors
+    /// [`TrialFailure`] when an element inverts, a friction law fails, or a load has no value.
+    pub fn residual(&mut self, trial: Trial, u: &[f64], system: &mut System) -> Result<(), TrialFailure> {
+        self.with_responses(trial, u, Request::Residual, |assembler, responses| {
+            assembler.assemble(trial, u, responses, Request::Residual, system)
+        })
+    }
+
+    /// Residual, and tangent on request, at the displacement `u` with the given responses of the contact points.
+    ///
+    /// # Errors
+    /// [`TrialFailure`] when an element inverts, or a load has no value.
+    pub fn assemble(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        responses: &[PairResponse],
+        request: Request,
+        system: &mut System,
+    ) -> Result<(), TrialFailure> {
+        let clock = Instant::now();
+        let model = &*self.model.clone();
+        let tangent = request == Request::Tangent;
+        if tangent {
+            self.cover(trial, responses);
+            if !Arc::ptr_eq(&system.tangent.pattern, &self.layout.pattern) {
+                system.tangent = self.layout.matrix();
+            }
+        }
+        self.magnitudes.fill(0.0);
+        self.evaluation.damping.clear();
+        let motion = (trial, u, None);
+        self.add(&OF_PLACE_AND_MOTION, motion, responses, true, tangent.then_some(&mut system.tangent))?;
+        model.ties.gather(2, &mut self.evaluation.damping);
+        model.ties.gather(2, &mut self.magnitudes);
+        model.linkage.gather(&mut self.evaluation.damping);
+        model.linkage.gather_magnitudes(&mut self.magnitudes);
+        self.note_contacts(trial, responses);
+        self.balance(trial, u, tangent, system);
+        supports::prescribe(model, self.weight, trial, u, tangent, system)?;
+        let mass = self.mass.as_ref().filter(|_| trial.step.scheme.coefficients().is_some());
+        self.equilibrium.retard(model, trial.step);
+        self.equilibrium.measure((model, mass), trial, u, &self.magnitudes, system);
+        self.seconds.assembly += clock.elapsed().as_secs_f64();
+        Ok(())
+    }
+
+    /// Forces of what the displacement `u` alone decides, and everything else that an accepted state takes over from the
+    /// evaluation but rates, damping and reactions: what explicit increments need, which find the velocities last. With
+    /// velocities `v` the viscous forces of the bodies belong to it, and what they put on the nodes is written over the damping.
+    ///
+    /// # Errors
+    /// As [`Assembler::residual`].
+    pub fn forces(&mut self, trial: Trial, u: &[f64], v: Option<&[f64]>) -> Result<(), TrialFailure> {
+        self.with_responses(trial, u, Request::Residual, |assembler, responses| {
+            let clock = Instant::now();
+            assembler.solids.retard(trial.step);
+            assembler.add(&OF_PLACE, (trial, u, v), responses, false, None)?;
+            if let Some(v) = v {
+                assembler.add_viscous([u, v]);
+            }
+            assembler.keep_states(responses);
+            assembler.seconds.assembly += clock.elapsed().as_secs_f64();
+            Ok(())
+        })
+    }
+
+    /// Add the viscous forces of the bodies to those just found, and write what they put on the nodes over the damping.
+    fn add_viscous(&mut self, motion: [&[f64]; 2]) {
+        let Evaluation { force, damping, .. } = &mut self.evaluation;
+        self.solids.other_viscous(motion, damping);
+        self.model.ties.gather(2, damping);
+        self.model.linkage.gather(damping);
+        for (force, damping) in force.iter_mut().zip(damping) {
+            *force += *damping;
+            *damping = -*damping;
+        }
+    }
+
+    /// Write the sums of some terms over those of the evaluation and over the tangent, if it is wanted, and add the forces'
+    /// magnitudes. A copy's share goes to the node it moves with. With velocities, see [`Solids::add`].
+    fn add(
+        &mut self,
+        terms: &[Term],
+        (trial, u, v): (Trial, &[f64], Option<&[f64]>),
+        responses: &[PairResponse],
+        scaled: bool,
+        mut tangent: Option<&mut SparseMatrix>,
+    ) -> Result<(), TrialFailure> {
+        let Self { model, layout, solids, evolving, damping_mass, magnitudes, evaluation, .. } = self;
+        let Evaluation { force, loads, damping, stabilization, memory, strain_energy, dissipated, heating, .. } =
+            evaluation;
+        [&mut *force, &mut *damping].into_iter().for_each(|values| values.resize(u.len(), 0.0));
+        let magnitudes = scaled.then_some(&mut magnitudes[..]);
+        if let Some(tangent) = &mut tangent {
+            match solids.constant_stiffness(layout).filter(|_| terms.contains(&Term::Solids)) {
+                Some(constant) => tangent.values.copy_from_slice(&constant.values),
+                None => tangent.clear(),
+            }
+        }
+        let mut sums = Sums { force, magnitudes, tangent, layout };
+        for term in terms {
+            match term {
+                Term::Solids => {
+                    let elastic = solids.add(u, v, &mut sums)?;
+                    let found = (&mut *memory, [&mut *dissipated, &mut *heating]);
+                    *strain_energy = elastic + evolving.add(model, (trial, u), found, &mut sums)?;
+                }
+                Term::Interfaces => interfaces::add(responses, &mut sums),
+                Term::Loads => {
+                    loads::add(model, trial, u, loads, &mut sums)?;
+                    interfaces::add_fluids(model, responses, loads);
+                }
+                Term::Dampers => damping::add_dampers(model, trial, u, damping, &mut sums)?,
+                Term::Stabilization => *stabilization = damping::add_stabilization(trial, u, damping, &mut sums),
+                Term::Damping => {
+                    let momentum = damping::momentum(model, trial.step, layout, damping_mass);
+                    damping::add_damping(model, solids, momentum, (trial, u), damping, &mut sums);
+                }
+                // Blended with the forces of before, once all of these are known.
+                Term::Inertia => {}
+            }
+        }
+        model.ties.gather(2, force);
+        model.ties.gather(2, loads);
+        model.linkage.gather(force);
+        model.linkage.gather(loads);
+        Ok(())
+    }
+
+    /// The residual as the scheme blends it from the forces and those of the masses, velocities, accelerations, and what the
+    /// supports put on their nodes.
+    fn balance(&mut self, trial: Trial, u: &[f64], tangent: bool, system: &mut System) {
+        let Self { model, layout, mass, evaluation, magnitudes, .. } = self;
+        let Evaluation { force, reactions, velocity, acceleration, .. } = evaluation;
+        let held = links::relieved(model, u, force);
+        reactions.clear();
+        reactions.extend(trial.step.supports.iter().map(|support| support.at.of(&held)));
+        let mass = trial.step.scheme.coefficients().map(|_| &*mass.get_or_insert_with(|| inertia::mass(model, layout)));
+        let Some((mass, mut inertia)) = mass.and_then(|mass| Some((mass, Inertia::at(model, trial, u, mass)?))) else {
+            [velocity, acceleration].into_iter().for_each(|rates| *rates = vec![0.0; u.len()]);
+            system.residual.clone_from(force);
+            return;
+        };
+        [&mut inertia.force, &mut inertia.weighted].into_iter().for_each(|forces| model.linkage.gather(forces));
+        let wanted = tangent.then_some((&mut system.tangent, mass));
+        inertia.add(model, [&trial.old.force, force], &mut system.residual, wanted);
+        magnitudes.iter_mut().zip(&inertia.force).for_each(|(magnitude, inertia)| *magnitude += inertia.abs());
+        let held = links::relieved(model, u, &inertia.force);
+        let supports = reactions.iter_mut().zip(&trial.step.supports);
+        supports.for_each(|(reaction, support)| *reaction += support.at.of(&held));
+        drop(held);
+        (*velocity, *acceleration) = (inertia.velocity, inertia.acceleration);
+    }
+
+    /// Make room in the pattern for all contact points.
+    fn cover(&mut self, trial: Trial, responses: &[PairResponse]) {
+        if self.layout.cover(responses, trial.old) {
+            (self.mass, self.damping_mass) = (None, None);
+        }
+    }
+}
+
+impl Assembler {
+    /// Do something with the responses of all contact points where nothing is presumed.
+    ///
+    /// # Errors
+    /// [`TrialFailure`] when a friction law fails, and those of what is done.
+    pub fn with_responses<T>(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        request: Request,
+        act: impl FnOnce(&mut Self, &[PairResponse]) -> Result<T, TrialFailure>,
+    ) -> Result<T, TrialFailure> {
+        let mut responses = std::mem::take(&mut self.responses);
+        let found = self.interfaces(trial, u, |_, _| Presumption::default(), request, &mut responses);
+        let done = found.and_then(|()| act(self, &responses));
+        self.responses = responses;
+        done
+    }
+
+    /// Responses of all contact points at the displacement `u`, with what is presumed about a point of a pair: for a tangent
+    /// alone, a residual that may be accepted knows no presumptions. They come in `responses`, whose memory is used again.
+    ///
+    /// # Errors
+    /// [`TrialFailure`] when a friction law fails.
+    pub fn interfaces(
+        &mut self,
+        trial: Trial,
+        u: &[f64],
+        presumed: impl Fn(usize, usize) -> Presumption + Sync,
+        request: Request,
+        responses: &mut Vec<PairResponse>,
+    ) -> Result<(), TrialFailure> {
+        if self.model.contacts.is_empty() {
+            return Ok(());
+        }
+        let clock = Instant::now();
+        let answer = interfaces::respond(&self.model, trial, u, presumed, request, responses);
+        self.seconds.contact += clock.elapsed().as_secs_f64();
+        answer
+    }
+
+    /// Keep the states of the contact points, and how large their forces are.
+    pub fn note_contacts(&mut self, trial: Trial, responses: &[PairResponse]) {
+        self.equilibrium.note_contacts(&self.model, trial, responses);
+        self.keep_states(responses);
+    }
+
+    /// Norm of the nodal forces of each contact at the last evaluation [F].
+    pub fn contact_forces(&self) -> &[f64] {
+        self.equilibrium.contact_forces()
+    }
+
+    /// |u|² of some nodes, as far as round-off of it counts [L²].
+    pub fn ways(&self, trial: Trial, u: &[f64], nodes: &[usize]) -> Vec<f64> {
+        self.equilibrium.ways(trial.old, u, nodes)
+    }
+
+    /// Square of what round-off of the contacts that were noted last can leave at nodes that have gone these ways [F²].
+    pub fn contact_round_off(&self, nodes: &[usize], ways: &[f64]) -> f64 {
+        self.equilibrium.contact_round_off(nodes, ways)
+    }
+
+    /// Square of what round-off can leave at every node, at the displacement that was evaluated last [F²].
+    pub fn round_off(&self, trial: Trial, u: &[f64]) -> Vec<f64> {
+        let mass = self.mass.as_ref().filter(|_| trial.step.scheme.coefficients().is_some());
+        self.equilibrium.round_off((&self.model, mass), trial, u, &self.magnitudes)
+    }
+
+    /// Keep the trial states of the contact points for the accepted state.
+    fn keep_states(&mut self, responses: &[PairResponse]) {
+        let contacts = &mut self.evaluation.contacts;
+        contacts.resize_with(responses.len(), Vec::new);
+        contacts.iter_mut().zip(responses).for_each(|(states, pair)| states.clone_from(&pair.states));
+    }
+}
+
+impl Assembler {
+    /// Number of the distinct stiffness matrices that the elements whose tangent never changes share.
+    pub fn stored_matrices(&self) -> usize {
+        self.solids.matrices()
+    }
+
+    /// The mass matrix on the current pattern.
+    pub fn mass(&mut self) -> &SparseMatrix {
+        let Self { model, layout, mass, .. } = self;
+        mass.get_or_insert_with(|| inertia::mass(model, layout))
+    }
+
+    /// The tangent of one term by itself, with no supports: see [`Term::dependence`].
+    ///
+    /// # Errors
+    /// As [`Assembler::residual`].
+    pub fn tangent_of(&mut self, term: Term, trial: Trial, u: &[f64]) -> Result<SparseMatrix, TrialFailure> {
+        self.with_responses(trial, u, Request::Tangent, |assembler, responses| {
+            assembler.tangent_with(term, trial, u, responses)
+        })
+    }
+
+    fn tangent_with(
+        &mut self,
+        term: Term,
+        trial: Trial,
+        u: &[f64],
+        responses: &[PairResponse],
+    ) -> Result<SparseMatrix, TrialFailure> {
+        self.cover(trial, responses);
+        let mut tangent = self.layout.matrix();
+        if term == Term::Inertia {
+            let mass = self.mass().clone();
+            let inertia = Inertia::at(&self.model, trial, u, &mass);
+            inertia.into_iter().for_each(|inertia| inertia.stiffen(&self.model, &mass, &mut tangent));
+            return Ok(tangent);
+        }
+        let kept = std::mem::take(&mut self.evaluation);
+        let added = self.add(&[term], (trial, u, None), responses, false, Some(&mut tangent));
+        self.evaluation = kept;
+        added.map(|()| tangent)
+    }
+}

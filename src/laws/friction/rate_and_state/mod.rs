@@ -1,0 +1,556 @@
+//! Rate-and-state friction.
+//!
+//! # Answers
+//!
+//! What rate and state answers as a law: increments of first order or, along given paths, with their error controlled.
+//!
+//! # Given paths
+//!
+//! Rate-and-state friction along a path that is given: increments of slip and pressure, even in time, whose error is controlled.
+mod relaxation;
+mod sensitivity;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::sensitivity::{Direction, SensitiveLaw, Variation};
+use super::{
+    Answer, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Loading, RateLaw, Regime, Sliding,
+    traction_at_yield,
+};
+use crate::laws::parameter::{InvalidParameter, require_not_negative, require_positive};
+pub use relaxation::StateEvolution;
+use relaxation::{Coefficients, Relaxation, Relaxed, arsinh_of_exp};
+
+/// Parameters of [`RateAndState`] as the case file writes them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RateAndStateParameters {
+    /// f₀: friction coefficient in steady sliding at V₀, f₀ > 0 [-]
+    pub f_0: f64,
+    /// V₀: reference slip rate, V₀ > 0 [L/T]
+    #[serde(rename = "V_0")]
+    pub reference_rate: f64,
+    /// a: direct effect of the slip rate, a > 0 [-]
+    pub a: f64,
+    /// b: effect of the state, b ≥ 0; steady sliding weakens with the rate where b > a [-]
+    pub b: f64,
+    /// D_c: slip over which the state evolves, D_c > 0 [L]
+    #[serde(rename = "D_c")]
+    pub critical_slip: f64,
+    /// How the state evolves
+    #[serde(default)]
+    pub evolution: StateEvolution,
+    /// θ: state at the start, θ > 0; D_c/V₀, steady sliding at V₀, unless given [T]
+    #[serde(default)]
+    pub theta: Option<f64>,
+    /// α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies [F/L³]
+    #[serde(default)]
+    pub alpha_t: Option<f64>,
+}
+
+/// Rate-and-state friction on an elastic contact, regularized: finite at every slip rate V of either sign.
+///
+/// ```text
+/// q̇ = α_t (v − λ sgn q),   V = λ                                    slip = elastic + plastic              (1)
+/// |q| = a p arsinh(V/(2 V₀) exp(ψ/a)),   ψ = f₀ + b ln(V₀ θ/D_c)      ≈ p (ψ + a ln(V/V₀))                  (2)
+/// θ̇ = 1 − V θ/D_c   or   θ̇ = −(V θ/D_c) ln(V θ/D_c)                                                       (3)
+/// ```
+/// The law remembers θ. V₀ only says at which rate f₀ is measured: with f₀ + (a − b) ln(V₁/V₀) and V₁ in their place, and the
+/// same θ, friction is the same. The μ that is shown is ψ, the coefficient at V₀, and R = |q|/(ψ p) is 1 at V₀.
+///
+/// There is plastic slip whenever there is traction. A point *slips* where this outweighs ageing, V θ/D_c ≥ ½: in (3), where
+/// it takes from θ half of what time adds, or more. Steady sliding has V θ/D_c = 1 at every rate, a locked interface next
+/// to nothing, one that accelerates more than 1.
+///
+/// An increment takes V = Δλ/Δt as constant, for which (3) is integrated exactly: with x = Δλ/D_c
+/// ```text
+/// θ₁ = θ₀ e⁻ˣ + Δt (1 − e⁻ˣ)/x                  ageing law                                                   (4)
+/// ln θ₁ = e⁻ˣ ln θ₀ + (1 − e⁻ˣ) ln(D_c/V)        slip law                                                    (5)
+/// ```
+/// and Δλ is the *smallest* root of G(Δλ) = |q_tr| − α_t Δλ − |q|(Δλ) with |q| from (2) at the end of the increment. G is
+/// positive at Δλ = 0 and negative at |q_tr|/α_t. Where α_t exceeds the weakening by slip, G falls throughout; else bounds
+/// of its slope single out the first root. The method is of first order in Δt. Along paths that are
+/// [given](FrictionLaw::controlled) sub-steps of an increment, even in slip and pressure, are extrapolated from such answers
+/// and halved until their error is below 1e-6 f₀ p in q, and 1e-6 f₀ in (a + b) ln θ.
+///
+/// The work dissipated is ∫ |q| dλ = ½ (q_y + |q|) Δλ with slip at the rate V once the traction, elastic until then, has
+/// met at q_y what (2) asks for V; that goes evenly from its value at the start to |q|.
+///
+/// # Errors
+/// [`LawFailure`](super::LawFailure) when the increment or the answer is not finite, or time goes backwards.
+///
+/// Source: Dieterich (1979), J. Geophys. Res. 84, 2161; Ruina (1983), J. Geophys. Res. 88, 10359; Rice & Ben-Zion (1996),
+/// PNAS 93, 3811 (the regularized form).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RateAndState {
+    coefficients: Coefficients,
+    initial_theta: f64,
+    /// Whether θ at the start is given, and not D_c/V₀.
+    has_theta: bool,
+    /// Whether the error of an increment is controlled.
+    is_controlled: bool,
+}
+
+impl RateAndState {
+    /// The law with its parameters checked; `default_alpha_t` serves where they give no `alpha_t`.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`] when a parameter is out of its range.
+    pub fn new(parameters: &RateAndStateParameters, default_alpha_t: f64) -> Result<Self, InvalidParameter> {
+        let RateAndStateParameters { f_0, reference_rate, a, b, critical_slip, evolution, .. } = *parameters;
+        let alpha_t = parameters.alpha_t.unwrap_or(default_alpha_t);
+        require_positive("f_0", f_0)?;
+        require_positive("V_0", reference_rate)?;
+        require_positive("a", a)?;
+        require_not_negative("b", b)?;
+        require_positive("D_c", critical_slip)?;
+        require_positive("alpha_t", alpha_t)?;
+        let theta = parameters.theta.unwrap_or(critical_slip / reference_rate);
+        require_positive("theta", theta)?;
+        let coefficients = Coefficients { f_0, reference_rate, a, b, critical_slip, evolution, alpha_t };
+        Ok(Self { coefficients, initial_theta: theta, has_theta: parameters.theta.is_some(), is_controlled: false })
+    }
+
+    /// Whether slip at the end of an increment outweighs ageing, V θ/D_c ≥ ½.
+    fn slips(&self, slip: f64, theta: f64, dt: f64) -> bool {
+        slip * theta >= OUTWEIGHS * self.coefficients.critical_slip * dt
+    }
+
+    /// One increment of first order, and where its equation is solved if it has one.
+    fn relax(&self, old: &FrictionState, sliding: Sliding) -> Result<(FrictionResponse, Option<Relaxed>), LawFailure> {
+        let law = &self.coefficients;
+        let alpha_t = law.alpha_t;
+        let Sliding { slip, pressure, dt } = sliding.checked()?;
+        let trial = old.traction + alpha_t * slip;
+        if !trial.is_finite() {
+            return Err(LawFailure::Overflow { traction: trial });
+        }
+        let log_state = law.log_state(old.variables[0]);
+        let relaxation = Relaxation { law, trial: trial.abs(), pressure, dt, log_state };
+        if dt == 0.0 || pressure <= 0.0 || trial == 0.0 {
+            // No time to slip in, or nothing to slip for.
+            let aged = |theta| if dt == 0.0 { theta } else { law.theta(relaxation.log_state_after(0.0).0) };
+            let old = old.with_variables([aged(old.variables[0])]);
+            if pressure <= 0.0 {
+                return Ok((FrictionResponse::elastic(old.parted(alpha_t), 0.0).checked(alpha_t)?, None));
+            }
+            let softness =
+                if dt == 0.0 { 0.0 } else { alpha_t / relaxation.outcome(0.0).slope.max(LEAST_SLOPE * alpha_t) };
+            let stuck = FrictionResponse::elastic(old.stuck(trial, pressure), alpha_t * (1.0 - softness));
+            return Ok((stuck.checked(alpha_t)?, None));
+        }
+        let (found, evaluations) = relaxation.solve()?;
+        let traction = trial.signum() * found.traction.min(trial.abs());
+        // What (2) asks at the start for the slip rate of the increment
+        let rate_share = (trial.abs() - traction.abs()) / alpha_t / (2.0 * law.reference_rate * dt);
+        let before = law.a * old.pressure * arsinh_of_exp(rate_share.ln() + law.psi(log_state) / law.a).0;
+        let elastic = [trial.signum() * old.traction, trial.abs()];
+        let mean = 0.5 * (traction_at_yield(elastic, [before, traction.abs()]) + traction.abs());
+        let softness = alpha_t / found.slope.max(LEAST_SLOPE * alpha_t);
+        let theta = law.theta(found.log_state);
+        let state = old.slid(trial, traction, mean, pressure, alpha_t).with_variables([theta]);
+        let slips = self.slips(state.plastic_increment.abs(), theta, dt);
+        let response = FrictionResponse {
+            state: FrictionState { regime: if slips { Regime::Slip } else { Regime::Stick }, ..state },
+            dtraction_dslip: alpha_t * (1.0 - softness),
+            dtraction_dpressure: traction / pressure * softness,
+            evaluations,
+            ..Default::default()
+        };
+        Ok((response.checked(alpha_t)?, Some(found)))
+    }
+}
+
+/// V θ/D_c from which a point slips.
+const OUTWEIGHS: f64 = 0.5;
+
+/// x = ln(V₀ θ/D_c), ψ = f₀ + b x.
+///
+/// ```text
+/// a p z + 2 V₀ η e^(−ψ/a) sinh z = |τ|,   V = 2 V₀ e^(−ψ/a) sinh z          rising and convex in z = |q|/(a p)
+/// ẋ = (V₀ e⁻ˣ − V)/D_c   or   ẋ = −V/D_c (x + ln(V/V₀))
+/// ```
+impl RateLaw for RateAndState {
+    fn slip_rate(&self, x: f64, Loading { traction, pressure, damping }: Loading) -> f64 {
+        let Coefficients { a, reference_rate, .. } = self.coefficients;
+        if traction == 0.0 {
+            return 0.0;
+        }
+        let exponent = self.coefficients.psi(x) / a;
+        // V over its scale |τ|/η, as a function of z, and the share of the traction that friction takes
+        let log_share = (2.0 * reference_rate * damping / traction.abs()).ln() - exponent;
+        let friction = a * pressure / traction.abs();
+        let sinh = |z: f64| {
+            if z > LARGE { 0.5 * (z + log_share).exp() } else { z.sinh() * log_share.exp() }
+        };
+        let cosh = |z: f64| {
+            if z > LARGE { 0.5 * (z + log_share).exp() } else { z.cosh() * log_share.exp() }
+        };
+        // Both terms alone bound z from above, and from above Newton's method descends to the root.
+        let mut z = arsinh_of_exp(-log_share).0.min(1.0 / friction);
+        for _ in 0..MOST_STEPS {
+            let step = (friction * z + sinh(z) - 1.0) / (friction + cosh(z));
+            z -= step;
+            if step.abs() <= f64::EPSILON * z {
+                break;
+            }
+        }
+        let rate = if z > LARGE {
+            reference_rate * (z - exponent).exp()
+        } else {
+            2.0 * reference_rate * z.sinh() * (-exponent).exp()
+        };
+        traction.signum() * rate
+    }
+
+    fn evolution(&self, x: f64, slip_rate: f64) -> f64 {
+        let Coefficients { reference_rate, critical_slip, evolution, .. } = self.coefficients;
+        let rate = slip_rate.abs();
+        match evolution {
+            StateEvolution::Ageing => (reference_rate * (-x).exp() - rate) / critical_slip,
+            StateEvolution::Slip if rate == 0.0 => 0.0,
+            StateEvolution::Slip => -rate / critical_slip * (x + (rate / reference_rate).ln()),
+        }
+    }
+
+    fn evolving(&self, state: &FrictionState) -> f64 {
+        self.coefficients.log_state(state.variables[0])
+    }
+
+    fn remember(&self, x: f64, state: FrictionState) -> FrictionState {
+        state.with_variables([self.coefficients.theta(x)])
+    }
+
+    fn weight(&self) -> f64 {
+        self.coefficients.b
+    }
+
+    fn regime(&self, x: f64, slip_rate: f64) -> Regime {
+        let theta = self.coefficients.theta(x);
+        let slips = slip_rate.abs() * theta >= OUTWEIGHS * self.coefficients.critical_slip;
+        if slips { Regime::Slip } else { Regime::Stick }
+    }
+}
+
+/// z from which sinh z is ½ eᶻ.
+const LARGE: f64 = 20.0;
+
+/// Newton's method gains digits by the square; this many steps are never taken.
+const MOST_STEPS: usize = 60;
+
+impl FrictionLaw for RateAndState {
+    fn initial_state(&self) -> FrictionState {
+        FrictionState::default().with_variables([self.initial_theta])
+    }
+
+    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
+        if !self.is_controlled || sliding.checked()?.dt == 0.0 {
+            return Ok(self.relax(old, sliding)?.0);
+        }
+        let by = |slip| Direction { slip, ..Direction::default() };
+        Ramp::new(self, old, sliding, [by(1.0), by(0.0)], [0.0, 1.0]).answer()
+    }
+
+    fn controlled(&self) -> Option<Box<dyn FrictionLaw>> {
+        Some(Box::new(Self { is_controlled: true, ..*self }))
+    }
+
+    fn stiffness(&self) -> f64 {
+        self.coefficients.alpha_t
+    }
+
+    fn weakening(&self) -> f64 {
+        self.coefficients.b / self.coefficients.critical_slip
+    }
+
+    fn rates(&self) -> Option<&dyn RateLaw> {
+        Some(self)
+    }
+
+    fn sensitivities(&self) -> Option<&dyn SensitiveLaw> {
+        Some(self)
+    }
+
+    fn variables(&self) -> &'static [&'static str] {
+        &["theta"]
+    }
+
+    fn observables(&self) -> &'static [&'static str] {
+        &["R", "mu", "theta"]
+    }
+
+    fn observe(&self, name: &str, state: &FrictionState) -> Option<f64> {
+        let psi = || self.coefficients.psi(self.coefficients.log_state(state.variables[0]));
+        match name {
+            "R" => Some(state.ratio(psi())),
+            "mu" => Some(psi()),
+            "theta" => Some(state.variables[0]),
+            _ => None,
+        }
+    }
+}
+
+/// Error of a sub-step in |q| and in the mean of q over the slip, relative to f₀ p, and in (a + b) ln θ, relative to f₀: the
+/// errors of several, and of what they start from, come to at most 1e-6.
+const TOLERANCE: f64 = 2e-7;
+
+/// An increment is so many of the shortest sub-steps.
+const WHOLE: u64 = 1 << 40;
+
+/// Sub-steps this short may hold a snap, if slip and pressure do next to nothing in them ...
+const SHORT: u64 = 1 << 10;
+
+/// ... which is to change tractions by at most this share of the tolerance.
+const SNAP: f64 = 1e-3;
+
+/// Attempts at sub-steps after which the increment is given up: it is far too long.
+const MOST_ATTEMPTS: usize = 20_000;
+
+/// A sub-step is taken by 1, 2, ... and at most so many increments of first order.
+const MOST_ROWS: usize = 4;
+
+/// Errors of 2, 3 and 4 rows, in tolerances, above which further rows will not do.
+const HOPELESS: [f64; MOST_ROWS] = [f64::INFINITY, 1e4, 1e2, 1.0];
+
+/// An error below this, in tolerances, lets the next sub-step be twice as long.
+const DOUBLED: f64 = 0.1;
+
+/// Errors below this, relative to what they come from, are round-off.
+const NOISE: f64 = 2e-13;
+
+/// A fall of |q|/(a p) that the rows of a sub-step resolve.
+const RESOLVED: f64 = 2.0;
+
+/// q, ln θ, plastic slip, and the work ∫ q du = W + q²/(2 α_t)
+type Values = [f64; 4];
+
+/// d(q, ln θ) along two directions
+type Derivatives = [[f64; 2]; 2];
+
+/// What is extrapolated.
+#[derive(Clone, Copy)]
+struct Entry {
+    values: Values,
+    derivatives: Derivatives,
+}
+
+/// Where a path is, and how that varies.
+#[derive(Clone, Copy)]
+struct Station {
+    state: FrictionState,
+    variations: [Variation; 2],
+}
+
+/// An increment whose slip and pressure are linear in time.
+struct Ramp<'a> {
+    law: &'a RateAndState,
+    start: Station,
+    sliding: Sliding,
+    /// Directions along which slip, pressure and a parameter vary
+    directions: [Direction; 2],
+    dpressure: [f64; 2],
+    /// Evaluations of the law's equation so far
+    evaluations: usize,
+}
+
+impl<'a> Ramp<'a> {
+    fn new(
+        law: &'a RateAndState,
+        old: &FrictionState,
+        sliding: Sliding,
+        directions: [Direction; 2],
+        dpressure: [f64; 2],
+    ) -> Self {
+        let start = Station { state: *old, variations: directions.map(|by| by.state) };
+        Self { law, start, sliding, directions, dpressure, evaluations: 0 }
+    }
+
+    /// The answer at the end of the increment, the directions being those of the consistent tangent.
+    fn answer(mut self) -> Answer {
+        let old = self.start.state;
+        let Station { state, variations } = self.end()?;
+        let regime = match state.pressure > 0.0 {
+            true => RateLaw::regime(self.law, self.law.evolving(&state), self.rate(&state)),
+            false => Regime::Open,
+        };
+        FrictionResponse {
+            state: FrictionState { plastic_increment: state.plastic_slip - old.plastic_slip, regime, ..state },
+            dtraction_dslip: variations[0].traction,
+            dtraction_dpressure: variations[1].traction,
+            evaluations: self.evaluations,
+            ..Default::default()
+        }
+        .checked(self.law.stiffness())
+    }
+
+    /// How the state at the end varies.
+    ///
+    /// # Errors
+    /// As of the answer.
+    fn variations(mut self) -> Result<[Variation; 2], LawFailure> {
+        Ok(self.end()?.variations)
+    }
+
+    fn rate(&self, state: &FrictionState) -> f64 {
+        let loading = Loading { traction: state.traction, pressure: state.pressure, damping: 0.0 };
+        self.law.slip_rate(self.law.evolving(state), loading)
+    }
+
+    /// The end: sub-steps are halved until their error is below the tolerance, and doubled where it allows.
+    fn end(&mut self) -> Result<Station, LawFailure> {
+        let (mut station, mut at, mut step) = (self.start, 0, WHOLE);
+        for _ in 0..MOST_ATTEMPTS {
+            let (next, error) = match self.extrapolated(&station, at, step) {
+                Ok(found) => found,
+                Err(_) if step > 1 => {
+                    step /= 2;
+                    continue;
+                }
+                Err(failure) => return Err(failure),
+            };
+            let snaps = step <= SHORT && self.drive(&station, step) <= SNAP;
+            if error > 1.0 && !snaps || error.is_nan() {
+                if step == 1 {
+                    break;
+                }
+                step /= 2;
+                continue;
+            }
+            (station, at) = (next, at + step);
+            if at == WHOLE {
+                return Ok(station);
+            }
+            if (error <= DOUBLED || snaps) && at % (2 * step) == 0 {
+                step *= 2;
+            }
+        }
+        let trial = (station.state.traction + self.law.stiffness() * self.sliding.slip * share(step)).abs();
+        Err(LawFailure::NotConverged { evaluations: self.evaluations, rest: trial, trial })
+    }
+
+    /// Most that slip and pressure change tractions by over a sub-step without a snap, in tolerances.
+    fn drive(&self, from: &Station, step: u64) -> f64 {
+        let change = self.law.stiffness() * self.sliding.slip.abs()
+            + self.law.coefficients.f_0 * (self.sliding.pressure - self.start.state.pressure).abs();
+        let most = self.sliding.pressure.max(from.state.pressure);
+        share(step) * change / (TOLERANCE * self.law.coefficients.f_0 * most)
+    }
+
+    /// The end of a sub-step, and its error in tolerances.
+    ///
+    /// ```text
+    /// T_j1: the sub-step by j increments of first order,   T_j,k+1 = T_jk + (T_jk − T_j−1,k)/(j/(j − k) − 1)
+    /// ```
+    /// T_jj is of the order j, and its difference to T_j,j−1 bounds its error. Where the sub-step snaps nothing is to be
+    /// extrapolated: the answer of the finest row is taken.
+    ///
+    /// Source: Deuflhard (1985), SIAM Review 27, 505; Hairer & Wanner, Solving Ordinary Differential Equations II, IV.9.
+    fn extrapolated(&mut self, from: &Station, at: u64, step: u64) -> Result<(Station, f64), LawFailure> {
+        let (mut rows, mut error): (Vec<Entry>, f64) = (Vec::with_capacity(MOST_ROWS), f64::INFINITY);
+        let mut fine = *from;
+        for j in 1..=MOST_ROWS {
+            fine = self.increments(from, at, step, j)?;
+            let mut entry = self.entry(&fine);
+            let mut row = vec![entry];
+            for (k, above) in rows.iter().enumerate() {
+                let factor = 1.0 / (j as f64 / (j - k - 1) as f64 - 1.0);
+                error = self.error(&entry, above, factor, [from, &fine], step);
+                entry = entry.beyond(above, factor);
+                row.push(entry);
+            }
+            rows = row;
+            if j > 1 && error <= 1.0 {
+                return Ok((self.station(&entry, fine), error));
+            }
+            if error > HOPELESS[j - 1] && step > SHORT {
+                break;
+            }
+        }
+        Ok((fine, error))
+    }
+
+    /// A sub-step by so many increments.
+    fn increments(&mut self, from: &Station, at: u64, step: u64, count: usize) -> Result<Station, LawFailure> {
+        let Sliding { slip, pressure, dt } = self.sliding;
+        let first = self.start.state.pressure;
+        let mut station = *from;
+        for i in 1..=count {
+            let part = share(step) / count as f64;
+            let x = if i == count { share(at + step) } else { share(at) + i as f64 * part };
+            let sliding = Sliding { slip: slip * part, pressure: (1.0 - x) * first + x * pressure, dt: dt * part };
+            let directions = [0, 1].map(|k| {
+                let Direction { slip, parameter, .. } = self.directions[k];
+                Direction { state: station.variations[k], slip: slip * part, parameter }
+            });
+            let dpressure = self.dpressure.map(|dpressure| x * dpressure);
+            let (answer, variations) = self.law.increment(&station.state, sliding, directions, dpressure)?;
+            self.evaluations += answer.evaluations;
+            station = Station { state: answer.state, variations };
+        }
+        Ok(station)
+    }
+
+    fn entry(&self, Station { state, variations }: &Station) -> Entry {
+        let (traction, theta) = (state.traction, state.variables[0]);
+        let work = state.dissipation + 0.5 * traction * traction / self.law.stiffness();
+        Entry {
+            values: [traction, theta.ln(), state.plastic_slip, work],
+            derivatives: variations.map(|by| [by.traction, by.variables[0] / theta]),
+        }
+    }
+
+    /// The station at the end of a sub-step that an entry stands for; `fine` is there too.
+    fn station(&self, entry: &Entry, fine: Station) -> Station {
+        let [traction, log_theta, plastic_slip, work] = entry.values;
+        let theta = log_theta.exp();
+        let stored = 0.5 * traction * traction / self.law.stiffness();
+        let state = FrictionState { traction, plastic_slip, dissipation: work - stored, ..fine.state };
+        let variations = entry.derivatives.map(|[traction, log]| Variation::new(traction, theta * log));
+        Station { state: state.with_variables([theta]), variations }
+    }
+
+    /// How much further the next extrapolation goes, in tolerances.
+    fn error(&self, entry: &Entry, above: &Entry, factor: f64, [from, to]: [&Station; 2], step: u64) -> f64 {
+        let law = &self.law.coefficients;
+        let [traction, log_theta, _, work] = [0, 1, 2, 3].map(|i| factor * (entry.values[i] - above.values[i]).abs());
+        let strength = law.f_0 * from.state.pressure.max(to.state.pressure);
+        let slip = self.sliding.slip.abs() * share(step) + (to.state.plastic_slip - from.state.plastic_slip).abs();
+        let loaded = law.alpha_t * self.sliding.slip.abs() * share(step);
+        let noise = NOISE / TOLERANCE;
+        let overlooked = self.overlooked(&from.state, &to.state, step);
+        let parts = [
+            [traction + law.alpha_t * overlooked, strength + noise * loaded],
+            [(law.a + law.b) * (log_theta + overlooked / law.critical_slip), law.f_0],
+            [work, strength * slip + noise * entry.values[3].abs()],
+        ];
+        // What is exactly 0 is right, whatever it is compared with.
+        let shares = parts.map(|[part, of]| if part == 0.0 { 0.0 } else { part / (TOLERANCE * of) });
+        if shares.iter().any(|share| share.is_nan()) { f64::NAN } else { shares.into_iter().fold(0.0, f64::max) }
+    }
+}
+
+impl Ramp<'_> {
+    /// Slip at the beginning of a sub-step that unloads so much that none of its rows sees it: V decays by |q|/(a p).
+    fn overlooked(&self, from: &FrictionState, to: &FrictionState, step: u64) -> f64 {
+        if from.pressure <= 0.0 || to.pressure <= 0.0 {
+            return 0.0;
+        }
+        let level = |state: &FrictionState| state.traction / (self.law.coefficients.a * state.pressure);
+        let fall = (level(from) - level(to)) * from.traction.signum();
+        if fall > RESOLVED { self.rate(from).abs() * self.sliding.dt * share(step) / fall } else { 0.0 }
+    }
+}
+
+impl Entry {
+    fn beyond(&self, above: &Self, factor: f64) -> Self {
+        let beyond = |fine: f64, coarse: f64| fine + factor * (fine - coarse);
+        let values = [0, 1, 2, 3].map(|i| beyond(self.values[i], above.values[i]));
+        let derivatives = [0, 1].map(|k| [0, 1].map(|i| beyond(self.derivatives[k][i], above.derivatives[k][i])));
+        Self { values, derivatives }
+    }
+}
+
+fn share(of: u64) -> f64 {
+    of as f64 / WHOLE as f64
+}

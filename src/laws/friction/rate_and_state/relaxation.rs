@@ -1,0 +1,297 @@
+//! The equation of an increment of rate-and-state friction, and its smallest root.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::laws::friction::LawFailure;
+use crate::laws::friction::root::{Argument, bracketed_root};
+
+/// Evolution of the state θ of rate-and-state friction.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum StateEvolution {
+    /// Ageing law, θ̇ = 1 − V θ/D_c: heals at rest
+    #[default]
+    Ageing,
+    /// Slip law, θ̇ = −(V θ/D_c) ln(V θ/D_c): evolves by slip alone
+    Slip,
+}
+
+/// What friction follows from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Coefficients {
+    pub f_0: f64,
+    pub reference_rate: f64,
+    pub a: f64,
+    pub b: f64,
+    pub critical_slip: f64,
+    pub evolution: StateEvolution,
+    pub alpha_t: f64,
+}
+
+impl Coefficients {
+    /// ln(V₀ θ/D_c)
+    pub(super) fn log_state(&self, theta: f64) -> f64 {
+        (self.reference_rate * theta / self.critical_slip).ln()
+    }
+
+    /// θ of a ln(V₀ θ/D_c) [T]
+    pub(super) fn theta(&self, log_state: f64) -> f64 {
+        log_state.exp() * self.critical_slip / self.reference_rate
+    }
+
+    /// ψ of a ln(V₀ θ/D_c) [-]
+    pub(super) fn psi(&self, log_state: f64) -> f64 {
+        self.f_0 + self.b * log_state
+    }
+}
+
+/// G is right to this share of |q_tr|.
+const PRECISION: f64 = 1e-14;
+
+/// Most pieces of the bracket that are examined for the first root; many only where two roots are about to merge.
+const MOST_PIECES: usize = 1000;
+
+/// Pieces of the bracket of ln Δλ narrower than this hold roots that cannot be told apart.
+const LEAST_PIECE: f64 = 1e-13;
+
+/// Exponents above it would overflow.
+const MOST_EXPONENT: f64 = 700.0;
+
+/// One increment with a traction to relax: G over Δλ.
+pub(super) struct Relaxation<'a> {
+    pub law: &'a Coefficients,
+    /// |q_tr| > 0
+    pub trial: f64,
+    pub pressure: f64,
+    /// Δt > 0
+    pub dt: f64,
+    /// ln(V₀ θ₀/D_c)
+    pub log_state: f64,
+}
+
+/// What an increment comes to if it slips by Δλ.
+#[derive(Clone, Copy)]
+pub(super) struct Relaxed {
+    /// Δλ [L]
+    pub slip: f64,
+    /// ln Δλ, from that of the largest slip down
+    log: f64,
+    /// w: |q| = a p arsinh(eʷ)
+    pub log_sinh: f64,
+    /// G [F/L²]
+    excess: f64,
+    /// −∂G/∂Δλ [F/L³]
+    pub slope: f64,
+    /// ln(V₀ θ/D_c) at the end
+    pub log_state: f64,
+    /// |q| of (2) [F/L²]
+    pub traction: f64,
+}
+
+impl Relaxation<'_> {
+    /// ln(V₀ θ/D_c) at the end after Δλ, and its derivative by Δλ.
+    pub(super) fn log_state_after(&self, slip: f64) -> (f64, f64) {
+        let Coefficients { reference_rate, critical_slip, evolution, .. } = *self.law;
+        let x = slip / critical_slip;
+        let decay = (-x).exp();
+        // (1 − e⁻ˣ)/x and its derivative
+        let share = if x > 0.0 { -(-x).exp_m1() / x } else { 1.0 };
+        let dshare = if x > 1e-4 { (decay - share) / x } else { -0.5 + x / 3.0 };
+        let (log, dlog) = match evolution {
+            StateEvolution::Ageing => {
+                let time = self.dt * reference_rate / critical_slip;
+                let grown = self.log_state.exp() * decay;
+                let state = grown + time * share;
+                (state.ln(), (time * dshare - grown) / state)
+            }
+            StateEvolution::Slip if slip == 0.0 => (self.log_state, 0.0),
+            StateEvolution::Slip => {
+                let steady = (reference_rate * self.dt).ln() - slip.ln();
+                let log = self.log_state * decay + steady * x * share;
+                (log, decay * (steady - self.log_state) - share)
+            }
+        };
+        (log, dlog / critical_slip)
+    }
+
+    /// What it comes to after Δλ.
+    pub(super) fn outcome(&self, slip: f64) -> Relaxed {
+        let Coefficients { a, b, reference_rate, alpha_t, .. } = *self.law;
+        let (log_state, dlog_state) = self.log_state_after(slip);
+        let (psi, dpsi) = (self.law.psi(log_state), b * dlog_state);
+        let fastness = 0.5 / (reference_rate * self.dt);
+        let w = slip.ln() + fastness.ln() + psi / a;
+        let (arsinh, rate) = arsinh_of_exp(w);
+        let traction = a * self.pressure * arsinh;
+        let direct = if slip > 0.0 { rate / slip } else { fastness * (psi / a).exp() };
+        let slope = alpha_t + self.pressure * (a * direct + rate * dpsi);
+        let excess = self.trial - alpha_t * slip - traction;
+        Relaxed { slip, log: 0.0, log_sinh: w, excess, slope, log_state, traction }
+    }
+
+    /// Bound of Δλ ∂ψ/∂Δλ for all slips up to this one: healing within the increment, of which the slip law knows some.
+    /// With y = V θ₀/D_c it is x ln(1/y), which rises up to y = 1/e.
+    fn healing(&self, slip: f64) -> f64 {
+        let Coefficients { b, reference_rate, critical_slip, evolution, .. } = *self.law;
+        if evolution == StateEvolution::Ageing {
+            return 0.0;
+        }
+        let log_y = slip.ln() - (reference_rate * self.dt).ln() + self.log_state;
+        let at = log_y.min(-1.0);
+        b * self.dt * reference_rate / critical_slip * -at * (at - self.log_state).min(MOST_EXPONENT).exp()
+    }
+
+    /// Bounds of ∂ψ/∂ln Δλ between two slips: from the monotony of its parts, and exact where the slips are the same.
+    ///
+    /// ```text
+    /// ageing:  −b (c + g (x − c)),  c = 1 − x/(eˣ − 1),  g = θ₀ e⁻ˣ/θ₁     x, c and x − c rise with x, g falls
+    /// slip:    b (x e⁻ˣ ln(D_c/V θ₀) − (1 − e⁻ˣ))                           ln(D_c/V θ₀) falls with x
+    /// ```
+    fn effect_bounds(&self, low: f64, high: f64) -> [f64; 2] {
+        let Coefficients { b, reference_rate, critical_slip, evolution, .. } = *self.law;
+        let x = [low / critical_slip, high / critical_slip];
+        let time = self.dt * reference_rate / critical_slip;
+        let [less, more] = match evolution {
+            StateEvolution::Ageing => {
+                let fresh = x.map(|x| if x < 1e-4 { 0.5 * x * (1.0 - x / 6.0) } else { 1.0 - x / x.exp_m1() });
+                let grown = x.map(|x| {
+                    let share = if x > 0.0 { -(-x).exp_m1() / x } else { 1.0 };
+                    let old = self.log_state.exp() * (-x).exp();
+                    if old > 0.0 { old / (old + time * share) } else { 0.0 }
+                });
+                let gone = |at: usize, grown: f64| fresh[at] + grown * (x[at] - fresh[at]).max(0.0);
+                [-gone(1, grown[0]), -gone(0, grown[1])]
+            }
+            StateEvolution::Slip => {
+                let slower = [low, high].map(|slip| (reference_rate * self.dt).ln() - slip.ln() - self.log_state);
+                let [at_low, at_high] = x.map(|x| x * (-x).exp());
+                // x e⁻ˣ has its maximum at 1.
+                let most = if x[0] < 1.0 && 1.0 < x[1] { (-1.0f64).exp() } else { at_low.max(at_high) };
+                let least = at_low.min(at_high);
+                let healed = [
+                    slower[1] * if slower[1] > 0.0 { least } else { most },
+                    slower[0] * if slower[0] > 0.0 { most } else { least },
+                ];
+                [healed[0] + (-x[1]).exp_m1(), healed[1] + (-x[0]).exp_m1()]
+            }
+        };
+        [b * less, b * more]
+    }
+
+    /// Bounds of −∂G/∂ln Δλ between two slips.
+    fn fall_bounds(&self, low: &Relaxed, high: &Relaxed) -> [f64; 2] {
+        let Coefficients { a, alpha_t, .. } = *self.law;
+        let [less, more] = self.effect_bounds(low.slip, high.slip).map(|effect| a + effect);
+        // w grows with ln Δλ by (a + ∂ψ/∂ln Δλ)/a.
+        let way = (high.log - low.log) / a;
+        let least = (low.log_sinh + way * less.min(0.0)).max(high.log_sinh - way * more.max(0.0));
+        let most = (low.log_sinh + way * more.max(0.0)).min(high.log_sinh - way * less.min(0.0));
+        let [slow, fast] = [least, most].map(|w| arsinh_of_exp(w).1);
+        [
+            alpha_t * low.slip + self.pressure * less * if less > 0.0 { slow } else { fast },
+            alpha_t * high.slip + self.pressure * more * if more > 0.0 { fast } else { slow },
+        ]
+    }
+
+    /// Whether G falls throughout.
+    fn is_monotone(&self) -> bool {
+        let Coefficients { b, reference_rate, critical_slip, alpha_t, evolution, .. } = *self.law;
+        let fastest = match evolution {
+            StateEvolution::Ageing => 0.0,
+            StateEvolution::Slip => (self.trial / (alpha_t * reference_rate * self.dt)).ln() + self.log_state,
+        };
+        alpha_t > self.pressure * b / critical_slip * (1.0 + fastest.max(0.0))
+    }
+
+    /// A slip that is surely not beyond the first root: neither the contact nor (2) takes more than half of |q_tr|.
+    fn least(&self) -> f64 {
+        let Coefficients { a, reference_rate, alpha_t, .. } = *self.law;
+        let half = 0.5 * self.trial;
+        let level = half / (a * self.pressure);
+        let log_sinh = if level > 20.0 { level - std::f64::consts::LN_2 } else { level.sinh().ln() };
+        let psi = self.law.psi(self.log_state_after(0.0).0);
+        let reached = |healing: f64| {
+            let log = (2.0 * reference_rate * self.dt).ln() - (psi + healing) / a + log_sinh;
+            log.min((half / alpha_t).ln())
+        };
+        // Healing up to a slip rises with the slip: halve towards the largest that still holds.
+        let (mut low, mut high) = (f64::MIN_POSITIVE.ln(), reached(0.0));
+        while high - low > 1.0 {
+            let middle = 0.5 * (low + high);
+            let holds = reached(self.healing(middle.exp())) >= middle;
+            if holds { low = middle } else { high = middle }
+        }
+        low.exp()
+    }
+
+    /// The smallest root, and the evaluations it took.
+    ///
+    /// # Errors
+    /// [`LawFailure::NotConverged`] when it is not found.
+    pub(super) fn solve(&self) -> Result<(Relaxed, usize), LawFailure> {
+        let (least, most) = (self.least().max(f64::MIN_POSITIVE), self.trial / self.law.alpha_t);
+        let mut evaluations = 0;
+        // By the logarithm of Δλ, in which (2) is nearly linear; from the largest down, so that round-off is least.
+        let mut at = |log: f64| {
+            evaluations += 1;
+            Relaxed { log, ..self.outcome(most * log.exp()) }
+        };
+        let mut found = at(least.ln() - most.ln());
+        let enough = PRECISION * self.trial;
+        if found.excess <= enough {
+            return Ok((found, evaluations));
+        }
+        let bracket = if self.is_monotone() { Some((found.log, 0.0)) } else { self.first_root_bracket(found, &mut at) };
+        let Some(bracket) = bracket else {
+            return Err(LawFailure::NotConverged { evaluations, rest: found.excess, trial: self.trial });
+        };
+        bracketed_root(bracket, bracket.0, |log| {
+            found = at(log);
+            let step = found.excess / (found.slope * found.slip).max(f64::MIN_POSITIVE);
+            Argument { value: found.excess, step, done: found.excess.abs() <= enough }
+        });
+        Ok((found, evaluations))
+    }
+
+    /// Two logarithms of Δλ that hold that of the smallest root between them, and no other unless they cannot be told
+    /// apart; none if it is not to be found.
+    ///
+    /// Pieces are examined from the left with bounds D₋ ≤ −∂G/∂ln Δλ ≤ D₊ on each: a piece holds one root or none if
+    /// D₋ > 0, none if G stays positive between the lines of slope −D₊ from its left end and −D₋ from its right, and is
+    /// halved otherwise. G changes with the square of the distance from where two roots merge, so that some dozens of
+    /// pieces tell whether they have.
+    fn first_root_bracket(&self, mut left: Relaxed, at: &mut impl FnMut(f64) -> Relaxed) -> Option<(f64, f64)> {
+        let mut right = at(0.0);
+        for _ in 0..MOST_PIECES {
+            let way = right.log - left.log;
+            let [least_fall, most_fall] = self.fall_bounds(&left, &right);
+            let narrow = way <= LEAST_PIECE * (1.0 + left.log.abs());
+            if right.excess <= 0.0 && (least_fall > 0.0 || narrow) {
+                return Some((left.log, right.log));
+            }
+            let crossing_needs = left.excess / most_fall.max(0.0) + right.excess / (-least_fall).max(0.0);
+            let rootless = right.excess > 0.0 && (least_fall > 0.0 || crossing_needs > way);
+            if rootless || narrow {
+                if right.log >= 0.0 {
+                    return Some((left.log, 0.0)); // but for round-off G is not positive there
+                }
+                let next = (right.log + 2.0 * way).min(0.0);
+                left = right;
+                right = at(next);
+            } else {
+                right = at(left.log + 0.5 * way);
+            }
+        }
+        None
+    }
+}
+
+/// arsinh(eʷ) and its derivative by w, without eʷ where it would overflow.
+pub(super) fn arsinh_of_exp(w: f64) -> (f64, f64) {
+    if w > 20.0 {
+        return (w + std::f64::consts::LN_2, 1.0);
+    }
+    let sinh = w.exp();
+    (sinh.asinh(), sinh / sinh.hypot(1.0))
+}

@@ -1,0 +1,477 @@
+//! One sub-step of an increment along linear paths of slip, pressure and time.
+//!
+//! # Plastic slip
+//!
+//! The scalar equation of plastic slip, and its smallest root.
+
+use super::approach::{Reach, SlidingCurve};
+use super::peak::{Peak, PeakEvolution, Shift};
+use crate::laws::friction::root::{Argument, bracketed_root};
+use crate::laws::friction::{LEAST_SLOPE, LawFailure, STEEPEST};
+
+/// Derivatives along two directions of what an answer depends on.
+pub(super) type Derivative = [f64; 2];
+
+/// How what an answer depends on varies along the two directions.
+#[derive(Clone, Copy)]
+pub(super) struct Directions {
+    /// of Δu
+    pub slip: Derivative,
+    /// of p at the end
+    pub pressure: Derivative,
+    /// of q at the start
+    pub traction: Derivative,
+    /// of μ at the start
+    pub mu: Derivative,
+    /// of the parameters, if they vary
+    pub parameters: Option<[Shift; 2]>,
+}
+
+impl Directions {
+    /// Δu and p: those of the consistent tangent.
+    pub(super) const TANGENT: Self =
+        Self { slip: [1.0, 0.0], pressure: [0.0, 1.0], traction: [0.0; 2], mu: [0.0; 2], parameters: None };
+}
+
+/// The part of an increment in which slip may be plastic, mirrored so that the traction does not become negative.
+///
+/// Along it slip, pressure and time are linear in x, 0 ≤ x ≤ 1.
+pub(super) struct LoadPath<'a> {
+    pub curve: &'a SlidingCurve,
+    pub evolution: &'a PeakEvolution,
+    /// α_t [F/L³]
+    pub alpha_t: f64,
+    /// Greatest error of the traction, relative to the static strength μ_s p [-]
+    pub tolerance: f64,
+    /// Slip from x = 0 to 1 [L]
+    pub slip: f64,
+    /// Derivatives of the slip
+    pub dslip: Derivative,
+    /// Pressures at x = 0 and 1 [F/L²]
+    pub pressures: [f64; 2],
+    /// Derivatives of the pressures
+    pub dpressures: [Derivative; 2],
+    /// Time from x = 0 to 1 [T]
+    pub time: f64,
+    /// Derivatives of the time
+    pub dtime: Derivative,
+    /// How the parameters vary, if they do
+    pub parameters: Option<[Shift; 2]>,
+    /// Evaluations of the slip equation so far
+    pub evaluations: usize,
+}
+
+/// A point of the path.
+#[derive(Clone, Copy)]
+pub(super) struct Station {
+    pub x: f64,
+    /// q ≥ 0 [F/L²]
+    pub traction: f64,
+    /// Derivatives of q
+    pub dtraction: Derivative,
+    /// μ [-]
+    pub mu: f64,
+    /// Derivatives of μ
+    pub dmu: Derivative,
+    /// R and where it is on its curve
+    pub reach: Reach,
+    /// Plastic slip since the start of the path [L]
+    pub plastic_slip: f64,
+    /// Work dissipated since the start of the path [F/L]
+    pub work: f64,
+    /// Bound of the traction lost by plastic slip that an elastic sub-step has overlooked [F/L²]
+    pub overlooked: f64,
+}
+
+impl LoadPath<'_> {
+    /// The beginning of the path.
+    pub(super) fn start(
+        &self,
+        (traction, dtraction): (f64, Derivative),
+        (mu, dmu): (f64, Derivative),
+        ratio: f64,
+    ) -> Station {
+        let reach = self.curve.start(ratio);
+        let (plastic_slip, work, overlooked) = (0.0, 0.0, 0.0);
+        Station { x: 0.0, traction, dtraction, mu, dmu, reach, plastic_slip, work, overlooked }
+    }
+
+    /// One sub-step.
+    #[inline]
+    pub(super) fn advance(&mut self, from: &Station, x: f64) -> Result<Station, LawFailure> {
+        let share = x - from.x;
+        let equation = SlipEquation {
+            curve: self.curve,
+            evolution: self.evolution,
+            alpha_t: self.alpha_t,
+            start: from.reach,
+            trial: from.traction + self.alpha_t * self.slip * share,
+            pressure: self.pressure(x),
+            old_mu: from.mu,
+            dt: self.time * share,
+        };
+        let (sticks, start) = equation.start();
+        if sticks {
+            return Ok(self.stick(from, x, equation.trial));
+        }
+        let (end, evaluations) = equation.solve(start)?;
+        self.evaluations += evaluations;
+        // The tangent leaves out what the last step of the search changes in it, which adds up over many increments.
+        let end = if self.parameters.is_some() { equation.settled(end) } else { end };
+        Ok(self.slide(from, x, &end))
+    }
+
+    /// A sub-step without plastic slip.
+    #[inline]
+    fn stick(&self, from: &Station, x: f64, trial: f64) -> Station {
+        let share = x - from.x;
+        let pressure = self.pressure(x);
+        // Only weakening that has taken the traction from under an unloading can leave it to reverse: it waits at 0.
+        let traction = trial.max(0.0);
+        let (mu, by_time) = self.evolution.rested(from.mu, self.time * share);
+        let old_rate = self.evolution.recovery(from.mu);
+        let by_old = if old_rate > 0.0 { by_time / old_rate } else { 1.0 };
+        let reach = self.curve.start(traction / (mu * pressure));
+        let rate = self.rate(traction, mu, pressure, &reach);
+        Station {
+            x,
+            traction,
+            dtraction: if trial > 0.0 { [0, 1].map(|i| self.dtrial(from, share, i)) } else { [0.0; 2] },
+            mu,
+            dmu: [0, 1].map(|i| match &self.parameters {
+                None => by_old * from.dmu[i] + by_time * share * self.dtime[i],
+                Some(shifts) => {
+                    let by = [from.dmu[i], share * self.dtime[i]];
+                    self.evolution.rested_by(from.mu, self.time * share, by, &shifts[i].peak)
+                }
+            }),
+            reach,
+            overlooked: self.alpha_t * rate * share,
+            ..*from
+        }
+    }
+
+    /// A sub-step with plastic slip.
+    #[inline]
+    fn slide(&self, from: &Station, x: f64, point: &Point) -> Station {
+        let share = x - from.x;
+        let (start_pressure, pressure) = (self.pressure(from.x), self.pressure(x));
+        let (reach, peak, slip) = (point.reach, point.peak, point.slip);
+        let traction = reach.ratio * peak.mu * pressure;
+        let per_slope = 1.0 / point.slope.max(LEAST_SLOPE * self.alpha_t);
+
+        // dR = U dλ + U/U₀ dR₀ along the curve of R
+        let given = from.x == 0.0 && self.parameters.is_none();
+        let begins = given || self.curve.begins_at(&from.reach) || from.reach.rate == 0.0;
+        let inherited = if begins { 0.0 } else { reach.rate / from.reach.rate / (from.mu * start_pressure) };
+        let derivatives = |i: usize| {
+            let dstart_pressure = self.dpressure(from.x)[i];
+            let dratio =
+                from.dtraction[i] - from.reach.ratio * (start_pressure * from.dmu[i] + from.mu * dstart_pressure);
+            let own = self.parameters.map_or([0.0; 3], |shifts| self.own(from, x, point, &shifts[i]));
+            let dtrial = self.dtrial(from, share, i) - own[0];
+            let dmu = peak.by_old * from.dmu[i] + peak.by_time * share * self.dtime[i] + own[1];
+            let dstrength = pressure * (peak.mu * inherited * dratio + peak.mu * own[2] + reach.ratio * dmu)
+                + reach.ratio * peak.mu * self.dpressure(x)[i];
+            let dslip = (dtrial - dstrength) * per_slope;
+            let limit = match self.parameters {
+                Some(_) => f64::INFINITY,
+                None if i == 0 => STEEPEST * self.alpha_t,
+                None => STEEPEST,
+            };
+            let dtraction = (dtrial - self.alpha_t * dslip).clamp(-limit, limit);
+            (dtraction, (dmu + peak.slope * dslip).clamp(-limit / pressure, limit / pressure))
+        };
+        let (dq_dslip, dmu_dslip) = derivatives(0);
+        let (dq_dpressure, dmu_dpressure) = derivatives(1);
+
+        let strengths = [from.mu * start_pressure, peak.mu * pressure];
+        let work = mean_traction(self.curve, [&from.reach, &reach], strengths, [from.traction, traction]) * slip;
+        Station {
+            x,
+            traction,
+            dtraction: [dq_dslip, dq_dpressure],
+            mu: peak.mu,
+            dmu: [dmu_dslip, dmu_dpressure],
+            reach,
+            plastic_slip: from.plastic_slip + slip,
+            work: from.work + work,
+            overlooked: 0.0,
+        }
+    }
+
+    /// Derivatives of the trial traction.
+    #[inline]
+    fn dtrial(&self, from: &Station, share: f64, i: usize) -> f64 {
+        let by_stiffness = self.parameters.map_or(0.0, |shifts| shifts[i].alpha_t * self.slip * share);
+        from.dtraction[i] + self.alpha_t * self.dslip[i] * share + by_stiffness
+    }
+
+    /// What parameters that vary add to α_t Δλ, μ and R after a given plastic slip from a given start.
+    fn own(&self, from: &Station, x: f64, point: &Point, by: &Shift) -> [f64; 3] {
+        let time = self.time * (x - from.x);
+        [
+            by.alpha_t * point.slip,
+            self.evolution.after_by(from.mu, point.slip, time, &by.peak),
+            self.curve.shifted(&from.reach, &point.reach, by),
+        ]
+    }
+
+    /// dλ/dx of the rate equations, 0 where R falls by itself or the answer is not unique.
+    #[inline]
+    fn rate(&self, traction: f64, mu: f64, pressure: f64, reach: &Reach) -> f64 {
+        if traction < reach.ratio * mu * pressure * (1.0 - ROUND_OFF) {
+            return 0.0; // inside the elastic core
+        }
+        let (weakening, recovery) = (self.evolution.weakening(mu), self.evolution.recovery(mu));
+        let drive = self.alpha_t * self.slip
+            - reach.ratio * (recovery * self.time * pressure + mu * (self.pressures[1] - self.pressures[0]));
+        let stiffness = self.alpha_t + pressure * (reach.rate * mu - reach.ratio * weakening);
+        if drive > 0.0 && stiffness > 0.0 { drive / stiffness } else { 0.0 }
+    }
+
+    /// p [F/L²]
+    pub(super) fn pressure(&self, x: f64) -> f64 {
+        (1.0 - x) * self.pressures[0] + x * self.pressures[1]
+    }
+
+    /// Derivatives of p
+    pub(super) fn dpressure(&self, x: f64) -> Derivative {
+        [0, 1].map(|i| (1.0 - x) * self.dpressures[0][i] + x * self.dpressures[1][i])
+    }
+}
+
+/// Mean of q over the plastic slip of a step: μ p is taken as linear in ∫ R dλ. Where the traction falls, it is itself taken
+/// as linear in λ, which it is where it snaps: the contact springs back, and what the strength does not take is lost too.
+pub(super) fn mean_traction(
+    curve: &SlidingCurve,
+    reaches: [&Reach; 2],
+    strengths: [f64; 2],
+    tractions: [f64; 2],
+) -> f64 {
+    let mean = |[start, end]: [f64; 2]| 0.5 * (start + end);
+    if tractions[1] < tractions[0] {
+        mean(tractions)
+    } else {
+        curve.mean_ratio(reaches[0], reaches[1]) * mean(strengths)
+    }
+}
+
+/// One step with plastic slip Δλ, in the direction of the trial traction:
+///
+/// ```text
+/// G(Δλ) = |q_tr| − α_t Δλ − R(Δλ) μ(Δλ) p = 0,   0 < Δλ ≤ |q_tr|/α_t
+/// D = −dG/dΔλ = α_t + p (U μ + R ∂μ/∂Δλ)
+/// ```
+pub(super) struct SlipEquation<'a> {
+    pub curve: &'a SlidingCurve,
+    pub evolution: &'a PeakEvolution,
+    /// α_t [F/L³]
+    pub alpha_t: f64,
+    /// Where plastic slip starts.
+    pub start: Reach,
+    /// |q_tr| [F/L²]
+    pub trial: f64,
+    /// p at the end [F/L²]
+    pub pressure: f64,
+    /// μ at the beginning [-]
+    pub old_mu: f64,
+    /// Δt [T]
+    pub dt: f64,
+}
+
+/// The equation at one point of the curve.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Point {
+    pub reach: Reach,
+    /// Δλ [L]
+    pub slip: f64,
+    /// μ and its derivatives
+    pub peak: Peak,
+    /// G [F/L²]
+    residual: f64,
+    /// D [F/L³]
+    pub slope: f64,
+    /// Step to the root along the coordinate, by Chebyshev's method
+    step: f64,
+    /// Whether the step is so small that it is as good as made.
+    close: bool,
+}
+
+/// Trial tractions above the elastic limit by less than this, relative, are round-off.
+pub(super) const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
+
+/// Residual, relative to |q_tr|, at which the equation is solved.
+const TOLERANCE: f64 = 3e-14;
+
+/// Steps below this are made without another evaluation: to second order, or to first where μ is costly (m or n not 1).
+const LAST_STEP: f64 = 1e-5;
+const LAST_STEP_OF_FIRST_ORDER: f64 = 1e-8;
+
+/// y below which Chebyshev's method from the start is no good guess, as U is too large.
+const SMALL_Y: f64 = 0.05;
+
+/// Most pieces of the bracket that are examined for the first root.
+const MAX_PIECES: usize = 1000;
+
+/// Pieces of the bracket narrower than this hold roots that cannot be told apart.
+const LEAST_PIECE: f64 = 1e-12;
+
+impl SlipEquation<'_> {
+    /// Whether the trial is the answer: no plastic slip. Gives the equation at Δλ = 0.
+    #[inline]
+    pub(super) fn start(&self) -> (bool, Point) {
+        let start = self.point(self.start);
+        (start.residual <= ROUND_OFF * self.trial, start)
+    }
+
+    /// The smallest root, and how many evaluations it took.
+    ///
+    /// # Errors
+    /// [`LawFailure::NotConverged`] when it is not singled out.
+    #[inline]
+    pub(super) fn solve(&self, start: Point) -> Result<(Point, usize), LawFailure> {
+        if start.close {
+            return Ok((start.moved(self), 1));
+        }
+        let mut evaluations = 1;
+        let end = self.curve.beyond(self.trial / self.alpha_t, &self.start);
+        let unique = self.pressure * self.evolution.weakening(start.peak.mu) < self.alpha_t;
+        let bracket =
+            if unique { (self.start.coordinate, end) } else { self.first_root_bracket(start, end, &mut evaluations)? };
+        let mut point = start;
+        bracketed_root(bracket, self.guess(&start), |coordinate| {
+            evaluations += 1;
+            point = self.at(coordinate);
+            let done = point.close || point.residual.abs() <= TOLERANCE * self.trial;
+            Argument { value: point.residual, step: point.step, done }
+        });
+        Ok((point.moved(self), evaluations))
+    }
+
+    #[inline(always)]
+    fn at(&self, coordinate: f64) -> Point {
+        self.point(self.curve.at(coordinate, &self.start))
+    }
+
+    #[inline(always)]
+    fn point(&self, reach: Reach) -> Point {
+        let Self { alpha_t, pressure, .. } = *self;
+        let Reach { stretch, bend, ratio, rate, .. } = reach;
+        let slip = (reach.slip - self.start.slip).max(0.0);
+        let peak = self.evolution.after(self.old_mu, slip, self.dt);
+        let residual = self.trial - alpha_t * slip - ratio * peak.mu * pressure;
+        let slope = self.slope(ratio, rate, &peak);
+        // −d²G/d(coordinate)², as dU/dζ = −U
+        let curvature = bend * slope
+            + pressure * stretch * (stretch * (2.0 * rate * peak.slope + ratio * peak.curvature) - rate * peak.mu);
+        let per_gradient = 1.0 / (slope * stretch);
+        let newton = residual * per_gradient;
+        let bending = 0.5 * newton * curvature * per_gradient;
+        let step = if bending.abs() < 0.5 { newton * (1.0 - bending) } else { newton };
+        let close = self.is_close(&reach, slope, step);
+        Point { reach, slip, peak, residual, slope, step, close }
+    }
+
+    #[inline(always)]
+    fn slope(&self, ratio: f64, rate: f64, peak: &Peak) -> f64 {
+        self.alpha_t + self.pressure * (rate * peak.mu + ratio * peak.slope)
+    }
+
+    /// The point with μ and D as they are there, and not as they were before the last step.
+    pub(super) fn settled(&self, point: Point) -> Point {
+        let peak = self.evolution.after(self.old_mu, point.slip, self.dt);
+        Point { peak, slope: self.slope(point.reach.ratio, point.reach.rate, &peak), ..point }
+    }
+
+    /// Whether terms of third order of the step are round-off; the fold where D = 0 magnifies them.
+    #[inline(always)]
+    fn is_close(&self, reach: &Reach, slope: f64, step: f64) -> bool {
+        let last = if self.evolution.is_linear() { LAST_STEP } else { LAST_STEP_OF_FIRST_ORDER };
+        let relative = reach.stretch + reach.bend + reach.stretch * reach.stretch * self.evolution.sharpness();
+        step.abs() * relative * self.alpha_t <= last * reach.stretch * slope.min(self.alpha_t)
+    }
+
+    /// A first coordinate: a step from the start or, near R = R_e where U is infinite, the elastic answer if there is
+    /// one, else the least plastic slip possible.
+    #[inline]
+    fn guess(&self, start: &Point) -> f64 {
+        let strength = start.peak.mu * self.pressure;
+        if self.curve.progress(start.reach.ratio) > SMALL_Y {
+            start.reach.coordinate + start.step
+        } else if self.trial < 0.9 * strength {
+            self.curve.approach.locate(self.curve.progress(self.trial / strength)).0
+        } else {
+            self.curve.beyond((self.trial - strength).max(0.0) / self.alpha_t, &self.start)
+        }
+    }
+
+    /// A bracket that holds the smallest root, and no other unless they cannot be told apart.
+    ///
+    /// Pieces of the bracket are examined from the left with bounds D₋ ≤ D ≤ D₊ of the slope on each: it holds one
+    /// root or none if D₋ > 0, none if G stays positive between the lines of slope −D₊ from its left end and −D₋ from
+    /// its right, and is halved otherwise.
+    fn first_root_bracket(&self, start: Point, end: f64, evaluations: &mut usize) -> Result<(f64, f64), LawFailure> {
+        let mut at = |coordinate| {
+            *evaluations += 1;
+            self.at(coordinate)
+        };
+        let mut left = start;
+        let near = start.reach.coordinate + 2.0 * start.step;
+        let mut right = at(if start.reach.coordinate < near && near < end { near } else { end });
+        for _ in 0..MAX_PIECES {
+            let (low, high) = (left.reach.coordinate, right.reach.coordinate);
+            let (least, most) = self.slope_bounds(&left, &right);
+            let narrow = high - low <= LEAST_PIECE * (1.0 + low.abs());
+            if right.residual <= 0.0 && (least > 0.0 || narrow) {
+                return Ok((low, high));
+            }
+            let crossing_needs = left.residual / most.max(0.0) + right.residual / (-least).max(0.0);
+            let rootless = right.residual > 0.0 && (least > 0.0 || crossing_needs > right.slip - left.slip);
+            if rootless || narrow {
+                if high >= end {
+                    return Ok((low, end)); // but for round-off G is not positive there
+                }
+                left = right;
+                right = at(end.min(high + 2.0 * (high - low)));
+            } else {
+                right = at(low + 0.5 * (high - low));
+            }
+        }
+        Err(LawFailure::NotConverged { evaluations: *evaluations, rest: left.residual, trial: self.trial })
+    }
+
+    /// Least and greatest D between two points, from the monotony of U, R, μ and ∂μ/∂Δλ.
+    fn slope_bounds(&self, left: &Point, right: &Point) -> (f64, f64) {
+        let least = right.reach.rate * right.peak.mu + right.reach.ratio * left.peak.slope;
+        let most = left.reach.rate * left.peak.mu + left.reach.ratio * right.peak.slope;
+        (self.alpha_t + self.pressure * least, self.alpha_t + self.pressure * most)
+    }
+}
+
+impl Point {
+    /// The point after its last step.
+    #[inline(always)]
+    fn moved(self, equation: &SlipEquation) -> Self {
+        let Self { mut reach, mut slip, peak, step, close, .. } = self;
+        if !close {
+            return self;
+        }
+        let advance = step * (reach.stretch + 0.5 * step * reach.bend);
+        let rise = reach.rate * step * (reach.stretch + 0.5 * step * (reach.bend - reach.stretch));
+        reach.coordinate += step;
+        reach.slip += advance;
+        reach.stretch += step * reach.bend;
+        reach.ratio = (reach.ratio + rise).min(1.0);
+        reach.rate *= 1.0 - step * (1.0 - 0.5 * step);
+        slip = (slip + advance).max(0.0);
+        let evolution = equation.evolution;
+        let peak = if evolution.is_linear() {
+            evolution.after(equation.old_mu, slip, equation.dt)
+        } else {
+            Peak { mu: evolution.clamp(peak.mu + advance * peak.slope), ..peak }
+        };
+        let slope = equation.slope(reach.ratio, reach.rate, &peak);
+        Self { reach, slip, peak, slope, ..self }
+    }
+}

@@ -1,0 +1,347 @@
+//! Super/subloading friction: the law, and what a case may say of it.
+mod approach;
+mod increment;
+mod onset;
+mod path;
+mod peak;
+mod sensitivity;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::sensitivity::SensitiveLaw;
+use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, Regime, Sliding};
+use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
+pub use approach::Approach;
+use approach::SlidingCurve;
+use increment::{Directions, ROUND_OFF, SlipEquation, mean_traction};
+pub use onset::{Onset, Rise};
+pub use peak::Integration;
+use peak::PeakEvolution;
+
+/// Super/subloading friction: slip weakens the interface, rest heals it.
+///
+/// ```text
+/// q̇ = α_t (v − λ sgn q)                               slip = elastic + plastic     (1)
+/// Ṙ = U(R) λ,   R = |q|/(μ p),   U = −r ln R           approach to full sliding     (2)
+/// μ̇ = −κ (μ/μ_k − 1)^m λ + ξ (1 − μ/μ_s)^n             weakening, recovery          (3)
+/// ```
+/// λ ≥ 0 is the rate of plastic slip; R falls freely while λ = 0. With an elastic core R_e, ln R becomes
+/// ln (R − R_e)/(1 − R_e); [`Approach`](super::Approach) offers a second U. Units: q, p [F/L²], α_t [F/L³], λ and v [L/T],
+/// r and κ [1/L], ξ [1/T], all others [-].
+///
+/// An increment leads slip, pressure and time along straight lines, Δu, p₀ → p, Δt. While R can only fall it is elastic.
+/// Plastic slip starts from R_s = max(R₀, R_e), or from R_e where the traction passes 0 or nothing was pressed, and Δλ is
+/// the *smallest* root of one scalar equation,
+/// ```text
+/// G(Δλ) = |q_tr| − α_t Δλ − R(Δλ) μ(Δλ) p = 0,   0 < Δλ ≤ |q_tr|/α_t,   q_tr = q₀ + α_t Δu     (4)
+/// ```
+/// with R from (2) integrated exactly ([`Approach`](super::Approach)). G is positive at the left end and not at the right, so a bracketed
+/// search cannot fail. G falls throughout, and the root is the only one, while α_t exceeds R p |dμ/dΔλ|; where this
+/// cannot be guaranteed ([`FrictionLaw::uniqueness_limit`]), bounds of the slope of G single out the first root.
+///
+/// [`Integration`] says where μ of (4) comes from. *Backward Euler* takes one step of (3) and of (4) an increment. The
+/// *controlled* integration solves (3) for slip and time that pass in step with one another, which leaves no error
+/// where μ only weakens or only recovers (m = n = 1). How much the order of weakening and recovery matters is bounded for
+/// short increments, which one step answers (`path.rs`), and else found by halving the increment, and halving again,
+/// until q, μ p and the mean of q are right to the tolerance (there as well).
+/// The dissipation is ∫ |q| dλ, over a step with R along its curve and μ p linear in ∫ R dλ, or where |q| falls with |q|
+/// linear in λ; the work of the increment, ∫ q du, is this and what the contact has stored. The tangent is that of what was computed; for one step
+/// ```text
+/// D = α_t + p (U μ + R ∂μ/∂Δλ),   ∂q/∂Δu = α_t (1 − α_t/D),   ∂q/∂p = sgn(q_tr) α_t R μ/D.
+/// ```
+///
+/// # Errors
+/// [`LawFailure`](super::LawFailure) when the increment or the answer is not finite, or time goes backwards.
+///
+/// Source: Yasuike, Toyoda & Noda, eqs 10–20; Toyoda, Yasuike & Noda (2024), Tribology International 191:109080;
+/// Ozaki & Hashiguchi (2010), Tribology International 43:2120.
+#[derive(Clone, Copy, Debug)]
+pub struct SuperSubloading {
+    alpha_t: f64,
+    initial_mu: f64,
+    /// 1/R*₀, if it is given
+    structure: Option<f64>,
+    curve: SlidingCurve,
+    evolution: PeakEvolution,
+    integration: Integration,
+    tolerance: f64,
+}
+
+impl SuperSubloading {
+    /// The law with its parameters checked; `default_alpha_t` serves where they give no `alpha_t`.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`] when a parameter is out of its range.
+    pub fn new(parameters: &SuperSubloadingParameters, default_alpha_t: f64) -> Result<Self, InvalidParameter> {
+        let SuperSubloadingParameters { mu_s, mu_k, r, kappa, xi, m, n, approach, elastic_core, integration, .. } =
+            *parameters;
+        let alpha_t = parameters.alpha_t.unwrap_or(default_alpha_t);
+        require_positive("mu_k", mu_k)?;
+        require("mu_s", mu_s, mu_s >= mu_k, format!("it must be finite and not less than \"mu_k\", which is {mu_k}"))?;
+        require_positive("alpha_t", alpha_t)?;
+        require_positive("r", r)?;
+        require_not_negative("kappa", kappa)?;
+        require_not_negative("xi", xi)?;
+        require_positive("m", m)?;
+        require_positive("n", n)?;
+        let core_fits = (0.0..1.0).contains(&elastic_core);
+        require("elastic_core", elastic_core, core_fits, "it must be zero or positive, and less than 1")?;
+        let most = mu_s / mu_k;
+        let structure = parameters.structure.unwrap_or(most);
+        let structure_fits = (1.0..=most * (1.0 + ROUND_OFF)).contains(&structure);
+        require("structure", structure, structure_fits, format!("it must lie between 1 and mu_s/mu_k = {most}"))?;
+        let tolerance = parameters.tolerance.unwrap_or(1e-6);
+        require("tolerance", tolerance, (1e-12..=0.1).contains(&tolerance), "it must lie between 1e-12 and 0.1")?;
+        let has_tolerance = integration == Integration::Controlled || parameters.tolerance.is_none();
+        require("tolerance", tolerance, has_tolerance, "backward Euler controls no error: leave it out")?;
+        Ok(Self {
+            alpha_t,
+            initial_mu: (mu_k * structure).min(mu_s),
+            structure: parameters.structure,
+            curve: SlidingCurve::new(approach, elastic_core, r),
+            evolution: PeakEvolution::new((mu_s, mu_k), (kappa, xi), (m, n), integration),
+            integration,
+            tolerance,
+        })
+    }
+}
+
+/// R from which on plastic slip counts as slipping: the law slips plastically a little whenever it is loaded.
+pub const SLIPPING: f64 = 0.9;
+
+/// A traction above the strength μ p by more than this, relative, has not come from this law.
+const EXCESS: f64 = 1e-12;
+
+impl SuperSubloading {
+    /// The state with a traction above the strength μ p brought down to it, at once and by plastic slip alone.
+    fn within_strength(&self, old: &FrictionState) -> FrictionState {
+        let mu = self.evolution.clamp(mu_of(old));
+        let old = FrictionState { plastic_increment: 0.0, ..*old }.with_variables([mu]);
+        let strength = mu * old.pressure.max(0.0);
+        if old.traction.abs() <= strength * (1.0 + EXCESS) {
+            return old;
+        }
+        let mean = 0.5 * (old.traction.abs() + strength);
+        old.slid(old.traction, strength.copysign(old.traction), mean, old.pressure, self.alpha_t)
+    }
+
+    /// An increment that ends with the strength μ p, without plastic slip.
+    fn elastic(&self, old: &FrictionState, trial: f64, pressure: f64, mu: f64) -> FrictionResponse {
+        FrictionResponse::elastic(old.stuck(trial, pressure).with_variables([mu]), self.alpha_t)
+    }
+
+    /// One step of the slip equation over the whole increment.
+    fn step(&self, old: &FrictionState, trial: f64, sliding: Sliding) -> Answer {
+        let Sliding { pressure, dt, .. } = sliding;
+        let old_mu = mu_of(old);
+        let reversed = trial * old.traction.signum() < 0.0;
+        let equation = SlipEquation {
+            curve: &self.curve,
+            evolution: &self.evolution,
+            alpha_t: self.alpha_t,
+            start: self.curve.start(if reversed { 0.0 } else { old.ratio(old_mu).min(1.0) }),
+            trial: trial.abs(),
+            pressure,
+            old_mu,
+            dt,
+        };
+        let (sticks, start) = equation.start();
+        if sticks {
+            return Ok(self.elastic(old, trial, pressure, start.peak.mu));
+        }
+        let (end, evaluations) = equation.solve(start)?;
+        let strength = trial.signum() * end.reach.ratio * end.peak.mu;
+        // Plastic slip starts from the old pressure, or from that where the traction passes 0.
+        let passed = if reversed { old.traction / (old.traction - trial) } else { 0.0 };
+        let start_pressure = old.pressure + passed * (pressure - old.pressure);
+        let strengths = [old_mu * start_pressure, end.peak.mu * pressure];
+        let tractions = [if reversed { 0.0 } else { old.traction.abs() }, strength.abs() * pressure];
+        let mean = mean_traction(&self.curve, [&equation.start, &end.reach], strengths, tractions);
+        let softness = self.alpha_t / end.slope.max(LEAST_SLOPE * self.alpha_t);
+        Ok(FrictionResponse {
+            state: ruled(
+                old.slid(trial, strength * pressure, mean, pressure, self.alpha_t).with_variables([end.peak.mu]),
+            ),
+            dtraction_dslip: self.alpha_t * (1.0 - softness),
+            dtraction_dpressure: strength * softness,
+            evaluations,
+            ..Default::default()
+        })
+    }
+
+    /// An increment in which slip may be plastic, in sub-steps.
+    fn follow(&self, old: &FrictionState, trial: f64, sliding: Sliding) -> Answer {
+        let (mut path, start, sign) = self.lead(old, trial, sliding, &Directions::TANGENT);
+        let end = path.end(&start)?;
+        let pressure = sliding.pressure;
+        let plastic_slip = sign * end.plastic_slip;
+        Ok(FrictionResponse {
+            state: ruled(FrictionState {
+                traction: sign * end.traction,
+                pressure,
+                plastic_slip: old.plastic_slip + plastic_slip,
+                plastic_increment: old.plastic_increment + plastic_slip,
+                dissipation: old.dissipation + end.work,
+                ..old.with_variables([end.mu])
+            }),
+            dtraction_dslip: sign * end.dtraction[0],
+            dtraction_dpressure: sign * end.dtraction[1],
+            evaluations: path.evaluations,
+            ..Default::default()
+        })
+    }
+}
+
+/// Whether R can only fall on the way to the trial traction.
+fn falls(old: &FrictionState, trial: f64, pressure: f64) -> bool {
+    let ratio_falls = trial.abs() * old.pressure <= old.traction.abs() * pressure * (1.0 + ROUND_OFF);
+    trial * old.traction.signum() >= 0.0 && ratio_falls && old.pressure > 0.0
+}
+
+/// μ, the one variable of the law [-]
+fn mu_of(state: &FrictionState) -> f64 {
+    state.variables[0]
+}
+
+/// The state of a pressed point with its regime.
+fn ruled(state: FrictionState) -> FrictionState {
+    let slips = state.plastic_increment != 0.0 && state.ratio(mu_of(&state)) >= SLIPPING;
+    FrictionState { regime: if slips { Regime::Slip } else { Regime::Stick }, ..state }
+}
+
+impl FrictionLaw for SuperSubloading {
+    fn initial_state(&self) -> FrictionState {
+        FrictionState::default().with_variables([self.initial_mu])
+    }
+
+    fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
+        let Sliding { slip, pressure, dt } = sliding.checked()?;
+        if pressure <= 0.0 {
+            let (mu, _) = self.evolution.rested(self.evolution.clamp(mu_of(old)), dt);
+            let parted = old.parted(self.alpha_t).with_variables([mu]);
+            return FrictionResponse::elastic(parted, 0.0).checked(self.alpha_t);
+        }
+        let old = self.within_strength(old);
+        let trial = old.traction + self.alpha_t * slip;
+        if falls(&old, trial, pressure) {
+            let (mu, _) = self.evolution.rested(mu_of(&old), dt);
+            return self.elastic(&old, trial, pressure, mu).checked(self.alpha_t);
+        }
+        match self.integration {
+            Integration::Controlled => self.follow(&old, trial, sliding),
+            Integration::BackwardEuler => self.step(&old, trial, sliding),
+        }?
+        .checked(self.alpha_t)
+    }
+
+    fn stiffness(&self) -> f64 {
+        self.alpha_t
+    }
+
+    fn sensitivities(&self) -> Option<&dyn SensitiveLaw> {
+        (self.integration == Integration::Controlled).then_some(self as &dyn SensitiveLaw)
+    }
+
+    fn variables(&self) -> &'static [&'static str] {
+        &["mu"]
+    }
+
+    fn observables(&self) -> &'static [&'static str] {
+        &["R", "mu", "structure"]
+    }
+
+    fn observe(&self, name: &str, state: &FrictionState) -> Option<f64> {
+        let mu = mu_of(state);
+        match name {
+            "R" => Some(state.ratio(mu)),
+            "mu" => Some(mu),
+            "structure" => Some(mu / self.evolution.mu_k),
+            _ => None,
+        }
+    }
+
+    fn starting_limit(&self, pressure: f64) -> f64 {
+        self.initial_mu * pressure
+    }
+
+    /// μ_k, R being 1 in sliding that goes on.
+    fn least_coefficient(&self) -> Option<f64> {
+        Some(self.evolution.mu_k.min(self.evolution.mu_s))
+    }
+
+    fn weakening(&self) -> f64 {
+        self.evolution.weakening(self.evolution.mu_s)
+    }
+
+    fn onset(&self) -> Option<Onset> {
+        Some(Onset::of(&self.curve, &self.evolution, self.initial_mu))
+    }
+}
+
+/// Parameters of [`SuperSubloading`](super::SuperSubloading) as the case file writes them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SuperSubloadingParameters {
+    /// μ_s: static friction coefficient, μ_s ≥ μ_k [-]
+    pub mu_s: f64,
+    /// μ_k: kinetic friction coefficient, μ_k > 0 [-]
+    pub mu_k: f64,
+    /// α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies [F/L³]
+    #[serde(default)]
+    pub alpha_t: Option<f64>,
+    /// r: rate at which R approaches 1 with plastic slip, r > 0 [1/L]
+    pub r: f64,
+    /// κ: loss of structure with plastic slip, κ ≥ 0 [1/L]
+    #[serde(default)]
+    pub kappa: f64,
+    /// ξ: recovery of structure with time, ξ ≥ 0 [1/T]
+    #[serde(default)]
+    pub xi: f64,
+    /// m: exponent of the loss, m > 0 [-]
+    #[serde(default = "one")]
+    pub m: f64,
+    /// n: exponent of the recovery, n > 0 [-]
+    #[serde(default = "one")]
+    pub n: f64,
+    /// 1/R*₀: structure at first touch, from 1 (μ = μ_k) to μ_s/μ_k (μ = μ_s, the default) [-]
+    #[serde(default)]
+    pub structure: Option<f64>,
+    /// U(R): how R approaches 1
+    #[serde(default)]
+    pub approach: Approach,
+    /// R_e: elastic core, no plastic slip for R ≤ R_e, 0 ≤ R_e < 1 [-]
+    #[serde(default)]
+    pub elastic_core: f64,
+    /// How an increment is integrated
+    #[serde(default)]
+    pub integration: Integration,
+    /// Error allowed to the controlled integration, as a share of μ_s p, from 1e-12 to 0.1; 1e-6 by default [-]
+    #[serde(default)]
+    pub tolerance: Option<f64>,
+}
+
+impl SuperSubloadingParameters {
+    /// Neither weakening nor recovery, the tangential stiffness left to the contact, all else as in a case that says no more.
+    pub fn new(mu_s: f64, mu_k: f64, r: f64) -> Self {
+        Self {
+            mu_s,
+            mu_k,
+            alpha_t: None,
+            r,
+            kappa: 0.0,
+            xi: 0.0,
+            m: one(),
+            n: one(),
+            structure: None,
+            approach: Approach::default(),
+            elastic_core: 0.0,
+            integration: Integration::default(),
+            tolerance: None,
+        }
+    }
+}
+
+fn one() -> f64 {
+    1.0
+}

@@ -1,0 +1,335 @@
+//! The path that an increment of super/subloading friction follows.
+//!
+//! # Sub-steps
+//!
+//! One increment along linear paths of slip, pressure and time, in sub-steps where the tolerance asks for them.
+//!
+//! # Short steps
+//!
+//! When one step is right without its halves: a bound of its error.
+
+use super::increment::{Derivative, Directions, LoadPath, Station};
+use super::{SuperSubloading, mu_of};
+use crate::laws::friction::{FrictionState, LawFailure, Sliding};
+
+impl SuperSubloading {
+    /// The path of an increment in which slip may be plastic: from the start, or from where the traction passes 0; its first
+    /// station, and the sign of the traction, by which both are mirrored.
+    pub(super) fn lead(
+        &self,
+        old: &FrictionState,
+        trial: f64,
+        Sliding { slip, pressure, dt }: Sliding,
+        by: &Directions,
+    ) -> (LoadPath<'_>, Station, f64) {
+        let reversed = old.traction != 0.0 && trial * old.traction.signum() < 0.0;
+        let sign = if reversed || old.traction == 0.0 { trial.signum() } else { old.traction.signum() };
+        let mirrored = |derivative: Derivative| derivative.map(|d| sign * d);
+        let by = &Directions { slip: mirrored(by.slip), traction: mirrored(by.traction), ..*by };
+        let mut path = LoadPath {
+            curve: &self.curve,
+            evolution: &self.evolution,
+            alpha_t: self.alpha_t,
+            tolerance: self.tolerance,
+            slip: sign * slip,
+            dslip: by.slip,
+            pressures: [old.pressure, pressure],
+            dpressures: [[0.0; 2], by.pressure],
+            time: dt,
+            dtime: [0.0; 2],
+            parameters: by.parameters,
+            evaluations: 0,
+        };
+        let start = if reversed {
+            let share = old.traction / (old.traction - trial);
+            self.pass_zero(&mut path, mu_of(old), trial, share, by)
+        } else {
+            path.start((old.traction.abs(), by.traction), (mu_of(old), by.mu), old.ratio(mu_of(old)).min(1.0))
+        };
+        (path, start, sign)
+    }
+
+    /// Leave to the path what comes after the share of the increment at which the traction passes 0; its first station.
+    fn pass_zero(&self, path: &mut LoadPath, old_mu: f64, trial: f64, share: f64, by: &Directions) -> Station {
+        let (alpha_t, slip, dt) = (self.alpha_t, path.slip, path.time);
+        let dstiffness = [0, 1].map(|i| by.parameters.map_or(0.0, |shifts| shifts[i].alpha_t));
+        let dshare = [0, 1]
+            .map(|i| -share / slip * by.slip[i] - by.traction[i] / (alpha_t * slip) - share * dstiffness[i] / alpha_t);
+        let (mu, mu_rate) = self.evolution.rested(old_mu, dt * share);
+        let dmu = [0, 1].map(|i| match &by.parameters {
+            None => mu_rate * dt * dshare[i],
+            Some(shifts) => self.evolution.rested_by(old_mu, dt * share, [by.mu[i], dt * dshare[i]], &shifts[i].peak),
+        });
+        let gain = path.pressures[1] - path.pressures[0];
+        path.slip = trial.abs() / alpha_t;
+        path.dslip = [0, 1].map(|i| {
+            let dtrial = by.traction[i] + alpha_t * by.slip[i] + slip * dstiffness[i];
+            dtrial / alpha_t - path.slip * dstiffness[i] / alpha_t
+        });
+        path.dpressures[0] = [0, 1].map(|i| gain * dshare[i] + share * by.pressure[i]);
+        path.pressures[0] = path.pressure(share);
+        path.time = dt * (1.0 - share);
+        path.dtime = dshare.map(|dshare| -dt * dshare);
+        path.start((0.0, [0.0; 2]), (mu, dmu), 0.0)
+    }
+}
+
+/// Sub-steps are halved at most so often: until slip, pressure and time no longer change in floating point.
+const MAX_HALVINGS: u32 = 48;
+
+/// Evaluations of the slip equation after which the increment is given up: it is far too long.
+const MAX_EVALUATIONS: usize = 20_000;
+
+/// A sub-step in which q and μ p change by this share of the tolerance, but for a snap, is short enough to hold a snap.
+const SNAP: f64 = 1e-3;
+
+/// Errors below this, relative to the tractions they come from, are round-off.
+const NOISE: f64 = 2e-13;
+
+/// The difference of two stations over the error of the value extrapolated from them, where it converges slowly.
+const CAUTION: f64 = 4.0;
+
+/// In q, in μ p and in the work done
+type Differences = [f64; 3];
+
+/// A sub-step, and the same in two halves.
+#[derive(Clone, Copy)]
+struct Halves<'a> {
+    from: &'a Station,
+    coarse: &'a Station,
+    middle: &'a Station,
+    fine: &'a Station,
+}
+
+impl Halves<'_> {
+    /// Whether there is plastic slip in the whole and in both halves.
+    fn slide(&self) -> bool {
+        let slips = |from: &Station, to: &Station| to.plastic_slip > from.plastic_slip;
+        slips(self.from, self.coarse) && slips(self.from, self.middle) && slips(self.middle, self.fine)
+    }
+}
+
+impl LoadPath<'_> {
+    /// The end of the path: one step where that is right by itself.
+    ///
+    /// # Errors
+    /// [`LawFailure::NotConverged`] when sub-steps do not come to agree.
+    pub(super) fn end(&mut self, start: &Station) -> Result<Station, LawFailure> {
+        let end = self.advance(start, 1.0)?;
+        if self.is_right_alone(start, &end) {
+            return Ok(end);
+        }
+        self.refine(start, end, [0.0; 3], MAX_HALVINGS)
+    }
+
+    /// The station at the x of `coarse`, which one sub-step from `from` has reached, to within the tolerance.
+    ///
+    /// Two halves of the sub-step are compared with the whole and, where they differ too much, refined in their turn.
+    /// As errors are proportional to the third power of the sub-step, the difference should then be an eighth: what it
+    /// is `expected` to be. What it differs from that is an error that extrapolation cannot remove.
+    ///
+    /// Where the traction snaps the halves never agree: a sub-step that is so short that nothing else can happen in it is
+    /// a snap, whose place is known as well as the tolerance asks.
+    fn refine(
+        &mut self,
+        from: &Station,
+        coarse: Station,
+        expected: Differences,
+        halvings: u32,
+    ) -> Result<Station, LawFailure> {
+        let middle = self.advance(from, 0.5 * (from.x + coarse.x))?;
+        let fine = self.advance(&middle, coarse.x)?;
+        let halves = Halves { from, coarse: &coarse, middle: &middle, fine: &fine };
+        let (differences, allowed) = (self.differences(&halves), self.allowed(&halves));
+        let overlooked = coarse.overlooked.max(middle.overlooked).max(fine.overlooked);
+        let agree = overlooked <= allowed[0]
+            && (0..3).all(|i| {
+                let left = differences[i].abs() / CAUTION;
+                let left = if halves.slide() { left.min((differences[i] - expected[i]).abs()) } else { left };
+                left <= allowed[i]
+            });
+        if agree {
+            return Ok(if halves.slide() { self.extrapolated(&halves) } else { fine });
+        }
+        if self.drive(from, &fine) <= SNAP * self.tolerance * self.evolution.mu_s * self.pressure(fine.x) {
+            return Ok(fine);
+        }
+        if halvings == 0 || self.evaluations > MAX_EVALUATIONS {
+            let trial = from.traction + self.alpha_t * self.slip * (fine.x - from.x);
+            let rest = differences[0].abs().max(overlooked);
+            return Err(LawFailure::NotConverged { evaluations: self.evaluations, rest, trial });
+        }
+        let expected = differences.map(|difference| difference / 8.0);
+        let middle = self.refine(from, middle, expected, halvings - 1)?;
+        let coarse = self.advance(&middle, coarse.x)?;
+        self.refine(&middle, coarse, expected, halvings - 1)
+    }
+
+    /// Most that slip, pressure and time change the traction or the strength by over a sub-step without a snap.
+    fn drive(&self, from: &Station, to: &Station) -> f64 {
+        let share = to.x - from.x;
+        let recovery =
+            self.evolution.recovery(from.mu.min(to.mu)) * self.time * self.pressure(from.x).max(self.pressure(to.x));
+        share
+            * (self.alpha_t * self.slip.abs()
+                + self.evolution.mu_s * (self.pressures[1] - self.pressures[0]).abs()
+                + recovery)
+    }
+
+    /// Differences between a sub-step and its halves.
+    fn differences(&self, halves: &Halves) -> Differences {
+        let Halves { coarse, fine, .. } = *halves;
+        [
+            fine.traction - coarse.traction,
+            (fine.mu - coarse.mu) * self.pressure(fine.x),
+            self.energy(fine) - self.energy(coarse),
+        ]
+    }
+
+    /// Differences that are allowed to a sub-step: more than its share of the tolerance in q and μ p, as R and μ forget
+    /// errors in the course of slip; its share in the work, for the mean of q is to be right to the tolerance.
+    fn allowed(&self, halves: &Halves) -> Differences {
+        let Halves { from, fine, .. } = *halves;
+        let share = fine.x - from.x;
+        let (start_pressure, pressure) = (self.pressure(from.x), self.pressure(fine.x));
+        let slip = self.slip.abs() * share;
+        let noise = NOISE * (fine.traction + from.traction + self.alpha_t * slip);
+        let tolerance = self.tolerance * self.evolution.mu_s;
+        let strength = tolerance * pressure * (share * share.sqrt()).sqrt() + noise;
+        let work = (tolerance * pressure.max(start_pressure) + noise) * (slip + fine.plastic_slip - from.plastic_slip);
+        [strength, strength, work + NOISE * self.energy(fine)]
+    }
+
+    /// The finer of two stations after plastic slip, extrapolated to vanishing sub-steps.
+    fn extrapolated(&self, halves: &Halves) -> Station {
+        let Halves { from, coarse, fine, .. } = *halves;
+        let beyond = |fine: f64, coarse: f64| fine + (fine - coarse) / 3.0;
+        let beyond_each = |fine: Derivative, coarse: Derivative| [0, 1].map(|i| beyond(fine[i], coarse[i]));
+        let pressure = self.pressure(fine.x);
+        let (mut mu, mut dmu) = (beyond(fine.mu, coarse.mu), beyond_each(fine.dmu, coarse.dmu));
+        if mu != self.evolution.clamp(mu) {
+            dmu = [0, 1]
+                .map(|i| self.parameters.map_or(0.0, |shifts| self.evolution.clamped_by(mu, 0.0, &shifts[i].peak)));
+            mu = self.evolution.clamp(mu);
+        }
+        let mut traction = beyond(fine.traction, coarse.traction).max(0.0);
+        let mut dtraction = beyond_each(fine.dtraction, coarse.dtraction);
+        if traction > mu * pressure {
+            let dpressure = self.dpressure(fine.x);
+            (traction, dtraction) = (mu * pressure, [0, 1].map(|i| pressure * dmu[i] + mu * dpressure[i]));
+        }
+        let energy = beyond(self.energy(fine), self.energy(coarse));
+        Station {
+            x: fine.x,
+            traction,
+            dtraction,
+            mu,
+            dmu,
+            reach: self.curve.start(traction / (mu * pressure)),
+            plastic_slip: beyond(fine.plastic_slip, coarse.plastic_slip).max(from.plastic_slip),
+            work: (energy - 0.5 * traction * traction / self.alpha_t).max(from.work),
+            overlooked: 0.0,
+        }
+    }
+
+    /// Work done by the traction: dissipated, and stored in the contact spring.
+    fn energy(&self, station: &Station) -> f64 {
+        station.work + 0.5 * station.traction * station.traction / self.alpha_t
+    }
+}
+
+/// Share of the tolerance that q and μ p of a step taken alone may be off by: where halves begin, Newton's method meets a
+/// jump, and this is far below what it has to resolve.
+const SHARE: f64 = 0.01;
+
+/// Most that the rate of plastic slip changes by within a step taken alone, relative: bounds from its ends need it steady.
+const STEADY: f64 = 0.25;
+
+/// What makes the rate of plastic slip at one end of a step.
+struct Ends {
+    /// p U μ, what R's approach adds to D = α_t + p (U μ − R κ (μ/μ_k − 1)) [F/L³]
+    approach: f64,
+    /// p R κ (μ/μ_k − 1), what weakening takes from it [F/L³]
+    weakening: f64,
+    /// R p ξ (1 − μ/μ_s) and R μ dp/dx: what recovery and pressure take from α_t du/dx, per x [F/L²]
+    recovery: f64,
+    pressing: f64,
+    /// D [F/L³]
+    stiffness: f64,
+    /// α_t du/dx − recovery − pressing: D dλ/dx [F/L²]
+    drive: f64,
+    /// R [-]
+    ratio: f64,
+}
+
+impl LoadPath<'_> {
+    /// Whether one step over the whole path, with plastic slip, is right to the tolerance by itself.
+    ///
+    /// Where m = n = 1 its q and μ follow exactly from the plastic slip and the time, if these pass in step with one another:
+    /// with λ/Δλ never further than w from x (a quarter of what its rate varies by), μ is right to a b (μ_s − μ_k) w, where a = κ Δλ/μ_k, b = ξ Δt/μ_s (the
+    /// commutator of weakening and recovery), and q to α_t R p/D times this. The rate D dλ/dx = α_t du/dx − R (ξ (1 − μ/μ_s) p
+    /// dt/dx + μ dp/dx) is made of terms that are monotone in the step, so that its ends bound w; it must be positive
+    /// throughout. The mean of q is a trapezoidal rule, whose error the slopes at its ends bound.
+    fn is_right_alone(&self, from: &Station, to: &Station) -> bool {
+        let slip = to.plastic_slip - from.plastic_slip;
+        if !(self.evolution.is_linear() && slip > 0.0) {
+            return false;
+        }
+        let (start, end) = (self.ends(from), self.ends(to));
+        let (stiffness, drive) = (start.stiffness.min(end.stiffness), start.drive.min(end.drive));
+        if !(stiffness > 0.0 && drive > 0.0) {
+            return false;
+        }
+        let change = |part: fn(&Ends) -> f64| (part(&end) - part(&start)).abs();
+        let unsteady = (change(|e| e.approach) + change(|e| e.weakening)) / stiffness
+            + (change(|e| e.recovery) + change(|e| e.pressing)) / drive;
+        if unsteady > STEADY {
+            return false;
+        }
+        let pressure = self.pressures[1];
+        let strength = self.tolerance * self.evolution.mu_s * pressure;
+        let mu_error = 0.25 * unsteady * self.evolution.commutator(slip, self.time);
+        let q_error = mu_error * pressure * (self.alpha_t / stiffness).max(1.0);
+        q_error <= SHARE * strength && self.mean_error(from, to, &start, &end) <= strength
+    }
+
+    /// What makes the rate of plastic slip at a station.
+    fn ends(&self, at: &Station) -> Ends {
+        let (pressure, ratio) = (self.pressure(at.x), at.reach.ratio);
+        let approach = pressure * at.reach.rate * at.mu;
+        let weakening = pressure * ratio * self.evolution.weakening(at.mu);
+        let recovery = ratio * pressure * self.evolution.recovery(at.mu) * self.time;
+        let pressing = ratio * at.mu * (self.pressures[1] - self.pressures[0]);
+        Ends {
+            approach,
+            weakening,
+            recovery,
+            pressing,
+            stiffness: self.alpha_t + approach - weakening,
+            drive: self.alpha_t * self.slip - recovery - pressing,
+            ratio,
+        }
+    }
+
+    /// Bound of the error of the mean of q, by which plastic slip is multiplied in the dissipation: a trapezoidal rule of f
+    /// over the length L is off by at most L |f′(end) − f′(start)|/8 where f′ is monotone, taken part by part. The rule is for
+    /// q over λ where q falls, else for μ p over ∫ R dλ (`mean_traction`).
+    fn mean_error(&self, from: &Station, to: &Station, start: &Ends, end: &Ends) -> f64 {
+        let slip = to.plastic_slip - from.plastic_slip;
+        // R d(μ p)/dλ by weakening, recovery and pressure, and μ p dR/dλ
+        let parts = |e: &Ends| {
+            let per_rate = e.stiffness / e.drive;
+            [e.weakening, e.recovery * per_rate, e.pressing * per_rate, e.approach]
+        };
+        let (start_parts, end_parts) = (parts(start), parts(end));
+        let falls = to.traction < from.traction;
+        let change = |i: usize, per: [f64; 2]| (end_parts[i] / per[1] - start_parts[i] / per[0]).abs();
+        let bend: f64 = if falls {
+            (0..4).map(|i| change(i, [1.0, 1.0])).sum()
+        } else {
+            let squares = [start.ratio * start.ratio, end.ratio * end.ratio];
+            end.ratio * end.ratio * (0..3).map(|i| change(i, squares)).sum::<f64>()
+        };
+        0.125 * slip * bend
+    }
+}

@@ -1,0 +1,404 @@
+//! How the peak coefficient μ weakens with slip and recovers with time.
+//!
+//! # Sensitivity
+//!
+//! How the peak coefficient μ varies with the parameters of its evolution, by the controlled integration.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::laws::friction::root::{Argument, bracketed_root};
+
+/// How the evolution of an increment is integrated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Integration {
+    /// Sub-steps of second order, as many as the tolerance asks for
+    #[default]
+    Controlled,
+    /// One backward-Euler step, of first order
+    BackwardEuler,
+}
+
+/// Weakening and recovery of the peak coefficient μ between μ_k and μ_s.
+///
+/// ```text
+/// μ̇ = −κ (μ/μ_k − 1)^m λ + ξ (1 − μ/μ_s)^n
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PeakEvolution {
+    pub(super) mu_s: f64,
+    pub(super) mu_k: f64,
+    pub(super) kappa: f64,
+    pub(super) xi: f64,
+    pub(super) m: f64,
+    pub(super) n: f64,
+    /// 1/μ_s and 1/μ_k: divisions are what an evaluation would spend most of its time on.
+    pub(super) per_mu_s: f64,
+    pub(super) per_mu_k: f64,
+    integration: Integration,
+}
+
+/// μ at the end of a step of plastic slip Δλ and time Δt from μ₀, and its derivatives.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Peak {
+    /// μ [-]
+    pub mu: f64,
+    /// ∂μ/∂Δλ ≤ 0 [1/L]
+    pub slope: f64,
+    /// ∂²μ/∂Δλ², given for m = n = 1 only, else 0 [1/L²]
+    pub curvature: f64,
+    /// ∂μ/∂μ₀ [-]
+    pub by_old: f64,
+    /// ∂μ/∂Δt [1/T]
+    pub by_time: f64,
+}
+
+/// Largest a and b of [`Evolution::at_uniform_rate`]: μ is steady beyond, and squares must not overflow.
+const LARGEST: f64 = 1e100;
+
+impl PeakEvolution {
+    /// (μ_s, μ_k) [-], (κ [1/L], ξ [1/T]), (m, n) [-]
+    pub(super) fn new(
+        (mu_s, mu_k): (f64, f64),
+        (kappa, xi): (f64, f64),
+        (m, n): (f64, f64),
+        integration: Integration,
+    ) -> Self {
+        Self { mu_s, mu_k, kappa, xi, m, n, per_mu_s: 1.0 / mu_s, per_mu_k: 1.0 / mu_k, integration }
+    }
+
+    /// Whether both rates are linear in μ: m = n = 1.
+    #[inline]
+    pub(super) fn is_linear(&self) -> bool {
+        self.m == 1.0 && self.n == 1.0
+    }
+
+    /// κ/μ_k: how sharply μ can bend with plastic slip [1/L]
+    #[inline]
+    pub(super) fn sharpness(&self) -> f64 {
+        self.kappa * self.per_mu_k
+    }
+
+    /// μ as it may be: between μ_k and μ_s.
+    #[inline]
+    pub(super) fn clamp(&self, mu: f64) -> f64 {
+        mu.clamp(self.mu_k, self.mu_s)
+    }
+
+    /// κ (μ/μ_k − 1)^m: weakening per plastic slip [1/L]
+    #[inline]
+    pub(super) fn weakening(&self, mu: f64) -> f64 {
+        self.kappa * self.loss(mu).0
+    }
+
+    /// ξ (1 − μ/μ_s)^n: recovery per time [1/T]
+    #[inline]
+    pub(super) fn recovery(&self, mu: f64) -> f64 {
+        self.xi * self.gain(mu).0
+    }
+
+    /// a b (μ_s − μ_k), where a = κ Δλ/μ_k and b = ξ Δt/μ_s: how much it matters for m = n = 1 whether μ weakens first or
+    /// recovers first.
+    pub(super) fn commutator(&self, slip: f64, dt: f64) -> f64 {
+        self.sharpness() * slip * self.xi * dt * self.per_mu_s * (self.mu_s - self.mu_k)
+    }
+
+    /// μ after plastic slip `slip` and time `dt` from `old`, by one step of the integration.
+    #[inline(always)]
+    pub(super) fn after(&self, old: f64, slip: f64, dt: f64) -> Peak {
+        match self.integration {
+            Integration::Controlled => self.at_uniform_rate(old, slip, dt),
+            Integration::BackwardEuler => self.backward_euler(old, slip, dt),
+        }
+    }
+
+    /// μ after the time `dt` without plastic slip, exact save by backward Euler, and ∂μ/∂Δt.
+    ///
+    /// ```text
+    /// d = 1 − μ/μ_s:   d^(1−n) = d₀^(1−n) + (n − 1) ξ Δt/μ_s,   d = d₀ exp(−ξ Δt/μ_s) for n = 1
+    /// ```
+    pub(super) fn rested(&self, old: f64, dt: f64) -> (f64, f64) {
+        if self.n == 1.0 || self.integration == Integration::BackwardEuler {
+            let peak = self.after(old, 0.0, dt);
+            return (peak.mu, peak.by_time);
+        }
+        let deficit = (self.mu_s - old) * self.per_mu_s;
+        let growth = scaled(deficit.powf(self.n - 1.0), (self.n - 1.0) * self.xi * dt * self.per_mu_s);
+        let share = if growth > -1.0 { (-growth.ln_1p() / (self.n - 1.0)).exp() } else { 0.0 };
+        let mu = self.clamp(old + (self.mu_s - old) * (1.0 - share));
+        (mu, self.recovery(mu))
+    }
+
+    /// One backward-Euler step. Its equation has one root in [μ_k, μ_s], steady sliding at any step length.
+    ///
+    /// ```text
+    /// μ = μ₀ − κ Δλ (μ/μ_k − 1)^m + ξ Δt (1 − μ/μ_s)^n
+    /// ```
+    #[inline(always)]
+    fn backward_euler(&self, old: f64, slip: f64, dt: f64) -> Peak {
+        let (weakening, recovery) = (self.kappa * slip, self.xi * dt);
+        if self.is_linear() {
+            let share = 1.0 / (1.0 + weakening * self.per_mu_k + recovery * self.per_mu_s);
+            let mu = self.clamp((old + weakening + recovery) * share);
+            let slope = -self.weakening(mu) * share;
+            let curvature = -2.0 * self.sharpness() * slope * share;
+            return Peak { mu, slope, curvature, by_old: share, by_time: self.recovery(mu) * share };
+        }
+        let mu = self.clamp(self.solve(old, weakening, recovery));
+        let ((loss, loss_slope), (gain, gain_slope)) = (self.loss(mu), self.gain(mu));
+        let share = 1.0 / (1.0 + scaled(loss_slope, weakening) + scaled(gain_slope, recovery));
+        let slope = -self.kappa * loss * share;
+        Peak { mu, slope, curvature: 0.0, by_old: share, by_time: self.xi * gain * share }
+    }
+
+    /// Root of the backward-Euler equation for exponents other than 1.
+    fn solve(&self, old: f64, weakening: f64, recovery: f64) -> f64 {
+        let mut mu = old;
+        bracketed_root((self.mu_k, self.mu_s), old, |trial| {
+            mu = trial;
+            let ((loss, loss_slope), (gain, gain_slope)) = (self.loss(mu), self.gain(mu));
+            let value = old - mu - weakening * loss + recovery * gain;
+            let stiffness = 1.0 + scaled(loss_slope, weakening) + scaled(gain_slope, recovery);
+            Argument { value, step: value / stiffness, done: value.abs() <= f64::EPSILON * self.mu_k }
+        });
+        mu
+    }
+
+    /// One step in which plastic slip and time pass at a uniform rate.
+    ///
+    /// ```text
+    /// a = κ̂ Δλ/μ_k,   b = ξ̂ Δt/μ_s,   Z = a + b
+    /// μ = μ₀ + (a (μ_k − μ₀) + b (μ_s − μ₀)) (1 − e^(−Z))/Z
+    /// κ̂ = κ (μ/μ_k − 1)^(m−1),   ξ̂ = ξ (1 − μ/μ_s)^(n−1)   at half the step, by backward Euler
+    /// ```
+    /// For m = n = 1 this is exact at a uniform rate, and without recovery or without weakening also at any other;
+    /// for other exponents it is of second order. Steady sliding is met at any step length.
+    #[inline(always)]
+    fn at_uniform_rate(&self, old: f64, slip: f64, dt: f64) -> Peak {
+        let (kappa, xi) = (self.kappa * self.per_mu_k, self.xi * self.per_mu_s);
+        if self.is_linear() {
+            return self.relax(old, (kappa, slip), (xi, dt)).0;
+        }
+        let half = self.backward_euler(old, 0.5 * slip, 0.5 * dt);
+        let excess = ((half.mu - self.mu_k) * self.per_mu_k).max(f64::EPSILON);
+        let deficit = ((self.mu_s - half.mu) * self.per_mu_s).max(f64::EPSILON);
+        let (kappa, xi) = (kappa * excess.powf(self.m - 1.0), xi * deficit.powf(self.n - 1.0));
+        let (peak, (by_a, by_b)) = self.relax(old, (kappa, slip), (xi, dt));
+        let through_a = by_a * kappa * slip * (self.m - 1.0) * self.per_mu_k / excess;
+        let through_b = by_b * xi * dt * (self.n - 1.0) * self.per_mu_s / deficit;
+        let by_half = through_a - through_b;
+        Peak {
+            mu: peak.mu,
+            slope: (peak.slope + by_half * 0.5 * half.slope).min(0.0),
+            curvature: 0.0,
+            by_old: peak.by_old + by_half * half.by_old,
+            by_time: peak.by_time + by_half * 0.5 * half.by_time,
+        }
+    }
+
+    /// μ of [`Self::at_uniform_rate`] for given (κ̂/μ_k, Δλ) and (ξ̂/μ_s, Δt), and (∂μ/∂a, ∂μ/∂b).
+    #[inline(always)]
+    fn relax(&self, old: f64, (kappa, slip): (f64, f64), (xi, dt): (f64, f64)) -> (Peak, (f64, f64)) {
+        let (a, b) = ((kappa * slip).min(LARGEST), (xi * dt).min(LARGEST));
+        let (to_kinetic, to_static) = (self.mu_k - old, self.mu_s - old);
+        let drive = a * to_kinetic + b * to_static;
+        let Decay { left, mean, slope, curvature } = decay(a + b);
+        let (by_a, by_b) = (to_kinetic * mean + drive * slope, to_static * mean + drive * slope);
+        let peak = Peak {
+            mu: self.clamp(old + drive * mean),
+            slope: kappa * by_a,
+            curvature: kappa * kappa * (2.0 * to_kinetic * slope + drive * curvature),
+            by_old: left,
+            by_time: xi * by_b,
+        };
+        (peak, (by_a, by_b))
+    }
+
+    /// (μ/μ_k − 1)^m and its derivative.
+    #[inline]
+    fn loss(&self, mu: f64) -> (f64, f64) {
+        let (value, slope) = power((mu - self.mu_k) * self.per_mu_k, self.m);
+        (value, slope * self.per_mu_k)
+    }
+
+    /// (1 − μ/μ_s)^n and minus its derivative.
+    #[inline]
+    fn gain(&self, mu: f64) -> (f64, f64) {
+        let (value, slope) = power((self.mu_s - mu) * self.per_mu_s, self.n);
+        (value, slope * self.per_mu_s)
+    }
+}
+
+/// What is left of a deviation after Z relaxation times.
+struct Decay {
+    /// e^(−Z)
+    left: f64,
+    /// φ = (1 − e^(−Z))/Z
+    pub mean: f64,
+    /// dφ/dZ
+    pub slope: f64,
+    /// d²φ/dZ²
+    curvature: f64,
+}
+
+/// e^(−Z) and φ(Z) for Z ≥ 0. The round-off of φ and its derivatives is of the order ε/Z, ε/Z², ε/Z³, and harmless as
+/// they are used times Z, Z and Z².
+#[inline]
+fn decay(z: f64) -> Decay {
+    if z < 1e-3 {
+        let mean = 1.0 - z * (0.5 - z * (1.0 / 6.0 - z / 24.0));
+        let slope = -0.5 + z * (1.0 / 3.0 - z / 8.0);
+        return Decay { left: 1.0 - z * mean, mean, slope, curvature: 1.0 / 3.0 - 0.25 * z };
+    }
+    let (left, per_z) = ((-z).exp(), 1.0 / z);
+    let mean = (1.0 - left) * per_z;
+    let slope = (left - mean) * per_z;
+    Decay { left, mean, slope, curvature: (-left - 2.0 * slope) * per_z }
+}
+
+/// x^k and its derivative, which is infinite at x = 0 for k < 1.
+#[inline]
+fn power(x: f64, k: f64) -> (f64, f64) {
+    if k == 1.0 {
+        (x, 1.0)
+    } else if x > 0.0 {
+        let value = x.powf(k);
+        (value, k * value / x)
+    } else {
+        (0.0, if k < 1.0 { f64::INFINITY } else { 0.0 })
+    }
+}
+
+/// A slope times a factor; a term without a factor counts for nothing even where its slope is infinite.
+pub(super) fn scaled(slope: f64, factor: f64) -> f64 {
+    if factor == 0.0 { 0.0 } else { slope * factor }
+}
+
+/// How much each parameter of [`PeakEvolution`] varies.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct PeakShift {
+    pub mu_s: f64,
+    pub mu_k: f64,
+    pub kappa: f64,
+    pub xi: f64,
+    pub m: f64,
+    pub n: f64,
+}
+
+/// How much each parameter of the law varies.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Shift {
+    pub alpha_t: f64,
+    pub r: f64,
+    pub elastic_core: f64,
+    pub peak: PeakShift,
+}
+
+/// κ̂ Δλ and ξ̂ Δt over μ_k and μ_s, a and b of a step at a uniform rate, and how they vary.
+struct Exponents {
+    a: f64,
+    b: f64,
+    da: f64,
+    db: f64,
+}
+
+impl PeakEvolution {
+    /// How μ varies where [`clamp`](Self::clamp) has put it.
+    pub(super) fn clamped_by(&self, mu: f64, dmu: f64, by: &PeakShift) -> f64 {
+        if mu > self.mu_s {
+            by.mu_s
+        } else if mu < self.mu_k {
+            by.mu_k
+        } else {
+            dmu
+        }
+    }
+
+    /// ∂μ of one step at a uniform rate, the plastic slip `slip`, the time `dt` and μ at the start being given.
+    ///
+    /// ```text
+    /// dμ = ∂μ/∂a da + ∂μ/∂b db + (a dμ_k + b dμ_s) (1 − e^(−Z))/Z
+    /// ```
+    pub(super) fn after_by(&self, old: f64, slip: f64, dt: f64, by: &PeakShift) -> f64 {
+        let Exponents { a, b, da, db } = self.exponents_by(old, slip, dt, by);
+        let (to_kinetic, to_static) = (self.mu_k - old, self.mu_s - old);
+        let drive = a * to_kinetic + b * to_static;
+        let decay = decay(a + b);
+        let (by_a, by_b) =
+            (to_kinetic * decay.mean + drive * decay.slope, to_static * decay.mean + drive * decay.slope);
+        by_a * da + by_b * db + decay.mean * (a * by.mu_k + b * by.mu_s)
+    }
+
+    fn exponents_by(&self, old: f64, slip: f64, dt: f64, by: &PeakShift) -> Exponents {
+        let (kappa, xi) = (self.kappa * self.per_mu_k, self.xi * self.per_mu_s);
+        let (dkappa, dxi) = (
+            by.kappa * self.per_mu_k - kappa * self.per_mu_k * by.mu_k,
+            by.xi * self.per_mu_s - xi * self.per_mu_s * by.mu_s,
+        );
+        if self.is_linear() && by.m == 0.0 && by.n == 0.0 {
+            return Exponents { a: kappa * slip, b: xi * dt, da: dkappa * slip, db: dxi * dt };
+        }
+        let half = self.backward_euler(old, 0.5 * slip, 0.5 * dt);
+        let dhalf = self.backward_euler_by(half.mu, half.by_old, 0.5 * slip, 0.5 * dt, by);
+        let excess = ((half.mu - self.mu_k) * self.per_mu_k).max(f64::EPSILON);
+        let deficit = ((self.mu_s - half.mu) * self.per_mu_s).max(f64::EPSILON);
+        let dexcess = (dhalf - half.mu * self.per_mu_k * by.mu_k) * self.per_mu_k;
+        let ddeficit = (half.mu * self.per_mu_s * by.mu_s - dhalf) * self.per_mu_s;
+        let (loss, gain) = (excess.powf(self.m - 1.0), deficit.powf(self.n - 1.0));
+        let dloss = loss * (by.m * excess.ln() + (self.m - 1.0) * dexcess / excess);
+        let dgain = gain * (by.n * deficit.ln() + (self.n - 1.0) * ddeficit / deficit);
+        Exponents {
+            a: kappa * loss * slip,
+            b: xi * gain * dt,
+            da: (dkappa * loss + kappa * dloss) * slip,
+            db: (dxi * gain + xi * dgain) * dt,
+        }
+    }
+
+    /// ∂μ of one backward-Euler step that ends with `mu`, `share` being ∂μ/∂μ₀.
+    fn backward_euler_by(&self, mu: f64, share: f64, slip: f64, dt: f64, by: &PeakShift) -> f64 {
+        let (x, y) = ((mu - self.mu_k) * self.per_mu_k, (self.mu_s - mu) * self.per_mu_s);
+        let ((loss, loss_slope), (gain, gain_slope)) = (power(x, self.m), power(y, self.n));
+        let dloss = scaled(loss_slope, -mu * self.per_mu_k * self.per_mu_k * by.mu_k) + logarithmic(loss, x) * by.m;
+        let dgain = scaled(gain_slope, mu * self.per_mu_s * self.per_mu_s * by.mu_s) + logarithmic(gain, y) * by.n;
+        share * (dt * (by.xi * gain + self.xi * dgain) - slip * (by.kappa * loss + self.kappa * dloss))
+    }
+
+    /// dμ after the time `dt` without plastic slip, where μ at the start varies by `dold` and the time by `ddt`.
+    ///
+    /// ```text
+    /// d = 1 − μ/μ_s,   d^(1−n) = d₀^(1−n) + (n − 1) b,   b = ξ Δt/μ_s
+    /// δd = (d/d₀)ⁿ δd₀ − dⁿ δb + ∂d/∂n δn,   ∂d/∂n = dⁿ (d^(1−n) ln d − d₀^(1−n) ln d₀ + b)/(1 − n)
+    /// ```
+    pub(super) fn rested_by(&self, old: f64, dt: f64, [dold, ddt]: [f64; 2], by: &PeakShift) -> f64 {
+        let (xi, n) = (self.xi * self.per_mu_s, self.n);
+        let b = xi * dt;
+        let db = (by.xi * dt + self.xi * ddt) * self.per_mu_s - b * self.per_mu_s * by.mu_s;
+        let deficit = (self.mu_s - old) * self.per_mu_s;
+        let ddeficit = (old * self.per_mu_s * by.mu_s - dold) * self.per_mu_s;
+        // d/d₀
+        let share = if n == 1.0 {
+            (-b).exp()
+        } else {
+            let growth = scaled(deficit.powf(n - 1.0), (n - 1.0) * b);
+            if growth > -1.0 { (-growth.ln_1p() / (n - 1.0)).exp() } else { 0.0 }
+        };
+        let left = deficit * share;
+        let by_exponent = if by.n == 0.0 || left <= 0.0 {
+            0.0
+        } else if n == 1.0 {
+            0.5 * left * (left.ln().powi(2) - deficit.ln().powi(2))
+        } else {
+            let bend = left.powf(1.0 - n) * left.ln() - deficit.powf(1.0 - n) * deficit.ln() + b;
+            left.powf(n) * bend / (1.0 - n)
+        };
+        let dleft = share.powf(n) * ddeficit - left.max(0.0).powf(n) * db + by_exponent * by.n;
+        by.mu_s * (1.0 - left) - self.mu_s * dleft
+    }
+}
+
+/// xᵏ ln x, the derivative of xᵏ by k; 0 at x = 0.
+fn logarithmic(power: f64, x: f64) -> f64 {
+    if x > 0.0 { power * x.ln() } else { 0.0 }
+}

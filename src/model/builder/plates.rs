@@ -1,0 +1,230 @@
+//! Periodic sides and loading plates, as they are given, and which node moves with which; plates that turn, or of which one
+//! component is alike.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use nalgebra::{Matrix2, Vector2};
+
+use super::error::{Checked, ModelError};
+use super::groups::{Place, group, nodes_at};
+use super::load_step::{LoadStep, Support};
+use crate::mesh::Mesh;
+use crate::mesh::ties::Ties;
+use crate::model::Model;
+use crate::model::linkage::{Follower, Linkage, alike, rigid};
+
+/// How the nodes of a loading plate move.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Plate {
+    /// all alike: the plate does not turn
+    #[default]
+    AsOne,
+    /// alike in x, each as it will in y
+    UxAlike,
+    /// alike in y, each as it will in x
+    UyAlike,
+    /// as a rigid body, which turns
+    Rigid,
+}
+
+/// Partners may be off by this share of the distance between their sides.
+const ROUNDED: f64 = 1e-6;
+
+/// The nodes of loading plates that move as one.
+pub fn plates(given: &[(String, Plate)], mesh: &Mesh) -> Result<Vec<Vec<usize>>, ModelError> {
+    let nodes = |(k, name): (usize, &String)| {
+        let group = mesh.group(name).map_err(|error| ModelError::new(format!("plates[{k}]"), error))?;
+        Ok(mesh.nodes_of(group))
+    };
+    let as_one = given.iter().enumerate().filter(|(_, (_, moves))| *moves == Plate::AsOne);
+    as_one.map(|(k, (name, _))| nodes((k, name))).collect()
+}
+
+/// Ties between the nodes of pairs of sides, and of plates.
+pub fn ties(periodic: &[[String; 2]], plates: &[Vec<usize>], mesh: &Mesh) -> Result<Ties, ModelError> {
+    let mut joined = Vec::new();
+    for (k, names) in periodic.iter().enumerate() {
+        joined.extend(partners(names, mesh, &format!("periodic[{k}]"))?);
+    }
+    joined.extend(plates.iter().flat_map(|nodes| nodes.windows(2).map(|pair| [pair[0], pair[1]])));
+    Ok(Ties::new(mesh.nodes.len(), &joined))
+}
+
+/// Each node of one side with the node of the other that lies as far from it as the sides' middles are apart.
+fn partners(names: &[String; 2], mesh: &Mesh, place: &str) -> Result<Vec<[usize; 2]>, ModelError> {
+    let complain = |message: String| ModelError::new(place, message);
+    let side = |name: &String| mesh.group(name).map(|group| mesh.nodes_of(group));
+    let [first, second] =
+        [side(&names[0]).map_err(|e| complain(e.to_string()))?, side(&names[1]).map_err(|e| complain(e.to_string()))?];
+    if first.len() != second.len() {
+        return Err(complain(format!(
+            "`{}` has {} nodes and `{}` has {}: the nodes of periodic sides must lie alike",
+            names[0],
+            first.len(),
+            names[1],
+            second.len()
+        )));
+    }
+    let middle =
+        |nodes: &[usize]| nodes.iter().map(|&node| mesh.nodes[node]).sum::<Vector2<f64>>() / nodes.len() as f64;
+    let period = middle(&second) - middle(&first);
+    let near = ROUNDED * period.norm();
+    if mesh.section.is_axisymmetric() && period.x.abs() > near {
+        return Err(complain("the sides of axisymmetric bodies lie alike along y alone, the axis".into()));
+    }
+    if let Some(shared) = first.iter().find(|node| second.binary_search(node).is_ok()) {
+        let tag = mesh.node_tags[*shared];
+        return Err(complain(format!("node {tag} is on both sides: periodic sides must have nodes of their own")));
+    }
+    // Along the sides, the order of partners is the same but for round-off; sorted by one coordinate, few are looked at.
+    let mut by_x: Vec<(f64, usize)> = second.iter().map(|&node| (mesh.nodes[node].x, node)).collect();
+    by_x.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let partner = |node: usize| {
+        let expected = mesh.nodes[node] + period;
+        let candidates = by_x[by_x.partition_point(|(x, _)| *x < expected.x - near)..].iter();
+        let close = |other: &usize| (mesh.nodes[*other] - expected).norm() <= near;
+        candidates.take_while(|(x, _)| *x <= expected.x + near).map(|(_, other)| *other).find(close).ok_or(expected)
+    };
+    let paired = |&node: &usize| {
+        partner(node).map(|other| [node, other]).map_err(|expected| {
+            let (tag, at) = (mesh.node_tags[node], mesh.nodes[node]);
+            complain(format!(
+                "node {tag} of `{}` at ({}, {}) has no partner on `{}`, where one should lie at ({}, {}): the nodes of \
+                 periodic sides must lie alike",
+                names[0], at.x, at.y, names[1], expected.x, expected.y
+            ))
+        })
+    };
+    first.iter().map(paired).collect()
+}
+
+/// The nodes of plates that follow others.
+pub fn linkage(given: &[(String, Plate)], steps: &[LoadStep], model: &Model) -> Checked<Linkage> {
+    let mesh = &model.mesh;
+    let tied: BTreeSet<usize> = model.ties.pairs().iter().flat_map(|&(copy, original)| [copy, original]).collect();
+    let mut held = None;
+    let mut linkage = Linkage::default();
+    let mut seen: BTreeSet<(usize, usize)> = BTreeSet::new();
+    for (k, (name, plate)) in given.iter().enumerate() {
+        let components = match plate {
+            Plate::AsOne => continue,
+            Plate::UxAlike => [true, false],
+            Plate::UyAlike => [false, true],
+            Plate::Rigid => [true, true],
+        };
+        let place = format!("plates[{k}]");
+        let refused = |message: String| Err(ModelError::new(&place, message));
+        let nodes = mesh.nodes_of(group(mesh, name, &place)?);
+        let dofs = || nodes.iter().flat_map(|node| (0..2).filter(|i| components[*i]).map(|i| (*node, i)));
+        if let Some((node, _)) = dofs().find(|dof| tied.contains(&dof.0) || seen.contains(dof)) {
+            return refused(format!(
+                "node {} moves with others already, a periodic side or another plate: leave it out of one of the two",
+                mesh.node_tags[node]
+            ));
+        }
+        seen.extend(dofs());
+        if mesh.section.is_axisymmetric() && components[0] {
+            return refused(
+                "x is the radius of axisymmetric bodies: plates there are alike in uy, or move as one".into(),
+            );
+        }
+        match plate {
+            Plate::Rigid => {
+                let held = match &held {
+                    Some(held) => held,
+                    None => held.insert(held_nodes(steps, mesh, &place)?),
+                };
+                let leaders = leaders(&nodes, held, mesh, &place)?;
+                linkage.followers.extend(rigid(&nodes, leaders, |node| mesh.nodes[node]));
+                linkage.rigid.push(leaders);
+            }
+            _ => linkage.followers.extend(alike(&nodes, usize::from(components[1]))),
+        }
+        linkage.plates.push((nodes, components));
+    }
+    linkage.followers.sort_by_key(|follower| follower.node);
+    linkage.centers = centers(&linkage, model);
+    Ok(linkage)
+}
+
+/// G of the centers of mass of rigid plates. A node has the sum of its row of the mass matrix: with these shares the momentum of a
+/// body is that of its nodes.
+fn centers(linkage: &Linkage, model: &Model) -> Vec<Matrix2<f64>> {
+    let mut mass = vec![0.0; model.mesh.nodes.len()];
+    if !linkage.rigid.is_empty() {
+        for (e, element) in model.mesh.elements.iter().enumerate() {
+            let sums = model.element_mass(e).column_sum();
+            element.nodes.iter().zip(&sums).for_each(|(&node, share)| mass[node] += share);
+        }
+        model.point_masses.iter().for_each(|point| point.nodes.iter().for_each(|&node| mass[node] += point.mass));
+    }
+    let mut of_leader: BTreeMap<usize, Vec<&Follower>> = BTreeMap::new();
+    linkage.turning().for_each(|follower| of_leader.entry(follower.leaders[0].0).or_default().push(follower));
+    let center = |&[a, b]: &[usize; 2]| {
+        let own = || of_leader.get(&a).into_iter().flatten();
+        let moment = own().fold(Matrix2::identity() * mass[b], |sum, f| sum + f.leaders[1].1 * mass[f.node]);
+        let total = mass[a] + mass[b] + own().map(|follower| mass[follower.node]).sum::<f64>();
+        if total > 0.0 { moment / total } else { Matrix2::zeros() }
+    };
+    linkage.rigid.iter().map(center).collect()
+}
+
+/// A and B of the rigid plate that a moment acts on.
+pub fn plate_of_moment(model: &Model, on: &Place, place: &str) -> Checked<[usize; 2]> {
+    let nodes = nodes_at(&model.mesh, on, &format!("{place}.on"))?;
+    let is_plate = model.linkage.plates.iter().any(|(plate, components)| *components == [true; 2] && *plate == nodes);
+    let leaders = model.linkage.rigid.iter().find(|plate| plate.iter().all(|node| nodes.contains(node)));
+    leaders.filter(|_| is_plate).copied().ok_or_else(|| {
+        let message =
+            format!("{on} is no plate that turns, on which a moment acts: give it in plates, moving as rigid");
+        ModelError::new(format!("{place}.on"), message)
+    })
+}
+
+/// Nodes that supports hold in any step.
+fn held_nodes(steps: &[LoadStep], mesh: &Mesh, place: &str) -> Checked<BTreeSet<usize>> {
+    let mut held = BTreeSet::new();
+    for support in steps.iter().flat_map(|step| &step.supports) {
+        held.extend(nodes_at(mesh, &support.on, place)?);
+    }
+    Ok(held)
+}
+
+/// The node by which a rigid plate is held, or its first one, and the one farthest from it.
+fn leaders(nodes: &[usize], all_held: &BTreeSet<usize>, mesh: &Mesh, place: &str) -> Checked<[usize; 2]> {
+    let held: BTreeSet<usize> = nodes.iter().copied().filter(|node| all_held.contains(node)).collect();
+    if held.len() > 1 {
+        let tags: Vec<u64> = held.iter().take(2).map(|node| mesh.node_tags[*node]).collect();
+        let message = format!(
+            "turns, but supports hold more than one of its nodes, {} and {}: hold it by one, load it by forces, springs and a \
+             moment, or prescribe the rotation of the side and leave the plate out",
+            tags[0], tags[1]
+        );
+        return Err(ModelError::new(place, message));
+    }
+    let (Some(&first), Some(&last)) = (nodes.first(), nodes.last()) else {
+        return Err(ModelError::new(place, "has no nodes"));
+    };
+    let a = held.first().copied().unwrap_or(first);
+    let distance = |node: usize| (mesh.nodes[node] - mesh.nodes[a]).norm();
+    let b = nodes.iter().copied().fold(last, |b, node| if distance(node) > distance(b) { node } else { b });
+    match distance(b) > 0.0 {
+        true => Ok([a, b]),
+        false => Err(ModelError::new(place, "is one point, which does not turn: leave it out")),
+    }
+}
+
+/// Whether a support can be on nodes of plates that follow others.
+pub fn check_support(support: &Support, nodes: &[usize], model: &Model, place: &str) -> Checked<()> {
+    let inclined = support.along.is_some() || support.un.is_some();
+    for (plate, components) in &model.linkage.plates {
+        let Some(node) = nodes.iter().find(|node| plate.binary_search(node).is_ok()) else { continue };
+        let tag = model.mesh.node_tags[*node];
+        let whole = components[0] && components[1];
+        if support.rotation.is_some() || inclined && !whole {
+            let message = format!("node {tag} is one of a plate that moves alike: give ux and uy");
+            return Err(ModelError::new(place, message));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,421 @@
+//! What nothing holds or carries, found before anything is solved: bodies that float in a static step, bodies and nodes
+//! without mass in a dynamic one, and nodes outside all bodies that nothing holds.
+//!
+//! # Floating bodies
+//!
+//! Bodies that float in a static step.
+//!
+//! A shared node, a periodic copy, a follower of a plate, a support, a spring and a dashpot are equations between the rigid
+//! motions of the parts of a model, a row of numbers each. A motion at right angles to all of them meets no resistance.
+//!
+//! # Parts
+//!
+//! Parts of a model that move as rigid bodies, and what couples their motions.
+//!
+//! ```text
+//! u(X) = (U, V) + Θ J (X − X_c)/R          R: to the farthest node, so that all three numbers are lengths
+//! ```
+//!
+//! # Resistance
+//!
+//! Motions that something resists.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DVector, Vector2, Vector3};
+
+use super::error::ModelError;
+use super::load_step::LoadStep;
+use crate::contact::master::Master;
+use crate::contact::pair::ContactPair;
+use crate::contact::surface::Surface;
+use crate::mesh::joined::Joined;
+use crate::model::support::Direction;
+use crate::model::{Model, Step};
+
+/// Every motion must meet stiffness or, in a dynamic step, mass.
+pub fn check(given: &[LoadStep], model: &Model) -> Result<(), ModelError> {
+    for (k, step) in model.steps.iter().enumerate() {
+        if step.scheme.is_dynamic() || step.rupture.is_some() {
+            check_mass(k, step, model)?;
+        }
+        if !step.scheme.is_dynamic() {
+            check_lone_nodes(k, step, model)?;
+        }
+    }
+    check_floating(given, model)
+}
+
+/// A node of no body meets nothing but its supports, springs, dashpots and contact.
+fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Result<(), ModelError> {
+    let mut held = vec![false; model.dofs()];
+    let nodes = model.bodies.iter().flat_map(|body| &body.nodes);
+    nodes.for_each(|&node| held[2 * node..2 * node + 2].fill(true));
+    // Whether contact holds a node that may part is left to the solver.
+    let points = model.contacts.iter().flat_map(|pair| pair.points.iter().flat_map(|point| &point.position));
+    points.for_each(|&(node, _)| held[2 * node..2 * node + 2].fill(true));
+    let follow = model.linkage.followers.iter().flat_map(|follower| follower.dofs());
+    follow.for_each(|(_, dof)| held[dof] = true);
+    for (node, d) in holding(step) {
+        // An inclined direction and what is across it are counted as the dofs that have their equations.
+        held[2 * node + usize::from(d.x.abs() < d.y.abs())] = true;
+    }
+    match held.iter().position(|held| !held) {
+        Some(dof) => Err(ModelError::new(
+            format!("steps[{k}].supports"),
+            format!(
+                "node {} belongs to no element and is free along {}: hold it by a support, a spring or contact",
+                model.mesh.node_tags[dof / 2],
+                ["x", "y"][dof % 2]
+            ),
+        )),
+        None => Ok(()),
+    }
+}
+
+/// Accelerations follow from masses, so a node that may move needs one.
+fn check_mass(k: usize, step: &Step, model: &Model) -> Result<(), ModelError> {
+    let mut carried = vec![false; model.mesh.nodes.len()];
+    let dense = model.bodies.iter().filter(|body| body.material.density() > 0.0).flat_map(|body| &body.nodes);
+    let points = model.point_masses.iter().flat_map(|point| &point.nodes);
+    dense.chain(points).for_each(|&node| carried[node] = true);
+    let prescribed = |dof: usize| step.supports.binary_search_by_key(&dof, |support| support.at.dof).is_ok();
+    let held = |node: usize| prescribed(2 * node) && prescribed(2 * node + 1);
+    let massless = |node: &usize| !(carried[*node] || held(*node));
+    let why = format!("the dynamic step `{}` (steps[{k}]) needs a mass", step.name);
+    if let Some(body) = model.bodies.iter().find(|body| body.nodes.iter().any(massless)) {
+        let message = format!("is 0, but {why}: give a density");
+        return Err(ModelError::new(format!("bodies.{}.material.density", body.name), message));
+    }
+    match (0..model.mesh.nodes.len()).find(massless) {
+        Some(node) => Err(ModelError::new(
+            "point_masses",
+            format!("node {} belongs to no element, and {why}: give one to its group", model.mesh.node_tags[node]),
+        )),
+        None => Ok(()),
+    }
+}
+
+/// Parts of a group whose motions cost nothing; larger groups are left to the solver, which names what is free.
+const FEW_PARTS: usize = 32;
+
+/// Motions that are smaller than this share of the largest are not named.
+const NAMED: f64 = 0.1;
+
+/// Bodies must be held against x, y and rotation by supports, springs or dashpots in every static step, each by its own or
+/// through what couples it with others: contact, shared nodes, periodic sides and plates. Contact holds in every direction, and a
+/// single shared node is a hinge. A group that touches a rigid body is left to the solver.
+pub fn check_floating(given: &[LoadStep], model: &Model) -> Result<(), ModelError> {
+    if model.steps.iter().all(|step| step.scheme.is_dynamic()) {
+        return Ok(());
+    }
+    let parts = Parts::of(model);
+    let groups = Groups::of(&parts);
+    for (k, step) in model.steps.iter().enumerate().filter(|(_, step)| !step.scheme.is_dynamic()) {
+        let Some(free) = groups.free_motion(step) else { continue };
+        let held = if given[k].supports.is_empty() && step.supports.is_empty() {
+            "there is no support at all"
+        } else {
+            "the supports do not hold it"
+        };
+        let message = format!("{free}: {held}; a static step needs supports or springs against every rigid motion");
+        return Err(ModelError::new(format!("steps[{k}].supports"), message));
+    }
+    Ok(())
+}
+
+/// Nodes and directions that supports, springs and dashpots hold.
+pub fn holding(step: &Step) -> impl Iterator<Item = (usize, Vector2<f64>)> {
+    let springs = step.loads.springs.iter().map(|spring| spring.dof);
+    let absorbers = step.loads.absorbers.iter().flat_map(|absorber| [2 * absorber.node, 2 * absorber.node + 1]);
+    let dofs = springs.chain(step.loads.dashpots.iter().map(|dashpot| dashpot.dof)).chain(absorbers);
+    let supports = step.supports.iter().map(|support| support.at);
+    supports.chain(dofs.map(Direction::from)).map(|at| (at.node(), at.vector()))
+}
+
+/// Groups of parts that are coupled, directly or through others.
+struct Groups<'m> {
+    parts: &'m Parts<'m>,
+    members: Vec<Vec<usize>>,
+    /// group of each part and its place there; none of what is left to the solver
+    place: Vec<Option<(usize, usize)>>,
+    /// motions that couplings resist in each group
+    resisted: Vec<Resisted>,
+}
+
+impl<'m> Groups<'m> {
+    fn of(parts: &'m Parts<'m>) -> Self {
+        let couplings = parts.couplings();
+        let mut joined = Joined::new(parts.parts.len());
+        for row in &couplings {
+            row.windows(2).for_each(|two| joined.join(two[0].0, two[1].0));
+        }
+        let is_checked = |group: &Vec<usize>| {
+            let has_bodies = group.iter().any(|&part| !parts.parts[part].bodies.is_empty());
+            has_bodies && group.len() <= FEW_PARTS && !group.iter().any(|&part| parts.parts[part].on_rigid)
+        };
+        let members: Vec<Vec<usize>> = joined.groups().into_iter().filter(is_checked).collect();
+        let mut place = vec![None; parts.parts.len()];
+        for (g, group) in members.iter().enumerate() {
+            group.iter().enumerate().for_each(|(slot, &part)| place[part] = Some((g, slot)));
+        }
+        let resisted = members.iter().map(|group| Resisted::nothing(3 * group.len())).collect();
+        let mut groups = Self { parts, members, place, resisted };
+        let mut resisted = std::mem::take(&mut groups.resisted);
+        couplings.iter().for_each(|row| groups.add(row, &mut resisted));
+        Self { resisted, ..groups }
+    }
+
+    /// Let what a row says be resisted.
+    fn add(&self, row: &Row, resisted: &mut [Resisted]) {
+        let Some((group, _)) = row.first().and_then(|(part, _)| self.place[*part]) else { return };
+        let mut sum = DVector::zeros(3 * self.members[group].len());
+        for (part, share) in row {
+            let Some((_, slot)) = self.place[*part] else { return };
+            (0..3).for_each(|i| sum[3 * slot + i] += share[i]);
+        }
+        // What cancels leaves round-off of the size of its terms.
+        let size = row.iter().map(|(_, share)| share.norm_squared()).sum::<f64>().sqrt();
+        resisted[group].add(sum, size);
+    }
+
+    /// What can move how in a step, in words.
+    fn free_motion(&self, step: &Step) -> Option<String> {
+        let mut resisted = self.resisted.clone();
+        holding(step).for_each(|at| self.add(&self.parts.row(&[at]), &mut resisted));
+        let mut motions = resisted.iter().zip(&self.members);
+        motions.find_map(|(resisted, group)| Some(self.told(group, &resisted.free()?)))
+    }
+
+    fn told(&self, group: &[usize], motion: &DVector<f64>) -> String {
+        let moves = |k: usize| motion[k].abs() > NAMED * motion.amax();
+        let moving = (0..group.len()).filter(|slot| (0..3).any(|i| moves(3 * slot + i)));
+        let names: Vec<String> = moving.flat_map(|slot| self.parts.names(group[slot])).collect();
+        let words = ["along x", "along y", "in rotation"];
+        let free: Vec<&str> =
+            (0..3).filter(|i| (0..group.len()).any(|slot| moves(3 * slot + i))).map(|i| words[i]).collect();
+        format!("{} can move freely {}", names.join(" with "), free.join(" with "))
+    }
+}
+
+/// An equation between the motions of parts: shares of U, V and Θ of each.
+pub type Row = Vec<(usize, Vector3<f64>)>;
+
+/// A part: bodies in contact or that share nodes at two places, or a node outside all bodies.
+pub struct Part {
+    /// its bodies
+    pub bodies: Vec<usize>,
+    /// whether it touches a rigid body
+    pub on_rigid: bool,
+    nodes: Vec<usize>,
+    centre: Vector2<f64>,
+    radius: f64,
+}
+
+/// All parts.
+pub struct Parts<'m> {
+    /// part by part
+    pub parts: Vec<Part>,
+    model: &'m Model,
+    /// parts of each node: more than one is a hinge
+    of_node: Vec<Vec<usize>>,
+}
+
+impl<'m> Parts<'m> {
+    /// The parts of a model.
+    pub fn of(model: &'m Model) -> Self {
+        let owners = owners(model);
+        let groups = joined(model, &owners);
+        let mut part_of = vec![0; groups.iter().map(Vec::len).sum()];
+        groups.iter().enumerate().for_each(|(part, group)| group.iter().for_each(|&owner| part_of[owner] = part));
+        let mut of_node = owners;
+        for parts in &mut of_node {
+            parts.iter_mut().for_each(|owner| *owner = part_of[*owner]);
+            parts.sort_unstable();
+            parts.dedup();
+        }
+        let mut nodes = vec![Vec::new(); groups.len()];
+        of_node.iter().enumerate().for_each(|(node, parts)| parts.iter().for_each(|&part| nodes[part].push(node)));
+        let mut parts: Vec<Part> =
+            groups.iter().zip(nodes).map(|(group, nodes)| Part::of(group, nodes, model)).collect();
+        for pair in model.contacts.iter().filter(|pair| matches!(pair.master, Master::Rigid(_))) {
+            slaves(pair).flat_map(|node| &of_node[node]).for_each(|&part| parts[part].on_rigid = true);
+        }
+        Self { parts, model, of_node }
+    }
+
+    /// What is moved, in words: bodies, or a node.
+    pub fn names(&self, part: usize) -> Vec<String> {
+        let Part { bodies, nodes, .. } = &self.parts[part];
+        match bodies.is_empty() {
+            true => nodes.iter().map(|&node| format!("node {}", self.model.mesh.node_tags[node])).collect(),
+            false => bodies.iter().map(|&body| format!("`{}`", self.model.bodies[body].name)).collect(),
+        }
+    }
+
+    /// Σ d·u of nodes and vectors d.
+    pub fn row(&self, terms: &[(usize, Vector2<f64>)]) -> Row {
+        terms.iter().map(|&(node, d)| self.term(self.of_node[node][0], node, d)).collect()
+    }
+
+    /// d·u of a node as a part moves it.
+    fn term(&self, part: usize, node: usize, d: Vector2<f64>) -> (usize, Vector3<f64>) {
+        let Part { centre, radius, .. } = self.parts[part];
+        let arm = (self.model.mesh.nodes[node] - centre) / radius;
+        (part, Vector3::new(d.x, d.y, d.y * arm.x - d.x * arm.y))
+    }
+
+    /// Everything that is zero in every step.
+    pub fn couplings(&self) -> Vec<Row> {
+        let mut rows = self.of_shape();
+        for (node, parts) in self.of_node.iter().enumerate() {
+            let hinge = |d: Vector2<f64>, other: usize| vec![self.term(parts[0], node, d), self.term(other, node, -d)];
+            rows.extend(parts[1..].iter().flat_map(|&other| AXES.map(|d| hinge(d, other))));
+        }
+        let ties = self.model.ties.pairs().iter();
+        rows.extend(ties.flat_map(|&(copy, original)| AXES.map(|d| self.row(&[(copy, d), (original, -d)]))));
+        for follower in &self.model.linkage.followers {
+            let leaders = |i: usize| follower.leaders.iter().map(move |(node, g)| (*node, -g.row(i).transpose()));
+            let row = |(i, _): (usize, usize)| {
+                self.row(&[(follower.node, AXES[i])].into_iter().chain(leaders(i)).collect::<Vec<_>>())
+            };
+            rows.extend(follower.dofs().map(row));
+        }
+        // The leaders of a plate that turns keep their distance.
+        let apart = |&[a, b]: &[usize; 2]| (self.model.mesh.nodes[b] - self.model.mesh.nodes[a]).normalize();
+        rows.extend(
+            self.model
+                .linkage
+                .rigid
+                .iter()
+                .map(|plate| self.row(&[(plate[1], apart(plate)), (plate[0], -apart(plate))])),
+        );
+        rows
+    }
+
+    /// What a part cannot do by itself: hoops resist all but the motion along the axis, and a node does not turn.
+    fn of_shape(&self) -> Vec<Row> {
+        let axisymmetric = self.model.mesh.section.is_axisymmetric();
+        let of = |(part, Part { bodies, nodes, .. }): (usize, &Part)| {
+            let hoops = axisymmetric && !bodies.is_empty();
+            let [u, turn] = [hoops, hoops || nodes.len() == 1];
+            [(u, 0), (turn, 2)]
+                .into_iter()
+                .filter(|(resisted, _)| *resisted)
+                .map(move |(_, i)| vec![(part, Vector3::ith(i, 1.0))])
+        };
+        self.parts.iter().enumerate().flat_map(of).collect()
+    }
+}
+
+const AXES: [Vector2<f64>; 2] = [Vector2::new(1.0, 0.0), Vector2::new(0.0, 1.0)];
+
+impl Part {
+    fn of(owners: &[usize], nodes: Vec<usize>, model: &Model) -> Self {
+        let place = |node: &usize| model.mesh.nodes[*node];
+        let centre = nodes.iter().map(place).sum::<Vector2<f64>>() / nodes.len() as f64;
+        let radius = nodes.iter().fold(f64::MIN_POSITIVE, |r, node| r.max((place(node) - centre).norm()));
+        let bodies = owners.iter().copied().filter(|owner| *owner < model.bodies.len()).collect();
+        Self { bodies, on_rigid: false, nodes, centre, radius }
+    }
+}
+
+/// The bodies of each node; one outside all bodies has a number of its own after theirs.
+fn owners(model: &Model) -> Vec<Vec<usize>> {
+    let mut owners = vec![Vec::new(); model.mesh.nodes.len()];
+    for (body, of) in model.bodies.iter().enumerate() {
+        of.nodes.iter().for_each(|&node| owners[node].push(body));
+    }
+    let lone = owners.iter_mut().filter(|bodies| bodies.is_empty());
+    lone.zip(model.bodies.len()..).for_each(|(own, number)| own.push(number));
+    owners
+}
+
+/// Groups of owners that move as one.
+fn joined(model: &Model, owners: &[Vec<usize>]) -> Vec<Vec<usize>> {
+    let mut joined = Joined::new(1 + owners.iter().flatten().max().copied().unwrap_or(0));
+    bonded(model, owners).into_iter().for_each(|(a, b)| joined.join(a, b));
+    for pair in &model.contacts {
+        let Master::Mesh(Surface { segments, .. }) = &pair.master else { continue };
+        // A group of edges may run along several bodies.
+        let nodes = slaves(pair).chain(segments.iter().flat_map(|segment| segment.ends));
+        let met: Vec<usize> = nodes.flat_map(|node| owners[node].iter().copied()).collect();
+        met.windows(2).for_each(|two| joined.join(two[0], two[1]));
+    }
+    joined.groups()
+}
+
+/// Bodies that share nodes at two places.
+fn bonded(model: &Model, owners: &[Vec<usize>]) -> Vec<(usize, usize)> {
+    let mut first: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+    let mut bonded = Vec::new();
+    for (node, bodies) in owners.iter().enumerate() {
+        for (k, &a) in bodies.iter().enumerate() {
+            for &b in &bodies[k + 1..] {
+                let hinge = *first.entry((a, b)).or_insert(node);
+                if model.mesh.nodes[hinge] != model.mesh.nodes[node] {
+                    bonded.push((a, b));
+                }
+            }
+        }
+    }
+    bonded
+}
+
+/// Nodes of the slave side.
+fn slaves(pair: &ContactPair) -> impl Iterator<Item = usize> {
+    pair.points.iter().flat_map(|point| point.position.iter().map(|&(node, _)| node))
+}
+
+/// Share of an equation below which it says nothing that others do not.
+const NOTHING_NEW: f64 = 1e-5;
+
+/// The motions that equations resist: vectors of unit length, at right angles to each other.
+#[derive(Clone)]
+pub struct Resisted {
+    size: usize,
+    basis: Vec<DVector<f64>>,
+}
+
+impl Resisted {
+    /// Nothing of motions of so many numbers.
+    pub fn nothing(size: usize) -> Self {
+        Self { size, basis: Vec::new() }
+    }
+
+    /// What of a vector is at right angles to all that is resisted.
+    fn rest(&self, mut of: DVector<f64>) -> DVector<f64> {
+        // Twice, as the first time leaves round-off.
+        for known in self.basis.iter().chain(&self.basis) {
+            let along = known.dot(&of);
+            of.axpy(-along, known, 1.0);
+        }
+        of
+    }
+
+    /// One more equation, a row of terms of a size.
+    pub fn add(&mut self, row: DVector<f64>, size: f64) {
+        if self.basis.len() == self.size {
+            return;
+        }
+        let rest = self.rest(row);
+        let norm = rest.norm();
+        if norm > NOTHING_NEW * size {
+            self.basis.push(rest / norm);
+        }
+    }
+
+    /// A motion that nothing resists: as much as can be of one number.
+    pub fn free(&self) -> Option<DVector<f64>> {
+        if self.basis.len() == self.size {
+            return None;
+        }
+        let rest = |k: usize| {
+            let mut unit = DVector::zeros(self.size);
+            unit[k] = 1.0;
+            self.rest(unit)
+        };
+        let longer = |a: DVector<f64>, b: DVector<f64>| if b.norm() > a.norm() { b } else { a };
+        (0..self.size).map(rest).reduce(longer)
+    }
+}

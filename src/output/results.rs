@@ -1,0 +1,180 @@
+//! What a folder of results holds, as plain numbers: for those who show it.
+//!
+//! Frames of bodies and interfaces: what a `.pvd` lists, and the VTU files behind it.
+//!
+//! What an interface did over time and place, from `interface.zarr`.
+
+use std::path::{Path, PathBuf};
+
+use vtkio::model::{Attribute, Attributes, DataSet, UnstructuredGridPiece, VertexNumbers};
+
+use crate::output::interface::read::{StoredContact, Unreadable, contacts};
+
+/// A frame that is listed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// [T]
+    pub time: f64,
+    /// its file, below the folder of results
+    pub file: String,
+}
+
+/// Values at the points or cells of a grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Array {
+    /// what they are
+    pub name: String,
+    /// values a point or cell
+    pub components: usize,
+    /// all of them
+    pub values: Vec<f64>,
+}
+
+/// Points and cells with what is known there.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Grid {
+    /// places before anything moves [L]
+    pub points: Vec<[f64; 2]>,
+    /// points of the cells, one cell after the other
+    pub connectivity: Vec<u32>,
+    /// where each cell ends in these
+    pub ends: Vec<u32>,
+    /// VTK's numbers of the kinds of cells
+    pub kinds: Vec<u8>,
+    /// values at the points
+    pub at_points: Vec<Array>,
+    /// values at the cells
+    pub at_cells: Vec<Array>,
+}
+
+/// The frames that `NAME.pvd` lists, in order of time; `None` where there is no such file.
+///
+/// # Errors
+/// What is wrong with the file.
+pub fn frames(folder: &Path, name: &str) -> Result<Option<Vec<Frame>>, String> {
+    let file = format!("{name}.pvd");
+    let path = folder.join(&file);
+    if !path.is_file() {
+        return Ok(None);
+    }
+    let text = std::fs::read_to_string(&path).map_err(|cause| format!("{file} cannot be read: {cause}"))?;
+    let listed = text.split("<DataSet ").skip(1).map(|entry| {
+        let of = |key: &str| entry.split_once(&format!("{key}=\""))?.1.split('"').next();
+        let (time, file) = (of("timestep")?.parse().ok()?, of("file")?);
+        Some(Frame { time, file: file.into() }).filter(|frame| frame.time.is_finite() && below(&frame.file))
+    });
+    let mut frames: Vec<Frame> =
+        listed.collect::<Option<_>>().ok_or_else(|| format!("{file} lists a frame without a time or a file"))?;
+    frames.sort_by(|a, b| a.time.total_cmp(&b.time));
+    Ok(Some(frames))
+}
+
+/// Whether a file lies below the folder that names it.
+fn below(file: &str) -> bool {
+    PathBuf::from(file).components().all(|part| matches!(part, std::path::Component::Normal(_)))
+}
+
+impl Grid {
+    /// Read a VTU file.
+    ///
+    /// # Errors
+    /// What is wrong with the file.
+    pub fn read(path: &Path) -> Result<Self, String> {
+        if !path.is_file() {
+            return Err("is missing".into());
+        }
+        // Damaged files may lead the reader anywhere.
+        let read = std::panic::catch_unwind(|| Self::import(path));
+        read.unwrap_or_else(|_| Err("is damaged".into()))
+    }
+
+    fn import(path: &Path) -> Result<Self, String> {
+        let file = vtkio::Vtk::import(path).map_err(|cause| format!("cannot be read: {cause}"))?;
+        let DataSet::UnstructuredGrid { pieces, .. } = file.data else { return Err("is no unstructured grid".into()) };
+        let piece = pieces.into_iter().next().ok_or("has no piece")?;
+        let piece = piece.into_loaded_piece_data(None).map_err(|cause| format!("cannot be read: {cause}"))?;
+        let grid = Self::of(piece).ok_or("has arrays of unknown types")?;
+        grid.is_whole().then_some(grid).ok_or_else(|| "has arrays that do not fit its points and cells".into())
+    }
+
+    fn of(piece: UnstructuredGridPiece) -> Option<Self> {
+        let places: Vec<f64> = piece.points.cast_into()?;
+        let (connectivity, ends) = match piece.cells.cell_verts {
+            VertexNumbers::XML { connectivity, offsets } => (connectivity, offsets),
+            VertexNumbers::Legacy { .. } => return None,
+        };
+        let small = |numbers: Vec<u64>| {
+            numbers.into_iter().map(|number| u32::try_from(number).ok()).collect::<Option<Vec<u32>>>()
+        };
+        let Attributes { point, cell } = piece.data;
+        Some(Self {
+            points: places.chunks_exact(3).map(|x| [x[0], x[1]]).collect(),
+            connectivity: small(connectivity)?,
+            ends: small(ends)?,
+            kinds: piece.cells.types.iter().map(|kind| *kind as u8).collect(),
+            at_points: arrays(point),
+            at_cells: arrays(cell),
+        })
+    }
+
+    /// Whether all arrays are as long as they should be.
+    fn is_whole(&self) -> bool {
+        let cells = self.ends.len();
+        let long = |arrays: &[Array], count: usize| arrays.iter().all(|of| of.values.len() == count * of.components);
+        self.kinds.len() == cells
+            && self.ends.is_sorted()
+            && self.ends.last().copied().unwrap_or(0) as usize == self.connectivity.len()
+            && self.connectivity.iter().all(|&point| (point as usize) < self.points.len())
+            && long(&self.at_points, self.points.len())
+            && long(&self.at_cells, cells)
+    }
+
+    /// Whether another grid has the same cells.
+    pub fn is_like(&self, other: &Self) -> bool {
+        self.points.len() == other.points.len() && self.connectivity == other.connectivity && self.ends == other.ends
+    }
+}
+
+fn arrays(attributes: Vec<Attribute>) -> Vec<Array> {
+    let array = |attribute| {
+        let Attribute::DataArray(array) = attribute else { return None };
+        let components = array.num_comp();
+        Some(Array { components, values: array.data.cast_into()?, name: array.name })
+    };
+    attributes.into_iter().filter_map(array).collect()
+}
+
+/// The records of one contact: a row a time, in each row a value a point.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct InterfaceMap {
+    /// name of the contact
+    pub contact: String,
+    /// of the rows, ascending [T]
+    pub times: Vec<f64>,
+    /// of the points along the slave [L]
+    pub positions: Vec<f64>,
+    /// by name, row by row
+    pub quantities: Vec<(String, Vec<f64>)>,
+}
+
+impl InterfaceMap {
+    /// The interfaces of a folder; none if it has no store.
+    ///
+    /// # Errors
+    /// [`Unreadable`] with the file, and what is wrong with it.
+    pub fn read(folder: &Path) -> Result<Vec<Self>, Unreadable> {
+        Ok(contacts(folder, |_| true)?.into_iter().filter(|contact| !contact.times.is_empty()).map(Self::of).collect())
+    }
+
+    fn of(contact: StoredContact) -> Self {
+        let StoredContact { name, times, positions, quantities, .. } = contact;
+        let spoken = |name: String| match &*name {
+            "p" => "pressure".into(),
+            "q" => "traction".into(),
+            _ => name,
+        };
+        let wide = |values: Vec<f32>| values.into_iter().map(f64::from).collect();
+        let quantities = quantities.into_iter().map(|(name, values)| (spoken(name), wide(values))).collect();
+        Self { contact: name, times, positions, quantities }
+    }
+}
