@@ -516,7 +516,7 @@ impl Writer<'_> {
         }
         match draft.of("radiation") {
             "given" => {
-                contact["radiation_damping"] = json!(30.0 * frame.stress * frame.time / frame.length * self.duration())
+                contact["radiation_damping"] = json!(300.0 * frame.stress * frame.time / frame.length * self.duration())
             }
             "of_bodies" => contact["radiation_damping"] = json!(true),
             _ => {}
