@@ -1,7 +1,7 @@
 //! Solid elements: internal force, tangent, stress and mass of one element.
 //!
 //! Degrees of freedom of an element are ordered by node: component i of node a is 2a + i. Integrals are
-//! weighted as the [`Section`](crate::mesh::section::Section) says.
+//! weighted as the [`Section`] says.
 //!
 //! # Mass
 //!
