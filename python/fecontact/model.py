@@ -923,7 +923,7 @@ class Load(dict[str, Any]):
     Args:
         on: Where
         absorbing: true: a side of a body absorbs waves, as if the body went on (Lysmer-Kuhlemeyer: dashpots rho
-            c_p along the normal and rho c_s along the side, of the undeformed body); false ends it
+            c_p along the normal and rho c_s along the side, of the undeformed body); false or null ends it
         dashpot: Dashpot at every node of the group, to the ground or to a moving driver
         dead_pressure: Pressure on edges that keeps the force and direction it has on the undeformed edges,
             positive toward the body [F/L²]
