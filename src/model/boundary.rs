@@ -122,7 +122,8 @@ impl Drive {
     /// goes on in a straight line through the increment's start and end, wherever it bends or the step ends.
     pub fn value(&self, position: Vector2<f64>, at: impl Into<Moment>, span: Span, start: f64) -> f64 {
         let Moment { time, beyond } = at.into();
-        if let Some([from, to]) = beyond {
+        // A rate is its own straight line.
+        if let (Some([from, to]), false) = (beyond, matches!(self, Self::Rate(_))) {
             let [first, last] = [from, to].map(|time| self.value(position, time, span, start));
             return first + (time - from) / (to - from) * (last - first);
         }
