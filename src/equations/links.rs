@@ -31,6 +31,7 @@ use super::trial::Trial;
 use crate::linear::SparseMatrix;
 use crate::linear::system::System;
 use crate::model::Model;
+use crate::model::linkage::Follower;
 use crate::model::scheme::Coefficients;
 use crate::model::state::State;
 
@@ -88,20 +89,12 @@ pub(super) fn couple(model: &Model, plate: [usize; 2], u: &[f64], moment: f64) -
     (turned * (moment / square), both)
 }
 
-/// How far followers are from where their leaders are, and rigid plates from their length: the most, and the largest motion [L].
-pub(super) fn missed(model: &Model, u: &[f64]) -> [f64; 2] {
-    let (mut missed, mut place) = (0.0f64, 0.0f64);
-    for follower in &model.linkage.followers {
-        for (i, dof) in follower.dofs() {
-            missed = missed.max((u[dof] - follower.led(i, u)).abs());
-            place = place.max(u[dof].abs());
-        }
-    }
-    for plate in &model.linkage.rigid {
-        missed = missed.max(stretch(model, *plate, u).abs());
-        place = plate.iter().fold(place, |most, node| most.max(u[2 * node].abs()).max(u[2 * node + 1].abs()));
-    }
-    [missed, place]
+/// How far followers are from where their leaders are, and rigid plates from their length, at most [L].
+pub(super) fn missed(model: &Model, u: &[f64]) -> f64 {
+    let led = |(follower, (i, dof)): (&Follower, (usize, usize))| (u[dof] - follower.led(i, u)).abs();
+    let followers = model.linkage.followers.iter().flat_map(|follower| follower.dofs().map(move |dof| (follower, dof)));
+    let plates = model.linkage.rigid.iter().map(|plate| stretch(model, *plate, u).abs());
+    followers.map(led).chain(plates).fold(0.0, f64::max)
 }
 
 /// Forces without what keeps the length of rigid plates, which is with A instead of B: it is no force out of balance.
