@@ -167,7 +167,7 @@ fn answers(course: &Course, k: usize, parameters: &Value, ask: Ask) -> Result<An
     goes_on(raised).map_err(|error| Refusal::Stopped(error.to_string()))?;
     let test = course.test(k, parameters, initial).map_err(Refusal::Case)?;
     let law = &*test.law;
-    let further = observables::further([law]);
+    let further = observables::further([&law.description()]);
     let names = further.iter().map(|name| (*name).to_owned()).collect();
     let mut answers =
         Answers { rows: Vec::with_capacity(course.time.len()), further: vec![Vec::new(); further.len()], names };

@@ -7,11 +7,11 @@ use super::kinematics::{Kinematics, Meeting};
 use super::master::Master;
 use super::mortar::{Committed, Overlaps, Room};
 use super::nodal_forces::{Closed, ClosedPoints};
-use super::pair::ContactPair;
+use super::pair::{ContactPair, LawsOfIncrement};
 use super::point::{ContactIncrement, ContactState, PointIncrement, Presumption};
 use super::search::{Index, Trees};
 use super::surface::SlavePoint;
-use crate::laws::friction::{Answer, FrictionResponse, FrictionState, LawFailure, Resolved, Sliding};
+use crate::laws::friction::{Answer, ContactLaw, FrictionResponse, FrictionState, LawFailure, Sliding};
 use crate::linear::system::Request;
 use crate::mesh::configuration::Configuration;
 
@@ -34,6 +34,8 @@ pub struct PairResponse {
 /// What need not be found anew while it stays as it is.
 #[derive(Clone, Debug, Default)]
 struct Kept {
+    /// Laws of the increment, where they vary in time
+    laws: Option<LawsOfIncrement>,
     /// Trees of the master
     trees: Trees,
     /// What mortar averages over in the committed configuration, and in that of the trial
@@ -76,7 +78,7 @@ type At<'a> = (&'a mut Kinematics, &'a mut Room);
 struct Question<'a, P> {
     pair: &'a ContactPair,
     /// The laws that hold in the increment
-    laws: Resolved<'a>,
+    laws: &'a [ContactLaw],
     /// Increment of a point, and what is presumed about it
     during: ContactIncrement,
     presumed: P,
@@ -99,29 +101,30 @@ impl ContactPair {
         request: Request,
         response: &mut PairResponse,
     ) -> Result<(), (usize, LawFailure)> {
-        let laws = self.laws_during(during.span())?;
-        let question = Question { pair: self, laws, during, presumed, varied: request == Request::Tangent };
+        let mut kept = std::mem::take(&mut response.kept);
+        let varied = request == Request::Tangent;
+        let answer = self.respond_by((during, presumed, varied), old, [before, x], &mut kept, response);
+        response.kept = kept;
+        answer
+    }
+
+    /// With what is kept.
+    fn respond_by<P: Fn(usize) -> Presumption + Sync>(
+        &self,
+        (during, presumed, varied): (ContactIncrement, P, bool),
+        old: &[ContactState],
+        [before, x]: [&Configuration; 2],
+        Kept { laws, trees, committed, overlaps }: &mut Kept,
+        response: &mut PairResponse,
+    ) -> Result<(), (usize, LawFailure)> {
+        let laws = self.laws_during(during.span(), laws)?;
+        let question = Question { pair: self, laws, during, presumed, varied };
         if let Some(small) = &self.small {
             return question.each(old, response, |k, slave, old, increment, (kinematics, _)| {
                 let meeting = small.points[k].as_ref().map(|point| point.meet(before, x, kinematics));
                 averaged(self, slave, meeting, old, increment, x)
             });
         }
-        let mut kept = std::mem::take(&mut response.kept);
-        let answer = self.respond_by(&question, old, [before, x], &mut kept, response);
-        response.kept = kept;
-        answer
-    }
-
-    /// By search in the master's tree.
-    fn respond_by<P: Fn(usize) -> Presumption + Sync>(
-        &self,
-        question: &Question<P>,
-        old: &[ContactState],
-        [before, x]: [&Configuration; 2],
-        Kept { trees, committed, overlaps }: &mut Kept,
-        response: &mut PairResponse,
-    ) -> Result<(), (usize, LawFailure)> {
         let index = Index::kept(&self.master, [before, x], trees);
         if let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) {
             mortar.commit(&self.master, surface, before, committed);
@@ -185,7 +188,7 @@ impl Part {
         states: &mut [ContactState],
         place: impl Fn(usize, &SlavePoint, &ContactState, PointIncrement, At) -> PointPlace,
     ) {
-        let Question { pair, ref laws, during, .. } = *question;
+        let Question { pair, laws, during, .. } = *question;
         let Self { closed, kinematics, room, failure } = self;
         closed.clear();
         kinematics.resize_with(TOGETHER.min(numbers.len()), Kinematics::default);
@@ -199,7 +202,7 @@ impl Part {
                 let increment = PointIncrement { during, presumption: (question.presumed)(first + i) };
                 kinematics.varied = question.varied;
                 let place = place(first + i, slave, old, increment, (&mut *kinematics, room));
-                match Loading::new((pair, slave, laws.law(slave.law)), old, increment, place, kinematics) {
+                match Loading::new((pair, slave, &laws[slave.law]), old, increment, place, kinematics) {
                     Ok(loading) => {
                         sliding[i] = loading.sliding;
                         loadings[i] = Some(loading);
@@ -225,7 +228,12 @@ impl Part {
 }
 
 /// What the laws of consecutive points say.
-fn answers(laws: &Resolved, points: &[SlavePoint], old: &[ContactState], sliding: &[Sliding]) -> [Answer; TOGETHER] {
+fn answers(
+    laws: &[ContactLaw],
+    points: &[SlavePoint],
+    old: &[ContactState],
+    sliding: &[Sliding],
+) -> [Answer; TOGETHER] {
     let mut committed = [FrictionState::default(); TOGETHER];
     committed.iter_mut().zip(old).for_each(|(committed, old)| *committed = old.friction);
     let mut answers = [Ok(FrictionResponse::default()); TOGETHER];
@@ -234,7 +242,7 @@ fn answers(laws: &Resolved, points: &[SlavePoint], old: &[ContactState], sliding
         let range = start..start + alike.len();
         start = range.end;
         let (old, sliding, answers) = (&committed[range.clone()], &sliding[range.clone()], &mut answers[range]);
-        laws.law(alike[0].law).respond_many(old, sliding, answers);
+        laws[alike[0].law].respond_many(old, sliding, answers);
     }
     answers
 }

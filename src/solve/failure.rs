@@ -190,7 +190,7 @@ fn has(pair: &ContactPair, node: usize) -> bool {
 
 /// A penalty far above the stiffness of the bodies: their own forces are round-off beside those of contact.
 fn penalty(pair: &ContactPair) -> Option<String> {
-    let alpha_t = pair.laws.iter().map(|law| law.start().stiffness()).fold(0.0, f64::max);
+    let alpha_t = pair.laws.iter().map(|law| law.description.stiffness).fold(0.0, f64::max);
     let (name, value) = if alpha_t > pair.alpha_n { ("alpha_t", alpha_t) } else { ("alpha_n", pair.alpha_n) };
     let times = value * pair.compliance;
     (times > STIFF).then(|| {

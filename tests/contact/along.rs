@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::common::{Blocks, Finished, close, finish, floor, linear, model, run_through};
 use fecontact::contact::pair;
-use fecontact::laws::friction::{Answer, Coulomb, CoulombParameters, FrictionLaw, FrictionState, Sliding};
+use fecontact::laws::friction::{Answer, Coulomb, CoulombParameters, Description, FrictionLaw, FrictionState, Sliding};
 use fecontact::model::Model;
 use fecontact::model::boundary::{Drive, Expression, Profile};
 use fecontact::model::builder::{Contact, Friction, LoadStep, Support};
@@ -193,20 +193,9 @@ impl FrictionLaw for Counting {
         Ok(answer)
     }
 
-    fn stiffness(&self) -> f64 {
-        self.0.stiffness()
-    }
-
-    fn variables(&self) -> &'static [&'static str] {
-        &["first", "second", "third", "fourth"]
-    }
-
-    fn offsets(&self) -> &'static [&'static str] {
-        &["dilation"]
-    }
-
-    fn starting_limit(&self, pressure: f64) -> f64 {
-        self.0.starting_limit(pressure)
+    fn description(&self) -> Description {
+        let variables = &["first", "second", "third", "fourth"];
+        Description { variables, observables: None, opening: &["dilation"], ..self.0.description() }
     }
 }
 

@@ -45,7 +45,7 @@ fn pressure(k: usize) -> f64 {
 }
 
 fn start(law: &dyn FrictionLaw) -> FrictionState {
-    law.starting_state(START[0], START[1])
+    law.initial_state(START[0], START[1])
 }
 
 /// The answers at the samples, each reached by so many increments.

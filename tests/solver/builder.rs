@@ -9,8 +9,8 @@ use crate::common::{
 use fecontact::case::law_test;
 use fecontact::laws::bulk::{Material, NeoHookean, SaintVenantKirchhoff};
 use fecontact::laws::friction::{
-    Coulomb, CoulombParameters, FrictionLaw, FrictionResponse, FrictionState, Frictionless, LawFailure, Sliding,
-    SlipWeakening, SlipWeakeningParameters, SuperSubloadingParameters, register,
+    Coulomb, CoulombParameters, Description, FrictionLaw, FrictionResponse, FrictionState, Frictionless, LawFailure,
+    Sliding, SlipWeakening, SlipWeakeningParameters, SuperSubloadingParameters, register,
 };
 use fecontact::mesh::gmsh;
 use fecontact::model::boundary::{Drive, Profile};
@@ -367,16 +367,8 @@ impl FrictionLaw for Named {
         FrictionResponse::elastic(old.stuck(0.0, sliding.pressure.max(0.0)), 0.0).checked(1.0)
     }
 
-    fn variables(&self) -> &'static [&'static str] {
-        self.variables
-    }
-
-    fn offsets(&self) -> &'static [&'static str] {
-        self.offsets
-    }
-
-    fn stiffness(&self) -> f64 {
-        0.0
+    fn description(&self) -> Description {
+        Description { variables: self.variables, opening: self.offsets, ..Description::default() }
     }
 }
 
@@ -431,7 +423,7 @@ fn penalties_follow_from_the_softer_side() {
     let model = built(small());
     let modulus = 100.0 * 0.7 / (1.3 * 0.4);
     common::close("alpha_n", model.contacts[0].alpha_n, 10.0 * modulus, 1e-9 * modulus);
-    common::close("alpha_t", model.contacts[0].laws[0].start().stiffness(), 5.0 * modulus, 1e-9 * modulus);
+    common::close("alpha_t", model.contacts[0].laws[0].description.stiffness, 5.0 * modulus, 1e-9 * modulus);
 }
 
 /// What is wrong with a model from code is told with its place and what to do.

@@ -3,9 +3,10 @@ use serde::{Deserialize, Serialize};
 
 use super::sensitivity::{Direction, SensitiveLaw, Variation};
 use super::{
-    Answer, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Sliding, traction_at_yield,
+    Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Sliding,
+    traction_at_yield,
 };
-use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
+use crate::laws::parameter::{InvalidParameter, numbers, require, require_not_negative, require_positive};
 
 /// Parameters of [`SlipWeakening`] as the case file writes them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -25,6 +26,8 @@ pub struct SlipWeakeningParameters {
     #[serde(default)]
     pub alpha_t: Option<f64>,
 }
+
+numbers!(SlipWeakeningParameters: "mu_s" mu_s, "mu_d" mu_d, "D_c" critical_slip, "cohesion" cohesion; "alpha_t" alpha_t);
 
 impl SlipWeakeningParameters {
     /// Without cohesion, the tangential stiffness left to the contact.
@@ -76,7 +79,12 @@ impl SlipWeakening {
         let SlipWeakeningParameters { mu_s, mu_d, critical_slip, cohesion, .. } = *parameters;
         let alpha_t = parameters.alpha_t.unwrap_or(default_alpha_t);
         require_positive("mu_d", mu_d)?;
-        require("mu_s", mu_s, mu_s >= mu_d, format!("it must be finite and not less than \"mu_d\", which is {mu_d}"))?;
+        require(
+            "mu_s",
+            mu_s,
+            mu_s >= mu_d,
+            format_args!("it must be finite and not less than \"mu_d\", which is {mu_d}"),
+        )?;
         require_positive("D_c", critical_slip)?;
         require_not_negative("cohesion", cohesion)?;
         require_positive("alpha_t", alpha_t)?;
@@ -195,8 +203,16 @@ fn slip_of(state: &FrictionState) -> f64 {
 }
 
 impl FrictionLaw for SlipWeakening {
-    fn initial_state(&self) -> FrictionState {
-        FrictionState::default()
+    /// The least coefficient is μ_d; cohesion is beside it.
+    fn description(&self) -> Description {
+        Description {
+            stiffness: self.alpha_t,
+            variables: &["weakening_slip"],
+            observables: Some(&["R", "mu", "structure"]),
+            least_coefficient: Some(self.mu_d),
+            weakening: self.weakening,
+            ..Description::default()
+        }
     }
 
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
@@ -220,18 +236,6 @@ impl FrictionLaw for SlipWeakening {
         .checked(alpha_t)
     }
 
-    fn stiffness(&self) -> f64 {
-        self.alpha_t
-    }
-
-    fn variables(&self) -> &'static [&'static str] {
-        &["weakening_slip"]
-    }
-
-    fn observables(&self) -> &'static [&'static str] {
-        &["R", "mu", "structure"]
-    }
-
     fn observe(&self, name: &str, state: &FrictionState) -> Option<f64> {
         let mu = self.mu_after(slip_of(state));
         match name {
@@ -240,15 +244,6 @@ impl FrictionLaw for SlipWeakening {
             "structure" => Some(mu / self.mu_d),
             _ => None,
         }
-    }
-
-    /// μ_d; cohesion is beside it.
-    fn least_coefficient(&self) -> Option<f64> {
-        Some(self.mu_d)
-    }
-
-    fn weakening(&self) -> f64 {
-        self.weakening
     }
 
     fn sensitivities(&self) -> Option<&dyn SensitiveLaw> {

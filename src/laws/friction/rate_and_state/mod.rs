@@ -15,10 +15,10 @@ use serde::{Deserialize, Serialize};
 
 use super::sensitivity::{Direction, SensitiveLaw, Variation};
 use super::{
-    Answer, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Loading, RateLaw, Regime, Sliding,
-    traction_at_yield,
+    Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Loading, RateLaw,
+    Regime, Sliding, traction_at_yield,
 };
-use crate::laws::parameter::{InvalidParameter, require_not_negative, require_positive};
+use crate::laws::parameter::{InvalidParameter, numbers, require_not_negative, require_positive};
 pub use relaxation::StateEvolution;
 use relaxation::{Coefficients, Relaxation, Relaxed, arsinh_of_exp};
 
@@ -48,6 +48,10 @@ pub struct RateAndStateParameters {
     #[serde(default)]
     pub alpha_t: Option<f64>,
 }
+
+numbers!(
+    RateAndStateParameters: "f_0" f_0, "V_0" reference_rate, "a" a, "b" b, "D_c" critical_slip; "alpha_t" alpha_t, "theta" theta
+);
 
 /// Rate-and-state friction on an elastic contact, regularized: finite at every slip rate V of either sign.
 ///
@@ -240,8 +244,18 @@ const LARGE: f64 = 20.0;
 const MOST_STEPS: usize = 60;
 
 impl FrictionLaw for RateAndState {
-    fn initial_state(&self) -> FrictionState {
-        FrictionState::default().with_variables([self.initial_theta])
+    fn description(&self) -> Description {
+        Description {
+            stiffness: self.coefficients.alpha_t,
+            variables: &["theta"],
+            observables: Some(&["R", "mu", "theta"]),
+            weakening: self.coefficients.b / self.coefficients.critical_slip,
+            ..Description::default()
+        }
+    }
+
+    fn initial_state(&self, pressure: f64, traction: f64) -> FrictionState {
+        FrictionState::default().with_variables([self.initial_theta]).loaded(pressure, traction)
     }
 
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
@@ -256,28 +270,12 @@ impl FrictionLaw for RateAndState {
         Some(Box::new(Self { is_controlled: true, ..*self }))
     }
 
-    fn stiffness(&self) -> f64 {
-        self.coefficients.alpha_t
-    }
-
-    fn weakening(&self) -> f64 {
-        self.coefficients.b / self.coefficients.critical_slip
-    }
-
     fn rates(&self) -> Option<&dyn RateLaw> {
         Some(self)
     }
 
     fn sensitivities(&self) -> Option<&dyn SensitiveLaw> {
         Some(self)
-    }
-
-    fn variables(&self) -> &'static [&'static str] {
-        &["theta"]
-    }
-
-    fn observables(&self) -> &'static [&'static str] {
-        &["R", "mu", "theta"]
     }
 
     fn observe(&self, name: &str, state: &FrictionState) -> Option<f64> {
@@ -381,7 +379,7 @@ impl<'a> Ramp<'a> {
             evaluations: self.evaluations,
             ..Default::default()
         }
-        .checked(self.law.stiffness())
+        .checked(self.law.coefficients.alpha_t)
     }
 
     /// How the state at the end varies.
@@ -425,13 +423,13 @@ impl<'a> Ramp<'a> {
                 step *= 2;
             }
         }
-        let trial = (station.state.traction + self.law.stiffness() * self.sliding.slip * share(step)).abs();
+        let trial = (station.state.traction + self.law.coefficients.alpha_t * self.sliding.slip * share(step)).abs();
         Err(LawFailure::NotConverged { evaluations: self.evaluations, rest: trial, trial })
     }
 
     /// Most that slip and pressure change tractions by over a sub-step without a snap, in tolerances.
     fn drive(&self, from: &Station, step: u64) -> f64 {
-        let change = self.law.stiffness() * self.sliding.slip.abs()
+        let change = self.law.coefficients.alpha_t * self.sliding.slip.abs()
             + self.law.coefficients.f_0 * (self.sliding.pressure - self.start.state.pressure).abs();
         let most = self.sliding.pressure.max(from.state.pressure);
         share(step) * change / (TOLERANCE * self.law.coefficients.f_0 * most)
@@ -493,7 +491,7 @@ impl<'a> Ramp<'a> {
 
     fn entry(&self, Station { state, variations }: &Station) -> Entry {
         let (traction, theta) = (state.traction, state.variables[0]);
-        let work = state.dissipation + 0.5 * traction * traction / self.law.stiffness();
+        let work = state.dissipation + 0.5 * traction * traction / self.law.coefficients.alpha_t;
         Entry {
             values: [traction, theta.ln(), state.plastic_slip, work],
             derivatives: variations.map(|by| [by.traction, by.variables[0] / theta]),
@@ -504,7 +502,7 @@ impl<'a> Ramp<'a> {
     fn station(&self, entry: &Entry, fine: Station) -> Station {
         let [traction, log_theta, plastic_slip, work] = entry.values;
         let theta = log_theta.exp();
-        let stored = 0.5 * traction * traction / self.law.stiffness();
+        let stored = 0.5 * traction * traction / self.law.coefficients.alpha_t;
         let state = FrictionState { traction, plastic_slip, dissipation: work - stored, ..fine.state };
         let variations = entry.derivatives.map(|[traction, log]| Variation::new(traction, theta * log));
         Station { state: state.with_variables([theta]), variations }
