@@ -329,9 +329,10 @@ impl Material for Doubled {
 
     fn respond(
         &self,
-        deformation: &nalgebra::Matrix2<f64>,
-    ) -> Result<fecontact::laws::bulk::MaterialResponse, fecontact::laws::bulk::InvertedElement> {
-        let mut response = self.0.respond(deformation)?;
+        straining: &fecontact::laws::bulk::Straining,
+        new: &mut [f64],
+    ) -> Result<fecontact::laws::bulk::MaterialResponse, fecontact::laws::bulk::MaterialFailure> {
+        let mut response = self.0.respond(straining, new)?;
         response.stress *= 2.0;
         response.tangent *= 2.0;
         response.energy *= 2.0;
