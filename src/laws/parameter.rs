@@ -66,9 +66,14 @@ pub trait Numbers {
 /// [`Numbers`] of a type by names and fields; those in the second list may be left out in a case.
 macro_rules! numbers {
     ($parameters:ty: $($name:literal $field:ident),*; $($optional:literal $option:ident),*) => {
+        impl $parameters {
+            /// Names of the parameters that are numbers.
+            pub(crate) const NUMBERS: &'static [&'static str] = &[$($name,)* $($optional),*];
+        }
+
         impl $crate::laws::parameter::Numbers for $parameters {
             fn names(&self) -> Vec<String> {
-                [$($name,)* $($optional),*].map(String::from).to_vec()
+                Self::NUMBERS.iter().copied().map(String::from).collect()
             }
 
             fn number(&mut self, name: &str) -> Option<&mut f64> {

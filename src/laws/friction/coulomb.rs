@@ -104,10 +104,10 @@ impl FrictionLaw for Coulomb {
 
 impl SensitiveLaw for Coulomb {
     fn parameters(&self) -> &'static [&'static str] {
-        &["mu", "alpha_t"]
+        CoulombParameters::NUMBERS
     }
 
-    fn start(&self, _: usize) -> Variation {
+    fn start(&self, _: &str) -> Variation {
         Variation::default()
     }
 
@@ -123,9 +123,9 @@ impl SensitiveLaw for Coulomb {
             let traction = if pressure <= 0.0 {
                 0.0
             } else if trial.abs() <= self.mu * pressure {
-                by.state.traction + self.alpha_t * by.slip + by.of(1) * slip
+                by.state.traction + self.alpha_t * by.slip + by.of("alpha_t") * slip
             } else {
-                trial.signum() * pressure * by.of(0)
+                trial.signum() * pressure * by.of("mu")
             };
             Variation { traction, ..Variation::default() }
         }))

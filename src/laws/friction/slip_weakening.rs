@@ -253,10 +253,10 @@ impl FrictionLaw for SlipWeakening {
 
 impl SensitiveLaw for SlipWeakening {
     fn parameters(&self) -> &'static [&'static str] {
-        &["mu_s", "mu_d", "D_c", "cohesion", "alpha_t"]
+        SlipWeakeningParameters::NUMBERS
     }
 
-    fn start(&self, _parameter: usize) -> Variation {
+    fn start(&self, _: &str) -> Variation {
         Variation::new(0.0, 0.0)
     }
 
@@ -272,22 +272,22 @@ impl SensitiveLaw for SlipWeakening {
         let trial = old.traction + alpha_t * slip;
         let slid = self.slide(before, trial.abs(), pressure).filter(|_| pressure > 0.0);
         Ok(directions.map(|by| {
-            let dtrial = by.state.traction + alpha_t * by.slip + by.of(4) * slip;
+            let dtrial = by.state.traction + alpha_t * by.slip + by.of("alpha_t") * slip;
             let dbefore = by.variable();
             let Some(Slid { total, mu, softness, .. }) = slid else {
                 return Variation::new(if pressure > 0.0 { dtrial } else { 0.0 }, dbefore);
             };
             let delastic = trial.signum() * dtrial;
             // Of the slip at the end, with μ held at first: α_t ΔD = |q_tr| − c − μ p
-            let dslip = dbefore + (delastic - by.of(3) - by.of(4) * (total - before)) / alpha_t;
+            let dslip = dbefore + (delastic - by.of("cohesion") - by.of("alpha_t") * (total - before)) / alpha_t;
             let dmu = match mu > mu_d {
                 true => {
-                    let dweakening = (by.of(0) - by.of(1) - weakening * by.of(2)) / critical_slip;
-                    softness * (by.of(0) - dweakening * total - weakening * dslip)
+                    let dweakening = (by.of("mu_s") - by.of("mu_d") - weakening * by.of("D_c")) / critical_slip;
+                    softness * (by.of("mu_s") - dweakening * total - weakening * dslip)
                 }
-                false => by.of(1),
+                false => by.of("mu_d"),
             };
-            let dstrength = by.of(3) + pressure * dmu;
+            let dstrength = by.of("cohesion") + pressure * dmu;
             Variation::new(trial.signum() * dstrength, dslip - pressure * dmu / alpha_t)
         }))
     }

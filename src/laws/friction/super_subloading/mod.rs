@@ -1,10 +1,8 @@
 //! Super/subloading friction: the law, and what a case may say of it.
 mod approach;
 mod increment;
-mod onset;
 mod path;
 mod peak;
-mod sensitivity;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -15,9 +13,8 @@ use crate::laws::parameter::{InvalidParameter, numbers, require, require_not_neg
 pub use approach::Approach;
 use approach::SlidingCurve;
 use increment::{Directions, ROUND_OFF, SlipEquation, mean_traction};
-pub use onset::{Onset, Rise};
-pub use peak::Integration;
 use peak::PeakEvolution;
+pub use peak::{Integration, Onset, Rise};
 
 /// Super/subloading friction: slip weakens the interface, rest heals it.
 ///
@@ -142,9 +139,7 @@ impl SuperSubloading {
         let old_mu = mu_of(old);
         let reversed = trial * old.traction.signum() < 0.0;
         let equation = SlipEquation {
-            curve: &self.curve,
-            evolution: &self.evolution,
-            alpha_t: self.alpha_t,
+            law: self,
             start: self.curve.start(if reversed { 0.0 } else { old.ratio(old_mu).min(1.0) }),
             trial: trial.abs(),
             pressure,
