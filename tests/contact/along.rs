@@ -4,7 +4,9 @@ use std::path::Path;
 
 use crate::common::{Blocks, Finished, close, finish, floor, linear, model, run_through};
 use fecontact::contact::pair;
-use fecontact::laws::friction::{Answer, Coulomb, CoulombParameters, Description, FrictionLaw, FrictionState, Sliding};
+use fecontact::laws::friction::{
+    Answer, Coulomb, CoulombParameters, Description, FrictionLaw, FrictionState, Sliding, register,
+};
 use fecontact::model::Model;
 use fecontact::model::boundary::{Drive, Expression, Profile};
 use fecontact::model::builder::{Contact, Friction, LoadStep, Support};
@@ -146,6 +148,31 @@ fn bad_choices_are_refused() {
         let told = refused(along);
         assert!(told.contains(place) && told.contains(what), "{place}, {what}: {told}");
     }
+}
+
+/// Parameters of a law that a program has registered vary like those of the house, in place and time; one that the case does not
+/// give is told with those that it does.
+#[test]
+fn parameters_of_registered_laws_vary() {
+    register("along: half", |parameters, alpha_t| {
+        Ok(Box::new(Coulomb::new(&CoulombParameters::new(0.5 * parameters["mu"]), alpha_t)?))
+    });
+    let half = json!({"law": "registered", "name": "along: half", "parameters": {"mu": 0.9}, "alpha_t": 0.5 * CONTACT});
+    let [half, own] = [(half.clone(), "0.2 + 0.2*x + 0.1*t"), (coulomb(0.5), "0.1 + 0.1*x + 0.05*t")]
+        .map(|(friction, mu)| finish(&points(&json!({"mu": mu}), &friction, 2.0, 0.125)));
+    assert!(slips(&own)[0] > 0.5 && half.last() == own.last());
+    let case = points(
+        &json!({"nu": "0.1*x"}),
+        &json!({"law": "registered", "name": "along: half", "parameters": {"mu": 0.9}}),
+        1.0,
+        0.5,
+    );
+    let case = serde_json::from_value(case).expect("a case");
+    let told = fecontact::case::build(&case, Path::new("test.json")).err().expect("it is refused").to_string();
+    assert!(
+        ["contacts.base.along.nu", "did you mean `mu`?", "`alpha_t`"].iter().all(|what| told.contains(what)),
+        "{told}"
+    );
 }
 
 /// A parameter that leaves its range in time ends the run, and says when.
