@@ -1,5 +1,7 @@
 //! One update of a contact: the index of the master, and every slave point with search, law and forces.
 
+use std::sync::Arc;
+
 use criterion::{BenchmarkId, Criterion, criterion_group};
 use fecontact::contact::master::Master;
 use fecontact::contact::mortar::mortar_points;
@@ -8,7 +10,7 @@ use fecontact::contact::response::PairResponse;
 use fecontact::contact::search::Index;
 use fecontact::contact::surface::{Surface, gauss_points, nodal_points};
 use fecontact::laws::friction::{
-    Coulomb, CoulombParameters, FrictionParameters, SlipWeakeningParameters, SuperSubloadingParameters,
+    Coulomb, CoulombParameters, FrictionParameters, LawFailure, SlipWeakeningParameters, SuperSubloadingParameters,
 };
 use fecontact::linear::system::Request;
 use fecontact::mesh::configuration::Configuration;
@@ -33,7 +35,7 @@ fn surfaces(n: usize) -> Surfaces {
         master: Master::Mesh(Surface::new(&master)),
         alpha_n: 1e4,
         compliance: 0.0,
-        laws: vec![law.into()],
+        laws: vec![Arc::new(law.into())],
         in_time: None,
         initial: None,
         unseen: Vec::new(),
@@ -124,7 +126,7 @@ fn flat(n: usize, law: &FrictionParameters, method: &str) -> (Vec<Vector2<f64>>,
             (p, Some(m))
         }
     };
-    let laws = vec![law.build(1e3).expect("valid parameters").into()];
+    let laws = vec![Arc::new(law.build(1e3).expect("valid parameters").into())];
     let mut pair =
         ContactPair { name: "flat".into(), points, mortar, master: Master::Mesh(Surface::new(&master)), laws, ..other };
     if method == "small" {
@@ -141,9 +143,10 @@ fn in_place_and_time(mut pair: ContactPair, law: &FrictionParameters, nodes: &[V
     pair.points.iter_mut().enumerate().for_each(|(k, point)| point.law = k);
     pair.laws = vec![pair.laws[0].clone(); places.len()];
     let law = law.clone();
-    pair.in_time = Some(LawsInTime::new(move |k, [_, to]| {
-        let law = law.clone().with("alpha_t", expression.value(places[k], to)).ok()?.build(f64::NAN).ok()?;
-        Some(Ok(law.into()))
+    pair.in_time = Some(LawsInTime::new(places.len(), move |k, [_, time]| {
+        let law = law.clone().with("alpha_t", expression.value(places[k], time)).ok();
+        let law = law.and_then(|law| law.build(f64::NAN).ok()).ok_or(LawFailure::Undefined { time })?;
+        Ok(law.into())
     }));
     pair
 }

@@ -21,6 +21,7 @@
 use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use nalgebra::Vector2;
 use rayon::prelude::*;
@@ -64,7 +65,7 @@ pub struct ContactPair {
     pub fluid: Option<Fluid>,
     /// The friction laws, each with the parameters of some of the points, as they are at the start of the run. What holds at all
     /// times is asked of these: α_t, the names of what they remember and show, and whether they rub and dilate
-    pub laws: Vec<ContactLaw>,
+    pub laws: Vec<Arc<ContactLaw>>,
     /// The laws in an increment, where parameters vary in time
     pub in_time: Option<LawsInTime>,
     /// Tractions of every point at the start of a contact that starts closed
@@ -120,39 +121,45 @@ impl ContactPair {
         &self.laws[slave.law]
     }
 
-    /// Friction of a slave point from one time to another; at a time where both are the same.
+    /// Ask friction of a slave point as it is from one time to another; at a time where both are the same.
     ///
     /// # Errors
     /// [`LawFailure`] where its parameters have no good values then.
-    pub fn law_during(&self, slave: &SlavePoint, span: [f64; 2]) -> Result<Cow<'_, ContactLaw>, LawFailure> {
-        let varied = self.in_time.as_ref().and_then(|laws| laws.during(slave.law, span));
-        varied.map_or(Ok(Cow::Borrowed(self.law(slave))), |law| law.map(Cow::Owned))
+    pub fn ask_law<T>(
+        &self,
+        slave: &SlavePoint,
+        span: [f64; 2],
+        ask: impl FnOnce(&ContactLaw) -> T,
+    ) -> Result<T, LawFailure> {
+        match &self.in_time {
+            None => Ok(ask(self.law(slave))),
+            Some(laws) => self.law_in_time(laws, slave.law, span).map(|law| ask(&law)),
+        }
     }
 
-    /// All laws from one time to another, resolved once for an increment: `kept` has those of the last one asked for.
+    /// Rates enter by their mean over an increment, all other parameters by their value at its end.
+    fn law_in_time(&self, laws: &LawsInTime, number: usize, [from, to]: [f64; 2]) -> Answered {
+        let from = if self.laws[number].description.takes_means { from } else { to };
+        laws.during(number, [from, to])
+    }
+
+    /// All laws as they are from one time to another.
     ///
     /// # Errors
     /// [`LawFailure`] of parameters without good values then, with the first point that has them.
-    pub fn laws_during<'a>(
-        &'a self,
-        span: [f64; 2],
-        kept: &'a mut Option<LawsOfIncrement>,
-    ) -> Result<&'a [ContactLaw], (usize, LawFailure)> {
-        let Some(in_time) = &self.in_time else { return Ok(&self.laws) };
-        if kept.as_ref().is_none_or(|kept| kept.span != span) {
-            let law = |k: usize| in_time.during(k, span).unwrap_or_else(|| Ok(self.laws[k].clone()));
-            let laws: Vec<Result<ContactLaw, LawFailure>> =
-                (0..self.laws.len()).into_par_iter().with_min_len(PART).map(law).collect();
-            let first = |law: usize| self.points.iter().position(|slave| slave.law == law).unwrap_or_default();
-            let laws = laws.into_iter().enumerate().map(|(k, law)| law.map_err(|failure| (first(k), failure)));
-            *kept = Some(LawsOfIncrement { span, laws: laws.collect::<Result<_, _>>()? });
-        }
-        Ok(kept.as_ref().map_or(&self.laws, |kept| &kept.laws))
+    pub fn laws_during(&self, span: [f64; 2]) -> Result<Cow<'_, [Arc<ContactLaw>]>, (usize, LawFailure)> {
+        let Some(in_time) = &self.in_time else { return Ok(Cow::Borrowed(&self.laws)) };
+        let laws =
+            (0..self.laws.len()).into_par_iter().with_min_len(PART).map(|law| self.law_in_time(in_time, law, span));
+        let laws: Vec<Answered> = laws.collect();
+        let first = |law: usize| self.points.iter().position(|slave| slave.law == law).unwrap_or_default();
+        let laws = laws.into_iter().enumerate().map(|(k, law)| law.map_err(|failure| (first(k), failure)));
+        Ok(Cow::Owned(laws.collect::<Result<_, _>>()?))
     }
 
     /// What the law of a point shows by a name of a state at a time; NaN where its parameters have no good values then.
     pub fn observed(&self, slave: &SlavePoint, name: &str, (state, time): (&FrictionState, f64)) -> f64 {
-        self.law_during(slave, [time, time]).map_or(f64::NAN, |law| law.observe(name, state))
+        self.ask_law(slave, [time, time], |law| law.observe(name, state)).unwrap_or(f64::NAN)
     }
 
     /// Open, stick or slip; what has no friction slides freely, and is not called slipping.
@@ -231,16 +238,17 @@ impl ContactPair {
         let met = foreseen.friction.pressure > 0.0 && foreseen.clearance() < 0.0;
         let at = if met { old.clearance() / (old.clearance() - foreseen.clearance()) } else { 0.0 };
         let free = foreseen.slip * at;
-        let law = self.law_during(slave, [time - dt, time])?;
+        let respond = |slip: f64| {
+            let sliding = Sliding { slip, pressure, dt };
+            self.ask_law(slave, [time - dt, time], |law| law.respond(&old.friction, sliding))?
+        };
         let mut doubt = 0.0f64;
         for slip in [now.slip, now.slip - free] {
-            let other = law.respond(&old.friction, Sliding { slip, pressure, dt })?;
-            doubt = doubt.max((other.state.traction - now.friction.traction).abs() * now.length);
+            doubt = doubt.max((respond(slip)?.state.traction - now.friction.traction).abs() * now.length);
         }
-        if !law.description.opening.is_empty() {
+        if !self.law(slave).description.opening.is_empty() {
             let way = self.compliance_after_touch(true) * pressure;
-            let slip = now.slip * way / (old.clearance() + way);
-            let lift = law.respond(&old.friction, Sliding { slip, pressure, dt })?.state.opening - now.friction.opening;
+            let lift = respond(now.slip * way / (old.clearance() + way))?.state.opening - now.friction.opening;
             doubt = doubt.hypot(lift / (self.compliance + 1.0 / self.alpha_n) * now.length);
         }
         Ok((doubt > 0.0).then_some(Arrival { at, doubt }))
@@ -284,23 +292,42 @@ impl ContactPair {
     }
 }
 
-/// A law in an increment by its number and the times of its start and end; none of a law that does not vary.
-pub type LawAt = dyn Fn(usize, [f64; 2]) -> Option<Result<ContactLaw, LawFailure>> + Send + Sync;
+/// A law as it is at some time, or why it is none.
+type Answered = Result<Arc<ContactLaw>, LawFailure>;
 
-/// The laws of a contact whose parameters vary in time.
-pub struct LawsInTime(Box<LawAt>);
+/// A law by its number, with its parameters at a time or, between two, with their mean.
+pub type LawAt = dyn Fn(usize, [f64; 2]) -> Result<ContactLaw, LawFailure> + Send + Sync;
+
+/// The laws of a contact whose parameters vary in time. Each is resolved once for an increment, whoever asks: the last is kept.
+pub struct LawsInTime {
+    law: Box<LawAt>,
+    last: Vec<Mutex<Option<Resolved>>>,
+}
+
+/// A law as it is from one time to another.
+struct Resolved {
+    span: [f64; 2],
+    law: Arc<ContactLaw>,
+}
 
 impl LawsInTime {
-    /// By number and times.
+    /// So many laws.
     pub fn new(
-        law: impl Fn(usize, [f64; 2]) -> Option<Result<ContactLaw, LawFailure>> + Send + Sync + 'static,
+        count: usize,
+        law: impl Fn(usize, [f64; 2]) -> Result<ContactLaw, LawFailure> + Send + Sync + 'static,
     ) -> Self {
-        Self(Box::new(law))
+        Self { law: Box::new(law), last: (0..count).map(|_| Mutex::new(None)).collect() }
     }
 
-    /// The law of a number from one time to another; none if it does not vary.
-    fn during(&self, number: usize, span: [f64; 2]) -> Option<Result<ContactLaw, LawFailure>> {
-        (self.0)(number, span)
+    /// The law of a number from one time to another.
+    fn during(&self, number: usize, span: [f64; 2]) -> Answered {
+        let mut last = self.last[number].lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(Resolved { law, .. }) = last.as_ref().filter(|last| last.span == span) {
+            return Ok(law.clone());
+        }
+        let law = Arc::new((self.law)(number, span)?);
+        *last = Some(Resolved { span, law: law.clone() });
+        Ok(law)
     }
 }
 
@@ -308,13 +335,6 @@ impl fmt::Debug for LawsInTime {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
         formatter.write_str("laws that vary in time")
     }
-}
-
-/// The laws of a contact as an increment has them.
-#[derive(Clone, Debug)]
-pub struct LawsOfIncrement {
-    span: [f64; 2],
-    laws: Vec<ContactLaw>,
 }
 
 /// p_w by reference position and time [F/L²].

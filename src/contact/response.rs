@@ -1,5 +1,8 @@
 //! The response of a contact pair, point by point.
 
+use std::borrow::Cow;
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::force::{Loading, PointPlace, closes, place};
@@ -7,7 +10,7 @@ use super::kinematics::{Kinematics, Meeting};
 use super::master::Master;
 use super::mortar::{Committed, Overlaps, Room};
 use super::nodal_forces::{Closed, ClosedPoints};
-use super::pair::{ContactPair, LawsOfIncrement};
+use super::pair::ContactPair;
 use super::point::{ContactIncrement, ContactState, PointIncrement, Presumption};
 use super::search::{Index, Trees};
 use super::surface::SlavePoint;
@@ -34,8 +37,6 @@ pub struct PairResponse {
 /// What need not be found anew while it stays as it is.
 #[derive(Clone, Debug, Default)]
 struct Kept {
-    /// Laws of the increment, where they vary in time
-    laws: Option<LawsOfIncrement>,
     /// Trees of the master
     trees: Trees,
     /// What mortar averages over in the committed configuration, and in that of the trial
@@ -78,7 +79,7 @@ type At<'a> = (&'a mut Kinematics, &'a mut Room);
 struct Question<'a, P> {
     pair: &'a ContactPair,
     /// The laws that hold in the increment
-    laws: &'a [ContactLaw],
+    laws: Cow<'a, [Arc<ContactLaw>]>,
     /// Increment of a point, and what is presumed about it
     during: ContactIncrement,
     presumed: P,
@@ -101,30 +102,29 @@ impl ContactPair {
         request: Request,
         response: &mut PairResponse,
     ) -> Result<(), (usize, LawFailure)> {
-        let mut kept = std::mem::take(&mut response.kept);
-        let varied = request == Request::Tangent;
-        let answer = self.respond_by((during, presumed, varied), old, [before, x], &mut kept, response);
-        response.kept = kept;
-        answer
-    }
-
-    /// With what is kept.
-    fn respond_by<P: Fn(usize) -> Presumption + Sync>(
-        &self,
-        (during, presumed, varied): (ContactIncrement, P, bool),
-        old: &[ContactState],
-        [before, x]: [&Configuration; 2],
-        Kept { laws, trees, committed, overlaps }: &mut Kept,
-        response: &mut PairResponse,
-    ) -> Result<(), (usize, LawFailure)> {
-        let laws = self.laws_during(during.span(), laws)?;
-        let question = Question { pair: self, laws, during, presumed, varied };
+        let laws = self.laws_during(during.span())?;
+        let question = Question { pair: self, laws, during, presumed, varied: request == Request::Tangent };
         if let Some(small) = &self.small {
             return question.each(old, response, |k, slave, old, increment, (kinematics, _)| {
                 let meeting = small.points[k].as_ref().map(|point| point.meet(before, x, kinematics));
                 averaged(self, slave, meeting, old, increment, x)
             });
         }
+        let mut kept = std::mem::take(&mut response.kept);
+        let answer = self.respond_by(&question, old, [before, x], &mut kept, response);
+        response.kept = kept;
+        answer
+    }
+
+    /// By search in the master's tree.
+    fn respond_by<P: Fn(usize) -> Presumption + Sync>(
+        &self,
+        question: &Question<P>,
+        old: &[ContactState],
+        [before, x]: [&Configuration; 2],
+        Kept { trees, committed, overlaps }: &mut Kept,
+        response: &mut PairResponse,
+    ) -> Result<(), (usize, LawFailure)> {
         let index = Index::kept(&self.master, [before, x], trees);
         if let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) {
             mortar.commit(&self.master, surface, before, committed);
@@ -188,7 +188,7 @@ impl Part {
         states: &mut [ContactState],
         place: impl Fn(usize, &SlavePoint, &ContactState, PointIncrement, At) -> PointPlace,
     ) {
-        let Question { pair, laws, during, .. } = *question;
+        let Question { pair, ref laws, during, .. } = *question;
         let Self { closed, kinematics, room, failure } = self;
         closed.clear();
         kinematics.resize_with(TOGETHER.min(numbers.len()), Kinematics::default);
@@ -229,7 +229,7 @@ impl Part {
 
 /// What the laws of consecutive points say.
 fn answers(
-    laws: &[ContactLaw],
+    laws: &[Arc<ContactLaw>],
     points: &[SlavePoint],
     old: &[ContactState],
     sliding: &[Sliding],

@@ -298,8 +298,7 @@ fn concerns(
         let percent = 100.0 * share;
         format!("the penetration {:.3e} is {percent:.1} % of the slave's edge; raise alpha_n", -gap)
     });
-    let law = pair.law_during(point, [time, time]).ok();
-    let law = law.map(|law| law.description);
+    let law = pair.ask_law(point, [time, time], |law| law.description).ok();
     let limit = law.and_then(|law| law.uniqueness_limit()).filter(|limit| pressure > *limit);
     let several = limit.map(|limit| several_answers(pressure, limit));
     let deep = deep.map(|message| (Kind::DeepPenetration, message));

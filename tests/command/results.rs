@@ -292,7 +292,7 @@ fn a_law_from_elsewhere_runs_and_its_variables_appear_by_name() {
         "newton": {"tolerance": 1e-13},
         "steps": [step("press", 0.0, -20.0), step("drag", 2.0, -20.0), step("squeeze", 2.0, -40.0), step("on", 2.2, -40.0)],
     }));
-    model.contacts[0].laws = vec![law.into()];
+    model.contacts[0].laws = vec![Arc::new(law.into())];
     let model = Arc::new(model);
     let folder = TempDir::new().unwrap();
     let mut history = History::create(folder.path(), &model).unwrap();

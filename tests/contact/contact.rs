@@ -1,5 +1,7 @@
 //! Contact: exact tangents, feet at corners and past ends.
 
+use std::sync::Arc;
+
 use fecontact::contact::force::{
     Closed, ClosedPoints, ContactState, Loading, PointIncrement, PointPlace, Tractions, closes, place,
 };
@@ -12,7 +14,7 @@ use fecontact::contact::response::PairResponse;
 use fecontact::contact::search::Index;
 use fecontact::contact::surface::{MasterPoint, Segment, SlavePoint, Surface, gauss_points, lone_point, nodal_points};
 use fecontact::laws::friction::{
-    Answer, ContactLaw, Description, FrictionLaw, FrictionParameters, FrictionResponse, FrictionState, Regime, Sliding,
+    Answer, Description, FrictionLaw, FrictionParameters, FrictionResponse, FrictionState, Regime, Sliding,
 };
 use fecontact::linear::system::{Contribution, Request};
 use fecontact::mesh::configuration::Configuration;
@@ -62,7 +64,7 @@ pub fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
         penetration: None,
         radiation: 0.0,
         fluid: None,
-        laws: vec![law.into()],
+        laws: vec![Arc::new(law.into())],
         in_time: None,
         initial: None,
         unseen: Vec::new(),
@@ -933,7 +935,7 @@ impl FrictionLaw for RidesUp {
 /// of force and moment follows, point by point, after touch, and by mortar.
 #[test]
 fn a_law_that_dilates_presses_and_its_tangent_equals_differences() {
-    let rides_up = || -> Vec<ContactLaw> { vec![RidesUp { alpha_t: 700.0, rise: 0.4, pressure: 30.0 }.into()] };
+    let rides_up = || vec![Arc::new(RidesUp { alpha_t: 700.0, rise: 0.4, pressure: 30.0 }.into())];
     let (edges, x) = wavy();
     let points = gauss_points(&[vec![6, 7], vec![7, 8]], 3);
     let points = ContactPair { laws: rides_up(), ..pair(points, Master::Mesh(Surface::new(&edges)), COULOMB) };

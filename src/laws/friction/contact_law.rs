@@ -1,8 +1,6 @@
 //! Friction at the points of a contact: a law, and beside it how plastic slip moves the surfaces along the normal by dilatancy
 //! and wear.
 
-use std::sync::Arc;
-
 use super::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, Sliding, observables};
 use crate::laws::parameter::{InvalidParameter, require_positive};
 
@@ -108,10 +106,10 @@ impl Offsets {
 }
 
 /// Friction of contact points: first the law is asked, then what its slip does to the opening.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct ContactLaw {
     /// The law
-    pub law: Arc<dyn FrictionLaw>,
+    pub law: Box<dyn FrictionLaw>,
     /// What the law says of itself, with the parts of the opening that the offsets change
     pub description: Description,
     offsets: Offsets,
@@ -125,7 +123,7 @@ impl<L: FrictionLaw + 'static> From<L> for ContactLaw {
 
 impl From<Box<dyn FrictionLaw>> for ContactLaw {
     fn from(law: Box<dyn FrictionLaw>) -> Self {
-        Self { description: law.description(), law: law.into(), offsets: Offsets::default() }
+        Self { description: law.description(), law, offsets: Offsets::default() }
     }
 }
 

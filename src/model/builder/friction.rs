@@ -70,7 +70,7 @@ impl Friction {
         mesh: &Mesh,
         default_alpha_t: Option<f64>,
         offsets: Offsets,
-    ) -> Checked<(Vec<ContactLaw>, Option<LawsInTime>)> {
+    ) -> Checked<(Vec<Arc<ContactLaw>>, Option<LawsInTime>)> {
         for (name, profile, _) in &self.elsewhere {
             check_profile(profile, &format!("{place}.{name}"))?;
         }
@@ -105,12 +105,13 @@ impl Friction {
             let law = ContactLaw::with_offsets(law, offsets).map_err(|InvalidParameter { name, value, allowed }| {
                 ModelError::new(format!("{place}.{name}"), format!("is {value}: {allowed}"))
             })?;
-            varying.push(friction.in_time(&law, at, default_alpha_t, offsets));
-            laws.push(law);
+            varying.push(friction.in_time(at, default_alpha_t, offsets));
+            laws.push(Arc::new(law));
         }
-        let varies = varying.iter().any(Option::is_some);
-        let during = move |law: usize, span| varying[law].as_ref().map(|law| law.during(span));
-        Ok((laws, varies.then(|| LawsInTime::new(during))))
+        let varies = all().flat_map(|friction| &friction.varying).any(|(_, profile)| profile.depends_on_time());
+        let during = move |law: usize, span| varying[law].during(span);
+        let in_time = varies.then(|| LawsInTime::new(laws.len(), during));
+        Ok((laws, in_time))
     }
 
     fn varies_in_place_and_time(&self) -> bool {
@@ -121,16 +122,15 @@ impl Friction {
         self.varying.iter().any(|(_, profile)| of_both(profile))
     }
 
-    /// The law of a place in time, from what it is at the start; none if it does not vary.
-    fn in_time(&self, start: &ContactLaw, at: Vector2<f64>, alpha_t: Option<f64>, offsets: Offsets) -> Option<InTime> {
-        self.varying.iter().any(|(_, profile)| profile.depends_on_time()).then(|| InTime {
+    /// The law of a place in time.
+    fn in_time(&self, at: Vector2<f64>, alpha_t: Option<f64>, offsets: Offsets) -> InTime {
+        InTime {
             profiles: self.varying.iter().map(|(_, profile)| profile.clone()).collect(),
             at,
             law: self.law.clone(),
             alpha_t: alpha_t.unwrap_or(f64::NAN),
             offsets,
-            takes_means: start.description.takes_means,
-        })
+        }
     }
 
     fn law(
@@ -251,14 +251,12 @@ struct InTime {
     alpha_t: f64,
     /// How its surfaces move apart with slip
     offsets: Offsets,
-    /// Whether parameters enter by their mean over an increment
-    takes_means: bool,
 }
 
 impl InTime {
-    /// The law that holds from one time to another.
+    /// The law with its parameters at a time or, between two, with their mean.
     fn during(&self, [from, to]: [f64; 2]) -> Result<ContactLaw, LawFailure> {
-        if !(self.takes_means && to > from) {
+        if to <= from {
             return self.of(&[(to, 1.0)], to);
         }
         let times = gauss(MEAN).into_iter().map(|(xi, w)| (from + 0.5 * (1.0 + xi) * (to - from), 0.5 * w));
