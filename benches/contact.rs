@@ -1,17 +1,20 @@
 //! One update of a contact: the index of the master, and every slave point with search, law and forces.
 
+use std::sync::Arc;
+
 use criterion::{BenchmarkId, Criterion, criterion_group};
 use fecontact::contact::master::Master;
 use fecontact::contact::mortar::mortar_points;
-use fecontact::contact::pair::{ContactIncrement, ContactPair, Presumption};
+use fecontact::contact::pair::{ContactIncrement, ContactPair, LawsInTime, Presumption};
 use fecontact::contact::response::PairResponse;
 use fecontact::contact::search::Index;
 use fecontact::contact::surface::{Surface, gauss_points, nodal_points};
 use fecontact::laws::friction::{
-    Coulomb, CoulombParameters, FrictionParameters, SlipWeakeningParameters, SuperSubloadingParameters,
+    Coulomb, CoulombParameters, FrictionParameters, LawFailure, SlipWeakeningParameters, SuperSubloadingParameters,
 };
 use fecontact::linear::system::Request;
 use fecontact::mesh::configuration::Configuration;
+use fecontact::model::boundary::Expression;
 use nalgebra::Vector2;
 
 /// Positions of the nodes, and what lies between them.
@@ -32,7 +35,8 @@ fn surfaces(n: usize) -> Surfaces {
         master: Master::Mesh(Surface::new(&master)),
         alpha_n: 1e4,
         compliance: 0.0,
-        laws: vec![law.into()],
+        laws: vec![Arc::new(law.into())],
+        in_time: None,
         initial: None,
         unseen: Vec::new(),
         modulus: 0.0,
@@ -122,13 +126,29 @@ fn flat(n: usize, law: &FrictionParameters, method: &str) -> (Vec<Vector2<f64>>,
             (p, Some(m))
         }
     };
-    let laws = vec![law.build(1e3).expect("valid parameters").into()];
+    let laws = vec![Arc::new(law.build(1e3).expect("valid parameters").into())];
     let mut pair =
         ContactPair { name: "flat".into(), points, mortar, master: Master::Mesh(Surface::new(&master)), laws, ..other };
     if method == "small" {
         pair.slide_little(&Configuration::undeformed(&nodes));
     }
     (nodes, pair)
+}
+
+/// The same with a law of its own at every point, whose α_t varies in place and time: by 0, so that all else stays as it is.
+fn in_place_and_time(mut pair: ContactPair, law: &FrictionParameters, nodes: &[Vector2<f64>]) -> ContactPair {
+    let expression = Expression::parse("1000 + 0*sin(x + 0.1*t)").expect("an expression");
+    let x = Configuration::undeformed(nodes);
+    let places: Vec<_> = pair.points.iter().map(|point| point.at(&x)).collect();
+    pair.points.iter_mut().enumerate().for_each(|(k, point)| point.law = k);
+    pair.laws = vec![pair.laws[0].clone(); places.len()];
+    let law = law.clone();
+    pair.in_time = Some(LawsInTime::new(places.len(), move |k, [_, time]| {
+        let law = law.clone().with("alpha_t", expression.value(places[k], time)).ok();
+        let law = law.and_then(|law| law.build(f64::NAN).ok()).ok_or(LawFailure::Undefined { time })?;
+        Ok(law.into())
+    }));
+    pair
 }
 
 fn points() {
@@ -143,14 +163,19 @@ fn points() {
             SuperSubloadingParameters { kappa: 1.0, xi: 1e-3, ..SuperSubloadingParameters::new(0.5, 0.3, 50.0) }.into(),
         ),
     ];
-    println!("µs a point: {:29} residual tangent", "");
+    println!("µs a point: {:27} residual tangent, each evaluated once an increment", "");
     for method in ["nodes", "gauss", "mortar", "small"].into_iter().filter(|method| method.contains(&only)) {
         for (name, law) in &laws {
             for (motion, rate) in [("sticks", 0.0), ("slips", 3e-3)] {
                 let (nodes, pair) = flat(n, law, method);
-                let micros =
-                    [Request::Residual, Request::Tangent].map(|request| update(&pool, &nodes, &pair, rate, request));
-                println!("{method:8} {name:18} {motion:8} {:6.3} {:6.3}", micros[0], micros[1]);
+                let varying = in_place_and_time(flat(n, law, method).1, law, &nodes);
+                let micros = [&pair, &varying].map(|pair| {
+                    [Request::Residual, Request::Tangent].map(|request| update(&pool, &nodes, pair, rate, request))
+                });
+                let [[residual, tangent], [in_time, tangent_in_time]] = micros;
+                println!(
+                    "{method:8} {name:18} {motion:8} {residual:6.3} {tangent:6.3}, in time {in_time:6.3} {tangent_in_time:6.3}"
+                );
             }
         }
     }
@@ -165,11 +190,11 @@ fn update(pool: &rayon::ThreadPool, nodes: &[Vector2<f64>], pair: &ContactPair, 
         let master = |k| [0.0, 1e-6 * (0.3 * t + k as f64).sin()];
         (0..nodes.len()).flat_map(|k| if k >= nodes.len() / 2 { slave(k) } else { master(k) }).collect()
     };
-    let during = ContactIncrement { dt: 1.0, time: 0.0, radiates: true, fading: 0.0, stiffening: 1.0, settles: true };
     let (mut old, mut before) = (pair.initial_states(&Configuration::undeformed(nodes)), vec![0.0; 2 * nodes.len()]);
     let (mut shortest, mut response) = (f64::INFINITY, PairResponse::default());
     for k in 1..=60 {
-        let now = u(f64::from(k));
+        let (now, time) = (u(f64::from(k)), f64::from(k));
+        let during = ContactIncrement { dt: 1.0, time, radiates: true, fading: 0.0, stiffening: 1.0, settles: true };
         let clock = std::time::Instant::now();
         let [was, is] = [&before, &now].map(|u| Configuration::new(nodes, u));
         pool.install(|| pair.respond(&old, [&was, &is], during, |_| Presumption::default(), request, &mut response))

@@ -167,7 +167,7 @@ fn answers(course: &Course, k: usize, parameters: &Value, ask: Ask) -> Result<An
     goes_on(raised).map_err(|error| Refusal::Stopped(error.to_string()))?;
     let test = course.test(k, parameters, initial).map_err(Refusal::Case)?;
     let law = &*test.law;
-    let further = observables::further([law]);
+    let further = observables::further([&law.description()]);
     let names = further.iter().map(|name| (*name).to_owned()).collect();
     let mut answers =
         Answers { rows: Vec::with_capacity(course.time.len()), further: vec![Vec::new(); further.len()], names };
@@ -225,10 +225,10 @@ fn answers(course: &Course, k: usize, parameters: &Value, ask: Ask) -> Result<An
 /// ∂q/∂parameter at the samples of a path, a row a parameter, NaN for those that the law does not know.
 fn varied(law: &dyn SensitiveLaw, steps: &[Step], ask: Ask) -> Result<Vec<Vec<f64>>, LawFailure> {
     let Ask { by, raised, .. } = ask;
-    let places: Vec<Option<usize>> =
-        by.iter().map(|name| law.parameters().iter().position(|known| known == name)).collect();
+    let known = |name: &String| law.parameters().iter().copied().find(|known| known == name);
+    let parameters: Vec<Option<&'static str>> = by.iter().map(known).collect();
     let pairs =
-        places.par_chunks(2).map(|pair| varied_by(law, steps, [pair[0], *pair.last().unwrap_or(&None)], raised));
+        parameters.par_chunks(2).map(|pair| varied_by(law, steps, [pair[0], *pair.last().unwrap_or(&None)], raised));
     let rows: Vec<[Vec<f64>; 2]> = pairs.collect::<Result<_, _>>()?;
     Ok(rows.into_iter().flatten().take(by.len()).collect())
 }
@@ -236,16 +236,16 @@ fn varied(law: &dyn SensitiveLaw, steps: &[Step], ask: Ask) -> Result<Vec<Vec<f6
 fn varied_by(
     law: &dyn SensitiveLaw,
     steps: &[Step],
-    places: [Option<usize>; 2],
+    parameters: [Option<&'static str>; 2],
     raised: &Raised,
 ) -> Result<[Vec<f64>; 2], LawFailure> {
-    let mut states = places.map(|place| place.map_or(Variation::default(), |place| law.start(place)));
+    let mut states = parameters.map(|name| name.map_or(Variation::default(), |name| law.start(name)));
     let mut rows = [Vec::new(), Vec::new()];
     for Step { old, sliding, sampled } in steps.iter().take_while(|_| !raised.is_set()) {
-        let along = |k: usize| Direction { state: states[k], slip: 0.0, parameter: places[k] };
+        let along = |k: usize| Direction { state: states[k], slip: 0.0, parameter: parameters[k] };
         states = law.vary(old, *sliding, [along(0), along(1)])?;
         if *sampled {
-            (0..2).for_each(|k| rows[k].push(places[k].map_or(f64::NAN, |_| states[k].traction)));
+            (0..2).for_each(|k| rows[k].push(parameters[k].map_or(f64::NAN, |_| states[k].traction)));
         }
     }
     Ok(rows)

@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use fecontact::laws::friction::state::MOST_VARIABLES;
 use fecontact::laws::friction::{
-    Answer, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Regime, Sliding, observables, register,
+    Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Regime, Sliding, observables,
+    register,
 };
 use fecontact::run::error::Error;
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
@@ -48,7 +49,7 @@ pub fn register_law(name: &str, call: Bound<PyAny>, variables: Vec<(String, f64)
     let (variables, call, own): (&'static [_], _, Arc<str>) = (Vec::leak(names), Arc::new(call), name.into());
     let (parameters, alpha_t) = (BTreeMap::new(), 1.0);
     let law = PythonLaw { name: own.clone(), call: call.clone(), parameters, alpha_t, variables, initial };
-    if let Err(message) = observables::check_names(&law) {
+    if let Err(message) = observables::check_names(&law.description()) {
         return bad(message);
     }
     register(name, move |parameters, alpha_t| {
@@ -59,8 +60,12 @@ pub fn register_law(name: &str, call: Bound<PyAny>, variables: Vec<(String, f64)
 }
 
 impl FrictionLaw for PythonLaw {
-    fn initial_state(&self) -> FrictionState {
-        FrictionState { variables: self.initial, ..FrictionState::default() }
+    fn description(&self) -> Description {
+        Description { stiffness: self.alpha_t, variables: self.variables, ..Description::default() }
+    }
+
+    fn initial_state(&self, pressure: f64, traction: f64) -> FrictionState {
+        FrictionState { variables: self.initial, ..FrictionState::default() }.loaded(pressure, traction)
     }
 
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
@@ -94,14 +99,6 @@ impl FrictionLaw for PythonLaw {
                 closed.into_iter().for_each(|i| answers[i] = Err(LawFailure::Registered));
             }
         }
-    }
-
-    fn variables(&self) -> &'static [&'static str] {
-        self.variables
-    }
-
-    fn stiffness(&self) -> f64 {
-        self.alpha_t
     }
 }
 

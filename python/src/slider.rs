@@ -242,8 +242,8 @@ impl Slider<'_> {
 
     fn varied_by(&self, ride: &Ride, law: &dyn SensitiveLaw, name: &str) -> Result<Vec<f64>, LawFailure> {
         let (dstiffness, dmass) = (f64::from(u8::from(name == "stiffness")), f64::from(u8::from(name == "mass")));
-        let parameter = law.parameters().iter().position(|known| *known == name);
-        let mut state = parameter.map_or(Variation::default(), |place| law.start(place));
+        let parameter = law.parameters().iter().copied().find(|known| *known == name);
+        let mut state = parameter.map_or(Variation::default(), |name| law.start(name));
         let (mut du, mut dv, mut da) = (0.0, 0.0, 0.0);
         let mut rows = vec![0.0];
         for Step { old, sliding, from, to, load_point, sampled } in

@@ -129,7 +129,7 @@ fn law(parameters: &FrictionParameters) -> Checked<Box<dyn FrictionLaw>> {
         }
         _ => Complaint::new("friction", error),
     })?;
-    let named = observables::check_names(&*law);
+    let named = observables::check_names(&law.description());
     named.map_err(|message| Complaint::new("friction", format!("the names of the law: {message}")))?;
     Ok(law.controlled().unwrap_or(law))
 }
@@ -138,10 +138,10 @@ fn start(input: &LawTestInput, law: &dyn FrictionLaw, pressure: f64) -> Checked<
     if let Some(negative) = input.initial.pressure.filter(|pressure| *pressure < 0.0) {
         return Err(Complaint::new("initial.pressure", format!("is {negative}: must be zero or positive")));
     }
-    let at_rest = law.initial_state();
+    let at_rest = law.initial_state(0.0, 0.0);
     let traction = input.initial.traction;
     let pressure = pressure.max(0.0);
-    let strength = law.starting_limit(pressure);
+    let strength = law.description().starting_limit(pressure);
     if traction.abs() > strength * (1.0 + SAME) {
         let message = format!(
             "is {traction}, beyond the strength mu p = {} · {pressure} = {strength} at the start: lower it, or raise the \
@@ -150,7 +150,7 @@ fn start(input: &LawTestInput, law: &dyn FrictionLaw, pressure: f64) -> Checked<
         );
         return Err(Complaint::new("initial.traction", message));
     }
-    Ok(law.starting_state(pressure, traction))
+    Ok(law.initial_state(pressure, traction))
 }
 
 fn phases_of(input: &LawTestInput, phases: &[PhaseInput]) -> Checked<Vec<Phase>> {

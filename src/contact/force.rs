@@ -49,7 +49,7 @@ use super::pair::ContactPair;
 pub use super::point::{ContactState, PointIncrement, Presume, Tractions};
 use super::point::{MasterPoint, Presumption, SlavePoint};
 use super::projection::Projection;
-use crate::laws::friction::{Answer, FrictionLaw, FrictionResponse, LawFailure, Sliding};
+use crate::laws::friction::{Answer, ContactLaw, FrictionResponse, LawFailure, Sliding};
 use crate::mesh::configuration::Configuration;
 
 /// A point on the way through its law: first what the law is asked for, then what follows from its answer.
@@ -58,7 +58,7 @@ pub struct Loading<'a> {
     pair: &'a ContactPair,
     slave: &'a SlavePoint,
     /// The law that holds in the increment
-    law: &'a dyn FrictionLaw,
+    law: &'a ContactLaw,
     old: &'a ContactState,
     increment: PointIncrement,
     place: PointPlace,
@@ -82,7 +82,7 @@ impl<'a> Loading<'a> {
     /// # Errors
     /// [`LawFailure`] of a law that does not say where its surfaces part.
     pub fn new(
-        (pair, slave, law): (&'a ContactPair, &'a SlavePoint, &'a dyn FrictionLaw),
+        (pair, slave, law): (&'a ContactPair, &'a SlavePoint, &'a ContactLaw),
         old: &'a ContactState,
         increment: PointIncrement,
         place: PointPlace,
@@ -141,7 +141,7 @@ impl<'a> Loading<'a> {
     /// d at p → 0: a law has no answer at 0, but near it the answer no longer changes.
     fn parting(&self) -> Result<f64, LawFailure> {
         let (old, slip) = (&self.old.friction, self.whole * self.counted(0.0).0);
-        let size = old.pressure + old.traction.abs() + (self.alpha_n + self.law.stiffness()) * slip.abs();
+        let size = old.pressure + old.traction.abs() + (self.alpha_n + self.law.description.stiffness) * slip.abs();
         if size == 0.0 {
             return Ok(old.opening);
         }
@@ -178,7 +178,7 @@ impl<'a> Loading<'a> {
         let (pressure, carried) = (self.agree(&mut response)?, self.sliding.pressure);
         let (share, dslip_dpressure) = self.counted(carried);
         let Self { pair, law, old, increment, kinematics, whole, alpha_n, sliding, compliance, .. } = self;
-        let stiffness = law.stiffness();
+        let stiffness = law.description.stiffness;
         if increment.presumption.presume == Presume::Stick {
             response.state.traction = old.friction.traction + stiffness * sliding.slip;
             response.dtraction_dslip = stiffness;
@@ -327,7 +327,7 @@ pub fn closes(pair: &ContactPair, slave: &SlavePoint, gap: f64, old: &ContactSta
 
 /// Whether slip may keep a point closed, or part it, whatever its gap says: that is known once its slip is.
 fn may_ride(pair: &ContactPair, slave: &SlavePoint, old: &ContactState) -> bool {
-    old.foot.is_some() && !pair.law(slave).start().offsets().is_empty() && !old.apart(pair.touch)
+    old.foot.is_some() && !pair.law(slave).description.opening.is_empty() && !old.apart(pair.touch)
 }
 
 /// Whether a zero gap is presumed to be closed, and to stick.

@@ -75,11 +75,9 @@ impl ContactPair {
     /// that starts closed, under its initial tractions.
     pub fn initial_states(&self, x: &Configuration) -> Vec<ContactState> {
         let state = |(k, (slave, met)): (usize, (&SlavePoint, Met))| {
-            let law = self.law(slave).start();
-            let friction = match self.initial.as_ref().map(|initial| initial[k]) {
-                Some(InitialTraction { pressure, traction }) => law.starting_state(pressure, traction),
-                None => law.initial_state(),
-            };
+            let given = self.initial.as_ref().map(|initial| initial[k]);
+            let InitialTraction { pressure, traction } = given.unwrap_or_default();
+            let friction = self.law(slave).law.initial_state(pressure, traction);
             let length = met.as_ref().map_or_else(|| slave.current_length(x), |(_, kinematics)| kinematics.length);
             let (gap, foot) = met.map(|(met, _)| (slave.gap(met.gap, 1.0), met.foot)).unzip();
             let multiplier = if self.penetration.is_some() { friction.pressure } else { 0.0 };

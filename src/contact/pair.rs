@@ -18,8 +18,10 @@
 //!
 //! Fields of a contact by name, point by point: what outputs show and callers ask for.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use nalgebra::Vector2;
 use rayon::prelude::*;
@@ -30,7 +32,7 @@ use super::point::ContactState;
 pub use super::point::{ContactIncrement, Presumption};
 use super::small_sliding::SmallSliding;
 use super::surface::SlavePoint;
-use crate::laws::friction::{FrictionState, Held, LawFailure, LawInTime, Regime, Resolved, Sliding, observables};
+use crate::laws::friction::{ContactLaw, FrictionState, LawFailure, Regime, Sliding, observables};
 use crate::mesh::configuration::Configuration;
 
 /// Laws that one thread resolves at a time.
@@ -61,8 +63,11 @@ pub struct ContactPair {
     pub radiation: f64,
     /// What pushes the surfaces apart beside their own pressure
     pub fluid: Option<Fluid>,
-    /// The friction laws, each with the parameters of some of the points
-    pub laws: Vec<LawInTime>,
+    /// The friction laws, each with the parameters of some of the points, as they are at the start of the run. What holds at all
+    /// times is asked of these: α_t, the names of what they remember and show, and whether they rub and dilate
+    pub laws: Vec<Arc<ContactLaw>>,
+    /// The laws in an increment, where parameters vary in time
+    pub in_time: Option<LawsInTime>,
     /// Tractions of every point at the start of a contact that starts closed
     pub initial: Option<Vec<InitialTraction>>,
     /// The two sides the other way round, to see what the slave's points do not: how deep master nodes lie in the slave
@@ -88,7 +93,7 @@ pub struct Reverse {
 }
 
 /// Tractions that act at a point of a contact when the run starts.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct InitialTraction {
     /// p [F/L²]
     pub pressure: f64,
@@ -111,35 +116,56 @@ impl ContactPair {
         matches!(&self.master, Master::Mesh(surface) if surface.own_depth.is_some())
     }
 
-    /// Friction of a slave point through the run.
-    pub fn law(&self, slave: &SlavePoint) -> &LawInTime {
+    /// Friction of a slave point at the start of the run.
+    pub fn law(&self, slave: &SlavePoint) -> &ContactLaw {
         &self.laws[slave.law]
     }
 
-    /// The laws that hold from one time to another.
+    /// Ask friction of a slave point as it is from one time to another; at a time where both are the same.
+    ///
+    /// # Errors
+    /// [`LawFailure`] where its parameters have no good values then.
+    pub fn ask_law<T>(
+        &self,
+        slave: &SlavePoint,
+        span: [f64; 2],
+        ask: impl FnOnce(&ContactLaw) -> T,
+    ) -> Result<T, LawFailure> {
+        match &self.in_time {
+            None => Ok(ask(self.law(slave))),
+            Some(laws) => self.law_in_time(laws, slave.law, span).map(|law| ask(&law)),
+        }
+    }
+
+    /// Rates enter by their mean over an increment, all other parameters by their value at its end.
+    fn law_in_time(&self, laws: &LawsInTime, number: usize, [from, to]: [f64; 2]) -> Answered {
+        let from = if self.laws[number].description.takes_means { from } else { to };
+        laws.during(number, [from, to])
+    }
+
+    /// All laws as they are from one time to another.
     ///
     /// # Errors
     /// [`LawFailure`] of parameters without good values then, with the first point that has them.
-    pub fn laws_during(&self, span: [f64; 2]) -> Result<Resolved<'_>, (usize, LawFailure)> {
-        if !self.laws.iter().any(LawInTime::varies) {
-            return Ok(Resolved::Always(&self.laws));
-        }
-        let resolved = self.laws.par_iter().with_min_len(PART).map(|law| law.during(span));
-        let resolved: Vec<Result<Held, LawFailure>> = resolved.collect();
+    pub fn laws_during(&self, span: [f64; 2]) -> Result<Cow<'_, [Arc<ContactLaw>]>, (usize, LawFailure)> {
+        let Some(in_time) = &self.in_time else { return Ok(Cow::Borrowed(&self.laws)) };
+        let laws =
+            (0..self.laws.len()).into_par_iter().with_min_len(PART).map(|law| self.law_in_time(in_time, law, span));
+        let laws: Vec<Answered> = laws.collect();
         let first = |law: usize| self.points.iter().position(|slave| slave.law == law).unwrap_or_default();
-        let laws = resolved.into_iter().enumerate().map(|(k, law)| law.map_err(|failure| (first(k), failure)));
-        Ok(Resolved::Then(laws.collect::<Result<_, _>>()?))
+        let laws = laws.into_iter().enumerate().map(|(k, law)| law.map_err(|failure| (first(k), failure)));
+        Ok(Cow::Owned(laws.collect::<Result<_, _>>()?))
     }
 
     /// What the law of a point shows by a name of a state at a time; NaN where its parameters have no good values then.
     pub fn observed(&self, slave: &SlavePoint, name: &str, (state, time): (&FrictionState, f64)) -> f64 {
-        self.law(slave).at(time).map_or(f64::NAN, |law| observables::value(&*law, name, state))
+        self.ask_law(slave, [time, time], |law| law.observe(name, state)).unwrap_or(f64::NAN)
     }
 
     /// Open, stick or slip; what has no friction slides freely, and is not called slipping.
     pub fn regime(&self, slave: &SlavePoint, state: &ContactState) -> Regime {
         match state.regime() {
-            Regime::Slip if self.law(slave).start().is_frictionless() => Regime::Stick,
+            Regime::Slip if self.law(slave).description.is_frictionless => Regime::Stick,
             regime => regime,
         }
     }
@@ -173,9 +199,9 @@ impl ContactPair {
     /// The larger of α_n and α_t; slip that lifts the surfaces, δp = α_n tan ψ δu and δq = μ δp, has α_n (1 + μ tan ψ), which is
     /// below 2 α_n as long as μ is below 1 [F/L³].
     pub fn stiffest(&self, slave: &SlavePoint) -> f64 {
-        let law = self.law(slave).start();
-        let lifted = if law.offsets().is_empty() { 1.0 } else { 2.0 };
-        (lifted * self.alpha_n).max(law.stiffness())
+        let law = &self.law(slave).description;
+        let lifted = if law.opening.is_empty() { 1.0 } else { 2.0 };
+        (lifted * self.alpha_n).max(law.stiffness)
     }
 
     /// η v by the slip of an increment, and its derivative η/Δt [F/L²], [F/L³].
@@ -212,16 +238,17 @@ impl ContactPair {
         let met = foreseen.friction.pressure > 0.0 && foreseen.clearance() < 0.0;
         let at = if met { old.clearance() / (old.clearance() - foreseen.clearance()) } else { 0.0 };
         let free = foreseen.slip * at;
-        let law = self.law(slave).during([time - dt, time])?;
+        let respond = |slip: f64| {
+            let sliding = Sliding { slip, pressure, dt };
+            self.ask_law(slave, [time - dt, time], |law| law.respond(&old.friction, sliding))?
+        };
         let mut doubt = 0.0f64;
         for slip in [now.slip, now.slip - free] {
-            let other = law.respond(&old.friction, Sliding { slip, pressure, dt })?;
-            doubt = doubt.max((other.state.traction - now.friction.traction).abs() * now.length);
+            doubt = doubt.max((respond(slip)?.state.traction - now.friction.traction).abs() * now.length);
         }
-        if !law.offsets().is_empty() {
+        if !self.law(slave).description.opening.is_empty() {
             let way = self.compliance_after_touch(true) * pressure;
-            let slip = now.slip * way / (old.clearance() + way);
-            let lift = law.respond(&old.friction, Sliding { slip, pressure, dt })?.state.opening - now.friction.opening;
+            let lift = respond(now.slip * way / (old.clearance() + way))?.state.opening - now.friction.opening;
             doubt = doubt.hypot(lift / (self.compliance + 1.0 / self.alpha_n) * now.length);
         }
         Ok((doubt > 0.0).then_some(Arrival { at, doubt }))
@@ -241,7 +268,7 @@ impl ContactPair {
 
     /// Elastic part of the slip, q/α_t; 0 for a frictionless contact [L].
     pub fn elastic_slip(&self, slave: &SlavePoint, friction: &FrictionState) -> f64 {
-        let stiffness = self.law(slave).start().stiffness();
+        let stiffness = self.law(slave).description.stiffness;
         if stiffness > 0.0 { friction.traction / stiffness } else { 0.0 }
     }
 
@@ -262,6 +289,51 @@ impl ContactPair {
             }
         }
         lines
+    }
+}
+
+/// A law as it is at some time, or why it is none.
+type Answered = Result<Arc<ContactLaw>, LawFailure>;
+
+/// A law by its number, with its parameters at a time or, between two, with their mean.
+pub type LawAt = dyn Fn(usize, [f64; 2]) -> Result<ContactLaw, LawFailure> + Send + Sync;
+
+/// The laws of a contact whose parameters vary in time. Each is resolved once for an increment, whoever asks: the last is kept.
+pub struct LawsInTime {
+    law: Box<LawAt>,
+    last: Vec<Mutex<Option<Resolved>>>,
+}
+
+/// A law as it is from one time to another.
+struct Resolved {
+    span: [f64; 2],
+    law: Arc<ContactLaw>,
+}
+
+impl LawsInTime {
+    /// So many laws.
+    pub fn new(
+        count: usize,
+        law: impl Fn(usize, [f64; 2]) -> Result<ContactLaw, LawFailure> + Send + Sync + 'static,
+    ) -> Self {
+        Self { law: Box::new(law), last: (0..count).map(|_| Mutex::new(None)).collect() }
+    }
+
+    /// The law of a number from one time to another.
+    fn during(&self, number: usize, span: [f64; 2]) -> Answered {
+        let mut last = self.last[number].lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(Resolved { law, .. }) = last.as_ref().filter(|last| last.span == span) {
+            return Ok(law.clone());
+        }
+        let law = Arc::new((self.law)(number, span)?);
+        *last = Some(Resolved { span, law: law.clone() });
+        Ok(law)
+    }
+}
+
+impl fmt::Debug for LawsInTime {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.write_str("laws that vary in time")
     }
 }
 
@@ -300,7 +372,7 @@ pub struct BadPressure {
 
 /// Names of the fields of some contacts: those that all have, and what their laws remember or let observe besides.
 pub fn field_names(pairs: &[ContactPair]) -> Vec<&'static str> {
-    let laws = pairs.iter().flat_map(|pair| &pair.laws).map(|law| law.start());
+    let laws = pairs.iter().flat_map(|pair| &pair.laws).map(|law| &law.description);
     let always = observables::ALWAYS.iter().map(|(name, _)| *name);
     let of_surfaces = ["gap", "pressure", "traction", "slip", "elastic_slip", "slip_rate"].into_iter();
     let further = observables::further(laws);

@@ -1,5 +1,8 @@
 //! The response of a contact pair, point by point.
 
+use std::borrow::Cow;
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::force::{Loading, PointPlace, closes, place};
@@ -11,7 +14,7 @@ use super::pair::ContactPair;
 use super::point::{ContactIncrement, ContactState, PointIncrement, Presumption};
 use super::search::{Index, Trees};
 use super::surface::SlavePoint;
-use crate::laws::friction::{Answer, FrictionResponse, FrictionState, LawFailure, Resolved, Sliding};
+use crate::laws::friction::{Answer, ContactLaw, FrictionResponse, FrictionState, LawFailure, Sliding};
 use crate::linear::system::Request;
 use crate::mesh::configuration::Configuration;
 
@@ -76,7 +79,7 @@ type At<'a> = (&'a mut Kinematics, &'a mut Room);
 struct Question<'a, P> {
     pair: &'a ContactPair,
     /// The laws that hold in the increment
-    laws: Resolved<'a>,
+    laws: Cow<'a, [Arc<ContactLaw>]>,
     /// Increment of a point, and what is presumed about it
     during: ContactIncrement,
     presumed: P,
@@ -199,7 +202,7 @@ impl Part {
                 let increment = PointIncrement { during, presumption: (question.presumed)(first + i) };
                 kinematics.varied = question.varied;
                 let place = place(first + i, slave, old, increment, (&mut *kinematics, room));
-                match Loading::new((pair, slave, laws.law(slave.law)), old, increment, place, kinematics) {
+                match Loading::new((pair, slave, &laws[slave.law]), old, increment, place, kinematics) {
                     Ok(loading) => {
                         sliding[i] = loading.sliding;
                         loadings[i] = Some(loading);
@@ -225,7 +228,12 @@ impl Part {
 }
 
 /// What the laws of consecutive points say.
-fn answers(laws: &Resolved, points: &[SlavePoint], old: &[ContactState], sliding: &[Sliding]) -> [Answer; TOGETHER] {
+fn answers(
+    laws: &[Arc<ContactLaw>],
+    points: &[SlavePoint],
+    old: &[ContactState],
+    sliding: &[Sliding],
+) -> [Answer; TOGETHER] {
     let mut committed = [FrictionState::default(); TOGETHER];
     committed.iter_mut().zip(old).for_each(|(committed, old)| *committed = old.friction);
     let mut answers = [Ok(FrictionResponse::default()); TOGETHER];
@@ -234,7 +242,7 @@ fn answers(laws: &Resolved, points: &[SlavePoint], old: &[ContactState], sliding
         let range = start..start + alike.len();
         start = range.end;
         let (old, sliding, answers) = (&committed[range.clone()], &sliding[range.clone()], &mut answers[range]);
-        laws.law(alike[0].law).respond_many(old, sliding, answers);
+        laws[alike[0].law].respond_many(old, sliding, answers);
     }
     answers
 }

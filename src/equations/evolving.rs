@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::sums::{Sums, TrialFailure};
 use super::trial::Trial;
-use crate::laws::bulk::InvertedElement;
+use crate::laws::bulk::MaterialFailure;
 use crate::linear::system::Contribution;
 use crate::model::Model;
 use crate::model::element::Memory;
@@ -53,7 +53,7 @@ impl Evolving {
             let old = model.memories.of(e, old);
             model.write_temperatures((trial.step, trial.moment()), e, old, new);
             let found = evolve(model, e, Memory { dt: trial.dt, old, new: &mut *new }, u, wanted);
-            let found = found.map_err(|failure| TrialFailure::inverted(model, e, failure))?;
+            let found = found.map_err(|failure| TrialFailure::material(model, e, failure))?;
             Ok((found, model.heating(e, [old, new])))
         };
         let elements = model.memories.each_mut(memory).enumerate().zip(&self.0);
@@ -83,7 +83,7 @@ fn evolve(
     memory: Memory,
     u: &[f64],
     tangent: bool,
-) -> Result<([f64; 2], Contribution), InvertedElement> {
+) -> Result<([f64; 2], Contribution), MaterialFailure> {
     let nodes = &model.mesh.elements[e].nodes;
     let local: Vec<Vector2<f64>> = nodes.iter().map(|&node| Vector2::new(u[2 * node], u[2 * node + 1])).collect();
     let mut contribution = Contribution::zero(nodes.clone());

@@ -78,7 +78,7 @@ pub fn stored(model: &Model, contacts: &[Vec<ContactState>]) -> f64 {
         for (point, state) in pair.points.iter().zip(states) {
             let ContactState { friction, length, .. } = state;
             let normal = if friction.pressure > 0.0 { 0.5 * pair.alpha_n * state.clearance().powi(2) } else { 0.0 };
-            let stiffness = pair.law(point).start().stiffness();
+            let stiffness = pair.law(point).description.stiffness;
             let tangential = if stiffness > 0.0 { 0.5 * friction.traction.powi(2) / stiffness } else { 0.0 };
             energy += length * (normal + tangential);
         }

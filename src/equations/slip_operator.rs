@@ -286,7 +286,7 @@ fn facing(model: &Model, pair: &ContactPair, nodes: &ContactNodes) -> Vec<Facing
             slave: place(own),
             master: master.map(place),
             directions: [point.normal, point.tangent],
-            compliance: [inverse(pair.alpha_n), inverse(pair.law(slave).start().stiffness())],
+            compliance: [inverse(pair.alpha_n), inverse(pair.law(slave).description.stiffness)],
         }
     };
     points.map(of).collect()

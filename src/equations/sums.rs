@@ -4,7 +4,7 @@
 use thiserror::Error;
 
 use super::coupling::Layout;
-use crate::laws::bulk::InvertedElement;
+use crate::laws::bulk::MaterialFailure;
 use crate::laws::friction::LawFailure;
 use crate::linear::system::Contribution;
 use crate::linear::{BlockPosition, SparseMatrix};
@@ -119,6 +119,18 @@ pub enum TrialFailure {
         /// what is left of its size
         share: f64,
     },
+    /// A material law could not answer.
+    #[error("element {element} of body `{body}` at ({}, {}): {cause}", number(at[0]), number(at[1]))]
+    Material {
+        /// its tag in the mesh file
+        element: u64,
+        /// its body
+        body: String,
+        /// its centre in the mesh
+        at: [f64; 2],
+        /// what the law said
+        cause: MaterialFailure,
+    },
     /// A friction law could not answer.
     #[error("contact `{contact}`, point {point}: {cause}")]
     Friction {
@@ -155,10 +167,13 @@ pub enum TrialFailure {
 }
 
 impl TrialFailure {
-    /// The failure of an element, with the names of its file.
-    pub fn inverted(model: &Model, e: usize, InvertedElement { jacobian }: InvertedElement) -> Self {
+    /// The failure of a material law in an element, with the names of its file.
+    pub fn material(model: &Model, e: usize, cause: MaterialFailure) -> Self {
         let (element, body, at) = named(model, e);
-        Self::Inverted { element, body, at, jacobian }
+        match cause {
+            MaterialFailure::Inverted { jacobian } => Self::Inverted { element, body, at, jacobian },
+            MaterialFailure::NotConverged { .. } => Self::Material { element, body, at, cause },
+        }
     }
 
     /// An element of which only a share of its size is left.

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::boundary::{Amplitude, Moment, Profile};
 use super::{Model, Step};
-use crate::laws::bulk::{INITIAL_STRESS, TEMPERATURE};
+use crate::laws::bulk::{CauchyStress, TEMPERATURE};
 
 /// Stress of an undeformed body at the start of a run, tension positive, by reference position.
 #[derive(Clone, Debug)]
@@ -63,20 +63,16 @@ pub struct Temperature {
 }
 
 impl Model {
-    /// What the materials remember at the start: the initial stress of the bodies that have one, and zero.
+    /// What the materials remember at the start, in bodies with an initial stress or without.
     pub fn initial_memory(&self) -> Vec<f64> {
         let mut memory = vec![0.0; self.memories.total()];
         for (e, own) in self.memories.each_mut(&mut memory).enumerate() {
             let body = &self.bodies[self.body_of_element[e]];
-            let Some(stress) = &body.initial_stress else { continue };
-            let count = body.material.variables().len();
-            let last = count - body.thermal.map_or(0, |_| TEMPERATURE.len());
+            let stress_at = |at| body.initial_stress.as_ref().map(|stress| stress.at(at, self.mesh.section.is_plate()));
+            let count = body.material.variables().len().max(1);
             for (point, at) in own.chunks_exact_mut(count).zip(self.quadrature_positions(e)) {
-                let stress @ [xx, yy, _, zz] = stress.at(at, self.mesh.section.is_plate());
-                point[last - INITIAL_STRESS.len()..last].copy_from_slice(&stress);
-                if body.thermal.is_some() {
-                    point[last + 1] = xx + yy + zz;
-                }
+                let [xx, yy, xy, zz] = stress_at(at).unwrap_or_default();
+                body.material.initial_state(at, &CauchyStress { xx, yy, zz, xy }, point);
             }
         }
         memory

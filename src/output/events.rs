@@ -323,7 +323,7 @@ impl Interface {
                     position += (at - pair.points[k - 1].at(&x)).norm();
                 }
                 let length = pair.points[k].current_length(&x);
-                let rubs = !pair.law(&pair.points[k]).start().is_frictionless();
+                let rubs = !pair.law(&pair.points[k]).description.is_frictionless;
                 let (at, arrivals) = (at.into(), Vec::new());
                 let (mark, rate, signal) = (Mark::default(), 0.0, f64::NEG_INFINITY);
                 points.push(Point { line, position, at, length, rubs, mark, rate, signal, arrivals });

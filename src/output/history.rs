@@ -107,7 +107,7 @@ impl History {
         header.extend(model.watch.iter().flat_map(|set| of(&set.name, &WATCHED)));
         let radiates = model.contacts.iter().any(|pair| pair.radiation > 0.0);
         header.extend(radiates.then(|| "radiated".into()));
-        let further = |pair: &ContactPair| observables::further(pair.laws.iter().map(|law| law.start()));
+        let further = |pair: &ContactPair| observables::further(pair.laws.iter().map(|law| &law.description));
         let observed: Vec<Vec<&str>> = model.contacts.iter().map(further).collect();
         for (pair, names) in model.contacts.iter().zip(&observed) {
             header.extend(names.iter().map(|name| format!("{}.mean_{name}", pair.name)));

@@ -36,7 +36,7 @@ impl<'a> LawTable<'a> {
     /// # Errors
     /// [`Error::Output`] when it cannot be written.
     pub fn create(folder: &Path, law: &'a dyn FrictionLaw) -> Result<Self, Error> {
-        let names = COLUMNS.into_iter().chain(observables::further([law]));
+        let names = COLUMNS.into_iter().chain(observables::further([&law.description()]));
         let header: Vec<String> = names.map(String::from).collect();
         Ok(Self { table: Table::create(&folder.join("law.csv"), &header)?, law })
     }
@@ -55,7 +55,7 @@ impl<'a> LawTable<'a> {
         write(&observables::ALWAYS.map(|(name, _)| observed(name)));
         write(&[state.plastic_slip, state.dissipation, *dtraction_dslip, *dtraction_dpressure]);
         table.count(*evaluations);
-        table.numbers(observables::further([*law]).into_iter().map(observed));
+        table.numbers(observables::further([&law.description()]).into_iter().map(observed));
         table.end_row()
     }
 

@@ -14,7 +14,7 @@ use crate::contact::master::Master;
 use crate::contact::pair::ContactPair;
 use crate::contact::small_sliding::{Departure, LITTLE_SLIP, LITTLE_TURN, SmallSliding};
 use crate::contact::surface::SlavePoint;
-use crate::laws::friction::{FrictionLaw, FrictionState, Regime};
+use crate::laws::friction::{Description, FrictionState, Regime};
 use crate::mesh::configuration::Configuration;
 use crate::model::scheme::{Scheme, told};
 use crate::model::state::State;
@@ -298,13 +298,13 @@ fn concerns(
         let percent = 100.0 * share;
         format!("the penetration {:.3e} is {percent:.1} % of the slave's edge; raise alpha_n", -gap)
     });
-    let law = pair.law(point).at(time).ok();
-    let limit = law.as_ref().and_then(|law| law.uniqueness_limit()).filter(|limit| pressure > *limit);
+    let law = pair.ask_law(point, [time, time], |law| law.description).ok();
+    let limit = law.and_then(|law| law.uniqueness_limit()).filter(|limit| pressure > *limit);
     let several = limit.map(|limit| several_answers(pressure, limit));
     let deep = deep.map(|message| (Kind::DeepPenetration, message));
     let yields = yields_work([&old.friction, &contact.friction]).map(|message| (Kind::YieldsWork, message));
     let coarse =
-        law.and_then(|law| unresolved(pair, (point, &*law), contact, x)).map(|message| (Kind::Unresolved, message));
+        law.and_then(|law| unresolved(pair, (point, &law), contact, x)).map(|message| (Kind::Unresolved, message));
     deep.into_iter().chain(several.map(|message| (Kind::SeveralAnswers, message))).chain(coarse).chain(yields)
 }
 
@@ -330,11 +330,11 @@ fn yields_work([old, new]: [&FrictionState; 2]) -> Option<String> {
 /// What is to be said of an edge that is longer than the process zone of a front that runs along it.
 fn unresolved(
     pair: &ContactPair,
-    (point, law): (&SlavePoint, &dyn FrictionLaw),
+    (point, law): (&SlavePoint, &Description),
     contact: &ContactState,
     x: &Configuration,
 ) -> Option<String> {
-    let weakening = law.weakening() * contact.friction.pressure;
+    let weakening = law.weakening * contact.friction.pressure;
     let edge = point.edge_length(x).filter(|_| contact.regime() == Regime::Slip && pair.modulus > 0.0)?;
     let zone = PROCESS_ZONE * pair.modulus / weakening;
     (edge > zone).then(|| {

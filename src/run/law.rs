@@ -66,7 +66,8 @@ impl LawTest {
     /// Warn once of a pressure beyond which the law may have several answers.
     fn warn(&self, report: &mut LawReport, row: &LawRow) {
         let (time, pressure) = (row.time, row.response.state.pressure);
-        if let Some(limit) = self.law.uniqueness_limit().filter(|limit| report.warnings.is_empty() && pressure > *limit)
+        if let Some(limit) =
+            self.law.description().uniqueness_limit().filter(|limit| report.warnings.is_empty() && pressure > *limit)
         {
             report.warnings.push(format!(
                 "the pressure {pressure:.6e} at t = {time} passes {limit:.6e}, above which weakening may outrun the \

@@ -264,7 +264,7 @@ impl ContactIteration {
     fn presume_sticking(&mut self, model: &Model) -> bool {
         let mut any = false;
         for (points, (pair, response)) in self.points.iter_mut().zip(model.contacts.iter().zip(&self.next)) {
-            let rough = pair.points.iter().map(|slave| pair.law(slave).start().stiffness() > 0.0);
+            let rough = pair.points.iter().map(|slave| pair.law(slave).description.stiffness > 0.0);
             let answers = points.iter_mut().zip(&response.states);
             for ((point, state), _) in answers.zip(rough).filter(|(_, rough)| *rough) {
                 if point.slipping.sticks(&state.friction, point.promised) {

@@ -80,16 +80,14 @@ fn density_hint(cause: &LinearFailure) -> &'static str {
 impl IncrementFailure {
     /// Whether shorter explicit increments have a chance: an element collapsed, or the motion grew without bounds.
     pub fn is_collapse(&self) -> bool {
-        use TrialFailure::{Crushed, Inverted};
-        matches!(self, Self::Unbounded | Self::Start(Inverted { .. } | Crushed { .. }))
+        use TrialFailure::{Crushed, Inverted, Material};
+        matches!(self, Self::Unbounded | Self::Start(Inverted { .. } | Crushed { .. } | Material { .. }))
     }
 
     /// The same, after shorter increments have not helped.
     pub fn after_all(self) -> Self {
         match self {
-            Self::Start(failure @ (TrialFailure::Inverted { .. } | TrialFailure::Crushed { .. })) => {
-                Self::Collapsed(failure)
-            }
+            Self::Start(failure) if Self::Start(failure.clone()).is_collapse() => Self::Collapsed(failure),
             other => other,
         }
     }
@@ -125,6 +123,7 @@ fn kind_of_trial(failure: &TrialFailure) -> &'static str {
     match failure {
         TrialFailure::Inverted { .. } => "element inside out",
         TrialFailure::Crushed { .. } => "element crushed",
+        TrialFailure::Material { .. } => "material law",
         TrialFailure::Friction { .. } => "friction law",
         TrialFailure::FluidPressure { .. } => "fluid pressure",
         TrialFailure::Undefined { .. } => "expression without a value",
@@ -190,7 +189,7 @@ fn has(pair: &ContactPair, node: usize) -> bool {
 
 /// A penalty far above the stiffness of the bodies: their own forces are round-off beside those of contact.
 fn penalty(pair: &ContactPair) -> Option<String> {
-    let alpha_t = pair.laws.iter().map(|law| law.start().stiffness()).fold(0.0, f64::max);
+    let alpha_t = pair.laws.iter().map(|law| law.description.stiffness).fold(0.0, f64::max);
     let (name, value) = if alpha_t > pair.alpha_n { ("alpha_t", alpha_t) } else { ("alpha_n", pair.alpha_n) };
     let times = value * pair.compliance;
     (times > STIFF).then(|| {

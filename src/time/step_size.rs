@@ -148,7 +148,7 @@ pub fn fastest_slip(model: &Model, old: &State, new: &State) -> f64 {
     for (pair, (old, new)) in model.contacts.iter().zip(old.contacts.iter().zip(&new.contacts)) {
         for (slave, (old, new)) in pair.points.iter().zip(old.iter().zip(new)) {
             // What slides freely has nothing to break.
-            if !pair.law(slave).start().is_frictionless() {
+            if !pair.law(slave).description.is_frictionless {
                 fastest = fastest.max((new.friction.plastic_slip - old.friction.plastic_slip).abs());
             }
         }
@@ -176,7 +176,7 @@ fn slip_error(model: &Model, old: &State, new: &State) -> f64 {
     for (pair, states) in model.contacts.iter().zip(old.contacts.iter().zip(&new.contacts)) {
         for (slave, (before, after)) in pair.points.iter().zip(states.0.iter().zip(states.1)) {
             let closed = before.friction.pressure > 0.0 && after.friction.pressure > 0.0;
-            if closed && !pair.law(slave).start().is_frictionless() {
+            if closed && !pair.law(slave).description.is_frictionless {
                 largest = largest.max(0.5 * new.dt * (rate(after, new.dt) - rate(before, old.dt)).abs());
             }
         }
@@ -193,7 +193,7 @@ fn slip_at_events(model: &Model, old: &State, new: &State) -> f64 {
     }
     // Slip without friction has no onset.
     for k in
-        (0..model.contacts.len()).filter(|&k| model.contacts[k].laws.iter().any(|law| !law.start().is_frictionless()))
+        (0..model.contacts.len()).filter(|&k| model.contacts[k].laws.iter().any(|law| !law.description.is_frictionless))
     {
         let [before, after] = [old, new].map(|state| Directions::of(model, k, state));
         if before.contact == after.contact {

@@ -292,7 +292,7 @@ fn a_law_from_elsewhere_runs_and_its_variables_appear_by_name() {
         "newton": {"tolerance": 1e-13},
         "steps": [step("press", 0.0, -20.0), step("drag", 2.0, -20.0), step("squeeze", 2.0, -40.0), step("on", 2.2, -40.0)],
     }));
-    model.contacts[0].laws = vec![law.into()];
+    model.contacts[0].laws = vec![Arc::new(law.into())];
     let model = Arc::new(model);
     let folder = TempDir::new().unwrap();
     let mut history = History::create(folder.path(), &model).unwrap();
@@ -333,7 +333,7 @@ fn a_law_from_elsewhere_runs_and_its_variables_appear_by_name() {
 #[test]
 fn the_law_from_elsewhere_has_exact_tangents() {
     let law = DelayedPressure { mu: 0.5, alpha_t: 1e3, shares: [0.3, 0.7], lengths: [0.01, 0.05] };
-    let old = law.starting_state(10.0, 4.0);
+    let old = law.initial_state(10.0, 4.0);
     for (slip, pressure) in [(0.0005, 12.0), (0.01, 12.0), (0.1, 30.0), (-0.05, 5.0)] {
         let at = |slip, pressure| law.respond(&old, Sliding { slip, pressure, dt: 1.0 }).unwrap();
         let answer = at(slip, pressure);

@@ -1,6 +1,6 @@
 //! A friction law of its own, as a user of the library would write one: one file, two variables, nothing else told.
 
-use fecontact::laws::friction::{Answer, FrictionLaw, FrictionResponse, FrictionState, Sliding};
+use fecontact::laws::friction::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, Sliding};
 
 /// Friction that follows a change of the pressure only as it slips, over two lengths.
 ///
@@ -35,12 +35,12 @@ impl DelayedPressure {
 }
 
 impl FrictionLaw for DelayedPressure {
-    fn variables(&self) -> &'static [&'static str] {
-        &["psi_1", "psi_2"]
+    fn description(&self) -> Description {
+        Description { stiffness: self.alpha_t, variables: &["psi_1", "psi_2"], ..Description::default() }
     }
 
-    fn starting_state(&self, pressure: f64, traction: f64) -> FrictionState {
-        self.initial_state().loaded(pressure, traction).with_variables(self.shares.map(|share| share * pressure))
+    fn initial_state(&self, pressure: f64, traction: f64) -> FrictionState {
+        FrictionState::default().loaded(pressure, traction).with_variables(self.shares.map(|share| share * pressure))
     }
 
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
@@ -83,9 +83,5 @@ impl FrictionLaw for DelayedPressure {
             ..Default::default()
         }
         .checked(alpha_t)
-    }
-
-    fn stiffness(&self) -> f64 {
-        self.alpha_t
     }
 }

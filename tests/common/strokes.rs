@@ -4,7 +4,7 @@ use fecontact::laws::friction::{FrictionLaw, FrictionState, Sliding};
 
 /// The state after strokes between these points of slip and pressure, each in `parts` equal increments of length `dt`/`parts`.
 pub fn strokes(law: &dyn FrictionLaw, points: &[[f64; 2]], parts: usize, dt: f64) -> FrictionState {
-    let start = FrictionState { pressure: points[0][1], ..law.initial_state() };
+    let start = FrictionState { pressure: points[0][1], ..law.initial_state(0.0, 0.0) };
     points.windows(2).fold(start, |old, stroke| {
         let [[u0, p0], [u1, p1]] = [stroke[0], stroke[1]];
         (1..=parts).fold(old, |old, k| {

@@ -4,7 +4,9 @@ use std::path::Path;
 
 use crate::common::{Blocks, Finished, close, finish, floor, linear, model, run_through};
 use fecontact::contact::pair;
-use fecontact::laws::friction::{Answer, Coulomb, CoulombParameters, FrictionLaw, FrictionState, Sliding};
+use fecontact::laws::friction::{
+    Answer, Coulomb, CoulombParameters, Description, FrictionLaw, FrictionState, Sliding, register,
+};
 use fecontact::model::Model;
 use fecontact::model::boundary::{Drive, Expression, Profile};
 use fecontact::model::builder::{Contact, Friction, LoadStep, Support};
@@ -148,6 +150,28 @@ fn bad_choices_are_refused() {
     }
 }
 
+/// Parameters of a law that a program has registered vary like those of the house, in place and time; one that the case does not
+/// give is told with those that it does.
+#[test]
+fn parameters_of_registered_laws_vary() {
+    register("along: half", |parameters, alpha_t| {
+        Ok(Box::new(Coulomb::new(&CoulombParameters::new(0.5 * parameters["mu"]), alpha_t)?))
+    });
+    let half = json!({"law": "registered", "name": "along: half", "parameters": {"mu": 0.9}, "alpha_t": 0.5 * CONTACT});
+    let [half, own] = [(half.clone(), "0.2 + 0.2*x + 0.1*t"), (coulomb(0.5), "0.1 + 0.1*x + 0.05*t")]
+        .map(|(friction, mu)| finish(&points(&json!({"mu": mu}), &friction, 2.0, 0.125)));
+    assert!(slips(&own)[0] > 0.5 && half.last() == own.last());
+    let case = points(
+        &json!({"nu": "0.1*x"}),
+        &json!({"law": "registered", "name": "along: half", "parameters": {"mu": 0.9}}),
+        1.0,
+        0.5,
+    );
+    let case = serde_json::from_value(case).expect("a case");
+    let told = fecontact::case::build(&case, Path::new("test.json")).err().expect("it is refused").to_string();
+    assert!(["contacts.base.along.nu", "Known are `mu`, `alpha_t`"].iter().all(|what| told.contains(what)), "{told}");
+}
+
 /// A parameter that leaves its range in time ends the run, and says when.
 #[test]
 fn a_parameter_that_leaves_its_range_stops_the_run() {
@@ -193,20 +217,9 @@ impl FrictionLaw for Counting {
         Ok(answer)
     }
 
-    fn stiffness(&self) -> f64 {
-        self.0.stiffness()
-    }
-
-    fn variables(&self) -> &'static [&'static str] {
-        &["first", "second", "third", "fourth"]
-    }
-
-    fn offsets(&self) -> &'static [&'static str] {
-        &["dilation"]
-    }
-
-    fn starting_limit(&self, pressure: f64) -> f64 {
-        self.0.starting_limit(pressure)
+    fn description(&self) -> Description {
+        let variables = &["first", "second", "third", "fourth"];
+        Description { variables, observables: None, opening: &["dilation"], ..self.0.description() }
     }
 }
 

@@ -1,5 +1,7 @@
 //! Contact: exact tangents, feet at corners and past ends.
 
+use std::sync::Arc;
+
 use fecontact::contact::force::{
     Closed, ClosedPoints, ContactState, Loading, PointIncrement, PointPlace, Tractions, closes, place,
 };
@@ -12,7 +14,7 @@ use fecontact::contact::response::PairResponse;
 use fecontact::contact::search::Index;
 use fecontact::contact::surface::{MasterPoint, Segment, SlavePoint, Surface, gauss_points, lone_point, nodal_points};
 use fecontact::laws::friction::{
-    Answer, FrictionLaw, FrictionParameters, FrictionResponse, FrictionState, LawInTime, Regime, Sliding,
+    Answer, Description, FrictionLaw, FrictionParameters, FrictionResponse, FrictionState, Regime, Sliding,
 };
 use fecontact::linear::system::{Contribution, Request};
 use fecontact::mesh::configuration::Configuration;
@@ -62,7 +64,8 @@ pub fn pair(points: Vec<SlavePoint>, master: Master, law: &str) -> ContactPair {
         penetration: None,
         radiation: 0.0,
         fluid: None,
-        laws: vec![law.into()],
+        laws: vec![Arc::new(law.into())],
+        in_time: None,
         initial: None,
         unseen: Vec::new(),
         modulus: 0.0,
@@ -155,7 +158,7 @@ fn finish(
     place: PointPlace,
     kinematics: &mut Kinematics,
 ) -> (ContactState, Option<Kept>) {
-    let law = pair.law(&pair.points[k]).start();
+    let law = pair.law(&pair.points[k]);
     let loading = Loading::new((pair, &pair.points[k], law), old, increment, place, kinematics).expect("a good law");
     let answer = law.respond(&old.friction, loading.sliding);
     let mut closed = ClosedPoints::default();
@@ -224,7 +227,7 @@ fn tangent_equals_differences_in_stick_partial_and_full_slip_and_after_touch() {
         {
             let plain = pair(points.clone(), Master::Mesh(surface.clone()), law);
             let pair = ContactPair { radiation, ..plain };
-            let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.laws[0].start().initial_state() };
+            let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.laws[0].law.initial_state(0.0, 0.0) };
             let mut closed = 0;
             for k in 0..pair.points.len() {
                 let (state, _) = evaluate(&pair, k, &pulled(&pair, k, &x, 0.0, pressed, -0.02), &x);
@@ -241,7 +244,7 @@ fn tangent_equals_differences_in_stick_partial_and_full_slip_and_after_touch() {
                     (-1.4, -0.02, "backward slip over two segments"),
                     (0.02, 0.03, "touch within the increment"),
                 ] {
-                    let friction = if gap > 0.0 { pair.laws[0].start().initial_state() } else { pressed };
+                    let friction = if gap > 0.0 { pair.laws[0].law.initial_state(0.0, 0.0) } else { pressed };
                     let old = pulled(&pair, k, &x, back, friction, gap);
                     check_tangent(&pair, k, &old, &x, &format!("{law}, {what}, radiation {radiation}"));
                 }
@@ -287,7 +290,7 @@ fn nothing_jumps_on_a_smooth_surface() {
 fn a_promise_is_of_second_order_and_changes_no_force() {
     let (edges, x) = wavy();
     let pair = pair(nodal_points(&[vec![6, 7], vec![7, 8]]), Master::Mesh(Surface::new(&edges)), COULOMB);
-    let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.laws[0].start().initial_state() };
+    let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.laws[0].law.initial_state(0.0, 0.0) };
     let old = pulled(&pair, 1, &x, 0.3, pressed, -0.02);
     let (state, closed) = promised(&pair, 1, &old, &x, None);
     let closed = closed.expect("a closed point");
@@ -324,7 +327,7 @@ fn slip_counts_from_touch() {
     let plain = pair(gauss_points(&[vec![0, 1]], 2), Master::Rigid(plane), COULOMB);
     let check = |pair: &ContactPair, deep: f64, during: ContactIncrement, d: f64| {
         let x = vec![Vector2::new(0.2, -deep), Vector2::new(0.9, -deep)];
-        let old = pulled(pair, 0, &x, 0.005, pair.laws[0].start().initial_state(), 0.03);
+        let old = pulled(pair, 0, &x, 0.005, pair.laws[0].law.initial_state(0.0, 0.0), 0.03);
         check_tangent(pair, 0, &old, &x, "after touch");
         let friction =
             answer(pair, 0, &old, &x, PointIncrement { during, presumption: Presumption::default() }).0.friction;
@@ -348,7 +351,7 @@ fn a_carried_pressure_is_where_the_answer_is_exact() {
     let pair = pair(gauss_points(&[vec![0, 1]], 2), Master::Rigid(plane), COULOMB);
     let at = |y: f64| vec![Vector2::new(0.2, y), Vector2::new(0.9, y)];
     for (back, gap) in [(0.002, 0.03), (0.2, 0.03), (0.002, 0.0), (0.2, 0.0)] {
-        let old = pulled(&pair, 0, &at(-0.04), back, pair.laws[0].start().initial_state(), gap);
+        let old = pulled(&pair, 0, &at(-0.04), back, pair.laws[0].law.initial_state(0.0, 0.0), gap);
         let increment = |carried| PointIncrement {
             during: INCREMENT,
             presumption: Presumption { carried, ..Presumption::default() },
@@ -375,7 +378,7 @@ fn tangent_equals_differences_on_rigid_bodies() {
         Rigid::Polyline(Polyline::new(at(&[(-1.0, 0.0), (2.0, 0.03)]))),
     ] {
         let pair = pair(gauss_points(&[vec![0, 1]], 2), Master::Rigid(body), SUPER);
-        let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.laws[0].start().initial_state() };
+        let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.laws[0].law.initial_state(0.0, 0.0) };
         for k in 0..2 {
             for back in [1e-4, 0.01, -0.2] {
                 check_tangent(&pair, k, &pulled(&pair, k, &x, back, pressed, -0.02), &x, &format!("{:?}", pair.master));
@@ -515,7 +518,7 @@ fn mortar_tangent_on_rigid_bodies_equals_differences() {
             let mut closed = 0;
             for (way, gap) in [(1e-5, -0.02), (0.02, -0.02), (-0.3, -0.02), (0.02, 0.03)] {
                 let before: Positions = x.iter().map(|x| x - Vector2::new(way, 0.0)).collect();
-                let friction = pair.laws[0].start().initial_state();
+                let friction = pair.laws[0].law.initial_state(0.0, 0.0);
                 let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..friction };
                 let friction = if gap > 0.0 { friction } else { pressed };
                 let foot = Some(MasterPoint { segment: 0, xi: 0.0 });
@@ -573,7 +576,7 @@ fn tangent_equals_differences_on_quadratic_edges() {
     for points in [gauss_points(&slave, 4), nodal_points(&slave)] {
         for law in [SUPER, COULOMB] {
             let pair = pair(points.clone(), Master::Mesh(Surface::new(&edges)), law);
-            let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.laws[0].start().initial_state() };
+            let pressed = FrictionState { traction: 2.0, pressure: 20.0, ..pair.laws[0].law.initial_state(0.0, 0.0) };
             let mut closed = 0;
             for k in 0..pair.points.len() {
                 let open =
@@ -681,7 +684,7 @@ fn points_that_nothing_faced_slip_past_what_they_meet() {
         let mut aside = here.clone();
         aside[12..].chunks_mut(2).for_each(|u| u.copy_from_slice(&[-motion.x, -motion.y]));
         let before = Configuration::new(&x, &aside);
-        let friction = pair.laws[0].start().initial_state();
+        let friction = pair.laws[0].law.initial_state(0.0, 0.0);
         let old = ContactState {
             friction,
             foot: None,
@@ -817,7 +820,7 @@ fn check_mortar_tangent(
     let (mut room, mut weights) = (Room::default(), Vec::new());
     mortar.weigh(k, surface, &was, &before, (&mut room, &mut weights));
     let weights = Some(weights).filter(|weights| !weights.is_empty());
-    let open = pair.laws[0].start().initial_state();
+    let open = pair.laws[0].law.initial_state(0.0, 0.0);
     let friction = if gap > 0.0 { open } else { FrictionState { traction: 2.0, pressure: 20.0, ..open } };
     let old = committed(friction, MasterPoint { segment: 0, xi: 0.0 }, gap);
     let increment = PointIncrement { during: INCREMENT, presumption: Presumption::default() };
@@ -863,7 +866,7 @@ fn tangent_equals_differences_at_a_concave_corner() {
     let at = &Configuration::undeformed(&x);
     let foot = Index::new(&pair.master, at).project(&pair.points[1], None, at).expect("a foot");
     assert!(foot.gap < 0.0 && foot.bound == Bound::Node(1));
-    let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.laws[0].start().initial_state() };
+    let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.laws[0].law.initial_state(0.0, 0.0) };
     let old = ContactState {
         friction: pressed,
         foot: Some(MasterPoint { segment: 0, xi: 0.9 }),
@@ -923,12 +926,8 @@ impl FrictionLaw for RidesUp {
         .checked(self.alpha_t)
     }
 
-    fn offsets(&self) -> &'static [&'static str] {
-        &["dilation"]
-    }
-
-    fn stiffness(&self) -> f64 {
-        self.alpha_t
+    fn description(&self) -> Description {
+        Description { stiffness: self.alpha_t, opening: &["dilation"], ..Description::default() }
     }
 }
 
@@ -936,11 +935,11 @@ impl FrictionLaw for RidesUp {
 /// of force and moment follows, point by point, after touch, and by mortar.
 #[test]
 fn a_law_that_dilates_presses_and_its_tangent_equals_differences() {
-    let rides_up = || -> Vec<LawInTime> { vec![RidesUp { alpha_t: 700.0, rise: 0.4, pressure: 30.0 }.into()] };
+    let rides_up = || vec![Arc::new(RidesUp { alpha_t: 700.0, rise: 0.4, pressure: 30.0 }.into())];
     let (edges, x) = wavy();
     let points = gauss_points(&[vec![6, 7], vec![7, 8]], 3);
     let points = ContactPair { laws: rides_up(), ..pair(points, Master::Mesh(Surface::new(&edges)), COULOMB) };
-    let pressed = FrictionState { opening: 0.004, ..points.laws[0].start().initial_state().loaded(20.0, 2.0) };
+    let pressed = FrictionState { opening: 0.004, ..points.laws[0].law.initial_state(0.0, 0.0).loaded(20.0, 2.0) };
     let mut closed = 0;
     for k in 0..points.points.len() {
         for (back, gap) in [(0.01, -0.02), (0.2, -0.02), (-0.2, -0.02), (0.2, 0.03)] {

@@ -713,7 +713,8 @@ fn the_forced_oscillation_is_the_law_along_a_path() {
     let trace = paper("forced_oscillation", [0.01, 7.0]);
     let law: FrictionParameters = serde_json::from_value(super_subloading()).unwrap();
     let law = law.build(0.0).unwrap();
-    let mut friction = FrictionState { traction: 19.62, pressure: 98.1, ..law.initial_state().with_variables([0.2]) };
+    let mut friction =
+        FrictionState { traction: 19.62, pressure: 98.1, ..law.initial_state(0.0, 0.0).with_variables([0.2]) };
     let (mut time, mut way) = (0.0, 0.0);
     for &[t, traction, pressure, u, held] in &trace {
         close("u", u, t.sin(), 1e-12);

@@ -256,7 +256,7 @@ fn a_pile_bears_the_integral_over_its_shaft() {
         friction["kappa"] = json!(kappa);
         let parameters: FrictionParameters = serde_json::from_value(friction).expect("a law");
         let law = parameters.build(1e6).expect("good parameters");
-        let (mut state, mut largest) = (law.initial_state(), 0.0f64);
+        let (mut state, mut largest) = (law.initial_state(0.0, 0.0), 0.0f64);
         for _ in 0..4000 {
             let pressure = 45.0;
             state = law.respond(&state, Sliding { slip: 2e-6, pressure, dt: 1e-3 }).expect("an answer").state;

@@ -1,6 +1,8 @@
 //! A law that the program does not know, with as many variables as a point has room for.
 
-use fecontact::laws::friction::{FrictionLaw, FrictionResponse, FrictionState, LawFailure, Regime, Sliding, register};
+use fecontact::laws::friction::{
+    Description, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Regime, Sliding, register,
+};
 
 /// Viscous friction above a threshold that grows with what it has slipped.
 ///
@@ -38,12 +40,8 @@ impl FrictionLaw for Viscous {
         FrictionResponse { state, dtraction_dslip, ..Default::default() }.checked(dtraction_dslip)
     }
 
-    fn variables(&self) -> &'static [&'static str] {
-        &VARIABLES
-    }
-
-    fn stiffness(&self) -> f64 {
-        0.0
+    fn description(&self) -> Description {
+        Description { variables: &VARIABLES, ..Description::default() }
     }
 }
 

@@ -59,10 +59,10 @@ fn check_tangents(law: &dyn FrictionLaw, old: &FrictionState, slip: f64, pressur
     let response = respond(law, old, slip, pressure, dt);
     let here = response.state.traction;
     // A tenth of the slip that the contact spring needs for the traction, or as much as there is.
-    let h = 1e-5 * (here.abs() / law.stiffness() + slip.abs());
+    let h = 1e-5 * (here.abs() / law.description().stiffness + slip.abs());
     let mut smooth = true;
     for (tangent, scale, up, down, h) in [
-        (response.dtraction_dslip, law.stiffness(), at(slip + h, pressure), at(slip - h, pressure), h),
+        (response.dtraction_dslip, law.description().stiffness, at(slip + h, pressure), at(slip - h, pressure), h),
         (
             response.dtraction_dpressure,
             1.0,
@@ -90,7 +90,7 @@ fn slip_weakens_to_the_dynamic_coefficient_at_any_step_size() {
     for steps in [1, 2, 3, 50, 1000] {
         // α_t (u − D) = p μ(D), with μ = 0.6 − 0.1 D down to 0.5.
         for (total, slipped) in [(0.406, 400.0 / 999.0), (1.5, 1.495)] {
-            let mut state = law.initial_state();
+            let mut state = law.initial_state(0.0, 0.0);
             for _ in 0..steps {
                 state = respond(&law, &state, total / f64::from(steps), 10.0, 0.1).state;
             }
@@ -105,7 +105,7 @@ fn slip_weakens_to_the_dynamic_coefficient_at_any_step_size() {
 #[test]
 fn weakening_counts_slip_to_and_fro_and_never_heals() {
     let law = weakening(WEAKENING);
-    let mut state = respond(&law, &law.initial_state(), 0.406, 10.0, 1.0).state;
+    let mut state = respond(&law, &law.initial_state(0.0, 0.0), 0.406, 10.0, 1.0).state;
     let (q, slip) = (state.traction, state.plastic_slip);
     state = respond(&law, &state, 0.0, 10.0, 1e9).state;
     assert_close(state.traction, q, 1e-12, "rest");
@@ -121,13 +121,13 @@ fn weakening_counts_slip_to_and_fro_and_never_heals() {
 #[test]
 fn weakening_with_cohesion_and_an_initial_excess() {
     let law = weakening(SlipWeakeningParameters { cohesion: 2.0, ..WEAKENING });
-    let state = respond(&law, &law.initial_state(), 0.01, 10.0, 1.0).state;
+    let state = respond(&law, &law.initial_state(0.0, 0.0), 0.01, 10.0, 1.0).state;
     // 10 is above c + μ_s p = 8: Δλ = 2/(α_t − W p).
     assert_close(state.plastic_slip, 2.0 / 999.0, 1e-15, "slip");
     assert_close(state.traction, 8.0 - 2.0 / 999.0, 1e-12, "traction");
-    let over = FrictionState { traction: 8.5, pressure: 10.0, ..law.initial_state() };
+    let over = FrictionState { traction: 8.5, pressure: 10.0, ..law.initial_state(0.0, 0.0) };
     assert_close(respond(&law, &over, 0.0, 10.0, 0.0).state.plastic_slip, 0.5 / 999.0, 1e-15, "excess slips off");
-    assert_eq!(law.starting_limit(10.0), f64::INFINITY);
+    assert_eq!(law.description().starting_limit(10.0), f64::INFINITY);
 }
 
 /// α_t D_c/b: below it no slip, however fast, weakens faster than the contact gives way.
@@ -135,16 +135,16 @@ fn weakening_with_cohesion_and_an_initial_excess() {
 fn rate_and_state_has_one_answer_below_a_pressure() {
     let law = rate_and_state(RateAndStateParameters { alpha_t: Some(5.0), ..RATE_AND_STATE });
     let RateAndStateParameters { b, critical_slip, .. } = RATE_AND_STATE;
-    assert_close(law.uniqueness_limit().expect("a limit"), 5.0 * critical_slip / b, 1e-12, "limit");
+    assert_close(law.description().uniqueness_limit().expect("a limit"), 5.0 * critical_slip / b, 1e-12, "limit");
 }
 
 #[test]
 fn weakening_that_outruns_the_contact_snaps_to_the_dynamic_coefficient() {
     let law = weakening(SlipWeakeningParameters { alpha_t: Some(0.9), ..WEAKENING });
-    assert_close(law.uniqueness_limit().expect("a limit"), 9.0, 1e-12, "limit");
-    let state = respond(&law, &law.initial_state(), 7.0, 10.0, 1.0).state;
+    assert_close(law.description().uniqueness_limit().expect("a limit"), 9.0, 1e-12, "limit");
+    let state = respond(&law, &law.initial_state(0.0, 0.0), 7.0, 10.0, 1.0).state;
     assert_eq!((mu_of(&law, &state), state.traction), (0.5, 5.0));
-    let just_below = respond(&law, &law.initial_state(), 5.99 / 0.9, 10.0, 1.0).state;
+    let just_below = respond(&law, &law.initial_state(0.0, 0.0), 5.99 / 0.9, 10.0, 1.0).state;
     assert_eq!((mu_of(&law, &just_below), just_below.plastic_slip), (0.6, 0.0));
 }
 
@@ -160,9 +160,9 @@ fn weakening_tangents_are_exact() {
         });
         let pressure = random.between(0.1, 20.0);
         let slipped = random.between(0.0, 1.2);
-        let start = law.initial_state().with_variables([slipped]);
+        let start = law.initial_state(0.0, 0.0).with_variables([slipped]);
         let old = FrictionState { traction: random.between(-8.0, 8.0), pressure, ..start };
-        let slip = random.between(-20.0, 20.0) / law.stiffness();
+        let slip = random.between(-20.0, 20.0) / law.description().stiffness;
         smooth += usize::from(check_tangents(&law, &old, slip, random.between(0.1, 20.0), 1.0));
     }
     assert!(smooth > 2800, "{smooth}");
@@ -171,7 +171,7 @@ fn weakening_tangents_are_exact() {
 #[test]
 fn weakening_dissipates_what_the_work_leaves() {
     let law = weakening(WEAKENING);
-    let (mut state, mut work) = (law.initial_state(), 0.0);
+    let (mut state, mut work) = (law.initial_state(0.0, 0.0), 0.0);
     for k in 0..400 {
         let slip = 0.02 * (0.02 * f64::from(k)).cos();
         let new = respond(&law, &state, slip, 10.0, 1.0).state;
@@ -233,7 +233,8 @@ fn weakening_dissipates_the_same_in_one_increment_as_in_many() {
             let what = format!("{line:?} in {parts}");
             assert_close(many.dissipation, one.dissipation, 1e-12 * one.dissipation, &what);
         }
-        let (parts, mut old, mut work) = (200_000, FrictionState { pressure: line[0][1], ..law.initial_state() }, 0.0);
+        let (parts, mut old, mut work) =
+            (200_000, FrictionState { pressure: line[0][1], ..law.initial_state(0.0, 0.0) }, 0.0);
         for k in 1..=parts {
             let share = f64::from(k) / f64::from(parts);
             let slip = line[1][0] / f64::from(parts);
@@ -251,7 +252,7 @@ fn weakening_dissipates_the_same_in_one_increment_as_in_many() {
 #[test]
 fn weakening_dissipates_the_same_from_above_the_strength() {
     let law = weakening(SlipWeakeningParameters { cohesion: 0.5, critical_slip: 0.05, ..WEAKENING });
-    let at = |above: f64| FrictionState { traction: 6.5 + above, pressure: 10.0, ..law.initial_state() };
+    let at = |above: f64| FrictionState { traction: 6.5 + above, pressure: 10.0, ..law.initial_state(0.0, 0.0) };
     for [slip, pressure] in [[0.02, 14.0], [0.04, 4.0], [0.3, 25.0], [0.3, 9.0]] {
         let smooth = respond(&law, &at(-1e-9), slip, pressure, 1.0).state.dissipation;
         for rounding in [-1e-15, 0.0, 1e-15, 1e-12] {
@@ -276,7 +277,7 @@ fn weakening_dissipates_the_same_from_above_the_strength() {
 #[test]
 fn weakening_counts_its_slip_whatever_the_parameters_are() {
     let first = weakening(SlipWeakeningParameters { mu_s: 0.8, mu_d: 0.2, ..WEAKENING });
-    let slid = respond(&first, &first.initial_state(), 0.258, 10.0, 1.0).state;
+    let slid = respond(&first, &first.initial_state(0.0, 0.0), 0.258, 10.0, 1.0).state;
     // 1000 (0.258 − D) = 10 (0.8 − 0.6 D)
     assert_close(slid.plastic_slip, 250.0 / 994.0, 1e-14, "D");
     for (mu_s, mu_d, critical_slip) in [(0.6, 0.2, 1.0), (0.9, 0.1, 0.5), (0.4, 0.39, 0.1)] {
@@ -307,7 +308,7 @@ fn rate_and_state_dissipates_the_work_of_slip_to_and_fro() {
     for evolution in [StateEvolution::Ageing, StateEvolution::Slip] {
         let law = rate_and_state(RateAndStateParameters { evolution, alpha_t: Some(5.0), ..RATE_AND_STATE });
         let loops = |parts: u32| {
-            let (mut old, mut work) = (FrictionState { pressure: 100.0, ..law.initial_state() }, 0.0);
+            let (mut old, mut work) = (FrictionState { pressure: 100.0, ..law.initial_state(0.0, 0.0) }, 0.0);
             for k in 0..8 * parts {
                 let slip = if (k / parts).is_multiple_of(2) { 1.0 } else { -1.0 } * 100.0 / f64::from(parts);
                 let new = respond(&law, &old, slip, 100.0, slip.abs()).state;
@@ -329,7 +330,7 @@ fn steady_sliding_has_the_coefficient_of_its_rate() {
     for evolution in [StateEvolution::Ageing, StateEvolution::Slip] {
         for rate in [1e-6, 1e-2, 1.0, 50.0, 1e4] {
             let law = rate_and_state(RateAndStateParameters { evolution, ..RATE_AND_STATE });
-            let mut state = law.initial_state();
+            let mut state = law.initial_state(0.0, 0.0);
             for _ in 0..3000 {
                 state = respond(&law, &state, 0.5, 100.0, 0.5 / rate).state;
             }
@@ -348,7 +349,7 @@ fn a_jump_of_the_rate_acts_directly_and_then_by_the_state() {
         evolution: StateEvolution::Slip,
         ..RATE_AND_STATE
     });
-    let mut state = law.initial_state();
+    let mut state = law.initial_state(0.0, 0.0);
     for _ in 0..10 {
         state = respond(&law, &state, 1.0, 100.0, 1.0).state;
     }
@@ -371,15 +372,15 @@ fn rest_heals_with_the_logarithm_of_time_in_the_ageing_law_only() {
         [(StateEvolution::Ageing, 0.015 * (1e4 / 10.0 + 1.0f64).ln()), (StateEvolution::Slip, 0.0)]
     {
         let law = rate_and_state(RateAndStateParameters { evolution, ..RATE_AND_STATE });
-        let at_rest = respond(&law, &law.initial_state(), 0.0, 100.0, 1e4).state;
+        let at_rest = respond(&law, &law.initial_state(0.0, 0.0), 0.0, 100.0, 1e4).state;
         assert_close(psi_of(&law, &at_rest), 0.6 + healed, 1e-12, "pressed");
         assert_close(
-            psi_of(&law, &respond(&law, &law.initial_state(), 0.0, 0.0, 1e4).state),
+            psi_of(&law, &respond(&law, &law.initial_state(0.0, 0.0), 0.0, 0.0, 1e4).state),
             0.6 + healed,
             1e-12,
             "parted",
         );
-        let quick = FrictionState { traction: 30.0, pressure: 100.0, ..law.initial_state() };
+        let quick = FrictionState { traction: 30.0, pressure: 100.0, ..law.initial_state(0.0, 0.0) };
         let now = respond(&law, &quick, 0.1, 100.0, 0.0).state;
         assert_eq!((now.traction, psi_of(&law, &now), now.plastic_slip), (30.05, 0.6, 0.0), "no time, no slip");
     }
@@ -428,7 +429,7 @@ fn increments_converge_to_the_differential_equations() {
         }
         let error = |steps: u32| {
             let dt = 60.0 / f64::from(steps);
-            let mut state = FrictionState { traction: 59.0, pressure: 100.0, ..law.initial_state() };
+            let mut state = FrictionState { traction: 59.0, pressure: 100.0, ..law.initial_state(0.0, 0.0) };
             for k in 0..steps {
                 state = respond(&law, &state, rate((f64::from(k) + 0.5) * dt) * dt, 100.0, dt).state;
             }
@@ -453,7 +454,7 @@ fn rate_and_state_tangents_are_exact() {
         let pressure = random.between(1.0, 150.0);
         let psi = random.between(0.5, 0.7);
         let old = with_psi(psi).loaded(pressure, random.between(-80.0, 80.0));
-        let slip = random.between(-40.0, 40.0) / law.stiffness();
+        let slip = random.between(-40.0, 40.0) / law.description().stiffness;
         let dt = 10f64.powf(random.between(-6.0, 3.0));
         smooth += usize::from(check_tangents(&law, &old, slip, random.between(1.0, 150.0), dt));
     }
@@ -557,7 +558,7 @@ fn no_increment_panics_or_is_not_a_number() {
                 ..RATE_AND_STATE
             })),
         };
-        let mut state = law.initial_state();
+        let mut state = law.initial_state(0.0, 0.0);
         for _ in 0..4 {
             let sign = if random.unit() < 0.5 { -1.0 } else { 1.0 };
             let slip = sign * magnitude(&mut random, -12.0, 3.0);
@@ -566,7 +567,7 @@ fn no_increment_panics_or_is_not_a_number() {
             let answer = respond(&*law, &state, slip, pressure, dt);
             let new = answer.state;
             assert!(new.dissipation >= state.dissipation && new.traction * slip.signum() * 0.0 == 0.0);
-            assert!(answer.dtraction_dslip.abs() <= STEEPEST * law.stiffness());
+            assert!(answer.dtraction_dslip.abs() <= STEEPEST * law.description().stiffness);
             assert!(answer.dtraction_dpressure.abs() <= STEEPEST);
             assert!(answer.evaluations < 200, "{} evaluations", answer.evaluations);
             state = new;
@@ -636,7 +637,7 @@ fn absurd_increments_of_rate_and_state_are_answered_or_refused() {
         let mut answered = 0;
         for k in 0..numbers.len().pow(3) {
             let [slip, pressure, dt] = [k % 9, k / 9 % 9, k / 81].map(|k| numbers[k]);
-            if let Ok(answer) = law.respond(&law.initial_state(), Sliding { slip, pressure, dt }) {
+            if let Ok(answer) = law.respond(&law.initial_state(0.0, 0.0), Sliding { slip, pressure, dt }) {
                 assert!(answer.state.traction.is_finite() && answer.dtraction_dslip.is_finite());
                 answered += 1;
             }

@@ -45,7 +45,7 @@ fn pressure(k: usize) -> f64 {
 }
 
 fn start(law: &dyn FrictionLaw) -> FrictionState {
-    law.starting_state(START[0], START[1])
+    law.initial_state(START[0], START[1])
 }
 
 /// The answers at the samples, each reached by so many increments.
@@ -135,13 +135,13 @@ fn sensitivities_along_records_are_those_of_the_answers() {
         let parameters = RateAndStateParameters { evolution, theta: Some(17.0), ..LABORATORY };
         let law = law(&parameters);
         let sensitive = law.sensitivities().expect("differentiated");
-        for (place, name) in sensitive.parameters().iter().enumerate() {
-            let mut by = sensitive.start(place);
+        for name in sensitive.parameters() {
+            let mut by = sensitive.start(name);
             let mut found = Vec::new();
             let mut old = start(&*law);
             for (k, answer) in driven(&*law, 1).iter().enumerate() {
                 let sliding = Sliding { slip: rate(k) * SAMPLE, pressure: pressure(k + 1), dt: SAMPLE };
-                let along = Direction { state: by, slip: 0.0, parameter: Some(place) };
+                let along = Direction { state: by, slip: 0.0, parameter: Some(*name) };
                 [by, _] = sensitive.vary(&old, sliding, [along, Direction::default()]).expect("an answer");
                 (old, found) = (answer.state, [found, vec![by]].concat());
             }

@@ -66,7 +66,7 @@ fn drive(law: &dyn FrictionLaw, start: FrictionState, slip: f64, duration: f64, 
 
 /// The state after `steps` equal increments from first touch.
 fn loaded(law: &dyn FrictionLaw, slip: f64, duration: f64, steps: usize) -> FrictionState {
-    *drive(law, law.initial_state(), slip, duration, steps).last().expect("at least one step")
+    *drive(law, law.initial_state(0.0, 0.0), slip, duration, steps).last().expect("at least one step")
 }
 
 fn assert_close(actual: f64, expected: f64, tolerance: f64, what: &str) {
@@ -154,7 +154,7 @@ fn softening_converges_to_an_exponential_of_plastic_slip() {
 fn the_attained_peak_converges_to_25_0175() {
     let law = law(&SuperSubloadingParameters { xi: 0.0, ..BACKWARD_EULER });
     let peak = |steps| {
-        let path = drive(&law, law.initial_state(), 0.08, 0.0, steps);
+        let path = drive(&law, law.initial_state(0.0, 0.0), 0.08, 0.0, steps);
         let (index, state) =
             path.iter().enumerate().max_by(|a, b| a.1.traction.total_cmp(&b.1.traction)).expect("a path");
         (state.traction, state.ratio(mu_of(state)), 0.08 * (index + 1) as f64 / steps as f64)
@@ -189,7 +189,7 @@ fn what_the_parameters_mean_is_what_the_law_does() {
         assert_eq!((onset.rested, onset.residual), (of_rest.onset().expect("the law says so").rested, parameters.mu_k));
         for (law, rise) in [(&of_rest, onset.rested), (&of_start, onset.fresh)] {
             let end = rise.slip.map_or(0.5, |slip| 2.0 * slip);
-            let states = drive(law, law.initial_state(), end, 0.0, 4000);
+            let states = drive(law, law.initial_state(0.0, 0.0), end, 0.0, 4000);
             let highest = states.iter().max_by(|a, b| a.traction.total_cmp(&b.traction)).expect("a state");
             assert_close(rise.peak, highest.traction / PRESSURE, 1e-6 * rise.peak, &format!("peak of {parameters:?}"));
             if let Some(slip) = rise.slip {
@@ -199,10 +199,10 @@ fn what_the_parameters_mean_is_what_the_law_does() {
         // Half of the way between μ_s and μ_k, from above and from below.
         let half = 0.5 * (parameters.mu_s + parameters.mu_k);
         let [lost, healed] = [onset.half_lost, onset.half_healed].map(|some| some.expect("it weakens and heals"));
-        let states = drive(&of_rest, of_rest.initial_state(), 2.0 * lost, 0.0, 4000);
+        let states = drive(&of_rest, of_rest.initial_state(0.0, 0.0), 2.0 * lost, 0.0, 4000);
         let crossing = states.iter().find(|state| mu_of(state) <= half).expect("it has weakened");
         assert_close(lost, crossing.plastic_slip, 2.0 * lost / 2000.0, &format!("slip of half of {parameters:?}"));
-        let weak = of_rest.initial_state().with_variables([parameters.mu_k]);
+        let weak = of_rest.initial_state(0.0, 0.0).with_variables([parameters.mu_k]);
         let rested = respond(&of_rest, &weak, 0.0, PRESSURE, healed).state;
         assert_close(mu_of(&rested), half, 1e-12, &format!("rest of half of {parameters:?}"));
     }
@@ -230,7 +230,7 @@ fn ageing_at_rest_converges_to_its_closed_forms() {
         assert_first_order(error(200), error(400), &format!("ageing, n = {n}"));
         assert!(error(20_000) < 1e-5);
         let aged = loaded(&law, 0.0, time, 200);
-        let (fresh, stronger) = (law.initial_state(), respond(&law, &aged, 0.02, PRESSURE, 0.0).state.traction);
+        let (fresh, stronger) = (law.initial_state(0.0, 0.0), respond(&law, &aged, 0.02, PRESSURE, 0.0).state.traction);
         assert!(stronger > 1.1 * respond(&law, &fresh, 0.02, PRESSURE, 0.0).state.traction, "rest strengthens");
     }
 }
@@ -249,7 +249,7 @@ fn the_integration_converges_to_the_rate_equations_at_first_order() {
     let (amplitude, end) = (0.1, 4.0);
     let pressure = |t: f64| PRESSURE * (1.0 + 0.2 * (3.0 * t).sin());
     let law = law(&parameters);
-    let start = FrictionState { pressure: PRESSURE, ..law.initial_state() };
+    let start = FrictionState { pressure: PRESSURE, ..law.initial_state(0.0, 0.0) };
     let expected = rate_form(&parameters, start, end, |t| amplitude * t.cos(), &pressure);
     let traction = |steps: usize| {
         let dt = end / steps as f64;
@@ -334,7 +334,7 @@ fn a_sharp_law_of_constant_coefficient_is_coulomb_friction() {
     let sharp = law(&SuperSubloadingParameters { r: 1e9, integration: Integration::BackwardEuler, ..CONSTANT });
     let coulomb = Coulomb::new(&CoulombParameters { mu: 0.2, alpha_t: None }, 1000.0).expect("valid parameters");
     let mut random = Random(1);
-    let (mut a, mut b) = (sharp.initial_state(), coulomb.initial_state());
+    let (mut a, mut b) = (sharp.initial_state(0.0, 0.0), coulomb.initial_state(0.0, 0.0));
     for _ in 0..10_000 {
         let (slip, pressure) = (0.03 * random.between(-1.0, 1.0), PRESSURE * random.between(-0.1, 1.0));
         a = respond(&sharp, &a, slip, pressure, 0.1).state;
@@ -352,7 +352,7 @@ fn a_sharp_law_of_constant_coefficient_dissipates_like_coulomb_friction() {
     for (integration, jumps) in [(Integration::BackwardEuler, false), (Integration::Controlled, true)] {
         let sharp = law(&SuperSubloadingParameters { r: 1e9, integration, ..CONSTANT });
         let mut random = Random(1);
-        let (mut a, mut b) = (sharp.initial_state(), coulomb.initial_state());
+        let (mut a, mut b) = (sharp.initial_state(0.0, 0.0), coulomb.initial_state(0.0, 0.0));
         for _ in 0..3000 {
             let slip = 0.1 * random.between(-1.0, 1.0);
             let pressure = PRESSURE * if jumps { random.between(0.1, 1.0) } else { 1.0 };
@@ -367,19 +367,19 @@ fn a_sharp_law_of_constant_coefficient_dissipates_like_coulomb_friction() {
 #[test]
 fn coulomb_friction_sticks_then_slides() {
     let law = Coulomb::new(&CoulombParameters { mu: 0.5, alpha_t: Some(100.0) }, f64::NAN).expect("valid parameters");
-    let stuck = respond(&law, &law.initial_state(), 0.1, 40.0, 1.0);
+    let stuck = respond(&law, &law.initial_state(0.0, 0.0), 0.1, 40.0, 1.0);
     assert_eq!((stuck.state.traction, stuck.dtraction_dslip, stuck.dtraction_dpressure), (10.0, 100.0, 0.0));
     let slid = respond(&law, &stuck.state, -0.5, 40.0, 1.0);
     assert_eq!((slid.state.traction, slid.dtraction_dslip, slid.dtraction_dpressure), (-20.0, 0.0, -0.5));
     assert_close(slid.state.plastic_slip, -0.2, 1e-15, "plastic slip");
-    assert_eq!((law.stiffness(), law.uniqueness_limit()), (100.0, None));
+    assert_eq!((law.description().stiffness, law.description().uniqueness_limit()), (100.0, None));
 }
 
 #[test]
 fn without_friction_slip_is_free() {
-    let answer = respond(&Frictionless, &Frictionless.initial_state(), 3.0, PRESSURE, 1.0);
+    let answer = respond(&Frictionless, &Frictionless.initial_state(0.0, 0.0), 3.0, PRESSURE, 1.0);
     assert_eq!((answer.state.traction, answer.state.plastic_slip, answer.state.dissipation), (0.0, 3.0, 0.0));
-    assert_eq!(Frictionless.stiffness(), 0.0);
+    assert_eq!(Frictionless.description().stiffness, 0.0);
 }
 
 #[test]
@@ -400,7 +400,7 @@ fn inside_the_elastic_core_nothing_slips() {
 fn friction_against_negative_slip_is_the_mirror_image() {
     let law = law(&PAPER);
     let mut random = Random(2);
-    let (mut a, mut b) = (law.initial_state(), law.initial_state());
+    let (mut a, mut b) = (law.initial_state(0.0, 0.0), law.initial_state(0.0, 0.0));
     for _ in 0..10_000 {
         let (slip, pressure) = (0.05 * random.between(-1.0, 1.0), PRESSURE * random.between(-0.05, 1.0));
         let dt = random.unit();
@@ -450,7 +450,7 @@ fn opening_releases_the_traction_and_touching_starts_anew() {
     assert_close(open.state.dissipation - slid.dissipation, stored, 1e-12, "released energy");
     assert!(stored > 0.1 && mu_of(&open.state) > mu_of(&slid), "μ ages while open");
     let again = respond(&law, &open.state, 0.01, PRESSURE, 0.1).state;
-    let fresh = law.initial_state().with_variables([mu_of(&open.state)]);
+    let fresh = law.initial_state(0.0, 0.0).with_variables([mu_of(&open.state)]);
     assert_eq!(again.traction, respond(&law, &fresh, 0.01, PRESSURE, 0.1).state.traction);
     assert!(again.traction > 5.0);
 }
@@ -503,7 +503,7 @@ fn coulomb_increments_add_up() {
     for _ in 0..20_000 {
         let pressure = [random.magnitude(-3.0, 2.0), random.magnitude(-3.0, 2.0)];
         let traction = 0.3 * pressure[0] * random.between(-1.0, 1.0);
-        let old = FrictionState { traction, pressure: pressure[0], ..law.initial_state() };
+        let old = FrictionState { traction, pressure: pressure[0], ..law.initial_state(0.0, 0.0) };
         let slip = random.sign() * random.magnitude(-6.0, 0.0);
         let one = respond(&law, &old, slip, pressure[1], 1.0).state;
         let many = (1..=7).fold(old, |old, k| {
@@ -553,7 +553,8 @@ fn controlled_increments_dissipate_the_work_of_their_path() {
     let points = [[0.0, 60.0], [0.12, 80.0], [-0.1, 90.0], [0.15, 50.0], [0.0, 70.0]];
     for parameters in variants {
         let fine_law = law(&SuperSubloadingParameters { tolerance: Some(1e-10), ..parameters });
-        let (mut old, mut work, parts) = (FrictionState { pressure: 60.0, ..fine_law.initial_state() }, 0.0, 4000);
+        let (mut old, mut work, parts) =
+            (FrictionState { pressure: 60.0, ..fine_law.initial_state(0.0, 0.0) }, 0.0, 4000);
         for stroke in points.windows(2) {
             let [[u0, p0], [u1, p1]] = [stroke[0], stroke[1]];
             for k in 1..=parts {
@@ -587,7 +588,7 @@ fn a_snap_dissipates_what_it_releases() {
         ..PAPER
     };
     let law = law(&parameters);
-    let (mut old, mut work, parts) = (FrictionState { pressure: PRESSURE, ..law.initial_state() }, 0.0, 20_000);
+    let (mut old, mut work, parts) = (FrictionState { pressure: PRESSURE, ..law.initial_state(0.0, 0.0) }, 0.0, 20_000);
     let mut snapped = 0.0f64;
     for _ in 0..parts {
         let slip = 0.4 / f64::from(parts);
@@ -627,7 +628,7 @@ fn tangents_agree_with_differences() {
         let slide = loaded(&law, 0.3, 3.0, 100);
         let full = loaded(&law, 9.0, 90.0, 900);
         let cases = [
-            ("first touch", law.initial_state(), 0.02, PRESSURE),
+            ("first touch", law.initial_state(0.0, 0.0), 0.02, PRESSURE),
             ("stick", stick, 0.003, PRESSURE),
             ("unloading", stick, -0.003, PRESSURE),
             ("reversal of stick", stick, -0.03, PRESSURE),
@@ -729,7 +730,7 @@ fn branch(
     old: &FrictionState,
     at: Sliding,
 ) -> Option<f64> {
-    let trial = old.traction + law.stiffness() * at.slip;
+    let trial = old.traction + law.description().stiffness * at.slip;
     let reversed = trial * old.traction.signum() < 0.0;
     let elastic = match parameters.integration {
         Integration::Controlled => !reversed && trial.abs() * old.pressure <= old.traction.abs() * at.pressure,
@@ -796,7 +797,7 @@ fn answer_a_million_random_increments(integration: Integration, sample: usize) {
         let mut random = Random(seed.wrapping_mul(0x1234_5678_9abc_def1));
         let parameters = random_parameters(&mut random, integration);
         let law = law(&parameters);
-        let alpha_t = law.stiffness();
+        let alpha_t = law.description().stiffness;
         let mut state = random_state(&mut random, &parameters);
         for increment in 0..INCREMENTS {
             if random.chance(0.3) || !(1e-8..1e8).contains(&(state.pressure / alpha_t)) {
@@ -873,7 +874,7 @@ fn a_million_random_increments_under_control_are_answered_with_their_tangent() {
 fn absurd_increments_are_answered_or_refused() {
     let law = law(&PAPER);
     let numbers = [0.0, 1e-320, 1e-30, 1.0, 1e30, 1e300, f64::MAX, f64::INFINITY, f64::NAN];
-    let states = [law.initial_state(), FrictionState::default(), loaded(&law, 0.3, 3.0, 30)];
+    let states = [law.initial_state(0.0, 0.0), FrictionState::default(), loaded(&law, 0.3, 3.0, 30)];
     let mut answered = 0;
     for slip in numbers {
         for pressure in numbers {
@@ -888,7 +889,7 @@ fn absurd_increments_are_answered_or_refused() {
         }
     }
     assert!(answered > 100, "only {answered} were answered with friction");
-    let backwards = law.respond(&law.initial_state(), Sliding { slip: 0.0, pressure: 1.0, dt: -1.0 });
+    let backwards = law.respond(&law.initial_state(0.0, 0.0), Sliding { slip: 0.0, pressure: 1.0, dt: -1.0 });
     assert_eq!(backwards, Err(LawFailure::NegativeTime { dt: -1.0 }));
 }
 
@@ -896,7 +897,7 @@ fn absurd_increments_are_answered_or_refused() {
 
 #[test]
 fn the_uniqueness_limit_is_where_the_slope_can_vanish() {
-    let limit = |parameters| law(&parameters).uniqueness_limit();
+    let limit = |parameters| law(&parameters).description().uniqueness_limit();
     assert_close(limit(PAPER).expect("a limit"), 100.0, 1e-10, "limit");
     let steep = SuperSubloadingParameters { mu_s: 0.8, m: 2.0, structure: None, ..PAPER };
     assert_close(limit(steep).expect("a limit"), 1000.0 / (10.0 * 9.0), 1e-10, "limit");
@@ -922,7 +923,7 @@ fn beyond_the_uniqueness_limit_the_first_root_is_taken() {
         let mu = parameters.mu_s * random.between(0.8, 1.0);
         let traction = random.between(0.1, 0.99) * mu * PRESSURE;
         let old = FrictionState { traction, pressure: PRESSURE, ..FrictionState::default().with_variables([mu]) };
-        let slip = (mu * PRESSURE - traction) * random.between(0.0, 1.1) / law.stiffness();
+        let slip = (mu * PRESSURE - traction) * random.between(0.0, 1.1) / law.description().stiffness;
         let roots = scan(&parameters, &old, slip, 0.1);
         let found = respond(&law, &old, slip, PRESSURE, 0.1).state.plastic_increment;
         let (low, high) = roots[0];
@@ -997,15 +998,21 @@ fn the_case_file_names_a_law_and_its_parameters() {
     let read = |text: &str| serde_json::from_str::<FrictionParameters>(text);
     let short = read(r#"{"law": "super_subloading", "mu_s": 0.3, "mu_k": 0.1, "r": 100}"#).expect("defaults");
     let law = short.build(500.0).expect("valid parameters");
-    assert_eq!((law.stiffness(), mu_of(&law.initial_state())), (500.0, 0.3));
+    assert_eq!((law.description().stiffness, mu_of(&law.initial_state(0.0, 0.0))), (500.0, 0.3));
     let full = read(
         r#"{"law": "super_subloading", "mu_s": 0.3, "mu_k": 0.1, "alpha_t": 1e5, "r": 100, "kappa": 10, "xi": 0.002,
             "m": 1, "n": 1, "structure": 3.0, "approach": "cotangent", "elastic_core": 0.1}"#,
     );
-    assert_eq!(full.expect("all given").build(500.0).expect("valid parameters").initial_state().variables[0], 0.3);
+    assert_eq!(
+        full.expect("all given").build(500.0).expect("valid parameters").initial_state(0.0, 0.0).variables[0],
+        0.3
+    );
     let coulomb = read(r#"{"law": "coulomb", "mu": 0.3}"#).expect("defaults").build(500.0).expect("valid parameters");
-    assert!(respond(&*coulomb, &coulomb.initial_state(), 1.0, 1.0, 1.0).state.traction > 0.29);
-    assert_eq!(read(r#"{"law": "frictionless"}"#).expect("no parameters").build(1.0).expect("valid").stiffness(), 0.0);
+    assert!(respond(&*coulomb, &coulomb.initial_state(0.0, 0.0), 1.0, 1.0, 1.0).state.traction > 0.29);
+    assert_eq!(
+        read(r#"{"law": "frictionless"}"#).expect("no parameters").build(1.0).expect("valid").description().stiffness,
+        0.0
+    );
     let unknown = read(r#"{"law": "coulomb", "mu": 0.3, "mu_s": 0.4}"#).expect_err("unknown key").to_string();
     assert!(unknown.contains("mu_s"), "{unknown}");
 }
@@ -1022,7 +1029,7 @@ fn the_controlled_answer_jumps_only_where_sub_steps_change() {
         structure: Some(1.8),
         ..PAPER
     });
-    let old = FrictionState { traction: 2.0, pressure: 20.0, ..law.initial_state() };
+    let old = FrictionState { traction: 2.0, pressure: 20.0, ..law.initial_state(0.0, 0.0) };
     let (step, pressure) = (1e-6, 30.0);
     let at = |k: usize| respond(&law, &old, 0.005 + step * k as f64, pressure, 0.3);
     let (mut smooth, mut jump, mut jumps) = (0.0f64, 0.0f64, 0);

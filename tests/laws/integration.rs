@@ -279,7 +279,7 @@ fn increments() -> Vec<Sliding> {
 /// Tractions along a path whose slips are `stretch` times as long.
 fn tractions(given: &Value, stretch: f64) -> Vec<f64> {
     let law = any(given);
-    let mut state = law.initial_state();
+    let mut state = law.initial_state(0.0, 0.0);
     let lead = |sliding: &Sliding| {
         state = law.respond(&state, Sliding { slip: stretch * sliding.slip, ..*sliding }).unwrap().state;
         state.traction
@@ -303,11 +303,11 @@ fn sensitivities_are_those_of_differences() {
     for given in [base, curved, rate, slip_law, weakening, json!({"law": "coulomb", "mu": 0.5, "alpha_t": 4.0})] {
         let law = any(&given);
         let sensitive = law.sensitivities().unwrap();
-        for (place, name) in sensitive.parameters().iter().enumerate().filter(|(_, name)| given[**name].is_f64()) {
-            let (mut old, mut states) = (law.initial_state(), [sensitive.start(place), Variation::default()]);
+        for name in sensitive.parameters().iter().filter(|name| given[**name].is_f64()) {
+            let (mut old, mut states) = (law.initial_state(0.0, 0.0), [sensitive.start(name), Variation::default()]);
             let mut exact = Vec::new();
             for sliding in increments() {
-                let by_parameter = Direction { state: states[0], slip: 0.0, parameter: Some(place) };
+                let by_parameter = Direction { state: states[0], slip: 0.0, parameter: Some(*name) };
                 let by_slip = Direction { state: states[1], slip: sliding.slip, parameter: None };
                 states = sensitive.vary(&old, sliding, [by_parameter, by_slip]).unwrap();
                 old = law.respond(&old, sliding).unwrap().state;

@@ -1,5 +1,7 @@
 //! The laws alone: friction and bulk, against closed forms, differential equations and differences.
 
+#[path = "../common/mod.rs"]
+mod common;
 #[path = "../common/strokes.rs"]
 mod strokes;
 
@@ -11,3 +13,4 @@ mod integration;
 mod materials;
 mod offset;
 mod random;
+mod yielding;

@@ -1,6 +1,6 @@
 //! The bulk laws against their energies, closed forms, differences, and the constants they refuse.
 
-use fecontact::laws::bulk::{Evolution, InvertedElement, Material, MaterialParameters, Straining, Stretched};
+use fecontact::laws::bulk::{Material, MaterialFailure, MaterialParameters, MaterialResponse, Straining, Stretched};
 use nalgebra::{Matrix2, Matrix4, Rotation2, Vector4, Vector5};
 use serde_json::json;
 
@@ -62,9 +62,9 @@ fn stress_is_the_derivative_of_the_energy() {
     for model in MODELS {
         let material = material(model);
         for f in deformations() {
-            let [expected] = by_difference(&f, |f| [material.respond(f).unwrap().energy]);
+            let [expected] = by_difference(&f, |f| [material.at_once(f).unwrap().energy]);
             let error =
-                Vector4::from_column_slice(material.respond(&f).unwrap().stress.as_slice()) - Vector4::from(expected);
+                Vector4::from_column_slice(material.at_once(&f).unwrap().stress.as_slice()) - Vector4::from(expected);
             assert!(error.amax() < 1e-8, "{model} at {f}: {error}");
         }
     }
@@ -76,8 +76,8 @@ fn tangent_is_the_derivative_of_the_stress() {
         let material = material(model);
         for f in deformations() {
             let rows: [[f64; 4]; 4] =
-                by_difference(&f, |f| material.respond(f).unwrap().stress.as_slice().try_into().unwrap());
-            let tangent = material.respond(&f).unwrap().tangent;
+                by_difference(&f, |f| material.at_once(f).unwrap().stress.as_slice().try_into().unwrap());
+            let tangent = material.at_once(&f).unwrap().tangent;
             let error = tangent - Matrix4::from_fn(|i, j| rows[i][j]);
             assert!(error.amax() < 2e-8, "{model} at {f}: {error}");
             assert!((tangent - tangent.transpose()).amax() < 1e-13 * tangent.amax(), "{model}: not symmetric");
@@ -90,13 +90,13 @@ fn rotation_causes_no_stress() {
     for model in &MODELS[1..] {
         let material = material(model);
         for step in -20..=20 {
-            let response = material.respond(&rotation(0.157 * f64::from(step))).unwrap();
+            let response = material.at_once(&rotation(0.157 * f64::from(step))).unwrap();
             assert!(response.stress.amax() < 2e-15 * E, "{model}: {}", response.stress);
             assert!(response.stress_zz.abs() < 2e-15 * E);
             assert!(response.energy.abs() < 1e-30 * E, "{model}: {}", response.energy);
         }
     }
-    let strained = material("linear").respond(&rotation(0.5)).unwrap();
+    let strained = material("linear").at_once(&rotation(0.5)).unwrap();
     assert!(strained.stress.amax() > 0.1 * E, "the linear law is for small rotations only");
 }
 
@@ -106,7 +106,7 @@ fn stress_turns_with_the_body() {
     for model in &MODELS[1..] {
         let material = material(model);
         for f in deformations() {
-            let (here, turned) = (material.respond(&f).unwrap(), material.respond(&(q * f)).unwrap());
+            let (here, turned) = (material.at_once(&f).unwrap(), material.at_once(&(q * f)).unwrap());
             let error = (turned.stress - q * here.stress).amax();
             assert!(error < 1e-14 * (E + here.stress.amax()), "{model} at {f}: {error}");
             assert!((turned.stress_zz - here.stress_zz).abs() < 1e-14 * (E + here.stress_zz.abs()));
@@ -123,15 +123,15 @@ fn all_laws_are_linear_at_small_strain_to_the_last_digits() {
     let linear = material("linear");
     for model in MODELS {
         let material = material(model);
-        let at_rest = material.respond(&Matrix2::identity()).unwrap();
+        let at_rest = material.at_once(&Matrix2::identity()).unwrap();
         assert_eq!(at_rest.stress, Matrix2::zeros(), "{model}");
         assert_eq!(at_rest.energy, 0.0);
-        let difference = at_rest.tangent - linear.respond(&Matrix2::identity()).unwrap().tangent;
+        let difference = at_rest.tangent - linear.at_once(&Matrix2::identity()).unwrap().tangent;
         assert!(difference.amax() < 1e-14 * E, "{model}: {difference}");
         assert!((material.p_wave_modulus() - (LAMBDA + 2.0 * G)).abs() < 1e-14 * E);
         for size in [1e-3, 1e-5, 1e-7] {
             let f = Matrix2::identity() + size * h;
-            let (here, expected) = (material.respond(&f).unwrap(), linear.respond(&f).unwrap());
+            let (here, expected) = (material.at_once(&f).unwrap(), linear.at_once(&f).unwrap());
             assert!((here.stress - expected.stress).amax() < 4.0 * E * size * size, "{model} at {size}");
             assert!((here.stress_zz - expected.stress_zz).abs() < 4.0 * E * size * size);
             assert!((here.energy - expected.energy).abs() < 4.0 * E * size.powi(3), "{model} at {size}");
@@ -159,7 +159,7 @@ fn uniaxial_strain_has_its_closed_form() {
             ("hencky", [m * ln / s, LAMBDA * ln, LAMBDA * ln / s, 0.5 * m * ln * ln]),
         ];
         for (model, expected) in closed {
-            let r = material(model).respond(&Matrix2::new(s, 0.0, 0.0, 1.0)).unwrap();
+            let r = material(model).at_once(&Matrix2::new(s, 0.0, 0.0, 1.0)).unwrap();
             let actual = [r.stress.m11, r.stress.m22, r.stress_zz, r.energy];
             for (a, e) in actual.into_iter().zip(expected) {
                 assert!((a - e).abs() < 1e-13 * E, "{model} at {s}: {actual:?} for {expected:?}");
@@ -201,13 +201,13 @@ fn no_volume_is_refused() {
     for model in &MODELS[1..] {
         let material = material(model);
         let mirrored = Matrix2::new(-1.0, 0.0, 0.0, 2.0);
-        assert_eq!(material.respond(&mirrored), Err(InvertedElement { jacobian: -2.0 }), "{model}");
-        assert!(material.respond(&Matrix2::zeros()).is_err(), "{model}");
-        assert!(material.respond(&nan).is_err(), "{model}");
-        assert!(material.respond(&Matrix2::new(f64::INFINITY, 0.0, 0.0, 1.0)).is_err(), "{model}");
+        assert_eq!(material.at_once(&mirrored), Err(MaterialFailure::Inverted { jacobian: -2.0 }), "{model}");
+        assert!(material.at_once(&Matrix2::zeros()).is_err(), "{model}");
+        assert!(material.at_once(&nan).is_err(), "{model}");
+        assert!(material.at_once(&Matrix2::new(f64::INFINITY, 0.0, 0.0, 1.0)).is_err(), "{model}");
     }
-    assert!(material("linear").respond(&Matrix2::new(-1.0, 0.0, 0.0, 1.0)).is_ok());
-    assert!(material("linear").respond(&nan).is_err());
+    assert!(material("linear").at_once(&Matrix2::new(-1.0, 0.0, 0.0, 1.0)).is_ok());
+    assert!(material("linear").at_once(&nan).is_err());
 }
 
 #[test]
@@ -276,9 +276,9 @@ fn viscoelastic() -> Box<dyn Material> {
 }
 
 /// The answer to an increment, and the variables it leaves.
-fn evolve(material: &dyn Material, f: &Matrix2<f64>, dt: f64, old: &[f64]) -> (Evolution, Vec<f64>) {
+fn evolve(material: &dyn Material, f: &Matrix2<f64>, dt: f64, old: &[f64]) -> (MaterialResponse, Vec<f64>) {
     let mut new = vec![0.0; old.len()];
-    let evolution = material.evolve(&Straining { deformation: *f, stretch: 1.0, dt, old }, &mut new).unwrap();
+    let evolution = material.respond(&Straining { deformation: *f, stretch: 1.0, dt, old }, &mut new).unwrap();
     (evolution, new)
 }
 
@@ -288,7 +288,7 @@ fn along(
     path: impl Fn(f64) -> Matrix2<f64>,
     end: f64,
     parts: u32,
-) -> (Evolution, Vec<f64>, f64) {
+) -> (MaterialResponse, Vec<f64>, f64) {
     let dt = end / f64::from(parts);
     let (mut last, mut old) = evolve(material, &path(0.0), 0.0, &[0.0; 8]);
     let mut dissipated = 0.0;
@@ -307,7 +307,7 @@ fn a_step_of_shear_relaxes_in_closed_form() {
     let f = Matrix2::new(1.0, gamma, 0.0, 1.0);
     let (first, start) = evolve(&*material, &f, 0.0, &[0.0; 8]);
     assert_eq!(first.dissipation, 0.0, "no time, no heat");
-    let behind = self::material("neo_hookean").respond(&f).unwrap().energy;
+    let behind = self::material("neo_hookean").at_once(&f).unwrap().energy;
     for parts in [1, 3, 100] {
         let (mut old, mut dissipated) = (start.clone(), 0.0);
         for k in 1..=parts {
@@ -316,9 +316,9 @@ fn a_step_of_shear_relaxes_in_closed_form() {
             let time = f64::from(k) * dt;
             let arm = G_1 * gamma + (0.5 * LAMBDA_1 + G_1) * gamma.powi(3);
             let expected = G * gamma + arm * (-time / TAU).exp();
-            assert!((now.response.stress.m12 - expected).abs() < 1e-14 * E, "{}, {expected}", now.response.stress.m12);
+            assert!((now.stress.m12 - expected).abs() < 1e-14 * E, "{}, {expected}", now.stress.m12);
             dissipated += now.dissipation;
-            let gone = (first.response.energy - behind) * (1.0 - (-2.0 * time / TAU).exp());
+            let gone = (first.energy - behind) * (1.0 - (-2.0 * time / TAU).exp());
             assert!((dissipated - gone).abs() < 1e-14 * E, "{dissipated}, {gone}");
             old = new;
         }
@@ -334,9 +334,9 @@ fn a_steady_small_stretch_answers_in_closed_form() {
         let (last, ..) = along(&*material, |t| Matrix2::new(1.0 + v * t, 0.0, 0.0, 1.0), 2.0, parts);
         let (m, m_1) = (LAMBDA + 2.0 * G, LAMBDA_1 + 2.0 * G_1);
         let expected = v * (m * 2.0 + m_1 * TAU * (1.0 - (-2.0 / TAU).exp()));
-        assert!((last.response.stress.m11 / expected - 1.0).abs() < 2e-6, "{}, {expected}", last.response.stress.m11);
+        assert!((last.stress.m11 / expected - 1.0).abs() < 2e-6, "{}, {expected}", last.stress.m11);
         let across = v * (LAMBDA * 2.0 + LAMBDA_1 * TAU * (1.0 - (-2.0 / TAU).exp()));
-        assert!((last.response.stress_zz / across - 1.0).abs() < 2e-6, "{}", last.response.stress_zz);
+        assert!((last.stress_zz / across - 1.0).abs() < 2e-6, "{}", last.stress_zz);
     }
 }
 
@@ -346,9 +346,9 @@ fn the_tangent_of_an_increment_is_the_derivative_of_its_stress() {
     for (k, f) in deformations().into_iter().enumerate() {
         let (_, old) = evolve(&*material, &Matrix2::new(1.1, 0.2, -0.1, 0.9), 0.3, &[0.0; 8]);
         let dt = [0.0, 1e-6, 0.1, 3.0, 1e4][k % 5];
-        let stress = |f: &Matrix2<f64>| evolve(&*material, f, dt, &old).0.response.stress;
+        let stress = |f: &Matrix2<f64>| evolve(&*material, f, dt, &old).0.stress;
         let rows: [[f64; 4]; 4] = by_difference(&f, |f| stress(f).as_slice().try_into().unwrap());
-        let tangent = evolve(&*material, &f, dt, &old).0.response.tangent;
+        let tangent = evolve(&*material, &f, dt, &old).0.tangent;
         let error = tangent - Matrix4::from_fn(|i, j| rows[i][j]);
         assert!(error.amax() < 1e-7, "at {f}, Δt = {dt}: {error}");
     }
@@ -363,10 +363,7 @@ fn memory_is_the_same_for_every_observer() {
         let q = rotation(1.1);
         let ((here, kept), (turned, also)) =
             (evolve(&*material, &f, 0.2, &old), evolve(&*material, &(q * f), 0.2, &old));
-        assert!(
-            (q * here.response.stress - turned.response.stress).amax()
-                < 1e-13 * E * (1.0 + here.response.stress.amax())
-        );
+        assert!((q * here.stress - turned.stress).amax() < 1e-13 * E * (1.0 + here.stress.amax()));
         assert!(kept.iter().zip(&also).all(|(a, b)| (a - b).abs() < 1e-14), "{kept:?}, {also:?}");
     }
 }
@@ -378,7 +375,7 @@ fn paths_converge_with_the_square_of_the_increment_and_their_work_is_accounted_f
     let path = |t: f64| {
         Matrix2::new(1.0 + 0.2 * (3.0 * t).sin(), 0.3 * (5.0 * t).sin(), -0.1 * t, 1.0 - 0.1 * (4.0 * t).sin())
     };
-    let stress = |parts: u32| along(&*material, path, 2.0, parts).0.response.stress;
+    let stress = |parts: u32| along(&*material, path, 2.0, parts).0.stress;
     let exact = stress(20_000);
     let [coarse, fine] = [100, 200].map(|parts| (stress(parts) - exact).amax());
     assert!((3.8..4.2).contains(&(coarse / fine)), "{coarse:e} became {fine:e}");
@@ -390,11 +387,11 @@ fn paths_converge_with_the_square_of_the_increment_and_their_work_is_accounted_f
     for k in 1..=parts {
         let f = path(2.0 * f64::from(k) / f64::from(parts));
         let (now, new) = evolve(&*material, &f, 2.0 / f64::from(parts), &old);
-        work += 0.5 * (p + now.response.stress).dot(&(f - before));
+        work += 0.5 * (p + now.stress).dot(&(f - before));
         assert!(now.dissipation >= 0.0, "{}", now.dissipation);
         heat += now.dissipation;
-        stored = now.response.energy;
-        (before, p, old) = (f, now.response.stress, new);
+        stored = now.energy;
+        (before, p, old) = (f, now.stress, new);
     }
     assert!((work - heat - stored).abs() < 1e-7 * work.abs(), "{work} = {heat} + {stored}");
     assert!(heat > 0.1 * stored, "{heat}");
@@ -410,7 +407,7 @@ fn dissipation_is_never_negative() {
         let f = all[(7 * k + k * k) % all.len()];
         let dt = 10f64.powi((k % 9) as i32 - 5);
         let (now, new) = evolve(&*material, &f, dt, &old);
-        assert!(now.dissipation >= -1e-14 * now.response.energy.abs(), "{}", now.dissipation);
+        assert!(now.dissipation >= -1e-14 * now.energy.abs(), "{}", now.dissipation);
         old = new;
     }
 }
@@ -455,7 +452,7 @@ fn across_the_plane_stress_and_tangent_are_derivatives() {
             let flat = stretched(&*material, &Vector5::from_iterator(plane.iter().copied().chain([1.0])), dt, &old);
             let mut new = vec![0.0; count];
             let straining = Straining { deformation: plane, stretch: 1.0, dt, old: &old };
-            let known = material.evolve(&straining, &mut new).unwrap().response;
+            let known = material.respond(&straining, &mut new).unwrap();
             let sigma = flat.stress[4] / if material.is_linear() { 1.0 } else { plane.determinant() };
             assert!(
                 (Vector4::from_column_slice(known.stress.as_slice()) - flat.stress.fixed_rows::<4>(0)).amax() < 1e-13
@@ -484,14 +481,14 @@ fn a_plate_has_no_stress_across_and_its_tangent_is_the_derivative() {
             Matrix2::new(1.2, 0.3, -0.1, 0.8),
             rotation(2.0) * Matrix2::new(1.3, 0.2, 0.1, 0.7),
         ] {
-            let at = |f: &Matrix2<f64>| evolve(&*plate, f, 0.2, &old).0.response;
+            let at = |f: &Matrix2<f64>| evolve(&*plate, f, 0.2, &old).0;
             let rows: [[f64; 4]; 4] = by_difference(&f, |f| at(f).stress.as_slice().try_into().unwrap());
             let error = at(&f).tangent - Matrix4::from_fn(|i, j| rows[i][j]);
             assert!(error.amax() < 1e-8, "{plate:?} at {f}: {error}");
             let sigma = plate.cauchy_stress(&f, &evolve(&*plate, &f, 0.2, &old).1).unwrap();
             assert_eq!(sigma.zz, 0.0);
         }
-        assert!(plate.respond(&Matrix2::identity()).unwrap().stress.iter().all(|stress| *stress == 0.0));
+        assert!(plate.at_once(&Matrix2::identity()).unwrap().stress.iter().all(|stress| *stress == 0.0));
     }
 }
 
@@ -511,7 +508,7 @@ fn a_bar_in_plane_stress_has_its_closed_form() {
         let neo = (G * (a * a - 1.0) + LAMBDA * (a * root * root).ln()) / a;
         for (model, b, pull) in [("hencky", a.powf(-NU), E * a.ln() / a), ("neo_hookean", root, neo)] {
             let plate = material(model).plane_stress().unwrap();
-            let response = plate.respond(&Matrix2::new(a, 0.0, 0.0, b)).unwrap();
+            let response = plate.at_once(&Matrix2::new(a, 0.0, 0.0, b)).unwrap();
             assert!((response.stress.m11 - pull).abs() < 1e-13, "{model} at {a}: {} for {pull}", response.stress.m11);
             assert!(response.stress.m22.abs() < 1e-13, "{model} at {a}: {}", response.stress.m22);
             // Of a plate the whole work is done in the plane.
@@ -525,7 +522,7 @@ fn a_bar_in_plane_stress_has_its_closed_form() {
 #[test]
 fn a_linear_plate_has_its_closed_form() {
     let plate = material("linear").plane_stress().unwrap();
-    let response = plate.respond(&Matrix2::new(1.01, 0.004, 0.002, 0.98)).unwrap();
+    let response = plate.at_once(&Matrix2::new(1.01, 0.004, 0.002, 0.98)).unwrap();
     let modulus = E / (1.0 - NU * NU);
     for (found, expected) in [
         (response.stress.m11, modulus * (0.01 - NU * 0.02)),
@@ -542,6 +539,6 @@ fn a_linear_plate_has_its_closed_form() {
 #[test]
 fn a_plate_without_a_thickness_is_refused() {
     let plate = material("saint_venant_kirchhoff").plane_stress().unwrap();
-    assert!(plate.respond(&Matrix2::new(1.3, 0.0, 0.0, 1.3)).is_ok());
-    assert!(plate.respond(&Matrix2::new(1.8, 0.0, 0.0, 1.8)).is_err());
+    assert!(plate.at_once(&Matrix2::new(1.3, 0.0, 0.0, 1.3)).is_ok());
+    assert!(plate.at_once(&Matrix2::new(1.8, 0.0, 0.0, 1.8)).is_err());
 }

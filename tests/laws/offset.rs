@@ -1,6 +1,9 @@
 //! Dilatancy and wear beside every friction law.
 
-use fecontact::laws::friction::{Dilatancy, FrictionLaw, FrictionParameters, FrictionState, Offset, Sliding};
+use fecontact::laws::friction::{
+    ContactLaw, Dilatancy, FrictionLaw, FrictionParameters, FrictionState, Offsets, Sliding,
+};
+use fecontact::laws::parameter::InvalidParameter;
 
 const LAWS: [&str; 5] = [
     r#"{"law": "coulomb", "mu": 0.4}"#,
@@ -14,7 +17,12 @@ fn law(text: &str) -> Box<dyn FrictionLaw> {
     serde_json::from_str::<FrictionParameters>(text).expect("a law").build(700.0).expect("good parameters")
 }
 
-fn answer(law: &dyn FrictionLaw, old: &FrictionState, slip: f64, pressure: f64) -> FrictionState {
+/// The law of a contact whose surfaces dilate and wear.
+fn moving(text: &str, dilatancy: Option<Dilatancy>, wear: Option<f64>) -> Result<ContactLaw, InvalidParameter> {
+    ContactLaw::with_offsets(law(text), Offsets { dilatancy, wear })
+}
+
+fn answer(law: &ContactLaw, old: &FrictionState, slip: f64, pressure: f64) -> FrictionState {
     law.respond(old, Sliding { slip, pressure, dt: 0.1 }).expect("an answer").state
 }
 
@@ -28,15 +36,15 @@ fn tangents_of_opening_equal_differences() {
         let frictionless = text.contains("frictionless");
         for (dilatancy, wear) in [(Some(dilatancy), None), (None, Some(2e-4)), (Some(dilatancy), Some(2e-4))] {
             if frictionless && dilatancy.is_some() {
-                assert!(Offset::new(law(text), dilatancy, wear).is_err(), "dilatancy without friction");
+                assert!(moving(text, dilatancy, wear).is_err(), "dilatancy without friction");
                 continue;
             }
-            let (alone, moving) = (law(text), Offset::new(law(text), dilatancy, wear).expect("good parameters"));
-            let start = answer(&moving, &moving.starting_state(20.0, 0.0), 0.03, 22.0);
+            let (alone, moving) = (law(text).into(), moving(text, dilatancy, wear).expect("good parameters"));
+            let start = answer(&moving, &moving.law.initial_state(20.0, 0.0), 0.03, 22.0);
             for (slip, pressure) in [(2e-5, 22.0), (2e-2, 25.0), (-6e-2, 18.0), (5e-2, 21.0)] {
                 let at = |slip, pressure| answer(&moving, &start, slip, pressure);
                 let response = moving.respond(&start, Sliding { slip, pressure, dt: 0.1 }).expect("an answer");
-                assert_eq!(response.state.traction, answer(&*alone, &start, slip, pressure).traction);
+                assert_eq!(response.state.traction, answer(&alone, &start, slip, pressure).traction);
                 let (h, k) = (1e-7, 1e-4);
                 let by_slip = (at(slip + h, pressure).opening - at(slip - h, pressure).opening) / (2.0 * h);
                 let by_pressure = (at(slip, pressure + k).opening - at(slip, pressure - k).opening) / (2.0 * k);
@@ -62,13 +70,13 @@ fn tangents_of_opening_equal_differences() {
 #[test]
 fn to_and_fro_dilation_goes_on_and_wear_adds_up() {
     let (rate, limit, wear, pressure) = (0.25, 0.03, 2e-4, 20.0);
-    let moving = Offset::new(law(LAWS[0]), Some(Dilatancy { rate, limit: Some(limit) }), Some(wear)).expect("good");
-    let alone = law(LAWS[0]);
-    let (mut state, mut plain) = (moving.starting_state(pressure, 0.0), alone.starting_state(pressure, 0.0));
+    let moving = moving(LAWS[0], Some(Dilatancy { rate, limit: Some(limit) }), Some(wear)).expect("good");
+    let alone: ContactLaw = law(LAWS[0]).into();
+    let (mut state, mut plain) = (moving.law.initial_state(pressure, 0.0), alone.law.initial_state(pressure, 0.0));
     let mut way = 0.0;
     for k in 0..40 {
         let slip = if (k / 5) % 2 == 0 { 0.01 } else { -0.01 };
-        (state, plain) = (answer(&moving, &state, slip, pressure), answer(&*alone, &plain, slip, pressure));
+        (state, plain) = (answer(&moving, &state, slip, pressure), answer(&alone, &plain, slip, pressure));
         way += state.plastic_increment.abs();
         let dilation = limit * (1.0 - (-rate * way / limit).exp());
         assert!((state.opening + state.wear - dilation).abs() < 1e-15, "{} {dilation}", state.opening);
@@ -86,7 +94,7 @@ fn to_and_fro_dilation_goes_on_and_wear_adds_up() {
 #[test]
 fn dilatancy_stays_below_the_least_friction() {
     for (text, least) in [(LAWS[0], 0.4), (LAWS[1], 0.3), (LAWS[2], 0.3)] {
-        let offset = |rate: f64| Offset::new(law(text), Some(Dilatancy { rate, limit: None }), None);
+        let offset = |rate: f64| moving(text, Some(Dilatancy { rate, limit: None }), None);
         assert!(offset(0.99 * least).is_ok(), "{text}");
         for rate in [least, 1.1 * least] {
             let error = offset(rate).expect_err("sliding would yield work");
@@ -95,7 +103,7 @@ fn dilatancy_stays_below_the_least_friction() {
         }
     }
     // Steady friction of rate and state falls with the logarithm of the rate, without end: a run watches it.
-    assert!(Offset::new(law(LAWS[3]), Some(Dilatancy { rate: 0.55, limit: None }), None).is_ok());
+    assert!(moving(LAWS[3], Some(Dilatancy { rate: 0.55, limit: None }), None).is_ok());
 }
 
 /// What has no meaning is refused by name.
@@ -108,7 +116,7 @@ fn bad_parameters_are_named() {
         (0.1, Some(f64::NAN), None, "dilatancy.limit"),
         (0.1, None, Some(-1.0), "wear"),
     ] {
-        let error = Offset::new(law(LAWS[0]), Some(Dilatancy { rate, limit }), wear).expect_err("bad");
+        let error = moving(LAWS[0], Some(Dilatancy { rate, limit }), wear).expect_err("bad");
         assert_eq!(error.name, name);
     }
 }

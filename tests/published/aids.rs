@@ -52,7 +52,7 @@ fn shorten(case: &mut Value, k: usize, share: f64) {
 fn stiff(name: &str, change: impl Fn(&mut Value)) -> Model {
     let base = committed(name, &change);
     let pair = &base.contacts[0];
-    let (normal, tangential) = (100.0 * pair.alpha_n, 100.0 * pair.laws[0].start().stiffness());
+    let (normal, tangential) = (100.0 * pair.alpha_n, 100.0 * pair.laws[0].description.stiffness);
     committed(name, |case| {
         change(case);
         let contact = &mut case["contacts"]["base"];

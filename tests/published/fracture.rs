@@ -86,7 +86,7 @@ fn speed_for(share: f64) -> f64 {
 /// Γ: work of a law along its own curve from the traction before slip on, beyond that of sliding [F/L]
 fn fracture_energy(law: &Value) -> f64 {
     let law = serde_json::from_value::<FrictionParameters>(law.clone()).expect("a law").build(1.0).expect("in range");
-    let mut state = law.initial_state();
+    let mut state = law.initial_state(0.0, 0.0);
     (state.traction, state.pressure) = (TRACTION, PRESSURE);
     let mut work = 0.0;
     for _ in 0..200_000 {

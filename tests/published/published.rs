@@ -457,7 +457,7 @@ fn with_penalties(case: &mut Value, model: &Model, [normal, tangential]: [f64; 2
     let pair = &model.contacts[0];
     let contact = &mut case["contacts"]["base"];
     contact["normal"]["alpha_n"] = json!(normal * pair.alpha_n);
-    let stiffness = pair.laws[0].start().stiffness();
+    let stiffness = pair.laws[0].description.stiffness;
     if stiffness > 0.0 {
         contact["friction"]["alpha_t"] = json!(tangential * stiffness);
     }
@@ -520,7 +520,7 @@ fn give(run: &Finished) -> f64 {
     let (p, q) = run.last().contacts[0]
         .iter()
         .fold((0.0f64, 0.0f64), |(p, q), state| (p.max(state.friction.pressure), q.max(state.friction.traction.abs())));
-    let stiffness = pair.laws[0].start().stiffness();
+    let stiffness = pair.laws[0].description.stiffness;
     p / pair.alpha_n + if stiffness > 0.0 { q / stiffness } else { 0.0 }
 }
 

@@ -9,8 +9,8 @@ use crate::common::{
 use fecontact::case::law_test;
 use fecontact::laws::bulk::{Material, NeoHookean, SaintVenantKirchhoff};
 use fecontact::laws::friction::{
-    Coulomb, CoulombParameters, FrictionLaw, FrictionResponse, FrictionState, Frictionless, LawFailure, Sliding,
-    SlipWeakening, SlipWeakeningParameters, SuperSubloadingParameters, register,
+    Coulomb, CoulombParameters, Description, FrictionLaw, FrictionResponse, FrictionState, Frictionless, LawFailure,
+    Sliding, SlipWeakening, SlipWeakeningParameters, SuperSubloadingParameters, register,
 };
 use fecontact::mesh::gmsh;
 use fecontact::model::boundary::{Drive, Profile};
@@ -329,9 +329,10 @@ impl Material for Doubled {
 
     fn respond(
         &self,
-        deformation: &nalgebra::Matrix2<f64>,
-    ) -> Result<fecontact::laws::bulk::MaterialResponse, fecontact::laws::bulk::InvertedElement> {
-        let mut response = self.0.respond(deformation)?;
+        straining: &fecontact::laws::bulk::Straining,
+        new: &mut [f64],
+    ) -> Result<fecontact::laws::bulk::MaterialResponse, fecontact::laws::bulk::MaterialFailure> {
+        let mut response = self.0.respond(straining, new)?;
         response.stress *= 2.0;
         response.tangent *= 2.0;
         response.energy *= 2.0;
@@ -367,16 +368,8 @@ impl FrictionLaw for Named {
         FrictionResponse::elastic(old.stuck(0.0, sliding.pressure.max(0.0)), 0.0).checked(1.0)
     }
 
-    fn variables(&self) -> &'static [&'static str] {
-        self.variables
-    }
-
-    fn offsets(&self) -> &'static [&'static str] {
-        self.offsets
-    }
-
-    fn stiffness(&self) -> f64 {
-        0.0
+    fn description(&self) -> Description {
+        Description { variables: self.variables, opening: self.offsets, ..Description::default() }
     }
 }
 
@@ -431,7 +424,7 @@ fn penalties_follow_from_the_softer_side() {
     let model = built(small());
     let modulus = 100.0 * 0.7 / (1.3 * 0.4);
     common::close("alpha_n", model.contacts[0].alpha_n, 10.0 * modulus, 1e-9 * modulus);
-    common::close("alpha_t", model.contacts[0].laws[0].start().stiffness(), 5.0 * modulus, 1e-9 * modulus);
+    common::close("alpha_t", model.contacts[0].laws[0].description.stiffness, 5.0 * modulus, 1e-9 * modulus);
 }
 
 /// What is wrong with a model from code is told with its place and what to do.

@@ -8,7 +8,9 @@ use crate::common::{Blocks, elastic, linear, neo_hookean};
 use fecontact::equations::sums::Dependence;
 use fecontact::equations::term::Term;
 use fecontact::equations::{Assembler, Trial};
-use fecontact::laws::bulk::{InvertedElement, Linear, Material, MaterialResponse, Viscoelastic, ViscoelasticConstants};
+use fecontact::laws::bulk::{
+    Linear, Material, MaterialFailure, MaterialResponse, Straining, Viscoelastic, ViscoelasticConstants,
+};
 use fecontact::linear::system::Request;
 use fecontact::mesh::section::Section;
 use fecontact::mesh::shape::ElementKind;
@@ -369,10 +371,10 @@ impl Material for Own {
         true
     }
 
-    fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
-        let mut response = self.law.respond(deformation)?;
+    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
+        let mut response = self.law.respond(straining, new)?;
         let initial = Matrix2::new(self.initial, 0.0, 0.0, -self.initial);
-        response.energy += initial.dot(&(deformation - Matrix2::identity()));
+        response.energy += initial.dot(&(straining.deformation - Matrix2::identity()));
         response.stress += initial;
         Ok(response)
     }

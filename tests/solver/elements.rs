@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use std::f64::consts::PI;
 
 use fecontact::laws::bulk::{
-    CauchyStress, ElasticConstants, InvertedElement, Material, MaterialParameters, MaterialResponse, Viscoelastic,
-    ViscoelasticConstants,
+    CauchyStress, ElasticConstants, Material, MaterialFailure, MaterialParameters, MaterialResponse, Straining,
+    Viscoelastic, ViscoelasticConstants,
 };
 use fecontact::mesh::section::Section;
 use fecontact::mesh::shape::{ElementKind, edge_values, gauss};
@@ -108,7 +108,7 @@ impl Patch {
         &self,
         material: &dyn Material,
         u: &[Vector2<f64>],
-    ) -> Result<(DVector<f64>, DMatrix<f64>), InvertedElement> {
+    ) -> Result<(DVector<f64>, DMatrix<f64>), MaterialFailure> {
         let dofs = 2 * self.nodes.len();
         let (mut force, mut tangent) = (DVector::zeros(dofs), DMatrix::zeros(dofs, dofs));
         let n = 2 * self.kind.nodes();
@@ -397,7 +397,8 @@ fn what_cannot_be_is_reported() {
     let mirrored: Vec<_> = square.iter().map(|x| Vector2::new(-2.5 * x.x, 0.0)).collect();
     for f_bar in [false, true] {
         let element = SolidElement::new(ElementKind::Q4, f_bar, Section::PlaneStrain, &square).unwrap();
-        let InvertedElement { jacobian } = element.force(&*neo_hookean(E, 0.3), &mirrored, &mut [0.0; 8]).unwrap_err();
+        let failure = element.force(&*neo_hookean(E, 0.3), &mirrored, &mut [0.0; 8]).unwrap_err();
+        let MaterialFailure::Inverted { jacobian } = failure else { panic!("{failure}") };
         assert!((jacobian + 1.5).abs() < 1e-14, "{jacobian}");
         assert!(element.stresses(&*neo_hookean(E, 0.3), &[], &mirrored).is_err());
     }
@@ -507,12 +508,12 @@ impl Material for Turning {
         false
     }
 
-    fn respond(&self, f: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
-        let strain = f - Matrix2::identity();
+    fn respond(&self, straining: &Straining, _: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
+        let strain = straining.deformation - Matrix2::identity();
         let tangent = nalgebra::Matrix4::from_fn(|i, j| E * if i == j { 1.0 } else { 0.3 * i as f64 - 0.1 * j as f64 });
         let stress = tangent * nalgebra::Vector4::from_column_slice(strain.as_slice());
         let stress = Matrix2::from_column_slice(stress.as_slice());
-        Ok(MaterialResponse { stress, tangent, energy: 0.0, stress_zz: 0.0 })
+        Ok(MaterialResponse { stress, tangent, energy: 0.0, stress_zz: 0.0, dissipation: 0.0 })
     }
 }
 

@@ -336,7 +336,7 @@ fn loads_masses_and_stress_are_weighted_by_the_section() {
         };
         let u: Vec<f64> = (0..model.dofs()).map(of).collect();
         let deformation = nalgebra::Matrix2::new(1.01, 0.02, -0.015, 1.005);
-        let stress = model.bodies[0].material.respond(&deformation).expect("a stress");
+        let stress = model.bodies[0].material.at_once(&deformation).expect("a stress");
         let (state, mut assembler) = (model.initial_state(), Assembler::new(&model));
         let trial = Trial::new(&state, &model.steps[0], 1.0, 0.1);
         assembler.forces(trial, &u, None).expect("forces");

@@ -4,7 +4,9 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use crate::common::{self, Blocks, Finished, close, finish, floor, linear, model};
-use fecontact::laws::friction::{FrictionLaw, FrictionResponse, FrictionState, LawFailure, Regime, Sliding};
+use fecontact::laws::friction::{
+    Description, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Regime, Sliding,
+};
 use fecontact::linear::SparseLu;
 use fecontact::model::Model;
 use fecontact::model::boundary::Drive;
@@ -726,8 +728,8 @@ impl FrictionLaw for Oil {
         FrictionResponse { state, dtraction_dslip, ..Default::default() }.checked(dtraction_dslip)
     }
 
-    fn stiffness(&self) -> f64 {
-        0.0
+    fn description(&self) -> Description {
+        Description::default()
     }
 }
 

@@ -246,7 +246,7 @@ fn the_linear_theory_is_the_derivative_of_the_law() {
     let law = serde_json::from_value::<FrictionParameters>(parameters).expect("a law").build(1.0).expect("in range");
     // Position of the steady motion, velocity, q and μ, and their rates
     let rates = |y: &Vector4<f64>| {
-        let mut state = law.initial_state();
+        let mut state = law.initial_state(0.0, 0.0);
         (state.traction, state.pressure, state.variables[0]) = (y[2], p, y[3]);
         let new = law.respond(&state, Sliding { slip: y[1] * dt, pressure: p, dt }).expect("an answer").state;
         let force = STEADY * p + damping * v - stiffness * y[0] - damping * y[1] - y[2];

@@ -13,7 +13,7 @@ use crate::case::file::{
 };
 use crate::contact::pair::ContactPair;
 use crate::contact::small_sliding::LITTLE_TURN;
-use crate::laws::friction::{Onset, observables};
+use crate::laws::friction::Onset;
 use crate::model::Model;
 use crate::model::method::{Chosen, Method};
 use crate::model::told::{count, number};
@@ -39,9 +39,7 @@ fn initial_tractions(initial: &InitialInput, pair: &ContactPair) -> String {
     let tractions = pair.initial.iter().flatten();
     let points = || pair.points.iter();
     let observed = |name| {
-        points()
-            .map(move |point| pair.law(point).start())
-            .map(move |law| observables::value(law, name, &law.initial_state()))
+        points().map(move |point| pair.law(point)).map(move |law| law.observe(name, &law.law.initial_state(0.0, 0.0)))
     };
     let p = range(tractions.clone().map(|initial| initial.pressure));
     let q = range(tractions.map(|initial| initial.traction));
@@ -57,8 +55,8 @@ fn initial_tractions(initial: &InitialInput, pair: &ContactPair) -> String {
 /// An initial pressure under which the answer may snap; a run meets it in its first increment.
 pub fn pressed_too_hard(pair: &ContactPair) -> Option<String> {
     let pressed = pair.points.iter().zip(pair.initial.iter().flatten());
-    let limits =
-        pressed.filter_map(|(point, initial)| Some((initial.pressure, pair.law(point).start().uniqueness_limit()?)));
+    let limits = pressed
+        .filter_map(|(point, initial)| Some((initial.pressure, pair.law(point).description.uniqueness_limit()?)));
     let (pressure, limit) = limits.filter(|(pressure, limit)| pressure > limit).max_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(format!("contact `{}`: {}", pair.name, several_answers(pressure, limit)))
 }
@@ -96,7 +94,7 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
     }
     if let Some(given) = gives_alpha_t(input) {
         let chosen = if given { "given" } else { "alpha_n/2" };
-        let alpha_t = range(pair.laws.iter().map(|law| law.start().stiffness()));
+        let alpha_t = range(pair.laws.iter().map(|law| law.description.stiffness));
         lines.push(format!("alpha_t {alpha_t} ({chosen})"));
     }
     lines.push(format!("friction {}", parameters(&input.friction, "law", &["alpha_t"])));
@@ -114,7 +112,7 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
         lines.push(format!("slip radiates with η = {} in static steps", number(pair.radiation)));
     }
     lines.extend(moving(input, model, pair));
-    if let Some(limit) = pair.laws.iter().filter_map(|law| law.start().uniqueness_limit()).reduce(f64::min) {
+    if let Some(limit) = pair.laws.iter().filter_map(|law| law.description.uniqueness_limit()).reduce(f64::min) {
         let limit = number(limit);
         lines.push(format!(
             "one answer while the pressure stays below {limit}; above, slip may weaken faster than alpha_t"
@@ -125,7 +123,7 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
 
 /// What a law with a peak means in the numbers of a test: a range where its parameters vary along the interface.
 fn onset(pair: &ContactPair) -> Option<String> {
-    let laws: Vec<Onset> = pair.laws.iter().filter_map(|law| law.start().onset()).collect();
+    let laws: Vec<Onset> = pair.laws.iter().filter_map(|law| law.law.onset()).collect();
     if laws.is_empty() {
         return None;
     }

@@ -2,8 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use serde_json::Value;
-
 use super::step::profile;
 use crate::case::error::{Checked, Complaint};
 use crate::case::file::{
@@ -12,6 +10,7 @@ use crate::case::file::{
 };
 use crate::case::read::explain;
 use crate::laws::friction::{Dilatancy, FrictionParameters};
+use crate::laws::parameter::UnknownParameter;
 use crate::model::boundary::Profile;
 use crate::model::builder::{Contact, Friction, InitialTractions, MasterSide, ModelError, Radiation};
 
@@ -133,16 +132,9 @@ fn with_varying(parameters: FrictionParameters, varying: Vec<Varying>, place: &s
     Ok(Friction::varying(profiles, move |values, alpha_t| {
         let mut parameters = parameters.clone();
         for ([name, place], &value) in names.iter().zip(values) {
-            parameters = with(&parameters, name, value).map_err(|message| ModelError::new(place, message))?;
+            let unknown = |error: UnknownParameter| ModelError::new(place, explain(&error.to_string()));
+            parameters = parameters.with(name, value).map_err(unknown)?;
         }
         Ok(parameters.build(alpha_t)?)
     }))
-}
-
-/// The parameters with one of them replaced.
-fn with(parameters: &FrictionParameters, name: &str, value: f64) -> Result<FrictionParameters, String> {
-    let complain = |error: serde_json::Error| explain(&error.to_string());
-    let mut fields = serde_json::to_value(parameters).map_err(complain)?;
-    fields[name] = Value::from(value);
-    serde_json::from_value(fields).map_err(complain)
 }

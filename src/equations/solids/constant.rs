@@ -33,7 +33,7 @@ use rayon::prelude::*;
 use super::runs::{BATCH, Places, nodal};
 use crate::equations::coupling::Layout;
 use crate::equations::sums::{TrialFailure, add_blocks};
-use crate::laws::bulk::{INITIAL_STRESS, Material};
+use crate::laws::bulk::Material;
 use crate::linear::SparseMatrix;
 use crate::mesh::shape::ElementKind;
 use crate::model::element::Memory;
@@ -42,12 +42,11 @@ use crate::model::{Body, Model};
 /// Blocks that are done sooner than another thread wakes up.
 const FEW_BLOCKS: usize = 2;
 
-/// Whether the tangent of an element is the same at every displacement: a linear law at small strains that remembers nothing but
-/// an initial stress; with F-bar the tangent changes nevertheless.
+/// Whether the tangent of an element is the same at every displacement: a linear law at small strains that remembers nothing, or nothing
+/// that changes; with F-bar the tangent changes nevertheless.
 pub fn is_constant(model: &Model, element: usize) -> bool {
     let material = &model.bodies[model.body_of_element[element]].material;
-    let remembers = !material.variables().is_empty() && *material.variables() != INITIAL_STRESS;
-    material.is_linear() && material.is_symmetric() && !remembers && !model.solids[element].is_f_bar()
+    material.is_linear() && material.is_symmetric() && !material.evolves() && !model.solids[element].is_f_bar()
 }
 
 /// Whether the viscous stress of a law is τ ∂P/∂F:Ḟ with the same ∂P/∂F at every F. A linear law need not have such a one.
@@ -56,7 +55,7 @@ pub(in crate::equations) fn damps_by_stiffness(material: &dyn Material) -> bool 
         return false;
     }
     let (deformation, rate) = (Matrix2::new(1.25, 0.5, -0.25, 0.75), Matrix2::new(0.5, -1.0, 0.75, 0.25));
-    let Ok(response) = material.respond(&deformation) else { return false };
+    let Ok(response) = material.at_once(&deformation) else { return false };
     let elastic = response.tangent * Vector4::from_column_slice(rate.as_slice());
     let elastic = Matrix2::from_column_slice(elastic.as_slice());
     (material.viscous_stress([&deformation, &rate]) - elastic).norm() <= 1e-12 * elastic.norm()
@@ -149,7 +148,7 @@ impl Constant {
                 let (n, mut forces) = (model.mesh.elements[e].nodes.len(), [Vector2::zeros(); 9]);
                 let material = &*model.bodies[model.body_of_element[e]].material;
                 let found = model.solids[e].nodal_forces(material, &nodal(model, e, u)[..n], &mut forces[..n]);
-                found.map_err(|failure| TrialFailure::inverted(model, e, failure))?;
+                found.map_err(|failure| TrialFailure::material(model, e, failure))?;
             }
         }
         Ok(energy)

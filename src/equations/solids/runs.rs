@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use crate::equations::coupling::Layout;
 use crate::equations::evolving::evolves;
 use crate::equations::sums::{TrialFailure, add_blocks};
-use crate::laws::bulk::InvertedElement;
+use crate::laws::bulk::MaterialFailure;
 use crate::linear::SparseMatrix;
 use crate::model::Model;
 
@@ -27,7 +27,7 @@ pub(super) struct Runs {
     /// Forces of the elements on their nodes [F]
     pub forces: Vec<Vector2<f64>>,
     /// What each element of the model stores, if it is in a run [F·L]
-    energies: Vec<Result<f64, InvertedElement>>,
+    energies: Vec<Result<f64, MaterialFailure>>,
     /// Tangents of a batch, column by column
     tangents: Vec<f64>,
 }
@@ -140,7 +140,7 @@ impl Runs {
     pub fn stored(&self, model: &Model) -> Result<f64, TrialFailure> {
         let mut energy = 0.0;
         for e in self.runs.iter().filter(|run| !run.evolves).flat_map(|run| run.elements.clone()) {
-            energy += self.energies[e].map_err(|failure| TrialFailure::inverted(model, e, failure))?;
+            energy += self.energies[e].map_err(|failure| TrialFailure::material(model, e, failure))?;
         }
         Ok(energy)
     }

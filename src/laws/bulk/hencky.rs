@@ -1,9 +1,7 @@
-use nalgebra::Matrix2;
-
 use super::isotropic::{Across, Invariants, StrainEnergy};
 use super::spatial::{ln_stretch, positive_stretch};
 use super::{
-    ElasticConstants, InvertedElement, Lame, Material, MaterialResponse, PlaneStress, Spatial, Straining, Stretched,
+    ElasticConstants, Lame, Material, MaterialFailure, MaterialResponse, PlaneStress, Spatial, Straining, Stretched,
 };
 use crate::laws::parameter::InvalidParameter;
 
@@ -26,7 +24,7 @@ use crate::laws::parameter::InvalidParameter;
 /// so equal stretches are no special case: no principal direction is ever needed.
 ///
 /// # Errors
-/// [`InvertedElement`] when J = det F is not positive and finite.
+/// [`MaterialFailure::Inverted`] when J = det F is not positive and finite.
 ///
 /// Source: Hencky (1928), Z. Techn. Phys. 9, 215; Anand (1979), J. Appl. Mech. 46, 78, doi:10.1115/1.3424532.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,8 +81,8 @@ impl Material for Hencky {
     }
 
     #[inline(always)]
-    fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
-        let invariants = Invariants::of(deformation)?;
+    fn respond(&self, straining: &Straining, _: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
+        let invariants = Invariants::of(&straining.deformation)?;
         let stress_zz = self.lame.lambda * invariants.ln_jacobian() / invariants.jacobian;
         Ok(invariants.response(&self.energy(&invariants), stress_zz))
     }
@@ -94,7 +92,7 @@ impl Spatial for Hencky {
     /// ```text
     /// W(h) = W(1) + λ ln J ln h + (λ/2 + G) (ln h)²
     /// ```
-    fn stretched(&self, straining: &Straining, _: &mut [f64]) -> Result<Stretched, InvertedElement> {
+    fn stretched(&self, straining: &Straining, _: &mut [f64]) -> Result<Stretched, MaterialFailure> {
         let h = positive_stretch(straining)?;
         let invariants = Invariants::of(&straining.deformation)?;
         let Lame { lambda, shear } = self.lame;

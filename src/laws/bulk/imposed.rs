@@ -2,12 +2,10 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Matrix2, Matrix4};
+use nalgebra::{Matrix2, Matrix4, Vector2};
 
 use super::spatial::plane;
-use super::{
-    CauchyStress, Evolution, InvertedElement, Material, MaterialResponse, PlaneStress, Spatial, Straining, Stretched,
-};
+use super::{CauchyStress, Material, MaterialFailure, MaterialResponse, PlaneStress, Spatial, Straining, Stretched};
 
 /// Names of the initial stress among the variables of a law.
 pub const INITIAL_STRESS: [&str; 4] = ["initial_xx", "initial_yy", "initial_xy", "initial_zz"];
@@ -30,11 +28,11 @@ pub const TEMPERATURE: [&str; 2] = ["temperature_rise", "expansion_stress"];
 /// ```text
 /// ε_e = ε − α (T − T₀) 1,   W = W_l(ε_e) + σ₀:ε_e,   σ = σ_l(ε_e) + σ₀,   −∂W/∂ϑ = tr σ                       (5)
 /// ```
-/// The initial stress stands among the variables from the start. [`Material::evolve`] finds T − T₀ at the end of the increment
+/// The initial stress stands among the variables from the start. [`Material::respond`] finds T − T₀ at the end of the increment
 /// in the new variables, which the caller writes there.
 ///
 /// # Errors
-/// [`InvertedElement`] of the law at F_e, and when ϑ is not positive.
+/// [`MaterialFailure::Inverted`] of the law at F_e, and when ϑ is not positive.
 ///
 /// Source: Lu & Pister (1975), Int. J. Solids Struct. 11, 927, doi:10.1016/0020-7683(75)90015-3 (the split of F).
 #[derive(Clone, Debug)]
@@ -82,12 +80,11 @@ impl Imposed {
     }
 
     /// The law's own answer.
-    fn answer(&self, elastic: &Straining, new: &mut [f64]) -> Result<Stretched, InvertedElement> {
+    fn answer(&self, elastic: &Straining, new: &mut [f64]) -> Result<Stretched, MaterialFailure> {
         match self.law.spatial().filter(|_| !self.flat) {
             Some(law) => law.stretched(elastic, new),
             None => {
-                let Evolution { response, dissipation } = self.law.evolve(elastic, new)?;
-                let MaterialResponse { stress, tangent, energy, .. } = response;
+                let MaterialResponse { stress, tangent, energy, dissipation, .. } = self.law.respond(elastic, new)?;
                 Ok(Stretched {
                     dissipation,
                     ..Stretched::new((stress, tangent), (0.0, Default::default(), 0.0), energy)
@@ -137,12 +134,12 @@ fn add_initial(answer: &mut Stretched, elastic: &Straining, (plane, across): (Ma
 }
 
 impl Spatial for Imposed {
-    fn stretched(&self, straining: &Straining, new: &mut [f64]) -> Result<Stretched, InvertedElement> {
+    fn stretched(&self, straining: &Straining, new: &mut [f64]) -> Result<Stretched, MaterialFailure> {
         let heat = self.names.len().saturating_sub(TEMPERATURE.len());
         let strain = self.expansion.map_or(0.0, |alpha| alpha * new[heat]);
         let theta = 1.0 + strain;
         if theta.is_nan() || theta <= 0.0 {
-            return Err(InvertedElement { jacobian: theta });
+            return Err(MaterialFailure::Inverted { jacobian: theta });
         }
         let (elastic, linear) = (self.elastic(straining, strain), self.is_linear());
         let mut answer = self.answer(&elastic, &mut new[..self.law.variables().len()])?;
@@ -203,23 +200,34 @@ impl Material for Imposed {
         (!self.flat).then_some(self)
     }
 
-    /// The answer at once, of a body without initial stress that is not heated.
-    fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
-        let old = vec![0.0; self.names.len()];
-        let at_once = Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old: &old };
-        self.evolve(&at_once, &mut old.clone()).map(|evolution| evolution.response)
+    /// The initial stress, and the expansion stress that it is.
+    fn initial_state(&self, position: Vector2<f64>, stress: &CauchyStress, variables: &mut [f64]) {
+        let own = self.law.variables().len();
+        self.law.initial_state(position, stress, &mut variables[..own]);
+        if !self.stressed {
+            return;
+        }
+        let CauchyStress { xx, yy, zz, xy } = *stress;
+        variables[own..own + INITIAL_STRESS.len()].copy_from_slice(&[xx, yy, xy, zz]);
+        if self.expansion.is_some() {
+            variables[own + INITIAL_STRESS.len() + 1] = xx + yy + zz;
+        }
     }
 
-    fn evolve(&self, straining: &Straining, new: &mut [f64]) -> Result<Evolution, InvertedElement> {
+    fn evolves(&self) -> bool {
+        self.law.evolves() || self.expansion.is_some()
+    }
+
+    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
         let Stretched { stress, tangent, energy, dissipation } = self.stretched(straining, new)?;
         let volume = if self.is_linear() { 1.0 } else { straining.deformation.determinant() };
-        let response = MaterialResponse {
+        Ok(MaterialResponse {
             stress: plane(&stress),
             tangent: tangent.fixed_view::<4, 4>(0, 0).into(),
             energy,
             stress_zz: stress[4] / volume,
-        };
-        Ok(Evolution { response, dissipation })
+            dissipation,
+        })
     }
 
     fn viscous_stress(&self, motion: [&Matrix2<f64>; 2]) -> Matrix2<f64> {
@@ -230,7 +238,7 @@ impl Material for Imposed {
         self.law.viscous_variation(motion, varied)
     }
 
-    fn cauchy_stress(&self, deformation: &Matrix2<f64>, old: &[f64]) -> Result<CauchyStress, InvertedElement> {
+    fn cauchy_stress(&self, deformation: &Matrix2<f64>, old: &[f64]) -> Result<CauchyStress, MaterialFailure> {
         self.cauchy(&Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old })
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix2, Vector4};
 
-use super::{InvertedElement, MaterialResponse, Stretched, cofactor, positive_jacobian};
+use super::{MaterialFailure, MaterialResponse, Stretched, cofactor, positive_jacobian};
 
 /// The two invariants that an isotropic law sees in plane strain, and their derivatives.
 ///
@@ -43,7 +43,7 @@ pub(super) struct Across {
 }
 
 impl Invariants {
-    pub(super) fn of(deformation: &Matrix2<f64>) -> Result<Self, InvertedElement> {
+    pub(super) fn of(deformation: &Matrix2<f64>) -> Result<Self, MaterialFailure> {
         let jacobian = positive_jacobian(deformation)?;
         let displacement_gradient = deformation - Matrix2::identity();
         let volume_strain = displacement_gradient.trace() + displacement_gradient.determinant();
@@ -81,7 +81,7 @@ impl Invariants {
             tangent[(i, i)] += 2.0 * w_m;
             tangent[(i, 3 - i)] += sign * of_cofactor;
         }
-        MaterialResponse { stress, tangent, energy: w, stress_zz }
+        MaterialResponse { stress, tangent, energy: w, stress_zz, dissipation: 0.0 }
     }
 
     /// The answer in plane at the stretch h, and what comes with it across the plane.

@@ -1,7 +1,7 @@
 use nalgebra::{Matrix2, Matrix4, Vector4};
 
 use super::{
-    CauchyStress, ElasticConstants, InvertedElement, Lame, Material, MaterialResponse, Spatial, Straining, Stretched,
+    CauchyStress, ElasticConstants, Lame, Material, MaterialFailure, MaterialResponse, Spatial, Straining, Stretched,
 };
 use crate::laws::parameter::InvalidParameter;
 
@@ -17,7 +17,7 @@ use crate::laws::parameter::InvalidParameter;
 /// λ* = 2 λ G/(λ + 2G) in place of λ, and σ_zz = 0.
 ///
 /// # Errors
-/// [`InvertedElement`] when F is not finite.
+/// [`MaterialFailure::Inverted`] when F is not finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Linear {
     lame: Lame,
@@ -63,9 +63,10 @@ impl Material for Linear {
     }
 
     #[inline(always)]
-    fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
+    fn respond(&self, straining: &Straining, _: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
+        let deformation = &straining.deformation;
         if !deformation.iter().all(|component| component.is_finite()) {
-            return Err(InvertedElement { jacobian: f64::NAN });
+            return Err(MaterialFailure::Inverted { jacobian: f64::NAN });
         }
         let Lame { lambda, shear } = self.lame;
         let displacement_gradient = deformation - Matrix2::identity();
@@ -80,7 +81,8 @@ impl Material for Linear {
             0.0,    shear, shear, 0.0,
             lambda, 0.0,   0.0,   m,
         );
-        Ok(MaterialResponse { stress, tangent, energy: 0.5 * stress.dot(&strain), stress_zz: self.across * trace })
+        let (energy, stress_zz) = (0.5 * stress.dot(&strain), self.across * trace);
+        Ok(MaterialResponse { stress, tangent, energy, stress_zz, dissipation: 0.0 })
     }
 
     fn viscous_stress(&self, [_, rate]: [&Matrix2<f64>; 2]) -> Matrix2<f64> {
@@ -91,15 +93,15 @@ impl Material for Linear {
         self.hooke(varied_rate)
     }
 
-    fn cauchy_stress(&self, deformation: &Matrix2<f64>, _: &[f64]) -> Result<CauchyStress, InvertedElement> {
-        let MaterialResponse { stress, stress_zz, .. } = self.respond(deformation)?;
+    fn cauchy_stress(&self, deformation: &Matrix2<f64>, _: &[f64]) -> Result<CauchyStress, MaterialFailure> {
+        let MaterialResponse { stress, stress_zz, .. } = self.at_once(deformation)?;
         Ok(CauchyStress { xx: stress.m11, yy: stress.m22, zz: stress_zz, xy: stress.m12 })
     }
 }
 
 impl Spatial for Linear {
-    fn stretched(&self, straining: &Straining, _: &mut [f64]) -> Result<Stretched, InvertedElement> {
-        let MaterialResponse { stress, tangent, energy, .. } = self.respond(&straining.deformation)?;
+    fn stretched(&self, straining: &Straining, _: &mut [f64]) -> Result<Stretched, MaterialFailure> {
+        let MaterialResponse { stress, tangent, energy, .. } = self.respond(straining, &mut [])?;
         let strain = straining.stretch - 1.0;
         let trace = straining.deformation.m11 - 1.0 + (straining.deformation.m22 - 1.0);
         let Lame { lambda, .. } = self.lame;

@@ -28,7 +28,7 @@
 
 use std::fmt::Debug;
 
-use nalgebra::{Matrix2, Matrix4};
+use nalgebra::{Matrix2, Matrix4, Vector2};
 use thiserror::Error;
 
 mod hencky;
@@ -50,7 +50,7 @@ pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
 pub use spatial::{PlaneStress, Spatial, Stretched};
 pub use viscoelastic::{Viscoelastic, ViscoelasticConstants};
 
-/// Stress, tangent and stored energy at one deformation gradient (plane strain: F₃₃ = 1).
+/// What a law answers at the end of an increment; it writes its new variables itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaterialResponse {
     /// P: first Piola–Kirchhoff stress, in plane part [F/L²]
@@ -61,6 +61,8 @@ pub struct MaterialResponse {
     pub energy: f64,
     /// σ_zz: out-of-plane Cauchy stress [F/L²]
     pub stress_zz: f64,
+    /// Energy dissipated in the increment per reference volume [F/L²]
+    pub dissipation: f64,
 }
 
 /// What a law is asked for at one quadrature point: where an increment ends, and what the law remembers from its start.
@@ -74,15 +76,6 @@ pub struct Straining<'a> {
     pub dt: f64,
     /// The committed [`variables`](Material::variables)
     pub old: &'a [f64],
-}
-
-/// What a law with memory answers; it writes its new variables itself.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Evolution {
-    /// Stress, tangent and stored energy at the end
-    pub response: MaterialResponse,
-    /// Energy dissipated in the increment per reference volume [F/L²]
-    pub dissipation: f64,
 }
 
 /// σ: Cauchy stress, tension positive [F/L²]
@@ -111,18 +104,29 @@ impl CauchyStress {
     }
 }
 
-/// The deformation has no volume left: J = det F ≤ 0, or not a number.
+/// Why a law could not answer; the increment is tried again with a smaller step.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[error("the material is turned inside out (J = {jacobian:.3e})")]
-pub struct InvertedElement {
-    /// J = det F [-]
-    pub jacobian: f64,
+pub enum MaterialFailure {
+    /// The deformation has no volume left: J = det F ≤ 0, or not a number.
+    #[error("the material is turned inside out (J = {jacobian:.3e})")]
+    Inverted {
+        /// J = det F [-]
+        jacobian: f64,
+    },
+    /// The equations of the law were not solved, such as those of a return to its yield surface.
+    #[error("the material law did not converge: {rest:.3e} of the stress {stress:.3e} is left")]
+    NotConverged {
+        /// what is left out of balance [F/L²]
+        rest: f64,
+        /// the stress that it is to be compared with [F/L²]
+        stress: f64,
+    },
 }
 
 /// J = det F, known to be positive and finite.
-pub(crate) fn positive_jacobian(deformation: &Matrix2<f64>) -> Result<f64, InvertedElement> {
+pub(crate) fn positive_jacobian(deformation: &Matrix2<f64>) -> Result<f64, MaterialFailure> {
     let jacobian = deformation.determinant();
-    if jacobian > 0.0 && jacobian.is_finite() { Ok(jacobian) } else { Err(InvertedElement { jacobian }) }
+    if jacobian > 0.0 && jacobian.is_finite() { Ok(jacobian) } else { Err(MaterialFailure::Inverted { jacobian }) }
 }
 
 /// cof F = J F⁻ᵀ = ∂J/∂F
@@ -131,8 +135,13 @@ pub(crate) fn cofactor(deformation: &Matrix2<f64>) -> Matrix2<f64> {
     Matrix2::new(f.m22, -f.m21, -f.m12, f.m11)
 }
 
-/// A bulk law: P and ∂P/∂F at F. One without memory answers by [`respond`](Material::respond), in plane strain; one that
-/// remembers names its variables, and answers an increment by [`evolve`](Material::evolve).
+/// A bulk law, integrated over one increment. Pure: the same committed variables and increment give the same answer.
+///
+/// ```text
+/// (P, ∂P/∂F, variables, W, dissipation)₁ = law(variables₀; F₁, Δt)
+/// ```
+/// It is asked in plane strain. What it remembers it names in [`variables`](Self::variables); an elastic law has none, and answers to F
+/// alone. An increment of no length leaves no time to relax.
 pub trait Material: Debug + Send + Sync {
     /// ρ₀: mass per reference volume [M/L³]
     fn density(&self) -> f64;
@@ -148,11 +157,22 @@ pub trait Material: Debug + Send + Sync {
         false
     }
 
-    /// P, ∂P/∂F, W and σ_zz at the in-plane deformation gradient F.
+    /// The answer to an increment, whose variables at the end are written over `new`.
     ///
     /// # Errors
-    /// [`InvertedElement`] when det F is not positive.
-    fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement>;
+    /// [`MaterialFailure`] when det F is not positive, or the law's equations are not solved.
+    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure>;
+
+    /// The answer at once, of a body that has not been strained before. Compiled for each law, so that memory that a law does not
+    /// have costs nothing.
+    ///
+    /// # Errors
+    /// As [`Material::respond`].
+    fn at_once(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, MaterialFailure> {
+        let old = vec![0.0; self.variables().len()];
+        let straining = Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old: &old };
+        self.respond(&straining, &mut old.clone())
+    }
 
     /// The law in a plate, which has no stress across the plane; none unless it is known.
     fn plane_stress(&self) -> Option<Box<dyn Material>> {
@@ -164,10 +184,18 @@ pub trait Material: Debug + Send + Sync {
         None
     }
 
-    /// Names of what the law remembers at every quadrature point, zero before the first increment unless it is imposed
-    /// ([`Imposed`]); none for elastic laws.
+    /// Names of what the law remembers at every quadrature point; none for elastic laws.
     fn variables(&self) -> &[&'static str] {
         &[]
+    }
+
+    /// Write what the law remembers before the first increment over `variables`, which are zero: at a reference position, in a body
+    /// with an initial stress.
+    fn initial_state(&self, _position: Vector2<f64>, _stress: &CauchyStress, _variables: &mut [f64]) {}
+
+    /// Whether an increment changes what the law remembers.
+    fn evolves(&self) -> bool {
+        !self.variables().is_empty()
     }
 
     /// Whether ∂P/∂F is symmetric, as it is where P has a potential: half of the tangent is the mirror image of the other.
@@ -175,22 +203,12 @@ pub trait Material: Debug + Send + Sync {
         true
     }
 
-    /// The answer to an increment, whose variables at the end are written over `new`. Pure: the same increment from the same
-    /// variables gives the same answer. An increment of no length leaves no time to relax.
-    ///
-    /// # Errors
-    /// As [`Material::respond`].
-    fn evolve(&self, straining: &Straining, _new: &mut [f64]) -> Result<Evolution, InvertedElement> {
-        let response = self.respond(&straining.deformation)?;
-        Ok(Evolution { response, dissipation: 0.0 })
-    }
-
     /// P and W alone. Compiled for each law, so that the tangent that is not asked for costs nothing.
     ///
     /// # Errors
     /// As [`Material::respond`].
-    fn stress(&self, deformation: &Matrix2<f64>) -> Result<(Matrix2<f64>, f64), InvertedElement> {
-        self.respond(deformation).map(|response| (response.stress, response.energy))
+    fn stress(&self, deformation: &Matrix2<f64>) -> Result<(Matrix2<f64>, f64), MaterialFailure> {
+        self.at_once(deformation).map(|response| (response.stress, response.energy))
     }
 
     /// P times the volume at several points, written over `stresses`; returns ∫ W dV. Compiled for each law, so that an
@@ -203,7 +221,7 @@ pub trait Material: Debug + Send + Sync {
         deformations: &[Matrix2<f64>],
         volumes: &[f64],
         stresses: &mut [Matrix2<f64>],
-    ) -> Result<f64, InvertedElement> {
+    ) -> Result<f64, MaterialFailure> {
         let mut energy = 0.0;
         for ((deformation, &volume), stress) in deformations.iter().zip(volumes).zip(stresses) {
             let (p, stored) = self.stress(deformation)?;
@@ -239,14 +257,12 @@ pub trait Material: Debug + Send + Sync {
     ///
     /// # Errors
     /// As [`Material::respond`].
-    fn cauchy_stress(&self, deformation: &Matrix2<f64>, old: &[f64]) -> Result<CauchyStress, InvertedElement> {
+    fn cauchy_stress(&self, deformation: &Matrix2<f64>, old: &[f64]) -> Result<CauchyStress, MaterialFailure> {
+        let now = Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old };
+        // Compiled for each law: the tangent that is not asked for costs nothing.
         let response = match old {
-            // Compiled for each law: the tangent that is not asked for costs nothing.
-            [] => self.respond(deformation)?,
-            old => {
-                let now = Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old };
-                self.evolve(&now, &mut old.to_vec())?.response
-            }
+            [] => self.respond(&now, &mut [])?,
+            old => self.respond(&now, &mut old.to_vec())?,
         };
         let sigma = response.stress * deformation.transpose() / deformation.determinant();
         Ok(CauchyStress { xx: sigma.m11, yy: sigma.m22, zz: response.stress_zz, xy: sigma.m12 })

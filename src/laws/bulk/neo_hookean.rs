@@ -3,7 +3,7 @@ use nalgebra::Matrix2;
 use super::isotropic::{Across, Invariants, StrainEnergy};
 use super::spatial::{ln_stretch, positive_stretch};
 use super::{
-    ElasticConstants, InvertedElement, Lame, Material, MaterialResponse, PlaneStress, Spatial, Straining, Stretched,
+    ElasticConstants, Lame, Material, MaterialFailure, MaterialResponse, PlaneStress, Spatial, Straining, Stretched,
 };
 use crate::laws::parameter::InvalidParameter;
 
@@ -18,7 +18,7 @@ use crate::laws::parameter::InvalidParameter;
 /// with m = (λ₁ − λ₂)² of the principal stretches; (2) is (1) with I₁ = m + 2J + 1 in plane strain.
 ///
 /// # Errors
-/// [`InvertedElement`] when J = det F is not positive and finite.
+/// [`MaterialFailure::Inverted`] when J = det F is not positive and finite.
 ///
 /// Source: Bonet & Wood (2008), Nonlinear Continuum Mechanics for Finite Element Analysis, §6.4.3.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,7 +40,7 @@ impl NeoHookean {
     /// W = G/2 m + G (J − 1 + (h² − 1)/2 − ln J h) + λ/2 (ln J h)²
     /// ```
     #[inline(always)]
-    pub(super) fn at_stretch(&self, deformation: &Matrix2<f64>, h: f64) -> Result<MaterialResponse, InvertedElement> {
+    pub(super) fn at_stretch(&self, deformation: &Matrix2<f64>, h: f64) -> Result<MaterialResponse, MaterialFailure> {
         let invariants = Invariants::of(deformation)?;
         let Lame { lambda, shear } = self.lame;
         let (jacobian, j, ln_j) = (invariants.jacobian, invariants.volume_strain, invariants.ln_jacobian() + h.ln());
@@ -79,8 +79,8 @@ impl Material for NeoHookean {
     }
 
     #[inline(always)]
-    fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
-        self.at_stretch(deformation, 1.0)
+    fn respond(&self, straining: &Straining, _: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
+        self.at_stretch(&straining.deformation, 1.0)
     }
 }
 
@@ -88,7 +88,7 @@ impl Spatial for NeoHookean {
     /// ```text
     /// ∂W/∂h = G (h − 1/h) + λ ln(J h)/h
     /// ```
-    fn stretched(&self, straining: &Straining, _: &mut [f64]) -> Result<Stretched, InvertedElement> {
+    fn stretched(&self, straining: &Straining, _: &mut [f64]) -> Result<Stretched, MaterialFailure> {
         let h = positive_stretch(straining)?;
         let invariants = Invariants::of(&straining.deformation)?;
         let Lame { lambda, shear } = self.lame;

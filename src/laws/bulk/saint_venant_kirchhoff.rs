@@ -1,9 +1,7 @@
-use nalgebra::Matrix2;
-
 use super::isotropic::{Across, Invariants, StrainEnergy};
 use super::spatial::positive_stretch;
 use super::{
-    ElasticConstants, InvertedElement, Lame, Material, MaterialResponse, PlaneStress, Spatial, Straining, Stretched,
+    ElasticConstants, Lame, Material, MaterialFailure, MaterialResponse, PlaneStress, Spatial, Straining, Stretched,
 };
 use crate::laws::parameter::InvalidParameter;
 
@@ -20,7 +18,7 @@ use crate::laws::parameter::InvalidParameter;
 /// The law softens in strong compression: it is for large rotations but moderate strains.
 ///
 /// # Errors
-/// [`InvertedElement`] when J = det F is not positive and finite.
+/// [`MaterialFailure::Inverted`] when J = det F is not positive and finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SaintVenantKirchhoff {
     lame: Lame,
@@ -74,8 +72,8 @@ impl Material for SaintVenantKirchhoff {
     }
 
     #[inline(always)]
-    fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
-        let invariants = Invariants::of(deformation)?;
+    fn respond(&self, straining: &Straining, _: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
+        let invariants = Invariants::of(&straining.deformation)?;
         let (energy, trace) = self.energy(&invariants);
         Ok(invariants.response(&energy, self.lame.lambda * trace / invariants.jacobian))
     }
@@ -85,7 +83,7 @@ impl Spatial for SaintVenantKirchhoff {
     /// ```text
     /// W(h) = W(1) + λ e E₃₃ + (λ/2 + G) E₃₃²,   E₃₃ = ½ (h² − 1)
     /// ```
-    fn stretched(&self, straining: &Straining, _: &mut [f64]) -> Result<Stretched, InvertedElement> {
+    fn stretched(&self, straining: &Straining, _: &mut [f64]) -> Result<Stretched, MaterialFailure> {
         let h = positive_stretch(straining)?;
         let invariants = Invariants::of(&straining.deformation)?;
         let Lame { lambda, shear } = self.lame;

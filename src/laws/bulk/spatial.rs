@@ -6,9 +6,9 @@
 //!
 //! Plates: no stress across the plane.
 
-use nalgebra::{Matrix2, Matrix3, Matrix5, Vector4, Vector5};
+use nalgebra::{Matrix2, Matrix3, Matrix5, Vector2, Vector4, Vector5};
 
-use super::{CauchyStress, Evolution, InvertedElement, Material, MaterialResponse, Straining};
+use super::{CauchyStress, Material, MaterialFailure, MaterialResponse, Straining};
 
 /// What a law answers at F with a stretch across the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,17 +41,17 @@ impl Stretched {
 
 /// A law that knows the stretch across the plane.
 pub trait Spatial: Material {
-    /// The answer to an increment, as [`Material::evolve`], at any F₃₃.
+    /// The answer to an increment, as [`Material::respond`], at any F₃₃.
     ///
     /// # Errors
-    /// [`InvertedElement`] when det F or F₃₃ is not positive.
-    fn stretched(&self, straining: &Straining, new: &mut [f64]) -> Result<Stretched, InvertedElement>;
+    /// [`MaterialFailure::Inverted`] when det F or F₃₃ is not positive.
+    fn stretched(&self, straining: &Straining, new: &mut [f64]) -> Result<Stretched, MaterialFailure>;
 
     /// σ = P Fᵀ/J where the law remembers `straining.old`.
     ///
     /// # Errors
     /// As [`Spatial::stretched`].
-    fn cauchy(&self, straining: &Straining) -> Result<CauchyStress, InvertedElement> {
+    fn cauchy(&self, straining: &Straining) -> Result<CauchyStress, MaterialFailure> {
         let stress = self.stretched(straining, &mut straining.old.to_vec())?.stress;
         let (f, h) = (&straining.deformation, straining.stretch);
         if self.is_linear() {
@@ -114,10 +114,10 @@ pub(super) fn ln_stretch(h: f64) -> f64 {
 }
 
 /// F₃₃, known to be positive and finite.
-pub(super) fn positive_stretch(straining: &Straining) -> Result<f64, InvertedElement> {
+pub(super) fn positive_stretch(straining: &Straining) -> Result<f64, MaterialFailure> {
     let h = straining.stretch;
     let jacobian = h * straining.deformation.determinant();
-    if h > 0.0 && h.is_finite() { Ok(h) } else { Err(InvertedElement { jacobian }) }
+    if h > 0.0 && h.is_finite() { Ok(h) } else { Err(MaterialFailure::Inverted { jacobian }) }
 }
 
 /// A law in plane stress: F₃₃ is what leaves no stress across the plane.
@@ -131,7 +131,8 @@ pub(super) fn positive_stretch(straining: &Straining) -> Result<f64, InvertedEle
 /// plate's. The viscous stress is formed with them, too.
 ///
 /// # Errors
-/// [`InvertedElement`] when det F is not positive, or no h leaves the plate free of stress.
+/// [`MaterialFailure::Inverted`] when det F is not positive, [`MaterialFailure::NotConverged`] when no h leaves the plate free of
+/// stress.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlaneStress<L> {
     law: L,
@@ -150,25 +151,26 @@ impl<L: Spatial> PlaneStress<L> {
     }
 
     /// h and the answer there.
-    fn solved(&self, straining: &Straining, new: &mut [f64]) -> Result<(f64, Stretched), InvertedElement> {
+    fn solved(&self, straining: &Straining, new: &mut [f64]) -> Result<(f64, Stretched), MaterialFailure> {
         let jacobian = super::positive_jacobian(&straining.deformation)?;
         let modulus = self.law.p_wave_modulus();
         let mut ln_h = -jacobian.ln() * (modulus - 2.0 * self.law.shear_modulus()) / modulus;
+        let mut rest = 0.0;
         for _ in 0..ITERATIONS {
             let h = 1.0 + ln_h.exp_m1();
             let answer = self.law.stretched(&Straining { stretch: h, ..*straining }, new)?;
             let stress = h * answer.stress[4];
             let slope = stress + h * h * answer.tangent[(4, 4)];
             if !(slope > 0.0 && slope.is_finite() && answer.tangent[(4, 4)] > 0.0) {
-                return Err(InvertedElement { jacobian: jacobian * h });
+                return Err(MaterialFailure::NotConverged { rest: stress, stress: modulus });
             }
             let change = -stress / slope;
             if change.abs() <= KNOWN {
                 return Ok((h, answer));
             }
-            ln_h += change.clamp(-1.0, 1.0);
+            (ln_h, rest) = (ln_h + change.clamp(-1.0, 1.0), stress);
         }
-        Err(InvertedElement { jacobian: jacobian * ln_h.exp() })
+        Err(MaterialFailure::NotConverged { rest, stress: modulus })
     }
 }
 
@@ -194,29 +196,30 @@ impl<L: Spatial> Material for PlaneStress<L> {
         self.law.is_symmetric()
     }
 
-    /// The answer at once, of a body that has not been strained before.
-    fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
-        let old = vec![0.0; self.variables().len()];
-        let at_once = Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old: &old };
-        self.evolve(&at_once, &mut old.clone()).map(|evolution| evolution.response)
+    fn initial_state(&self, position: Vector2<f64>, stress: &CauchyStress, variables: &mut [f64]) {
+        self.law.initial_state(position, stress, variables);
     }
 
-    fn evolve(&self, straining: &Straining, new: &mut [f64]) -> Result<Evolution, InvertedElement> {
+    fn evolves(&self) -> bool {
+        self.law.evolves()
+    }
+
+    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
         let (_, Stretched { stress, tangent, energy, dissipation }) = self.solved(straining, new)?;
         let [by_h, of_33]: [Vector4<f64>; 2] =
             [tangent.fixed_view::<4, 1>(0, 4).into(), tangent.fixed_view::<1, 4>(4, 0).transpose()];
         let stiffness = tangent[(4, 4)];
         let rest = by_h * (stress[4] / stiffness);
-        let response = MaterialResponse {
+        Ok(MaterialResponse {
             stress: plane(&stress) - Matrix2::new(rest[0], rest[2], rest[1], rest[3]),
             tangent: tangent.fixed_view::<4, 4>(0, 0) - by_h * of_33.transpose() / stiffness,
             energy,
             stress_zz: 0.0,
-        };
-        Ok(Evolution { response, dissipation })
+            dissipation,
+        })
     }
 
-    fn cauchy_stress(&self, deformation: &Matrix2<f64>, old: &[f64]) -> Result<CauchyStress, InvertedElement> {
+    fn cauchy_stress(&self, deformation: &Matrix2<f64>, old: &[f64]) -> Result<CauchyStress, MaterialFailure> {
         let now = Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old };
         let (h, answer) = self.solved(&now, &mut old.to_vec())?;
         let sigma = plane(&answer.stress) * deformation.transpose() / (deformation.determinant() * h);

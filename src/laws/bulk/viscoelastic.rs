@@ -3,9 +3,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::spatial::{Spatial, Stretched, positive_stretch};
-use super::{
-    ElasticConstants, Evolution, InvertedElement, Lame, Material, MaterialResponse, NeoHookean, PlaneStress, Straining,
-};
+use super::{ElasticConstants, Lame, Material, MaterialFailure, MaterialResponse, NeoHookean, PlaneStress, Straining};
 use crate::laws::parameter::{InvalidParameter, require_positive};
 
 /// Constants of [`Viscoelastic`].
@@ -49,7 +47,7 @@ pub struct ViscoelasticConstants {
 /// It remembers ε and E, in plane and E₃₃.
 ///
 /// # Errors
-/// [`InvertedElement`] when J = det F is not positive and finite.
+/// [`MaterialFailure::Inverted`] when J = det F is not positive and finite.
 ///
 /// Source: Simo & Hughes (1998), Computational Inelasticity, §10.3 (the recurrence); Ferry (1980), Viscoelastic Properties
 /// of Polymers (the standard linear solid).
@@ -148,13 +146,7 @@ impl Material for Viscoelastic {
         Some(self)
     }
 
-    /// The answer at once, without time to relax, of a body that has not been strained before.
-    fn respond(&self, deformation: &Matrix2<f64>) -> Result<MaterialResponse, InvertedElement> {
-        let at_once = Straining { deformation: *deformation, stretch: 1.0, dt: 0.0, old: &[0.0; 8] };
-        self.evolve(&at_once, &mut [0.0; 8]).map(|evolution| evolution.response)
-    }
-
-    fn evolve(&self, straining: &Straining, new: &mut [f64]) -> Result<Evolution, InvertedElement> {
+    fn respond(&self, straining: &Straining, new: &mut [f64]) -> Result<MaterialResponse, MaterialFailure> {
         let Straining { deformation: f, stretch, dt, old } = *straining;
         let mut response = self.behind.at_stretch(&f, stretch)?;
         let (arm, before) = (Tensor::from(&old[..4]), Tensor::from(&old[4..]));
@@ -168,7 +160,7 @@ impl Material for Viscoelastic {
         let stress = self.arm.stress(&after);
         let stored = |arm: &Tensor| 0.5 * arm.dot(&self.arm.stress(arm));
         let work = self.arm.stress(&arm.combined(phi, change, lag)).dot(&change);
-        let dissipation = work - (stored(&after) - stored(&arm));
+        response.dissipation = work - (stored(&after) - stored(&arm));
         new[..4].copy_from_slice(&after.components());
         new[4..].copy_from_slice(&strain.components());
 
@@ -184,7 +176,7 @@ impl Material for Viscoelastic {
             let total = response.tangent.column(column) + Vector4::from_column_slice(by.as_slice());
             response.tangent.set_column(column, &total);
         }
-        Ok(Evolution { response, dissipation })
+        Ok(response)
     }
 }
 
@@ -192,9 +184,9 @@ impl Spatial for Viscoelastic {
     /// ```text
     /// P₃₃ = P_∞,₃₃ + h H₃₃,   ∂P/∂h = ∂P_∞/∂h + φ λ₁ h F,   ∂P₃₃/∂h = ∂P_∞,₃₃/∂h + H₃₃ + φ (λ₁ + 2G₁) h²
     /// ```
-    fn stretched(&self, straining: &Straining, new: &mut [f64]) -> Result<Stretched, InvertedElement> {
+    fn stretched(&self, straining: &Straining, new: &mut [f64]) -> Result<Stretched, MaterialFailure> {
         let h = positive_stretch(straining)?;
-        let Evolution { response, dissipation } = self.evolve(straining, new)?;
+        let MaterialResponse { stress, tangent, energy, dissipation, .. } = self.respond(straining, new)?;
         let behind = Spatial::stretched(&self.behind, straining, &mut [])?;
         let [_, phi, _] = relaxation(straining.dt / self.tau);
         let held = self.arm.stress(&Tensor::from(&new[..4])).zz;
@@ -202,6 +194,6 @@ impl Spatial for Viscoelastic {
         let coupling = behind.tangent.fixed_view::<4, 1>(0, 4) + f * (phi * self.arm.lambda * h);
         let stiffness = behind.tangent[(4, 4)] + held + phi * self.arm.constrained_modulus() * h * h;
         let across = (behind.stress[4] + h * held, coupling, stiffness);
-        Ok(Stretched { dissipation, ..Stretched::new((response.stress, response.tangent), across, response.energy) })
+        Ok(Stretched { dissipation, ..Stretched::new((stress, tangent), across, energy) })
     }
 }

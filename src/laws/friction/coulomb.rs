@@ -2,8 +2,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::sensitivity::{Direction, SensitiveLaw, Variation};
-use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Sliding, traction_at_yield};
-use crate::laws::parameter::{InvalidParameter, require_positive};
+use super::{
+    Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Sliding, traction_at_yield,
+};
+use crate::laws::parameter::{InvalidParameter, numbers, require_positive};
 
 /// Parameters of [`Coulomb`] as the case file writes them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -15,6 +17,8 @@ pub struct CoulombParameters {
     #[serde(default)]
     pub alpha_t: Option<f64>,
 }
+
+numbers!(CoulombParameters: "mu" mu; "alpha_t" alpha_t);
 
 impl CoulombParameters {
     /// With the tangential stiffness left to the contact.
@@ -58,6 +62,16 @@ impl Coulomb {
 }
 
 impl FrictionLaw for Coulomb {
+    fn description(&self) -> Description {
+        Description {
+            stiffness: self.alpha_t,
+            observables: Some(&["R", "mu"]),
+            starting_coefficient: Some(self.mu),
+            least_coefficient: Some(self.mu),
+            ..Description::default()
+        }
+    }
+
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
         let Self { mu, alpha_t } = *self;
         let Sliding { slip, pressure, .. } = sliding.checked()?;
@@ -75,28 +89,12 @@ impl FrictionLaw for Coulomb {
         FrictionResponse { state, dtraction_dslip, dtraction_dpressure, ..Default::default() }.checked(alpha_t)
     }
 
-    fn observables(&self) -> &'static [&'static str] {
-        &["R", "mu"]
-    }
-
     fn observe(&self, name: &str, state: &FrictionState) -> Option<f64> {
         match name {
             "R" => Some(state.ratio(self.mu)),
             "mu" => Some(self.mu),
             _ => None,
         }
-    }
-
-    fn stiffness(&self) -> f64 {
-        self.alpha_t
-    }
-
-    fn starting_limit(&self, pressure: f64) -> f64 {
-        self.mu * pressure
-    }
-
-    fn least_coefficient(&self) -> Option<f64> {
-        Some(self.mu)
     }
 
     fn sensitivities(&self) -> Option<&dyn SensitiveLaw> {
@@ -106,10 +104,10 @@ impl FrictionLaw for Coulomb {
 
 impl SensitiveLaw for Coulomb {
     fn parameters(&self) -> &'static [&'static str] {
-        &["mu", "alpha_t"]
+        CoulombParameters::NUMBERS
     }
 
-    fn start(&self, _: usize) -> Variation {
+    fn start(&self, _: &str) -> Variation {
         Variation::default()
     }
 
@@ -125,9 +123,9 @@ impl SensitiveLaw for Coulomb {
             let traction = if pressure <= 0.0 {
                 0.0
             } else if trial.abs() <= self.mu * pressure {
-                by.state.traction + self.alpha_t * by.slip + by.of(1) * slip
+                by.state.traction + self.alpha_t * by.slip + by.of("alpha_t") * slip
             } else {
-                trial.signum() * pressure * by.of(0)
+                trial.signum() * pressure * by.of("mu")
             };
             Variation { traction, ..Variation::default() }
         }))

@@ -1,10 +1,14 @@
-use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, Regime, Sliding};
+use super::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, Regime, Sliding};
 
 /// No friction: q = 0 whatever the slip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frictionless;
 
 impl FrictionLaw for Frictionless {
+    fn description(&self) -> Description {
+        Description { is_frictionless: true, starting_coefficient: Some(0.0), ..Description::default() }
+    }
+
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
         let Sliding { slip, pressure, .. } = sliding.checked()?;
         let regime = match pressure > 0.0 {
@@ -15,17 +19,5 @@ impl FrictionLaw for Frictionless {
         let (plastic_slip, pressure) = (old.plastic_slip + slip, pressure.max(0.0));
         let state = FrictionState { traction: 0.0, pressure, plastic_slip, plastic_increment: slip, regime, ..*old };
         FrictionResponse { state, ..FrictionResponse::default() }.checked(0.0)
-    }
-
-    fn stiffness(&self) -> f64 {
-        0.0
-    }
-
-    fn is_frictionless(&self) -> bool {
-        true
-    }
-
-    fn starting_limit(&self, _pressure: f64) -> f64 {
-        0.0
     }
 }

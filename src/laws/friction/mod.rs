@@ -5,18 +5,17 @@
 //!
 //! Signs: `q` resists positive slip of the slave along +s; pressure is positive in compression.
 //!
-//! Laws: [`SuperSubloading`], [`SlipWeakening`], [`RateAndState`], [`Coulomb`], [`Frictionless`], [`PrescribedSlip`]; [`Offset`]
-//! adds dilatancy and wear to any of them; [`FrictionParameters`]
-//! reads any of them from a case, and laws from elsewhere that are [registered](register).
+//! Laws: [`SuperSubloading`], [`SlipWeakening`], [`RateAndState`], [`Coulomb`], [`Frictionless`], [`PrescribedSlip`].
+//! [`FrictionParameters`] reads any of them from a case, and laws from elsewhere that are [registered](register);
+//! [`ContactLaw`] is any of them at the points of a contact, with dilatancy and wear beside it.
 //!
 //! What a law is asked is [`Sliding`], the increment of one point; why it could not answer is a [`LawFailure`]. Laws whose slip
 //! rate follows from traction and state are [`RateLaw`]s as well.
 
+mod contact_law;
 mod coulomb;
 mod frictionless;
-mod in_time;
 pub mod observables;
-mod offset;
 mod parameters;
 mod prescribed;
 mod rate_and_state;
@@ -30,10 +29,9 @@ use std::fmt::Debug;
 
 use thiserror::Error;
 
+pub use contact_law::{ContactLaw, Dilatancy, Offsets};
 pub use coulomb::{Coulomb, CoulombParameters};
 pub use frictionless::Frictionless;
-pub use in_time::{Held, LawInTime, LawOf, Resolved};
-pub use offset::{Dilatancy, Offset, Offsets};
 pub use parameters::{FrictionParameters, RegisteredParameters, register};
 pub use prescribed::{PrescribedSlip, PrescribedSlipParameters};
 pub use rate_and_state::{RateAndState, RateAndStateParameters, StateEvolution};
@@ -124,11 +122,13 @@ pub type Answer = Result<FrictionResponse, LawFailure>;
 ///
 /// A law of one parameter, a film of oil, is written like this. A law that can be cloned is friction of a contact as it is,
 /// `Contact::new("base", "block_bottom", "ground_top", Oil { viscosity: 2.0 })`; nothing has to be registered. What it remembers
-/// besides, at most [`MOST_VARIABLES`] numbers, it names in [`variables`](Self::variables) (the k-th name is that of
+/// besides, at most [`MOST_VARIABLES`] numbers, it names in [`Description::variables`] (the k-th name is that of
 /// `state.variables[k]`), and they appear by name in tables, frames and `Simulation::contact_field`:
 ///
 /// ```
-/// use fecontact::laws::friction::{FrictionLaw, FrictionResponse, FrictionState, LawFailure, Regime, Sliding};
+/// use fecontact::laws::friction::{
+///     Description, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Regime, Sliding,
+/// };
 ///
 /// /// Viscous friction, q = η v.
 /// #[derive(Clone, Debug)]
@@ -156,25 +156,23 @@ pub type Answer = Result<FrictionResponse, LawFailure>;
 ///         FrictionResponse { state, dtraction_dslip, ..Default::default() }.checked(dtraction_dslip)
 ///     }
 ///
-///     fn stiffness(&self) -> f64 {
-///         0.0
+///     fn description(&self) -> Description {
+///         Description::default()
 ///     }
 /// }
 ///
 /// let oil = Oil { viscosity: 2.0 };
-/// let answer = oil.respond(&oil.initial_state(), Sliding { slip: 0.3, pressure: 5.0, dt: 0.1 })?;
+/// let answer = oil.respond(&oil.initial_state(0.0, 0.0), Sliding { slip: 0.3, pressure: 5.0, dt: 0.1 })?;
 /// assert_eq!((answer.state.traction, answer.state.regime), (6.0, Regime::Slip));
 /// # Ok::<(), LawFailure>(())
 /// ```
 pub trait FrictionLaw: Debug + Send + Sync {
-    /// State of a point that has just come into contact.
-    fn initial_state(&self) -> FrictionState {
-        FrictionState::default()
-    }
+    /// What the law says of itself, whatever a point does.
+    fn description(&self) -> Description;
 
-    /// State of a point that is closed from the start under these tractions, and has not slipped.
-    fn starting_state(&self, pressure: f64, traction: f64) -> FrictionState {
-        self.initial_state().loaded(pressure, traction)
+    /// State of a point that has not slipped, closed from the start under these tractions, or open where they are 0.
+    fn initial_state(&self, pressure: f64, traction: f64) -> FrictionState {
+        FrictionState::default().loaded(pressure, traction)
     }
 
     /// q, the law's variables, its regime and the opening at the end of the increment, with the consistent tangent,
@@ -185,10 +183,18 @@ pub trait FrictionLaw: Debug + Send + Sync {
     /// solved to their tolerance.
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer;
 
-    /// Whether parameters that vary in time enter by their mean over an increment, as rates do, and not by their value at its
-    /// end, as strengths do.
-    fn takes_means(&self) -> bool {
-        false
+    /// The answers of many points, each the same as alone. A law that has a quicker way than one after the other takes it
+    /// here.
+    fn respond_many(&self, old: &[FrictionState], sliding: &[Sliding], answers: &mut [Answer]) {
+        for ((old, sliding), answer) in old.iter().zip(sliding).zip(answers) {
+            *answer = self.respond(old, *sliding);
+        }
+    }
+
+    /// The value of an observable in a state: of a variable, unless the law says otherwise; none if the law does not know it.
+    fn observe(&self, name: &str, state: &FrictionState) -> Option<f64> {
+        let variables = self.description().variables.iter().zip(state.variables);
+        variables.into_iter().find_map(|(own, value)| (*own == name).then_some(value))
     }
 
     /// The law as it answers along a path that is given, such as a record of a test: with sub-steps where the error of an
@@ -207,69 +213,55 @@ pub trait FrictionLaw: Debug + Send + Sync {
         None
     }
 
-    /// The answers of many points, each the same as alone. A law that has a quicker way than one after the other takes it
-    /// here.
-    fn respond_many(&self, old: &[FrictionState], sliding: &[Sliding], answers: &mut [Answer]) {
-        for ((old, sliding), answer) in old.iter().zip(sliding).zip(answers) {
-            *answer = self.respond(old, *sliding);
-        }
-    }
-
-    /// Names of the [`FrictionState::variables`] that the law uses: its own, and not those of what outputs show anyway
-    /// ([`observables::check_names`]).
-    fn variables(&self) -> &'static [&'static str] {
-        &[]
-    }
-
-    /// Names of what outputs show of a state beside what all laws have: the variables, unless the law says otherwise.
-    fn observables(&self) -> &'static [&'static str] {
-        self.variables()
-    }
-
-    /// The value of an observable in a state; none if the law does not know it.
-    fn observe(&self, name: &str, state: &FrictionState) -> Option<f64> {
-        self.variables().iter().zip(state.variables).find_map(|(own, value)| (*own == name).then_some(value))
-    }
-
-    /// Names of the parts of the opening that outputs show, `dilation` and `wear`, as far as the law has them. A law whose opening
-    /// changes names one: then a point is closed by what slip makes of its opening, not by that of the old state.
-    fn offsets(&self) -> &'static [&'static str] {
-        &[]
-    }
-
-    /// α_t: tangential contact stiffness; the contact stores q²/(2 α_t). 0 where it stores nothing [F/L³]
-    fn stiffness(&self) -> f64;
-
-    /// True of a law whose q is 0 whatever the slip: there is no slip to resolve, and nothing to break.
-    fn is_frictionless(&self) -> bool {
-        false
-    }
-
-    /// Largest |q| that a point which has not slipped yet may start with under the pressure p; infinite for a law that
-    /// lets an excess slip off [F/L²]
-    fn starting_limit(&self, _pressure: f64) -> f64 {
-        f64::INFINITY
-    }
-
-    /// Least |q|/p that a point can come to that goes on sliding, at any rate and state; none where there is no such bound, or the
-    /// law does not say [-]
-    fn least_coefficient(&self) -> Option<f64> {
-        None
-    }
-
-    /// −d(q/p)/dδ at its largest: how much friction fast slip takes over its way δ, 0 where it takes none [1/L]
-    fn weakening(&self) -> f64 {
-        0.0
-    }
-
     /// What its parameters mean for the peak of friction, its fall and its healing, if the law says so.
     fn onset(&self) -> Option<Onset> {
         None
     }
+}
 
-    /// Pressure from which the rate problem may have several answers, α_t over [`FrictionLaw::weakening`], if there is one [F/L²]
-    fn uniqueness_limit(&self) -> Option<f64> {
-        let pressure = self.stiffness() / self.weakening();
+/// What a friction law says of itself, whatever a point does. What a law does not say is left as in
+/// [`default`](Self::default): no stiffness, no variables, no bounds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Description {
+    /// α_t: tangential contact stiffness; the contact stores q²/(2 α_t). 0 where it stores nothing [F/L³]
+    pub stiffness: f64,
+    /// Names of the [`FrictionState::variables`] that the law uses: its own, and not those of what outputs show anyway
+    /// ([`observables::check_names`])
+    pub variables: &'static [&'static str],
+    /// Names of what outputs show of a state beside what all laws have, see [`FrictionLaw::observe`]; the variables unless given
+    pub observables: Option<&'static [&'static str]>,
+    /// Names of the parts of the opening that outputs show, `dilation` and `wear`, as far as the law has them. A law whose opening
+    /// changes names one: then a point is closed by what slip makes of its opening, not by that of the old state
+    pub opening: &'static [&'static str],
+    /// True of a law whose q is 0 whatever the slip: there is no slip to resolve, and nothing to break
+    pub is_frictionless: bool,
+    /// Whether parameters that vary in time enter by their mean over an increment, as rates do, and not by their value at its
+    /// end, as strengths do
+    pub takes_means: bool,
+    /// Largest |q|/p that a point which has not slipped yet may start with; none for a law that lets an excess slip off [-]
+    pub starting_coefficient: Option<f64>,
+    /// Least |q|/p that a point can come to that goes on sliding, at any rate and state; none where there is no such bound, or the
+    /// law does not say [-]
+    pub least_coefficient: Option<f64>,
+    /// −d(q/p)/dδ at its largest: how much friction fast slip takes over its way δ, 0 where it takes none [1/L]
+    pub weakening: f64,
+}
+
+impl Description {
+    /// Names of what outputs show of a state beside what all laws have.
+    pub fn observables(&self) -> &'static [&'static str] {
+        self.observables.unwrap_or(self.variables)
+    }
+
+    /// Largest |q| that a point which has not slipped yet may start with under the pressure p; infinite for a law that
+    /// lets an excess slip off [F/L²]
+    pub fn starting_limit(&self, pressure: f64) -> f64 {
+        self.starting_coefficient.map_or(f64::INFINITY, |coefficient| coefficient * pressure)
+    }
+
+    /// Pressure from which the rate problem may have several answers, α_t over the weakening, if there is one [F/L²]
+    pub fn uniqueness_limit(&self) -> Option<f64> {
+        let pressure = self.stiffness / self.weakening;
         pressure.is_finite().then_some(pressure)
     }
 }

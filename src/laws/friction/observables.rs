@@ -1,7 +1,7 @@
 //! What outputs show of friction beside what all laws have in common: the names come from the laws.
 
 use super::state::MOST_VARIABLES;
-use super::{FrictionLaw, FrictionState};
+use super::{Description, FrictionLaw, FrictionState};
 
 /// Observables that every table has a column for, and their value where the law does not know them: without friction
 /// there is no strength to approach, and without structure its degree is 1.
@@ -50,17 +50,17 @@ const LONGEST: usize = 64;
 ///
 /// # Errors
 /// What is wrong with which name, and what to do.
-pub fn check_names(law: &dyn FrictionLaw) -> Result<(), String> {
-    let (variables, observables) = (law.variables(), law.observables());
+pub fn check_names(description: &Description) -> Result<(), String> {
+    let Description { variables, opening, .. } = description;
     if variables.len() > MOST_VARIABLES {
         return Err(format!("it has {} variables: {MOST_VARIABLES} are the most", variables.len()));
     }
-    if let Some(name) = law.offsets().iter().find(|name| !OF_OPENING.contains(name)) {
+    if let Some(name) = opening.iter().find(|name| !OF_OPENING.contains(name)) {
         let [dilation, wear] = OF_OPENING;
         return Err(format!("an opening has no part `{name}`: outputs show `{dilation}` and `{wear}`"));
     }
     check_each(variables)?;
-    check_each(observables)
+    check_each(description.observables())
 }
 
 fn check_each(names: &[&str]) -> Result<(), String> {
@@ -87,9 +87,9 @@ fn check_each(names: &[&str]) -> Result<(), String> {
 }
 
 /// Names of the further observables of some laws, each once, in order of appearance.
-pub fn further<'a>(laws: impl IntoIterator<Item = &'a dyn FrictionLaw>) -> Vec<&'static str> {
+pub fn further<'a>(laws: impl IntoIterator<Item = &'a Description>) -> Vec<&'static str> {
     let mut names = Vec::new();
-    for name in laws.into_iter().flat_map(|law| law.observables().iter().chain(law.offsets())) {
+    for name in laws.into_iter().flat_map(|law| law.observables().iter().chain(law.opening)) {
         if ALWAYS.iter().all(|(always, _)| always != name) && !names.contains(name) {
             names.push(*name);
         }

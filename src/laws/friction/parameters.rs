@@ -12,7 +12,7 @@ use super::{
     Coulomb, CoulombParameters, FrictionLaw, Frictionless, PrescribedSlip, PrescribedSlipParameters, RateAndState,
     RateAndStateParameters, SlipWeakening, SlipWeakeningParameters, SuperSubloading, SuperSubloadingParameters,
 };
-use crate::laws::parameter::{InvalidParameter, require_positive};
+use crate::laws::parameter::{InvalidParameter, Numbers, UnknownParameter, require_positive};
 
 /// A friction law and its parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -50,6 +50,28 @@ impl FrictionParameters {
             Self::Prescribed(parameters) => Box::new(PrescribedSlip::new(parameters, default_alpha_t)?),
             Self::Registered(parameters) => parameters.build(default_alpha_t)?,
         })
+    }
+
+    /// With one of the numbers among its parameters set, by the name that cases give it; of a registered law one of those that
+    /// it is given.
+    ///
+    /// # Errors
+    /// [`UnknownParameter`] of any other name.
+    pub fn with(mut self, name: &str, value: f64) -> Result<Self, UnknownParameter> {
+        let numbers: &mut dyn Numbers = match &mut self {
+            Self::Frictionless {} => return Err(UnknownParameter { name: name.into(), known: Vec::new() }),
+            Self::Coulomb(parameters) => parameters,
+            Self::SuperSubloading(parameters) => parameters,
+            Self::SlipWeakening(parameters) => parameters,
+            Self::RateAndState(parameters) => parameters,
+            Self::Prescribed(parameters) => parameters,
+            Self::Registered(parameters) => parameters,
+        };
+        match numbers.number(name) {
+            Some(number) => *number = value,
+            None => return Err(UnknownParameter { name: name.into(), known: numbers.names() }),
+        }
+        Ok(self)
     }
 
     /// What is wrong where it is a law that nobody has registered.
@@ -110,6 +132,19 @@ impl From<PrescribedSlipParameters> for FrictionParameters {
     }
 }
 
+impl Numbers for RegisteredParameters {
+    fn names(&self) -> Vec<String> {
+        self.parameters.keys().cloned().chain(["alpha_t".into()]).collect()
+    }
+
+    fn number(&mut self, name: &str) -> Option<&mut f64> {
+        match name {
+            "alpha_t" => Some(self.alpha_t.get_or_insert(f64::NAN)),
+            _ => self.parameters.get_mut(name),
+        }
+    }
+}
+
 /// Makes a law from its parameters and α_t.
 pub type Maker = dyn Fn(&BTreeMap<String, f64>, f64) -> Result<Box<dyn FrictionLaw>, InvalidParameter> + Send + Sync;
 
@@ -125,7 +160,7 @@ static REGISTER: RwLock<BTreeMap<String, Arc<Maker>>> = RwLock::new(BTreeMap::ne
 /// });
 /// let friction: FrictionParameters =
 ///     serde_json::from_str(r#"{"law": "registered", "name": "half", "parameters": {"mu": 0.6}}"#)?;
-/// assert_eq!(friction.build(1e3)?.starting_limit(10.0), 3.0);
+/// assert_eq!(friction.build(1e3)?.description().starting_limit(10.0), 3.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn register(

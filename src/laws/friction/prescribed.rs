@@ -1,8 +1,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, Loading, RateLaw, Regime, Sliding};
-use crate::laws::parameter::{InvalidParameter, require, require_positive};
+use super::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, Loading, RateLaw, Regime, Sliding};
+use crate::laws::parameter::{InvalidParameter, numbers, require, require_positive};
 
 /// Parameters of [`PrescribedSlip`] as the case file writes them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -14,6 +14,8 @@ pub struct PrescribedSlipParameters {
     #[serde(default)]
     pub alpha_t: Option<f64>,
 }
+
+numbers!(PrescribedSlipParameters: "slip_rate" slip_rate; "alpha_t" alpha_t);
 
 /// Slip at a given rate, whatever traction that takes: the creeping parts of a fault.
 ///
@@ -51,6 +53,10 @@ fn regime(slip_rate: f64) -> Regime {
 }
 
 impl FrictionLaw for PrescribedSlip {
+    fn description(&self) -> Description {
+        Description { stiffness: self.alpha_t, takes_means: true, ..Description::default() }
+    }
+
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
         let Self { slip_rate, alpha_t } = *self;
         let Sliding { slip, pressure, dt } = sliding.checked()?;
@@ -67,14 +73,6 @@ impl FrictionLaw for PrescribedSlip {
             ..old.stuck(traction, pressure)
         };
         FrictionResponse::elastic(state, alpha_t).checked(alpha_t)
-    }
-
-    fn stiffness(&self) -> f64 {
-        self.alpha_t
-    }
-
-    fn takes_means(&self) -> bool {
-        true
     }
 
     fn rates(&self) -> Option<&dyn RateLaw> {

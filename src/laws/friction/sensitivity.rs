@@ -21,8 +21,8 @@ pub struct Direction {
     pub state: Variation,
     /// of Δu_t [L]
     pub slip: f64,
-    /// The one parameter that varies, by 1: its place among [`SensitiveLaw::parameters`]
-    pub parameter: Option<usize>,
+    /// The one parameter that varies, by 1: one of [`SensitiveLaw::parameters`]
+    pub parameter: Option<&'static str>,
 }
 
 /// A law that differentiates its answers by its parameters. The derivatives are those of exactly what it computes, its sub-steps
@@ -37,7 +37,7 @@ pub trait SensitiveLaw: Debug + Send + Sync {
     fn parameters(&self) -> &'static [&'static str];
 
     /// How the state of a point that has not slipped varies with a parameter.
-    fn start(&self, parameter: usize) -> Variation;
+    fn start(&self, parameter: &str) -> Variation;
 
     /// How the state at the end of an increment varies along two directions.
     ///
@@ -61,8 +61,8 @@ impl Variation {
 }
 
 impl Direction {
-    /// How much the parameter at this place varies: 1 or 0.
-    pub(super) fn of(&self, parameter: usize) -> f64 {
+    /// How much a parameter varies: 1 or 0.
+    pub(super) fn of(&self, parameter: &str) -> f64 {
         f64::from(u8::from(self.parameter == Some(parameter)))
     }
 

@@ -3,9 +3,10 @@ use serde::{Deserialize, Serialize};
 
 use super::sensitivity::{Direction, SensitiveLaw, Variation};
 use super::{
-    Answer, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Sliding, traction_at_yield,
+    Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Sliding,
+    traction_at_yield,
 };
-use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
+use crate::laws::parameter::{InvalidParameter, numbers, require, require_not_negative, require_positive};
 
 /// Parameters of [`SlipWeakening`] as the case file writes them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -25,6 +26,8 @@ pub struct SlipWeakeningParameters {
     #[serde(default)]
     pub alpha_t: Option<f64>,
 }
+
+numbers!(SlipWeakeningParameters: "mu_s" mu_s, "mu_d" mu_d, "D_c" critical_slip, "cohesion" cohesion; "alpha_t" alpha_t);
 
 impl SlipWeakeningParameters {
     /// Without cohesion, the tangential stiffness left to the contact.
@@ -76,7 +79,12 @@ impl SlipWeakening {
         let SlipWeakeningParameters { mu_s, mu_d, critical_slip, cohesion, .. } = *parameters;
         let alpha_t = parameters.alpha_t.unwrap_or(default_alpha_t);
         require_positive("mu_d", mu_d)?;
-        require("mu_s", mu_s, mu_s >= mu_d, format!("it must be finite and not less than \"mu_d\", which is {mu_d}"))?;
+        require(
+            "mu_s",
+            mu_s,
+            mu_s >= mu_d,
+            format_args!("it must be finite and not less than \"mu_d\", which is {mu_d}"),
+        )?;
         require_positive("D_c", critical_slip)?;
         require_not_negative("cohesion", cohesion)?;
         require_positive("alpha_t", alpha_t)?;
@@ -195,8 +203,16 @@ fn slip_of(state: &FrictionState) -> f64 {
 }
 
 impl FrictionLaw for SlipWeakening {
-    fn initial_state(&self) -> FrictionState {
-        FrictionState::default()
+    /// The least coefficient is μ_d; cohesion is beside it.
+    fn description(&self) -> Description {
+        Description {
+            stiffness: self.alpha_t,
+            variables: &["weakening_slip"],
+            observables: Some(&["R", "mu", "structure"]),
+            least_coefficient: Some(self.mu_d),
+            weakening: self.weakening,
+            ..Description::default()
+        }
     }
 
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
@@ -220,18 +236,6 @@ impl FrictionLaw for SlipWeakening {
         .checked(alpha_t)
     }
 
-    fn stiffness(&self) -> f64 {
-        self.alpha_t
-    }
-
-    fn variables(&self) -> &'static [&'static str] {
-        &["weakening_slip"]
-    }
-
-    fn observables(&self) -> &'static [&'static str] {
-        &["R", "mu", "structure"]
-    }
-
     fn observe(&self, name: &str, state: &FrictionState) -> Option<f64> {
         let mu = self.mu_after(slip_of(state));
         match name {
@@ -242,15 +246,6 @@ impl FrictionLaw for SlipWeakening {
         }
     }
 
-    /// μ_d; cohesion is beside it.
-    fn least_coefficient(&self) -> Option<f64> {
-        Some(self.mu_d)
-    }
-
-    fn weakening(&self) -> f64 {
-        self.weakening
-    }
-
     fn sensitivities(&self) -> Option<&dyn SensitiveLaw> {
         Some(self)
     }
@@ -258,10 +253,10 @@ impl FrictionLaw for SlipWeakening {
 
 impl SensitiveLaw for SlipWeakening {
     fn parameters(&self) -> &'static [&'static str] {
-        &["mu_s", "mu_d", "D_c", "cohesion", "alpha_t"]
+        SlipWeakeningParameters::NUMBERS
     }
 
-    fn start(&self, _parameter: usize) -> Variation {
+    fn start(&self, _: &str) -> Variation {
         Variation::new(0.0, 0.0)
     }
 
@@ -277,22 +272,22 @@ impl SensitiveLaw for SlipWeakening {
         let trial = old.traction + alpha_t * slip;
         let slid = self.slide(before, trial.abs(), pressure).filter(|_| pressure > 0.0);
         Ok(directions.map(|by| {
-            let dtrial = by.state.traction + alpha_t * by.slip + by.of(4) * slip;
+            let dtrial = by.state.traction + alpha_t * by.slip + by.of("alpha_t") * slip;
             let dbefore = by.variable();
             let Some(Slid { total, mu, softness, .. }) = slid else {
                 return Variation::new(if pressure > 0.0 { dtrial } else { 0.0 }, dbefore);
             };
             let delastic = trial.signum() * dtrial;
             // Of the slip at the end, with μ held at first: α_t ΔD = |q_tr| − c − μ p
-            let dslip = dbefore + (delastic - by.of(3) - by.of(4) * (total - before)) / alpha_t;
+            let dslip = dbefore + (delastic - by.of("cohesion") - by.of("alpha_t") * (total - before)) / alpha_t;
             let dmu = match mu > mu_d {
                 true => {
-                    let dweakening = (by.of(0) - by.of(1) - weakening * by.of(2)) / critical_slip;
-                    softness * (by.of(0) - dweakening * total - weakening * dslip)
+                    let dweakening = (by.of("mu_s") - by.of("mu_d") - weakening * by.of("D_c")) / critical_slip;
+                    softness * (by.of("mu_s") - dweakening * total - weakening * dslip)
                 }
-                false => by.of(1),
+                false => by.of("mu_d"),
             };
-            let dstrength = by.of(3) + pressure * dmu;
+            let dstrength = by.of("cohesion") + pressure * dmu;
             Variation::new(trial.signum() * dstrength, dslip - pressure * dmu / alpha_t)
         }))
     }

@@ -24,7 +24,7 @@ pub struct FrictionState {
     pub wear: f64,
     /// Open, stick or slip, as the law sees its last increment
     pub regime: Regime,
-    /// What else the law remembers, by the names of its [`variables`](super::FrictionLaw::variables); the rest is 0
+    /// What else the law remembers, by the names of its [`variables`](super::Description::variables); the rest is 0
     pub variables: [f64; MOST_VARIABLES],
 }
 

@@ -161,11 +161,11 @@ fn check_contact(pair: &ContactPair) -> Checked<()> {
             "is not for quasi_dynamic steps, which know no change of pressure: take static steps with radiation_damping",
         );
     }
-    if let Some(name) = pair.laws.iter().find_map(|law| law.start().offsets().first()) {
+    if let Some(name) = pair.laws.iter().find_map(|law| law.description.opening.first()) {
         let key = if *name == "wear" { ".wear" } else { ".dilatancy" };
         return refused(key, "is not for quasi_dynamic steps, which know no change of pressure: leave it out");
     }
-    if pair.laws.iter().any(|law| law.start().rates().is_none()) {
+    if pair.laws.iter().any(|law| law.law.rates().is_none()) {
         let message = "has no slip rate that follows from traction and state, as quasi_dynamic steps need it: take \
                        rate_and_state or prescribed, or static steps with radiation_damping and dt.error";
         return refused(".friction", message);

@@ -8,10 +8,11 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::error::{Checked, ModelError};
+use crate::contact::pair::LawsInTime;
 use crate::contact::surface::SlavePoint;
 use crate::laws::friction::{
-    CoulombParameters, FrictionLaw, FrictionParameters, LawFailure, LawInTime, Offset, Offsets,
-    PrescribedSlipParameters, RateAndStateParameters, SlipWeakeningParameters, SuperSubloadingParameters, observables,
+    ContactLaw, CoulombParameters, FrictionLaw, FrictionParameters, LawFailure, Offsets, PrescribedSlipParameters,
+    RateAndStateParameters, SlipWeakeningParameters, SuperSubloadingParameters, observables,
 };
 use crate::laws::parameter::InvalidParameter;
 use crate::mesh::Mesh;
@@ -60,8 +61,8 @@ impl Friction {
         self
     }
 
-    /// The laws of a contact, with the offsets of its surfaces, and to every slave point the number of its own: one for all that
-    /// have the same values.
+    /// The laws of a contact at the start, with the offsets of its surfaces, and in time if any varies; to every slave point the
+    /// number of its own, one for all that have the same values.
     pub(super) fn laws(
         &self,
         place: &str,
@@ -69,7 +70,7 @@ impl Friction {
         mesh: &Mesh,
         default_alpha_t: Option<f64>,
         offsets: Offsets,
-    ) -> Checked<Vec<LawInTime>> {
+    ) -> Checked<(Vec<Arc<ContactLaw>>, Option<LawsInTime>)> {
         for (name, profile, _) in &self.elsewhere {
             check_profile(profile, &format!("{place}.{name}"))?;
         }
@@ -77,7 +78,7 @@ impl Friction {
         for (name, profile) in all().flat_map(|friction| &friction.varying) {
             check_in_time(profile, &format!("{place}.{name}"))?;
         }
-        let mut laws = Vec::new();
+        let (mut laws, mut varying) = (Vec::new(), Vec::new());
         let mut numbers: BTreeMap<(usize, Vec<u64>), usize> = BTreeMap::new();
         for point in points {
             let at = position(point, mesh);
@@ -90,9 +91,8 @@ impl Friction {
             let (number, friction) = chosen;
             let value = |(name, profile): &(String, Profile)| defined(profile, at, &format!("{place}.{name}"));
             let values = friction.varying.iter().map(value).collect::<Checked<Vec<_>>>()?;
-            let in_time = friction.varies_in_time();
-            // In time, only points at one place are alike.
-            let place_of = [at.x, at.y].into_iter().filter(|_| in_time);
+            // Where a parameter varies in place and time, only points at one place are alike.
+            let place_of = [at.x, at.y].into_iter().filter(|_| friction.varies_in_place_and_time());
             let key = (number, values.iter().copied().chain(place_of).map(f64::to_bits).collect());
             if let Some(&law) = numbers.get(&key) {
                 point.law = law;
@@ -102,35 +102,35 @@ impl Friction {
             numbers.insert(key, laws.len());
             let first = friction.varying.first().map(|(name, _)| format!("{place}.{name} at ({}, {})", at.x, at.y));
             let law = friction.law(&values, default_alpha_t, place, first)?;
-            laws.push(friction.through_the_run(law, at, default_alpha_t, offsets, place)?);
+            let law = ContactLaw::with_offsets(law, offsets).map_err(|InvalidParameter { name, value, allowed }| {
+                ModelError::new(format!("{place}.{name}"), format!("is {value}: {allowed}"))
+            })?;
+            varying.push(friction.in_time(at, default_alpha_t, offsets));
+            laws.push(Arc::new(law));
         }
-        Ok(laws)
+        let varies = all().flat_map(|friction| &friction.varying).any(|(_, profile)| profile.depends_on_time());
+        let during = move |law: usize, span| varying[law].during(span);
+        let in_time = varies.then(|| LawsInTime::new(laws.len(), during));
+        Ok((laws, in_time))
     }
 
-    fn varies_in_time(&self) -> bool {
-        self.varying.iter().any(|(_, profile)| profile.depends_on_time())
+    fn varies_in_place_and_time(&self) -> bool {
+        let of_both = |profile: &Profile| match profile {
+            Profile::Expression(expression) => expression.depends_on_time() && expression.depends_on_position(),
+            Profile::Constant(_) | Profile::Table(..) => false,
+        };
+        self.varying.iter().any(|(_, profile)| of_both(profile))
     }
 
-    /// The law of a place, with the offsets of its surfaces, from what it is at the start.
-    fn through_the_run(
-        &self,
-        start: Box<dyn FrictionLaw>,
-        at: Vector2<f64>,
-        alpha_t: Option<f64>,
-        offsets: Offsets,
-        place: &str,
-    ) -> Checked<LawInTime> {
-        let takes_means = start.takes_means();
-        let start = Offset::over(start, offsets).map_err(|InvalidParameter { name, value, allowed }| {
-            ModelError::new(format!("{place}.{name}"), format!("is {value}: {allowed}"))
-        })?;
-        if !self.varies_in_time() {
-            return Ok(start.into());
+    /// The law of a place in time.
+    fn in_time(&self, at: Vector2<f64>, alpha_t: Option<f64>, offsets: Offsets) -> InTime {
+        InTime {
+            profiles: self.varying.iter().map(|(_, profile)| profile.clone()).collect(),
+            at,
+            law: self.law.clone(),
+            alpha_t: alpha_t.unwrap_or(f64::NAN),
+            offsets,
         }
-        let profiles = self.varying.iter().map(|(_, profile)| profile.clone()).collect();
-        let alpha_t = alpha_t.unwrap_or(f64::NAN);
-        let varying = InTime { profiles, at, law: self.law.clone(), alpha_t, offsets, takes_means };
-        Ok(LawInTime::varying(start, Box::new(move |span| varying.during(span))))
     }
 
     fn law(
@@ -149,7 +149,7 @@ impl Friction {
             return Err(ModelError::new(format!("{own}.alpha_t"), message));
         }
         let place = place.unwrap_or(own);
-        let named = |law: Box<dyn FrictionLaw>| match observables::check_names(&*law) {
+        let named = |law: Box<dyn FrictionLaw>| match observables::check_names(&law.description()) {
             Ok(()) => Ok(law),
             Err(message) => Err(ModelError::new("", format!("the names of the law: {message}"))),
         };
@@ -244,21 +244,19 @@ type LawAt = dyn Fn(&[f64], f64) -> Checked<Box<dyn FrictionLaw>> + Send + Sync;
 
 /// The law of a point whose parameters vary in time.
 struct InTime {
-    pub profiles: Vec<Profile>,
-    pub at: Vector2<f64>,
-    pub law: Arc<LawAt>,
+    profiles: Vec<Profile>,
+    at: Vector2<f64>,
+    law: Arc<LawAt>,
     /// α_t of a law that has none of its own [F/L³]
-    pub alpha_t: f64,
+    alpha_t: f64,
     /// How its surfaces move apart with slip
-    pub offsets: Offsets,
-    /// Whether parameters enter by their mean over an increment
-    pub takes_means: bool,
+    offsets: Offsets,
 }
 
 impl InTime {
-    /// The law that holds from one time to another.
-    pub fn during(&self, [from, to]: [f64; 2]) -> Result<Box<dyn FrictionLaw>, LawFailure> {
-        if !(self.takes_means && to > from) {
+    /// The law with its parameters at a time or, between two, with their mean.
+    fn during(&self, [from, to]: [f64; 2]) -> Result<ContactLaw, LawFailure> {
+        if to <= from {
             return self.of(&[(to, 1.0)], to);
         }
         let times = gauss(MEAN).into_iter().map(|(xi, w)| (from + 0.5 * (1.0 + xi) * (to - from), 0.5 * w));
@@ -266,7 +264,7 @@ impl InTime {
     }
 
     /// The law with the parameters that are the mean of those at some times, up to the last.
-    fn of(&self, times: &[(f64, f64)], time: f64) -> Result<Box<dyn FrictionLaw>, LawFailure> {
+    fn of(&self, times: &[(f64, f64)], time: f64) -> Result<ContactLaw, LawFailure> {
         let mean = |profile: &Profile| times.iter().map(|&(time, w)| w * profile.value_at(self.at, time)).sum();
         let values: Vec<f64> = self.profiles.iter().map(mean).collect();
         let law = if values.iter().all(|value: &f64| value.is_finite()) {
@@ -275,9 +273,9 @@ impl InTime {
             None
         };
         let law = law.ok_or(LawFailure::Undefined { time })?;
-        if let Some([rate, least]) = self.offsets.beyond(&*law) {
+        if let Some([rate, least]) = self.offsets.beyond(&law.description()) {
             return Err(LawFailure::Dilates { time, rate, least });
         }
-        Offset::over(law, self.offsets).map_err(|_| LawFailure::Undefined { time })
+        ContactLaw::with_offsets(law, self.offsets).map_err(|_| LawFailure::Undefined { time })
     }
 }

@@ -11,7 +11,6 @@ use super::friction::{check_profile, defined, position};
 use super::load_step::LoadStep;
 use super::section::check_velocities;
 use crate::contact::pair::{ContactPair, InitialTraction};
-use crate::laws::friction::observables;
 use crate::mesh::Group;
 use crate::model::Model;
 use crate::model::scheme::Scheme;
@@ -112,10 +111,10 @@ pub fn close(
         false => as_given(pair, given, model, place)?,
     };
     for (point, InitialTraction { pressure, traction }) in pair.points.iter().zip(&initial) {
-        let limit = pair.law(point).start().starting_limit(*pressure);
+        let law = pair.law(point);
+        let limit = law.description.starting_limit(*pressure);
         if traction.abs() > limit * (1.0 + ROUNDED) {
-            let law = pair.law(point).start();
-            let mu = observables::value(law, "mu", &law.initial_state());
+            let mu = law.observe("mu", &law.law.initial_state(0.0, 0.0));
             let message = format!(
                 "is {traction}: the initial strength is exceeded already, which is mu p = {limit} with mu = {mu} and \
                  p = {pressure}"

@@ -64,8 +64,8 @@ fn pair(contact: &Contact, model: &Model) -> Checked<ContactPair> {
     }
     let Penalty { alpha_n, alpha_t, compliance } = penalty(&place, contact, model)?;
     let offsets = Offsets { dilatancy: contact.dilatancy, wear: contact.wear };
-    let laws = contact.friction.laws(&place, &mut points, &model.mesh, alpha_t, offsets)?;
-    for stiffness in laws.iter().map(|law| law.start().stiffness()).filter(|stiffness| *stiffness > 0.0) {
+    let (laws, in_time) = contact.friction.laws(&place, &mut points, &model.mesh, alpha_t, offsets)?;
+    for stiffness in laws.iter().map(|law| law.description.stiffness).filter(|stiffness| *stiffness > 0.0) {
         check_size(&format!("{place}.friction"), "alpha_t", stiffness)?;
     }
     let mut pair = ContactPair {
@@ -80,6 +80,7 @@ fn pair(contact: &Contact, model: &Model) -> Checked<ContactPair> {
         radiation: radiation(&place, contact, model)?,
         fluid: contact::fluid(&place, contact)?,
         laws,
+        in_time,
         initial: None,
         unseen: Vec::new(),
         modulus: modulus(contact, model),

@@ -78,7 +78,7 @@ impl InterfaceStore {
 
     /// The store that is there, to be restored.
     pub fn reopen(folder: &Path, model: &Model, start: &State, units: &BTreeMap<String, String>) -> Self {
-        let further = |pair: &ContactPair| observables::further(pair.laws.iter().map(|law| law.start()));
+        let further = |pair: &ContactPair| observables::further(pair.laws.iter().map(|law| &law.description));
         let in_fluid = |pair: &ContactPair| pair.fluid.as_ref().map(|_| "p_w");
         let own = QUANTITIES.iter().map(|(name, ..)| *name);
         let names: Vec<Vec<&str>> = model

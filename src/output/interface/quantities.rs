@@ -103,7 +103,7 @@ pub fn along(
 /// A quantity of a contact.
 pub fn quantity(pair: &ContactPair, prefix: &str, name: &str, units: &BTreeMap<String, String>) -> Description {
     let known = QUANTITIES.iter().chain(&OF_SOME).find(|(known, ..)| *known == name);
-    let free = pair.laws.iter().all(|law| law.start().is_frictionless()) && ["slip", "total_slip"].contains(&name);
+    let free = pair.laws.iter().all(|law| law.description.is_frictionless) && ["slip", "total_slip"].contains(&name);
     let long_name = if free { FREE_MOTION } else { known.map_or(name, |(_, long_name, _)| long_name) };
     let mut attributes: Map<String, Value> = Map::new();
     attributes.insert("long_name".into(), json!(format!("{}: {long_name}", pair.name)));

@@ -324,7 +324,7 @@ fn bounds(
             solid.evolve(law, memory, local, &mut force, Some(tangent.as_mut_slice())).map(drop)
         }
     };
-    answer.map_err(|inverted| TrialFailure::inverted(model, e, inverted))?;
+    answer.map_err(|failure| TrialFailure::material(model, e, failure))?;
     let mass = model.element_lumped_mass(e);
     let elastic = largest_eigenvalue(&tangent, &mass);
     if retardation == 0.0 {

@@ -87,7 +87,7 @@ impl Interface<'_> {
 
 /// Ask the law of a point, as it is at a time; none where it has no good parameters then.
 pub fn with_rates<T>(pair: &ContactPair, slave: &SlavePoint, now: f64, ask: impl Fn(&dyn RateLaw) -> T) -> Option<T> {
-    pair.law(slave).at(now).ok()?.rates().map(ask)
+    pair.ask_law(slave, [now, now], |law| law.law.rates().map(ask)).ok()?
 }
 
 /// Σ a b, several at a time and always in the same order.

@@ -1,24 +1,18 @@
-//! Rate-and-state friction.
-//!
-//! # Answers
-//!
-//! What rate and state answers as a law: increments of first order or, along given paths, with their error controlled.
-//!
-//! # Given paths
-//!
-//! Rate-and-state friction along a path that is given: increments of slip and pressure, even in time, whose error is controlled.
+//! Rate-and-state friction: the law, its increments of first order (`relaxation.rs`) and, along given paths, with their error
+//! controlled (`path.rs`).
+mod path;
 mod relaxation;
-mod sensitivity;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::sensitivity::{Direction, SensitiveLaw, Variation};
 use super::{
-    Answer, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Loading, RateLaw, Regime, Sliding,
-    traction_at_yield,
+    Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Loading, RateLaw,
+    Regime, Sliding, traction_at_yield,
 };
-use crate::laws::parameter::{InvalidParameter, require_not_negative, require_positive};
+use crate::laws::parameter::{InvalidParameter, numbers, require_not_negative, require_positive};
+use path::Ramp;
 pub use relaxation::StateEvolution;
 use relaxation::{Coefficients, Relaxation, Relaxed, arsinh_of_exp};
 
@@ -48,6 +42,10 @@ pub struct RateAndStateParameters {
     #[serde(default)]
     pub alpha_t: Option<f64>,
 }
+
+numbers!(
+    RateAndStateParameters: "f_0" f_0, "V_0" reference_rate, "a" a, "b" b, "D_c" critical_slip; "alpha_t" alpha_t, "theta" theta
+);
 
 /// Rate-and-state friction on an elastic contact, regularized: finite at every slip rate V of either sign.
 ///
@@ -240,8 +238,18 @@ const LARGE: f64 = 20.0;
 const MOST_STEPS: usize = 60;
 
 impl FrictionLaw for RateAndState {
-    fn initial_state(&self) -> FrictionState {
-        FrictionState::default().with_variables([self.initial_theta])
+    fn description(&self) -> Description {
+        Description {
+            stiffness: self.coefficients.alpha_t,
+            variables: &["theta"],
+            observables: Some(&["R", "mu", "theta"]),
+            weakening: self.coefficients.b / self.coefficients.critical_slip,
+            ..Description::default()
+        }
+    }
+
+    fn initial_state(&self, pressure: f64, traction: f64) -> FrictionState {
+        FrictionState::default().with_variables([self.initial_theta]).loaded(pressure, traction)
     }
 
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
@@ -256,28 +264,12 @@ impl FrictionLaw for RateAndState {
         Some(Box::new(Self { is_controlled: true, ..*self }))
     }
 
-    fn stiffness(&self) -> f64 {
-        self.coefficients.alpha_t
-    }
-
-    fn weakening(&self) -> f64 {
-        self.coefficients.b / self.coefficients.critical_slip
-    }
-
     fn rates(&self) -> Option<&dyn RateLaw> {
         Some(self)
     }
 
     fn sensitivities(&self) -> Option<&dyn SensitiveLaw> {
         Some(self)
-    }
-
-    fn variables(&self) -> &'static [&'static str] {
-        &["theta"]
-    }
-
-    fn observables(&self) -> &'static [&'static str] {
-        &["R", "mu", "theta"]
     }
 
     fn observe(&self, name: &str, state: &FrictionState) -> Option<f64> {
@@ -291,266 +283,64 @@ impl FrictionLaw for RateAndState {
     }
 }
 
-/// Error of a sub-step in |q| and in the mean of q over the slip, relative to f₀ p, and in (a + b) ln θ, relative to f₀: the
-/// errors of several, and of what they start from, come to at most 1e-6.
-const TOLERANCE: f64 = 2e-7;
+impl SensitiveLaw for RateAndState {
+    fn parameters(&self) -> &'static [&'static str] {
+        RateAndStateParameters::NUMBERS
+    }
 
-/// An increment is so many of the shortest sub-steps.
-const WHOLE: u64 = 1 << 40;
+    fn start(&self, parameter: &str) -> Variation {
+        let Coefficients { reference_rate, critical_slip, .. } = self.coefficients;
+        let dtheta = match (parameter, self.has_theta) {
+            ("theta", true) => 1.0,
+            ("D_c", false) => 1.0 / reference_rate,
+            ("V_0", false) => -critical_slip / (reference_rate * reference_rate),
+            _ => 0.0,
+        };
+        Variation::new(0.0, dtheta)
+    }
 
-/// Sub-steps this short may hold a snap, if slip and pressure do next to nothing in them ...
-const SHORT: u64 = 1 << 10;
-
-/// ... which is to change tractions by at most this share of the tolerance.
-const SNAP: f64 = 1e-3;
-
-/// Attempts at sub-steps after which the increment is given up: it is far too long.
-const MOST_ATTEMPTS: usize = 20_000;
-
-/// A sub-step is taken by 1, 2, ... and at most so many increments of first order.
-const MOST_ROWS: usize = 4;
-
-/// Errors of 2, 3 and 4 rows, in tolerances, above which further rows will not do.
-const HOPELESS: [f64; MOST_ROWS] = [f64::INFINITY, 1e4, 1e2, 1.0];
-
-/// An error below this, in tolerances, lets the next sub-step be twice as long.
-const DOUBLED: f64 = 0.1;
-
-/// Errors below this, relative to what they come from, are round-off.
-const NOISE: f64 = 2e-13;
-
-/// A fall of |q|/(a p) that the rows of a sub-step resolve.
-const RESOLVED: f64 = 2.0;
-
-/// q, ln θ, plastic slip, and the work ∫ q du = W + q²/(2 α_t)
-type Values = [f64; 4];
-
-/// d(q, ln θ) along two directions
-type Derivatives = [[f64; 2]; 2];
-
-/// What is extrapolated.
-#[derive(Clone, Copy)]
-struct Entry {
-    values: Values,
-    derivatives: Derivatives,
+    fn vary(
+        &self,
+        old: &FrictionState,
+        sliding: Sliding,
+        directions: [Direction; 2],
+    ) -> Result<[Variation; 2], LawFailure> {
+        if self.is_controlled && sliding.checked()?.dt > 0.0 {
+            return Ramp::new(self, old, sliding, directions, [0.0; 2]).variations();
+        }
+        Ok(self.increment(old, sliding, directions, [0.0; 2])?.1)
+    }
 }
 
-/// Where a path is, and how that varies.
-#[derive(Clone, Copy)]
-struct Station {
-    state: FrictionState,
-    variations: [Variation; 2],
-}
-
-/// An increment whose slip and pressure are linear in time.
-struct Ramp<'a> {
-    law: &'a RateAndState,
-    start: Station,
-    sliding: Sliding,
-    /// Directions along which slip, pressure and a parameter vary
-    directions: [Direction; 2],
-    dpressure: [f64; 2],
-    /// Evaluations of the law's equation so far
-    evaluations: usize,
-}
-
-impl<'a> Ramp<'a> {
-    fn new(
-        law: &'a RateAndState,
+impl RateAndState {
+    /// One increment of first order, and how the state at its end varies along two directions, and with the pressure at the
+    /// end.
+    ///
+    /// # Errors
+    /// As of the answer itself.
+    pub(super) fn increment(
+        &self,
         old: &FrictionState,
         sliding: Sliding,
         directions: [Direction; 2],
         dpressure: [f64; 2],
-    ) -> Self {
-        let start = Station { state: *old, variations: directions.map(|by| by.state) };
-        Self { law, start, sliding, directions, dpressure, evaluations: 0 }
-    }
-
-    /// The answer at the end of the increment, the directions being those of the consistent tangent.
-    fn answer(mut self) -> Answer {
-        let old = self.start.state;
-        let Station { state, variations } = self.end()?;
-        let regime = match state.pressure > 0.0 {
-            true => RateLaw::regime(self.law, self.law.evolving(&state), self.rate(&state)),
-            false => Regime::Open,
+    ) -> Result<(FrictionResponse, [Variation; 2]), LawFailure> {
+        let law = &self.coefficients;
+        let (response, found) = self.relax(old, sliding)?;
+        let Sliding { slip, pressure, dt } = sliding;
+        let trial = old.traction + law.alpha_t * slip;
+        let dtrial = |by: &Direction| by.state.traction + law.alpha_t * by.slip + by.of("alpha_t") * slip;
+        let Some(found) = found else {
+            let left = if pressure <= 0.0 { 0.0 } else { response.dtraction_dslip / law.alpha_t };
+            return Ok((response, directions.map(|by| Variation::new(left * dtrial(&by), by.variable()))));
         };
-        FrictionResponse {
-            state: FrictionState { plastic_increment: state.plastic_slip - old.plastic_slip, regime, ..state },
-            dtraction_dslip: variations[0].traction,
-            dtraction_dpressure: variations[1].traction,
-            evaluations: self.evaluations,
-            ..Default::default()
-        }
-        .checked(self.law.stiffness())
+        let log_state = law.log_state(old.variables[0]);
+        let relaxation = Relaxation { law, trial: trial.abs(), pressure, dt, log_state };
+        let sign = trial.signum();
+        let varied = |k: usize| {
+            let (by, dpressure) = (&directions[k], dpressure[k]);
+            relaxation.vary(&found, by, (sign * dtrial(by), dpressure)).along(sign)
+        };
+        Ok((response, [varied(0), varied(1)]))
     }
-
-    /// How the state at the end varies.
-    ///
-    /// # Errors
-    /// As of the answer.
-    fn variations(mut self) -> Result<[Variation; 2], LawFailure> {
-        Ok(self.end()?.variations)
-    }
-
-    fn rate(&self, state: &FrictionState) -> f64 {
-        let loading = Loading { traction: state.traction, pressure: state.pressure, damping: 0.0 };
-        self.law.slip_rate(self.law.evolving(state), loading)
-    }
-
-    /// The end: sub-steps are halved until their error is below the tolerance, and doubled where it allows.
-    fn end(&mut self) -> Result<Station, LawFailure> {
-        let (mut station, mut at, mut step) = (self.start, 0, WHOLE);
-        for _ in 0..MOST_ATTEMPTS {
-            let (next, error) = match self.extrapolated(&station, at, step) {
-                Ok(found) => found,
-                Err(_) if step > 1 => {
-                    step /= 2;
-                    continue;
-                }
-                Err(failure) => return Err(failure),
-            };
-            let snaps = step <= SHORT && self.drive(&station, step) <= SNAP;
-            if error > 1.0 && !snaps || error.is_nan() {
-                if step == 1 {
-                    break;
-                }
-                step /= 2;
-                continue;
-            }
-            (station, at) = (next, at + step);
-            if at == WHOLE {
-                return Ok(station);
-            }
-            if (error <= DOUBLED || snaps) && at % (2 * step) == 0 {
-                step *= 2;
-            }
-        }
-        let trial = (station.state.traction + self.law.stiffness() * self.sliding.slip * share(step)).abs();
-        Err(LawFailure::NotConverged { evaluations: self.evaluations, rest: trial, trial })
-    }
-
-    /// Most that slip and pressure change tractions by over a sub-step without a snap, in tolerances.
-    fn drive(&self, from: &Station, step: u64) -> f64 {
-        let change = self.law.stiffness() * self.sliding.slip.abs()
-            + self.law.coefficients.f_0 * (self.sliding.pressure - self.start.state.pressure).abs();
-        let most = self.sliding.pressure.max(from.state.pressure);
-        share(step) * change / (TOLERANCE * self.law.coefficients.f_0 * most)
-    }
-
-    /// The end of a sub-step, and its error in tolerances.
-    ///
-    /// ```text
-    /// T_j1: the sub-step by j increments of first order,   T_j,k+1 = T_jk + (T_jk − T_j−1,k)/(j/(j − k) − 1)
-    /// ```
-    /// T_jj is of the order j, and its difference to T_j,j−1 bounds its error. Where the sub-step snaps nothing is to be
-    /// extrapolated: the answer of the finest row is taken.
-    ///
-    /// Source: Deuflhard (1985), SIAM Review 27, 505; Hairer & Wanner, Solving Ordinary Differential Equations II, IV.9.
-    fn extrapolated(&mut self, from: &Station, at: u64, step: u64) -> Result<(Station, f64), LawFailure> {
-        let (mut rows, mut error): (Vec<Entry>, f64) = (Vec::with_capacity(MOST_ROWS), f64::INFINITY);
-        let mut fine = *from;
-        for j in 1..=MOST_ROWS {
-            fine = self.increments(from, at, step, j)?;
-            let mut entry = self.entry(&fine);
-            let mut row = vec![entry];
-            for (k, above) in rows.iter().enumerate() {
-                let factor = 1.0 / (j as f64 / (j - k - 1) as f64 - 1.0);
-                error = self.error(&entry, above, factor, [from, &fine], step);
-                entry = entry.beyond(above, factor);
-                row.push(entry);
-            }
-            rows = row;
-            if j > 1 && error <= 1.0 {
-                return Ok((self.station(&entry, fine), error));
-            }
-            if error > HOPELESS[j - 1] && step > SHORT {
-                break;
-            }
-        }
-        Ok((fine, error))
-    }
-
-    /// A sub-step by so many increments.
-    fn increments(&mut self, from: &Station, at: u64, step: u64, count: usize) -> Result<Station, LawFailure> {
-        let Sliding { slip, pressure, dt } = self.sliding;
-        let first = self.start.state.pressure;
-        let mut station = *from;
-        for i in 1..=count {
-            let part = share(step) / count as f64;
-            let x = if i == count { share(at + step) } else { share(at) + i as f64 * part };
-            let sliding = Sliding { slip: slip * part, pressure: (1.0 - x) * first + x * pressure, dt: dt * part };
-            let directions = [0, 1].map(|k| {
-                let Direction { slip, parameter, .. } = self.directions[k];
-                Direction { state: station.variations[k], slip: slip * part, parameter }
-            });
-            let dpressure = self.dpressure.map(|dpressure| x * dpressure);
-            let (answer, variations) = self.law.increment(&station.state, sliding, directions, dpressure)?;
-            self.evaluations += answer.evaluations;
-            station = Station { state: answer.state, variations };
-        }
-        Ok(station)
-    }
-
-    fn entry(&self, Station { state, variations }: &Station) -> Entry {
-        let (traction, theta) = (state.traction, state.variables[0]);
-        let work = state.dissipation + 0.5 * traction * traction / self.law.stiffness();
-        Entry {
-            values: [traction, theta.ln(), state.plastic_slip, work],
-            derivatives: variations.map(|by| [by.traction, by.variables[0] / theta]),
-        }
-    }
-
-    /// The station at the end of a sub-step that an entry stands for; `fine` is there too.
-    fn station(&self, entry: &Entry, fine: Station) -> Station {
-        let [traction, log_theta, plastic_slip, work] = entry.values;
-        let theta = log_theta.exp();
-        let stored = 0.5 * traction * traction / self.law.stiffness();
-        let state = FrictionState { traction, plastic_slip, dissipation: work - stored, ..fine.state };
-        let variations = entry.derivatives.map(|[traction, log]| Variation::new(traction, theta * log));
-        Station { state: state.with_variables([theta]), variations }
-    }
-
-    /// How much further the next extrapolation goes, in tolerances.
-    fn error(&self, entry: &Entry, above: &Entry, factor: f64, [from, to]: [&Station; 2], step: u64) -> f64 {
-        let law = &self.law.coefficients;
-        let [traction, log_theta, _, work] = [0, 1, 2, 3].map(|i| factor * (entry.values[i] - above.values[i]).abs());
-        let strength = law.f_0 * from.state.pressure.max(to.state.pressure);
-        let slip = self.sliding.slip.abs() * share(step) + (to.state.plastic_slip - from.state.plastic_slip).abs();
-        let loaded = law.alpha_t * self.sliding.slip.abs() * share(step);
-        let noise = NOISE / TOLERANCE;
-        let overlooked = self.overlooked(&from.state, &to.state, step);
-        let parts = [
-            [traction + law.alpha_t * overlooked, strength + noise * loaded],
-            [(law.a + law.b) * (log_theta + overlooked / law.critical_slip), law.f_0],
-            [work, strength * slip + noise * entry.values[3].abs()],
-        ];
-        // What is exactly 0 is right, whatever it is compared with.
-        let shares = parts.map(|[part, of]| if part == 0.0 { 0.0 } else { part / (TOLERANCE * of) });
-        if shares.iter().any(|share| share.is_nan()) { f64::NAN } else { shares.into_iter().fold(0.0, f64::max) }
-    }
-}
-
-impl Ramp<'_> {
-    /// Slip at the beginning of a sub-step that unloads so much that none of its rows sees it: V decays by |q|/(a p).
-    fn overlooked(&self, from: &FrictionState, to: &FrictionState, step: u64) -> f64 {
-        if from.pressure <= 0.0 || to.pressure <= 0.0 {
-            return 0.0;
-        }
-        let level = |state: &FrictionState| state.traction / (self.law.coefficients.a * state.pressure);
-        let fall = (level(from) - level(to)) * from.traction.signum();
-        if fall > RESOLVED { self.rate(from).abs() * self.sliding.dt * share(step) / fall } else { 0.0 }
-    }
-}
-
-impl Entry {
-    fn beyond(&self, above: &Self, factor: f64) -> Self {
-        let beyond = |fine: f64, coarse: f64| fine + factor * (fine - coarse);
-        let values = [0, 1, 2, 3].map(|i| beyond(self.values[i], above.values[i]));
-        let derivatives = [0, 1].map(|k| [0, 1].map(|i| beyond(self.derivatives[k][i], above.derivatives[k][i])));
-        Self { values, derivatives }
-    }
-}
-
-fn share(of: u64) -> f64 {
-    of as f64 / WHOLE as f64
 }

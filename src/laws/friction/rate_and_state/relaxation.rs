@@ -1,10 +1,11 @@
-//! The equation of an increment of rate-and-state friction, and its smallest root.
+//! The equation of an increment of rate-and-state friction, its smallest root, and how that varies.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::laws::friction::LawFailure;
 use crate::laws::friction::root::{Argument, bracketed_root};
+use crate::laws::friction::sensitivity::{Direction, Variation};
+use crate::laws::friction::{LEAST_SLOPE, LawFailure};
 
 /// Evolution of the state θ of rate-and-state friction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -284,6 +285,44 @@ impl Relaxation<'_> {
             }
         }
         None
+    }
+}
+
+impl Relaxation<'_> {
+    /// Derivatives of (2) to (5) of the law and of G where it is solved, `dtrial` being that of |q_tr| and `dpressure` of p:
+    ///
+    /// ```text
+    /// d ln θ₁ = e⁻ˣ dθ₀/θ − x S dD_c + S dλ,   S = ∂ ln θ₁/∂λ         θ: θ₁ of the ageing law, θ₀ of the slip law
+    /// dψ = df₀ + db ln(V₀ θ₁/D_c) + b (dV₀/V₀ − dD_c/D_c + d ln θ₁)
+    /// d|q| = p (arsinh(eʷ) da + arsinh'(eʷ) (dψ − ψ da/a + a (dλ/λ − dV₀/V₀))) + |q| dp/p
+    /// D dλ = d|q_tr| − λ dα_t − ∂|q|
+    /// ```
+    pub(super) fn vary(&self, found: &Relaxed, by: &Direction, (dtrial, dpressure): (f64, f64)) -> Variation {
+        let Coefficients { reference_rate, a, b, critical_slip, alpha_t, evolution, .. } = *self.law;
+        let [df_0, drate, da, db, dcritical, dstiffness] =
+            ["f_0", "V_0", "a", "b", "D_c", "alpha_t"].map(|name| by.of(name));
+        let (log_state, log_by_slip) = self.log_state_after(found.slip);
+        let (theta, psi) = (self.law.theta(log_state), self.law.psi(log_state));
+        let x = found.slip / critical_slip;
+        let from = match evolution {
+            StateEvolution::Ageing => theta,
+            StateEvolution::Slip => self.law.theta(self.log_state),
+        };
+        let dlog = (-x).exp() * by.variable() / from - x * log_by_slip * dcritical;
+        let dpsi = df_0 + db * log_state + b * (drate / reference_rate - dcritical / critical_slip + dlog);
+        let (arsinh, rate) = arsinh_of_exp(found.log_sinh);
+        let dstrength = self.pressure * (da * arsinh + rate * (dpsi - psi * da / a - a * drate / reference_rate))
+            + a * arsinh * dpressure;
+        let slope = found.slope.max(LEAST_SLOPE * alpha_t);
+        let dslip = (dtrial - dstiffness * found.slip - dstrength) / slope;
+        Variation::new(dstrength + (slope - alpha_t) * dslip, theta * (dlog + log_by_slip * dslip))
+    }
+}
+
+impl Variation {
+    /// With the traction counted along the sign.
+    pub(super) fn along(self, sign: f64) -> Self {
+        Self { traction: sign * self.traction, ..self }
     }
 }
 

@@ -5,8 +5,6 @@ use std::f64::consts::{FRAC_PI_2, LN_2, PI};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::peak::Shift;
-
 /// How R follows from plastic slip.
 ///
 /// ```text
@@ -90,8 +88,8 @@ impl SlidingCurve {
         }
     }
 
-    /// How R varies with r and R_e after a given plastic slip, R at the start being given.
-    pub(super) fn shifted(&self, start: &Reach, here: &Reach, by: &Shift) -> f64 {
+    /// How R varies where r varies by `dr` and R_e by `dcore`, after a given plastic slip, R at the start being given.
+    pub(super) fn varied(&self, start: &Reach, here: &Reach, dr: f64, dcore: f64) -> f64 {
         if start.full {
             return 0.0;
         }
@@ -99,7 +97,7 @@ impl SlidingCurve {
         let passed =
             if self.begins_at(start) { 0.0 } else { (1.0 - self.progress(start.ratio)) * here.rate / start.rate };
         let by_core = 1.0 - self.progress(here.ratio) - passed + here.rate * slip * self.per_range;
-        here.rate / self.r * slip * by.r + by_core * by.elastic_core
+        here.rate / self.r * slip * dr + by_core * dcore
     }
 
     /// Mean of R over the plastic slip between two points.

@@ -4,8 +4,9 @@
 //!
 //! The scalar equation of plastic slip, and its smallest root.
 
+use super::SuperSubloading;
 use super::approach::{Reach, SlidingCurve};
-use super::peak::{Peak, PeakEvolution, Shift};
+use super::peak::{Peak, PeakShift};
 use crate::laws::friction::root::{Argument, bracketed_root};
 use crate::laws::friction::{LEAST_SLOPE, LawFailure, STEEPEST};
 
@@ -33,16 +34,20 @@ impl Directions {
         Self { slip: [1.0, 0.0], pressure: [0.0, 1.0], traction: [0.0; 2], mu: [0.0; 2], parameters: None };
 }
 
+/// How much each parameter of the law varies.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Shift {
+    pub alpha_t: f64,
+    pub r: f64,
+    pub elastic_core: f64,
+    pub peak: PeakShift,
+}
+
 /// The part of an increment in which slip may be plastic, mirrored so that the traction does not become negative.
 ///
 /// Along it slip, pressure and time are linear in x, 0 ≤ x ≤ 1.
 pub(super) struct LoadPath<'a> {
-    pub curve: &'a SlidingCurve,
-    pub evolution: &'a PeakEvolution,
-    /// α_t [F/L³]
-    pub alpha_t: f64,
-    /// Greatest error of the traction, relative to the static strength μ_s p [-]
-    pub tolerance: f64,
+    pub law: &'a SuperSubloading,
     /// Slip from x = 0 to 1 [L]
     pub slip: f64,
     /// Derivatives of the slip
@@ -91,7 +96,7 @@ impl LoadPath<'_> {
         (mu, dmu): (f64, Derivative),
         ratio: f64,
     ) -> Station {
-        let reach = self.curve.start(ratio);
+        let reach = self.law.curve.start(ratio);
         let (plastic_slip, work, overlooked) = (0.0, 0.0, 0.0);
         Station { x: 0.0, traction, dtraction, mu, dmu, reach, plastic_slip, work, overlooked }
     }
@@ -101,11 +106,9 @@ impl LoadPath<'_> {
     pub(super) fn advance(&mut self, from: &Station, x: f64) -> Result<Station, LawFailure> {
         let share = x - from.x;
         let equation = SlipEquation {
-            curve: self.curve,
-            evolution: self.evolution,
-            alpha_t: self.alpha_t,
+            law: self.law,
             start: from.reach,
-            trial: from.traction + self.alpha_t * self.slip * share,
+            trial: from.traction + self.law.alpha_t * self.slip * share,
             pressure: self.pressure(x),
             old_mu: from.mu,
             dt: self.time * share,
@@ -128,10 +131,10 @@ impl LoadPath<'_> {
         let pressure = self.pressure(x);
         // Only weakening that has taken the traction from under an unloading can leave it to reverse: it waits at 0.
         let traction = trial.max(0.0);
-        let (mu, by_time) = self.evolution.rested(from.mu, self.time * share);
-        let old_rate = self.evolution.recovery(from.mu);
+        let (mu, by_time) = self.law.evolution.rested(from.mu, self.time * share);
+        let old_rate = self.law.evolution.recovery(from.mu);
         let by_old = if old_rate > 0.0 { by_time / old_rate } else { 1.0 };
-        let reach = self.curve.start(traction / (mu * pressure));
+        let reach = self.law.curve.start(traction / (mu * pressure));
         let rate = self.rate(traction, mu, pressure, &reach);
         Station {
             x,
@@ -142,27 +145,36 @@ impl LoadPath<'_> {
                 None => by_old * from.dmu[i] + by_time * share * self.dtime[i],
                 Some(shifts) => {
                     let by = [from.dmu[i], share * self.dtime[i]];
-                    self.evolution.rested_by(from.mu, self.time * share, by, &shifts[i].peak)
+                    self.law.evolution.rested_by(from.mu, self.time * share, by, &shifts[i].peak)
                 }
             }),
             reach,
-            overlooked: self.alpha_t * rate * share,
+            overlooked: self.law.alpha_t * rate * share,
             ..*from
         }
     }
 
-    /// A sub-step with plastic slip.
+    /// A sub-step with plastic slip. The consistent tangent is that of the equation of plastic slip, with what the sub-step starts
+    /// from varying too:
+    ///
+    /// ```text
+    /// dq = dq_tr − α_t dΔλ,   dq_tr = dq₀ + α_t dΔu
+    /// dΔλ = (dq_tr − p (μ δR + R δμ) − R μ dp)/D,   D = α_t + p (U μ + R ∂μ/∂Δλ)
+    /// δR = U/U₀ dR₀,   δμ = ∂μ/∂μ₀ dμ₀ + ∂μ/∂Δt dΔt                 of R and μ after a given Δλ
+    /// dμ = δμ + ∂μ/∂Δλ dΔλ
+    /// ```
+    /// Parameters that vary add their own part to α_t Δλ, δμ and δR.
     #[inline]
     fn slide(&self, from: &Station, x: f64, point: &Point) -> Station {
         let share = x - from.x;
         let (start_pressure, pressure) = (self.pressure(from.x), self.pressure(x));
         let (reach, peak, slip) = (point.reach, point.peak, point.slip);
         let traction = reach.ratio * peak.mu * pressure;
-        let per_slope = 1.0 / point.slope.max(LEAST_SLOPE * self.alpha_t);
+        let per_slope = 1.0 / point.slope.max(LEAST_SLOPE * self.law.alpha_t);
 
-        // dR = U dλ + U/U₀ dR₀ along the curve of R
+        // U/(U₀ μ₀ p₀), as dR₀ = (dq₀ − R₀ (p₀ dμ₀ + μ₀ dp₀))/(μ₀ p₀); R₀ does not matter where the curve begins.
         let given = from.x == 0.0 && self.parameters.is_none();
-        let begins = given || self.curve.begins_at(&from.reach) || from.reach.rate == 0.0;
+        let begins = given || self.law.curve.begins_at(&from.reach) || from.reach.rate == 0.0;
         let inherited = if begins { 0.0 } else { reach.rate / from.reach.rate / (from.mu * start_pressure) };
         let derivatives = |i: usize| {
             let dstart_pressure = self.dpressure(from.x)[i];
@@ -176,17 +188,17 @@ impl LoadPath<'_> {
             let dslip = (dtrial - dstrength) * per_slope;
             let limit = match self.parameters {
                 Some(_) => f64::INFINITY,
-                None if i == 0 => STEEPEST * self.alpha_t,
+                None if i == 0 => STEEPEST * self.law.alpha_t,
                 None => STEEPEST,
             };
-            let dtraction = (dtrial - self.alpha_t * dslip).clamp(-limit, limit);
+            let dtraction = (dtrial - self.law.alpha_t * dslip).clamp(-limit, limit);
             (dtraction, (dmu + peak.slope * dslip).clamp(-limit / pressure, limit / pressure))
         };
         let (dq_dslip, dmu_dslip) = derivatives(0);
         let (dq_dpressure, dmu_dpressure) = derivatives(1);
 
         let strengths = [from.mu * start_pressure, peak.mu * pressure];
-        let work = mean_traction(self.curve, [&from.reach, &reach], strengths, [from.traction, traction]) * slip;
+        let work = mean_traction(&self.law.curve, [&from.reach, &reach], strengths, [from.traction, traction]) * slip;
         Station {
             x,
             traction,
@@ -204,7 +216,7 @@ impl LoadPath<'_> {
     #[inline]
     fn dtrial(&self, from: &Station, share: f64, i: usize) -> f64 {
         let by_stiffness = self.parameters.map_or(0.0, |shifts| shifts[i].alpha_t * self.slip * share);
-        from.dtraction[i] + self.alpha_t * self.dslip[i] * share + by_stiffness
+        from.dtraction[i] + self.law.alpha_t * self.dslip[i] * share + by_stiffness
     }
 
     /// What parameters that vary add to α_t Δλ, μ and R after a given plastic slip from a given start.
@@ -212,8 +224,8 @@ impl LoadPath<'_> {
         let time = self.time * (x - from.x);
         [
             by.alpha_t * point.slip,
-            self.evolution.after_by(from.mu, point.slip, time, &by.peak),
-            self.curve.shifted(&from.reach, &point.reach, by),
+            self.law.evolution.after_by(from.mu, point.slip, time, &by.peak),
+            self.law.curve.varied(&from.reach, &point.reach, by.r, by.elastic_core),
         ]
     }
 
@@ -223,10 +235,10 @@ impl LoadPath<'_> {
         if traction < reach.ratio * mu * pressure * (1.0 - ROUND_OFF) {
             return 0.0; // inside the elastic core
         }
-        let (weakening, recovery) = (self.evolution.weakening(mu), self.evolution.recovery(mu));
-        let drive = self.alpha_t * self.slip
+        let (weakening, recovery) = (self.law.evolution.weakening(mu), self.law.evolution.recovery(mu));
+        let drive = self.law.alpha_t * self.slip
             - reach.ratio * (recovery * self.time * pressure + mu * (self.pressures[1] - self.pressures[0]));
-        let stiffness = self.alpha_t + pressure * (reach.rate * mu - reach.ratio * weakening);
+        let stiffness = self.law.alpha_t + pressure * (reach.rate * mu - reach.ratio * weakening);
         if drive > 0.0 && stiffness > 0.0 { drive / stiffness } else { 0.0 }
     }
 
@@ -264,10 +276,7 @@ pub(super) fn mean_traction(
 /// D = −dG/dΔλ = α_t + p (U μ + R ∂μ/∂Δλ)
 /// ```
 pub(super) struct SlipEquation<'a> {
-    pub curve: &'a SlidingCurve,
-    pub evolution: &'a PeakEvolution,
-    /// α_t [F/L³]
-    pub alpha_t: f64,
+    pub law: &'a SuperSubloading,
     /// Where plastic slip starts.
     pub start: Reach,
     /// |q_tr| [F/L²]
@@ -335,8 +344,8 @@ impl SlipEquation<'_> {
             return Ok((start.moved(self), 1));
         }
         let mut evaluations = 1;
-        let end = self.curve.beyond(self.trial / self.alpha_t, &self.start);
-        let unique = self.pressure * self.evolution.weakening(start.peak.mu) < self.alpha_t;
+        let end = self.law.curve.beyond(self.trial / self.law.alpha_t, &self.start);
+        let unique = self.pressure * self.law.evolution.weakening(start.peak.mu) < self.law.alpha_t;
         let bracket =
             if unique { (self.start.coordinate, end) } else { self.first_root_bracket(start, end, &mut evaluations)? };
         let mut point = start;
@@ -351,15 +360,15 @@ impl SlipEquation<'_> {
 
     #[inline(always)]
     fn at(&self, coordinate: f64) -> Point {
-        self.point(self.curve.at(coordinate, &self.start))
+        self.point(self.law.curve.at(coordinate, &self.start))
     }
 
     #[inline(always)]
     fn point(&self, reach: Reach) -> Point {
-        let Self { alpha_t, pressure, .. } = *self;
+        let Self { law: SuperSubloading { alpha_t, .. }, pressure, .. } = *self;
         let Reach { stretch, bend, ratio, rate, .. } = reach;
         let slip = (reach.slip - self.start.slip).max(0.0);
-        let peak = self.evolution.after(self.old_mu, slip, self.dt);
+        let peak = self.law.evolution.after(self.old_mu, slip, self.dt);
         let residual = self.trial - alpha_t * slip - ratio * peak.mu * pressure;
         let slope = self.slope(ratio, rate, &peak);
         // −d²G/d(coordinate)², as dU/dζ = −U
@@ -375,21 +384,21 @@ impl SlipEquation<'_> {
 
     #[inline(always)]
     fn slope(&self, ratio: f64, rate: f64, peak: &Peak) -> f64 {
-        self.alpha_t + self.pressure * (rate * peak.mu + ratio * peak.slope)
+        self.law.alpha_t + self.pressure * (rate * peak.mu + ratio * peak.slope)
     }
 
     /// The point with μ and D as they are there, and not as they were before the last step.
     pub(super) fn settled(&self, point: Point) -> Point {
-        let peak = self.evolution.after(self.old_mu, point.slip, self.dt);
+        let peak = self.law.evolution.after(self.old_mu, point.slip, self.dt);
         Point { peak, slope: self.slope(point.reach.ratio, point.reach.rate, &peak), ..point }
     }
 
     /// Whether terms of third order of the step are round-off; the fold where D = 0 magnifies them.
     #[inline(always)]
     fn is_close(&self, reach: &Reach, slope: f64, step: f64) -> bool {
-        let last = if self.evolution.is_linear() { LAST_STEP } else { LAST_STEP_OF_FIRST_ORDER };
-        let relative = reach.stretch + reach.bend + reach.stretch * reach.stretch * self.evolution.sharpness();
-        step.abs() * relative * self.alpha_t <= last * reach.stretch * slope.min(self.alpha_t)
+        let last = if self.law.evolution.is_linear() { LAST_STEP } else { LAST_STEP_OF_FIRST_ORDER };
+        let relative = reach.stretch + reach.bend + reach.stretch * reach.stretch * self.law.evolution.sharpness();
+        step.abs() * relative * self.law.alpha_t <= last * reach.stretch * slope.min(self.law.alpha_t)
     }
 
     /// A first coordinate: a step from the start or, near R = R_e where U is infinite, the elastic answer if there is
@@ -397,12 +406,12 @@ impl SlipEquation<'_> {
     #[inline]
     fn guess(&self, start: &Point) -> f64 {
         let strength = start.peak.mu * self.pressure;
-        if self.curve.progress(start.reach.ratio) > SMALL_Y {
+        if self.law.curve.progress(start.reach.ratio) > SMALL_Y {
             start.reach.coordinate + start.step
         } else if self.trial < 0.9 * strength {
-            self.curve.approach.locate(self.curve.progress(self.trial / strength)).0
+            self.law.curve.approach.locate(self.law.curve.progress(self.trial / strength)).0
         } else {
-            self.curve.beyond((self.trial - strength).max(0.0) / self.alpha_t, &self.start)
+            self.law.curve.beyond((self.trial - strength).max(0.0) / self.law.alpha_t, &self.start)
         }
     }
 
@@ -445,7 +454,7 @@ impl SlipEquation<'_> {
     fn slope_bounds(&self, left: &Point, right: &Point) -> (f64, f64) {
         let least = right.reach.rate * right.peak.mu + right.reach.ratio * left.peak.slope;
         let most = left.reach.rate * left.peak.mu + left.reach.ratio * right.peak.slope;
-        (self.alpha_t + self.pressure * least, self.alpha_t + self.pressure * most)
+        (self.law.alpha_t + self.pressure * least, self.law.alpha_t + self.pressure * most)
     }
 }
 
@@ -465,7 +474,7 @@ impl Point {
         reach.ratio = (reach.ratio + rise).min(1.0);
         reach.rate *= 1.0 - step * (1.0 - 0.5 * step);
         slip = (slip + advance).max(0.0);
-        let evolution = equation.evolution;
+        let evolution = equation.law.evolution;
         let peak = if evolution.is_linear() {
             evolution.after(equation.old_mu, slip, equation.dt)
         } else {

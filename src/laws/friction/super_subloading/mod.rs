@@ -1,23 +1,20 @@
 //! Super/subloading friction: the law, and what a case may say of it.
 mod approach;
 mod increment;
-mod onset;
 mod path;
 mod peak;
-mod sensitivity;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::sensitivity::SensitiveLaw;
-use super::{Answer, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, Regime, Sliding};
-use crate::laws::parameter::{InvalidParameter, require, require_not_negative, require_positive};
+use super::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, Regime, Sliding};
+use crate::laws::parameter::{InvalidParameter, numbers, require, require_not_negative, require_positive};
 pub use approach::Approach;
 use approach::SlidingCurve;
 use increment::{Directions, ROUND_OFF, SlipEquation, mean_traction};
-pub use onset::{Onset, Rise};
-pub use peak::Integration;
 use peak::PeakEvolution;
+pub use peak::{Integration, Onset, Rise};
 
 /// Super/subloading friction: slip weakens the interface, rest heals it.
 ///
@@ -38,7 +35,7 @@ use peak::PeakEvolution;
 /// ```
 /// with R from (2) integrated exactly ([`Approach`](super::Approach)). G is positive at the left end and not at the right, so a bracketed
 /// search cannot fail. G falls throughout, and the root is the only one, while α_t exceeds R p |dμ/dΔλ|; where this
-/// cannot be guaranteed ([`FrictionLaw::uniqueness_limit`]), bounds of the slope of G single out the first root.
+/// cannot be guaranteed ([`Description::uniqueness_limit`]), bounds of the slope of G single out the first root.
 ///
 /// [`Integration`] says where μ of (4) comes from. *Backward Euler* takes one step of (3) and of (4) an increment. The
 /// *controlled* integration solves (3) for slip and time that pass in step with one another, which leaves no error
@@ -78,7 +75,12 @@ impl SuperSubloading {
             *parameters;
         let alpha_t = parameters.alpha_t.unwrap_or(default_alpha_t);
         require_positive("mu_k", mu_k)?;
-        require("mu_s", mu_s, mu_s >= mu_k, format!("it must be finite and not less than \"mu_k\", which is {mu_k}"))?;
+        require(
+            "mu_s",
+            mu_s,
+            mu_s >= mu_k,
+            format_args!("it must be finite and not less than \"mu_k\", which is {mu_k}"),
+        )?;
         require_positive("alpha_t", alpha_t)?;
         require_positive("r", r)?;
         require_not_negative("kappa", kappa)?;
@@ -90,7 +92,7 @@ impl SuperSubloading {
         let most = mu_s / mu_k;
         let structure = parameters.structure.unwrap_or(most);
         let structure_fits = (1.0..=most * (1.0 + ROUND_OFF)).contains(&structure);
-        require("structure", structure, structure_fits, format!("it must lie between 1 and mu_s/mu_k = {most}"))?;
+        require("structure", structure, structure_fits, format_args!("it must lie between 1 and mu_s/mu_k = {most}"))?;
         let tolerance = parameters.tolerance.unwrap_or(1e-6);
         require("tolerance", tolerance, (1e-12..=0.1).contains(&tolerance), "it must lie between 1e-12 and 0.1")?;
         let has_tolerance = integration == Integration::Controlled || parameters.tolerance.is_none();
@@ -137,9 +139,7 @@ impl SuperSubloading {
         let old_mu = mu_of(old);
         let reversed = trial * old.traction.signum() < 0.0;
         let equation = SlipEquation {
-            curve: &self.curve,
-            evolution: &self.evolution,
-            alpha_t: self.alpha_t,
+            law: self,
             start: self.curve.start(if reversed { 0.0 } else { old.ratio(old_mu).min(1.0) }),
             trial: trial.abs(),
             pressure,
@@ -211,8 +211,21 @@ fn ruled(state: FrictionState) -> FrictionState {
 }
 
 impl FrictionLaw for SuperSubloading {
-    fn initial_state(&self) -> FrictionState {
-        FrictionState::default().with_variables([self.initial_mu])
+    /// The least coefficient is μ_k, R being 1 in sliding that goes on.
+    fn description(&self) -> Description {
+        Description {
+            stiffness: self.alpha_t,
+            variables: &["mu"],
+            observables: Some(&["R", "mu", "structure"]),
+            starting_coefficient: Some(self.initial_mu),
+            least_coefficient: Some(self.evolution.mu_k.min(self.evolution.mu_s)),
+            weakening: self.evolution.weakening(self.evolution.mu_s),
+            ..Description::default()
+        }
+    }
+
+    fn initial_state(&self, pressure: f64, traction: f64) -> FrictionState {
+        FrictionState::default().with_variables([self.initial_mu]).loaded(pressure, traction)
     }
 
     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
@@ -235,20 +248,8 @@ impl FrictionLaw for SuperSubloading {
         .checked(self.alpha_t)
     }
 
-    fn stiffness(&self) -> f64 {
-        self.alpha_t
-    }
-
     fn sensitivities(&self) -> Option<&dyn SensitiveLaw> {
         (self.integration == Integration::Controlled).then_some(self as &dyn SensitiveLaw)
-    }
-
-    fn variables(&self) -> &'static [&'static str] {
-        &["mu"]
-    }
-
-    fn observables(&self) -> &'static [&'static str] {
-        &["R", "mu", "structure"]
     }
 
     fn observe(&self, name: &str, state: &FrictionState) -> Option<f64> {
@@ -259,19 +260,6 @@ impl FrictionLaw for SuperSubloading {
             "structure" => Some(mu / self.evolution.mu_k),
             _ => None,
         }
-    }
-
-    fn starting_limit(&self, pressure: f64) -> f64 {
-        self.initial_mu * pressure
-    }
-
-    /// μ_k, R being 1 in sliding that goes on.
-    fn least_coefficient(&self) -> Option<f64> {
-        Some(self.evolution.mu_k.min(self.evolution.mu_s))
-    }
-
-    fn weakening(&self) -> f64 {
-        self.evolution.weakening(self.evolution.mu_s)
     }
 
     fn onset(&self) -> Option<Onset> {
@@ -320,6 +308,8 @@ pub struct SuperSubloadingParameters {
     #[serde(default)]
     pub tolerance: Option<f64>,
 }
+
+numbers!(SuperSubloadingParameters: "mu_s" mu_s, "mu_k" mu_k, "r" r, "kappa" kappa, "xi" xi, "m" m, "n" n, "elastic_core" elastic_core; "alpha_t" alpha_t, "structure" structure, "tolerance" tolerance);
 
 impl SuperSubloadingParameters {
     /// Neither weakening nor recovery, the tangential stiffness left to the contact, all else as in a case that says no more.

@@ -7,9 +7,15 @@
 //! # Short steps
 //!
 //! When one step is right without its halves: a bound of its error.
+//!
+//! # Sensitivity
+//!
+//! How the answers vary with the parameters, and with the state at the start.
 
-use super::increment::{Derivative, Directions, LoadPath, Station};
-use super::{SuperSubloading, mu_of};
+use super::increment::{Derivative, Directions, LoadPath, Shift, Station};
+use super::peak::PeakShift;
+use super::{EXCESS, SuperSubloading, SuperSubloadingParameters, falls, mu_of};
+use crate::laws::friction::sensitivity::{Direction, SensitiveLaw, Variation};
 use crate::laws::friction::{FrictionState, LawFailure, Sliding};
 
 impl SuperSubloading {
@@ -27,10 +33,7 @@ impl SuperSubloading {
         let mirrored = |derivative: Derivative| derivative.map(|d| sign * d);
         let by = &Directions { slip: mirrored(by.slip), traction: mirrored(by.traction), ..*by };
         let mut path = LoadPath {
-            curve: &self.curve,
-            evolution: &self.evolution,
-            alpha_t: self.alpha_t,
-            tolerance: self.tolerance,
+            law: self,
             slip: sign * slip,
             dslip: by.slip,
             pressures: [old.pressure, pressure],
@@ -151,11 +154,11 @@ impl LoadPath<'_> {
         if agree {
             return Ok(if halves.slide() { self.extrapolated(&halves) } else { fine });
         }
-        if self.drive(from, &fine) <= SNAP * self.tolerance * self.evolution.mu_s * self.pressure(fine.x) {
+        if self.drive(from, &fine) <= SNAP * self.law.tolerance * self.law.evolution.mu_s * self.pressure(fine.x) {
             return Ok(fine);
         }
         if halvings == 0 || self.evaluations > MAX_EVALUATIONS {
-            let trial = from.traction + self.alpha_t * self.slip * (fine.x - from.x);
+            let trial = from.traction + self.law.alpha_t * self.slip * (fine.x - from.x);
             let rest = differences[0].abs().max(overlooked);
             return Err(LawFailure::NotConverged { evaluations: self.evaluations, rest, trial });
         }
@@ -168,11 +171,12 @@ impl LoadPath<'_> {
     /// Most that slip, pressure and time change the traction or the strength by over a sub-step without a snap.
     fn drive(&self, from: &Station, to: &Station) -> f64 {
         let share = to.x - from.x;
-        let recovery =
-            self.evolution.recovery(from.mu.min(to.mu)) * self.time * self.pressure(from.x).max(self.pressure(to.x));
+        let recovery = self.law.evolution.recovery(from.mu.min(to.mu))
+            * self.time
+            * self.pressure(from.x).max(self.pressure(to.x));
         share
-            * (self.alpha_t * self.slip.abs()
-                + self.evolution.mu_s * (self.pressures[1] - self.pressures[0]).abs()
+            * (self.law.alpha_t * self.slip.abs()
+                + self.law.evolution.mu_s * (self.pressures[1] - self.pressures[0]).abs()
                 + recovery)
     }
 
@@ -193,8 +197,8 @@ impl LoadPath<'_> {
         let share = fine.x - from.x;
         let (start_pressure, pressure) = (self.pressure(from.x), self.pressure(fine.x));
         let slip = self.slip.abs() * share;
-        let noise = NOISE * (fine.traction + from.traction + self.alpha_t * slip);
-        let tolerance = self.tolerance * self.evolution.mu_s;
+        let noise = NOISE * (fine.traction + from.traction + self.law.alpha_t * slip);
+        let tolerance = self.law.tolerance * self.law.evolution.mu_s;
         let strength = tolerance * pressure * (share * share.sqrt()).sqrt() + noise;
         let work = (tolerance * pressure.max(start_pressure) + noise) * (slip + fine.plastic_slip - from.plastic_slip);
         [strength, strength, work + NOISE * self.energy(fine)]
@@ -207,10 +211,10 @@ impl LoadPath<'_> {
         let beyond_each = |fine: Derivative, coarse: Derivative| [0, 1].map(|i| beyond(fine[i], coarse[i]));
         let pressure = self.pressure(fine.x);
         let (mut mu, mut dmu) = (beyond(fine.mu, coarse.mu), beyond_each(fine.dmu, coarse.dmu));
-        if mu != self.evolution.clamp(mu) {
+        if mu != self.law.evolution.clamp(mu) {
             dmu = [0, 1]
-                .map(|i| self.parameters.map_or(0.0, |shifts| self.evolution.clamped_by(mu, 0.0, &shifts[i].peak)));
-            mu = self.evolution.clamp(mu);
+                .map(|i| self.parameters.map_or(0.0, |shifts| self.law.evolution.clamped_by(mu, 0.0, &shifts[i].peak)));
+            mu = self.law.evolution.clamp(mu);
         }
         let mut traction = beyond(fine.traction, coarse.traction).max(0.0);
         let mut dtraction = beyond_each(fine.dtraction, coarse.dtraction);
@@ -225,16 +229,16 @@ impl LoadPath<'_> {
             dtraction,
             mu,
             dmu,
-            reach: self.curve.start(traction / (mu * pressure)),
+            reach: self.law.curve.start(traction / (mu * pressure)),
             plastic_slip: beyond(fine.plastic_slip, coarse.plastic_slip).max(from.plastic_slip),
-            work: (energy - 0.5 * traction * traction / self.alpha_t).max(from.work),
+            work: (energy - 0.5 * traction * traction / self.law.alpha_t).max(from.work),
             overlooked: 0.0,
         }
     }
 
     /// Work done by the traction: dissipated, and stored in the contact spring.
     fn energy(&self, station: &Station) -> f64 {
-        station.work + 0.5 * station.traction * station.traction / self.alpha_t
+        station.work + 0.5 * station.traction * station.traction / self.law.alpha_t
     }
 }
 
@@ -272,7 +276,7 @@ impl LoadPath<'_> {
     /// throughout. The mean of q is a trapezoidal rule, whose error the slopes at its ends bound.
     fn is_right_alone(&self, from: &Station, to: &Station) -> bool {
         let slip = to.plastic_slip - from.plastic_slip;
-        if !(self.evolution.is_linear() && slip > 0.0) {
+        if !(self.law.evolution.is_linear() && slip > 0.0) {
             return false;
         }
         let (start, end) = (self.ends(from), self.ends(to));
@@ -287,9 +291,9 @@ impl LoadPath<'_> {
             return false;
         }
         let pressure = self.pressures[1];
-        let strength = self.tolerance * self.evolution.mu_s * pressure;
-        let mu_error = 0.25 * unsteady * self.evolution.commutator(slip, self.time);
-        let q_error = mu_error * pressure * (self.alpha_t / stiffness).max(1.0);
+        let strength = self.law.tolerance * self.law.evolution.mu_s * pressure;
+        let mu_error = 0.25 * unsteady * self.law.evolution.commutator(slip, self.time);
+        let q_error = mu_error * pressure * (self.law.alpha_t / stiffness).max(1.0);
         q_error <= SHARE * strength && self.mean_error(from, to, &start, &end) <= strength
     }
 
@@ -297,16 +301,16 @@ impl LoadPath<'_> {
     fn ends(&self, at: &Station) -> Ends {
         let (pressure, ratio) = (self.pressure(at.x), at.reach.ratio);
         let approach = pressure * at.reach.rate * at.mu;
-        let weakening = pressure * ratio * self.evolution.weakening(at.mu);
-        let recovery = ratio * pressure * self.evolution.recovery(at.mu) * self.time;
+        let weakening = pressure * ratio * self.law.evolution.weakening(at.mu);
+        let recovery = ratio * pressure * self.law.evolution.recovery(at.mu) * self.time;
         let pressing = ratio * at.mu * (self.pressures[1] - self.pressures[0]);
         Ends {
             approach,
             weakening,
             recovery,
             pressing,
-            stiffness: self.alpha_t + approach - weakening,
-            drive: self.alpha_t * self.slip - recovery - pressing,
+            stiffness: self.law.alpha_t + approach - weakening,
+            drive: self.law.alpha_t * self.slip - recovery - pressing,
             ratio,
         }
     }
@@ -331,5 +335,65 @@ impl LoadPath<'_> {
             end.ratio * end.ratio * (0..3).map(|i| change(i, squares)).sum::<f64>()
         };
         0.125 * slip * bend
+    }
+}
+
+/// How much each parameter varies along a direction.
+fn shift(by: &Direction) -> Shift {
+    let [mu_s, mu_k, kappa, xi, m, n] = ["mu_s", "mu_k", "kappa", "xi", "m", "n"].map(|name| by.of(name));
+    let peak = PeakShift { mu_s, mu_k, kappa, xi, m, n };
+    Shift { alpha_t: by.of("alpha_t"), r: by.of("r"), elastic_core: by.of("elastic_core"), peak }
+}
+
+impl SensitiveLaw for SuperSubloading {
+    /// All but the last, the tolerance.
+    fn parameters(&self) -> &'static [&'static str] {
+        SuperSubloadingParameters::NUMBERS.split_last().map_or(&[], |(_, numbers)| numbers)
+    }
+
+    fn start(&self, parameter: &str) -> Variation {
+        let dmu = match (parameter, self.structure) {
+            ("mu_s", None) => 1.0,
+            ("mu_k", Some(structure)) => structure,
+            ("structure", Some(_)) => self.evolution.mu_k,
+            _ => 0.0,
+        };
+        Variation::new(0.0, dmu)
+    }
+
+    fn vary(
+        &self,
+        old: &FrictionState,
+        sliding: Sliding,
+        directions: [Direction; 2],
+    ) -> Result<[Variation; 2], LawFailure> {
+        let Sliding { slip, pressure, dt } = sliding.checked()?;
+        let shifts = directions.map(|direction| shift(&direction));
+        let mut by = Directions {
+            slip: directions.map(|direction| direction.slip),
+            pressure: [0.0; 2],
+            traction: directions.map(|direction| direction.state.traction),
+            mu: [0, 1].map(|i| self.evolution.clamped_by(mu_of(old), directions[i].variable(), &shifts[i].peak)),
+            parameters: Some(shifts),
+        };
+        let rested = |mu: f64, by: &Directions| {
+            [0, 1].map(|i| self.evolution.rested_by(mu, dt, [by.mu[i], 0.0], &shifts[i].peak))
+        };
+        if pressure <= 0.0 {
+            return Ok(rested(self.evolution.clamp(mu_of(old)), &by).map(|dmu| Variation::new(0.0, dmu)));
+        }
+        let within = self.within_strength(old);
+        if old.traction.abs() > mu_of(&within) * old.pressure.max(0.0) * (1.0 + EXCESS) {
+            by.traction = by.mu.map(|dmu| old.traction.signum() * old.pressure.max(0.0) * dmu);
+        }
+        let trial = within.traction + self.alpha_t * slip;
+        if falls(&within, trial, pressure) {
+            let dmu = rested(mu_of(&within), &by);
+            let dtraction = [0, 1].map(|i| by.traction[i] + self.alpha_t * by.slip[i] + slip * shifts[i].alpha_t);
+            return Ok([0, 1].map(|i| Variation::new(dtraction[i], dmu[i])));
+        }
+        let (mut path, start, sign) = self.lead(&within, trial, sliding, &by);
+        let end = path.end(&start)?;
+        Ok([0, 1].map(|i| Variation::new(sign * end.dtraction[i], end.dmu[i])))
     }
 }

@@ -8,9 +8,7 @@ mod stress;
 
 use nalgebra::{Matrix2, Matrix4, Vector2};
 
-use crate::laws::bulk::{
-    Evolution, InvertedElement, Material, MaterialResponse, Straining, cofactor, positive_jacobian,
-};
+use crate::laws::bulk::{Material, MaterialFailure, MaterialResponse, Straining, cofactor, positive_jacobian};
 use crate::mesh::shape::ElementKind;
 use ring::Hoop;
 
@@ -56,13 +54,13 @@ impl SolidElement {
     /// Writes the internal force (2) at nodal displacements `u` over `force`; returns the stored energy.
     ///
     /// # Errors
-    /// [`InvertedElement`] when the material is turned inside out at a quadrature point.
+    /// [`MaterialFailure`] of the law at a quadrature point.
     pub fn force(
         &self,
         material: &dyn Material,
         u: &[Vector2<f64>],
         force: &mut [f64],
-    ) -> Result<f64, InvertedElement> {
+    ) -> Result<f64, MaterialFailure> {
         if self.hoop.is_some() {
             return self.ring_at_once(material, u, force, None);
         }
@@ -75,13 +73,13 @@ impl SolidElement {
     /// Writes the internal force (2) on each node over `forces`; returns the stored energy.
     ///
     /// # Errors
-    /// [`InvertedElement`] when the material is turned inside out at a quadrature point.
+    /// [`MaterialFailure`] of the law at a quadrature point.
     pub fn nodal_forces(
         &self,
         material: &dyn Material,
         u: &[Vector2<f64>],
         forces: &mut [Vector2<f64>],
-    ) -> Result<f64, InvertedElement> {
+    ) -> Result<f64, MaterialFailure> {
         if self.hoop.is_some() {
             let mut all = [0.0; 18];
             let energy = self.ring_at_once(material, u, &mut all[..2 * u.len()], None)?;
@@ -104,7 +102,7 @@ impl SolidElement {
         material: &dyn Material,
         u: &[Vector2<f64>],
         forces: &mut [Vector2<f64>],
-    ) -> Result<f64, InvertedElement> {
+    ) -> Result<f64, MaterialFailure> {
         let points = self.volumes.len();
         debug_assert!(points <= M);
         let mut deformations = [Matrix2::zeros(); M];
@@ -139,14 +137,14 @@ impl SolidElement {
     /// As [`SolidElement::force`], and writes the tangent (3) over `tangent`, column by column.
     ///
     /// # Errors
-    /// [`InvertedElement`] when the material is turned inside out at a quadrature point.
+    /// [`MaterialFailure`] of the law at a quadrature point.
     pub fn force_and_tangent(
         &self,
         material: &dyn Material,
         u: &[Vector2<f64>],
         force: &mut [f64],
         tangent: &mut [f64],
-    ) -> Result<f64, InvertedElement> {
+    ) -> Result<f64, MaterialFailure> {
         if self.hoop.is_some() {
             return self.ring_at_once(material, u, force, Some(tangent));
         }
@@ -167,7 +165,7 @@ impl SolidElement {
         u: &[Vector2<f64>],
         force: &mut [f64],
         tangent: &mut [f64],
-    ) -> Result<f64, InvertedElement> {
+    ) -> Result<f64, MaterialFailure> {
         force.fill(0.0);
         tangent.fill(0.0);
         let centre = self.centre(u)?;
@@ -177,7 +175,7 @@ impl SolidElement {
             let deformation = deformation_gradient(gradients, u);
             let response = match &centre {
                 Some(centre) => centre.respond(material, &deformation)?,
-                None => material.respond(&deformation)?,
+                None => material.at_once(&deformation)?,
             };
             energy += volume * response.energy;
             add_force(gradients, &(volume * response.stress), force);
@@ -254,7 +252,7 @@ struct Centre<'a> {
 }
 
 impl SolidElement {
-    fn centre(&self, u: &[Vector2<f64>]) -> Result<Option<Centre<'_>>, InvertedElement> {
+    fn centre(&self, u: &[Vector2<f64>]) -> Result<Option<Centre<'_>>, MaterialFailure> {
         let Some(gradients) = &self.centre else { return Ok(None) };
         let deformation = deformation_gradient(gradients, u);
         let jacobian = positive_jacobian(&deformation)?;
@@ -264,7 +262,7 @@ impl SolidElement {
 
 impl Centre<'_> {
     /// r = √(J₀/J) of (4)
-    fn stretch(&self, deformation: &Matrix2<f64>) -> Result<f64, InvertedElement> {
+    fn stretch(&self, deformation: &Matrix2<f64>) -> Result<f64, MaterialFailure> {
         Ok((self.jacobian / positive_jacobian(deformation)?).sqrt())
     }
 
@@ -273,9 +271,9 @@ impl Centre<'_> {
         &self,
         material: &dyn Material,
         deformation: &Matrix2<f64>,
-    ) -> Result<MaterialResponse, InvertedElement> {
+    ) -> Result<MaterialResponse, MaterialFailure> {
         let stretch = self.stretch(deformation)?;
-        let mut response = material.respond(&(stretch * deformation))?;
+        let mut response = material.at_once(&(stretch * deformation))?;
         response.stress /= stretch;
         Ok(response)
     }
@@ -374,7 +372,7 @@ impl SolidElement {
     /// energy, and what the increment dissipated.
     ///
     /// # Errors
-    /// [`InvertedElement`] when the material is turned inside out at a quadrature point.
+    /// [`MaterialFailure`] of the law at a quadrature point.
     pub fn evolve(
         &self,
         material: &dyn Material,
@@ -382,7 +380,7 @@ impl SolidElement {
         u: &[Vector2<f64>],
         force: &mut [f64],
         mut tangent: Option<&mut [f64]>,
-    ) -> Result<[f64; 2], InvertedElement> {
+    ) -> Result<[f64; 2], MaterialFailure> {
         if self.hoop.is_some() {
             return self.ring(material, memory, u, force, tangent);
         }
@@ -398,10 +396,10 @@ impl SolidElement {
             let r = centre.as_ref().map_or(Ok(1.0), |centre| centre.stretch(&deformation))?;
             let own = k * count..(k + 1) * count;
             let straining = Straining { deformation: r * deformation, stretch: 1.0, dt, old: &old[own.clone()] };
-            let Evolution { mut response, dissipation } = material.evolve(&straining, &mut new[own])?;
+            let mut response = material.respond(&straining, &mut new[own])?;
             response.stress /= r;
             energy += volume * response.energy;
-            dissipated += volume * dissipation;
+            dissipated += volume * response.dissipation;
             add_force(gradients, &(volume * response.stress), force);
             let Some(tangent) = tangent.as_deref_mut() else { continue };
             for (dof, column) in tangent.chunks_exact_mut(2 * u.len()).enumerate() {

@@ -16,7 +16,7 @@ use nalgebra::{Matrix5, Vector2, Vector5};
 use super::{Memory, SolidElement};
 use crate::laws::bulk::spatial::{components, plane};
 use crate::laws::bulk::{
-    CauchyStress, InvertedElement, Material, Spatial, Straining, Stretched, cofactor, positive_jacobian,
+    CauchyStress, Material, MaterialFailure, Spatial, Straining, Stretched, cofactor, positive_jacobian,
 };
 use crate::mesh::few::Few;
 
@@ -60,7 +60,7 @@ impl SolidElement {
         u: &[Vector2<f64>],
         force: &mut [f64],
         mut tangent: Option<&mut [f64]>,
-    ) -> Result<[f64; 2], InvertedElement> {
+    ) -> Result<[f64; 2], MaterialFailure> {
         let (law, count) = (spatial(material), material.variables().len());
         let centre = self.ring_centre(u)?;
         force.fill(0.0);
@@ -91,7 +91,7 @@ impl SolidElement {
         u: &[Vector2<f64>],
         force: &mut [f64],
         tangent: Option<&mut [f64]>,
-    ) -> Result<f64, InvertedElement> {
+    ) -> Result<f64, MaterialFailure> {
         let old = vec![0.0; material.variables().len() * self.quadrature_points()];
         let memory = Memory { dt: 0.0, old: &old, new: &mut old.clone() };
         self.ring(material, memory, u, force, tangent).map(|[energy, _]| energy)
@@ -103,7 +103,7 @@ impl SolidElement {
         material: &dyn Material,
         memory: &[f64],
         u: &[Vector2<f64>],
-    ) -> Result<Few<CauchyStress, 9>, InvertedElement> {
+    ) -> Result<Few<CauchyStress, 9>, MaterialFailure> {
         let (law, count) = (spatial(material), material.variables().len());
         let centre = self.ring_centre(u)?;
         let stress = |(k, (at, _)): (usize, (At, f64))| {
@@ -160,7 +160,7 @@ impl SolidElement {
         self.points().zip(hoop.chunks_exact(n)).map(|((gradients, volume), hoop)| (At { gradients, hoop }, volume))
     }
 
-    fn ring_centre(&self, u: &[Vector2<f64>]) -> Result<Option<Centre<'_>>, InvertedElement> {
+    fn ring_centre(&self, u: &[Vector2<f64>]) -> Result<Option<Centre<'_>>, MaterialFailure> {
         let (Some(gradients), Some(hoop)) = (&self.centre, &self.hoop) else { return Ok(None) };
         let at = At { gradients, hoop: &hoop.centre };
         let deformation = at.deformation(u);
@@ -192,7 +192,7 @@ impl At<'_> {
         }
     }
 
-    fn seen(&self, centre: Option<&Centre>, u: &[Vector2<f64>]) -> Result<Seen, InvertedElement> {
+    fn seen(&self, centre: Option<&Centre>, u: &[Vector2<f64>]) -> Result<Seen, MaterialFailure> {
         let deformation = self.deformation(u);
         let stretch = match centre {
             Some(centre) => (centre.jacobian / jacobian(&deformation)?).cbrt(),
@@ -238,9 +238,9 @@ impl Seen {
 }
 
 /// J = det F in three dimensions, known to be positive.
-fn jacobian(f: &Vector5<f64>) -> Result<f64, InvertedElement> {
+fn jacobian(f: &Vector5<f64>) -> Result<f64, MaterialFailure> {
     let jacobian = positive_jacobian(&plane(f))? * f[4];
-    if jacobian > 0.0 && jacobian.is_finite() { Ok(jacobian) } else { Err(InvertedElement { jacobian }) }
+    if jacobian > 0.0 && jacobian.is_finite() { Ok(jacobian) } else { Err(MaterialFailure::Inverted { jacobian }) }
 }
 
 /// F⁻ᵀ

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, Matrix2, Vector2};
 
 use super::ring::Hoop;
 use super::{SolidElement, deformation_gradient};
-use crate::laws::bulk::{CauchyStress, InvertedElement, Material};
+use crate::laws::bulk::{CauchyStress, Material, MaterialFailure};
 use crate::mesh::few::Few;
 use crate::mesh::section::Section;
 use crate::mesh::shape::ElementKind;
@@ -18,13 +18,13 @@ impl SolidElement {
     /// Cauchy stress at each quadrature point, with what the material remembers there; nothing if it has no memory.
     ///
     /// # Errors
-    /// [`InvertedElement`] when the material is turned inside out at a quadrature point.
+    /// [`MaterialFailure`] of the law at a quadrature point.
     pub fn stresses(
         &self,
         material: &dyn Material,
         memory: &[f64],
         u: &[Vector2<f64>],
-    ) -> Result<Few<CauchyStress, 9>, InvertedElement> {
+    ) -> Result<Few<CauchyStress, 9>, MaterialFailure> {
         if self.hoop.is_some() {
             return self.ring_stresses(material, memory, u);
         }
@@ -68,13 +68,13 @@ impl SolidElement {
     /// Cauchy stress at each node: the (bi)linear function nearest to the stresses at the quadrature points.
     ///
     /// # Errors
-    /// [`InvertedElement`] when the material is turned inside out at a quadrature point.
+    /// [`MaterialFailure`] of the law at a quadrature point.
     pub fn nodal_stresses(
         &self,
         material: &dyn Material,
         memory: &[f64],
         u: &[Vector2<f64>],
-    ) -> Result<Few<CauchyStress, 9>, InvertedElement> {
+    ) -> Result<Few<CauchyStress, 9>, MaterialFailure> {
         let stresses = self.stresses(material, memory, u)?;
         let fit = corner_fit(self.kind);
         let mut corners = [[0.0; 4]; 4];

@@ -1,0 +1,185 @@
+//! Friction at the points of a contact: a law, and beside it how plastic slip moves the surfaces along the normal by dilatancy
+//! and wear.
+
+use super::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, Sliding, observables};
+use crate::laws::parameter::{InvalidParameter, require_positive};
+
+/// Dilatancy: asperities ride up on each other as the surfaces slip, until the interface has its largest opening.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dilatancy {
+    /// tan ψ: opening per slip at the start, tan ψ > 0 [-]
+    pub rate: f64,
+    /// d_max: opening that much slip leads to, d_max > 0; without it the interface opens for ever [L]
+    pub limit: Option<f64>,
+}
+
+impl Dilatancy {
+    /// δ₁ and ∂δ₁/∂λ.
+    fn after(self, dilation: f64, slip: f64) -> [f64; 2] {
+        let Some(limit) = self.limit else { return [dilation + self.rate * slip, self.rate] };
+        let exponent = -slip * self.rate / limit;
+        let left = limit - dilation;
+        [dilation - left * exponent.exp_m1(), left * self.rate / limit * exponent.exp()]
+    }
+}
+
+/// How the surfaces of a contact move apart, or wear, with plastic slip, whatever their law: not at all unless given.
+///
+/// ```text
+/// λ = |Δu^p|                                         plastic slip of the increment, whichever way it goes
+/// dδ = tan ψ (1 − δ/d_max) dλ                        dilation: δ₁ = d_max − (d_max − δ₀) exp(−λ tan ψ/d_max)            (1)
+/// dw = k p dλ                                        wear:     w₁ = w₀ + k ½(p₀ + p₁) λ                               (2)
+/// d = δ − w                                          opening
+/// dW = q dλ − p dd                                   dissipation: dilation lifts the load out of the work of friction   (3)
+/// δλ = sgn Δu^p (δΔu_t − δq/α_t)                     tangent; without α_t all slip is plastic
+/// ```
+/// (1) makes no difference between slip one way and back: asperities are overridden for good, and the surfaces do not come down
+/// again when slip reverses. (Interlocked ones would.) The opening stays while the surfaces are apart. (2) is Archard's law with k = K/H, the
+/// wear coefficient over the hardness; p goes evenly over the increment, as it does in (3).
+///
+/// (3) is what friction and pressure do on flat surfaces. The contact puts q on both sides across the gap g without a couple, so that
+/// where the surfaces turn by dθ under the slip the work q g dθ is missing, the share g/R of friction's on a radius R: the opening
+/// must be small against that. Without an opening g is as small as the penetration.
+///
+/// Sources: J. F. Archard, J. Appl. Phys. 24 (1953) 981; (1) P. Segall, J. R. Rice, J. Geophys. Res. 100 (1995) 22155, whose
+/// porosity goes to that of its state over a distance of slip in the same way.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Offsets {
+    /// Dilatancy
+    pub dilatancy: Option<Dilatancy>,
+    /// k: depth of wear per pressure and plastic slip [L²/F]
+    pub wear: Option<f64>,
+}
+
+impl Offsets {
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`] when one is out of its range, named `dilatancy.rate`, `dilatancy.limit` or `wear`.
+    fn check(&self) -> Result<(), InvalidParameter> {
+        if let Some(Dilatancy { rate, limit }) = self.dilatancy {
+            require_positive("dilatancy.rate", rate)?;
+            limit.map_or(Ok(()), |limit| require_positive("dilatancy.limit", limit))?;
+        }
+        self.wear.map_or(Ok(()), |wear| require_positive("wear", wear))
+    }
+
+    /// tan ψ and the least coefficient of friction that a law can come to, where the first is not below the second: sliding
+    /// would lift the load with more work than it takes.
+    pub fn beyond(&self, law: &Description) -> Option<[f64; 2]> {
+        let rate = self.dilatancy?.rate;
+        let least = law.least_coefficient.unwrap_or_else(|| law.starting_limit(1.0));
+        (rate >= least).then_some([rate, least])
+    }
+
+    /// Names of the parts of the opening that change.
+    fn names(&self) -> &'static [&'static str] {
+        match (self.dilatancy, self.wear) {
+            (Some(_), Some(_)) => &["dilation", "wear"],
+            (Some(_), None) => &["dilation"],
+            (None, Some(_)) => &["wear"],
+            (None, None) => &[],
+        }
+    }
+
+    /// The answer of a law of stiffness α_t with what it means for the opening.
+    fn moved(&self, old: &FrictionState, pressure: f64, mut response: FrictionResponse, stiffness: f64) -> Answer {
+        let (slip, sign) = (response.state.plastic_increment.abs(), response.state.plastic_increment.signum());
+        if pressure <= 0.0 || slip == 0.0 {
+            return Ok(response);
+        }
+        let elastic = |dtraction: f64| if stiffness > 0.0 { dtraction / stiffness } else { 0.0 };
+        let dslip = sign * (1.0 - elastic(response.dtraction_dslip));
+        let dslip_dpressure = -sign * elastic(response.dtraction_dpressure);
+        let dilation = old.opening + old.wear;
+        let [dilated, by_slip] = self.dilatancy.map_or([dilation, 0.0], |dilatancy| dilatancy.after(dilation, slip));
+        let (mean, wear) = (0.5 * (old.pressure + pressure), self.wear.unwrap_or(0.0));
+        let state = &mut response.state;
+        state.wear = old.wear + wear * mean * slip;
+        state.opening = dilated - state.wear;
+        state.dissipation -= mean * (state.opening - old.opening);
+        let rate = by_slip - wear * mean;
+        response.dopening_dslip += rate * dslip;
+        response.dopening_dpressure += rate * dslip_dpressure - 0.5 * wear * slip;
+        response.checked(stiffness)
+    }
+}
+
+/// Friction of contact points: first the law is asked, then what its slip does to the opening.
+#[derive(Debug)]
+pub struct ContactLaw {
+    /// The law
+    pub law: Box<dyn FrictionLaw>,
+    /// What the law says of itself, with the parts of the opening that the offsets change
+    pub description: Description,
+    offsets: Offsets,
+}
+
+impl<L: FrictionLaw + 'static> From<L> for ContactLaw {
+    fn from(law: L) -> Self {
+        Box::<dyn FrictionLaw>::from(Box::new(law)).into()
+    }
+}
+
+impl From<Box<dyn FrictionLaw>> for ContactLaw {
+    fn from(law: Box<dyn FrictionLaw>) -> Self {
+        Self { description: law.description(), law, offsets: Offsets::default() }
+    }
+}
+
+impl ContactLaw {
+    /// A law with the offsets of its surfaces, whose parameters are checked.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`] when a parameter is out of its range, named `dilatancy.rate`, `dilatancy.limit` or `wear`; also a
+    /// dilatancy that would give more work than friction takes: tan ψ must be below the least coefficient that the law can come
+    /// to, if it has one ([`Description::least_coefficient`]).
+    pub fn with_offsets(law: Box<dyn FrictionLaw>, offsets: Offsets) -> Result<Self, InvalidParameter> {
+        offsets.check()?;
+        let law = Self::from(law);
+        if let Some([value, least]) = offsets.beyond(&law.description) {
+            let allowed = format!(
+                "it must be below {least}, the least friction coefficient that the law can come to, or sliding would yield work \
+                 instead of taking it: lower it, or raise the friction"
+            );
+            return Err(InvalidParameter { name: "dilatancy.rate", value, allowed: allowed.into() });
+        }
+        if offsets == Offsets::default() {
+            return Ok(law);
+        }
+        Ok(Self { description: Description { opening: offsets.names(), ..law.description }, offsets, ..law })
+    }
+
+    /// The answer to an increment, see [`FrictionLaw::respond`].
+    ///
+    /// # Errors
+    /// As of the law.
+    pub fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
+        self.moved(old, sliding, self.law.respond(old, sliding))
+    }
+
+    /// The answers of many points, each the same as alone.
+    pub fn respond_many(&self, old: &[FrictionState], sliding: &[Sliding], answers: &mut [Answer]) {
+        self.law.respond_many(old, sliding, answers);
+        if self.offsets != Offsets::default() {
+            let asked = old.iter().zip(sliding).zip(answers);
+            asked.for_each(|((old, sliding), answer)| *answer = self.moved(old, *sliding, *answer));
+        }
+    }
+
+    fn moved(&self, old: &FrictionState, sliding: Sliding, answer: Answer) -> Answer {
+        if self.offsets == Offsets::default() {
+            return answer;
+        }
+        self.offsets.moved(old, sliding.pressure, answer?, self.description.stiffness)
+    }
+
+    /// The value of an observable in a state, or what stands for it where the law does not know it: NaN if it is a further one.
+    pub fn observe(&self, name: &str, state: &FrictionState) -> f64 {
+        match name {
+            "dilation" if self.description.opening.contains(&name) => state.opening + state.wear,
+            "wear" if self.description.opening.contains(&name) => state.wear,
+            _ => observables::value(&*self.law, name, state),
+        }
+    }
+}
