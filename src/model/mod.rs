@@ -16,6 +16,7 @@ pub mod step;
 pub mod support;
 pub mod told;
 pub mod warnings;
+mod written;
 
 use std::sync::Arc;
 

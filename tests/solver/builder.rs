@@ -15,8 +15,8 @@ use fecontact::laws::friction::{
 use fecontact::mesh::gmsh;
 use fecontact::model::boundary::{Drive, Profile};
 use fecontact::model::builder::{
-    Action, Builder, Change, Checked, Components, Contact, Friction, IncrementSettings, InitialTractions, Link, Load,
-    LoadStep, MasterSide, Place, Support,
+    Builder, Change, Checked, Components, Contact, DashpotLoad, Friction, IncrementSettings, InitialTractions, Load,
+    LoadStep, MasterSide, Place, SpringLoad, Support,
 };
 use fecontact::model::method::Method;
 use fecontact::model::scheme::Scheme;
@@ -114,8 +114,8 @@ fn a_committed_rupture_from_code_is_the_same_model() {
     let rock = linear(80095.3008, 0.25, 0.00267);
     let pairs = |key: &Value| serde_json::from_value::<Vec<[f64; 2]>>(key["x"].clone()).expect("pairs");
     let fault = &given["contacts"]["fault"];
-    let cohesion = Profile::Table(0, pairs(&fault["along"]["cohesion"]));
-    let traction = Profile::Table(0, pairs(&fault["initial"]["traction"]));
+    let cohesion = Profile::X(pairs(&fault["along"]["cohesion"]));
+    let traction = Profile::X(pairs(&fault["initial"]["traction"]));
     let friction = Friction::varying([("along.cohesion", cohesion)], |values, alpha_t| {
         let parameters = SlipWeakeningParameters {
             cohesion: values[0],
@@ -234,8 +234,8 @@ fn only(x: Option<Drive>, y: Option<Drive>) -> Components {
 
 fn three_steps(model: Builder) -> Builder {
     let along_x = |x: Drive| only(Some(x), None);
-    let pulled = Link { coefficients: [3.0, 0.0], driver: Some(along_x(1e-3.into())) };
-    let moved = Link { coefficients: [0.1, 0.0], driver: Some(along_x(Drive::Rate(0.1))) };
+    let pulled = SpringLoad { kx: 3.0, ky: 0.0, driver: Some(along_x(1e-3.into())) };
+    let moved = DashpotLoad { cx: 0.1, cy: 0.0, driver: Some(along_x(Drive::Rate(0.1))) };
     let push = only(None, Some(Drive::Table(vec![[0.0, 0.0], [1.0, 0.01]])));
     let ring = || Support::on("ring_top");
     let press = LoadStep::new("press", 1.0)
@@ -259,7 +259,7 @@ fn three_steps(model: Builder) -> Builder {
         .load(Load::pressure("block_top", 0.2))
         .load(Load::traction("block_top", Change::End))
         .load(Load::spring("ring_left", Change::End))
-        .load(Load { on: "ground_top".into(), action: Action::Absorbing(Change::End) })
+        .load(Load { absorbing: Some(Change::End), ..Load::absorbing("ground_top") })
         .load(Load::dashpot("ring_left", Change::To(moved)));
     let swing = LoadStep::new("swing", 0.25)
         .scheme(Scheme::Hht { alpha: -0.1 })
@@ -477,7 +477,7 @@ fn what_is_wrong_is_named() {
         ),
         (varying((-1.0).into()), "contacts.other.along.mu at (0, 0.7886751345948129): \"mu\" is -1"),
         (varying(Profile::Expression(parsed("t"))), "contacts.other.along.mu at (0, 0.7886751345948129): \"mu\" is 0"),
-        (varying(Profile::Table(1, vec![])), "contacts.other.along.mu.y: the table is empty"),
+        (varying(Profile::Y(vec![])), "contacts.other.along.mu.y: the table is empty"),
         (small().step(step().support(top())), "steps[1].supports[0]: prescribes nothing"),
         (small().step(step().support(top().ux(f64::NAN))), "steps[1].supports[0].ux: is NaN: must be a finite number"),
         (small().step(step().fix("top")), "steps[1].supports[0].on: the mesh has no group `top`"),

@@ -1,8 +1,6 @@
 //! Contacts as they are written.
 //!
 //! Friction that varies along a contact, as it is written.
-//!
-//! Profiles along a surface as they are written.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -13,6 +11,7 @@ use serde::{Deserialize, Deserializer};
 
 use crate::case::choice::Choice;
 use crate::laws::friction::FrictionParameters;
+use crate::model::boundary::Profile;
 use crate::model::method::Method;
 
 /// A contact pair.
@@ -68,7 +67,7 @@ pub struct ContactInput {
     /// reference position x, y of the slave. It pushes both sides apart wherever the master faces the slave, closed or open, beside
     /// the pressure p that the surfaces carry; friction, `initial.pressure` and all outputs called pressure are this effective p
     /// alone. It is given, and does not flow. Not for quasi_dynamic steps [F/L²]
-    pub fluid_pressure: Option<ProfileInput>,
+    pub fluid_pressure: Option<Profile>,
     /// What of friction varies along the slave, and in time
     #[serde(default)]
     pub along: AlongInput,
@@ -158,11 +157,11 @@ pub enum SlidingInput {
 #[serde(deny_unknown_fields)]
 pub struct InitialInput {
     /// p: contact pressure, zero or positive [F/L²]
-    pub pressure: Option<ProfileInput>,
+    pub pressure: Option<Profile>,
     /// q: traction that resists the slip of the slave along +s, the master's normal turned by −90° [F/L²]
-    pub traction: Option<ProfileInput>,
+    pub traction: Option<Profile>,
     /// 1/R*: structure of the super/subloading law, from 1 to μ_s/μ_k; that of the law unless given [-]
-    pub structure: Option<ProfileInput>,
+    pub structure: Option<Profile>,
     /// Whether an initial stress of the bodies is in equilibrium with these tractions. Displacements and stresses of the
     /// run are then those that come on top of the initial stress
     #[serde(default)]
@@ -255,7 +254,7 @@ pub struct AlongInput {
     /// Parameters of `friction`, by name: they replace the numbers given there. A rate enters by its mean over an increment,
     /// any other parameter by its value at the end. Those of the start (structure, theta) and alpha_t do not vary in time
     #[schemars(flatten)]
-    pub parameters: BTreeMap<String, ProfileInput>,
+    pub parameters: BTreeMap<String, Profile>,
 }
 
 impl AlongInput {
@@ -271,12 +270,12 @@ impl AlongInput {
 pub struct LawChoiceInput {
     /// It holds where this is positive
     #[serde(rename = "where")]
-    pub place: ProfileInput,
+    pub place: Profile,
     /// Friction law
     pub friction: FrictionParameters,
     /// Its parameters that vary along the slave, and in time, by name
     #[serde(default)]
-    pub along: BTreeMap<String, ProfileInput>,
+    pub along: BTreeMap<String, Profile>,
 }
 
 impl<'de> Deserialize<'de> for AlongInput {
@@ -305,41 +304,4 @@ impl<'de> Visitor<'de> for Entries {
         }
         Ok(along)
     }
-}
-
-/// How a quantity varies along a surface.
-#[derive(Clone, Debug, JsonSchema)]
-#[schemars(untagged)]
-pub enum ProfileInput {
-    /// The same everywhere
-    Constant(f64),
-    /// Expression in the reference position x, y
-    Expression(String),
-    /// Table by a coordinate
-    Table(ProfileTable),
-}
-
-impl Default for ProfileInput {
-    fn default() -> Self {
-        Self::Constant(0.0)
-    }
-}
-
-impl<'de> Deserialize<'de> for ProfileInput {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let expecting = "a number, an expression in x, y such as \"1 + 0.1*x\", or {\"x\": [[x, v], …]}";
-        Choice { expecting, number: Some(Self::Constant), text: Self::Expression, object: Self::Table }
-            .read(deserializer)
-    }
-}
-
-/// Values by a coordinate of the reference position: linear between, constant outside. The same coordinate twice is a
-/// jump.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ProfileTable {
-    /// Pairs of x and value, x ascending
-    X(Vec<[f64; 2]>),
-    /// Pairs of y and value, y ascending
-    Y(Vec<[f64; 2]>),
 }

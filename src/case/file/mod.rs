@@ -9,7 +9,6 @@
 mod blocks;
 mod contact;
 mod output;
-mod step;
 
 use std::collections::BTreeMap;
 
@@ -19,18 +18,15 @@ use serde::{Deserialize, Deserializer};
 use crate::case::choice::Choice;
 use crate::laws::bulk::MaterialParameters;
 use crate::mesh::InlineMesh;
-use crate::model::NewtonSettings;
+use crate::model::builder::LoadStep;
+use crate::model::imposed::{InitialStress, Thermal};
+use crate::model::{Damping, NewtonSettings};
 pub use blocks::{Amount, BlockInput, BlocksInput, GradingInput, MeshInPlace, MiddleInput};
 pub use contact::{
     AlongInput, CircleInput, ContactInput, DilatancyInput, InitialInput, LawChoiceInput, MasterInput, NormalInput,
-    PlaneInput, PolylineInput, ProfileInput, ProfileTable, RadiationInput, RigidInput, SlidingInput,
+    PlaneInput, PolylineInput, RadiationInput, RigidInput, SlidingInput,
 };
 pub use output::{ArrivalInput, FrontsInput, OutputInput, ProbeInput};
-pub use step::{
-    Components, DashpotInput, DriveInput, GeostaticInput, IncrementsInput, InitialStressInput, LoadInput, Place,
-    RotationInput, RuptureInput, SpotInput, SpringInput, StepInput, StressInput, SupportInput, TemperatureInput,
-    TemperatureVariation, ThermalInput, TimeInput, UntilInput,
-};
 
 /// A case: mesh, bodies, contacts and steps.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -71,7 +67,7 @@ pub struct Case {
     #[serde(default)]
     pub initial_velocity: BTreeMap<String, [f64; 2]>,
     /// Steps, one after the other
-    pub steps: Vec<StepInput>,
+    pub steps: Vec<LoadStep>,
     /// Folder of results, or checkpoint, of a case that has come to its end, relative to this file: this case begins there.
     /// Mesh, bodies and contacts must be the same but for the parameters of friction and damping. The steps follow on those
     /// of that case: supports, loads and time go on from there; energies are counted anew
@@ -126,11 +122,11 @@ pub struct BodyInput {
     pub element: Formulation,
     /// Damping of the body in dynamic steps; none unless given
     #[serde(default)]
-    pub damping: DampingInput,
+    pub damping: Damping,
     /// Stress of the undeformed body at the start; none unless given
-    pub initial_stress: Option<InitialStressInput>,
+    pub initial_stress: Option<InitialStress>,
     /// Thermal expansion; none unless given
-    pub thermal: Option<ThermalInput>,
+    pub thermal: Option<Thermal>,
 }
 
 /// How the elements of a body are integrated.
@@ -169,17 +165,6 @@ impl Default for NewtonInput {
         let NewtonSettings { tolerance, max_iterations } = NewtonSettings::default();
         Self { tolerance, max_iterations }
     }
-}
-
-/// Rayleigh damping. A vibration of angular frequency w decays with the damping ratio (mass/w + stiffness w)/2.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct DampingInput {
-    /// Force per momentum: damps slow motions most, free flight included [1/T]
-    pub mass: f64,
-    /// Kelvin-Voigt: viscous stress, this time times the elastic stress of the rate of strain; damps fast vibrations most,
-    /// and makes explicit increments shorter [T]
-    pub stiffness: f64,
 }
 
 /// What the plane stands for in space.

@@ -8,13 +8,13 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::case::file::{
-    Case, CircleInput, ContactInput, DilatancyInput, InitialInput, MasterInput, PlaneInput, PolylineInput,
-    ProfileInput, RigidInput,
+    Case, CircleInput, ContactInput, DilatancyInput, InitialInput, MasterInput, PlaneInput, PolylineInput, RigidInput,
 };
 use crate::contact::pair::ContactPair;
 use crate::contact::small_sliding::LITTLE_TURN;
 use crate::laws::friction::{Onset, observables};
 use crate::model::Model;
+use crate::model::boundary::Profile;
 use crate::model::method::{Chosen, Method};
 use crate::model::told::{count, number};
 use crate::model::warnings::{farthest, gaps};
@@ -100,7 +100,7 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
         lines.push(format!("alpha_t {alpha_t} ({chosen})"));
     }
     lines.push(format!("friction {}", parameters(&input.friction, "law", &["alpha_t"])));
-    let vary = |along: &BTreeMap<String, ProfileInput>| -> Option<String> {
+    let vary = |along: &BTreeMap<String, Profile>| -> Option<String> {
         let names: Vec<&str> = along.keys().map(String::as_str).collect();
         (!names.is_empty()).then(|| format!("along it vary {}", names.join(", ")))
     };

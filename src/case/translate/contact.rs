@@ -4,11 +4,10 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use super::step::profile;
 use crate::case::error::{Checked, Complaint};
 use crate::case::file::{
     CircleInput, ContactInput, DilatancyInput, InitialInput, LawChoiceInput, MasterInput, PlaneInput, PolylineInput,
-    ProfileInput, RadiationInput, RigidInput, SlidingInput,
+    RadiationInput, RigidInput, SlidingInput,
 };
 use crate::case::read::explain;
 use crate::laws::friction::{Dilatancy, FrictionParameters};
@@ -39,11 +38,7 @@ pub fn contact(name: &str, input: &ContactInput) -> Checked<Contact> {
             RadiationInput::OfBodies(true) => Some(Radiation::OfBodies),
             RadiationInput::Given(damping) => Some(Radiation::Given(damping)),
         },
-        fluid_pressure: input
-            .fluid_pressure
-            .as_ref()
-            .map(|pressure| profile(pressure, &format!("{place}.fluid_pressure")))
-            .transpose()?,
+        fluid_pressure: input.fluid_pressure.clone(),
         initial: input.initial.as_ref().map(|initial| tractions(initial, &format!("{place}.initial"))).transpose()?,
     })
 }
@@ -70,13 +65,9 @@ fn tractions(input: &InitialInput, place: &str) -> Checked<InitialTractions> {
         (false, None, _) => return refused("pressure", "is missing: give it, or \"of_bodies\": true"),
         _ => {}
     }
-    let given = |key: &str, input: &Option<ProfileInput>| match input {
-        Some(input) => profile(input, &format!("{place}.{key}")),
-        None => Ok(0.0.into()),
-    };
     Ok(InitialTractions {
-        pressure: given("pressure", pressure)?,
-        traction: given("traction", traction)?,
+        pressure: pressure.clone().unwrap_or_default(),
+        traction: traction.clone().unwrap_or_default(),
         balanced: *balanced,
         of_bodies: *of_bodies,
     })
@@ -84,7 +75,7 @@ fn tractions(input: &InitialInput, place: &str) -> Checked<InitialTractions> {
 
 /// The laws, with those of their parameters replaced that vary along the slave; an initial structure is one of them.
 fn friction(input: &ContactInput, place: &str) -> Checked<Friction> {
-    let mut varying = profiles(&input.along.parameters, "along", place)?;
+    let mut varying = profiles(&input.along.parameters, "along");
     if let Some(structure) = input.initial.as_ref().and_then(|initial| initial.structure.as_ref()) {
         let place = format!("{place}.initial.structure");
         if !input.friction.has_structure() {
@@ -93,14 +84,14 @@ fn friction(input: &ContactInput, place: &str) -> Checked<Friction> {
         if input.along.parameters.contains_key("structure") {
             return Err(Complaint::new(place, "is given by `along` already: leave one of them out"));
         }
-        varying.push(("structure".into(), "initial.structure".into(), profile(structure, &place)?));
+        varying.push(("structure".into(), "initial.structure".into(), structure.clone()));
     }
     let mut friction = with_varying(input.friction.clone(), varying, place, "friction")?;
     for (k, LawChoiceInput { place: positive, friction: law, along }) in input.along.law.iter().enumerate() {
         let name = format!("along.law[{k}]");
-        let varying = profiles(along, &format!("{name}.along"), place)?;
+        let varying = profiles(along, &format!("{name}.along"));
         let other = with_varying(law.clone(), varying, place, &format!("{name}.friction"))?;
-        friction = friction.but_where(&name, profile(positive, &format!("{place}.{name}.where"))?, other);
+        friction = friction.but_where(&name, positive.clone(), other);
     }
     Ok(friction)
 }
@@ -108,13 +99,8 @@ fn friction(input: &ContactInput, place: &str) -> Checked<Friction> {
 /// A parameter, where it stands in a contact, and how it varies.
 type Varying = (String, String, Profile);
 
-fn profiles(along: &BTreeMap<String, ProfileInput>, within: &str, place: &str) -> Checked<Vec<Varying>> {
-    let of = |(name, input): (&String, &ProfileInput)| {
-        let within = format!("{within}.{name}");
-        let profile = profile(input, &format!("{place}.{within}"))?;
-        Ok((name.clone(), within, profile))
-    };
-    along.iter().map(of).collect()
+fn profiles(along: &BTreeMap<String, Profile>, within: &str) -> Vec<Varying> {
+    along.iter().map(|(name, profile)| (name.clone(), format!("{within}.{name}"), profile.clone())).collect()
 }
 
 /// A law some of whose parameters vary; it stands at `own` in the contact.

@@ -2,22 +2,17 @@
 
 mod blocks;
 mod contact;
-mod step;
 
 pub use blocks::blocks;
-use step::profile;
-pub use step::{drive, load, place, step};
 
 use super::error::{Checked, Complaint};
 use super::file::{
-    BodyInput, Case, Formulation, GeostaticInput, InitialStressInput, LoadingPlateInput, NewtonInput, PlateInput,
-    PlateMotion, ProbeInput, ProfileInput, SectionInput, StressInput, ThermalInput,
+    BodyInput, Case, Formulation, LoadingPlateInput, NewtonInput, PlateInput, PlateMotion, ProbeInput, SectionInput,
 };
 use super::labels;
 use crate::mesh::Mesh;
 use crate::mesh::section::Section;
 use crate::model::builder::{Builder, Gauge, Plate};
-use crate::model::imposed::{InitialStress, Thermal};
 use crate::model::{Model, NewtonSettings};
 
 fn plate(moves: PlateMotion) -> Plate {
@@ -41,7 +36,7 @@ pub fn model(case: &Case, mesh: Mesh) -> Checked<Builder> {
     let mut builder = Model::builder(mesh).title(&case.title).section(section);
     builder = builder.newton(NewtonSettings { tolerance, max_iterations });
     for (name, given) in &case.bodies {
-        builder = body(builder, name, given, section)?;
+        builder = body(builder, name, given)?;
     }
     for (name, point) in &case.point_masses {
         builder = match point.velocity {
@@ -59,9 +54,7 @@ pub fn model(case: &Case, mesh: Mesh) -> Checked<Builder> {
     for (name, velocity) in &case.initial_velocity {
         builder = builder.initial_velocity(name, *velocity);
     }
-    for (k, input) in case.steps.iter().enumerate() {
-        builder = builder.step(step::step(&format!("steps[{k}]"), input)?);
-    }
+    builder = case.steps.iter().cloned().fold(builder, Builder::step);
     builder = case.watch.iter().fold(builder, |builder, group| builder.watch(group));
     for (name, input) in &case.probes {
         builder = builder.probe(gauge(name, input)?);
@@ -73,46 +66,19 @@ pub fn model(case: &Case, mesh: Mesh) -> Checked<Builder> {
     })
 }
 
-fn body(mut builder: Builder, name: &str, given: &BodyInput, section: Section) -> Checked<Builder> {
+fn body(mut builder: Builder, name: &str, given: &BodyInput) -> Checked<Builder> {
     let complain = |error| Complaint::new(format!("bodies.{name}.material"), error);
     builder = builder.body(name, given.material.build().map_err(complain)?);
-    builder = builder.damping(name, step::damping(&given.damping));
+    builder = builder.damping(name, given.damping);
     if given.element == Formulation::FBar {
         builder = builder.f_bar(name);
     }
     if let Some(stress) = &given.initial_stress {
-        let place = format!("bodies.{name}.initial_stress");
-        builder = builder.initial_stress(name, initial_stress(stress, section, &place)?);
+        builder = builder.initial_stress(name, stress.clone());
     }
     Ok(match given.thermal {
-        Some(ThermalInput { expansion, reference }) => builder.thermal(name, Thermal { expansion, reference }),
+        Some(thermal) => builder.thermal(name, thermal),
         None => builder,
-    })
-}
-
-fn initial_stress(input: &InitialStressInput, section: Section, place: &str) -> Checked<InitialStress> {
-    Ok(match input {
-        InitialStressInput::Geostatic(GeostaticInput { surface, weight, k0 }) => {
-            InitialStress::Geostatic { surface: *surface, weight: *weight, k0: *k0 }
-        }
-        InitialStressInput::Components(StressInput { xx, yy, xy, zz }) => {
-            let place = format!("{place}.components");
-            let component = |key: &str, input: &ProfileInput| profile(input, &format!("{place}.{key}"));
-            let zz = match zz {
-                Some(zz) => component("zz", zz)?,
-                None if section.is_plate() => 0.0.into(),
-                None => {
-                    let message = "is missing: give the stress across the plane as well, 0 if there is none";
-                    return Err(Complaint::new(format!("{place}.zz"), message));
-                }
-            };
-            InitialStress::Components {
-                xx: component("xx", xx)?,
-                yy: component("yy", yy)?,
-                xy: component("xy", xy)?,
-                zz,
-            }
-        }
     })
 }
 

@@ -221,19 +221,18 @@ pub fn check_in_time(profile: &Profile, place: &str) -> Checked<()> {
             format!("{parameter} is one number a point from the start on: the variables are x and y, and not t");
         return Err(ModelError::new(place, message));
     }
-    match profile {
-        Profile::Constant(_) | Profile::Expression(_) => Ok(()),
-        Profile::Table(component, table) => {
-            let name = ["x", "y"][*component];
-            if table.is_empty() {
-                let message = format!("the table is empty: give pairs [{name}, value]");
-                return Err(ModelError::new(format!("{place}.{name}"), message));
-            }
-            let Some(pair) = table.windows(2).find(|pair| pair[1][0] < pair[0][0]) else { return Ok(()) };
-            let message = format!("the coordinates of the table must ascend: {} follows {}", pair[1][0], pair[0][0]);
-            Err(ModelError::new(format!("{place}.{name}"), message))
-        }
+    let (name, table) = match profile {
+        Profile::Constant(_) | Profile::Expression(_) => return Ok(()),
+        Profile::X(table) => ("x", table),
+        Profile::Y(table) => ("y", table),
+    };
+    if table.is_empty() {
+        let message = format!("the table is empty: give pairs [{name}, value]");
+        return Err(ModelError::new(format!("{place}.{name}"), message));
     }
+    let Some(pair) = table.windows(2).find(|pair| pair[1][0] < pair[0][0]) else { return Ok(()) };
+    let message = format!("the coordinates of the table must ascend: {} follows {}", pair[1][0], pair[0][0]);
+    Err(ModelError::new(format!("{place}.{name}"), message))
 }
 
 /// Points of time over which the mean of a rate is taken: exact for polynomials of the fifth order.

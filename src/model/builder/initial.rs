@@ -44,12 +44,12 @@ pub fn velocities(of_bodies: &[(String, [f64; 2])], masses: &[GivenMass], model:
 /// Velocities that nodes take when a step begins [L/T].
 pub fn launch(step: &LoadStep, scheme: Scheme, place: &str, model: &Model) -> Checked<Vec<(usize, [f64; 2])>> {
     let place = format!("{place}.velocity");
-    if !step.velocities.is_empty() && !scheme.is_dynamic() {
+    if !step.velocity.is_empty() && !scheme.is_dynamic() {
         return Err(ModelError::new(place, "is for dynamic and explicit steps: a static one knows no velocities"));
     }
-    check_velocities(&place, &step.velocities, model)?;
+    check_velocities(&place, &step.velocity, model)?;
     let mut given = Given { velocity: vec![None; model.mesh.nodes.len()], model };
-    for (name, value) in &step.velocities {
+    for (name, value) in &step.velocity {
         let place = format!("{place}.{name}");
         let body = model.bodies.iter().find(|body| body.name == *name).map(|body| &body.nodes);
         let points = model.point_masses.iter().find(|point| point.name == *name).map(|point| &point.nodes);

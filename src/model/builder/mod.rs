@@ -51,8 +51,8 @@ pub use error::{Checked, ModelError};
 pub use friction::Friction;
 pub use groups::Place;
 pub use load_step::{
-    Action, Change, Components, IncrementSettings, Link, Load, LoadStep, MET, Rotation, RuptureSettings, Support,
-    UntilSettings,
+    Action, Change, Components, DashpotLoad, IncrementSettings, Load, LoadStep, MET, Rotation, RuptureSettings,
+    SpringLoad, Support, UntilSettings,
 };
 pub use loads::LoadsInForce;
 pub use plates::Plate;
@@ -267,7 +267,11 @@ impl Builder {
         model.methods = self.contacts.iter().map(|contact| pair::evaluation(contact, &model.mesh)).collect();
         model.prestress = initial::prestress(&self.contacts, &model);
         model.steps = schedule::steps(&self.steps, &model)?;
-        section::check_velocities("initial_velocity", &self.velocities, &model)?;
+        section::check_velocities(
+            "initial_velocity",
+            self.velocities.iter().map(|(name, value)| (name, value)),
+            &model,
+        )?;
         model.initial_velocity = initial::velocities(&self.velocities, &self.point_masses, &model)?;
         model.watch = groups::watched(&self.watch, &model)?;
         model.times = checks::checked_times(self.times, &model.steps)?;
