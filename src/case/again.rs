@@ -135,10 +135,11 @@ impl Opened {
     /// A structure that the other case has left must be one of the law as it is now.
     fn within_strength(&self, model: &Model, state: &State) -> Checked<()> {
         for (pair, states) in model.contacts.iter().zip(&state.contacts) {
-            let Some(input) = self.case.contacts.get(&pair.name).filter(|input| input.friction.has_structure()) else {
+            let Some(input) = self.case.contacts.get(&pair.name) else { continue };
+            let Some(friction) = input.friction.parameters().filter(|friction| friction.has_structure()) else {
                 continue;
             };
-            let [(_, highest), (_, lowest)] = input.friction.bounds()[..] else { continue };
+            let [(_, highest), (_, lowest)] = friction.bounds()[..] else { continue };
             let allowed = lowest * (1.0 - SAME)..=highest * (1.0 + SAME);
             let mu = |(point, contact): (&SlavePoint, &ContactState)| {
                 pair.observed(point, "mu", (&contact.friction, state.time))

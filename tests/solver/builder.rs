@@ -15,8 +15,8 @@ use fecontact::laws::friction::{
 use fecontact::mesh::gmsh;
 use fecontact::model::boundary::{Drive, Profile};
 use fecontact::model::builder::{
-    Builder, Change, Checked, Components, Contact, DashpotLoad, Friction, IncrementSettings, InitialTractions, Load,
-    LoadStep, MasterSide, Place, SpringLoad, Support,
+    Builder, Change, Checked, Components, Contact, DashpotLoad, Friction, IncrementSettings, Load, LoadStep,
+    MasterSide, Place, SpringLoad, Support,
 };
 use fecontact::model::method::Method;
 use fecontact::model::scheme::Scheme;
@@ -81,7 +81,6 @@ fn a_committed_dynamic_case_from_code_is_the_same_model() {
         alpha_t: Some(3000.0),
         ..SuperSubloadingParameters::new(0.5, 0.1, 3600.0)
     };
-    let initial = InitialTractions { pressure: 5.0.into(), traction: 0.5.into(), balanced: true, of_bodies: false };
     let contact = Contact::new("interface", "block_bottom", "base_top", friction).alpha_n(3000.0);
     let increments = IncrementSettings { initial: 0.01, min: Some(1e-8), max: Some(0.05), error: Some(5e-5) };
     let push = LoadStep::new("push", 3.5)
@@ -93,7 +92,7 @@ fn a_committed_dynamic_case_from_code_is_the_same_model() {
     let code = on_mesh_of(&given)
         .body("base", acrylic)
         .body("block", acrylic)
-        .contact(Contact { initial: Some(initial), ..contact })
+        .contact(contact.initial(5.0, 0.5).balanced())
         .newton(NewtonSettings { tolerance: 1e-6, ..NewtonSettings::default() })
         .step(sides.into_iter().fold(push, |push, side| push.load(Load::absorbing(side))))
         .watch("block_left");
@@ -125,7 +124,6 @@ fn a_committed_rupture_from_code_is_the_same_model() {
         Ok(Box::new(SlipWeakening::new(&parameters, alpha_t)?))
     });
     let contact = Contact::new("fault", "upper_bottom", "lower_top", friction).alpha_n(3203.8).small_sliding();
-    let initial = InitialTractions { pressure: 120.0.into(), traction, balanced: true, of_bodies: false };
     let damping = Damping { mass: 0.0, retardation: 0.003 };
     let step = LoadStep::new("rupture", 12.0).scheme(Scheme::Explicit { safety: 0.9 }).dt(1.0);
     let sides = ["lower_left", "lower_right", "lower_bottom", "upper_left", "upper_right", "upper_top"];
@@ -135,7 +133,7 @@ fn a_committed_rupture_from_code_is_the_same_model() {
         .body("upper", rock)
         .damping("lower", damping)
         .damping("upper", damping)
-        .contact(Contact { initial: Some(initial), ..contact })
+        .contact(contact.initial(120.0, traction).balanced())
         .step(sides.into_iter().fold(step, |step, side| step.load(Load::absorbing(side))))
         .interval(0.02);
     same(&built(code), &model(&given));
@@ -196,7 +194,7 @@ fn everything() -> (Builder, Value) {
     });
     let base = Contact { shrink_fit: true, ..Contact::new("base", "block_bottom", "ground_top", base) };
     let on_floor = Contact { points: Some(3), ..Contact::new("floor", "ring_bottom", floor(), Frictionless) };
-    let wall = MasterSide::Polyline(vec![[5.0, -1.0], [5.0, 1.0]]);
+    let wall = MasterSide::Polyline { points: vec![[5.0, -1.0], [5.0, 1.0]] };
     let wall = Contact::new("wall", "ring_right", wall, Frictionless).method(Method::NodeToSegment);
     let wheel = MasterSide::Circle { centre: [4.0, -3.0], radius: 3.0, hole: false };
     let rubbing = CoulombParameters { mu: 0.2, alpha_t: Some(50.0) };

@@ -7,7 +7,6 @@
 //! Loading plates as they are written.
 
 mod blocks;
-mod contact;
 mod output;
 
 use std::collections::BTreeMap;
@@ -18,14 +17,10 @@ use serde::{Deserialize, Deserializer};
 use crate::case::choice::Choice;
 use crate::laws::bulk::MaterialParameters;
 use crate::mesh::InlineMesh;
-use crate::model::builder::LoadStep;
+use crate::model::builder::{Contact, LoadStep};
 use crate::model::imposed::{InitialStress, Thermal};
 use crate::model::{Damping, NewtonSettings};
 pub use blocks::{Amount, BlockInput, BlocksInput, GradingInput, MeshInPlace, MiddleInput};
-pub use contact::{
-    AlongInput, CircleInput, ContactInput, DilatancyInput, InitialInput, LawChoiceInput, MasterInput, NormalInput,
-    PlaneInput, PolylineInput, RadiationInput, RigidInput, SlidingInput,
-};
 pub use output::{ArrivalInput, FrontsInput, OutputInput, ProbeInput};
 
 /// A case: mesh, bodies, contacts and steps.
@@ -62,7 +57,7 @@ pub struct Case {
     pub plates: Vec<LoadingPlateInput>,
     /// Contacts by a name of your choice
     #[serde(default)]
-    pub contacts: BTreeMap<String, ContactInput>,
+    pub contacts: BTreeMap<String, Contact>,
     /// Initial velocity [x, y] of whole bodies; supported nodes keep to their supports
     #[serde(default)]
     pub initial_velocity: BTreeMap<String, [f64; 2]>,

@@ -1,7 +1,6 @@
 //! From the case as written to the builder of the model.
 
 mod blocks;
-mod contact;
 
 pub use blocks::blocks;
 
@@ -12,7 +11,7 @@ use super::file::{
 use super::labels;
 use crate::mesh::Mesh;
 use crate::mesh::section::Section;
-use crate::model::builder::{Builder, Gauge, Plate};
+use crate::model::builder::{Builder, Contact, Gauge, Plate};
 use crate::model::{Model, NewtonSettings};
 
 fn plate(moves: PlateMotion) -> Plate {
@@ -48,8 +47,8 @@ pub fn model(case: &Case, mesh: Mesh) -> Checked<Builder> {
     for (group, moves) in case.plates.iter().map(LoadingPlateInput::parts) {
         builder = builder.plate_that(group, plate(moves));
     }
-    for (name, input) in &case.contacts {
-        builder = builder.contact(contact::contact(name, input)?);
+    for (name, contact) in &case.contacts {
+        builder = builder.contact(Contact { name: name.clone(), ..contact.clone() });
     }
     for (name, velocity) in &case.initial_velocity {
         builder = builder.initial_velocity(name, *velocity);

@@ -3,6 +3,7 @@
 //! Friction whose parameters vary in time: patches that weaken and recover, creep that sets in.
 
 use std::collections::BTreeMap;
+use std::fmt::{Debug, Formatter};
 use std::sync::Arc;
 
 use nalgebra::Vector2;
@@ -19,7 +20,10 @@ use crate::mesh::shape::gauss;
 use crate::model::boundary::Profile;
 
 /// Friction of a contact. A law is friction, and so are parameters of one, whose α_t is α_n/2 unless they give it.
+#[derive(Clone)]
 pub struct Friction {
+    /// What a case writes; none of a law from code
+    parameters: Option<FrictionParameters>,
     /// Its own name within the contact, for messages
     name: String,
     varying: Vec<(String, Profile)>,
@@ -48,7 +52,12 @@ impl Friction {
         law: impl Fn(&[f64], f64) -> Checked<Box<dyn FrictionLaw>> + Send + Sync + 'static,
     ) -> Self {
         let varying = profiles.into_iter().map(|(name, profile)| (name.into(), profile)).collect();
-        Self { name: "friction".into(), varying, law: Arc::new(law), elsewhere: Vec::new() }
+        Self { parameters: None, name: "friction".into(), varying, law: Arc::new(law), elsewhere: Vec::new() }
+    }
+
+    /// The parameters of its law, where it is not one from code.
+    pub fn parameters(&self) -> Option<&FrictionParameters> {
+        self.parameters.as_ref()
     }
 
     /// With other friction at the points where a profile is positive at the start; of several the first holds. Messages name
@@ -159,7 +168,8 @@ impl Friction {
 
 impl From<FrictionParameters> for Friction {
     fn from(parameters: FrictionParameters) -> Self {
-        Self::varying::<String>([], move |_, alpha_t| Ok(parameters.build(alpha_t)?))
+        let law = parameters.clone();
+        Self { parameters: Some(parameters), ..Self::varying::<String>([], move |_, alpha_t| Ok(law.build(alpha_t)?)) }
     }
 }
 
@@ -185,6 +195,12 @@ friction_from!(
 impl<L: FrictionLaw + Clone + 'static> From<L> for Friction {
     fn from(law: L) -> Self {
         Self::varying::<String>([], move |_, _| Ok(Box::new(law.clone())))
+    }
+}
+
+impl Debug for Friction {
+    fn fmt(&self, f: &mut Formatter) -> std::fmt::Result {
+        f.debug_struct("Friction").field("parameters", &self.parameters).finish_non_exhaustive()
     }
 }
 

@@ -28,6 +28,7 @@
 //! A load step takes over what the one before gave: scheme, increments, supports and loads. What is wrong is told with its
 //! place, in the words of a case file: `steps[1].supports[0].on: the mesh has no group …`.
 
+mod along;
 mod body;
 mod checks;
 mod contact;
@@ -46,7 +47,8 @@ mod shares;
 mod supported;
 mod supports;
 
-pub use contact::{Contact, InitialTractions, MasterSide, Radiation};
+pub use along::{Along, LawChoice};
+pub use contact::{Contact, InitialTractions, MasterSide, Normal, Radiation, SlidingRange};
 pub use error::{Checked, ModelError};
 pub use friction::Friction;
 pub use groups::Place;
