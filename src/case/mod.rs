@@ -12,6 +12,7 @@ pub mod law_test;
 pub mod loading;
 mod read;
 mod report;
+mod resolved;
 mod schema;
 mod translate;
 
@@ -26,6 +27,7 @@ pub use error::CaseError;
 use error::{Checked, Complaint};
 use file::{Case, MeshSource};
 pub use report::{report, understood};
+pub use resolved::{resolved, resolved_text};
 
 /// Read a case file.
 ///

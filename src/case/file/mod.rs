@@ -12,7 +12,7 @@ mod output;
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Deserializer};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::case::choice::Choice;
 use crate::laws::bulk::MaterialParameters;
@@ -24,7 +24,7 @@ pub use blocks::{Amount, BlockInput, BlocksInput, GradingInput, MeshInPlace, Mid
 pub use output::{ArrivalInput, FrontsInput, OutputInput, ProbeInput};
 
 /// A case: mesh, bodies, contacts and steps.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Case {
     /// What the case shows, in a line
@@ -83,8 +83,8 @@ pub struct Case {
 }
 
 /// A mesh file or a mesh in place.
-#[derive(Clone, Debug, JsonSchema)]
-#[schemars(untagged)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[serde(untagged)]
 pub enum MeshSource {
     /// Path relative to the case file
     File(String),
@@ -107,7 +107,7 @@ impl<'de> Deserialize<'de> for MeshSource {
 }
 
 /// A body.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BodyInput {
     /// Bulk law
@@ -125,7 +125,7 @@ pub struct BodyInput {
 }
 
 /// How the elements of a body are integrated.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Formulation {
     /// Displacements only, full integration
@@ -136,7 +136,7 @@ pub enum Formulation {
 }
 
 /// A mass at every node of a group.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointMassInput {
     /// Mass of each node, added to what a body has there [M]
@@ -146,7 +146,7 @@ pub struct PointMassInput {
 }
 
 /// When Newton's method stops.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct NewtonInput {
     /// Out-of-balance force relative to the forces at work
@@ -163,7 +163,7 @@ impl Default for NewtonInput {
 }
 
 /// What the plane stands for in space.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SectionInput {
     /// A slice of thickness 1 of bodies that go on without end across the plane: forces, masses and energies per unit of
@@ -180,7 +180,7 @@ pub enum SectionInput {
 }
 
 /// A plate.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlateInput {
     /// Undeformed thickness, above 0 [L]
@@ -188,8 +188,8 @@ pub struct PlateInput {
 }
 
 /// A loading plate.
-#[derive(Clone, Debug, JsonSchema)]
-#[schemars(untagged)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[serde(untagged)]
 pub enum LoadingPlateInput {
     /// Group that moves as one, without turning
     Group(String),
@@ -205,7 +205,7 @@ impl<'de> Deserialize<'de> for LoadingPlateInput {
 }
 
 /// A loading plate that moves in another way than as one.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MovingPlateInput {
     /// Group of its nodes
@@ -215,7 +215,7 @@ pub struct MovingPlateInput {
 }
 
 /// How the nodes of a loading plate move.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PlateMotion {
     /// Alike, without turning: what the name of the group alone says

@@ -57,6 +57,7 @@ pub use load_step::{
     SpringLoad, Support, UntilSettings,
 };
 pub use loads::LoadsInForce;
+pub use pair::default_alpha_t;
 pub use plates::Plate;
 pub use probes::Gauge;
 

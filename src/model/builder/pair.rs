@@ -348,6 +348,11 @@ const NORMAL: f64 = 10.0;
 /// α_t over α_n [-]
 const TANGENTIAL: f64 = 0.5;
 
+/// α_t of a law that has none of its own, by (1) [F/L³].
+pub fn default_alpha_t(alpha_n: f64) -> f64 {
+    TANGENTIAL * alpha_n
+}
+
 /// Stiffnesses of a contact.
 pub struct Penalty {
     /// α_n [F/L³]
@@ -376,7 +381,7 @@ pub fn penalty(place: &str, contact: &Contact, model: &Model) -> Checked<Penalty
         return Err(ModelError::new(at, message));
     }
     check_size(&format!("{place}.normal"), "alpha_n", alpha_n)?;
-    let alpha_t = contact.area.is_none().then_some(TANGENTIAL * alpha_n);
+    let alpha_t = contact.area.is_none().then_some(default_alpha_t(alpha_n));
     Ok(Penalty { alpha_n, alpha_t, compliance: elastic.map_or(0.0, |elastic| 1.0 / elastic) })
 }
 
