@@ -3,7 +3,6 @@
 //! A case as it is written, in a file or by a program.
 
 mod again;
-mod choice;
 mod error;
 pub mod file;
 pub mod job;

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::case::choice::Choice;
 use crate::mesh::{BlockKind, InlineMesh};
+use crate::model::written::Written;
 
 /// A mesh of blocks: quadrilaterals with straight sides or arcs, each divided into rows and columns of elements. Blocks of one body
 /// that share a whole side are joined there, with the same nodes; those of different bodies never are
@@ -75,10 +75,25 @@ impl Default for GradingInput {
     }
 }
 
+impl Written for GradingInput {
+    const EXPECTING: &'static str = "the ratio of the last size to the first, or {\"middle\": ratio of the size in the middle to those at the ends}";
+
+    fn number(value: f64) -> Option<Self> {
+        Some(Self::Ratio(value))
+    }
+
+    fn text(text: &str) -> Result<Self, String> {
+        Ok(Self::Expression(text.into()))
+    }
+
+    fn object<'de, D: Deserializer<'de>>(object: D) -> Result<Self, D::Error> {
+        MiddleInput::deserialize(object).map(Self::Middle)
+    }
+}
+
 impl<'de> Deserialize<'de> for GradingInput {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let expecting = "the ratio of the last size to the first, or {\"middle\": ratio of the size in the middle to those at the ends}";
-        Choice { expecting, number: Some(Self::Ratio), text: Self::Expression, object: Self::Middle }.read(deserializer)
+        Self::read(deserializer)
     }
 }
 

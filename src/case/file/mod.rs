@@ -1,10 +1,4 @@
-//! The case file as it is written: JSON types, with the text that the schema shows.
-//!
-//! Damping as it is written.
-//!
-//! What the plane stands for.
-//!
-//! Loading plates as they are written.
+//! The case file: what a model is built from, under its keys, and what only a file has.
 
 mod blocks;
 mod output;
@@ -14,14 +8,15 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::case::choice::Choice;
 use crate::laws::bulk::MaterialParameters;
 use crate::mesh::InlineMesh;
-use crate::model::builder::{Contact, LoadStep};
+use crate::mesh::section::Section;
+use crate::model::builder::{Contact, Gauge, LoadStep, Plate};
 use crate::model::imposed::{InitialStress, Thermal};
+use crate::model::written::Written;
 use crate::model::{Damping, NewtonSettings};
 pub use blocks::{Amount, BlockInput, BlocksInput, GradingInput, MeshInPlace, MiddleInput};
-pub use output::{ArrivalInput, FrontsInput, OutputInput, ProbeInput};
+pub use output::{ArrivalInput, FrontsInput, OutputInput};
 
 /// A case: mesh, bodies, contacts and steps.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -38,7 +33,7 @@ pub struct Case {
     pub mesh: MeshSource,
     /// What the plane stands for in space: "plane_strain", a plate {"plane_stress": {"thickness": …}}, or "axisymmetric"
     #[serde(default)]
-    pub section: SectionInput,
+    pub section: Section,
     /// Bodies by the name of their mesh group
     #[serde(default)]
     pub bodies: BTreeMap<String, BodyInput>,
@@ -73,10 +68,10 @@ pub struct Case {
     /// Gauges by a name of your choice: displacement, velocity, strain and stress at points of the bodies, at every row of
     /// the history (probes.csv)
     #[serde(default)]
-    pub probes: BTreeMap<String, ProbeInput>,
+    pub probes: BTreeMap<String, Gauge>,
     /// When Newton's method stops
     #[serde(default)]
-    pub newton: NewtonInput,
+    pub newton: NewtonSettings,
     /// What is written
     #[serde(default)]
     pub output: OutputInput,
@@ -94,15 +89,25 @@ pub enum MeshSource {
     Inline(InlineMesh),
 }
 
-impl<'de> Deserialize<'de> for MeshSource {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let expecting =
-            "the path of a mesh file, or a mesh {\"blocks\": …} or {\"nodes\": …, \"elements\": …, \"edges\": …}";
-        let object = |mesh| match mesh {
+impl Written for MeshSource {
+    const EXPECTING: &'static str =
+        "the path of a mesh file, or a mesh {\"blocks\": …} or {\"nodes\": …, \"elements\": …, \"edges\": …}";
+
+    fn text(text: &str) -> Result<Self, String> {
+        Ok(Self::File(text.into()))
+    }
+
+    fn object<'de, D: Deserializer<'de>>(object: D) -> Result<Self, D::Error> {
+        Ok(match MeshInPlace::deserialize(object)? {
             MeshInPlace::Inline(mesh) => Self::Inline(mesh),
             MeshInPlace::Blocks(blocks) => Self::Blocks(blocks),
-        };
-        Choice { expecting, number: None, text: Self::File, object }.read(deserializer)
+        })
+    }
+}
+
+impl<'de> Deserialize<'de> for MeshSource {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Self::read(deserializer)
     }
 }
 
@@ -145,48 +150,6 @@ pub struct PointMassInput {
     pub velocity: Option<[f64; 2]>,
 }
 
-/// When Newton's method stops.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct NewtonInput {
-    /// Out-of-balance force relative to the forces at work
-    pub tolerance: f64,
-    /// Linear solves an increment before it is cut
-    pub max_iterations: usize,
-}
-
-impl Default for NewtonInput {
-    fn default() -> Self {
-        let NewtonSettings { tolerance, max_iterations } = NewtonSettings::default();
-        Self { tolerance, max_iterations }
-    }
-}
-
-/// What the plane stands for in space.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum SectionInput {
-    /// A slice of thickness 1 of bodies that go on without end across the plane: forces, masses and energies per unit of
-    /// thickness
-    #[default]
-    PlaneStrain,
-    /// A plate, free of stress across the plane: forces, masses and energies of its whole thickness. Pressures and tractions,
-    /// those of contact included, count the undeformed thickness
-    PlaneStress(PlateInput),
-    /// Rings about the axis x = 0: x is the radius and y the axis. Forces, masses and energies are per full turn, pressures
-    /// and tractions per area, and zz is the hoop direction. No node may have x < 0, and nodes on the axis keep ux = 0 without
-    /// being told. A contact's length is the area of its full turn
-    Axisymmetric,
-}
-
-/// A plate.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PlateInput {
-    /// Undeformed thickness, above 0 [L]
-    pub thickness: f64,
-}
-
 /// A loading plate.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 #[serde(untagged)]
@@ -197,10 +160,22 @@ pub enum LoadingPlateInput {
     Moving(MovingPlateInput),
 }
 
+impl Written for LoadingPlateInput {
+    const EXPECTING: &'static str =
+        "the name of a group, or {\"on\": group, \"moves\": \"ux_alike\", \"uy_alike\" or \"rigid\"}";
+
+    fn text(text: &str) -> Result<Self, String> {
+        Ok(Self::Group(text.into()))
+    }
+
+    fn object<'de, D: Deserializer<'de>>(object: D) -> Result<Self, D::Error> {
+        MovingPlateInput::deserialize(object).map(Self::Moving)
+    }
+}
+
 impl<'de> Deserialize<'de> for LoadingPlateInput {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let expecting = "the name of a group, or {\"on\": group, \"moves\": \"ux_alike\", \"uy_alike\" or \"rigid\"}";
-        Choice { expecting, number: None, text: Self::Group, object: Self::Moving }.read(deserializer)
+        Self::read(deserializer)
     }
 }
 
@@ -211,28 +186,14 @@ pub struct MovingPlateInput {
     /// Group of its nodes
     pub on: String,
     /// How they move
-    pub moves: PlateMotion,
-}
-
-/// How the nodes of a loading plate move.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum PlateMotion {
-    /// Alike, without turning: what the name of the group alone says
-    AsOne,
-    /// Alike in x, each as it will in y: a greased plate
-    UxAlike,
-    /// Alike in y, each as it will in x
-    UyAlike,
-    /// As a rigid body, which turns under forces, springs and a `moment`; supports hold at most one of its nodes
-    Rigid,
+    pub moves: Plate,
 }
 
 impl LoadingPlateInput {
     /// Its group, and how it moves.
-    pub fn parts(&self) -> (&str, PlateMotion) {
+    pub fn parts(&self) -> (&str, Plate) {
         match self {
-            Self::Group(name) => (name, PlateMotion::AsOne),
+            Self::Group(name) => (name, Plate::AsOne),
             Self::Moving(MovingPlateInput { on, moves }) => (on, *moves),
         }
     }

@@ -1,6 +1,4 @@
 //! What is written by a run, as a case asks for it.
-//!
-//! Points of the bodies that are watched, as they are written.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -74,20 +72,4 @@ impl Default for OutputInput {
             report: true,
         }
     }
-}
-
-/// A gauge: a point given by `at`, or a line of points given by `from`, `to` and `number`; places are undeformed ones.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ProbeInput {
-    /// The point [x, y]
-    pub at: Option<[f64; 2]>,
-    /// Where a line begins [x, y]
-    pub from: Option<[f64; 2]>,
-    /// Where it ends [x, y]
-    pub to: Option<[f64; 2]>,
-    /// How many points it has, both ends included; the k-th is called NAME.k, from 1
-    pub number: Option<usize>,
-    /// The body, needed where two bodies touch
-    pub body: Option<String>,
 }

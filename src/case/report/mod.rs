@@ -8,9 +8,10 @@ use std::fmt::Write;
 use contact::{contacts, parameters, pressed_too_hard};
 use steps::steps;
 
-use super::file::{ArrivalInput, BodyInput, Case, Formulation, LoadingPlateInput, MeshSource, PlateMotion};
+use super::file::{ArrivalInput, BodyInput, Case, Formulation, LoadingPlateInput, MeshSource};
 use crate::mesh::Group;
 use crate::mesh::shape::ElementKind;
+use crate::model::builder::Plate;
 use crate::model::imposed::{InitialStress, Thermal};
 use crate::model::told::{count, number};
 use crate::model::{Damping, Model, PointMass};
@@ -165,13 +166,13 @@ fn periodic(case: &Case, model: &Model) -> Vec<String> {
 }
 
 fn plates(case: &Case, model: &Model) -> Vec<String> {
-    let told = |(name, moves): (&str, PlateMotion)| {
+    let told = |(name, moves): (&str, Plate)| {
         let nodes = model.mesh.group(name).map_or(0, |group| model.mesh.nodes_of(group).len());
         let moves = match moves {
-            PlateMotion::AsOne => "that move as one",
-            PlateMotion::UxAlike => "alike in ux",
-            PlateMotion::UyAlike => "alike in uy",
-            PlateMotion::Rigid => "of a rigid plate, which turns",
+            Plate::AsOne => "that move as one",
+            Plate::UxAlike => "alike in ux",
+            Plate::UyAlike => "alike in uy",
+            Plate::Rigid => "of a rigid plate, which turns",
         };
         format!("{name}: {} {moves}", count(nodes, "node"))
     };

@@ -5,35 +5,19 @@ mod blocks;
 pub use blocks::blocks;
 
 use super::error::{Checked, Complaint};
-use super::file::{
-    BodyInput, Case, Formulation, LoadingPlateInput, NewtonInput, PlateInput, PlateMotion, ProbeInput, SectionInput,
-};
+use super::file::{BodyInput, Case, Formulation, LoadingPlateInput};
 use super::labels;
 use crate::mesh::Mesh;
 use crate::mesh::section::Section;
-use crate::model::builder::{Builder, Contact, Gauge, Plate};
-use crate::model::{Model, NewtonSettings};
-
-fn plate(moves: PlateMotion) -> Plate {
-    match moves {
-        PlateMotion::AsOne => Plate::AsOne,
-        PlateMotion::UxAlike => Plate::UxAlike,
-        PlateMotion::UyAlike => Plate::UyAlike,
-        PlateMotion::Rigid => Plate::Rigid,
-    }
-}
+use crate::model::Model;
+use crate::model::builder::{Builder, Contact, Gauge};
 
 /// The builder of a case on its mesh.
 pub fn model(case: &Case, mesh: Mesh) -> Checked<Builder> {
-    let NewtonInput { tolerance, max_iterations } = case.newton;
-    let section = match case.section {
-        SectionInput::PlaneStrain => mesh.section,
-        SectionInput::PlaneStress(PlateInput { thickness }) => Section::PlaneStress { thickness },
-        SectionInput::Axisymmetric => Section::Axisymmetric,
-    };
+    let section = if case.section == Section::PlaneStrain { mesh.section } else { case.section };
     labels::check(&case.title, &case.units)?;
     let mut builder = Model::builder(mesh).title(&case.title).section(section);
-    builder = builder.newton(NewtonSettings { tolerance, max_iterations });
+    builder = builder.newton(case.newton);
     for (name, given) in &case.bodies {
         builder = body(builder, name, given)?;
     }
@@ -45,7 +29,7 @@ pub fn model(case: &Case, mesh: Mesh) -> Checked<Builder> {
     }
     builder = case.periodic.iter().fold(builder, |builder, [side, other]| builder.periodic(side, other));
     for (group, moves) in case.plates.iter().map(LoadingPlateInput::parts) {
-        builder = builder.plate_that(group, plate(moves));
+        builder = builder.plate_that(group, moves);
     }
     for (name, contact) in &case.contacts {
         builder = builder.contact(Contact { name: name.clone(), ..contact.clone() });
@@ -55,8 +39,8 @@ pub fn model(case: &Case, mesh: Mesh) -> Checked<Builder> {
     }
     builder = case.steps.iter().cloned().fold(builder, Builder::step);
     builder = case.watch.iter().fold(builder, |builder, group| builder.watch(group));
-    for (name, input) in &case.probes {
-        builder = builder.probe(gauge(name, input)?);
+    for (name, gauge) in &case.probes {
+        builder = builder.probe(Gauge { name: name.clone(), ..gauge.clone() });
     }
     builder = builder.times(case.output.times.clone());
     Ok(match case.output.interval {
@@ -78,20 +62,5 @@ fn body(mut builder: Builder, name: &str, given: &BodyInput) -> Checked<Builder>
     Ok(match given.thermal {
         Some(thermal) => builder.thermal(name, thermal),
         None => builder,
-    })
-}
-
-fn gauge(name: &str, input: &ProbeInput) -> Checked<Gauge> {
-    let gauge = match (input.at, input.from, input.to, input.number) {
-        (Some(at), None, None, None) => Gauge::at(name, at),
-        (None, Some(from), Some(to), Some(number)) => Gauge::line(name, from, to, number),
-        _ => {
-            let message = "give `at` for a point, or `from`, `to` and `number` for a line of points";
-            return Err(Complaint::new(format!("probes.{name}"), message));
-        }
-    };
-    Ok(match &input.body {
-        Some(body) => gauge.of(body),
-        None => gauge,
     })
 }
