@@ -1,4 +1,5 @@
-//! The case: JSON as written, translated to the builder of a model ([`crate::model::builder`]), and run ([`job`]).
+//! The case: JSON of the types that a model is built from ([`crate::model::builder`]) and of what only a file has ([`file`]); run by
+//! [`job`].
 //!
 //! A case as it is written, in a file or by a program.
 
