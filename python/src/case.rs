@@ -72,7 +72,7 @@ impl Case {
     fn resolved(&self, py: Python) -> PyResult<String> {
         let resolved = Pool::new(None)?.short(py, || {
             let (model, _) = self.opened()?.build()?;
-            Ok::<_, CaseError>(case::resolved_text(&self.written.case, &model))
+            Ok::<_, CaseError>(case::resolved(&self.written.case, &model))
         })?;
         resolved.map_err(|error| case_error(py, &error))
     }

@@ -219,7 +219,7 @@ fn begun(document: &mut Value, source: &Path) -> Checked<(PathBuf, Checkpoint)> 
         return Err(complain(message));
     }
     let before = document_of(&checkpoint)?;
-    let (was, is) = (with_defaults::<Case>(&before), with_defaults::<Case>(document));
+    let (was, is) = (with_defaults(&before), with_defaults(document));
     let mut differences = Vec::new();
     for (key, was, is) in both(object(&was), object(&is)) {
         if !(FREE.contains(&key) || ["steps", "newton", "begin_with"].contains(&key)) {
@@ -234,7 +234,7 @@ fn begun(document: &mut Value, source: &Path) -> Checked<(PathBuf, Checkpoint)> 
 
 /// A case may have changed where its run has not come yet, and in what is written.
 fn unchanged(before: &Value, now: &Value, begun: usize) -> Checked<()> {
-    let [before, now] = [before, now].map(with_defaults::<Case>);
+    let [before, now] = [before, now].map(with_defaults);
     let mut differences = Vec::new();
     for (key, was, is) in both(object(&before), object(&now)) {
         if !FREE.contains(&key) && key != "steps" {

@@ -27,7 +27,7 @@ pub use error::CaseError;
 use error::{Checked, Complaint};
 use file::{Case, MeshSource};
 pub use report::{report, understood};
-pub use resolved::{resolved, resolved_text};
+pub use resolved::resolved;
 
 /// Read a case file.
 ///

@@ -1,7 +1,5 @@
 //! A case with every default filled in, which runs to the same bits.
 
-use serde::Serialize;
-use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use super::file::Case;
@@ -10,9 +8,10 @@ use crate::model::builder::{Contact, Friction, IncrementSettings, default_alpha_
 use crate::model::method::{Chosen, Method};
 use crate::model::{Increments, Model};
 
-/// The case of a model with what it leaves open as the model has it: scheme and increments of every step, and of contacts the method
-/// and the stiffnesses. Those of a case that begins with another one stay as they are, for they must be those of the other.
-pub fn resolved(case: &Case, model: &Model) -> Case {
+/// The case of a model as the text of a file, with what it leaves open as the model has it: scheme and increments of every step, and of
+/// contacts the method and the stiffnesses. Those of a case that begins with another one stay as they are, for they must be those
+/// of the other.
+pub fn resolved(case: &Case, model: &Model) -> String {
     let mut case = case.clone();
     let taken_over = model.steps.len().saturating_sub(case.steps.len());
     for (given, step) in case.steps.iter_mut().zip(&model.steps[taken_over..]) {
@@ -28,13 +27,8 @@ pub fn resolved(case: &Case, model: &Model) -> Case {
         }
     }
     case.output.every = case.output.every();
-    case
-}
-
-/// The same as the text of a case file.
-pub fn resolved_text(case: &Case, model: &Model) -> String {
-    // What was read from JSON is written as JSON.
-    serde_json::to_string_pretty(&resolved(case, model)).unwrap_or_default()
+    // What was read from JSON can be written as JSON.
+    serde_json::to_string_pretty(&case).unwrap_or_default()
 }
 
 fn fill(contact: &mut Contact, alpha_n: f64, chosen: Option<&Chosen>) {
@@ -65,9 +59,9 @@ fn with_alpha_t(parameters: &FrictionParameters, alpha_t: f64) -> FrictionParame
     serde_json::to_value(parameters).ok().and_then(filled).unwrap_or_else(|| parameters.clone())
 }
 
-/// A document with the defaults of its type filled in, so that one that is written down makes no difference; as it is if it is not
-/// one of this type.
-pub fn with_defaults<T: DeserializeOwned + Serialize>(document: &Value) -> Value {
-    let read = super::read::input::<T>(document).ok();
-    read.and_then(|input| serde_json::to_value(input).ok()).unwrap_or_else(|| document.clone())
+/// The document of a case with the defaults of its types filled in, so that one that is written down makes no difference; as it is if
+/// it is no case.
+pub fn with_defaults(document: &Value) -> Value {
+    let read = super::read::input::<Case>(document).ok();
+    read.and_then(|case| serde_json::to_value(case).ok()).unwrap_or_else(|| document.clone())
 }

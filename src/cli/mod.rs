@@ -45,7 +45,7 @@ pub fn check(path: &Path, resolved: bool) -> Result<(), Failure> {
     let mut opened = Opened::begin(written.clone())?;
     let (model, _) = opened.build()?;
     match resolved {
-        true => print(&format!("{}\n", case::resolved_text(&written.case, &model))),
+        true => print(&format!("{}\n", case::resolved(&written.case, &model))),
         false => print(&case::report(&opened.case, &model)),
     }
 }

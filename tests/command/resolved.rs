@@ -33,7 +33,7 @@ fn cases(folder: &Path) -> Vec<PathBuf> {
 fn built(text: &str, path: &Path) -> (Model, String) {
     let written = Written::from_text(text, path).unwrap_or_else(|error| panic!("{error}"));
     let model = case::build(&written.case, path).unwrap_or_else(|error| panic!("{error}"));
-    let resolved = case::resolved_text(&written.case, &model);
+    let resolved = case::resolved(&written.case, &model);
     (model, resolved)
 }
 
