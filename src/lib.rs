@@ -47,7 +47,7 @@
 //! | room | what is in it |
 //! |---|---|
 //! | [`cli`] | commands, arguments, progress |
-//! | [`case`] | the JSON of a case: read, translated to the builder of a model, and run into a folder ([`case::job`]) |
+//! | [`case`] | the JSON of a case: read, handed to the builder of a model, and run into a folder ([`case::job`]) |
 //! | [`output`] | observers of a run and the files they write; the page of results |
 //! | [`run`] | steps, increments accepted and cut, observers |
 //! | [`time`] | one increment, implicit or explicit: old state → new state; how long the next one is |
@@ -70,8 +70,8 @@
 //!
 //! The slip increment Δu_t of a contact point, from the case file to the law and back to `history.csv`:
 //!
-//! 1. `case/file` reads what moves the block, `"ux": {"rate": 0.05}`; `case/translate` makes it a
-//!    [`model::builder::Support`], and the builder a [`model::support::Prescribed`] dof of the [`model::Step`].
+//! 1. What moves the block, `"ux": {"rate": 0.05}`, is read as a [`model::builder::Support`], of which the builder makes a
+//!    [`model::support::Prescribed`] dof of the [`model::Step`].
 //! 2. [`run`] asks for an increment, [`time::increment`] sets a [`equations::Trial`] for it, and [`solve::equilibrium`] finds
 //!    the displacement u at its end, iterate by iterate.
 //! 3. At every iterate `equations/interfaces.rs` asks each [`contact::pair`] for its points' answers. `contact/search.rs` and

@@ -38,6 +38,9 @@ enum Command {
     Check {
         /// The case file (JSON)
         case: PathBuf,
+        /// Print the case with every default filled in instead, which runs to the same bits; paths in it count from the case file
+        #[arg(long)]
+        resolved: bool,
     },
     /// Drive a friction law alone along a path of slip, pressure and time
     Law {
@@ -87,7 +90,7 @@ fn run() -> Result<(), Failure> {
     };
     match command {
         Command::Run { case, out, threads, quiet, resume } => cli::run(&case, Options { out, threads, quiet, resume }),
-        Command::Check { case } => cli::check(&case),
+        Command::Check { case, resolved } => cli::check(&case, resolved),
         Command::Law { test, out } => cli::law(&test, out),
         Command::Plot { .. } => Err(cli::plot()),
         Command::Report { folders, out } => cli::report(&folders, out),

@@ -105,6 +105,17 @@ class Case:
         """
         return Report(self._native.check())
 
+    def resolved(self) -> Case:
+        """The case with every default filled in, which runs to the same bits: what ``fecontact check --resolved`` prints.
+
+        Raises:
+            CaseError: as of :meth:`check`.
+        """
+        case = Case.__new__(Case)
+        case._path, case._mesh, case._document = self._path, self._mesh, json.loads(self._native.resolved())
+        case._native = case._made()
+        return case
+
     def replace(self, values: Mapping[str, Any]) -> Case:
         """The case with other values at some places.
 

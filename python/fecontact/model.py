@@ -172,7 +172,8 @@ class Damping(dict[str, Any]):
 
 
 class Geostatic(dict[str, Any]):
-    """Ground at rest under its weight along -y.
+    """Ground at rest under its weight along -y: σ_yy = −weight (surface − y), and σ_xx = σ_zz = K0 σ_yy; σ_zz = 0 in a
+    plate.
 
     Args:
         surface: Level y at which the vertical stress is zero: the top of the body, or above it if it lies
@@ -315,7 +316,7 @@ class Contact(dict[str, Any]):
 
 
 class Plane(dict[str, Any]):
-    """A half-space.
+    """A rigid half-space.
 
     Args:
         point: A point of its surface [L]
@@ -332,7 +333,7 @@ class Plane(dict[str, Any]):
 
 
 class Circle(dict[str, Any]):
-    """A disk, or the rim of a hole.
+    """A rigid disk, or the rim of a hole.
 
     Args:
         centre: Centre [L]
@@ -351,7 +352,7 @@ class Circle(dict[str, Any]):
 
 
 class Polyline(dict[str, Any]):
-    """A body bounded by straight lines.
+    """A rigid body bounded by straight lines.
 
     Args:
         points: Its corners, the solid on the right of the way; the first again at the end closes it [L]
@@ -544,7 +545,8 @@ class LawChoice(dict[str, Any]):
 
 
 class Dilatancy(dict[str, Any]):
-    """Dilatancy of a contact, with any friction law.
+    """Dilatancy of a contact, with any friction law: asperities ride up on each other as the surfaces slip, until the
+    interface has its largest opening.
 
     Args:
         rate: tan ψ: opening per plastic slip at the start, whichever way it goes; below the least coefficient
@@ -840,14 +842,14 @@ class PlaneStress(dict[str, Any]):
 
 
 class Step(dict[str, Any]):
-    """A step.
+    """A step: a time span with its scheme and increments, supports and loads.
 
     Args:
         name: Name in messages and results
         duration: Length of the step [T]
         damping: Damping of bodies from this step on, in place of what the body or a step before has; inherited.
             Statics know none
-        dt: Increments; inherited from the step before unless given
+        dt: Increments; inherited from the step before unless given, a tenth of the first step
         loads: Loads; inherited, and replaced where the same group and kind is named again. In any scheme null
             takes a pressure, traction, force or gravity linearly to zero over the step, as the value 0 would,
             and ends springs, dashpots and absorbing sides at once. A table or expression makes an end as sudden
@@ -918,7 +920,7 @@ class Increments(dict[str, Any]):
 
 
 class Load(dict[str, Any]):
-    """A load: exactly one kind an entry.
+    """A load: exactly one kind an entry. It replaces the load of its kind that an earlier step gave there.
 
     Args:
         on: Where
@@ -957,14 +959,14 @@ class Load(dict[str, Any]):
 
 
 class Node(dict[str, Any]):
-    """Its tag in the mesh file (its number from 0 in a mesh given in place)."""
+    """Single node: its tag in the mesh file (its number from 0 in a mesh given in place)."""
 
     def __init__(self, node: int) -> None:
         super().__init__({"node": node})
 
 
 class Near(dict[str, Any]):
-    """The node of the undeformed mesh that is nearest to this point [x, y]. It must be the only one, and no farther
+    """Single node of the undeformed mesh that is nearest to this point [x, y]. It must be the only one, and no farther
     away than the elements there are long [L].
     """
 
@@ -1230,12 +1232,12 @@ Formulation = Union[Literal["displacement"], Literal["f_bar"]]
 # start are expressions, such as "-9.81" for a gravity, for a number grows from zero over the step
 InitialStress = Union[Geostatic, Components]
 
-# Values by a coordinate of the reference position: linear between, constant outside. The same coordinate twice is a
-# jump.
-ProfileTable = Union[AlongX, AlongY]
+# How a quantity varies along a surface, by reference position. A table is linear between its pairs, constant outside;
+# the same coordinate twice is a jump, and the second value holds there and beyond.
+Profile = Union[AlongX, AlongY, float, str]
 
-# A rigid body at rest, given by a formula.
-Rigid = Union[Plane, Circle, Polyline]
+# The master side: a group of the mesh, or a rigid body at rest that is given by a formula.
+Master = Union[Plane, Circle, Polyline, str]
 
 # A friction law and its parameters.
 Friction = Union[Frictionless, Coulomb, SuperSubloading, SlipWeakening, RateAndState, Prescribed, Registered]
@@ -1255,7 +1257,7 @@ StateEvolution = Union[Literal["ageing"], Literal["slip"]]
 # Where contact is evaluated.
 Method = Union[Literal["node_to_segment"], Literal["gauss_to_segment"], Literal["mortar"]]
 
-# Radiation damping: whether, or how much.
+# Radiation damping of a contact in static steps: whether, or how much.
 Radiation = Union[bool, float]
 
 # How far surfaces may slide on each other, and turn.
@@ -1285,33 +1287,18 @@ PlateMotion = Union[Literal["as_one"], Literal["ux_alike"], Literal["uy_alike"],
 # What the plane stands for in space.
 Section = Union[Literal["plane_strain"], PlaneStress, Literal["axisymmetric"]]
 
-# A single node.
-Spot = Union[Node, Near]
+# A group or a single node.
+Place = Union[Node, Near, str]
 
-# A variation in time.
-Time = Union[Rate, Table]
+# How a quantity varies.
+Drive = Union[Rate, Table, float, str]
 
 # Time scheme of a step, as the case file names it.
 Scheme = Union[Literal["static"], Newmark, Hht, GeneralizedAlpha, Explicit, QuasiDynamic, Wilson]
 
-# A temperature that varies. A table by x or y, of the reference position, is reached at the end of the step, linearly
-# from the temperature at its start: linear between, constant outside, the same coordinate twice is a jump.
-TemperatureVariation = Union[Rate, Table, AlongX, AlongY]
-
-# How a quantity varies along a surface.
-Profile = Union[float, str, ProfileTable]
-
-# The master side.
-Master = Union[str, Rigid]
-
-# A group or a single node.
-Place = Union[str, Spot]
-
-# How a quantity varies.
-Drive = Union[float, str, Time]
-
-# How warm a body is.
-Temperature = Union[float, str, TemperatureVariation]
+# How warm a body is. A table by x or y, of the reference position, is reached at the end of the step, linearly from
+# the temperature at its start: linear between, constant outside, the same coordinate twice is a jump.
+Temperature = Union[Rate, Table, AlongX, AlongY, float, str]
 
 
 class CaseKeys(TypedDict, total=False):

@@ -67,6 +67,15 @@ impl Case {
         })?;
         checked.map_err(|error| case_error(py, &error))
     }
+
+    /// The case as JSON with every default filled in.
+    fn resolved(&self, py: Python) -> PyResult<String> {
+        let resolved = Pool::new(None)?.short(py, || {
+            let (model, _) = self.opened()?.build()?;
+            Ok::<_, CaseError>(case::resolved(&self.written.case, &model))
+        })?;
+        resolved.map_err(|error| case_error(py, &error))
+    }
 }
 
 /// The JSON Schema of a `"case"`, or of the test of a `"law"`.

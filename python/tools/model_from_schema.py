@@ -102,7 +102,7 @@ class Writer:
         schema, own = self.definitions[name], name.removesuffix("Input").removesuffix("Parameters")
         if name == "InlineMesh":
             return "Mapping[str, Any]"
-        if name == "AlongInput":
+        if name == "Along":
             self.type_of(schema["properties"]["law"])
             return "Mapping[str, Any]"
         if own in self.classes or own in self.aliases:

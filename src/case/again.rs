@@ -11,6 +11,7 @@ use serde_json::{Map, Value};
 use super::error::{CaseError, Checked, Complaint};
 use super::file::Case;
 use super::read::clipped;
+use super::resolved::with_defaults;
 use super::{Written, read};
 use crate::contact::force::ContactState;
 use crate::contact::surface::SlavePoint;
@@ -135,10 +136,11 @@ impl Opened {
     /// A structure that the other case has left must be one of the law as it is now.
     fn within_strength(&self, model: &Model, state: &State) -> Checked<()> {
         for (pair, states) in model.contacts.iter().zip(&state.contacts) {
-            let Some(input) = self.case.contacts.get(&pair.name).filter(|input| input.friction.has_structure()) else {
+            let Some(input) = self.case.contacts.get(&pair.name) else { continue };
+            let Some(friction) = input.friction.parameters().filter(|friction| friction.has_structure()) else {
                 continue;
             };
-            let [(_, highest), (_, lowest)] = input.friction.bounds()[..] else { continue };
+            let [(_, highest), (_, lowest)] = friction.bounds()[..] else { continue };
             let allowed = lowest * (1.0 - SAME)..=highest * (1.0 + SAME);
             let mu = |(point, contact): (&SlavePoint, &ContactState)| {
                 pair.observed(point, "mu", (&contact.friction, state.time))
@@ -217,8 +219,9 @@ fn begun(document: &mut Value, source: &Path) -> Checked<(PathBuf, Checkpoint)> 
         return Err(complain(message));
     }
     let before = document_of(&checkpoint)?;
+    let (was, is) = (with_defaults(&before), with_defaults(document));
     let mut differences = Vec::new();
-    for (key, was, is) in both(object(&before), object(document)) {
+    for (key, was, is) in both(object(&was), object(&is)) {
         if !(FREE.contains(&key) || ["steps", "newton", "begin_with"].contains(&key)) {
             compare(key.into(), was, is, &mut differences);
         }
@@ -231,14 +234,15 @@ fn begun(document: &mut Value, source: &Path) -> Checked<(PathBuf, Checkpoint)> 
 
 /// A case may have changed where its run has not come yet, and in what is written.
 fn unchanged(before: &Value, now: &Value, begun: usize) -> Checked<()> {
+    let [before, now] = [before, now].map(with_defaults);
     let mut differences = Vec::new();
-    for (key, was, is) in both(object(before), object(now)) {
+    for (key, was, is) in both(object(&before), object(&now)) {
         if !FREE.contains(&key) && key != "steps" {
             compare(key.into(), was, is, &mut differences);
         }
     }
     for k in 0..begun {
-        compare(format!("steps[{k}]"), steps(before).get(k), steps(now).get(k), &mut differences);
+        compare(format!("steps[{k}]"), steps(&before).get(k), steps(&now).get(k), &mut differences);
     }
     told(differences, "the case has changed since its checkpoint was written")
 }
@@ -273,7 +277,11 @@ pub fn told(differences: Vec<Difference>, what: &str) -> Checked<()> {
     if differences.is_empty() {
         return Ok(());
     }
-    let value = |value: &Option<Value>| value.as_ref().map_or("not given".into(), |value| clipped(&value.to_string()));
+    let value = |value: &Option<Value>| match value {
+        None | Some(Value::Null) => "not given".into(),
+        Some(Value::Number(number)) => number.as_f64().unwrap_or(f64::NAN).to_string(),
+        Some(value) => clipped(&value.to_string()),
+    };
     let told = differences.iter().take(TOLD);
     let told: Vec<String> = told
         .map(|Difference { place, was, is }| format!("`{}` is {}, and was {}", clipped(place), value(is), value(was)))

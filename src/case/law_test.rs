@@ -8,10 +8,8 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::error::{CaseError, Checked, Complaint};
-use super::file::DriveInput;
 use super::labels;
 use super::schema::schema_of;
-use super::translate::drive;
 use crate::laws::friction::{FrictionLaw, FrictionParameters, FrictionState, observables};
 use crate::model::boundary::{Drive, Span};
 use crate::run::law::{Course, LawTest, Phase, Undefined};
@@ -58,9 +56,9 @@ pub struct PhaseInput {
     pub duration: f64,
     /// Total slip [L]: a number (reached at the end), an expression in the time t, {"rate": v} or {"table": [[t, v], …]};
     /// it rests unless given
-    pub slip: Option<DriveInput>,
+    pub slip: Option<Drive>,
     /// Pressure [F/L²], in the same forms; at or below 0 the surfaces are apart; it stays as it is unless given
-    pub pressure: Option<DriveInput>,
+    pub pressure: Option<Drive>,
     /// Longest step in this phase [T]; that of the test unless given
     pub dt: Option<f64>,
 }
@@ -192,7 +190,7 @@ fn phase_of(input: &LawTestInput, place: &str, phase: &PhaseInput, before: Optio
 }
 
 /// How a quantity varies that has `reached` a value, if that is known.
-fn course(place: &str, given: Option<&DriveInput>, reached: Option<f64>) -> Checked<Course> {
+fn course(place: &str, given: Option<&Drive>, reached: Option<f64>) -> Checked<Course> {
     let complain = |message: &str| Err(Complaint::new(place, message));
     let Some(given) = given else {
         return match reached {
@@ -200,7 +198,7 @@ fn course(place: &str, given: Option<&DriveInput>, reached: Option<f64>) -> Chec
             None => complain("is missing: give it here, or as initial.pressure"),
         };
     };
-    let drive = drive(given, place)?;
+    let drive = given.clone();
     drive.check().map_err(|message| Complaint::new(place, message))?;
     match (&drive, reached) {
         (given, _) if given.depends_on_position() => {

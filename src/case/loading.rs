@@ -5,11 +5,10 @@ use std::path::Path;
 use serde_json::Value;
 
 use super::error::{CaseError, Checked, Complaint};
-use super::file::{Case, LoadInput};
+use super::file::Case;
 use super::read;
-use super::translate;
 use crate::model::boundary::Span;
-use crate::model::builder::LoadsInForce;
+use crate::model::builder::{Load, LoadsInForce};
 use crate::run::Simulation;
 
 /// The loads of a step under way, which its caller changes.
@@ -32,9 +31,7 @@ impl Loading {
         if let Some(before) = before.filter(|before| before.step == step) {
             return Ok(before.clone());
         }
-        let given = case.steps.iter().enumerate();
-        let given: Checked<Vec<_>> = given.map(|(k, input)| translate::step(&format!("steps[{k}]"), input)).collect();
-        Ok(Self { step, in_force: LoadsInForce::of_step(step, &given?, model)? })
+        Ok(Self { step, in_force: LoadsInForce::of_step(step, &case.steps, model)? })
     }
 }
 
@@ -62,8 +59,7 @@ fn changed(
     if !(by >= now && by.is_finite()) {
         return Err(Complaint::new("by", format!("is {by}: must be a time from now on, and now is {now}")));
     }
-    let input: LoadInput = read::input(document)?;
-    let load = translate::load("load", &input)?;
+    let load: Load = read::input(document)?;
     let mut changed = Loading::of(case, simulation, loading.as_ref())?;
     changed.in_force.change_within(&load, "load", Span { start: now, end: by }, simulation.model())?;
     let loads = changed.in_force.all();

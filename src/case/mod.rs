@@ -1,9 +1,9 @@
-//! The case: JSON as written, translated to the builder of a model ([`crate::model::builder`]), and run ([`job`]).
+//! The case: JSON of the types that a model is built from ([`crate::model::builder`]) and of what only a file has ([`file`]); run by
+//! [`job`].
 //!
 //! A case as it is written, in a file or by a program.
 
 mod again;
-mod choice;
 mod error;
 pub mod file;
 pub mod job;
@@ -12,6 +12,7 @@ pub mod law_test;
 pub mod loading;
 mod read;
 mod report;
+mod resolved;
 mod schema;
 mod translate;
 
@@ -26,6 +27,7 @@ pub use error::CaseError;
 use error::{Checked, Complaint};
 use file::{Case, MeshSource};
 pub use report::{report, understood};
+pub use resolved::resolved;
 
 /// Read a case file.
 ///

@@ -346,7 +346,8 @@ pub fn explain(message: &str) -> String {
     if message == SEVERAL_KEYS {
         return "has several keys, but must be an object {…} with exactly one key".into();
     }
-    let Some((found, expected)) = message.split_once(", expected ") else { return clipped(message) };
+    // What the types of the input say themselves is a sentence.
+    let Some((found, expected)) = message.split_once(", expected ") else { return message.into() };
     let expected = plain_expected(expected);
     if let Some(found) = found.strip_prefix("invalid type: ").or_else(|| found.strip_prefix("invalid value: ")) {
         return format!("is {}, but must be {expected}", plain_found(found));

@@ -39,11 +39,15 @@ pub enum Input {
 ///
 /// # Errors
 /// [`Failure::BadInput`].
-pub fn check(path: &Path) -> Result<(), Failure> {
+pub fn check(path: &Path, resolved: bool) -> Result<(), Failure> {
     use_threads(None)?;
-    let mut opened = Opened::begin(Written::read(path)?)?;
+    let written = Written::read(path)?;
+    let mut opened = Opened::begin(written.clone())?;
     let (model, _) = opened.build()?;
-    print(&case::report(&opened.case, &model))
+    match resolved {
+        true => print(&format!("{}\n", case::resolved(&written.case, &model))),
+        false => print(&case::report(&opened.case, &model)),
+    }
 }
 
 /// `fecontact law`.

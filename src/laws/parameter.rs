@@ -44,9 +44,9 @@ pub fn require_not_negative(name: &'static str, value: f64) -> Result<(), Invali
     require(name, value, value >= 0.0, "it must be zero or positive, and finite")
 }
 
-/// A name that no parameter of a law has, in the words of serde for a key that an object does not know.
+/// A name that no parameter of a law has.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("unknown field `{name}`, expected one of `{}`", known.join("`, `"))]
+#[error("`{name}` is no parameter of this law; known are `{}`", known.join("`, `"))]
 pub struct UnknownParameter {
     /// the name
     pub name: String,

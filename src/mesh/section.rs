@@ -19,22 +19,30 @@ use std::f64::consts::TAU;
 use std::fmt::{Display, Formatter, Result};
 
 use nalgebra::Vector2;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-/// The section of a model.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// What the plane stands for in space.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Section {
-    /// Plane strain: a slice of depth 1 of bodies that go on without end
+    /// A slice of thickness 1 of bodies that go on without end across the plane: forces, masses and energies per unit of
+    /// thickness
     #[default]
     PlaneStrain,
-    /// Plane stress: plates
+    /// A plate, free of stress across the plane: forces, masses and energies of its whole thickness. Pressures and tractions,
+    /// those of contact included, count the undeformed thickness
     PlaneStress {
-        /// t: undeformed thickness [L]
+        /// Undeformed thickness, above 0 [L]
         thickness: f64,
     },
-    /// Axisymmetry about x = 0: rings, x = r and y = z
+    /// Rings about the axis x = 0: x is the radius and y the axis. Forces, masses and energies are per full turn, pressures
+    /// and tractions per area, and zz is the hoop direction. No node may have x < 0, and nodes on the axis keep ux = 0 without
+    /// being told. A contact's length is the area of its full turn
     Axisymmetric,
     /// A depth w = `depth` + `slope`·x, F₃₃ = 1. No body has it: it is there for verification, since an integral that forgets
     /// w or ∂w/∂x shows against it
+    #[serde(skip)]
     Graded {
         /// w at the origin
         depth: f64,

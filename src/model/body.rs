@@ -1,5 +1,8 @@
 //! Bodies and point masses: their damping, and where each element finds what its material remembers.
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 use super::element::SolidElement;
 use super::imposed::{InitialStress, Thermal};
 use crate::laws::bulk::Material;
@@ -41,13 +44,16 @@ pub struct PointMass {
     pub nodes: Vec<usize>,
 }
 
-/// Rayleigh's damping of a body: C = η M + τ K, K being that of [`crate::laws::bulk`]'s viscous stress. A vibration ω of a
-/// body that only this damps has the damping ratio ½ (η/ω + τ ω).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// Rayleigh damping. A vibration of angular frequency w decays with the damping ratio (mass/w + stiffness w)/2.
+// C = η M + τ K, K being that of `laws::bulk`'s viscous stress.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
 pub struct Damping {
-    /// η: share of the masses [1/T]
+    /// Force per momentum: damps slow motions most, free flight included [1/T]
     pub mass: f64,
-    /// τ: share of the stiffness, Kelvin–Voigt's time of retardation [T]
+    /// Kelvin-Voigt: viscous stress, this time times the elastic stress of the rate of strain; damps fast vibrations most,
+    /// and makes explicit increments shorter [T]
+    #[serde(rename = "stiffness")]
     pub retardation: f64,
 }
 

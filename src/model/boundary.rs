@@ -2,35 +2,125 @@
 //! Moments, and the spans of steps, are here as well.
 
 use nalgebra::{Matrix2, Vector2};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 pub use super::expression::Expression;
+use super::written::written;
 
-/// How a prescribed quantity varies.
-#[derive(Clone, Debug)]
+/// How a quantity varies.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(remote = "Self", rename_all = "snake_case")]
+#[schemars(!remote)]
 pub enum Drive {
-    /// A constant: reached at the end of the step, linearly from the value at its start
-    Constant(f64),
-    /// A rate: value at the start of the step plus rate × time since [1/T]
+    /// Value at the start of the step plus rate × time since [1/T]
     Rate(f64),
-    /// (time, value) pairs in run time, linear between, constant outside
+    /// Pairs of run time and value, times ascending; linear between, constant outside
     Table(Vec<[f64; 2]>),
-    /// An expression in the reference position x, y and the run time t
-    Expression(Expression),
-    /// (coordinate, value) pairs along x (0) or y (1) of the reference position, linear between, constant outside: reached at the end
-    /// of the step, linearly from the value at its start
+    /// Of a temperature: (coordinate, value) pairs along x (0) or y (1) of the reference position, linear between, constant outside,
+    /// reached at the end of the step, linearly from the value at its start
+    #[serde(skip)]
     ByPlace(usize, Vec<[f64; 2]>),
+    /// Value at the end of the step, reached linearly
+    #[serde(skip)]
+    #[schemars(!skip, untagged)]
+    Constant(f64),
+    /// Expression in the reference position x, y and the run time t, with + - * / ^, brackets, pi, tau, e, and functions: abs, acos,
+    /// acosh, asin, asinh, atan, atanh, atan2(y, x), cbrt, ceil, cos, cosh, exp, floor, fract, ln, log (= ln), log10, log2,
+    /// max(a, b), min(a, b), round, signum, sin, sinh, sqrt, tan, tanh, trunc. -x^2 is -(x^2)
+    #[serde(skip)]
+    #[schemars(!skip, untagged)]
+    Expression(Expression),
 }
 
-/// How a quantity varies along a surface, by reference position.
-#[derive(Clone, Debug)]
-pub enum Profile {
-    /// The same everywhere
+written!(
+    Drive,
+    "a number, an expression in x, y, t such as \"0.01*y*t\", {\"rate\": v}, or {\"table\": [[t, v], …]}",
+    number: Constant,
+    text: Expression
+);
+
+/// How warm a body is. A table by x or y, of the reference position, is reached at the end of the step, linearly from the
+/// temperature at its start: linear between, constant outside, the same coordinate twice is a jump.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(remote = "Self", rename_all = "snake_case")]
+#[schemars(rename = "Temperature")]
+pub enum BodyTemperature {
+    /// Value at the start of the step plus rate × time since [1/T]
+    Rate(f64),
+    /// Pairs of run time and value, times ascending; linear between, constant outside
+    Table(Vec<[f64; 2]>),
+    /// Pairs of x and value, x ascending
+    X(Vec<[f64; 2]>),
+    /// Pairs of y and value, y ascending
+    Y(Vec<[f64; 2]>),
+    /// Temperature at the end of the step, reached linearly from the one at its start
+    #[serde(skip)]
+    #[schemars(!skip, untagged)]
     Constant(f64),
-    /// An expression in x and y and, where it says so, t
+    /// Expression in the reference position x, y and the run time t
+    #[serde(skip)]
+    #[schemars(!skip, untagged)]
     Expression(Expression),
-    /// (coordinate, value) pairs along x (0) or y (1), linear between, constant outside; of two pairs with the same
-    /// coordinate the second holds there and beyond
-    Table(usize, Vec<[f64; 2]>),
+}
+
+written!(
+    BodyTemperature,
+    "a number, an expression in x, y, t such as \"20 + 5*x*t\", {\"rate\": v}, {\"table\": [[t, v], …]}, or {\"x\": [[x, v], …]}",
+    number: Constant,
+    text: Expression
+);
+
+impl From<f64> for BodyTemperature {
+    fn from(value: f64) -> Self {
+        Self::Constant(value)
+    }
+}
+
+impl From<&BodyTemperature> for Drive {
+    fn from(temperature: &BodyTemperature) -> Self {
+        match temperature.clone() {
+            BodyTemperature::Constant(value) => Self::Constant(value),
+            BodyTemperature::Expression(expression) => Self::Expression(expression),
+            BodyTemperature::Rate(rate) => Self::Rate(rate),
+            BodyTemperature::Table(table) => Self::Table(table),
+            BodyTemperature::X(table) => Self::ByPlace(0, table),
+            BodyTemperature::Y(table) => Self::ByPlace(1, table),
+        }
+    }
+}
+
+/// How a quantity varies along a surface, by reference position. A table is linear between its pairs, constant outside; the same
+/// coordinate twice is a jump, and the second value holds there and beyond.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(remote = "Self", rename_all = "snake_case")]
+#[schemars(!remote)]
+pub enum Profile {
+    /// Pairs of x and value, x ascending
+    X(Vec<[f64; 2]>),
+    /// Pairs of y and value, y ascending
+    Y(Vec<[f64; 2]>),
+    /// The same everywhere
+    #[serde(skip)]
+    #[schemars(!skip, untagged)]
+    Constant(f64),
+    /// Expression in the reference position x, y and, where it says so, the run time t
+    #[serde(skip)]
+    #[schemars(!skip, untagged)]
+    Expression(Expression),
+}
+
+written!(
+    Profile,
+    "a number, an expression in x, y such as \"1 + 0.1*x\", or {\"x\": [[x, v], …]}",
+    number: Constant,
+    text: Expression
+);
+
+impl Default for Profile {
+    fn default() -> Self {
+        Self::Constant(0.0)
+    }
 }
 
 impl From<f64> for Profile {
@@ -50,7 +140,8 @@ impl Profile {
         match self {
             Self::Constant(value) => *value,
             Self::Expression(expression) => expression.value(position, time),
-            Self::Table(component, table) => interpolate(table, position[*component]),
+            Self::X(table) => interpolate(table, position.x),
+            Self::Y(table) => interpolate(table, position.y),
         }
     }
 

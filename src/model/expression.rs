@@ -7,7 +7,12 @@
 //!
 //! From the text of an expression to its operations.
 
+use std::borrow::Cow;
+use std::str::FromStr;
+use std::sync::Arc;
+
 use nalgebra::Vector2;
+use schemars::{JsonSchema, Schema, SchemaGenerator};
 
 use crate::mesh::names::{in_line, nearest};
 
@@ -19,7 +24,10 @@ const DEPTH: usize = 32;
 
 /// A parsed expression in x, y and t: operations on a stack of values.
 #[derive(Clone, Debug)]
-pub struct Expression(Vec<Operation>);
+pub struct Expression {
+    text: Arc<str>,
+    operations: Arc<[Operation]>,
+}
 
 /// What is done with the values on top of the stack.
 #[derive(Clone, Copy, Debug)]
@@ -83,7 +91,7 @@ impl Expression {
             height
         });
         match heights.max() {
-            Some(most) if most <= DEPTH as isize => Ok(Self(operations)),
+            Some(most) if most <= DEPTH as isize => Ok(Self { text: text.into(), operations: operations.into() }),
             _ => Err(format!("\"{text}\" cannot be read: it has more than {DEPTH} levels of brackets: use a table")),
         }
     }
@@ -91,17 +99,18 @@ impl Expression {
     /// The same with the other sign.
     #[must_use]
     pub fn negated(&self) -> Self {
-        Self(self.0.iter().copied().chain([Operation::Negate]).collect())
+        let operations = self.operations.iter().copied().chain([Operation::Negate]).collect();
+        Self { text: format!("-({})", self.text).into(), operations }
     }
 
     /// Whether t stands in it.
     pub fn depends_on_time(&self) -> bool {
-        self.0.iter().any(|operation| matches!(operation, Operation::Variable(TIME)))
+        self.operations.iter().any(|operation| matches!(operation, Operation::Variable(TIME)))
     }
 
     /// Whether x or y stands in it.
     pub fn depends_on_position(&self) -> bool {
-        self.0.iter().any(|operation| matches!(operation, Operation::Variable(which) if *which != TIME))
+        self.operations.iter().any(|operation| matches!(operation, Operation::Variable(which) if *which != TIME))
     }
 
     /// Value at a reference position and time; NaN where the expression is not defined.
@@ -112,7 +121,7 @@ impl Expression {
     fn evaluate(&self, variables: &[f64]) -> f64 {
         let mut stack = [0.0; DEPTH];
         let mut height = 0;
-        for operation in &self.0 {
+        for operation in &*self.operations {
             match operation {
                 Operation::Number(number) => stack[height] = *number,
                 Operation::Variable(which) => stack[height] = variables[*which],
@@ -123,6 +132,35 @@ impl Expression {
             height = height.wrapping_add_signed(operation.growth());
         }
         stack[0]
+    }
+}
+
+impl FromStr for Expression {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        Self::parse(text)
+    }
+}
+
+/// Its text.
+impl AsRef<str> for Expression {
+    fn as_ref(&self) -> &str {
+        &self.text
+    }
+}
+
+impl JsonSchema for Expression {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        String::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        String::json_schema(generator)
     }
 }
 

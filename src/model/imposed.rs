@@ -1,33 +1,41 @@
 //! What is imposed on bodies, and on each of their elements: an initial stress, temperatures and their work.
 
 use nalgebra::Vector2;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::boundary::{Amplitude, Moment, Profile};
 use super::{Model, Step};
 use crate::laws::bulk::{CauchyStress, TEMPERATURE};
 
-/// Stress of an undeformed body at the start of a run, tension positive, by reference position.
-#[derive(Clone, Debug)]
+/// Stress of a body before anything has moved. Displacements and strains count from there, stresses are whole. The run tells how far
+/// it is out of balance with what acts at the start of the first step; loads that are there from the start are expressions,
+/// such as "-9.81" for a gravity, for a number grows from zero over the step
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum InitialStress {
-    /// Ground at rest under its weight along −y: σ_yy = −γ (y_s − y), and K₀ times that along the other directions
+    /// Ground at rest under its weight along -y: σ_yy = −weight (surface − y), and σ_xx = σ_zz = K0 σ_yy; σ_zz = 0 in a plate
     Geostatic {
-        /// y_s: level of the free surface [L]
+        /// Level y at which the vertical stress is zero: the top of the body, or above it if it lies deeper [L]
         surface: f64,
-        /// γ: weight per volume [F/L³]
+        /// γ: weight per volume, the density times gravity, above 0 [F/L³]
         weight: f64,
-        /// K₀: horizontal over vertical stress [-]
+        /// K₀: horizontal over vertical stress, zero or positive; 1 − sin φ of loose ground, ν/(1 − ν) of an elastic body that cannot
+        /// widen [-]
+        #[serde(rename = "K0")]
         k0: f64,
     },
-    /// Any stress
+    /// Components of the stress, tension positive
     Components {
         /// σ_xx [F/L²]
         xx: Profile,
         /// σ_yy [F/L²]
         yy: Profile,
-        /// σ_xy [F/L²]
+        /// σ_xy; 0 unless given [F/L²]
+        #[serde(default)]
         xy: Profile,
-        /// σ_zz: across the plane, of rings along the hoops [F/L²]
-        zz: Profile,
+        /// σ_zz: across the plane, of rings along the hoops. Needed but in plane stress, where it is 0 [F/L²]
+        zz: Option<Profile>,
     },
 }
 
@@ -39,17 +47,23 @@ impl InitialStress {
                 let vertical = -weight * (surface - position.y);
                 [k0 * vertical, vertical, 0.0, if in_plate { 0.0 } else { k0 * vertical }]
             }
-            Self::Components { xx, yy, xy, zz } => [xx, yy, xy, zz].map(|profile| profile.value(position)),
+            Self::Components { xx, yy, xy, zz } => {
+                let zz = zz.as_ref().map_or(0.0, |zz| zz.value(position));
+                [xx.value(position), yy.value(position), xy.value(position), zz]
+            }
         }
     }
 }
 
-/// Thermal expansion of a body.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Thermal expansion of a body, whose `temperature` the steps give. With F = (1 + α (T − T₀)) F_e the material sees F_e; a `linear`
+/// one sees the strain less α (T − T₀).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Thermal {
-    /// α: strain per temperature [1/Θ]
+    /// α: strain per temperature, against the undeformed body [1/Θ]
     pub expansion: f64,
-    /// T₀: temperature of the undeformed body without stress [Θ]
+    /// T₀: temperature of the undeformed body, which it has until a step gives another [Θ]
+    #[serde(default)]
     pub reference: f64,
 }
 

@@ -5,13 +5,13 @@
 //! the penalty turns into pressures far above those sought. There mortar averages.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::contact::surface::{CORNER, in_order};
 use crate::mesh::{Group, Mesh};
 
 /// Where contact is evaluated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {
     /// At the slave's nodes, with tributary lengths

@@ -16,10 +16,13 @@ pub mod step;
 pub mod support;
 pub mod told;
 pub mod warnings;
+pub(crate) mod written;
 
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector, Vector2};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::contact::pair::ContactPair;
 use crate::mesh::configuration::Configuration;
@@ -35,11 +38,13 @@ use state::{Energy, State, StepStart};
 pub use step::{Increments, Rupture, Step};
 
 /// When Newton's method stops.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+#[schemars(rename = "Newton")]
 pub struct NewtonSettings {
-    /// ‖r‖/‖f‖ of every part of a solution [-]
+    /// Out-of-balance force relative to the forces at work
     pub tolerance: f64,
-    /// Linear solves before giving up
+    /// Linear solves an increment before it is cut
     pub max_iterations: usize,
 }
 

@@ -13,6 +13,7 @@ mod mutations;
 mod outputs;
 mod progress;
 mod report;
+mod resolved;
 mod results;
 mod schema;
 mod surface;

@@ -15,8 +15,8 @@ use fecontact::laws::friction::{
 use fecontact::mesh::gmsh;
 use fecontact::model::boundary::{Drive, Profile};
 use fecontact::model::builder::{
-    Action, Builder, Change, Checked, Components, Contact, Friction, IncrementSettings, InitialTractions, Link, Load,
-    LoadStep, MasterSide, Place, Support,
+    Builder, Change, Checked, Components, Contact, DashpotLoad, Friction, IncrementSettings, Load, LoadStep,
+    MasterSide, Place, SpringLoad, Support,
 };
 use fecontact::model::method::Method;
 use fecontact::model::scheme::Scheme;
@@ -81,7 +81,6 @@ fn a_committed_dynamic_case_from_code_is_the_same_model() {
         alpha_t: Some(3000.0),
         ..SuperSubloadingParameters::new(0.5, 0.1, 3600.0)
     };
-    let initial = InitialTractions { pressure: 5.0.into(), traction: 0.5.into(), balanced: true, of_bodies: false };
     let contact = Contact::new("interface", "block_bottom", "base_top", friction).alpha_n(3000.0);
     let increments = IncrementSettings { initial: 0.01, min: Some(1e-8), max: Some(0.05), error: Some(5e-5) };
     let push = LoadStep::new("push", 3.5)
@@ -93,7 +92,7 @@ fn a_committed_dynamic_case_from_code_is_the_same_model() {
     let code = on_mesh_of(&given)
         .body("base", acrylic)
         .body("block", acrylic)
-        .contact(Contact { initial: Some(initial), ..contact })
+        .contact(contact.initial(5.0, 0.5).balanced())
         .newton(NewtonSettings { tolerance: 1e-6, ..NewtonSettings::default() })
         .step(sides.into_iter().fold(push, |push, side| push.load(Load::absorbing(side))))
         .watch("block_left");
@@ -114,8 +113,8 @@ fn a_committed_rupture_from_code_is_the_same_model() {
     let rock = linear(80095.3008, 0.25, 0.00267);
     let pairs = |key: &Value| serde_json::from_value::<Vec<[f64; 2]>>(key["x"].clone()).expect("pairs");
     let fault = &given["contacts"]["fault"];
-    let cohesion = Profile::Table(0, pairs(&fault["along"]["cohesion"]));
-    let traction = Profile::Table(0, pairs(&fault["initial"]["traction"]));
+    let cohesion = Profile::X(pairs(&fault["along"]["cohesion"]));
+    let traction = Profile::X(pairs(&fault["initial"]["traction"]));
     let friction = Friction::varying([("along.cohesion", cohesion)], |values, alpha_t| {
         let parameters = SlipWeakeningParameters {
             cohesion: values[0],
@@ -125,7 +124,6 @@ fn a_committed_rupture_from_code_is_the_same_model() {
         Ok(Box::new(SlipWeakening::new(&parameters, alpha_t)?))
     });
     let contact = Contact::new("fault", "upper_bottom", "lower_top", friction).alpha_n(3203.8).small_sliding();
-    let initial = InitialTractions { pressure: 120.0.into(), traction, balanced: true, of_bodies: false };
     let damping = Damping { mass: 0.0, retardation: 0.003 };
     let step = LoadStep::new("rupture", 12.0).scheme(Scheme::Explicit { safety: 0.9 }).dt(1.0);
     let sides = ["lower_left", "lower_right", "lower_bottom", "upper_left", "upper_right", "upper_top"];
@@ -135,7 +133,7 @@ fn a_committed_rupture_from_code_is_the_same_model() {
         .body("upper", rock)
         .damping("lower", damping)
         .damping("upper", damping)
-        .contact(Contact { initial: Some(initial), ..contact })
+        .contact(contact.initial(120.0, traction).balanced())
         .step(sides.into_iter().fold(step, |step, side| step.load(Load::absorbing(side))))
         .interval(0.02);
     same(&built(code), &model(&given));
@@ -196,7 +194,7 @@ fn everything() -> (Builder, Value) {
     });
     let base = Contact { shrink_fit: true, ..Contact::new("base", "block_bottom", "ground_top", base) };
     let on_floor = Contact { points: Some(3), ..Contact::new("floor", "ring_bottom", floor(), Frictionless) };
-    let wall = MasterSide::Polyline(vec![[5.0, -1.0], [5.0, 1.0]]);
+    let wall = MasterSide::Polyline { points: vec![[5.0, -1.0], [5.0, 1.0]] };
     let wall = Contact::new("wall", "ring_right", wall, Frictionless).method(Method::NodeToSegment);
     let wheel = MasterSide::Circle { centre: [4.0, -3.0], radius: 3.0, hole: false };
     let rubbing = CoulombParameters { mu: 0.2, alpha_t: Some(50.0) };
@@ -234,8 +232,8 @@ fn only(x: Option<Drive>, y: Option<Drive>) -> Components {
 
 fn three_steps(model: Builder) -> Builder {
     let along_x = |x: Drive| only(Some(x), None);
-    let pulled = Link { coefficients: [3.0, 0.0], driver: Some(along_x(1e-3.into())) };
-    let moved = Link { coefficients: [0.1, 0.0], driver: Some(along_x(Drive::Rate(0.1))) };
+    let pulled = SpringLoad { kx: 3.0, ky: 0.0, driver: Some(along_x(1e-3.into())) };
+    let moved = DashpotLoad { cx: 0.1, cy: 0.0, driver: Some(along_x(Drive::Rate(0.1))) };
     let push = only(None, Some(Drive::Table(vec![[0.0, 0.0], [1.0, 0.01]])));
     let ring = || Support::on("ring_top");
     let press = LoadStep::new("press", 1.0)
@@ -259,7 +257,7 @@ fn three_steps(model: Builder) -> Builder {
         .load(Load::pressure("block_top", 0.2))
         .load(Load::traction("block_top", Change::End))
         .load(Load::spring("ring_left", Change::End))
-        .load(Load { on: "ground_top".into(), action: Action::Absorbing(Change::End) })
+        .load(Load { absorbing: Some(Change::End), ..Load::absorbing("ground_top") })
         .load(Load::dashpot("ring_left", Change::To(moved)));
     let swing = LoadStep::new("swing", 0.25)
         .scheme(Scheme::Hht { alpha: -0.1 })
@@ -470,7 +468,7 @@ fn what_is_wrong_is_named() {
         ),
         (varying((-1.0).into()), "contacts.other.along.mu at (0, 0.7886751345948129): \"mu\" is -1"),
         (varying(Profile::Expression(parsed("t"))), "contacts.other.along.mu at (0, 0.7886751345948129): \"mu\" is 0"),
-        (varying(Profile::Table(1, vec![])), "contacts.other.along.mu.y: the table is empty"),
+        (varying(Profile::Y(vec![])), "contacts.other.along.mu.y: the table is empty"),
         (small().step(step().support(top())), "steps[1].supports[0]: prescribes nothing"),
         (small().step(step().support(top().ux(f64::NAN))), "steps[1].supports[0].ux: is NaN: must be a finite number"),
         (small().step(step().fix("top")), "steps[1].supports[0].on: the mesh has no group `top`"),

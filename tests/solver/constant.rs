@@ -221,12 +221,13 @@ fn stored_elements_answer_as_each_by_itself() {
 #[test]
 fn stressed_elements_answer_as_each_by_itself() {
     let stress = |at: [f64; 2], section: Section| {
-        let table = |axis: usize, [start, end]: [f64; 2]| Profile::Table(axis, vec![[-1.0, start], [3.0, end]]);
+        let table =
+            |axis: usize, [start, end]: [f64; 2]| [Profile::X, Profile::Y][axis](vec![[-1.0, start], [3.0, end]]);
         InitialStress::Components {
             xx: table(0, at),
             yy: table(1, [at[1], at[0]]),
             xy: table(0, [0.3, -0.2]),
-            zz: table(1, if section.is_plate() { [0.0; 2] } else { [at[0], 0.0] }),
+            zz: Some(table(1, if section.is_plate() { [0.0; 2] } else { [at[0], 0.0] })),
         }
     };
     for kind in KINDS {

@@ -11,7 +11,7 @@ use crate::terms::{arbitrary_displacement, moving, tangent_error};
 use fecontact::equations::Trial;
 use fecontact::laws::bulk::Material;
 use fecontact::laws::friction::CoulombParameters;
-use fecontact::model::boundary::Drive;
+use fecontact::model::boundary::{BodyTemperature, Drive, Expression};
 use fecontact::model::builder::{Builder, Change, Contact, Load, LoadStep, MasterSide, Place, Support};
 use fecontact::model::imposed::Thermal;
 use fecontact::model::scheme::Scheme;
@@ -539,7 +539,8 @@ fn what_warms_by_the_time_of_the_run_may_end_a_step() {
             .thermal("block", Thermal { expansion: 0.05, reference: 0.0 })
     };
     let held = || LoadStep::new("warm", 1.0).dt(0.3).fix("block_bottom").support(Support::on("block_top").uy(0.0));
-    for warmth in [Drive::Rate(0.4), expression("0.4 * t"), Drive::Table(vec![[0.0, 0.0], [2.0, 0.8]])] {
+    let growing = BodyTemperature::Expression(Expression::parse("0.4 * t").unwrap());
+    for warmth in [BodyTemperature::Rate(0.4), growing, BodyTemperature::Table(vec![[0.0, 0.0], [2.0, 0.8]])] {
         let warm = held().temperature("block", warmth).until("block_top", Part::Y, -2.0);
         let run = run_through(block().step(warm).step(LoadStep::new("on", 1.0)));
         close("met", run.reaction("block_top", run.at(0.5))[1], -2.0, 2e-6);
@@ -552,7 +553,7 @@ fn what_warms_by_the_time_of_the_run_may_end_a_step() {
     let run = run_through(block().step(held().temperature("block", 0.4)).step(press));
     close("pressed", run.reaction("block_top", run.last())[1], -6.0, 6e-6);
     close("so long", run.last().time, 1.5, 1e-6);
-    for given in [Drive::Constant(0.4), Drive::ByPlace(0, vec![[0.0, 0.2], [2.0, 0.4]])] {
+    for given in [BodyTemperature::Constant(0.4), BodyTemperature::X(vec![[0.0, 0.2], [2.0, 0.4]])] {
         let warm = held().temperature("block", given).until("block_top", Part::Y, -2.0);
         let told = told(block().step(warm));
         let words = "steps[0].until: ends the step before its time, and the temperature of `block`, given as a number or by place, \

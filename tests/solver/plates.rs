@@ -63,7 +63,7 @@ fn the_force_on_a_plate_is_met_exactly() {
     let uniaxial = run_through(block(0.0).step(step().load(Load::total_force("block_top", [0.0, force[1]]))));
     let [aside, down] = top(&uniaxial, uniaxial.last());
     close("symmetry", aside, 0.0, 1e-12);
-    let spring = Change::To(fecontact::model::builder::Link { coefficients: [0.0, k], driver: Some([0.0, d].into()) });
+    let spring = Change::To(fecontact::model::builder::SpringLoad { kx: 0.0, ky: k, driver: Some([0.0, d].into()) });
     let pulled = run_through(block(0.0).step(step().load(Load::spring(Place::Near([2.0, 1.0]), spring))));
     let expected = k * d / (k + force[1] / down);
     close("pulled", top(&pulled, pulled.last())[1], expected, 1e-12);

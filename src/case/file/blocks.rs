@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Deserializer};
+use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::case::choice::Choice;
 use crate::mesh::{BlockKind, InlineMesh};
+use crate::model::written::Written;
 
 /// A mesh of blocks: quadrilaterals with straight sides or arcs, each divided into rows and columns of elements. Blocks of one body
 /// that share a whole side are joined there, with the same nodes; those of different bodies never are
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BlocksInput {
     /// Numbers with names of your choice, for the expressions of the blocks; a number, or an expression in other parameters
@@ -24,7 +24,7 @@ pub struct BlocksInput {
 }
 
 /// A quadrilateral divided into elements. Side k goes from corner k to the next one, in the order in which the corners are given
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BlockInput {
     /// Name of the body that its elements belong to
@@ -48,7 +48,7 @@ pub struct BlockInput {
 }
 
 /// A number that may depend on the parameters of the mesh.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "must be a number, or an expression in the parameters of the mesh, such as \"L/2\"")]
 pub enum Amount {
     /// Its value
@@ -58,8 +58,8 @@ pub enum Amount {
 }
 
 /// How the sizes of elements vary along a side.
-#[derive(Clone, Debug, PartialEq, JsonSchema)]
-#[schemars(untagged)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
 pub enum GradingInput {
     /// Size of the last element over that of the first
     Ratio(f64),
@@ -75,15 +75,30 @@ impl Default for GradingInput {
     }
 }
 
+impl Written for GradingInput {
+    const EXPECTING: &'static str = "the ratio of the last size to the first, or {\"middle\": ratio of the size in the middle to those at the ends}";
+
+    fn number(value: f64) -> Option<Self> {
+        Some(Self::Ratio(value))
+    }
+
+    fn text(text: &str) -> Result<Self, String> {
+        Ok(Self::Expression(text.into()))
+    }
+
+    fn object<'de, D: Deserializer<'de>>(object: D) -> Result<Self, D::Error> {
+        MiddleInput::deserialize(object).map(Self::Middle)
+    }
+}
+
 impl<'de> Deserialize<'de> for GradingInput {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let expecting = "the ratio of the last size to the first, or {\"middle\": ratio of the size in the middle to those at the ends}";
-        Choice { expecting, number: Some(Self::Ratio), text: Self::Expression, object: Self::Middle }.read(deserializer)
+        Self::read(deserializer)
     }
 }
 
 /// Sizes that are alike at both ends.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MiddleInput {
     /// Size in the middle over that at both ends

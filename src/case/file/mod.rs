@@ -1,39 +1,25 @@
-//! The case file as it is written: JSON types, with the text that the schema shows.
-//!
-//! Damping as it is written.
-//!
-//! What the plane stands for.
-//!
-//! Loading plates as they are written.
+//! The case file: what a model is built from, under its keys, and what only a file has.
 
 mod blocks;
-mod contact;
 mod output;
-mod step;
 
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Deserializer};
+use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::case::choice::Choice;
 use crate::laws::bulk::MaterialParameters;
 use crate::mesh::InlineMesh;
-use crate::model::NewtonSettings;
+use crate::mesh::section::Section;
+use crate::model::builder::{Contact, Gauge, LoadStep, Plate};
+use crate::model::imposed::{InitialStress, Thermal};
+use crate::model::written::Written;
+use crate::model::{Damping, NewtonSettings};
 pub use blocks::{Amount, BlockInput, BlocksInput, GradingInput, MeshInPlace, MiddleInput};
-pub use contact::{
-    AlongInput, CircleInput, ContactInput, DilatancyInput, InitialInput, LawChoiceInput, MasterInput, NormalInput,
-    PlaneInput, PolylineInput, ProfileInput, ProfileTable, RadiationInput, RigidInput, SlidingInput,
-};
-pub use output::{ArrivalInput, FrontsInput, OutputInput, ProbeInput};
-pub use step::{
-    Components, DashpotInput, DriveInput, GeostaticInput, IncrementsInput, InitialStressInput, LoadInput, Place,
-    RotationInput, RuptureInput, SpotInput, SpringInput, StepInput, StressInput, SupportInput, TemperatureInput,
-    TemperatureVariation, ThermalInput, TimeInput, UntilInput,
-};
+pub use output::{ArrivalInput, FrontsInput, OutputInput};
 
 /// A case: mesh, bodies, contacts and steps.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Case {
     /// What the case shows, in a line
@@ -47,7 +33,7 @@ pub struct Case {
     pub mesh: MeshSource,
     /// What the plane stands for in space: "plane_strain", a plate {"plane_stress": {"thickness": …}}, or "axisymmetric"
     #[serde(default)]
-    pub section: SectionInput,
+    pub section: Section,
     /// Bodies by the name of their mesh group
     #[serde(default)]
     pub bodies: BTreeMap<String, BodyInput>,
@@ -66,12 +52,12 @@ pub struct Case {
     pub plates: Vec<LoadingPlateInput>,
     /// Contacts by a name of your choice
     #[serde(default)]
-    pub contacts: BTreeMap<String, ContactInput>,
+    pub contacts: BTreeMap<String, Contact>,
     /// Initial velocity [x, y] of whole bodies; supported nodes keep to their supports
     #[serde(default)]
     pub initial_velocity: BTreeMap<String, [f64; 2]>,
     /// Steps, one after the other
-    pub steps: Vec<StepInput>,
+    pub steps: Vec<LoadStep>,
     /// Folder of results, or checkpoint, of a case that has come to its end, relative to this file: this case begins there.
     /// Mesh, bodies and contacts must be the same but for the parameters of friction and damping. The steps follow on those
     /// of that case: supports, loads and time go on from there; energies are counted anew
@@ -82,18 +68,18 @@ pub struct Case {
     /// Gauges by a name of your choice: displacement, velocity, strain and stress at points of the bodies, at every row of
     /// the history (probes.csv)
     #[serde(default)]
-    pub probes: BTreeMap<String, ProbeInput>,
+    pub probes: BTreeMap<String, Gauge>,
     /// When Newton's method stops
     #[serde(default)]
-    pub newton: NewtonInput,
+    pub newton: NewtonSettings,
     /// What is written
     #[serde(default)]
     pub output: OutputInput,
 }
 
 /// A mesh file or a mesh in place.
-#[derive(Clone, Debug, JsonSchema)]
-#[schemars(untagged)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[serde(untagged)]
 pub enum MeshSource {
     /// Path relative to the case file
     File(String),
@@ -103,20 +89,30 @@ pub enum MeshSource {
     Inline(InlineMesh),
 }
 
-impl<'de> Deserialize<'de> for MeshSource {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let expecting =
-            "the path of a mesh file, or a mesh {\"blocks\": …} or {\"nodes\": …, \"elements\": …, \"edges\": …}";
-        let object = |mesh| match mesh {
+impl Written for MeshSource {
+    const EXPECTING: &'static str =
+        "the path of a mesh file, or a mesh {\"blocks\": …} or {\"nodes\": …, \"elements\": …, \"edges\": …}";
+
+    fn text(text: &str) -> Result<Self, String> {
+        Ok(Self::File(text.into()))
+    }
+
+    fn object<'de, D: Deserializer<'de>>(object: D) -> Result<Self, D::Error> {
+        Ok(match MeshInPlace::deserialize(object)? {
             MeshInPlace::Inline(mesh) => Self::Inline(mesh),
             MeshInPlace::Blocks(blocks) => Self::Blocks(blocks),
-        };
-        Choice { expecting, number: None, text: Self::File, object }.read(deserializer)
+        })
+    }
+}
+
+impl<'de> Deserialize<'de> for MeshSource {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Self::read(deserializer)
     }
 }
 
 /// A body.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BodyInput {
     /// Bulk law
@@ -126,15 +122,15 @@ pub struct BodyInput {
     pub element: Formulation,
     /// Damping of the body in dynamic steps; none unless given
     #[serde(default)]
-    pub damping: DampingInput,
+    pub damping: Damping,
     /// Stress of the undeformed body at the start; none unless given
-    pub initial_stress: Option<InitialStressInput>,
+    pub initial_stress: Option<InitialStress>,
     /// Thermal expansion; none unless given
-    pub thermal: Option<ThermalInput>,
+    pub thermal: Option<Thermal>,
 }
 
 /// How the elements of a body are integrated.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Formulation {
     /// Displacements only, full integration
@@ -145,7 +141,7 @@ pub enum Formulation {
 }
 
 /// A mass at every node of a group.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PointMassInput {
     /// Mass of each node, added to what a body has there [M]
@@ -154,62 +150,9 @@ pub struct PointMassInput {
     pub velocity: Option<[f64; 2]>,
 }
 
-/// When Newton's method stops.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct NewtonInput {
-    /// Out-of-balance force relative to the forces at work
-    pub tolerance: f64,
-    /// Linear solves an increment before it is cut
-    pub max_iterations: usize,
-}
-
-impl Default for NewtonInput {
-    fn default() -> Self {
-        let NewtonSettings { tolerance, max_iterations } = NewtonSettings::default();
-        Self { tolerance, max_iterations }
-    }
-}
-
-/// Rayleigh damping. A vibration of angular frequency w decays with the damping ratio (mass/w + stiffness w)/2.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct DampingInput {
-    /// Force per momentum: damps slow motions most, free flight included [1/T]
-    pub mass: f64,
-    /// Kelvin-Voigt: viscous stress, this time times the elastic stress of the rate of strain; damps fast vibrations most,
-    /// and makes explicit increments shorter [T]
-    pub stiffness: f64,
-}
-
-/// What the plane stands for in space.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum SectionInput {
-    /// A slice of thickness 1 of bodies that go on without end across the plane: forces, masses and energies per unit of
-    /// thickness
-    #[default]
-    PlaneStrain,
-    /// A plate, free of stress across the plane: forces, masses and energies of its whole thickness. Pressures and tractions,
-    /// those of contact included, count the undeformed thickness
-    PlaneStress(PlateInput),
-    /// Rings about the axis x = 0: x is the radius and y the axis. Forces, masses and energies are per full turn, pressures
-    /// and tractions per area, and zz is the hoop direction. No node may have x < 0, and nodes on the axis keep ux = 0 without
-    /// being told. A contact's length is the area of its full turn
-    Axisymmetric,
-}
-
-/// A plate.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PlateInput {
-    /// Undeformed thickness, above 0 [L]
-    pub thickness: f64,
-}
-
 /// A loading plate.
-#[derive(Clone, Debug, JsonSchema)]
-#[schemars(untagged)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[serde(untagged)]
 pub enum LoadingPlateInput {
     /// Group that moves as one, without turning
     Group(String),
@@ -217,42 +160,40 @@ pub enum LoadingPlateInput {
     Moving(MovingPlateInput),
 }
 
+impl Written for LoadingPlateInput {
+    const EXPECTING: &'static str =
+        "the name of a group, or {\"on\": group, \"moves\": \"ux_alike\", \"uy_alike\" or \"rigid\"}";
+
+    fn text(text: &str) -> Result<Self, String> {
+        Ok(Self::Group(text.into()))
+    }
+
+    fn object<'de, D: Deserializer<'de>>(object: D) -> Result<Self, D::Error> {
+        MovingPlateInput::deserialize(object).map(Self::Moving)
+    }
+}
+
 impl<'de> Deserialize<'de> for LoadingPlateInput {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let expecting = "the name of a group, or {\"on\": group, \"moves\": \"ux_alike\", \"uy_alike\" or \"rigid\"}";
-        Choice { expecting, number: None, text: Self::Group, object: Self::Moving }.read(deserializer)
+        Self::read(deserializer)
     }
 }
 
 /// A loading plate that moves in another way than as one.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MovingPlateInput {
     /// Group of its nodes
     pub on: String,
     /// How they move
-    pub moves: PlateMotion,
-}
-
-/// How the nodes of a loading plate move.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum PlateMotion {
-    /// Alike, without turning: what the name of the group alone says
-    AsOne,
-    /// Alike in x, each as it will in y: a greased plate
-    UxAlike,
-    /// Alike in y, each as it will in x
-    UyAlike,
-    /// As a rigid body, which turns under forces, springs and a `moment`; supports hold at most one of its nodes
-    Rigid,
+    pub moves: Plate,
 }
 
 impl LoadingPlateInput {
     /// Its group, and how it moves.
-    pub fn parts(&self) -> (&str, PlateMotion) {
+    pub fn parts(&self) -> (&str, Plate) {
         match self {
-            Self::Group(name) => (name, PlateMotion::AsOne),
+            Self::Group(name) => (name, Plate::AsOne),
             Self::Moving(MovingPlateInput { on, moves }) => (on, *moves),
         }
     }

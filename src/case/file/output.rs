@@ -1,12 +1,10 @@
 //! What is written by a run, as a case asks for it.
-//!
-//! Points of the bodies that are watched, as they are written.
 
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// What is written.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputInput {
     /// Fields are written with every n-th row of the history, and at the end of each step; with every row unless given, or
@@ -34,7 +32,7 @@ pub struct OutputInput {
 }
 
 /// What counts as a front.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FrontsInput {
     /// Slip rate whose passage from below is the arrival of a front; an event of slip lasts while a point of the contact
@@ -45,7 +43,7 @@ pub struct FrontsInput {
 }
 
 /// What tells that a front arrives at a point.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 pub enum ArrivalInput {
     /// R passes this value from below [-]
     R(f64),
@@ -74,20 +72,4 @@ impl Default for OutputInput {
             report: true,
         }
     }
-}
-
-/// A gauge: a point given by `at`, or a line of points given by `from`, `to` and `number`; places are undeformed ones.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ProbeInput {
-    /// The point [x, y]
-    pub at: Option<[f64; 2]>,
-    /// Where a line begins [x, y]
-    pub from: Option<[f64; 2]>,
-    /// Where it ends [x, y]
-    pub to: Option<[f64; 2]>,
-    /// How many points it has, both ends included; the k-th is called NAME.k, from 1
-    pub number: Option<usize>,
-    /// The body, needed where two bodies touch
-    pub body: Option<String>,
 }

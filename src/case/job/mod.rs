@@ -166,7 +166,11 @@ impl Job {
             title: case.title.clone(),
             section: Some(self.model.mesh.section.to_string()),
             units: case.units.clone(),
-            friction: case.contacts.iter().map(|(name, contact)| (name.clone(), contact.friction.clone())).collect(),
+            friction: case
+                .contacts
+                .iter()
+                .filter_map(|(name, contact)| Some((name.clone(), contact.friction.parameters()?.clone())))
+                .collect(),
             wave_speeds: events::wave_speeds(&self.model),
             front_slip_rate: case.output.fronts.map(|fronts| fronts.slip_rate),
             understood: understood(case, &self.model),

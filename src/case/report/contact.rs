@@ -7,14 +7,13 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::case::file::{
-    Case, CircleInput, ContactInput, DilatancyInput, InitialInput, MasterInput, PlaneInput, PolylineInput,
-    ProfileInput, RigidInput,
-};
+use crate::case::file::Case;
 use crate::contact::pair::ContactPair;
 use crate::contact::small_sliding::LITTLE_TURN;
-use crate::laws::friction::Onset;
+use crate::laws::friction::{Dilatancy, Onset};
 use crate::model::Model;
+use crate::model::boundary::Profile;
+use crate::model::builder::{Contact, InitialTractions, MasterSide};
 use crate::model::method::{Chosen, Method};
 use crate::model::told::{count, number};
 use crate::model::warnings::{farthest, gaps};
@@ -35,7 +34,7 @@ pub fn contacts(case: &Case, model: &Model) -> Vec<String> {
     lines
 }
 
-fn initial_tractions(initial: &InitialInput, pair: &ContactPair) -> String {
+fn initial_tractions(initial: &InitialTractions, pair: &ContactPair) -> String {
     let tractions = pair.initial.iter().flatten();
     let points = || pair.points.iter();
     let observed = |name| {
@@ -98,7 +97,7 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
         lines.push(format!("alpha_t {alpha_t} ({chosen})"));
     }
     lines.push(format!("friction {}", parameters(&input.friction, "law", &["alpha_t"])));
-    let vary = |along: &BTreeMap<String, ProfileInput>| -> Option<String> {
+    let vary = |along: &BTreeMap<String, Profile>| -> Option<String> {
         let names: Vec<&str> = along.keys().map(String::as_str).collect();
         (!names.is_empty()).then(|| format!("along it vary {}", names.join(", ")))
     };
@@ -149,9 +148,9 @@ fn onset(pair: &ContactPair) -> Option<String> {
 }
 
 /// Dilatancy, wear, and what fluid is between the surfaces.
-fn moving(input: &ContactInput, model: &Model, pair: &ContactPair) -> Vec<String> {
+fn moving(input: &Contact, model: &Model, pair: &ContactPair) -> Vec<String> {
     let mut lines = Vec::new();
-    if let Some(DilatancyInput { rate, limit }) = input.dilatancy {
+    if let Some(Dilatancy { rate, limit }) = input.dilatancy {
         let limit = limit.map_or("without limit".into(), |limit| format!("up to {}", number(limit)));
         lines.push(format!("dilates with plastic slip by {}, {limit}", number(rate)));
     }
@@ -164,26 +163,24 @@ fn moving(input: &ContactInput, model: &Model, pair: &ContactPair) -> Vec<String
     lines
 }
 
-fn master(input: &ContactInput) -> String {
+fn master(input: &Contact) -> String {
     let pair = |v: [f64; 2]| v.map(number).join(", ");
     match &input.master {
-        MasterInput::Group(group) if *group == input.slave => "itself".into(),
-        MasterInput::Group(group) => group.clone(),
-        MasterInput::Rigid(RigidInput::Plane(PlaneInput { point, normal })) => {
+        MasterSide::Group(group) if *group == input.slave => "itself".into(),
+        MasterSide::Group(group) => group.clone(),
+        MasterSide::Plane { point, normal } => {
             format!("the rigid plane through ({}) with the normal ({})", pair(*point), pair(*normal))
         }
-        MasterInput::Rigid(RigidInput::Circle(CircleInput { centre, radius, hole })) => {
+        MasterSide::Circle { centre, radius, hole } => {
             let kind = if *hole { "hole" } else { "disk" };
             format!("the rigid {kind} of radius {} about ({})", number(*radius), pair(*centre))
         }
-        MasterInput::Rigid(RigidInput::Polyline(PolylineInput { points })) => {
-            format!("the rigid polyline through {}", count(points.len(), "point"))
-        }
+        MasterSide::Polyline { points } => format!("the rigid polyline through {}", count(points.len(), "point")),
     }
 }
 
 /// Where contact is evaluated, and why if that was left open.
-fn evaluated(input: &ContactInput, chosen: Option<&Chosen>) -> String {
+fn evaluated(input: &Contact, chosen: Option<&Chosen>) -> String {
     let Some(Chosen { method, points, because, .. }) = chosen else {
         return format!("each point stands for the area {}", number(input.area.unwrap_or_default()));
     };
@@ -197,7 +194,7 @@ fn evaluated(input: &ContactInput, chosen: Option<&Chosen>) -> String {
 }
 
 /// Whether the case gives `alpha_t`; `None` for a law that has none.
-fn gives_alpha_t(input: &ContactInput) -> Option<bool> {
+fn gives_alpha_t(input: &Contact) -> Option<bool> {
     let law = serde_json::to_value(&input.friction).ok()?;
     law.get("alpha_t").map(|given| !given.is_null())
 }

@@ -8,14 +8,13 @@ use std::fmt::Write;
 use contact::{contacts, parameters, pressed_too_hard};
 use steps::steps;
 
-use super::file::{
-    ArrivalInput, BodyInput, Case, DampingInput, Formulation, GeostaticInput, InitialStressInput, LoadingPlateInput,
-    MeshSource, PlateMotion, ThermalInput,
-};
+use super::file::{ArrivalInput, BodyInput, Case, Formulation, LoadingPlateInput, MeshSource};
 use crate::mesh::Group;
 use crate::mesh::shape::ElementKind;
+use crate::model::builder::Plate;
+use crate::model::imposed::{InitialStress, Thermal};
 use crate::model::told::{count, number};
-use crate::model::{Model, PointMass};
+use crate::model::{Damping, Model, PointMass};
 
 /// A readable account of a checked case.
 pub fn report(case: &Case, model: &Model) -> String {
@@ -128,9 +127,9 @@ fn extent(model: &Model, nodes: &[usize]) -> String {
 fn bodies(case: &Case) -> Vec<String> {
     let row = |(name, input): (&String, &BodyInput)| {
         let f_bar = if input.element == Formulation::FBar { ", f_bar elements" } else { "" };
-        let DampingInput { mass, stiffness } = input.damping;
-        let damping = match mass > 0.0 || stiffness > 0.0 {
-            true => format!(", damping: mass {}, stiffness {}", number(mass), number(stiffness)),
+        let Damping { mass, retardation } = input.damping;
+        let damping = match mass > 0.0 || retardation > 0.0 {
+            true => format!(", damping: mass {}, stiffness {}", number(mass), number(retardation)),
             false => String::new(),
         };
         let imposed = imposed(input);
@@ -146,13 +145,13 @@ fn bodies(case: &Case) -> Vec<String> {
 /// Initial stress and thermal expansion.
 fn imposed(input: &BodyInput) -> String {
     let stress = match &input.initial_stress {
-        Some(InitialStressInput::Geostatic(GeostaticInput { surface, weight, k0 })) => {
+        Some(InitialStress::Geostatic { surface, weight, k0 }) => {
             format!(", geostatic stress: weight {} below y = {}, K0 {}", number(*weight), number(*surface), number(*k0))
         }
-        Some(InitialStressInput::Components(_)) => ", initial stress by components".into(),
+        Some(InitialStress::Components { .. }) => ", initial stress by components".into(),
         None => String::new(),
     };
-    let thermal = input.thermal.map_or_else(String::new, |ThermalInput { expansion, reference }| {
+    let thermal = input.thermal.map_or_else(String::new, |Thermal { expansion, reference }| {
         format!(", thermal expansion {} from the temperature {} on", number(expansion), number(reference))
     });
     stress + &thermal
@@ -167,13 +166,13 @@ fn periodic(case: &Case, model: &Model) -> Vec<String> {
 }
 
 fn plates(case: &Case, model: &Model) -> Vec<String> {
-    let told = |(name, moves): (&str, PlateMotion)| {
+    let told = |(name, moves): (&str, Plate)| {
         let nodes = model.mesh.group(name).map_or(0, |group| model.mesh.nodes_of(group).len());
         let moves = match moves {
-            PlateMotion::AsOne => "that move as one",
-            PlateMotion::UxAlike => "alike in ux",
-            PlateMotion::UyAlike => "alike in uy",
-            PlateMotion::Rigid => "of a rigid plate, which turns",
+            Plate::AsOne => "that move as one",
+            Plate::UxAlike => "alike in ux",
+            Plate::UyAlike => "alike in uy",
+            Plate::Rigid => "of a rigid plate, which turns",
         };
         format!("{name}: {} {moves}", count(nodes, "node"))
     };

@@ -5,14 +5,12 @@ use std::collections::BTreeMap;
 use serde_json::Value;
 
 use super::contact::plain;
-use crate::case::file::{
-    Case, Components, DampingInput, DashpotInput, DriveInput, LoadInput, Place, SpringInput, StepInput,
-    TemperatureInput, TemperatureVariation, TimeInput,
-};
-use crate::case::translate;
+use crate::case::file::Case;
+use crate::model::boundary::Drive;
+use crate::model::builder::{Action, Components, DashpotLoad, Load, LoadStep, Place, SpringLoad};
 use crate::model::step::Until;
 use crate::model::told::{count, number};
-use crate::model::{Model, Step};
+use crate::model::{Damping, Model, Step};
 use crate::time::step_size::EVENT_LOCATION;
 
 /// Every step.
@@ -27,17 +25,17 @@ pub fn steps(case: &Case, model: &Model) -> Vec<String> {
             let [vx, vy] = velocity.map(number);
             format!("{name} starts with the velocity ({vx}, {vy})")
         }));
-        told.extend(input.damping.iter().map(|(name, DampingInput { mass, stiffness })| {
-            format!("damping of {name} from here on: mass {}, stiffness {}", number(*mass), number(*stiffness))
+        told.extend(input.damping.iter().map(|(name, Damping { mass, retardation })| {
+            format!("damping of {name} from here on: mass {}, stiffness {}", number(*mass), number(*retardation))
         }));
         told.extend(
-            input.temperature.iter().map(|(name, given)| format!("temperature of {name}: {}", temperature(given))),
+            input.temperature.iter().map(|(name, given)| format!("temperature of {name}: {}", drive(&given.into()))),
         );
         let freed = if step.scheme.is_dynamic() { "at once" } else { "its reaction fades over the step" };
         told.extend(
             supports.step(written_supports(input, on)).map(|(on, kind)| format!("freed {on}: {kind}, {freed}")),
         );
-        told.extend(loads.step(input.loads.iter().map(|load| written_load(load, on))).map(|(on, kind)| {
+        told.extend(loads.step(input.loads.iter().filter_map(|load| written_load(load, on))).map(|(on, kind)| {
             let ended = if ENDS_AT_ONCE.contains(&kind) { "at once" } else { "it fades over the step" };
             format!("ended {on}: {kind}, {ended}")
         }));
@@ -131,73 +129,50 @@ impl InForce {
 
 /// A place in words, one of a single node by its tag.
 fn on(place: &Place, model: &Model) -> String {
-    let place = translate::place(place);
     place.settled(&model.mesh).map_or_else(|_| place.to_string(), |settled| settled.to_string())
 }
 
-fn written_supports(step: &StepInput, on: impl Fn(&Place) -> String) -> Vec<Entry> {
+fn written_supports(step: &LoadStep, on: impl Fn(&Place) -> String) -> Vec<Entry> {
     let mut entries: Vec<Entry> = Vec::new();
     for support in &step.supports {
         let mut add = |kind, text| entries.push((on(&support.on), kind, text));
         for (kind, given) in [("ux", &support.ux), ("uy", &support.uy), ("along its normal", &support.un)] {
             if let Some(given) = given {
-                add(kind, given.as_ref().map(drive));
+                add(kind, given.given().map(drive));
             }
         }
         if let Some(given) = &support.rotation {
             let turning = |about: [f64; 2], angle| format!("{angle} about ({})", about.map(number).join(", "));
-            add("rotation", given.as_ref().map(|given| turning(given.about, drive(&given.angle))));
+            add("rotation", given.given().map(|given| turning(given.about, drive(&given.angle))));
         }
         if let (Some(direction), Some(given)) = (support.along, &support.u) {
             let on = format!("{} along ({})", on(&support.on), direction.map(number).join(", "));
-            entries.push((on, "u", given.as_ref().map(drive)));
+            entries.push((on, "u", given.given().map(drive)));
         }
     }
     entries
 }
 
-fn written_load(load: &LoadInput, place: impl Fn(&Place) -> String) -> Entry {
-    let LoadInput {
-        on,
-        pressure,
-        dead_pressure,
-        traction,
-        gravity,
-        force,
-        total_force,
-        moment,
-        spring,
-        dashpot,
-        absorbing,
-    } = load;
-    let (kind, text) = if let Some(pressure) = pressure {
-        ("pressure", pressure.as_ref().map(drive))
-    } else if let Some(pressure) = dead_pressure {
-        ("dead pressure", pressure.as_ref().map(drive))
-    } else if let Some(moment) = moment {
-        ("moment", moment.as_ref().map(drive))
-    } else if let Some(absorbing) = absorbing {
-        ("absorbing side", absorbing.filter(|absorbs| *absorbs).map(|_| "rho c_p and rho c_s of its body".into()))
-    } else if let Some(spring) = spring {
-        let stiffness = |SpringInput { kx, ky, driver }: &SpringInput| {
-            format!("kx {}, ky {}{}", number(*kx), number(*ky), driven("moved by", driver))
-        };
-        ("spring", spring.as_ref().map(stiffness))
-    } else if let Some(dashpot) = dashpot {
-        let coefficients = |DashpotInput { cx, cy, driver }: &DashpotInput| {
-            format!("cx {}, cy {}{}", number(*cx), number(*cy), driven("moving with", driver))
-        };
-        ("dashpot", dashpot.as_ref().map(coefficients))
-    } else if let Some(traction) = traction {
-        ("traction", traction.as_ref().map(components))
-    } else if let Some(gravity) = gravity {
-        ("gravity", gravity.as_ref().map(components))
-    } else if let Some(force) = total_force {
-        ("total force", force.as_ref().map(components))
-    } else {
-        ("force", force.as_ref().and_then(Option::as_ref).map(components))
+fn written_load(load: &Load, place: impl Fn(&Place) -> String) -> Option<Entry> {
+    let spring = |SpringLoad { kx, ky, driver }: &SpringLoad| {
+        format!("kx {}, ky {}{}", number(*kx), number(*ky), driven("moved by", driver))
     };
-    (place(on), kind, text)
+    let dashpot = |DashpotLoad { cx, cy, driver }: &DashpotLoad| {
+        format!("cx {}, cy {}{}", number(*cx), number(*cy), driven("moving with", driver))
+    };
+    let (kind, text) = match load.action()? {
+        Action::Pressure(given) => ("pressure", given.map(drive)),
+        Action::DeadPressure(given) => ("dead pressure", given.map(drive)),
+        Action::Moment(given) => ("moment", given.map(drive)),
+        Action::Absorbing(absorbs) => ("absorbing side", absorbs.then(|| "rho c_p and rho c_s of its body".into())),
+        Action::Spring(given) => ("spring", given.map(spring)),
+        Action::Dashpot(given) => ("dashpot", given.map(dashpot)),
+        Action::Traction(given) => ("traction", given.map(components)),
+        Action::Gravity(given) => ("gravity", given.map(components)),
+        Action::TotalForce(given) => ("total force", given.map(components)),
+        Action::Force(given) => ("force", given.map(components)),
+    };
+    Some((place(&load.on), kind, text))
 }
 
 fn driven(how: &str, driver: &Option<Components>) -> String {
@@ -205,31 +180,20 @@ fn driven(how: &str, driver: &Option<Components>) -> String {
 }
 
 fn components(of: &Components) -> String {
-    let part = |part: &Option<DriveInput>| part.as_ref().map_or("0".into(), drive);
+    let part = |part: &Option<Drive>| part.as_ref().map_or("0".into(), drive);
     format!("({}, {})", part(&of.x), part(&of.y))
-}
-
-fn temperature(given: &TemperatureInput) -> String {
-    match given {
-        TemperatureInput::Constant(value) => number(*value),
-        TemperatureInput::Expression(text) => format!("\"{text}\""),
-        TemperatureInput::Varying(TemperatureVariation::Rate(rate)) => format!("at the rate {}", number(*rate)),
-        TemperatureInput::Varying(TemperatureVariation::Table(table)) => by_table(table, "time"),
-        TemperatureInput::Varying(TemperatureVariation::X(table) | TemperatureVariation::Y(table)) => {
-            by_table(table, "place")
-        }
-    }
 }
 
 fn by_table(table: &[[f64; 2]], of: &str) -> String {
     format!("by a table of {}", count(table.len(), of))
 }
 
-fn drive(drive: &DriveInput) -> String {
+fn drive(drive: &Drive) -> String {
     match drive {
-        DriveInput::Constant(value) => number(*value),
-        DriveInput::Expression(text) => format!("\"{text}\""),
-        DriveInput::InTime(TimeInput::Rate(rate)) => format!("at the rate {}", number(*rate)),
-        DriveInput::InTime(TimeInput::Table(table)) => by_table(table, "time"),
+        Drive::Constant(value) => number(*value),
+        Drive::Expression(expression) => format!("\"{}\"", expression.as_ref()),
+        Drive::Rate(rate) => format!("at the rate {}", number(*rate)),
+        Drive::Table(table) => by_table(table, "time"),
+        Drive::ByPlace(_, table) => by_table(table, "place"),
     }
 }

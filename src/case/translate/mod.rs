@@ -1,47 +1,25 @@
 //! From the case as written to the builder of the model.
 
 mod blocks;
-mod contact;
-mod step;
 
 pub use blocks::blocks;
-use step::profile;
-pub use step::{drive, load, place, step};
 
 use super::error::{Checked, Complaint};
-use super::file::{
-    BodyInput, Case, Formulation, GeostaticInput, InitialStressInput, LoadingPlateInput, NewtonInput, PlateInput,
-    PlateMotion, ProbeInput, ProfileInput, SectionInput, StressInput, ThermalInput,
-};
+use super::file::{BodyInput, Case, Formulation, LoadingPlateInput};
 use super::labels;
 use crate::mesh::Mesh;
 use crate::mesh::section::Section;
-use crate::model::builder::{Builder, Gauge, Plate};
-use crate::model::imposed::{InitialStress, Thermal};
-use crate::model::{Model, NewtonSettings};
-
-fn plate(moves: PlateMotion) -> Plate {
-    match moves {
-        PlateMotion::AsOne => Plate::AsOne,
-        PlateMotion::UxAlike => Plate::UxAlike,
-        PlateMotion::UyAlike => Plate::UyAlike,
-        PlateMotion::Rigid => Plate::Rigid,
-    }
-}
+use crate::model::Model;
+use crate::model::builder::{Builder, Contact, Gauge};
 
 /// The builder of a case on its mesh.
 pub fn model(case: &Case, mesh: Mesh) -> Checked<Builder> {
-    let NewtonInput { tolerance, max_iterations } = case.newton;
-    let section = match case.section {
-        SectionInput::PlaneStrain => mesh.section,
-        SectionInput::PlaneStress(PlateInput { thickness }) => Section::PlaneStress { thickness },
-        SectionInput::Axisymmetric => Section::Axisymmetric,
-    };
+    let section = if case.section == Section::PlaneStrain { mesh.section } else { case.section };
     labels::check(&case.title, &case.units)?;
     let mut builder = Model::builder(mesh).title(&case.title).section(section);
-    builder = builder.newton(NewtonSettings { tolerance, max_iterations });
+    builder = builder.newton(case.newton);
     for (name, given) in &case.bodies {
-        builder = body(builder, name, given, section)?;
+        builder = body(builder, name, given)?;
     }
     for (name, point) in &case.point_masses {
         builder = match point.velocity {
@@ -51,20 +29,18 @@ pub fn model(case: &Case, mesh: Mesh) -> Checked<Builder> {
     }
     builder = case.periodic.iter().fold(builder, |builder, [side, other]| builder.periodic(side, other));
     for (group, moves) in case.plates.iter().map(LoadingPlateInput::parts) {
-        builder = builder.plate_that(group, plate(moves));
+        builder = builder.plate_that(group, moves);
     }
-    for (name, input) in &case.contacts {
-        builder = builder.contact(contact::contact(name, input)?);
+    for (name, contact) in &case.contacts {
+        builder = builder.contact(Contact { name: name.clone(), ..contact.clone() });
     }
     for (name, velocity) in &case.initial_velocity {
         builder = builder.initial_velocity(name, *velocity);
     }
-    for (k, input) in case.steps.iter().enumerate() {
-        builder = builder.step(step::step(&format!("steps[{k}]"), input)?);
-    }
+    builder = case.steps.iter().cloned().fold(builder, Builder::step);
     builder = case.watch.iter().fold(builder, |builder, group| builder.watch(group));
-    for (name, input) in &case.probes {
-        builder = builder.probe(gauge(name, input)?);
+    for (name, gauge) in &case.probes {
+        builder = builder.probe(Gauge { name: name.clone(), ..gauge.clone() });
     }
     builder = builder.times(case.output.times.clone());
     Ok(match case.output.interval {
@@ -73,60 +49,18 @@ pub fn model(case: &Case, mesh: Mesh) -> Checked<Builder> {
     })
 }
 
-fn body(mut builder: Builder, name: &str, given: &BodyInput, section: Section) -> Checked<Builder> {
+fn body(mut builder: Builder, name: &str, given: &BodyInput) -> Checked<Builder> {
     let complain = |error| Complaint::new(format!("bodies.{name}.material"), error);
     builder = builder.body(name, given.material.build().map_err(complain)?);
-    builder = builder.damping(name, step::damping(&given.damping));
+    builder = builder.damping(name, given.damping);
     if given.element == Formulation::FBar {
         builder = builder.f_bar(name);
     }
     if let Some(stress) = &given.initial_stress {
-        let place = format!("bodies.{name}.initial_stress");
-        builder = builder.initial_stress(name, initial_stress(stress, section, &place)?);
+        builder = builder.initial_stress(name, stress.clone());
     }
     Ok(match given.thermal {
-        Some(ThermalInput { expansion, reference }) => builder.thermal(name, Thermal { expansion, reference }),
+        Some(thermal) => builder.thermal(name, thermal),
         None => builder,
-    })
-}
-
-fn initial_stress(input: &InitialStressInput, section: Section, place: &str) -> Checked<InitialStress> {
-    Ok(match input {
-        InitialStressInput::Geostatic(GeostaticInput { surface, weight, k0 }) => {
-            InitialStress::Geostatic { surface: *surface, weight: *weight, k0: *k0 }
-        }
-        InitialStressInput::Components(StressInput { xx, yy, xy, zz }) => {
-            let place = format!("{place}.components");
-            let component = |key: &str, input: &ProfileInput| profile(input, &format!("{place}.{key}"));
-            let zz = match zz {
-                Some(zz) => component("zz", zz)?,
-                None if section.is_plate() => 0.0.into(),
-                None => {
-                    let message = "is missing: give the stress across the plane as well, 0 if there is none";
-                    return Err(Complaint::new(format!("{place}.zz"), message));
-                }
-            };
-            InitialStress::Components {
-                xx: component("xx", xx)?,
-                yy: component("yy", yy)?,
-                xy: component("xy", xy)?,
-                zz,
-            }
-        }
-    })
-}
-
-fn gauge(name: &str, input: &ProbeInput) -> Checked<Gauge> {
-    let gauge = match (input.at, input.from, input.to, input.number) {
-        (Some(at), None, None, None) => Gauge::at(name, at),
-        (None, Some(from), Some(to), Some(number)) => Gauge::line(name, from, to, number),
-        _ => {
-            let message = "give `at` for a point, or `from`, `to` and `number` for a line of points";
-            return Err(Complaint::new(format!("probes.{name}"), message));
-        }
-    };
-    Ok(match &input.body {
-        Some(body) => gauge.of(body),
-        None => gauge,
     })
 }

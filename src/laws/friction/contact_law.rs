@@ -1,15 +1,22 @@
 //! Friction at the points of a contact: a law, and beside it how plastic slip moves the surfaces along the normal by dilatancy
 //! and wear.
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 use super::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, Sliding, observables};
 use crate::laws::parameter::{InvalidParameter, require_positive};
 
-/// Dilatancy: asperities ride up on each other as the surfaces slip, until the interface has its largest opening.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Dilatancy of a contact, with any friction law: asperities ride up on each other as the surfaces slip, until the interface has its
+/// largest opening.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Dilatancy {
-    /// tan ψ: opening per slip at the start, tan ψ > 0 [-]
+    /// tan ψ: opening per plastic slip at the start, whichever way it goes; below the least coefficient that friction can come to
+    /// (mu, mu_k, mu_d), for the work that lifts the load is friction's [-]
     pub rate: f64,
-    /// d_max: opening that much slip leads to, d_max > 0; without it the interface opens for ever [L]
+    /// d_max: opening that much slip leads to, dδ = tan ψ (1 − δ/d_max) × plastic slip; no limit unless given. The opening δ stands
+    /// in tables and frames as `dilation` [L]
     pub limit: Option<f64>,
 }
 

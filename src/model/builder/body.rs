@@ -181,7 +181,14 @@ pub fn check_stress(stress: &InitialStress, nodes: &[usize], mesh: &Mesh, place:
             Ok(())
         }
         InitialStress::Components { xx, yy, xy, zz } => {
-            for (key, profile) in [("xx", xx), ("yy", yy), ("xy", xy), ("zz", zz)] {
+            if zz.is_none() && !mesh.section.is_plate() {
+                return refused(
+                    "components.zz",
+                    "is missing: give the stress across the plane as well, 0 if there is none".into(),
+                );
+            }
+            let given = [("xx", xx), ("yy", yy), ("xy", xy)].into_iter().chain(zz.as_ref().map(|zz| ("zz", zz)));
+            for (key, profile) in given {
                 let place = format!("{place}.components.{key}");
                 check_profile(profile, &place)?;
                 for &node in nodes {
@@ -230,7 +237,8 @@ pub fn temperatures(
     span: Span,
     model: &Model,
 ) -> Checked<()> {
-    for (name, drive) in &given.temperatures {
+    for (name, temperature) in &given.temperature {
+        let drive = Drive::from(temperature);
         let place = format!("{place}.temperature.{name}");
         let refused = |message: String| Err(ModelError::new(place.clone(), message));
         let Some(number) = model.bodies.iter().position(|body| body.name == *name) else {
@@ -243,7 +251,7 @@ pub fn temperatures(
         drive.check().map_err(|message| ModelError::new(&place, message))?;
         let at_rest = || Amplitude { drive: Drive::Table(vec![[0.0, thermal.reference]]), span, before: None };
         let before = in_force.remove(&number).unwrap_or_else(at_rest);
-        let amplitude = Amplitude { drive: drive.clone(), span, before: Some(Box::new(before)) };
+        let amplitude = Amplitude { drive, span, before: Some(Box::new(before)) };
         check_expansion(&amplitude, number, thermal, &place, model)?;
         in_force.insert(number, amplitude);
     }

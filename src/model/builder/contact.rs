@@ -1,7 +1,10 @@
 //! A contact as it is given; its fluid, and its rigid master with its geometry checked.
 
 use nalgebra::Vector2;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
+use super::along::Along;
 use super::error::{Checked, ModelError, check_finite};
 use super::friction::{Friction, check_in_time};
 use crate::contact::master::{Circle, Plane, Polyline, Rigid};
@@ -10,72 +13,139 @@ use crate::laws::friction::Dilatancy;
 use crate::model::Model;
 use crate::model::boundary::Profile;
 use crate::model::method::Method;
+use crate::model::written::written;
 
-/// A slave surface, what it may touch, and the friction between them.
+/// A contact pair.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Contact {
-    /// Name in messages and results
+    /// Name in messages and results; a case has it before the contact
+    #[serde(skip)]
     pub name: String,
-    /// Edge group whose points are kept out of the master, the finer or softer side; or a group of points, each with the `area`
+    /// Edge group whose points are kept out of the master, the finer or softer side; or a group of points, each with the
+    /// `area`
     pub slave: String,
-    /// Area that each point of a slave group of points stands for, with the thickness or the full turn [L, the thickness
-    /// being 1, or L²]
+    /// Area that each point of a slave group of points stands for, with the thickness or the full turn; it does not change.
+    /// Edges have lengths of their own [L, the thickness being 1, or L²]
     pub area: Option<f64>,
-    /// What the slave may touch
+    /// Edge group, or a rigid body. The slave's group again: contact of the surface with itself, each point of which then
+    /// stands for half its length, because every contact is met from both sides
     pub master: MasterSide,
-    /// Where contact is evaluated; chosen by the surfaces unless given (see [`crate::model::method`])
+    /// Where contact is evaluated. Unless given: mortar where an edge of either side is quadratic or a side curved (its
+    /// direction turns by more than 1° between two corners of more than 45°); gauss_to_segment between straight linear
+    /// edges, with a `smooth` master, and where `points` are given
     pub method: Option<Method>,
-    /// Gauss points a slave edge, 2 to 4; 2 unless given
+    /// Gauss points a slave edge (gauss_to_segment), 2 to 4; 2 unless given
     pub points: Option<usize>,
-    /// Whether the master's straight edges are taken for a smooth curve
+    /// Whether the master's straight edges are taken for a smooth curve through their nodes (not by mortar), so that nothing
+    /// jumps where a slave slides from one to the next. Corners of more than 45° stay
+    #[serde(default)]
     pub smooth: bool,
-    /// Whether every point keeps meeting what it meets at the start (small sliding)
-    pub small_sliding: bool,
-    /// α_n: pressure per penetration; 10 (λ + 2G)/h unless given [F/L³]
-    pub alpha_n: Option<f64>,
-    /// Largest penetration left by the augmented Lagrangian; plain penalty unless given [L]
-    pub penetration: Option<f64>,
-    /// Whether an initial overlap is brought in over the first step
+    /// How far the surfaces may slide on each other: any way (finite), or by a small part of the distance between nodes (small)
+    #[serde(default)]
+    pub sliding: SlidingRange,
+    /// Normal contact
+    #[serde(default)]
+    pub normal: Normal,
+    /// Whether what the surfaces overlap at the start is brought in over the first step (shrink fit) instead of at once
+    #[serde(default)]
     pub shrink_fit: bool,
-    /// Whether the mass of the slave's nodes is moved to the other nodes of their elements
+    /// Implicit dynamics: the mass of the slave's nodes is moved to the other nodes of their elements, so that an impact does
+    /// not set them ringing on the contact's stiffness, and the contact force with them
+    #[serde(default)]
     pub massless: bool,
-    /// Friction
+    /// Friction law
     pub friction: Friction,
     /// How far the surfaces move apart with plastic slip
     pub dilatancy: Option<Dilatancy>,
-    /// k: depth of wear per pressure and plastic slip (Archard's law) [L²/F]
+    /// k of Archard's law: the surfaces wear away by dw = k p × plastic slip, whichever way it goes, and come nearer; k is the wear
+    /// coefficient over the hardness. The depth w stands in tables and frames as `wear` [L²/F]
     pub wear: Option<f64>,
-    /// Radiation damping in static steps, if there is any
-    pub radiation: Option<Radiation>,
-    /// p_w of a fluid that pushes the surfaces apart, if there is one ([`crate::contact::pair`]) [F/L²]
+    /// Static steps: a traction η × slip rate that resists slip beside friction, in place of the inertia that is left out: the
+    /// shear waves that slip would send into unbounded bodies take it away. A number is η [F·T/L³]; true is that of the
+    /// bodies, 1/η = 1/Z₁ + 1/Z₂ with Z = ρ c_s of each side: G/(2 c_s) where both are alike, Z on a rigid master. Dynamic and
+    /// explicit steps have inertia, and leave it out
+    #[serde(default)]
+    pub radiation_damping: Radiation,
+    /// p_w: pressure of a fluid between the surfaces, zero or positive; expressions may have the run time t besides the
+    /// reference position x, y of the slave. It pushes both sides apart wherever the master faces the slave, closed or open, beside
+    /// the pressure p that the surfaces carry; friction, `initial.pressure` and all outputs called pressure are this effective p
+    /// alone. It is given, and does not flow. Not for quasi_dynamic steps [F/L²]
     pub fluid_pressure: Option<Profile>,
-    /// Tractions of a contact that starts closed
+    /// What of friction varies along the slave, and in time
+    #[serde(default)]
+    pub along: Along,
+    /// Tractions and structure at the start of a contact that starts closed. The gap of every slave point is then counted
+    /// from where the pressure acts at its initial position, all through the run
     pub initial: Option<InitialTractions>,
 }
 
-/// What a slave may touch.
-#[derive(Clone, Debug, PartialEq)]
+/// Normal contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Normal {
+    /// α_n: pressure per penetration [F/L³]; unless given 10 (λ + 2G)/h, with λ + 2G of the softer of the two sides and the
+    /// depth h of the elements behind the slave. A slave group of points has none behind it and needs a number
+    pub alpha_n: Option<f64>,
+    /// Largest penetration left [L]: the pressure is raised until no closed gap is larger (augmented Lagrangian by Uzawa's
+    /// method), so that the answer does not depend on alpha_n; penalty alone unless given
+    pub penetration: Option<f64>,
+}
+
+/// How far surfaces may slide on each other, and turn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(rename = "Sliding")]
+pub enum SlidingRange {
+    /// Any way: every point meets what it faces at the time
+    #[default]
+    Finite,
+    /// A small part of the distance between nodes: every point keeps the foot, the normal, the weights of the nodes and the
+    /// length that it has at the start, so that gap and slip are linear in the displacements. With linear bodies nothing but
+    /// friction and opening is nonlinear then. For small rotations only; what nothing faces at the start never touches. A run
+    /// warns where a point slides by more than a tenth of the distance between nodes, or a surface turns or stretches by more
+    /// than 0.02. Not for contact of a surface with itself
+    Small,
+}
+
+/// The master side: a group of the mesh, or a rigid body at rest that is given by a formula.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(remote = "Self", rename_all = "snake_case", deny_unknown_fields)]
+#[schemars(rename = "Master")]
 pub enum MasterSide {
-    /// Edge group; the slave's own is contact of the surface with itself
-    Group(String),
-    /// Rigid half-space: a point of its surface, and the direction out of it, of any length
+    /// A rigid half-space
     Plane {
-        /// point of the surface [L]
+        /// A point of its surface [L]
         point: [f64; 2],
-        /// direction out of the solid
+        /// Direction out of the solid, of any length
         normal: [f64; 2],
     },
-    /// Rigid disk, or the rim of a hole
+    /// A rigid disk, or the rim of a hole
     Circle {
-        /// centre [L]
+        /// Centre [L]
         centre: [f64; 2],
-        /// radius [L]
+        /// Radius [L]
         radius: f64,
-        /// whether the solid is outside
+        /// Whether the solid is outside the circle
+        #[serde(default)]
         hole: bool,
     },
-    /// Rigid body bounded by straight lines: its corners, the solid on the right of the way; the first again closes it [L]
-    Polyline(Vec<[f64; 2]>),
+    /// A rigid body bounded by straight lines
+    Polyline {
+        /// Its corners, the solid on the right of the way; the first again at the end closes it [L]
+        points: Vec<[f64; 2]>,
+    },
+    /// Edge group of the mesh; the slave's own is contact of the surface with itself
+    #[serde(skip)]
+    #[schemars(!skip, untagged)]
+    Group(String),
 }
+
+written!(
+    MasterSide,
+    "the name of an edge group, or a rigid body such as {\"plane\": {\"point\": [x, y], \"normal\": [x, y]}}",
+    text: Group
+);
 
 impl From<&str> for MasterSide {
     fn from(group: &str) -> Self {
@@ -83,25 +153,40 @@ impl From<&str> for MasterSide {
     }
 }
 
-/// Radiation damping of a contact in static steps.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Radiation damping of a contact in static steps: whether, or how much.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "must be true, false or a number")]
 pub enum Radiation {
-    /// η by the bodies' impedances, dashpots in series
-    OfBodies,
-    /// η [F T/L³]
+    /// That of the bodies' impedances, dashpots in series, or none
+    OfBodies(bool),
+    /// η [F·T/L³]
     Given(f64),
 }
 
-/// Tractions along the slave of a contact that starts closed; its gap is counted from where they act.
-#[derive(Clone, Debug)]
+impl Default for Radiation {
+    fn default() -> Self {
+        Self::OfBodies(false)
+    }
+}
+
+/// The state of a contact that starts closed.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Initial")]
 pub struct InitialTractions {
-    /// p [F/L²]
-    pub pressure: Profile,
-    /// q [F/L²]
-    pub traction: Profile,
-    /// Whether an initial stress of the bodies is in equilibrium with them
+    /// p: contact pressure, zero or positive [F/L²]
+    pub pressure: Option<Profile>,
+    /// q: traction that resists the slip of the slave along +s, the master's normal turned by −90° [F/L²]
+    pub traction: Option<Profile>,
+    /// 1/R*: structure of the super/subloading law, from 1 to μ_s/μ_k; that of the law unless given [-]
+    pub structure: Option<Profile>,
+    /// Whether an initial stress of the bodies is in equilibrium with these tractions. Displacements and stresses of the
+    /// run are then those that come on top of the initial stress
+    #[serde(default)]
     pub balanced: bool,
-    /// Whether they are those with which the initial stress of the slave's body ends there, instead of p and q
+    /// Instead of pressure and traction: those with which the `initial_stress` of the slave's body ends at the contact, p = −n·σn
+    /// (less the pressure of a fluid at the start) and q = s·σn, with the normal n and the tangent s of the master
+    #[serde(default)]
     pub of_bodies: bool,
 }
 
@@ -121,23 +206,24 @@ impl Contact {
             method: None,
             points: None,
             smooth: false,
-            small_sliding: false,
-            alpha_n: None,
-            penetration: None,
+            sliding: SlidingRange::Finite,
+            normal: Normal::default(),
             shrink_fit: false,
             massless: false,
             friction: friction.into(),
             dilatancy: None,
             wear: None,
-            radiation: None,
+            radiation_damping: Radiation::default(),
             fluid_pressure: None,
+            along: Along::default(),
             initial: None,
         }
     }
 
     /// With this normal penalty α_n [F/L³].
-    pub fn alpha_n(self, alpha_n: f64) -> Self {
-        Self { alpha_n: Some(alpha_n), ..self }
+    pub fn alpha_n(mut self, alpha_n: f64) -> Self {
+        self.normal.alpha_n = Some(alpha_n);
+        self
     }
 
     /// Evaluated by this method.
@@ -146,14 +232,15 @@ impl Contact {
     }
 
     /// With the pressure raised until no closed gap is larger (augmented Lagrangian) [L].
-    pub fn penetration(self, largest: f64) -> Self {
-        Self { penetration: Some(largest), ..self }
+    pub fn penetration(mut self, largest: f64) -> Self {
+        self.normal.penetration = Some(largest);
+        self
     }
 
     /// In small sliding: every point keeps its foot, the weights of both sides, its normal and its length
     /// ([`crate::contact::small_sliding`]).
     pub fn small_sliding(self) -> Self {
-        Self { small_sliding: true, ..self }
+        Self { sliding: SlidingRange::Small, ..self }
     }
 
     /// With surfaces that move apart with plastic slip.
@@ -168,7 +255,7 @@ impl Contact {
 
     /// With radiation damping in static steps.
     pub fn radiation(self, radiation: Radiation) -> Self {
-        Self { radiation: Some(radiation), ..self }
+        Self { radiation_damping: radiation, ..self }
     }
 
     /// With a fluid of the pressure p_w, by reference position and time [F/L²].
@@ -183,14 +270,13 @@ impl Contact {
 
     /// Closed from the start under a pressure and a traction.
     pub fn initial(self, pressure: impl Into<Profile>, traction: impl Into<Profile>) -> Self {
-        let (pressure, traction) = (pressure.into(), traction.into());
-        Self { initial: Some(InitialTractions { pressure, traction, balanced: false, of_bodies: false }), ..self }
+        let (pressure, traction) = (Some(pressure.into()), Some(traction.into()));
+        Self { initial: Some(InitialTractions { pressure, traction, ..InitialTractions::default() }), ..self }
     }
 
     /// Closed from the start under the tractions with which the initial stress of the slave's body ends there.
     pub fn initial_of_bodies(self) -> Self {
-        let (pressure, traction) = (0.0.into(), 0.0.into());
-        Self { initial: Some(InitialTractions { pressure, traction, balanced: false, of_bodies: true }), ..self }
+        Self { initial: Some(InitialTractions { of_bodies: true, ..InitialTractions::default() }), ..self }
     }
 
     /// With bodies whose initial stress is in equilibrium with the tractions it starts with.
@@ -239,7 +325,7 @@ pub fn rigid(side: &MasterSide, place: &str) -> Checked<Rigid> {
             }
             Ok(Rigid::Circle(Circle { centre: Vector2::from(*centre), radius: *radius, hole: *hole }))
         }
-        MasterSide::Polyline(points) => {
+        MasterSide::Polyline { points } => {
             let place = format!("{place}.polyline.points");
             check_finite(&place, points.iter().flatten().copied())?;
             if points.len() < 2 {

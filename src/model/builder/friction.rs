@@ -3,6 +3,7 @@
 //! Friction whose parameters vary in time: patches that weaken and recover, creep that sets in.
 
 use std::collections::BTreeMap;
+use std::fmt::{Debug, Formatter};
 use std::sync::Arc;
 
 use nalgebra::Vector2;
@@ -20,7 +21,10 @@ use crate::mesh::shape::gauss;
 use crate::model::boundary::Profile;
 
 /// Friction of a contact. A law is friction, and so are parameters of one, whose α_t is α_n/2 unless they give it.
+#[derive(Clone)]
 pub struct Friction {
+    /// What a case writes; none of a law from code
+    parameters: Option<FrictionParameters>,
     /// Its own name within the contact, for messages
     name: String,
     varying: Vec<(String, Profile)>,
@@ -49,7 +53,12 @@ impl Friction {
         law: impl Fn(&[f64], f64) -> Checked<Box<dyn FrictionLaw>> + Send + Sync + 'static,
     ) -> Self {
         let varying = profiles.into_iter().map(|(name, profile)| (name.into(), profile)).collect();
-        Self { name: "friction".into(), varying, law: Arc::new(law), elsewhere: Vec::new() }
+        Self { parameters: None, name: "friction".into(), varying, law: Arc::new(law), elsewhere: Vec::new() }
+    }
+
+    /// The parameters of its law, where it is not one from code.
+    pub fn parameters(&self) -> Option<&FrictionParameters> {
+        self.parameters.as_ref()
     }
 
     /// With other friction at the points where a profile is positive at the start; of several the first holds. Messages name
@@ -117,7 +126,7 @@ impl Friction {
     fn varies_in_place_and_time(&self) -> bool {
         let of_both = |profile: &Profile| match profile {
             Profile::Expression(expression) => expression.depends_on_time() && expression.depends_on_position(),
-            Profile::Constant(_) | Profile::Table(..) => false,
+            Profile::Constant(_) | Profile::X(_) | Profile::Y(_) => false,
         };
         self.varying.iter().any(|(_, profile)| of_both(profile))
     }
@@ -159,7 +168,8 @@ impl Friction {
 
 impl From<FrictionParameters> for Friction {
     fn from(parameters: FrictionParameters) -> Self {
-        Self::varying::<String>([], move |_, alpha_t| Ok(parameters.build(alpha_t)?))
+        let law = parameters.clone();
+        Self { parameters: Some(parameters), ..Self::varying::<String>([], move |_, alpha_t| Ok(law.build(alpha_t)?)) }
     }
 }
 
@@ -185,6 +195,12 @@ friction_from!(
 impl<L: FrictionLaw + Clone + 'static> From<L> for Friction {
     fn from(law: L) -> Self {
         Self::varying::<String>([], move |_, _| Ok(Box::new(law.clone())))
+    }
+}
+
+impl Debug for Friction {
+    fn fmt(&self, f: &mut Formatter) -> std::fmt::Result {
+        f.debug_struct("Friction").field("parameters", &self.parameters).finish_non_exhaustive()
     }
 }
 
@@ -221,19 +237,18 @@ pub fn check_in_time(profile: &Profile, place: &str) -> Checked<()> {
             format!("{parameter} is one number a point from the start on: the variables are x and y, and not t");
         return Err(ModelError::new(place, message));
     }
-    match profile {
-        Profile::Constant(_) | Profile::Expression(_) => Ok(()),
-        Profile::Table(component, table) => {
-            let name = ["x", "y"][*component];
-            if table.is_empty() {
-                let message = format!("the table is empty: give pairs [{name}, value]");
-                return Err(ModelError::new(format!("{place}.{name}"), message));
-            }
-            let Some(pair) = table.windows(2).find(|pair| pair[1][0] < pair[0][0]) else { return Ok(()) };
-            let message = format!("the coordinates of the table must ascend: {} follows {}", pair[1][0], pair[0][0]);
-            Err(ModelError::new(format!("{place}.{name}"), message))
-        }
+    let (name, table) = match profile {
+        Profile::Constant(_) | Profile::Expression(_) => return Ok(()),
+        Profile::X(table) => ("x", table),
+        Profile::Y(table) => ("y", table),
+    };
+    if table.is_empty() {
+        let message = format!("the table is empty: give pairs [{name}, value]");
+        return Err(ModelError::new(format!("{place}.{name}"), message));
     }
+    let Some(pair) = table.windows(2).find(|pair| pair[1][0] < pair[0][0]) else { return Ok(()) };
+    let message = format!("the coordinates of the table must ascend: {} follows {}", pair[1][0], pair[0][0]);
+    Err(ModelError::new(format!("{place}.{name}"), message))
 }
 
 /// Points of time over which the mean of a rate is taken: exact for polynomials of the fifth order.

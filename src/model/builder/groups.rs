@@ -6,24 +6,34 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{Display, Formatter, Result as Written};
 
 use nalgebra::Vector2;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::Builder;
 use super::error::{Checked, ModelError};
 use crate::mesh::{Edge, Group, Mesh};
 use crate::model::imposed::{InitialStress, Thermal};
 use crate::model::told::number;
+use crate::model::written::written;
 use crate::model::{Model, WatchedSet};
 
-/// Where a support or load acts: a group or a single node.
-#[derive(Clone, Debug, PartialEq)]
+/// A group or a single node.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(remote = "Self", rename_all = "snake_case")]
+#[schemars(!remote)]
 pub enum Place {
-    /// Group of the mesh
-    Group(String),
-    /// Single node, by its tag in the mesh file
+    /// Single node: its tag in the mesh file (its number from 0 in a mesh given in place)
     Node(u64),
-    /// Single node, the nearest to a point of the undeformed mesh [L]
+    /// Single node of the undeformed mesh that is nearest to this point [x, y]. It must be the only one, and no farther away than
+    /// the elements there are long [L]
     Near([f64; 2]),
+    /// Group of the mesh
+    #[serde(skip)]
+    #[schemars(!skip, untagged)]
+    Group(String),
 }
+
+written!(Place, "the name of a group, {\"node\": tag}, or {\"near\": [x, y]}", text: Group);
 
 impl Place {
     /// The same, with the tag of the node that is nearest to a point.

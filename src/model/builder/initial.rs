@@ -43,12 +43,12 @@ pub fn velocities(of_bodies: &[(String, [f64; 2])], masses: &[GivenMass], model:
 /// Velocities that nodes take when a step begins [L/T].
 pub fn launch(step: &LoadStep, scheme: Scheme, place: &str, model: &Model) -> Checked<Vec<(usize, [f64; 2])>> {
     let place = format!("{place}.velocity");
-    if !step.velocities.is_empty() && !scheme.is_dynamic() {
+    if !step.velocity.is_empty() && !scheme.is_dynamic() {
         return Err(ModelError::new(place, "is for dynamic and explicit steps: a static one knows no velocities"));
     }
-    check_velocities(&place, &step.velocities, model)?;
+    check_velocities(&place, &step.velocity, model)?;
     let mut given = Given { velocity: vec![None; model.mesh.nodes.len()], model };
-    for (name, value) in &step.velocities {
+    for (name, value) in &step.velocity {
         let place = format!("{place}.{name}");
         let body = model.bodies.iter().find(|body| body.name == *name).map(|body| &body.nodes);
         let points = model.point_masses.iter().find(|point| point.name == *name).map(|point| &point.nodes);
@@ -135,13 +135,16 @@ fn faces_nothing(pair: &ContactPair, point: usize, model: &Model, place: &str) -
 
 fn as_given(pair: &ContactPair, given: &InitialTractions, model: &Model, place: &str) -> Checked<Vec<InitialTraction>> {
     let [at_pressure, at_traction] = ["pressure", "traction"].map(|key| format!("{place}.{key}"));
-    let InitialTractions { pressure: pressures, traction: tractions, .. } = given;
+    let Some(pressures) = &given.pressure else {
+        return Err(ModelError::new(at_pressure, "is missing: give it, or \"of_bodies\": true"));
+    };
+    let tractions = given.traction.clone().unwrap_or_default();
     check_profile(pressures, &at_pressure)?;
-    check_profile(tractions, &at_traction)?;
+    check_profile(&tractions, &at_traction)?;
     let mut initial = Vec::with_capacity(pair.points.len());
     for point in &pair.points {
         let at = position(point, &model.mesh);
-        let (pressure, traction) = (defined(pressures, at, &at_pressure)?, defined(tractions, at, &at_traction)?);
+        let (pressure, traction) = (defined(pressures, at, &at_pressure)?, defined(&tractions, at, &at_traction)?);
         if pressure < 0.0 {
             let message = format!("is {pressure}: must be zero or positive, which is compression");
             return Err(ModelError::new(at_pressure, message));
@@ -158,6 +161,11 @@ fn of_bodies(
     model: &Model,
     place: &str,
 ) -> Checked<Vec<InitialTraction>> {
+    for (key, _) in [("pressure", &given.pressure), ("traction", &given.traction)].iter().filter(|(_, it)| it.is_some())
+    {
+        let message = "has no meaning together with of_bodies: leave one out";
+        return Err(ModelError::new(format!("{place}.{key}"), message));
+    }
     let place = format!("{place}.of_bodies");
     let refused = |message: String| Err(ModelError::new(place.clone(), message));
     if given.balanced {

@@ -1,53 +1,81 @@
 //! A load step and its loads as they are given: what is not given is as in the step before.
 
+use std::collections::BTreeMap;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
 use super::groups::Place;
 use crate::model::Damping;
-use crate::model::boundary::Drive;
+use crate::model::boundary::{BodyTemperature, Drive};
 use crate::model::scheme::{Scheme, nine_tenths};
 use crate::model::step::Part;
 
 /// Share of a force within which it is met unless told otherwise.
 pub const MET: f64 = 1e-6;
 
-/// A load step: a time span with its scheme and increments, supports and loads.
-#[derive(Clone, Debug)]
+/// A step: a time span with its scheme and increments, supports and loads.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Step")]
 pub struct LoadStep {
     /// Name in messages and results
     pub name: String,
     /// Length of the step [T]
     pub duration: f64,
-    /// Time scheme; that of the step before unless given, static in the first step
+    /// Time scheme; inherited from the step before unless given, static in the first step
     pub scheme: Option<Scheme>,
-    /// Increments; those of the step before unless given, a tenth of the first step
-    pub increments: Option<IncrementSettings>,
-    /// Share of the bodies' stiffness with which dashpots that fade away hold them in a static step [-]
+    /// Increments; inherited from the step before unless given, a tenth of the first step
+    pub dt: Option<IncrementSettings>,
+    /// Static steps only, where bodies are held by nothing until contact holds them: dashpots at all nodes of every body
+    /// resist motion, at the start of the step as if this share of the body's stiffness lambda + 2G moved it in the
+    /// time of the step; they fade linearly and are gone at its end, which takes at least two increments. 1e-3 is a good
+    /// start. Not inherited
     pub stabilize: Option<f64>,
-    /// When the step goes on explicitly
+    /// Static and implicit steps: the step goes on explicitly while a contact slips fast. Not inherited
     pub rupture: Option<RuptureSettings>,
-    /// Damping of bodies from this step on
-    pub damping: Vec<(String, Damping)>,
-    /// A reaction that ends the step before its time
+    /// Velocity [x, y] that whole bodies or point masses take when this step begins, a dynamic or explicit one: settle under gravity,
+    /// then launch. What it changes of the kinetic energy counts as work from outside. Supported nodes keep to their supports [L/T]
+    #[serde(default)]
+    pub velocity: BTreeMap<String, [f64; 2]>,
+    /// Damping of bodies from this step on, in place of what the body or a step before has; inherited. Statics know none
+    #[serde(default)]
+    pub damping: BTreeMap<String, Damping>,
+    /// Static and implicit steps: the step ends before its time when a reaction comes to a value, and those after it begin then.
+    /// A step that comes to its own end without stops the run. Not inherited
     pub until: Option<UntilSettings>,
-    /// Velocities that bodies and point masses take when the step begins [L/T]
-    pub velocities: Vec<(String, [f64; 2])>,
-    /// Temperatures of bodies that are new in this step or change; all others stay [Θ]
-    pub temperatures: Vec<(String, Drive)>,
-    /// Supports that are new in this step or change; all others stay
+    /// Temperature of bodies that have `thermal` [Θ]; inherited, and replaced where the same body is named again. A number is reached
+    /// linearly at the end of the step, from the temperature at its start; expressions may have the reference position x, y
+    /// and the run time t
+    #[serde(default)]
+    pub temperature: BTreeMap<String, BodyTemperature>,
+    /// Supports; inherited, and replaced where the same group and direction is named again. One that null frees is gone at
+    /// once in dynamic and explicit steps; in a static step, also while `rupture` makes it explicit, its reaction stays as a
+    /// force that fades linearly over the step
+    #[serde(default)]
     pub supports: Vec<Support>,
-    /// Loads that are new in this step or change; all others stay
+    /// Loads; inherited, and replaced where the same group and kind is named again. In any scheme null takes a pressure,
+    /// traction, force or gravity linearly to zero over the step, as the value 0 would, and ends springs, dashpots and
+    /// absorbing sides at once. A table or expression makes an end as sudden as it is to be
+    #[serde(default)]
     pub loads: Vec<Load>,
 }
 
-/// How increments are chosen.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Increments of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Increments")]
 pub struct IncrementSettings {
     /// First increment [T]
     pub initial: f64,
-    /// Increments are not cut below this [T]; initial/1000 unless given, with `error` initial/10⁶
+    /// Increments are not cut below this [T]; initial/1000 unless given, with `error` initial/10⁶, in quasi_dynamic steps what
+    /// round-off of the time allows
     pub min: Option<f64>,
-    /// Increments do not grow beyond this [T]; initial unless given, with `error` a tenth of the step
+    /// Increments do not grow beyond this [T]; initial unless given, with `error` and in quasi_dynamic steps a tenth of the step
     pub max: Option<f64>,
-    /// Increments are as long as the estimated error of each stays below this [L]
+    /// Increments are as long as the estimated error of each stays below this [L]: in dynamic steps the error of a
+    /// displacement, and events of contact (slip sets in, stops or turns round) are located to ten times this; in static
+    /// steps the error of the slip of a contact point, half of what its plastic slip differs from that at the last rate
     pub error: Option<f64>,
 }
 
@@ -57,47 +85,88 @@ impl From<f64> for IncrementSettings {
     }
 }
 
-/// When a static or implicit step goes on explicitly.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// When a step goes on explicitly, and returns to its own scheme. An increment in which a contact point slips faster than
+/// `slip_rate`, or that cannot be solved, is halved down to `dt.min` and, if that does not help, made explicitly. The step
+/// returns when no point has slipped that fast, on the mean of the time that a shear wave takes across the model. What slides
+/// without friction does not count. To be noticed, an event must slip more than `slip_rate` times `dt.max`. Waves that are
+/// left die in a static step, and their energy counts as damped
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Rupture")]
 pub struct RuptureSettings {
-    /// Slip rate of a contact point above which increments are explicit [L/T]
+    /// Slip rate above which increments are explicit [L/T]
     pub slip_rate: f64,
-    /// Explicit increments as a share of the longest that is stable [-]
+    /// Explicit increments as a share of the longest that is stable, above 0 and at most 1; 0.9 unless given [-]
+    #[serde(default = "nine_tenths")]
     pub safety: f64,
 }
 
-/// A reaction that ends a step.
-#[derive(Clone, Debug, PartialEq)]
+/// A reaction that ends a step: displacement control up to a force. The increment in which the force passes its value is made
+/// shorter until it has it. Supports that were to come to a value stay where the step has ended; tables and expressions go on by
+/// the time of the run. Exactly one of `fx`, `fy` and `force` is given
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Until")]
 pub struct UntilSettings {
-    /// Where
+    /// Whose reaction: what supports put on these nodes
     pub on: Place,
-    /// Which part of the reaction
-    pub part: Part,
-    /// What it comes to [F]
-    pub value: f64,
-    /// Share of the value, or of the reaction at the start of the step if that is larger, within which it is met [-]
+    /// Its x component [F]
+    pub fx: Option<f64>,
+    /// Its y component [F]
+    pub fy: Option<f64>,
+    /// Its size [F]
+    pub force: Option<f64>,
+    /// Share of the value, or of the reaction at the start of the step if that is larger, within which it is met, at most 0.1;
+    /// 1e-6 unless given [-]
+    #[serde(default = "met")]
     pub tolerance: f64,
 }
 
-/// Supports of the nodes at a place.
-#[derive(Clone, Debug)]
+fn met() -> f64 {
+    MET
+}
+
+impl UntilSettings {
+    /// Part of the reaction and its value, if exactly one is given.
+    pub fn part(&self) -> Option<(Part, f64)> {
+        let parts = [(Part::X, self.fx), (Part::Y, self.fy), (Part::Size, self.force)];
+        let mut given = parts.into_iter().filter_map(|(part, value)| Some((part, value?)));
+        given.next().filter(|_| given.next().is_none())
+    }
+}
+
+/// A support on a group or a node.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Support {
     /// Where
     pub on: Place,
-    /// Displacement in x [L]
+    /// Displacement in x [L]; null frees it, see `supports`
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub ux: Option<Change<Drive>>,
-    /// Displacement in y [L]
+    /// Displacement in y [L]; null frees it, see `supports`
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub uy: Option<Change<Drive>>,
-    /// Displacement along a direction [x, y], which need not be of unit length, toward it [L]
-    pub along: Option<([f64; 2], Change<Drive>)>,
-    /// Displacement along the normal of a side of the undeformed body, positive out of the body [L]
+    /// Direction [x, y] of the displacement u; it need not be of unit length
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub along: Option<[f64; 2]>,
+    /// Displacement along the direction `along`; what is across is free, unless another support of the node holds that as well:
+    /// two directions at a node hold both of its components. null frees it, see `supports` [L]
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub u: Option<Change<Drive>>,
+    /// Displacement along the normal of a side, positive out of the body; the side slides. The normal is that of the undeformed
+    /// body, averaged over the edges at a node; where edges of the group meet at 45 degrees or more, both normals hold. null
+    /// frees it, see `supports` [L]
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub un: Option<Change<Drive>>,
-    /// Rigid rotation, instead of all others
+    /// Rigid rotation about a point, instead of all others; null frees it, see `supports`
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub rotation: Option<Change<Rotation>>,
 }
 
-/// A rigid rotation about a fixed point.
-#[derive(Clone, Debug)]
+/// A rigid rotation.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Rotation {
     /// Centre [L]
     pub about: [f64; 2],
@@ -108,7 +177,13 @@ pub struct Rotation {
 impl Support {
     /// Supports at a place, which prescribe nothing yet.
     pub fn on(place: impl Into<Place>) -> Self {
-        Self { on: place.into(), ux: None, uy: None, along: None, un: None, rotation: None }
+        Self { on: place.into(), ux: None, uy: None, along: None, u: None, un: None, rotation: None }
+    }
+
+    /// Its displacements, with their keys.
+    pub fn displacements(&self) -> impl Iterator<Item = (&'static str, &Change<Drive>)> {
+        let all = [("ux", &self.ux), ("uy", &self.uy), ("u", &self.u), ("un", &self.un)];
+        all.into_iter().filter_map(|(key, change)| Some((key, change.as_ref()?)))
     }
 
     /// With a displacement in x: a value is reached at the end of the step, [`Change::End`] frees it [L].
@@ -123,7 +198,7 @@ impl Support {
 
     /// With a displacement along a direction, which need not be of unit length [L].
     pub fn along(self, direction: [f64; 2], u: impl Into<Change<Drive>>) -> Self {
-        Self { along: Some((direction, u.into())), ..self }
+        Self { along: Some(direction), u: Some(u.into()), ..self }
     }
 
     /// With a displacement along the normal of a side, positive out of the body [L].
@@ -144,13 +219,13 @@ impl LoadStep {
             name: name.into(),
             duration,
             scheme: None,
-            increments: None,
+            dt: None,
             stabilize: None,
             rupture: None,
-            damping: Vec::new(),
+            velocity: BTreeMap::new(),
+            damping: BTreeMap::new(),
             until: None,
-            velocities: Vec::new(),
-            temperatures: Vec::new(),
+            temperature: BTreeMap::new(),
             supports: Vec::new(),
             loads: Vec::new(),
         }
@@ -163,7 +238,7 @@ impl LoadStep {
 
     /// With other increments: a first Δt, or all settings [T].
     pub fn dt(self, increments: impl Into<IncrementSettings>) -> Self {
-        Self { increments: Some(increments.into()), ..self }
+        Self { dt: Some(increments.into()), ..self }
     }
 
     /// Held until contact holds: by dashpots that fade over this static step, at its start as if this share of the bodies'
@@ -179,24 +254,25 @@ impl LoadStep {
 
     /// With another damping of a body from this step on.
     pub fn damping(mut self, body: impl Into<String>, damping: Damping) -> Self {
-        self.damping.push((body.into(), damping));
+        self.damping.insert(body.into(), damping);
         self
     }
 
     /// Ending before its time when the reaction of a place comes to a value, met to a millionth of it [F].
     pub fn until(self, on: impl Into<Place>, part: Part, value: f64) -> Self {
-        Self { until: Some(UntilSettings { on: on.into(), part, value, tolerance: MET }), ..self }
+        let [fx, fy, force] = [Part::X, Part::Y, Part::Size].map(|one| (one == part).then_some(value));
+        Self { until: Some(UntilSettings { on: on.into(), fx, fy, force, tolerance: MET }), ..self }
     }
 
     /// With a body, or point masses, that take a velocity when the step begins: a launch after settling [L/T].
     pub fn launch(mut self, name: impl Into<String>, velocity: [f64; 2]) -> Self {
-        self.velocities.push((name.into(), velocity));
+        self.velocity.insert(name.into(), velocity);
         self
     }
 
     /// With a body whose temperature changes: a value is reached at the end of the step [Θ].
-    pub fn temperature(mut self, body: impl Into<String>, temperature: impl Into<Drive>) -> Self {
-        self.temperatures.push((body.into(), temperature.into()));
+    pub fn temperature(mut self, body: impl Into<String>, temperature: impl Into<BodyTemperature>) -> Self {
+        self.temperature.insert(body.into(), temperature.into());
         self
     }
 
@@ -218,42 +294,75 @@ impl LoadStep {
     }
 }
 
-/// A load on a group of the mesh or on a node: it replaces the load of its kind that an earlier step gave there.
-#[derive(Clone, Debug)]
+/// A load: exactly one kind an entry. It replaces the load of its kind that an earlier step gave there.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Load {
     /// Where
     pub on: Place,
-    /// What
-    pub action: Action,
+    /// Pressure on edges that follows the surface, positive toward the body [F/L²]
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub pressure: Option<Change<Drive>>,
+    /// Pressure on edges that keeps the force and direction it has on the undeformed edges, positive toward the body [F/L²]
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub dead_pressure: Option<Change<Drive>>,
+    /// Traction on reference edges that keeps its direction [F/L²]
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub traction: Option<Change<Components>>,
+    /// Acceleration of gravity on a body or on point masses [L/T²]
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub gravity: Option<Change<Components>>,
+    /// Force on every node of the group [F]
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub force: Option<Change<Components>>,
+    /// Force on edges as a whole, spread over them as an even traction: a unit of depth in plane strain, the thickness of a
+    /// plate, the full turn of a ring. Its expressions depend on t alone [F]
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub total_force: Option<Change<Components>>,
+    /// Moment on a plate that moves as a rigid body, counter-clockwise; it turns with the plate [F L]
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub moment: Option<Change<Drive>>,
+    /// Spring at every node of the group, to the ground or to a moving driver; what it does to the node counts as work
+    /// from outside
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub spring: Option<Change<SpringLoad>>,
+    /// Dashpot at every node of the group, to the ground or to a moving driver
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub dashpot: Option<Change<DashpotLoad>>,
+    /// true: a side of a body absorbs waves, as if the body went on (Lysmer-Kuhlemeyer: dashpots rho c_p along the normal
+    /// and rho c_s along the side, of the undeformed body); false or null ends it
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub absorbing: Option<Change<bool>>,
 }
 
-/// What a load does.
-#[derive(Clone, Debug)]
-pub enum Action {
-    /// Pressure on edges that follows the surface, positive toward the body [F/L²]
-    Pressure(Change<Drive>),
-    /// Pressure on reference edges that keeps its force and direction, positive toward the body [F/L²]
-    DeadPressure(Change<Drive>),
-    /// Traction on reference edges that keeps its direction [F/L²]
-    Traction(Change<Components>),
-    /// Acceleration of gravity on a body or on point masses [L/T²]
-    Gravity(Change<Components>),
-    /// Force on every node [F]
-    Force(Change<Components>),
-    /// Force on edges as a whole, spread over them as an even traction [F]
-    TotalForce(Change<Components>),
-    /// Spring at every node, to the ground or to a moving driver
-    Spring(Change<Link>),
-    /// Dashpot at every node, to the ground or to a moving driver
-    Dashpot(Change<Link>),
-    /// Dashpots that let waves out of a side of a body, as if it went on
-    Absorbing(Change<()>),
-    /// Moment on a plate that turns, counter-clockwise [F L]
-    Moment(Change<Drive>),
+/// The one thing that a load does.
+#[derive(Clone, Copy, Debug)]
+pub enum Action<'l> {
+    /// `pressure`
+    Pressure(Option<&'l Drive>),
+    /// `dead_pressure`
+    DeadPressure(Option<&'l Drive>),
+    /// `traction`
+    Traction(Option<&'l Components>),
+    /// `gravity`
+    Gravity(Option<&'l Components>),
+    /// `force`
+    Force(Option<&'l Components>),
+    /// `total_force`
+    TotalForce(Option<&'l Components>),
+    /// `moment`
+    Moment(Option<&'l Drive>),
+    /// `spring`
+    Spring(Option<&'l SpringLoad>),
+    /// `dashpot`
+    Dashpot(Option<&'l DashpotLoad>),
+    /// `absorbing`, and whether it does
+    Absorbing(bool),
 }
 
 /// Components of a vector; zero unless given.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Components {
     /// x component
     pub x: Option<Drive>,
@@ -280,72 +389,135 @@ impl<D: Into<Drive>> From<[D; 2]> for Change<Components> {
     }
 }
 
-/// A spring or a dashpot.
-#[derive(Clone, Debug)]
-pub struct Link {
-    /// Stiffness in x and y of a spring [F/L], coefficients of a dashpot [F T/L]
-    pub coefficients: [f64; 2],
-    /// Displacement of the far end of a spring [L], velocity of that of a dashpot [L/T]; the ground unless given
+/// A spring.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Spring")]
+pub struct SpringLoad {
+    /// Stiffness in x [F/L]
+    #[serde(default)]
+    pub kx: f64,
+    /// Stiffness in y [F/L]
+    #[serde(default)]
+    pub ky: f64,
+    /// Displacement of the far end; the ground unless given [L]
+    pub driver: Option<Components>,
+}
+
+/// A dashpot: force c (v_driver − v). In statics v is the mean velocity of the increment.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Dashpot")]
+pub struct DashpotLoad {
+    /// Coefficient in x [F T/L]
+    #[serde(default)]
+    pub cx: f64,
+    /// Coefficient in y [F T/L]
+    #[serde(default)]
+    pub cy: f64,
+    /// Velocity of the far end; the ground unless given [L/T]
     pub driver: Option<Components>,
 }
 
 /// To the ground.
-impl From<[f64; 2]> for Change<Link> {
-    fn from(coefficients: [f64; 2]) -> Self {
-        Self::To(Link { coefficients, driver: None })
+impl From<[f64; 2]> for Change<SpringLoad> {
+    fn from([kx, ky]: [f64; 2]) -> Self {
+        Self::To(SpringLoad { kx, ky, driver: None })
+    }
+}
+
+/// To the ground.
+impl From<[f64; 2]> for Change<DashpotLoad> {
+    fn from([cx, cy]: [f64; 2]) -> Self {
+        Self::To(DashpotLoad { cx, cy, driver: None })
     }
 }
 
 impl Load {
+    /// Nothing yet at a place.
+    fn on(place: impl Into<Place>) -> Self {
+        Self {
+            on: place.into(),
+            pressure: None,
+            dead_pressure: None,
+            traction: None,
+            gravity: None,
+            force: None,
+            total_force: None,
+            moment: None,
+            spring: None,
+            dashpot: None,
+            absorbing: None,
+        }
+    }
+
+    /// What it does, where exactly one thing is given; without a value where that ends.
+    pub fn action(&self) -> Option<Action<'_>> {
+        let given = [
+            self.pressure.as_ref().map(|change| Action::Pressure(change.given())),
+            self.dead_pressure.as_ref().map(|change| Action::DeadPressure(change.given())),
+            self.traction.as_ref().map(|change| Action::Traction(change.given())),
+            self.gravity.as_ref().map(|change| Action::Gravity(change.given())),
+            self.force.as_ref().map(|change| Action::Force(change.given())),
+            self.total_force.as_ref().map(|change| Action::TotalForce(change.given())),
+            self.moment.as_ref().map(|change| Action::Moment(change.given())),
+            self.spring.as_ref().map(|change| Action::Spring(change.given())),
+            self.dashpot.as_ref().map(|change| Action::Dashpot(change.given())),
+            self.absorbing.as_ref().map(|change| Action::Absorbing(change.given() == Some(&true))),
+        ];
+        let mut given = given.into_iter().flatten();
+        given.next().filter(|_| given.next().is_none())
+    }
+
     /// Pressure on edges that follows the surface, positive toward the body [F/L²]; [`Change::End`] fades it over the step.
     pub fn pressure(on: impl Into<Place>, pressure: impl Into<Change<Drive>>) -> Self {
-        Self { on: on.into(), action: Action::Pressure(pressure.into()) }
+        Self { pressure: Some(pressure.into()), ..Self::on(on) }
     }
 
     /// Pressure on reference edges that keeps its force and direction, positive toward the body [F/L²].
     pub fn dead_pressure(on: impl Into<Place>, pressure: impl Into<Change<Drive>>) -> Self {
-        Self { on: on.into(), action: Action::DeadPressure(pressure.into()) }
+        Self { dead_pressure: Some(pressure.into()), ..Self::on(on) }
     }
 
     /// Traction on reference edges that keeps its direction [F/L²].
     pub fn traction(on: impl Into<Place>, traction: impl Into<Change<Components>>) -> Self {
-        Self { on: on.into(), action: Action::Traction(traction.into()) }
+        Self { traction: Some(traction.into()), ..Self::on(on) }
     }
 
     /// Gravity on a body or on point masses [L/T²].
     pub fn gravity(on: impl Into<Place>, acceleration: impl Into<Change<Components>>) -> Self {
-        Self { on: on.into(), action: Action::Gravity(acceleration.into()) }
+        Self { gravity: Some(acceleration.into()), ..Self::on(on) }
     }
 
     /// Force on every node [F].
     pub fn force(on: impl Into<Place>, force: impl Into<Change<Components>>) -> Self {
-        Self { on: on.into(), action: Action::Force(force.into()) }
+        Self { force: Some(force.into()), ..Self::on(on) }
     }
 
     /// Force on edges as a whole, spread over them as an even traction: a unit of depth in plane strain, the thickness of a
     /// plate, the full turn of a ring [F].
     pub fn total_force(on: impl Into<Place>, force: impl Into<Change<Components>>) -> Self {
-        Self { on: on.into(), action: Action::TotalForce(force.into()) }
+        Self { total_force: Some(force.into()), ..Self::on(on) }
     }
 
     /// A moment on a plate that turns, counter-clockwise [F L].
     pub fn moment(on: impl Into<Place>, moment: impl Into<Change<Drive>>) -> Self {
-        Self { on: on.into(), action: Action::Moment(moment.into()) }
+        Self { moment: Some(moment.into()), ..Self::on(on) }
     }
 
     /// Springs of the stiffnesses k_x, k_y at every node [F/L]; [`Change::End`] takes them away at once.
-    pub fn spring(on: impl Into<Place>, stiffness: impl Into<Change<Link>>) -> Self {
-        Self { on: on.into(), action: Action::Spring(stiffness.into()) }
+    pub fn spring(on: impl Into<Place>, stiffness: impl Into<Change<SpringLoad>>) -> Self {
+        Self { spring: Some(stiffness.into()), ..Self::on(on) }
     }
 
     /// Dashpots of the coefficients c_x, c_y at every node [F T/L].
-    pub fn dashpot(on: impl Into<Place>, coefficients: impl Into<Change<Link>>) -> Self {
-        Self { on: on.into(), action: Action::Dashpot(coefficients.into()) }
+    pub fn dashpot(on: impl Into<Place>, coefficients: impl Into<Change<DashpotLoad>>) -> Self {
+        Self { dashpot: Some(coefficients.into()), ..Self::on(on) }
     }
 
     /// A side that absorbs waves.
     pub fn absorbing(on: impl Into<Place>) -> Self {
-        Self { on: on.into(), action: Action::Absorbing(Change::To(())) }
+        Self { absorbing: Some(Change::To(true)), ..Self::on(on) }
     }
 }
 
@@ -366,6 +538,32 @@ impl<T> Change<T> {
             Self::End => None,
         }
     }
+}
+
+impl<T: Serialize> Serialize for Change<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.given().serialize(serializer)
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for Change<T> {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        Option::<T>::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        Option::<T>::json_schema(generator)
+    }
+}
+
+/// Tell a key that is `null`, which ends what an earlier step gave, from one that is absent and changes nothing.
+fn present<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Change<T>>, D::Error> {
+    let given = Option::deserialize(deserializer)?;
+    Ok(Some(given.map_or(Change::End, Change::To)))
 }
 
 impl From<f64> for Change<Drive> {

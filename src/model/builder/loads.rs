@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 
 use super::error::{Checked, ModelError, check_not_negative};
 use super::groups::{Place, edges, group_at, node_lists, nodes_at};
-use super::load_step::{Action, Change, Components, Link, Load, LoadStep};
+use super::load_step::{Action, Change, Components, DashpotLoad, Load, LoadStep, SpringLoad};
 use super::plates::plate_of_moment;
 use super::section::check_gravity;
 use super::shares::{Share, absorbers, edge_shares, even_shares, mass_shares, pressure_shares};
@@ -41,19 +41,26 @@ enum Kind {
 }
 
 /// The kind of an action, and whether it ends the load.
-fn kind(action: &Action) -> (Kind, bool) {
+fn kind(action: Action) -> (Kind, bool) {
     match action {
-        Action::Pressure(change) => (Kind::Pressure, change.given().is_none()),
-        Action::DeadPressure(change) => (Kind::DeadPressure, change.given().is_none()),
-        Action::Traction(change) => (Kind::Traction, change.given().is_none()),
-        Action::Gravity(change) => (Kind::Gravity, change.given().is_none()),
-        Action::Force(change) => (Kind::Force, change.given().is_none()),
-        Action::TotalForce(change) => (Kind::TotalForce, change.given().is_none()),
-        Action::Spring(change) => (Kind::Spring, change.given().is_none()),
-        Action::Dashpot(change) => (Kind::Dashpot, change.given().is_none()),
-        Action::Absorbing(change) => (Kind::Absorbing, change.given().is_none()),
-        Action::Moment(change) => (Kind::Moment, change.given().is_none()),
+        Action::Pressure(given) => (Kind::Pressure, given.is_none()),
+        Action::DeadPressure(given) => (Kind::DeadPressure, given.is_none()),
+        Action::Traction(given) => (Kind::Traction, given.is_none()),
+        Action::Gravity(given) => (Kind::Gravity, given.is_none()),
+        Action::Force(given) => (Kind::Force, given.is_none()),
+        Action::TotalForce(given) => (Kind::TotalForce, given.is_none()),
+        Action::Spring(given) => (Kind::Spring, given.is_none()),
+        Action::Dashpot(given) => (Kind::Dashpot, given.is_none()),
+        Action::Absorbing(absorbs) => (Kind::Absorbing, !absorbs),
+        Action::Moment(given) => (Kind::Moment, given.is_none()),
     }
+}
+
+/// The one thing that a load does.
+fn action<'l>(load: &'l Load, place: &str) -> Checked<Action<'l>> {
+    let message = "must give exactly one of pressure, dead_pressure, traction, gravity, force, total_force, moment, spring, dashpot, \
+                   absorbing";
+    load.action().ok_or_else(|| ModelError::new(place, message))
 }
 
 impl LoadsInForce {
@@ -76,7 +83,10 @@ impl LoadsInForce {
     /// # Errors
     /// As of a step.
     pub fn change_within(&mut self, load: &Load, place: &str, span: Span, model: &Model) -> Checked<()> {
-        let key = (load.on.settled(&model.mesh).unwrap_or_else(|_| load.on.clone()).to_string(), kind(&load.action).0);
+        let key = (
+            load.on.settled(&model.mesh).unwrap_or_else(|_| load.on.clone()).to_string(),
+            kind(action(load, place)?).0,
+        );
         for before in self.0.get_mut(&key).into_iter().flat_map(Loads::amplitudes) {
             *before = before.settled(span.start);
             if before.chain().count() > MOST_REMEMBERED {
@@ -104,20 +114,29 @@ impl LoadsInForce {
 
     /// Give a load anew, or end it.
     pub fn change(&mut self, load: &Load, place: &str, span: Span, model: &Model) -> Checked<()> {
-        let (kind, ends) = kind(&load.action);
+        let action = action(load, place)?;
+        let (kind, ends) = kind(action);
         let on = load.on.settled(&model.mesh).map_err(|message| ModelError::new(format!("{place}.on"), message))?;
         let key = (on.to_string(), kind);
         if ends && !self.0.contains_key(&key) {
             return Err(frees_nothing(place, &load.on));
         }
         let before = self.0.remove(&key).unwrap_or_default();
-        let made = Changing { load, place, span, model, before }.made()?;
+        let made = Changing { load, place, span, model, before }.made(action)?;
         // What fades stays until something replaces it.
         if !(ends && matches!(kind, Kind::Spring | Kind::Dashpot | Kind::Absorbing)) {
             self.0.insert(key, made);
         }
         Ok(())
     }
+}
+
+/// A spring or a dashpot.
+struct Link<'l> {
+    key: &'static str,
+    /// coefficients along x and y with their keys
+    values: [(&'static str, f64); 2],
+    driver: &'l Option<Components>,
 }
 
 /// A load that changes in a step.
@@ -130,42 +149,42 @@ struct Changing<'m> {
 }
 
 impl Changing<'_> {
-    fn made(self) -> Checked<Loads> {
-        let Self { load: Load { on, action }, place, model, .. } = self;
+    fn made(self, action: Action) -> Checked<Loads> {
+        let Self { load: Load { on, .. }, place, model, .. } = self;
         let at = format!("{place}.on");
         match action {
-            Action::Pressure(change) => self.pressure(change.given()),
-            Action::DeadPressure(change) => {
+            Action::Pressure(given) => self.pressure(given),
+            Action::DeadPressure(given) => {
                 let edges = edges(&model.mesh, group_at(on, place)?, &at)?;
-                self.dead_pressure(change.given(), pressure_shares(&model.mesh, edges))
+                self.dead_pressure(given, pressure_shares(&model.mesh, edges))
             }
-            Action::Traction(change) => {
+            Action::Traction(given) => {
                 let edges = edges(&model.mesh, group_at(on, place)?, &at)?;
                 let shares = edge_shares(&model.mesh, edges);
-                self.dead("traction", change.given(), [shares.clone(), shares])
+                self.dead("traction", given, [shares.clone(), shares])
             }
-            Action::Gravity(change) => {
-                check_gravity(change.given().and_then(|given| given.along(0)), place, model)?;
+            Action::Gravity(given) => {
+                check_gravity(given.and_then(|given| given.along(0)), place, model)?;
                 let shares = mass_shares(model, group_at(on, place)?, &at)?;
-                self.dead("gravity", change.given(), [shares.clone(), shares])
+                self.dead("gravity", given, [shares.clone(), shares])
             }
-            Action::Force(change) => {
+            Action::Force(given) => {
                 let nodes = nodes_at(&model.mesh, on, &at)?;
                 let shares: Vec<Share> = nodes.into_iter().map(|node| (node, 1.0, model.mesh.nodes[node])).collect();
-                self.dead("force", change.given(), [shares.clone(), shares])
+                self.dead("force", given, [shares.clone(), shares])
             }
-            Action::TotalForce(change) => {
+            Action::TotalForce(given) => {
                 let edges = edges(&model.mesh, group_at(on, place)?, &at)?;
-                check_even(change.given(), place)?;
+                check_even(given, place)?;
                 let shares = even_shares(&model.mesh, edges);
-                self.dead("total_force", change.given(), [shares.clone(), shares])
+                self.dead("total_force", given, [shares.clone(), shares])
             }
-            Action::Moment(change) => self.moment(change.given()),
-            Action::Spring(change) => self.springs(change.given()),
-            Action::Dashpot(change) => self.dashpots(change.given()),
-            Action::Absorbing(change) => {
+            Action::Moment(given) => self.moment(given),
+            Action::Spring(given) => self.springs(given),
+            Action::Dashpot(given) => self.dashpots(given),
+            Action::Absorbing(absorbs) => {
                 let edges = edges(&model.mesh, group_at(on, place)?, &at)?;
-                let absorbers = change.given().map_or(Vec::new(), |()| absorbers(model, edges));
+                let absorbers = if absorbs { absorbers(model, edges) } else { Vec::new() };
                 Ok(Loads { absorbers, ..Loads::default() })
             }
         }
@@ -211,25 +230,35 @@ impl Changing<'_> {
         Ok(Loads { moments, ..Loads::default() })
     }
 
-    fn springs(self, given: Option<&Link>) -> Checked<Loads> {
+    fn springs(self, given: Option<&SpringLoad>) -> Checked<Loads> {
+        let link = given.map(|SpringLoad { kx, ky, driver }| Link {
+            key: "spring",
+            values: [("kx", *kx), ("ky", *ky)],
+            driver,
+        });
         let before = |component: usize| {
             let spring = self.before.springs.iter().find(|spring| spring.dof % 2 == component);
             spring.and_then(|spring| spring.driver.clone())
         };
         let mut springs = Vec::new();
-        for (dof, stiffness, driver) in self.links(given, "spring", ["kx", "ky"], before)? {
+        for (dof, stiffness, driver) in self.links(link, before)? {
             springs.push(Spring { dof, stiffness, driver });
         }
         Ok(Loads { springs, ..Loads::default() })
     }
 
-    fn dashpots(self, given: Option<&Link>) -> Checked<Loads> {
+    fn dashpots(self, given: Option<&DashpotLoad>) -> Checked<Loads> {
+        let link = given.map(|DashpotLoad { cx, cy, driver }| Link {
+            key: "dashpot",
+            values: [("cx", *cx), ("cy", *cy)],
+            driver,
+        });
         let before = |component: usize| {
             let dashpot = self.before.dashpots.iter().find(|dashpot| dashpot.dof % 2 == component);
             dashpot.and_then(|dashpot| dashpot.driver.clone())
         };
         let mut dashpots = Vec::new();
-        for (dof, coefficient, driver) in self.links(given, "dashpot", ["cx", "cy"], before)? {
+        for (dof, coefficient, driver) in self.links(link, before)? {
             dashpots.push(Dashpot { dof, coefficient, driver });
         }
         Ok(Loads { dashpots, ..Loads::default() })
@@ -238,15 +267,13 @@ impl Changing<'_> {
     /// Dof, coefficient and driver of every spring or dashpot; what has the coefficient zero is none.
     fn links(
         &self,
-        given: Option<&Link>,
-        key: &str,
-        names: [&str; 2],
+        given: Option<Link>,
         before: impl Fn(usize) -> Option<Amplitude>,
     ) -> Checked<Vec<(usize, f64, Option<Amplitude>)>> {
         let nodes = nodes_at(&self.model.mesh, &self.load.on, &format!("{}.on", self.place))?;
-        let Some(Link { coefficients, driver }) = given else { return Ok(Vec::new()) };
+        let Some(Link { key, values, driver }) = given else { return Ok(Vec::new()) };
         let mut links = Vec::new();
-        for (component, (&coefficient, name)) in coefficients.iter().zip(names).enumerate() {
+        for (component, (name, coefficient)) in values.into_iter().enumerate() {
             check_not_negative(&format!("{}.{key}.{name}", self.place), coefficient)?;
             if coefficient == 0.0 {
                 continue;
@@ -323,42 +350,38 @@ pub fn check_defined(place: &str, given: &LoadStep, (scheme, span): (Scheme, Spa
 fn drives(given: &LoadStep) -> Vec<(String, &Place, &Drive)> {
     let mut drives = Vec::new();
     for (k, support) in given.supports.iter().enumerate() {
-        let along = support.along.as_ref().map(|(_, change)| change);
-        let motions =
-            [("ux", support.ux.as_ref()), ("uy", support.uy.as_ref()), ("u", along), ("un", support.un.as_ref())];
-        let motions = motions.into_iter().filter_map(|(key, change)| Some((key, change?.given()?)));
+        let motions = support.displacements().filter_map(|(key, change)| Some((key, change.given()?)));
         let turned =
             support.rotation.as_ref().and_then(Change::given).map(|rotation| ("rotation.angle", &rotation.angle));
         drives.extend(motions.chain(turned).map(|(key, drive)| (format!("supports[{k}].{key}"), &support.on, drive)));
     }
     for (k, load) in given.loads.iter().enumerate() {
-        drives.extend(
-            actions(&load.action).into_iter().map(|(key, drive)| (format!("loads[{k}].{key}"), &load.on, drive)),
-        );
+        let actions = load.action().map(actions).into_iter().flatten();
+        drives.extend(actions.map(|(key, drive)| (format!("loads[{k}].{key}"), &load.on, drive)));
     }
     drives
 }
 
 /// The drives of a load with their keys.
-fn actions(action: &Action) -> Vec<(String, &Drive)> {
-    fn vector<'a>(key: &str, components: Option<&'a Components>) -> Vec<(String, &'a Drive)> {
-        let along = |(component, name): (usize, &str)| Some((format!("{key}.{name}"), components?.along(component)?));
-        ["x", "y"].into_iter().enumerate().filter_map(along).collect()
-    }
+fn actions(action: Action<'_>) -> Vec<(String, &Drive)> {
+    let alone = |key: &str, drive| Option::into_iter(drive).map(|drive| (key.to_string(), drive)).collect();
     match action {
-        Action::Pressure(change) => change.given().map(|drive| ("pressure".into(), drive)).into_iter().collect(),
-        Action::DeadPressure(change) => {
-            change.given().map(|drive| ("dead_pressure".into(), drive)).into_iter().collect()
-        }
-        Action::Traction(change) => vector("traction", change.given()),
-        Action::Gravity(change) => vector("gravity", change.given()),
-        Action::Force(change) => vector("force", change.given()),
-        Action::TotalForce(change) => vector("total_force", change.given()),
-        Action::Spring(change) => vector("spring.driver", change.given().and_then(|link| link.driver.as_ref())),
-        Action::Dashpot(change) => vector("dashpot.driver", change.given().and_then(|link| link.driver.as_ref())),
-        Action::Moment(change) => change.given().map(|drive| ("moment".into(), drive)).into_iter().collect(),
+        Action::Pressure(drive) => alone("pressure", drive),
+        Action::DeadPressure(drive) => alone("dead_pressure", drive),
+        Action::Moment(drive) => alone("moment", drive),
+        Action::Traction(given) => vector("traction", given),
+        Action::Gravity(given) => vector("gravity", given),
+        Action::Force(given) => vector("force", given),
+        Action::TotalForce(given) => vector("total_force", given),
+        Action::Spring(given) => vector("spring.driver", given.and_then(|spring| spring.driver.as_ref())),
+        Action::Dashpot(given) => vector("dashpot.driver", given.and_then(|dashpot| dashpot.driver.as_ref())),
         Action::Absorbing(_) => Vec::new(),
     }
+}
+
+fn vector<'a>(key: &str, components: Option<&'a Components>) -> Vec<(String, &'a Drive)> {
+    let along = |(component, name): (usize, &str)| Some((format!("{key}.{name}"), components?.along(component)?));
+    ["x", "y"].into_iter().enumerate().filter_map(along).collect()
 }
 
 /// Where a drive is evaluated: at nodes, or at the Gauss points of edges; at most some, from end to end.

@@ -28,6 +28,7 @@
 //! A load step takes over what the one before gave: scheme, increments, supports and loads. What is wrong is told with its
 //! place, in the words of a case file: `steps[1].supports[0].on: the mesh has no group …`.
 
+mod along;
 mod body;
 mod checks;
 mod contact;
@@ -46,15 +47,17 @@ mod shares;
 mod supported;
 mod supports;
 
-pub use contact::{Contact, InitialTractions, MasterSide, Radiation};
+pub use along::{Along, LawChoice};
+pub use contact::{Contact, InitialTractions, MasterSide, Normal, Radiation, SlidingRange};
 pub use error::{Checked, ModelError};
 pub use friction::Friction;
 pub use groups::Place;
 pub use load_step::{
-    Action, Change, Components, IncrementSettings, Link, Load, LoadStep, MET, Rotation, RuptureSettings, Support,
-    UntilSettings,
+    Action, Change, Components, DashpotLoad, IncrementSettings, Load, LoadStep, MET, Rotation, RuptureSettings,
+    SpringLoad, Support, UntilSettings,
 };
 pub use loads::LoadsInForce;
+pub use pair::default_alpha_t;
 pub use plates::Plate;
 pub use probes::Gauge;
 
@@ -267,7 +270,11 @@ impl Builder {
         model.methods = self.contacts.iter().map(|contact| pair::evaluation(contact, &model.mesh)).collect();
         model.prestress = initial::prestress(&self.contacts, &model);
         model.steps = schedule::steps(&self.steps, &model)?;
-        section::check_velocities("initial_velocity", &self.velocities, &model)?;
+        section::check_velocities(
+            "initial_velocity",
+            self.velocities.iter().map(|(name, value)| (name, value)),
+            &model,
+        )?;
         model.initial_velocity = initial::velocities(&self.velocities, &self.point_masses, &model)?;
         model.watch = groups::watched(&self.watch, &model)?;
         model.times = checks::checked_times(self.times, &model.steps)?;

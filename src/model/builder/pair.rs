@@ -29,10 +29,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::contact::{Contact, MasterSide, Radiation};
+use super::contact::{Contact, MasterSide, Radiation, SlidingRange};
 use super::error::{Checked, ModelError, check_size};
 use super::groups::{edges, group, node_lists};
-use super::{contact, initial};
+use super::{along, contact, initial};
 use crate::contact::master::{Master, Rigid};
 use crate::contact::mortar::{Mortar, mortar_points};
 use crate::contact::pair::{ContactPair, Reverse};
@@ -64,7 +64,9 @@ fn pair(contact: &Contact, model: &Model) -> Checked<ContactPair> {
     }
     let Penalty { alpha_n, alpha_t, compliance } = penalty(&place, contact, model)?;
     let offsets = Offsets { dilatancy: contact.dilatancy, wear: contact.wear };
-    let (laws, in_time) = contact.friction.laws(&place, &mut points, &model.mesh, alpha_t, offsets)?;
+    let structure = contact.initial.as_ref().and_then(|initial| initial.structure.as_ref());
+    let friction = along::friction(&contact.friction, &contact.along, structure, &place)?;
+    let (laws, in_time) = friction.laws(&place, &mut points, &model.mesh, alpha_t, offsets)?;
     for stiffness in laws.iter().map(|law| law.description.stiffness).filter(|stiffness| *stiffness > 0.0) {
         check_size(&format!("{place}.friction"), "alpha_t", stiffness)?;
     }
@@ -76,7 +78,7 @@ fn pair(contact: &Contact, model: &Model) -> Checked<ContactPair> {
         mortar,
         alpha_n,
         compliance,
-        penetration: contact.penetration,
+        penetration: contact.normal.penetration,
         radiation: radiation(&place, contact, model)?,
         fluid: contact::fluid(&place, contact)?,
         laws,
@@ -88,7 +90,7 @@ fn pair(contact: &Contact, model: &Model) -> Checked<ContactPair> {
         small: None,
         master,
     };
-    if contact.small_sliding {
+    if contact.sliding == SlidingRange::Small {
         if contact.is_own() {
             let message = "a surface meets itself where only its motion brings it, and small sliding keeps what faces a point at \
                            the start: take finite sliding, or name the two parts that touch as slave and master";
@@ -157,7 +159,7 @@ fn check_penetrations(contacts: &[Contact], mesh: &Mesh) -> Checked<()> {
 }
 
 fn check_penetration(contact: &Contact, least: f64) -> Checked<()> {
-    let Some(penetration) = contact.penetration else { return Ok(()) };
+    let Some(penetration) = contact.normal.penetration else { return Ok(()) };
     let message = if !(penetration > 0.0 && penetration.is_finite()) {
         format!("is {penetration}: must be positive (leave it out for the plain penalty)")
     } else if penetration < least {
@@ -302,10 +304,10 @@ fn check_disjoint(
 /// η of a contact, 0 for none.
 pub fn radiation(place: &str, contact: &Contact, model: &Model) -> Checked<f64> {
     let at = format!("{place}.radiation_damping");
-    let damping = match contact.radiation {
-        None => return Ok(0.0),
-        Some(Radiation::Given(damping)) => damping,
-        Some(Radiation::OfBodies) => of_bodies(place, &at, contact, model)?,
+    let damping = match contact.radiation_damping {
+        Radiation::OfBodies(false) => return Ok(0.0),
+        Radiation::Given(damping) => damping,
+        Radiation::OfBodies(true) => of_bodies(place, &at, contact, model)?,
     };
     if !(damping > 0.0 && damping.is_finite()) {
         return Err(ModelError::new(at, format!("is {damping}: must be positive (leave it out for none)")));
@@ -347,6 +349,11 @@ const NORMAL: f64 = 10.0;
 /// α_t over α_n [-]
 const TANGENTIAL: f64 = 0.5;
 
+/// α_t of a law that has none of its own, by (1) [F/L³].
+pub fn default_alpha_t(alpha_n: f64) -> f64 {
+    TANGENTIAL * alpha_n
+}
+
 /// Stiffnesses of a contact.
 pub struct Penalty {
     /// α_n [F/L³]
@@ -361,7 +368,7 @@ pub struct Penalty {
 pub fn penalty(place: &str, contact: &Contact, model: &Model) -> Checked<Penalty> {
     let elastic = elastic_stiffness(place, contact, model)?;
     let at = format!("{place}.normal.alpha_n");
-    let alpha_n = match (contact.alpha_n, elastic) {
+    let alpha_n = match (contact.normal.alpha_n, elastic) {
         (Some(alpha_n), _) => alpha_n,
         (None, Some(elastic)) => NORMAL * elastic,
         (None, None) => {
@@ -375,7 +382,7 @@ pub fn penalty(place: &str, contact: &Contact, model: &Model) -> Checked<Penalty
         return Err(ModelError::new(at, message));
     }
     check_size(&format!("{place}.normal"), "alpha_n", alpha_n)?;
-    let alpha_t = contact.area.is_none().then_some(TANGENTIAL * alpha_n);
+    let alpha_t = contact.area.is_none().then_some(default_alpha_t(alpha_n));
     Ok(Penalty { alpha_n, alpha_t, compliance: elastic.map_or(0.0, |elastic| 1.0 / elastic) })
 }
 

@@ -4,6 +4,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Matrix2, Vector2};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::error::{Checked, ModelError};
 use super::groups::{Place, group, nodes_at};
@@ -14,16 +16,18 @@ use crate::model::Model;
 use crate::model::linkage::{Follower, Linkage, alike, rigid};
 
 /// How the nodes of a loading plate move.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(rename = "PlateMotion")]
 pub enum Plate {
-    /// all alike: the plate does not turn
+    /// Alike, without turning: what the name of the group alone says
     #[default]
     AsOne,
-    /// alike in x, each as it will in y
+    /// Alike in x, each as it will in y: a greased plate
     UxAlike,
-    /// alike in y, each as it will in x
+    /// Alike in y, each as it will in x
     UyAlike,
-    /// as a rigid body, which turns
+    /// As a rigid body, which turns under forces, springs and a `moment`; supports hold at most one of its nodes
     Rigid,
 }
 

@@ -3,6 +3,8 @@
 use std::collections::BTreeSet;
 
 use nalgebra::{Matrix2, Vector2};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::error;
 use super::error::{Checked, ModelError};
@@ -10,21 +12,24 @@ use crate::mesh::boxes::{Box2, Tree};
 use crate::mesh::shape::ElementKind;
 use crate::model::{Model, Probe};
 
-/// A point, or points along a line, at which motion, strain and stress are asked for; places are undeformed ones.
-#[derive(Clone, Debug, PartialEq)]
+/// A gauge: a point given by `at`, or a line of points given by `from`, `to` and `number`; places are undeformed ones.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Probe")]
 pub struct Gauge {
-    /// name in results
-    name: String,
-    /// the points: one, or both ends and how many from one to the other
-    places: Places,
-    /// the body, where bodies touch
-    body: Option<String>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Places {
-    One([f64; 2]),
-    Line { from: [f64; 2], to: [f64; 2], number: usize },
+    /// Name in results; a case has it before the gauge
+    #[serde(skip)]
+    pub name: String,
+    /// The point [x, y]
+    pub at: Option<[f64; 2]>,
+    /// Where a line begins [x, y]
+    pub from: Option<[f64; 2]>,
+    /// Where it ends [x, y]
+    pub to: Option<[f64; 2]>,
+    /// How many points it has, both ends included; the k-th is called NAME.k, from 1
+    pub number: Option<usize>,
+    /// The body, needed where two bodies touch
+    pub body: Option<String>,
 }
 
 /// How far outside of an element round-off may put a point, in its coordinates.
@@ -42,12 +47,12 @@ const MOST: usize = 100_000;
 impl Gauge {
     /// A point.
     pub fn at(name: impl Into<String>, place: [f64; 2]) -> Self {
-        Self { name: name.into(), places: Places::One(place), body: None }
+        Self { name: name.into(), at: Some(place), ..Self::default() }
     }
 
     /// Points at equal distances from one place to another, both included; the k-th is called `name.k`, from 1.
     pub fn line(name: impl Into<String>, from: [f64; 2], to: [f64; 2], number: usize) -> Self {
-        Self { name: name.into(), places: Places::Line { from, to, number }, body: None }
+        Self { name: name.into(), from: Some(from), to: Some(to), number: Some(number), ..Self::default() }
     }
 
     /// The body it is in, for places where two bodies touch.
@@ -58,9 +63,13 @@ impl Gauge {
 
     /// Names and places of all points.
     fn points(&self) -> Checked<Vec<(String, Vector2<f64>)>> {
-        let Places::Line { from, to, number } = self.places else {
-            let Places::One(at) = self.places else { return Ok(Vec::new()) };
-            return Ok(vec![(self.name.clone(), at.into())]);
+        let (from, to, number) = match (self.at, self.from, self.to, self.number) {
+            (Some(at), None, None, None) => return Ok(vec![(self.name.clone(), at.into())]),
+            (None, Some(from), Some(to), Some(number)) => (from, to, number),
+            _ => {
+                let message = "give `at` for a point, or `from`, `to` and `number` for a line of points";
+                return Err(ModelError::new(format!("probes.{}", self.name), message));
+            }
         };
         if !(2..=MOST).contains(&number) {
             let message = format!("is {number}: a line has 2 to {MOST} points (one alone is given by `at`)");

@@ -69,7 +69,7 @@ impl Schedule<'_> {
         scheme.check().map_err(|error| ModelError::new(format!("{place}.scheme"), error))?;
         let span = Span { start: self.start, end: self.start + given.duration };
         self.start = span.end;
-        self.increments = given.increments.or(self.increments);
+        self.increments = given.dt.or(self.increments);
         let increments = increments(&format!("{place}.dt"), self.increments, span, scheme)?;
         if std::mem::replace(&mut self.may_end_early, given.until.is_some()) {
             self.in_force.stay();
@@ -108,7 +108,7 @@ impl Schedule<'_> {
     }
 
     /// Give bodies another damping.
-    fn damp(&mut self, given: &[(String, Damping)], place: &str) -> Checked<()> {
+    fn damp(&mut self, given: &BTreeMap<String, Damping>, place: &str) -> Checked<()> {
         let bodies = &self.model.bodies;
         for (name, damping) in given {
             let place = format!("{place}.damping.{name}");
@@ -255,10 +255,13 @@ const LOOSEST: f64 = 0.1;
 
 /// The reaction that ends a step, if one does.
 pub fn until(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Checked<Option<Until>> {
-    let Some(UntilSettings { on, part, value, tolerance }) = &given.until else { return Ok(None) };
-    let (part, value, tolerance) = (*part, *value, *tolerance);
-    let place = format!("{place}.until");
+    let Some(given_until) = &given.until else { return Ok(None) };
+    let UntilSettings { on, tolerance, .. } = given_until;
+    let (place, tolerance) = (format!("{place}.until"), *tolerance);
     let refused = |key: &str, message: String| Err(ModelError::new(format!("{place}{key}"), message));
+    let Some((part, value)) = given_until.part() else {
+        return refused("", "must give exactly one of fx, fy and force".into());
+    };
     if !value.is_finite() || part == Part::Size && value < 0.0 {
         let kind = if part == Part::Size { "zero or positive, the size of a force" } else { "a finite number" };
         return refused(&format!(".{}", part.name()), format!("is {value}: must be {kind}"));

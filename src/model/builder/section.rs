@@ -105,9 +105,13 @@ pub fn check_gravity(radial: Option<&Drive>, place: &str, model: &Model) -> Chec
 }
 
 /// No ring flies off as a whole along its radius.
-pub fn check_velocities(place: &str, given: &[(String, [f64; 2])], model: &Model) -> Checked<()> {
-    let radial = |(_, velocity): &&(String, [f64; 2])| velocity[0] != 0.0;
-    match given.iter().find(radial).filter(|_| model.mesh.section.is_axisymmetric()) {
+pub fn check_velocities<'v>(
+    place: &str,
+    given: impl IntoIterator<Item = (&'v String, &'v [f64; 2])>,
+    model: &Model,
+) -> Checked<()> {
+    let radial = |(_, velocity): &(&String, &[f64; 2])| velocity[0] != 0.0;
+    match given.into_iter().find(radial).filter(|_| model.mesh.section.is_axisymmetric()) {
         Some((name, _)) => {
             let message =
                 "x is the radius of axisymmetric bodies, along which they cannot move as a whole: give [0, vy]";

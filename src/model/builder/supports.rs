@@ -77,7 +77,7 @@ pub fn supports(in_force: &mut InForce, given: &[Support], place: &str, span: Sp
 /// What a support says along inclined directions and normals, node by node.
 fn inclined<'s>(support: &'s Support, nodes: &[usize], place: &str, model: &Model) -> Checked<Vec<Along<'s>>> {
     let mut all = Vec::new();
-    if let Some((direction, change)) = &support.along {
+    if let (Some(direction), Some(change)) = (&support.along, &support.u) {
         let key = format!("{place}.u");
         displacement(change, &key, Span::default())?;
         let d = Vector2::from(*direction);
@@ -100,7 +100,12 @@ fn inclined<'s>(support: &'s Support, nodes: &[usize], place: &str, model: &Mode
 
 /// A support must prescribe something, and no direction twice.
 fn check_directions(support: &Support, place: &str) -> Checked<()> {
-    let Support { ux, uy, along, un, rotation, .. } = support;
+    let Support { ux, uy, along, u, un, rotation, .. } = support;
+    match (along, u) {
+        (Some(_), None) => return Err(ModelError::new(place, "gives a direction `along` and no displacement: give u")),
+        (None, Some(_)) => return Err(ModelError::new(place, "gives u and no direction: give `along`, [x, y]")),
+        _ => {}
+    }
     let given = [("ux", ux.is_some()), ("uy", uy.is_some()), ("along", along.is_some()), ("un", un.is_some())];
     let Some((key, _)) = given.into_iter().find(|(_, given)| *given) else {
         return match rotation {
@@ -130,10 +135,8 @@ fn check_on_plates(support: &Support, nodes: &[usize], model: &Model, place: &st
     if let Some(Change::To(_)) = support.rotation {
         return told("rotation", "which does not turn: give ux and uy");
     }
-    let along = support.along.as_ref().map(|(_, change)| change);
-    let given = [("ux", support.ux.as_ref()), ("uy", support.uy.as_ref()), ("u", along), ("un", support.un.as_ref())];
-    for (key, change) in given {
-        if change.and_then(Change::given).is_some_and(Drive::depends_on_position) {
+    for (key, change) in support.displacements() {
+        if change.given().is_some_and(Drive::depends_on_position) {
             return told(key, "which moves as a whole: give it in t alone");
         }
     }

@@ -1,0 +1,67 @@
+//! A case with every default filled in, which runs to the same bits.
+
+use serde_json::Value;
+
+use super::file::Case;
+use crate::laws::friction::FrictionParameters;
+use crate::model::builder::{Contact, Friction, IncrementSettings, default_alpha_t};
+use crate::model::method::{Chosen, Method};
+use crate::model::{Increments, Model};
+
+/// The case of a model as the text of a file, with what it leaves open as the model has it: scheme and increments of every step, and of
+/// contacts the method and the stiffnesses. Those of a case that begins with another one stay as they are, for they must be those
+/// of the other.
+pub fn resolved(case: &Case, model: &Model) -> String {
+    let mut case = case.clone();
+    let taken_over = model.steps.len().saturating_sub(case.steps.len());
+    for (given, step) in case.steps.iter_mut().zip(&model.steps[taken_over..]) {
+        let Increments { initial, min, max, error } = step.increments;
+        given.scheme = Some(step.scheme);
+        given.dt = Some(IncrementSettings { initial, min: Some(min), max: Some(max), error });
+    }
+    if case.begin_with.is_none() {
+        for (pair, chosen) in model.contacts.iter().zip(&model.methods) {
+            if let Some(contact) = case.contacts.get_mut(&pair.name) {
+                fill(contact, pair.alpha_n, chosen.as_ref());
+            }
+        }
+    }
+    case.output.every = case.output.every();
+    // What was read from JSON can be written as JSON.
+    serde_json::to_string_pretty(&case).unwrap_or_default()
+}
+
+fn fill(contact: &mut Contact, alpha_n: f64, chosen: Option<&Chosen>) {
+    contact.normal.alpha_n = Some(alpha_n);
+    let Some(Chosen { method, points, .. }) = chosen else { return };
+    contact.method = Some(*method);
+    if *method == Method::GaussToSegment {
+        contact.points = Some(*points);
+    }
+    let alpha_t = default_alpha_t(alpha_n);
+    if let Some(parameters) = contact.friction.parameters() {
+        contact.friction = Friction::from(with_alpha_t(parameters, alpha_t));
+    }
+    for choice in &mut contact.along.law {
+        choice.friction = with_alpha_t(&choice.friction, alpha_t);
+    }
+}
+
+/// The parameters with this α_t, where they have one and leave it open.
+fn with_alpha_t(parameters: &FrictionParameters, alpha_t: f64) -> FrictionParameters {
+    let filled = |mut fields: Value| {
+        match fields.get_mut("alpha_t") {
+            Some(open @ Value::Null) => *open = alpha_t.into(),
+            _ => return None,
+        }
+        serde_json::from_value(fields).ok()
+    };
+    serde_json::to_value(parameters).ok().and_then(filled).unwrap_or_else(|| parameters.clone())
+}
+
+/// The document of a case with the defaults of its types filled in, so that one that is written down makes no difference; as it is if
+/// it is no case.
+pub fn with_defaults(document: &Value) -> Value {
+    let read = super::read::input::<Case>(document).ok();
+    read.and_then(|case| serde_json::to_value(case).ok()).unwrap_or_else(|| document.clone())
+}

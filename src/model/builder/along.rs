@@ -1,0 +1,176 @@
+//! Friction of a contact as a case can have it: parameters of laws, some of which vary along the slave and in time.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::fmt;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::de::{MapAccess, Visitor};
+use serde::ser::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::error::{Checked, ModelError};
+use super::friction::Friction;
+use crate::laws::friction::FrictionParameters;
+use crate::laws::parameter::UnknownParameter;
+use crate::mesh::names::nearest;
+use crate::model::boundary::Profile;
+
+/// What of friction varies along the slave, and in time: expressions may have the run time t besides x and y.
+#[derive(Clone, Debug, Default, Serialize, JsonSchema)]
+pub struct Along {
+    /// Other laws than `friction` on parts of the slave; where several say so, the first holds
+    #[schemars(default)]
+    pub law: Vec<LawChoice>,
+    /// Parameters of `friction`, by name: they replace the numbers given there. A rate enters by its mean over an increment,
+    /// any other parameter by its value at the end. Those of the start (structure, theta) and alpha_t do not vary in time
+    #[serde(flatten)]
+    pub parameters: BTreeMap<String, Profile>,
+}
+
+impl Along {
+    /// Whether nothing varies.
+    pub fn is_empty(&self) -> bool {
+        self.law.is_empty() && self.parameters.is_empty()
+    }
+}
+
+/// A law on a part of the slave.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LawChoice {
+    /// It holds where this is positive
+    #[serde(rename = "where")]
+    pub place: Profile,
+    /// Friction law
+    pub friction: FrictionParameters,
+    /// Its parameters that vary along the slave, and in time, by name
+    #[serde(default)]
+    pub along: BTreeMap<String, Profile>,
+}
+
+impl<'de> Deserialize<'de> for Along {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(Entries)
+    }
+}
+
+/// Reads entry by entry, so that a complaint about one names its place.
+struct Entries;
+
+impl<'de> Visitor<'de> for Entries {
+    type Value = Along;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        formatter.write_str("parameters of the friction law by name")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut entries: A) -> Result<Along, A::Error> {
+        let mut along = Along::default();
+        while let Some(name) = entries.next_key::<String>()? {
+            match name.as_str() {
+                "law" => along.law = entries.next_value()?,
+                _ => drop(along.parameters.insert(name, entries.next_value()?)),
+            }
+        }
+        Ok(along)
+    }
+}
+
+/// Friction is written as the parameters of its law; a law from code has none.
+impl Serialize for Friction {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let lacks = || S::Error::custom("a friction law from code cannot be written as a case: give it by parameters");
+        self.parameters().ok_or_else(lacks)?.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Friction {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        FrictionParameters::deserialize(deserializer).map(Self::from)
+    }
+}
+
+impl JsonSchema for Friction {
+    fn schema_name() -> Cow<'static, str> {
+        FrictionParameters::schema_name()
+    }
+
+    fn schema_id() -> Cow<'static, str> {
+        FrictionParameters::schema_id()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        FrictionParameters::json_schema(generator)
+    }
+}
+
+/// The laws, with those of their parameters replaced that vary along the slave; an initial structure is one of them.
+pub fn friction(given: &Friction, along: &Along, structure: Option<&Profile>, place: &str) -> Checked<Friction> {
+    let Some(parameters) = given.parameters() else {
+        return match along.is_empty() && structure.is_none() {
+            true => Ok(given.clone()),
+            false => {
+                let message =
+                    "is a law from code, of which no parameter is known by name: let it vary by Friction::varying";
+                Err(ModelError::new(format!("{place}.friction"), message))
+            }
+        };
+    };
+    let mut varying = profiles(&along.parameters, "along");
+    if let Some(structure) = structure {
+        let place = format!("{place}.initial.structure");
+        if !parameters.has_structure() {
+            return Err(ModelError::new(place, "this friction law has no structure: leave it out"));
+        }
+        if along.parameters.contains_key("structure") {
+            return Err(ModelError::new(place, "is given by `along` already: leave one of them out"));
+        }
+        varying.push(("structure".into(), "initial.structure".into(), structure.clone()));
+    }
+    let mut friction = with_varying(parameters.clone(), varying, place, "friction")?;
+    for (k, LawChoice { place: positive, friction: law, along }) in along.law.iter().enumerate() {
+        let name = format!("along.law[{k}]");
+        let varying = profiles(along, &format!("{name}.along"));
+        let other = with_varying(law.clone(), varying, place, &format!("{name}.friction"))?;
+        friction = friction.but_where(&name, positive.clone(), other);
+    }
+    Ok(friction)
+}
+
+/// A parameter, where it stands in a contact, and how it varies.
+type Varying = (String, String, Profile);
+
+fn profiles(along: &BTreeMap<String, Profile>, within: &str) -> Vec<Varying> {
+    along.iter().map(|(name, profile)| (name.clone(), format!("{within}.{name}"), profile.clone())).collect()
+}
+
+/// A law some of whose parameters vary; it stands at `own` in the contact.
+fn with_varying(parameters: FrictionParameters, varying: Vec<Varying>, place: &str, own: &str) -> Checked<Friction> {
+    if let Some(message) = parameters.unknown() {
+        return Err(ModelError::new(format!("{place}.{own}.name"), message));
+    }
+    if varying.is_empty() {
+        return Ok(parameters.into());
+    }
+    // The numbers that are replaced must be good as well; any α_t will do for that.
+    parameters.build(1.0).map_err(|error| ModelError::new(format!("{place}.{own}"), error))?;
+    let names: Vec<[String; 2]> =
+        varying.iter().map(|(name, within, _)| [name.clone(), format!("{place}.{within}")]).collect();
+    let profiles: Vec<(String, Profile)> = varying.into_iter().map(|(_, within, profile)| (within, profile)).collect();
+    Ok(Friction::varying(profiles, move |values, alpha_t| {
+        let mut parameters = parameters.clone();
+        for ([name, place], &value) in names.iter().zip(values) {
+            parameters = parameters.with(name, value).map_err(|error| ModelError::new(place, unknown(&error)))?;
+        }
+        Ok(parameters.build(alpha_t)?)
+    }))
+}
+
+/// That a law has no such parameter, and which one may be meant.
+fn unknown(UnknownParameter { name, known }: &UnknownParameter) -> String {
+    let known: Vec<&str> = known.iter().map(String::as_str).collect();
+    let meant =
+        nearest(name, known.iter().copied()).map_or(String::from("."), |near| format!("; did you mean `{near}`?"));
+    format!("`{name}` is not known here{meant} Known are `{}`", known.join("`, `"))
+}

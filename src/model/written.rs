@@ -1,0 +1,114 @@
+//! Input that may be written as a number, a text or an object, told apart by the JSON type, so that a complaint about the inside of
+//! the object names its place.
+
+use std::marker::PhantomData;
+
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserializer, Error, MapAccess, Unexpected, Visitor};
+
+/// What is written as a text, or an object, and some of it as a number. [`written!`] writes the implementation.
+pub trait Written: Sized {
+    /// The forms there are, for messages
+    const EXPECTING: &'static str;
+
+    /// From a number, if it may be one.
+    fn number(_value: f64) -> Option<Self> {
+        None
+    }
+
+    /// From a text.
+    ///
+    /// # Errors
+    /// What cannot be read.
+    fn text(text: &str) -> Result<Self, String>;
+
+    /// From an object.
+    ///
+    /// # Errors
+    /// The deserializer's.
+    fn object<'de, D: Deserializer<'de>>(object: D) -> Result<Self, D::Error>;
+
+    /// Read whichever form is there.
+    ///
+    /// # Errors
+    /// The deserializer's, with what is expected for a value of another type.
+    fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(Forms(PhantomData))
+    }
+}
+
+struct Forms<T>(PhantomData<T>);
+
+impl<T: Written> Forms<T> {
+    fn number<E: Error>(self, value: f64, written: Unexpected) -> Result<T, E> {
+        T::number(value).ok_or_else(|| E::invalid_type(written, &self))
+    }
+}
+
+impl<'de, T: Written> Visitor<'de> for Forms<T> {
+    type Value = T;
+
+    fn expecting(&self, formatter: &mut std::fmt::Formatter) -> std::fmt::Result {
+        formatter.write_str(T::EXPECTING)
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<T, E> {
+        self.number(value, Unexpected::Float(value))
+    }
+
+    fn visit_i64<E: Error>(self, value: i64) -> Result<T, E> {
+        self.number(value as f64, Unexpected::Signed(value))
+    }
+
+    fn visit_u64<E: Error>(self, value: u64) -> Result<T, E> {
+        self.number(value as f64, Unexpected::Unsigned(value))
+    }
+
+    fn visit_str<E: Error>(self, value: &str) -> Result<T, E> {
+        T::text(value).map_err(E::custom)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, entries: A) -> Result<T, A::Error> {
+        T::object(MapAccessDeserializer::new(entries))
+    }
+}
+
+/// Reads and writes an enum with a variant that is a plain text, perhaps one that is a plain number, and others that are objects of
+/// one key: `written!(Type, "what is expected", number: Variant, text: Variant)`. The type derives the form of the objects with
+/// `#[serde(remote = "Self")]`, and skips the plain variants there.
+macro_rules! written {
+    ($type:ident, $expecting:literal, $(number: $number:ident,)? text: $text:ident) => {
+        impl $crate::model::written::Written for $type {
+            const EXPECTING: &'static str = $expecting;
+
+            $(fn number(value: f64) -> Option<Self> {
+                Some(Self::$number(value))
+            })?
+
+            fn text(text: &str) -> Result<Self, String> {
+                text.parse().map(Self::$text).map_err(|error| error.to_string())
+            }
+
+            fn object<'de, D: serde::Deserializer<'de>>(object: D) -> Result<Self, D::Error> {
+                Self::deserialize(object)
+            }
+        }
+
+        impl<'de> serde::Deserialize<'de> for $type {
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                $crate::model::written::Written::read(deserializer)
+            }
+        }
+
+        impl serde::Serialize for $type {
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                match self {
+                    $(Self::$number(value) => serializer.serialize_f64(*value),)?
+                    Self::$text(text) => serializer.serialize_str(text.as_ref()),
+                    object => Self::serialize(object, serializer),
+                }
+            }
+        }
+    };
+}
+pub(crate) use written;

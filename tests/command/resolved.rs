@@ -1,0 +1,139 @@
+//! Cases with every default filled in: `fecontact check --resolved`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use fecontact::case::{self, Opened, Written};
+use fecontact::model::Model;
+use fecontact::run::Simulation;
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+use crate::common::Blocks;
+
+/// Increments of a run that are compared.
+const INCREMENTS: usize = 4;
+
+/// Cases larger than this are not run.
+const DOFS_TO_RUN: usize = 2500;
+
+/// Cases larger than this are not compared.
+const DOFS: usize = 25_000;
+
+fn cases(folder: &Path) -> Vec<PathBuf> {
+    let paths = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let (folders, files): (Vec<_>, Vec<_>) = paths.partition(|path| path.is_dir());
+    let files = files.into_iter().filter(|path| path.extension() == Some("json".as_ref()));
+    let folders = folders.iter().filter(|folder| !folder.ends_with("law"));
+    files.chain(folders.flat_map(|folder| cases(folder))).collect()
+}
+
+/// The model of a case, and the case with its defaults filled in.
+fn built(text: &str, path: &Path) -> (Model, String) {
+    let written = Written::from_text(text, path).unwrap_or_else(|error| panic!("{error}"));
+    let model = case::build(&written.case, path).unwrap_or_else(|error| panic!("{error}"));
+    let resolved = case::resolved(&written.case, &model);
+    (model, resolved)
+}
+
+/// All of a model but why its methods were chosen.
+fn told(model: Model) -> String {
+    format!("{:?}", Model { methods: Vec::new(), ..model })
+}
+
+fn bits(model: Model) -> Vec<u64> {
+    let mut run = Simulation::new(model);
+    for _ in 0..INCREMENTS {
+        if !matches!(run.next_increment(), Ok(Some(_))) {
+            break;
+        }
+    }
+    let state = run.state();
+    let values = state.displacement.iter().chain(&state.velocity).chain(&state.reaction).chain([&state.time]);
+    values.map(|value| value.to_bits()).collect()
+}
+
+/// Every committed case: what is filled in leaves nothing more to fill in, and makes the same model; small ones run to the same bits.
+#[test]
+fn a_resolved_case_is_the_same_case() {
+    let (mut compared, mut run) = (0, 0);
+    for path in cases(&Path::new(env!("CARGO_MANIFEST_DIR")).join("cases")) {
+        let text = fs::read_to_string(&path).unwrap();
+        let Ok(opened) = Written::from_text(&text, &path).and_then(Opened::begin) else { continue };
+        if opened.inputs.iter().any(|input| !input.exists()) {
+            continue;
+        }
+        let (model, resolved) = built(&text, &path);
+        let dofs = model.dofs();
+        if dofs > DOFS {
+            continue;
+        }
+        compared += 1;
+        let (again, resolved_again) = built(&resolved, &path);
+        assert!(resolved == resolved_again, "{}: resolving twice changes it", path.display());
+        if dofs < DOFS_TO_RUN {
+            run += 1;
+            assert!(bits(model) == bits(again), "{}: other bits", path.display());
+        } else {
+            assert!(told(model) == told(again), "{}: another model", path.display());
+        }
+    }
+    assert!(compared >= 20 && run >= 5, "{compared} cases were compared, {run} of them run");
+}
+
+fn fecontact(arguments: &[&str], folder: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_fecontact")).args(arguments).current_dir(folder).output().unwrap()
+}
+
+/// What is inherited and what the mesh decides is given, and a case that begins with another can still begin there.
+#[test]
+fn defaults_are_printed_and_run() {
+    let folder = TempDir::new().unwrap();
+    let mesh = Blocks::default().rectangle("ground", [2, 1], [0.0, -1.0], [2.0, 0.0]).rectangle(
+        "block",
+        [2, 1],
+        [0.5, 0.0],
+        [1.5, 1.0],
+    );
+    let body = json!({"material": {"model": "linear", "E": 100, "nu": 0.3}});
+    let write = |name: &str, case: &Value| fs::write(folder.path().join(name), case.to_string()).unwrap();
+    let mut first = json!({
+        "mesh": mesh.json(),
+        "bodies": {"block": body, "ground": body},
+        "contacts": {"base": {"slave": "block_bottom", "master": "ground_top", "friction": {"law": "coulomb", "mu": 0.3}}},
+        "steps": [
+            {"name": "press", "duration": 1, "supports": [
+                {"on": "ground_bottom", "ux": 0, "uy": 0}, {"on": "block_top", "ux": 0, "uy": -0.01}
+            ]},
+            {"name": "drag", "duration": 2, "supports": [{"on": "block_top", "ux": {"rate": 0.01}}]},
+        ]
+    });
+    write("first.json", &first);
+    let output = fecontact(&["check", "first.json", "--resolved"], folder.path());
+    let resolved: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let dt = json!({"initial": 0.1, "min": 1e-4, "max": 0.1, "error": null});
+    assert_eq!((&resolved["steps"][0]["dt"], &resolved["steps"][0]["scheme"]), (&dt, &json!("static")));
+    assert_eq!(resolved["steps"][1]["dt"]["initial"], 0.2);
+    assert_eq!(resolved["steps"][1]["supports"], json!([{"on": "block_top", "ux": {"rate": 0.01}}]));
+    let base = &resolved["contacts"]["base"];
+    assert_eq!((&base["method"], &base["points"]), (&json!("gauss_to_segment"), &json!(2)));
+    let alpha_n = base["normal"]["alpha_n"].as_f64().unwrap();
+    assert_eq!(base["friction"]["alpha_t"], 0.5 * alpha_n);
+    write("resolved.json", &resolved);
+    let history = |case: &str, out: &str| {
+        let output = fecontact(&["run", case, "--out", out, "--quiet"], folder.path());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        fs::read_to_string(folder.path().join(out).join("history.csv")).unwrap()
+    };
+    assert_eq!(history("first.json", "first"), history("resolved.json", "resolved"));
+
+    first["begin_with"] = json!("first");
+    first["steps"] = json!([{"name": "back", "duration": 1, "supports": [{"on": "block_top", "ux": {"rate": -0.01}}]}]);
+    write("second.json", &first);
+    let output = fecontact(&["check", "second.json", "--resolved"], folder.path());
+    let resolved: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((resolved["steps"].as_array().map(Vec::len), &resolved["begin_with"]), (Some(1), &json!("first")));
+    write("second_resolved.json", &resolved);
+    assert_eq!(history("second.json", "second"), history("second_resolved.json", "second_resolved"));
+}
