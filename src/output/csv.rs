@@ -1,13 +1,6 @@
 //! A table on disk: comma, dot, header row, full double precision. Every row reaches the file within a blink, and whole: a
 //! table never ends within a row, whether its run is killed or its disk full.
 //!
-//! # Rows
-//!
-//! Which increments have rows in the tables: all of them or, with an interval, those that are at least so far apart in time.
-//!
-//! Events are never thinned away: where a point of a contact closes, opens, begins to slip or stops, the increments before and
-//! after are rows. So are the last ones of steps, those at the times asked for, and the outputs of explicit increments.
-//!
 //! # Memory
 //!
 //! What observers remember, as bytes.
@@ -21,12 +14,8 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::files;
-use crate::laws::friction::Regime;
-use crate::model::Model;
-use crate::model::scheme::Scheme;
-use crate::model::state::State;
 use crate::run::error::Error;
-use crate::run::observer::Attempt;
+use crate::run::rows::Row;
 
 /// Rows written within this time of each other go to the system together: the call would cost as much as the row.
 const BLINK: Duration = Duration::from_millis(50);
@@ -287,53 +276,6 @@ impl Drop for Table {
 /// An output error of a path.
 pub fn failed(path: &Path, cause: &dyn std::fmt::Display) -> Error {
     Error::Output { path: path.to_owned(), cause: cause.to_string() }
-}
-
-/// Share of the interval that round-off may take away.
-const ROUND_OFF: f64 = 1e-9;
-
-/// What becomes of an increment.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Row {
-    /// It is a row
-    Written,
-    /// It is a row, and so is the one that was held, if there is one
-    AfterTheHeld,
-    /// It is one if an event follows
-    Held,
-}
-
-/// Judges one accepted increment after the other. It knows the time of the last row, and the regimes of all points of all
-/// contacts after the last increment; nothing before the first one.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct Rows(Option<(f64, Vec<Regime>)>);
-
-impl Rows {
-    /// What becomes of the increment that led to a state.
-    pub fn judge(&mut self, model: &Model, attempt: &Attempt, state: &State) -> Row {
-        let Some(interval) = model.interval else { return Row::Written };
-        let (last, before) = self.0.take().unwrap_or_else(|| (attempt.old.time, regimes(model, attempt.old)));
-        let regimes = regimes(model, state);
-        let row = match regimes != before {
-            true => Row::AfterTheHeld,
-            false if is_kept(model, attempt, state) => Row::Written,
-            false if state.time - last >= interval * (1.0 - ROUND_OFF) => Row::Written,
-            false => Row::Held,
-        };
-        self.0 = Some((if row == Row::Held { last } else { state.time }, regimes));
-        row
-    }
-}
-
-fn is_kept(model: &Model, attempt: &Attempt, state: &State) -> bool {
-    matches!(attempt.step.scheme, Scheme::Explicit { .. })
-        || attempt.ends_step(state)
-        || model.is_output_time(state.time)
-}
-
-fn regimes(model: &Model, state: &State) -> Vec<Regime> {
-    let pairs = model.contacts.iter().zip(&state.contacts);
-    pairs.flat_map(|(pair, states)| pair.points.iter().zip(states).map(|(p, state)| pair.regime(p, state))).collect()
 }
 
 /// The bytes of what an observer remembers.

@@ -1,4 +1,4 @@
-//! `history.csv`: a row per accepted increment, or those that an interval leaves (`csv.rs`).
+//! `history.csv`: a row per accepted increment, or those that an interval leaves (`run/rows.rs`).
 
 use std::path::Path;
 use std::slice;
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::bodies::{BodyMeans, Motion};
 use super::csv;
-use super::csv::{Opening, Rows, Table};
+use super::csv::{Opening, Table};
 use super::friction_course::FrictionCourse;
 use crate::contact::force::ContactState;
 use crate::contact::nodal_forces::Resultant;
@@ -42,7 +42,6 @@ pub struct History {
 /// What is remembered from row to row.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Memory {
-    rows: Rows,
     /// Rotation of each body, turns counted; none before the first increment [rad]
     rotations: Vec<f64>,
     /// Frictional heat of each contact so far [F·L]
@@ -130,7 +129,6 @@ impl History {
             fluids,
             radiates,
             memory: Memory {
-                rows: Rows::default(),
                 rotations: Vec::new(),
                 heat: vec![0.0; model.contacts.len()],
                 courses: vec![FrictionCourse::default(); model.contacts.len()],
@@ -148,7 +146,6 @@ impl Observer for History {
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
         let Self { table, observed, middles, bodies, edges, fluids, radiates, memory } = self;
-        let row = memory.rows.judge(model, attempt, state);
         table.number(state.time);
         table.number(state.dt);
         table.text(&attempt.step.name);
@@ -192,7 +189,7 @@ impl Observer for History {
             *heat += more;
             table.numbers([*heat, more / (state.time - attempt.old.time)]);
         }
-        table.end_row_as(row)?;
+        table.end_row_as(attempt.row)?;
         table.share()
     }
 

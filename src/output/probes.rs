@@ -7,7 +7,7 @@ use std::path::Path;
 use nalgebra::{Matrix2, Vector2};
 
 use super::csv;
-use super::csv::{Opening, Rows, Table};
+use super::csv::{Opening, Table};
 use crate::laws::bulk::CauchyStress;
 use crate::model::state::State;
 use crate::model::{Model, Probe};
@@ -28,10 +28,7 @@ fn readings(model: &Model) -> impl Iterator<Item = &'static str> {
 
 /// Writes `probes.csv`.
 #[derive(Debug)]
-pub struct Probes {
-    table: Table,
-    rows: Rows,
-}
+pub struct Probes(Table);
 
 impl Probes {
     /// Create `probes.csv` in `folder`.
@@ -53,25 +50,25 @@ impl Probes {
     fn with(open: Opening, folder: &Path, model: &Model) -> Result<Self, Error> {
         let columns = model.probes.iter().flat_map(|probe| readings(model).map(|of| format!("{}.{of}", probe.name)));
         let header: Vec<String> = std::iter::once("time".into()).chain(columns).collect();
-        Ok(Self { table: open(&folder.join("probes.csv"), &header)?, rows: Rows::default() })
+        Ok(Self(open(&folder.join("probes.csv"), &header)?))
     }
 }
 
 impl Observer for Probes {
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
-        let row = self.rows.judge(model, attempt, state);
-        self.table.number(state.time);
+        let Self(table) = self;
+        table.number(state.time);
         for probe in &model.probes {
             let Reading { displacement: u, velocity: v, strain, hoop_strain, stress } =
                 Reading::of(probe, model, state);
             let CauchyStress { xx, yy, zz, xy } = stress;
             let hoop = model.mesh.section.is_axisymmetric().then_some(hoop_strain);
             let all = [u.x, u.y, v.x, v.y].into_iter().chain(strain).chain([xx, yy, zz, xy]).chain(hoop);
-            self.table.numbers(all);
+            table.numbers(all);
         }
-        self.table.end_row_as(row)?;
-        self.table.share()
+        table.end_row_as(attempt.row)?;
+        table.share()
     }
 
     fn name(&self) -> &'static str {
@@ -79,20 +76,19 @@ impl Observer for Probes {
     }
 
     fn save(&mut self) -> Result<Vec<u8>, Error> {
-        csv::remembered(&(self.table.standing()?, &self.rows))
+        csv::table_memory(&mut self.0)
     }
 
     fn check(&self, memory: &[u8]) -> Result<(), Error> {
-        csv::check_table(&self.table, memory)
+        csv::check_table(&self.0, memory)
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        self.rows = csv::cut_table(&mut self.table, memory)?;
-        Ok(())
+        csv::cut_table(&mut self.0, memory)
     }
 
     fn finish(&mut self) -> Result<(), Error> {
-        self.table.flush()
+        self.0.flush()
     }
 }
 

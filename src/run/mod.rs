@@ -6,6 +6,7 @@ pub mod control;
 pub mod error;
 pub mod law;
 pub mod observer;
+pub mod rows;
 pub mod simulation;
 
 use std::sync::Arc;

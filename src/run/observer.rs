@@ -7,6 +7,7 @@ use crate::model::step::{Course, Until};
 use crate::model::told::{count, number};
 use crate::model::{Model, Step};
 use crate::run::error::Error;
+use crate::run::rows::Row;
 use crate::solve::IterationRecord;
 use crate::solve::failure::IncrementFailure;
 use crate::solve::newton::NewtonFailure;
@@ -26,6 +27,8 @@ pub struct Attempt<'a> {
     pub iterations: &'a [IterationRecord],
     /// the new state, if it was accepted
     pub accepted: Option<&'a State>,
+    /// which row of the results it is, if it was accepted
+    pub row: Row,
     /// what became of it
     pub verdict: Verdict,
     /// why no equilibrium was found, if none was

@@ -11,6 +11,7 @@ use fecontact::output::events::WaveSpeeds;
 use fecontact::output::fronts::{Arrive, Fronts};
 use fecontact::run::error::Error;
 use fecontact::run::observer::{Attempt, Observer, Verdict};
+use fecontact::run::rows::Row;
 use fecontact::run::run;
 use serde_json::{Value, json};
 
@@ -237,6 +238,7 @@ fn fronts_tell_when_and_how_fast_a_given_front_ran() {
             dt: 0.05,
             iterations: &[],
             accepted: Some(&new),
+            row: Row::Written,
             verdict: Verdict::Accepted,
             cause: None,
             doubt: None,

@@ -27,7 +27,6 @@ use serde_json::{Map, json};
 use self::quantities::{QUANTITIES, SLIP, SLIP_RATE, along, prefixes, quantity, time};
 use self::zarr::Store;
 use super::csv;
-use super::csv::{Row, Rows};
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
@@ -36,6 +35,7 @@ use crate::model::Model;
 use crate::model::state::State;
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};
+use crate::run::rows::Row;
 pub use zarr::{files_of, forget, is_own};
 
 /// Folder of the store in that of the results.
@@ -49,7 +49,6 @@ pub struct InterfaceStore {
     names: Vec<Vec<&'static str>>,
     /// Numbers that do not vary: places of the points
     places: Vec<Vec<f64>>,
-    rows: Rows,
     /// A record that is written if an event follows
     held: Option<Record>,
     /// Time of the last record, and slip of every contact and point then
@@ -108,7 +107,6 @@ impl InterfaceStore {
             store: Store::new(folder.join(STORE), attributes, fixed, growing),
             names,
             places,
-            rows: Rows::default(),
             held: None,
             last: (start.time, start.contacts.iter().map(slips).collect()),
         }
@@ -144,10 +142,9 @@ impl InterfaceStore {
 impl Observer for InterfaceStore {
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
-        let row = self.rows.judge(model, attempt, state);
         let record = self.record_of(model, state);
         let held = self.held.take();
-        match row {
+        match attempt.row {
             Row::Held => self.held = Some(record),
             Row::Written => self.write(record)?,
             Row::AfterTheHeld => {
@@ -163,7 +160,7 @@ impl Observer for InterfaceStore {
     }
 
     fn save(&mut self) -> Result<Vec<u8>, Error> {
-        csv::remembered(&(self.store.save()?, &self.rows, &self.held, &self.last))
+        csv::remembered(&(self.store.save()?, &self.held, &self.last))
     }
 
     fn check(&self, memory: &[u8]) -> Result<(), Error> {
@@ -172,7 +169,7 @@ impl Observer for InterfaceStore {
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
         let saved;
-        (saved, self.rows, self.held, self.last) = csv::recalled(memory)?;
+        (saved, self.held, self.last) = csv::recalled(memory)?;
         self.store.restore(&self.places, saved)
     }
 
