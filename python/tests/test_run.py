@@ -284,7 +284,7 @@ def test_plots(result: fc.Result) -> None:
         assert fc.plot.friction(result, x=column).get_xlabel() == f"{column} [{unit}]"
     for draw in (fc.plot.slip_fraction, fc.plot.events, fc.plot.path, fc.plot.newton):
         assert draw(result).has_data()
-    for field in ("slip", "slip_rate", "p", "mu"):
+    for field in ("slip", "slip_rate", "pressure", "mu"):
         assert fc.plot.interface(result, "base", field).has_data()
     with pytest.raises(KeyError, match="there are base"):
         fc.plot.friction(result, "bas")

@@ -50,30 +50,31 @@ pub struct Table {
 }
 
 /// How a table comes to its file: [`Table::create`] or [`Table::reopen`].
-pub type Opening = fn(&Path, &[String]) -> Result<Table, Error>;
+pub type Opening = fn(&Path, Vec<String>) -> Result<Table, Error>;
 
 impl Table {
     /// Create the file and write its header.
-    pub fn create(path: &Path, header: &[String]) -> Result<Self, Error> {
+    pub fn create(path: &Path, header: Vec<String>) -> Result<Self, Error> {
         let file = files::create(path).map_err(|cause| failed(path, &cause))?;
+        let line = header.join(",");
         let mut table = Self::of(path, file, header);
-        header.iter().for_each(|name| table.text(name));
+        table.text(&line);
         table.end_row()?;
         table.flush()?;
         Ok(table)
     }
 
     /// Open the file of an earlier run, to be [`cut`](Self::cut) and gone on with.
-    pub fn reopen(path: &Path, header: &[String]) -> Result<Self, Error> {
+    pub fn reopen(path: &Path, header: Vec<String>) -> Result<Self, Error> {
         let file = files::open(path).map_err(|cause| failed(path, &cause))?;
         Ok(Self::of(path, file, header))
     }
 
-    fn of(path: &Path, file: File, header: &[String]) -> Self {
+    fn of(path: &Path, file: File, header: Vec<String>) -> Self {
         Self {
             path: path.to_owned(),
             file,
-            header: header.to_vec(),
+            header,
             rows: Vec::new(),
             row: Vec::new(),
             held: Vec::new(),

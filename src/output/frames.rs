@@ -8,7 +8,6 @@ use super::vtu::{CellType, Grid, cell_type};
 use crate::contact::force::ContactState;
 use crate::contact::pair;
 use crate::contact::pair::ContactPair;
-use crate::contact::surface::SlavePoint;
 use crate::laws::bulk::CauchyStress;
 use crate::mesh::Element;
 use crate::mesh::configuration::Configuration;
@@ -146,12 +145,6 @@ fn nodal_stresses(model: &Model, state: &State) -> Vec<CauchyStress> {
     sums.into_iter().map(mean).collect()
 }
 
-/// A contact point.
-struct Place<'a> {
-    pair: &'a ContactPair,
-    slave: &'a SlavePoint,
-}
-
 /// The interfaces: a polyline through the contact points along each slave surface.
 pub fn contact_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid) -> io::Result<()> {
     let points_of = |pair: &ContactPair, x: &Configuration| pair.points.iter().map(|p| p.at(x)).collect::<Vec<_>>();
@@ -172,18 +165,13 @@ pub fn contact_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid
         }
         first += pair.points.len();
     }
-    let states = model.contacts.iter().zip(&state.contacts).flat_map(|(pair, states)| {
-        let points = pair.points.iter().zip(states);
-        points.map(move |(slave, state)| (Place { pair, slave }, state))
-    });
-    let all: Vec<(Place, &ContactState)> = states.collect();
     grid.begin(|| (reference, lines))?;
     grid.vectors("displacement", &displacement);
     for name in pair::field_names(&model.contacts) {
-        let value = |(place, s): &(Place, &ContactState)| {
-            pair::field_value(place.pair, place.slave, s, (state.time, state.dt), name)
+        let of = |(pair, states): (&ContactPair, &Vec<ContactState>)| {
+            pair::field_values(pair, states, (state.time, state.dt), name)
         };
-        grid.at_points(name, 1, all.iter().map(value));
+        grid.at_points(name, 1, model.contacts.iter().zip(&state.contacts).flat_map(of));
     }
     grid.at_cells("contact", contact_id.into_iter());
     Ok(())

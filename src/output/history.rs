@@ -10,6 +10,9 @@ use super::bodies::{BodyMeans, Motion};
 use super::csv;
 use super::csv::{Opening, Table};
 use super::friction_course::FrictionCourse;
+use super::quantities::{
+    BODY, CONTACT, EDGES, ENERGIES, FLUID_FORCE, HEAT, INCREMENT, Quantity, RADIATED, RESULTANT, WATCHED, names,
+};
 use crate::contact::force::ContactState;
 use crate::contact::nodal_forces::Resultant;
 use crate::contact::pair::ContactPair;
@@ -53,35 +56,6 @@ struct Memory {
 /// A watched set of edges: its name, and the share of its length that each node stands for.
 type EdgeMeans = (String, Vec<(usize, f64)>);
 
-const INCREMENT: [&str; 4] = ["time", "dt", "step", "iterations"];
-const ENERGIES: [&str; 7] = [
-    "kinetic",
-    "strain",
-    "contact_elastic",
-    "friction_dissipation",
-    "damping_dissipation",
-    "external_work",
-    "energy_error",
-];
-const CONTACT: [&str; 8] = [
-    "normal_force",
-    "tangential_force",
-    "contact_length",
-    "slip_fraction",
-    "mean_slip",
-    "max_penetration",
-    "max_elastic_slip",
-    "mean_elastic_slip",
-];
-const WATCHED: [&str; 4] = ["ux", "uy", "fx", "fy"];
-/// Resultant of a contact on its slave, the moment about the middle of the undeformed slave.
-const RESULTANT: [&str; 3] = ["force_x", "force_y", "moment"];
-const BODY: [&str; 6] = ["momentum_x", "momentum_y", "angular_momentum", "centre_x", "centre_y", "rotation"];
-/// Heat of a contact so far, ∫ q v^p ds dt, and its rate over the last increment.
-const HEAT: [&str; 2] = ["frictional_heat", "frictional_power"];
-/// Means by length of a watched set of edges.
-const EDGES: [&str; 2] = ["edge_ux", "edge_uy"];
-
 impl History {
     /// Create `history.csv` in `folder`.
     ///
@@ -100,12 +74,14 @@ impl History {
     }
 
     fn with(open: Opening, folder: &Path, model: &Model) -> Result<Self, Error> {
-        let of = |name: &str, columns: &[&str]| columns.iter().map(|c| format!("{name}.{c}")).collect::<Vec<_>>();
-        let mut header: Vec<String> = INCREMENT.iter().chain(&ENERGIES).map(|c| (*c).into()).collect();
+        let of = |name: &str, columns: &[Quantity]| {
+            names(columns).map(|column| format!("{name}.{column}")).collect::<Vec<_>>()
+        };
+        let mut header: Vec<String> = names(&INCREMENT).chain(names(&ENERGIES)).collect();
         header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &CONTACT)));
         header.extend(model.watch.iter().flat_map(|set| of(&set.name, &WATCHED)));
         let radiates = model.contacts.iter().any(|pair| pair.radiation > 0.0);
-        header.extend(radiates.then(|| "radiated".into()));
+        header.extend(radiates.then(|| RADIATED.name.into()));
         let further = |pair: &ContactPair| observables::further(pair.laws.iter().map(|law| law.start()));
         let observed: Vec<Vec<&str>> = model.contacts.iter().map(further).collect();
         for (pair, names) in model.contacts.iter().zip(&observed) {
@@ -117,11 +93,11 @@ impl History {
         header.extend(edges.iter().flat_map(|(name, _)| of(name, &EDGES)));
         let fluids: Vec<bool> = model.contacts.iter().map(|pair| pair.fluid.is_some()).collect();
         let in_fluid = model.contacts.iter().filter(|pair| pair.fluid.is_some());
-        header.extend(in_fluid.map(|pair| format!("{}.fluid_force", pair.name)));
+        header.extend(in_fluid.flat_map(|pair| of(&pair.name, &[FLUID_FORCE])));
         header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &HEAT)));
         let undeformed = model.mesh.undeformed();
         Ok(Self {
-            table: open(&folder.join("history.csv"), &header)?,
+            table: open(&folder.join("history.csv"), header)?,
             observed,
             middles: model.contacts.iter().map(|pair| pair.middle(&undeformed)).collect(),
             bodies: model.bodies.iter().map(|body| BodyMeans::new(model, body)).collect(),

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use super::csv;
 use super::csv::{Opening, Table};
+use super::quantities::{NEWTON, VERDICT, names};
 use crate::mesh::names::in_line;
 use crate::model::Model;
 use crate::run::error::Error;
@@ -16,24 +17,6 @@ use crate::solve::contact_iteration::Acted;
 /// Writes `newton.csv`.
 #[derive(Debug)]
 pub struct NewtonLog(Table);
-
-const COLUMNS: [&str; 15] = [
-    "step",
-    "increment",
-    "attempt",
-    "iteration",
-    "time",
-    "residual",
-    "correction",
-    "open",
-    "stick",
-    "slip",
-    "linear_residual",
-    "factorized",
-    "stabilization",
-    "flips",
-    "pass",
-];
 
 /// Cells of an attempt without a solve, from `residual` to `pass`.
 const NOTHING: [&str; 10] = ["NaN", "NaN", "0", "0", "0", "NaN", "0", "NaN", "0", "0"];
@@ -72,9 +55,8 @@ impl NewtonLog {
     }
 
     fn with(open: Opening, folder: &Path) -> Result<Self, Error> {
-        let header: Vec<String> =
-            COLUMNS.iter().chain(&Acted::COLUMNS).chain(&["verdict", "reason"]).map(|name| (*name).into()).collect();
-        Ok(Self(open(&folder.join("newton.csv"), &header)?))
+        let header = names(&NEWTON).chain(Acted::COLUMNS.map(String::from)).chain(names(&VERDICT)).collect();
+        Ok(Self(open(&folder.join("newton.csv"), header)?))
     }
 }
 

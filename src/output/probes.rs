@@ -8,22 +8,16 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::csv;
 use super::csv::{Opening, Table};
+use super::quantities::{HOOP, PROBE, names};
 use crate::laws::bulk::CauchyStress;
 use crate::model::state::State;
 use crate::model::{Model, Probe};
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};
 
-/// Columns of every probe.
-const READINGS: [&str; 11] =
-    ["ux", "uy", "vx", "vy", "strain_xx", "strain_yy", "strain_xy", "stress_xx", "stress_yy", "stress_zz", "stress_xy"];
-
-/// The strain of hoops, of every probe of rings behind its other columns.
-const HOOP: &str = "strain_zz";
-
 /// The columns of every probe of a model.
-fn readings(model: &Model) -> impl Iterator<Item = &'static str> {
-    READINGS.into_iter().chain(model.mesh.section.is_axisymmetric().then_some(HOOP))
+fn readings(model: &Model) -> impl Iterator<Item = String> {
+    names(&PROBE).chain(model.mesh.section.is_axisymmetric().then(|| HOOP.name.into()))
 }
 
 /// Writes `probes.csv`.
@@ -50,7 +44,7 @@ impl Probes {
     fn with(open: Opening, folder: &Path, model: &Model) -> Result<Self, Error> {
         let columns = model.probes.iter().flat_map(|probe| readings(model).map(|of| format!("{}.{of}", probe.name)));
         let header: Vec<String> = std::iter::once("time".into()).chain(columns).collect();
-        Ok(Self(open(&folder.join("probes.csv"), &header)?))
+        Ok(Self(open(&folder.join("probes.csv"), header)?))
     }
 }
 

@@ -168,13 +168,8 @@ impl InterfaceMap {
 
     fn of(contact: StoredContact) -> Self {
         let StoredContact { name, times, positions, quantities, .. } = contact;
-        let spoken = |name: String| match &*name {
-            "p" => "pressure".into(),
-            "q" => "traction".into(),
-            _ => name,
-        };
         let wide = |values: Vec<f32>| values.into_iter().map(f64::from).collect();
-        let quantities = quantities.into_iter().map(|(name, values)| (spoken(name), wide(values))).collect();
+        let quantities = quantities.into_iter().map(|(name, values)| (name, wide(values))).collect();
         Self { contact: name, times, positions, quantities }
     }
 }

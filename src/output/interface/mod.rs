@@ -4,18 +4,13 @@
 //! |---|---|---|
 //! | `time` | `time` | t of the rows of `history.csv` [T] |
 //! | `C.position`, `C.x`, `C.y`, `C.line` | `C.point` | undeformed points of contact C: way along the slave, place, number of the unbroken line [L] |
-//! | `C.slip` | `time`, `C.point` | plastic slip so far; the motion along the master where there is no friction [L] |
-//! | `C.total_slip` | | plastic and elastic slip, slip + q/α_t [L] |
-//! | `C.slip_rate` | | plastic slip since the row before over the time since [L/T] |
-//! | `C.p`, `C.q` | | pressure, traction [F/L²] |
-//! | `C.R`, `C.mu`, `C.structure` | | \|q\|/(μ p), μ, 1/R*; as [`observables`] say where a law has none [-] |
-//! | `C.gap` | | g, positive when open [L] |
-//! | `C.θ` … | | what else a law lets observe, by its name; NaN where another law acts |
+//! | `C.slip`, `C.pressure` … | `time`, `C.point` | the quantities of every contact ([`IN_STORE`]); slip rates are plastic slip since the row before over the time since |
+//! | `C.theta` … | | what else a law lets observe, by its name; NaN where another law acts |
 //!
 //! Times and places are as computed; what varies over time is rounded, with a relative error of 2⁻¹⁶ ([`codec`]).
 
+mod arrays;
 pub mod codec;
-mod quantities;
 pub mod read;
 mod zarr;
 
@@ -24,12 +19,13 @@ use std::path::Path;
 
 use serde_json::{Map, json};
 
-use self::quantities::{QUANTITIES, SLIP, SLIP_RATE, along, prefixes, quantity, time};
+use self::arrays::{along, prefixes, quantity, time};
 use self::zarr::Store;
 use super::csv;
+use super::quantities::IN_STORE;
 use crate::contact::force::ContactState;
+use crate::contact::pair;
 use crate::contact::pair::ContactPair;
-use crate::contact::surface::SlavePoint;
 use crate::laws::friction::observables;
 use crate::model::Model;
 use crate::model::state::State;
@@ -55,6 +51,11 @@ pub struct InterfaceStore {
     last: (f64, Vec<Vec<f64>>),
 }
 
+/// Where the slip stands among the quantities of the store, ...
+const SLIP: usize = 0;
+/// ... and its rate.
+const SLIP_RATE: usize = 2;
+
 /// Time and quantities of all contacts, one after the other.
 type Record = Vec<Vec<f64>>;
 
@@ -78,13 +79,9 @@ impl InterfaceStore {
     /// The store that is there, to be restored.
     pub fn reopen(folder: &Path, model: &Model, start: &State, units: &BTreeMap<String, String>) -> Self {
         let further = |pair: &ContactPair| observables::further(pair.laws.iter().map(|law| law.start()));
-        let in_fluid = |pair: &ContactPair| pair.fluid.as_ref().map(|_| "p_w");
-        let own = QUANTITIES.iter().map(|(name, ..)| *name);
-        let names: Vec<Vec<&str>> = model
-            .contacts
-            .iter()
-            .map(|pair| own.clone().chain(further(pair)).chain(in_fluid(pair)).collect())
-            .collect();
+        let in_fluid = |pair: &ContactPair| pair.fluid.as_ref().map(|_| "fluid_pressure");
+        let names = |pair: &ContactPair| IN_STORE.into_iter().chain(further(pair)).chain(in_fluid(pair)).collect();
+        let names: Vec<Vec<&str>> = model.contacts.iter().map(names).collect();
         let prefixes = prefixes(model);
         let (mut fixed, mut places) = (Vec::new(), Vec::new());
         let mut growing = vec![(time(units), None)];
@@ -112,14 +109,11 @@ impl InterfaceStore {
         }
     }
 
-    /// What a state says; the slip rates are not known yet.
+    /// What a state says; the slip rates are those of its increment yet.
     fn record_of(&self, model: &Model, state: &State) -> Record {
         let mut record = vec![vec![state.time]];
         for ((pair, states), names) in model.contacts.iter().zip(&state.contacts).zip(&self.names) {
-            let values = |name: &&str| {
-                pair.points.iter().zip(states).map(|(p, s)| value(pair, p, (s, state.time), name)).collect()
-            };
-            record.extend(names.iter().map(values));
+            record.extend(names.iter().map(|name| pair::field_values(pair, states, (state.time, state.dt), name)));
         }
         record
     }
@@ -175,20 +169,5 @@ impl Observer for InterfaceStore {
 
     fn finish(&mut self) -> Result<(), Error> {
         self.store.finish()
-    }
-}
-
-/// A quantity at a point; slip rates come later.
-fn value(pair: &ContactPair, slave: &SlavePoint, (state, time): (&ContactState, f64), name: &str) -> f64 {
-    let friction = &state.friction;
-    match name {
-        "slip" => friction.plastic_slip,
-        "total_slip" => friction.plastic_slip + pair.elastic_slip(slave, friction),
-        "slip_rate" => 0.0,
-        "p" => friction.pressure,
-        "q" => friction.traction,
-        "gap" => state.gap,
-        "p_w" => state.fluid,
-        _ => pair.observed(slave, name, (friction, time)),
     }
 }

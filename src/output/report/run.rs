@@ -58,7 +58,6 @@ impl<'a> Run<'a> {
             "folder": self.source.folder.display().to_string(),
             "summary": summary,
             "at_work": files::at_work(&self.source.folder),
-            "units": about.units,
             "bounds": bounds.collect::<serde_json::Map<String, Value>>(),
             "history": history,
             "law": law,
