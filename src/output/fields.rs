@@ -236,7 +236,8 @@ impl Collection {
             "points" => points_frame,
             _ => contact_frame,
         };
-        let written = frame(model, shown, &mut self.grid).and_then(|()| self.grid.write(&path));
+        frame(model, shown, &mut self.grid);
+        let written = self.grid.write(&path);
         if written.is_err() {
             // Half a frame is of no use.
             let _ = files::remove(&path);
