@@ -309,7 +309,7 @@ pub fn field_names(pairs: &[ContactPair]) -> Vec<&'static str> {
 }
 
 /// Values of a field at the points of a contact, at a time after an increment of length Δt; the names are explained where outputs
-/// list them ([`AT_POINTS`](crate::output::quantities::AT_POINTS)). Any other name is what the laws observe under it: where a law has
+/// list them ([`quantities`](crate::output::quantities)). Any other name is what the laws observe under it: where a law has
 /// none, `R` and `mu` are 0 and `structure` is 1, and what else it does not know is NaN.
 pub fn field_values(pair: &ContactPair, states: &[ContactState], (time, dt): (f64, f64), name: &str) -> Vec<f64> {
     let rate = if dt > 0.0 { 1.0 / dt } else { 0.0 };

@@ -14,7 +14,9 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::files;
+use crate::model::Model;
 use crate::run::error::Error;
+use crate::run::observer::{Attempt, Observer};
 use crate::run::rows::Row;
 
 /// Rows written within this time of each other go to the system together: the call would cost as much as the row.
@@ -48,9 +50,6 @@ pub struct Table {
     crc: crc32fast::Hasher,
     flushed: Instant,
 }
-
-/// How a table comes to its file: [`Table::create`] or [`Table::reopen`].
-pub type Opening = fn(&Path, Vec<String>) -> Result<Table, Error>;
 
 impl Table {
     /// Create the file and write its header.
@@ -289,19 +288,93 @@ pub fn recalled<M: DeserializeOwned>(bytes: &[u8]) -> Result<M, Error> {
     postcard::from_bytes(bytes).map_err(|cause| failed(Path::new("memory of an observer"), &cause))
 }
 
-/// A table remembers what stands in it.
-pub fn table_memory(table: &mut Table) -> Result<Vec<u8>, Error> {
-    remembered(&table.standing()?)
+/// What stands in a table that a run writes, and is remembered from row to row.
+pub trait Rows: Sized {
+    /// Name of the table without its ending, by which its memory is found as well
+    const NAME: &'static str;
+
+    /// Those of a model, and the header above them.
+    fn new(model: &Model) -> (Self, Vec<String>);
+
+    /// Write the rows of an attempt, if it has any.
+    ///
+    /// # Errors
+    /// [`Error::Output`] when the file cannot take them.
+    fn write(&mut self, table: &mut Table, model: &Model, attempt: &Attempt) -> Result<(), Error>;
+
+    /// What is remembered. Nothing unless it says so.
+    ///
+    /// # Errors
+    /// [`Error::Output`] where it cannot be made bytes.
+    fn save(&self) -> Result<Vec<u8>, Error> {
+        Ok(Vec::new())
+    }
+
+    /// Go on from what was remembered.
+    ///
+    /// # Errors
+    /// [`Error::Output`] where the bytes are not what was remembered.
+    fn restore(&mut self, _memory: &[u8]) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
-/// Whether a table can be gone on with, where the memory begins with what stood in it.
-pub fn check_table(table: &Table, bytes: &[u8]) -> Result<(), Error> {
-    table.check(&recalled(bytes)?)
+/// Writes the table of some rows while a run goes on.
+#[derive(Debug)]
+pub struct Sheet<R> {
+    table: Table,
+    pub(super) rows: R,
 }
 
-/// Cut a table back to what stood in it; what else was remembered.
-pub fn cut_table<M: DeserializeOwned>(table: &mut Table, bytes: &[u8]) -> Result<M, Error> {
-    let (stood, memory) = recalled(bytes)?;
-    table.cut(stood)?;
-    Ok(memory)
+impl<R: Rows> Sheet<R> {
+    /// Create the table in `folder`.
+    ///
+    /// # Errors
+    /// [`Error::Output`] when it cannot be written.
+    pub fn create(folder: &Path, model: &Model) -> Result<Self, Error> {
+        let (rows, header) = R::new(model);
+        Ok(Self { table: Table::create(&file::<R>(folder), header)?, rows })
+    }
+
+    /// The table that is there, to be restored.
+    ///
+    /// # Errors
+    /// [`Error::Output`] when it cannot be opened.
+    pub fn reopen(folder: &Path, model: &Model) -> Result<Self, Error> {
+        let (rows, header) = R::new(model);
+        Ok(Self { table: Table::reopen(&file::<R>(folder), header)?, rows })
+    }
+}
+
+fn file<R: Rows>(folder: &Path) -> PathBuf {
+    folder.join(format!("{}.csv", R::NAME))
+}
+
+impl<R: Rows> Observer for Sheet<R> {
+    fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
+        self.rows.write(&mut self.table, model, attempt)?;
+        self.table.share()
+    }
+
+    fn name(&self) -> &'static str {
+        R::NAME
+    }
+
+    fn save(&mut self) -> Result<Vec<u8>, Error> {
+        remembered(&(self.table.standing()?, self.rows.save()?))
+    }
+
+    fn check(&self, memory: &[u8]) -> Result<(), Error> {
+        self.table.check(&recalled(memory)?)
+    }
+
+    fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
+        let (stood, memory): (Standing, Vec<u8>) = recalled(memory)?;
+        self.table.cut(stood)?;
+        self.rows.restore(&memory)
+    }
+
+    fn finish(&mut self) -> Result<(), Error> {
+        self.table.flush()
+    }
 }

@@ -1,6 +1,5 @@
 //! `history.csv`: a row per accepted increment, or those that an interval leaves (`run/rows.rs`).
 
-use std::path::Path;
 use std::slice;
 
 use nalgebra::Vector2;
@@ -8,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::bodies::{BodyMeans, Motion};
 use super::csv;
-use super::csv::{Opening, Table};
+use super::csv::{Rows, Sheet, Table};
 use super::friction_course::FrictionCourse;
 use super::quantities::{
     BODY, CONTACT, EDGES, ENERGIES, FLUID_FORCE, HEAT, INCREMENT, Quantity, RADIATED, RESULTANT, WATCHED, names,
@@ -22,12 +21,14 @@ use crate::mesh::{Group, shape};
 use crate::model::state::{Energy, State};
 use crate::model::{Model, WatchedSet};
 use crate::run::error::Error;
-use crate::run::observer::{Attempt, Observer};
+use crate::run::observer::Attempt;
 
 /// Writes `history.csv`.
+pub type History = Sheet<HistoryRows>;
+
+/// The rows of `history.csv`.
 #[derive(Debug)]
-pub struct History {
-    table: Table,
+pub struct HistoryRows {
     /// Observables of each contact whose means are written
     observed: Vec<Vec<&'static str>>,
     /// Middle of each undeformed slave surface, about which the moments are
@@ -56,24 +57,10 @@ struct Memory {
 /// A watched set of edges: its name, and the share of its length that each node stands for.
 type EdgeMeans = (String, Vec<(usize, f64)>);
 
-impl History {
-    /// Create `history.csv` in `folder`.
-    ///
-    /// # Errors
-    /// [`Error::Output`] when it cannot be written.
-    pub fn create(folder: &Path, model: &Model) -> Result<Self, Error> {
-        Self::with(Table::create, folder, model)
-    }
+impl Rows for HistoryRows {
+    const NAME: &'static str = "history";
 
-    /// The `history.csv` that is there, to be restored.
-    ///
-    /// # Errors
-    /// [`Error::Output`] when it cannot be opened.
-    pub fn reopen(folder: &Path, model: &Model) -> Result<Self, Error> {
-        Self::with(Table::reopen, folder, model)
-    }
-
-    fn with(open: Opening, folder: &Path, model: &Model) -> Result<Self, Error> {
+    fn new(model: &Model) -> (Self, Vec<String>) {
         let of = |name: &str, columns: &[Quantity]| {
             names(columns).map(|column| format!("{name}.{column}")).collect::<Vec<_>>()
         };
@@ -96,8 +83,7 @@ impl History {
         header.extend(in_fluid.flat_map(|pair| of(&pair.name, &[FLUID_FORCE])));
         header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &HEAT)));
         let undeformed = model.mesh.undeformed();
-        Ok(Self {
-            table: open(&folder.join("history.csv"), header)?,
+        let rows = Self {
             observed,
             middles: model.contacts.iter().map(|pair| pair.middle(&undeformed)).collect(),
             bodies: model.bodies.iter().map(|body| BodyMeans::new(model, body)).collect(),
@@ -109,19 +95,13 @@ impl History {
                 heat: vec![0.0; model.contacts.len()],
                 courses: vec![FrictionCourse::default(); model.contacts.len()],
             },
-        })
+        };
+        (rows, header)
     }
 
-    /// How the friction of the contacts went, in their order.
-    pub fn courses(&self) -> &[FrictionCourse] {
-        &self.memory.courses
-    }
-}
-
-impl Observer for History {
-    fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
+    fn write(&mut self, table: &mut Table, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
-        let Self { table, observed, middles, bodies, edges, fluids, radiates, memory } = self;
+        let Self { observed, middles, bodies, edges, fluids, radiates, memory } = self;
         table.number(state.time);
         table.number(state.dt);
         table.text(&attempt.step.name);
@@ -165,29 +145,23 @@ impl Observer for History {
             *heat += more;
             table.numbers([*heat, more / (state.time - attempt.old.time)]);
         }
-        table.end_row_as(attempt.row)?;
-        table.share()
+        table.end_row_as(attempt.row)
     }
 
-    fn name(&self) -> &'static str {
-        "history"
-    }
-
-    fn save(&mut self) -> Result<Vec<u8>, Error> {
-        csv::remembered(&(self.table.standing()?, &self.memory))
-    }
-
-    fn check(&self, memory: &[u8]) -> Result<(), Error> {
-        csv::check_table(&self.table, memory)
+    fn save(&self) -> Result<Vec<u8>, Error> {
+        csv::remembered(&self.memory)
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        self.memory = csv::cut_table(&mut self.table, memory)?;
+        self.memory = csv::recalled(memory)?;
         Ok(())
     }
+}
 
-    fn finish(&mut self) -> Result<(), Error> {
-        self.table.flush()
+impl History {
+    /// How the friction of the contacts went, in their order.
+    pub fn courses(&self) -> &[FrictionCourse] {
+        &self.rows.memory.courses
     }
 }
 

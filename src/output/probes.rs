@@ -2,18 +2,15 @@
 //!
 //! What a gauge at a point of a body reads.
 
-use std::path::Path;
-
 use nalgebra::{Matrix2, Vector2};
 
-use super::csv;
-use super::csv::{Opening, Table};
+use super::csv::{Rows, Sheet, Table};
 use super::quantities::{HOOP, PROBE, names};
 use crate::laws::bulk::CauchyStress;
 use crate::model::state::State;
 use crate::model::{Model, Probe};
 use crate::run::error::Error;
-use crate::run::observer::{Attempt, Observer};
+use crate::run::observer::Attempt;
 
 /// The columns of every probe of a model.
 fn readings(model: &Model) -> impl Iterator<Item = String> {
@@ -21,37 +18,22 @@ fn readings(model: &Model) -> impl Iterator<Item = String> {
 }
 
 /// Writes `probes.csv`.
+pub type Probes = Sheet<ProbeRows>;
+
+/// The rows of `probes.csv`.
 #[derive(Debug)]
-pub struct Probes(Table);
+pub struct ProbeRows;
 
-impl Probes {
-    /// Create `probes.csv` in `folder`.
-    ///
-    /// # Errors
-    /// [`Error::Output`] when it cannot be written.
-    pub fn create(folder: &Path, model: &Model) -> Result<Self, Error> {
-        Self::with(Table::create, folder, model)
-    }
+impl Rows for ProbeRows {
+    const NAME: &'static str = "probes";
 
-    /// The `probes.csv` that is there, to be restored.
-    ///
-    /// # Errors
-    /// [`Error::Output`] when it cannot be opened.
-    pub fn reopen(folder: &Path, model: &Model) -> Result<Self, Error> {
-        Self::with(Table::reopen, folder, model)
-    }
-
-    fn with(open: Opening, folder: &Path, model: &Model) -> Result<Self, Error> {
+    fn new(model: &Model) -> (Self, Vec<String>) {
         let columns = model.probes.iter().flat_map(|probe| readings(model).map(|of| format!("{}.{of}", probe.name)));
-        let header: Vec<String> = std::iter::once("time".into()).chain(columns).collect();
-        Ok(Self(open(&folder.join("probes.csv"), header)?))
+        (Self, std::iter::once("time".into()).chain(columns).collect())
     }
-}
 
-impl Observer for Probes {
-    fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
+    fn write(&mut self, table: &mut Table, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
-        let Self(table) = self;
         table.number(state.time);
         for probe in &model.probes {
             let Reading { displacement: u, velocity: v, strain, hoop_strain, stress } =
@@ -61,28 +43,7 @@ impl Observer for Probes {
             let all = [u.x, u.y, v.x, v.y].into_iter().chain(strain).chain([xx, yy, zz, xy]).chain(hoop);
             table.numbers(all);
         }
-        table.end_row_as(attempt.row)?;
-        table.share()
-    }
-
-    fn name(&self) -> &'static str {
-        "probes"
-    }
-
-    fn save(&mut self) -> Result<Vec<u8>, Error> {
-        csv::table_memory(&mut self.0)
-    }
-
-    fn check(&self, memory: &[u8]) -> Result<(), Error> {
-        csv::check_table(&self.0, memory)
-    }
-
-    fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        csv::cut_table(&mut self.0, memory)
-    }
-
-    fn finish(&mut self) -> Result<(), Error> {
-        self.0.flush()
+        table.end_row_as(attempt.row)
     }
 }
 

@@ -9,8 +9,6 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
-use crate::solve::contact_iteration::Acted;
-
 /// What is recorded: a column of a table, or an array.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantity {
@@ -54,24 +52,6 @@ const WORK_PER_AREA: Unit = unit("work_per_area", [1, -1, 0]);
 const MOMENTUM: Unit = unit("momentum", [1, 0, 1]);
 const SPIN: Unit = unit("angular_momentum", [1, 1, 1]);
 const STIFFNESS: Unit = unit("stiffness_per_area", [1, -3, 0]);
-
-/// All that quantities are measured in.
-const UNITS: [Unit; 14] = [
-    NONE,
-    LENGTH,
-    STRESS,
-    VELOCITY,
-    TIME,
-    ANGLE,
-    FORCE,
-    ACCELERATION,
-    ENERGY,
-    POWER,
-    WORK_PER_AREA,
-    MOMENTUM,
-    SPIN,
-    STIFFNESS,
-];
 
 impl Unit {
     /// Made of force, length and time: `F/L²`; nothing for a number.
@@ -165,11 +145,7 @@ pub const WATCHED: [Quantity; 4] = [
 
 /// Resultant of a contact on its slave.
 pub const RESULTANT: [Quantity; 3] = [
-    q(
-        "force_x",
-        FORCE,
-        "what the master puts on the slave: pressure, friction and what slip radiates, without a fluid",
-    ),
+    q("force_x", FORCE, "pressure, friction and what slip radiates on the slave, without a fluid"),
     q("force_y", FORCE, "along y"),
     q("moment", ENERGY, "its moment about the middle of the undeformed slave (the mean of its points by length)"),
 ];
@@ -195,11 +171,7 @@ pub const FLUID_FORCE: Quantity = q("fluid_force", FORCE, "∫ p_w ds, of contac
 
 /// Heat of a contact.
 pub const HEAT: [Quantity; 2] = [
-    q(
-        "frictional_heat",
-        ENERGY,
-        "∫∫ q v^p ds dt so far, less what dilatancy lifts against p, with what p does over the worn depth",
-    ),
+    q("frictional_heat", ENERGY, "∫∫ q v^p ds dt so far, less work of dilatancy, with that of wear"),
     q("frictional_power", POWER, "its mean rate over the last increment"),
 ];
 
@@ -229,40 +201,42 @@ pub const PLACE: [Quantity; 4] = [
     q("line", NONE, "number of the unbroken line of the slave"),
 ];
 
-/// What is known at the points of contacts, in frames, in the store or in both.
-pub const AT_POINTS: [Quantity; 16] = [
-    q("gap", LENGTH, "g: gap of the surfaces, positive when open"),
-    q("pressure", STRESS, "p: contact pressure, positive in compression"),
-    q("traction", STRESS, "q: friction traction, resisting positive slip"),
-    q("slip", LENGTH, "plastic slip so far, positive along the tangent of the master"),
-    q("elastic_slip", LENGTH, "q/α_t"),
-    SLIP_RATE,
-    q("R", NONE, "|q|/(μ p): traction over its peak; 0 without friction"),
-    q("mu", NONE, "μ: peak friction coefficient available now; 0 without friction"),
-    q("structure", NONE, "1/R*: degree of structure; 1 where a law has none"),
-    q("state", NONE, "0 open, 1 sticking (or closed without friction), 2 slipping, as the law says"),
-    q("dissipation", WORK_PER_AREA, "work of friction so far, per area"),
-    q("total_slip", LENGTH, "plastic and elastic slip, slip + q/α_t"),
+const GAP: Quantity = q("gap", LENGTH, "g: gap of the surfaces, positive when open");
+const PRESSURE: Quantity = q("pressure", STRESS, "p: contact pressure, positive in compression");
+const TRACTION: Quantity = q("traction", STRESS, "q: friction traction, resisting positive slip");
+const SLIP: Quantity = q("slip", LENGTH, "plastic slip so far, positive along the tangent of the master");
+const ELASTIC_SLIP: Quantity = q("elastic_slip", LENGTH, "q/α_t");
+const TOTAL_SLIP: Quantity = q("total_slip", LENGTH, "plastic and elastic slip, slip + q/α_t");
+const SLIP_RATE: Quantity =
+    q("slip_rate", VELOCITY, "plastic slip since the increment or row before over the time since");
+const RATIO: Quantity = q("R", NONE, "|q|/(μ p): traction over its peak; 0 without friction");
+const MU: Quantity = q("mu", NONE, "μ: peak friction coefficient available now; 0 without friction");
+const STRUCTURE: Quantity = q("structure", NONE, "1/R*: degree of structure; 1 where a law has none");
+const STATE: Quantity =
+    q("state", NONE, "0 open, 1 sticking (or closed without friction), 2 slipping, as the law says");
+const DISSIPATION: Quantity = q("dissipation", WORK_PER_AREA, "work of friction so far, per area");
+
+/// At the points of every contact, in frames: those since the increment before.
+pub const IN_FRAMES: [Quantity; 11] =
+    [GAP, PRESSURE, TRACTION, SLIP, ELASTIC_SLIP, SLIP_RATE, RATIO, MU, STRUCTURE, STATE, DISSIPATION];
+
+/// At the points of every contact, in the store: those since the row before.
+pub const IN_STORE: [Quantity; 9] = [SLIP, TOTAL_SLIP, SLIP_RATE, PRESSURE, TRACTION, GAP, RATIO, MU, STRUCTURE];
+
+/// At the points of some contacts, in both; what else a law remembers or lets observe has a name that it gives.
+pub const OF_SOME: [Quantity; 4] = [
     q("theta", TIME, "θ: state of rate-and-state friction"),
     q("dilation", LENGTH, "opening by dilatancy"),
     q("wear", LENGTH, "depth of wear"),
     q("fluid_pressure", STRESS, "p_w: pressure of the fluid, beside the contact pressure"),
 ];
 
-/// Over an increment in frames, over a row in the store.
-const SLIP_RATE: Quantity =
-    q("slip_rate", VELOCITY, "plastic slip since the increment or row before over the time since");
-
-/// Quantities of every contact in the store, in the order of its arrays.
-pub const IN_STORE: [&str; 9] =
-    ["slip", "total_slip", SLIP_RATE.name, "pressure", "traction", "gap", "R", "mu", "structure"];
-
 /// What quantities of the store were called by the versions before, and are called now.
 pub const FORMER: [(&str, &str); 3] = [("p", "pressure"), ("q", "traction"), ("p_w", "fluid_pressure")];
 
-/// A quantity at contact points; `None` for one that only a law knows.
-pub fn at_points(name: &str) -> Option<&'static Quantity> {
-    AT_POINTS.iter().find(|quantity| quantity.name == name)
+/// A quantity of the store; `None` for one that only a law knows.
+pub fn in_store(name: &str) -> Option<Quantity> {
+    IN_STORE.into_iter().chain(OF_SOME).find(|quantity| quantity.name == name)
 }
 
 /// Columns of `fronts.csv`: a row a passage of a front at a contact point.
@@ -274,27 +248,13 @@ pub const FRONTS: [Quantity; 14] = [
     q("y", LENGTH, "y of the point, undeformed"),
     q("passage", NONE, "number of this arrival at this point, from 1, over all events of the run"),
     q("arrival", TIME, "when the front passed"),
-    q(
-        "speed",
-        VELOCITY,
-        "distance of the two neighbours along the slave over the difference of their arrivals nearest to this one. A neighbour \
-         that only another front has passed does not count, then it is that from the point itself to the other neighbour; NaN \
-         where neither counts, infinite where both break at once, as where a rupture begins or two fronts meet",
-    ),
+    q("speed", VELOCITY, "distance of the two neighbours over the difference of their arrivals (below)"),
     q("speed_over_c_R", NONE, "speed over that of Rayleigh waves in the body behind the slave; 0 without a density"),
     q("speed_over_c_s", NONE, "speed over that of shear waves"),
     q("speed_over_c_p", NONE, "speed over that of pressure waves"),
-    q(
-        "event",
-        NONE,
-        "number of the event in `events.csv`, of this contact, from 1; 0 outside of events, as may be with `arrival`",
-    ),
+    q("event", NONE, "number of the event in `events.csv`; 0 outside of events, as may be with `arrival`"),
     q("rupture_length", LENGTH, "what the points stand for that the event has reached up to this arrival, each once"),
-    q(
-        "energy_released",
-        ENERGY,
-        "Δ(external work − strain energy − elastic energy of contacts) of the whole model since the first arrival of the event",
-    ),
+    q("energy_released", ENERGY, "by the model since the first arrival: Δ(external work − stored energies)"),
 ];
 
 /// Columns of `events.csv`: a row an event of a contact.
@@ -313,17 +273,9 @@ pub const EVENTS: [Quantity; 18] = [
     q("peak_slip_rate", VELOCITY, "largest mean slip rate of a point between two rows"),
     q("stress_drop", STRESS, "mean of q before − q after, positive where slip has unloaded"),
     q("fracture_energy", WORK_PER_AREA, "mean of ∫ (q − q_min) ds up to where q is least"),
-    q(
-        "energy_released",
-        ENERGY,
-        "as in `fronts.csv`, from the row before the event to its end; of the whole model, with all that happens elsewhere",
-    ),
+    q("energy_released", ENERGY, "by the model from the row before the event to its end, elsewhere as well"),
     q("energy_radiated", ENERGY, "released less the dissipation by friction"),
-    q(
-        "front_speed",
-        VELOCITY,
-        "slope of the distance from where it began over the arrivals, by least squares; both directions together",
-    ),
+    q("front_speed", VELOCITY, "slope of distance over arrivals by least squares, both directions together"),
     q("front_speed_over_c_R", NONE, "over the Rayleigh wave speed of the body behind the slave"),
 ];
 
@@ -364,12 +316,7 @@ pub const NEWTON: [Quantity; 15] = [
 
 /// ... which are these.
 pub const VERDICT: [Quantity; 2] = [
-    q(
-        "verdict",
-        NONE,
-        "what became of the attempt: `accepted`, `unsolved`, or solved and repeated for its `error`, for `touch`, for `rupture`, \
-         or because the reaction that ends the step was `passed`",
-    ),
+    q("verdict", NONE, "what became of the attempt (below)"),
     q("reason", NONE, "why, in words; empty where accepted, commas as semicolons"),
 ];
 
@@ -396,63 +343,48 @@ const INTEGRATION_POINTS: [Quantity; 5] = [
     q("body", NONE, "number of the body"),
 ];
 
-/// All quantities by their files, in the order of their columns; owners of columns stand before a dot.
-pub fn all() -> Vec<(&'static str, Vec<(&'static str, Quantity)>)> {
-    let own = |owner: &'static str, some: &[Quantity]| some.iter().map(|of| (owner, *of)).collect::<Vec<_>>();
-    let named = |names: &[&str]| names.iter().filter_map(|name| at_points(name).copied()).collect::<Vec<_>>();
-    let of_laws = named(&["theta", "dilation", "wear"]);
-    let aids = Acted::COLUMNS.map(|name| q(name, NONE, "contact points on which this aid acted"));
-    let contact = q("contact", NONE, "number of the contact of a line");
-    vec![
-        (
-            "history.csv",
-            [
-                own("", &INCREMENT),
-                own("", &ENERGIES),
-                own("CONTACT", &CONTACT),
-                own("SET", &WATCHED),
-                own("", &[RADIATED]),
-                own("CONTACT", &[MEAN]),
-                own("CONTACT", &RESULTANT),
-                own("BODY", &BODY),
-                own("SET", &EDGES),
-                own("CONTACT", &[FLUID_FORCE]),
-                own("CONTACT", &HEAT),
-            ]
-            .concat(),
-        ),
-        (
-            "interface.zarr",
-            [
-                own("", &[q("time", TIME, "t of the rows of `history.csv`")]),
-                own("CONTACT", &PLACE),
-                own("CONTACT", &named(&IN_STORE)),
-                own("CONTACT", &of_laws),
-                own("CONTACT", &named(&["fluid_pressure"])),
-            ]
-            .concat(),
-        ),
-        ("solid.pvd", own("", &SOLID)),
-        ("contact.pvd", {
-            let frames = AT_POINTS.iter().filter(|of| of.name != "total_slip").copied();
-            let moved = q("displacement", LENGTH, "u of the contact points");
-            own("", &std::iter::once(moved).chain(frames).chain([contact]).collect::<Vec<_>>())
-        }),
-        ("points.pvd", own("", &INTEGRATION_POINTS)),
-        ("probes.csv", [own("", &INCREMENT[..1]), own("PROBE", &PROBE), own("PROBE", &[HOOP])].concat()),
-        ("fronts.csv", own("", &FRONTS)),
-        ("events.csv", own("", &EVENTS)),
-        ("newton.csv", [own("", &NEWTON), own("", &aids), own("", &VERDICT)].concat()),
-        ("law.csv", [own("", &LAW), own("", &of_laws[..1])].concat()),
-    ]
-}
+/// Quantities, and whose they are: what stands before the dot in a name.
+pub type Group = (&'static str, &'static [Quantity]);
 
-/// What stands for the means of further quantities of contact points.
-const MEAN: Quantity = q(
-    "mean_…",
-    NONE,
-    "means of what a law remembers or lets observe, and of dilation and wear: `mean_theta`, `mean_wear`",
-);
+/// All quantities by their files, in the order of their columns.
+pub const ALL: [(&str, &[Group]); 10] = [
+    (
+        "history.csv",
+        &[
+            ("", &INCREMENT),
+            ("", &ENERGIES),
+            ("CONTACT", &CONTACT),
+            ("SET", &WATCHED),
+            ("", &[RADIATED]),
+            ("CONTACT", &[q("mean_…", NONE, "means of what laws remember, of `dilation` and `wear`, by their names")]),
+            ("CONTACT", &RESULTANT),
+            ("BODY", &BODY),
+            ("SET", &EDGES),
+            ("CONTACT", &[FLUID_FORCE]),
+            ("CONTACT", &HEAT),
+        ],
+    ),
+    ("interface.zarr", &[("", &[INCREMENT[0]]), ("CONTACT", &PLACE), ("CONTACT", &IN_STORE), ("CONTACT", &OF_SOME)]),
+    ("solid.pvd", &[("", &SOLID)]),
+    (
+        "contact.pvd",
+        &[
+            ("", &[SOLID[0]]),
+            ("", &IN_FRAMES),
+            ("", &OF_SOME),
+            ("", &[q("contact", NONE, "number of the contact of a line")]),
+        ],
+    ),
+    ("points.pvd", &[("", &INTEGRATION_POINTS)]),
+    ("probes.csv", &[("", &[INCREMENT[0]]), ("PROBE", &PROBE), ("PROBE", &[HOOP])]),
+    ("fronts.csv", &[("", &FRONTS)]),
+    ("events.csv", &[("", &EVENTS)]),
+    (
+        "newton.csv",
+        &[("", &NEWTON), ("", &[q("aid_…", NONE, "contact points on which each aid acted")]), ("", &VERDICT)],
+    ),
+    ("law.csv", &[("", &LAW), ("", &[OF_SOME[0]])]),
+];
 
 /// What a quantity is called where it is drawn.
 pub fn spoken(name: &str) -> String {
@@ -470,30 +402,30 @@ pub fn spoken(name: &str) -> String {
 
 /// All quantities by their files, as `fecontact schema results` prints them.
 pub fn schema() -> Value {
-    let shown = |(owner, of): &(&str, Quantity)| {
+    let shown = |(owner, of): (&str, &Quantity)| {
         let Quantity { name, unit, meaning } = *of;
         let whole = if owner.is_empty() { name.into() } else { format!("{owner}.{name}") };
-        let former = FORMER.iter().find(|(_, now)| *owner == "CONTACT" && *now == name).map(|(former, _)| *former);
-        let mut entry = Map::new();
-        entry.insert("name".into(), json!(whole));
-        entry.insert("unit".into(), json!(unit.made_of(["F", "L", "T"])));
-        entry.insert("of".into(), json!(unit.name));
-        entry.insert("spoken".into(), json!(spoken(name)));
-        entry.insert("meaning".into(), json!(meaning));
-        entry.extend(former.map(|former| ("formerly".into(), json!(former))));
-        Value::Object(entry)
+        let mut entry = json!({
+            "name": whole, "unit": unit.made_of(["F", "L", "T"]), "of": unit.name, "spoken": spoken(name), "meaning": meaning,
+        });
+        if let Some((former, _)) = FORMER.iter().find(|(_, now)| owner == "CONTACT" && *now == name) {
+            entry["formerly"] = json!(former);
+        }
+        entry
     };
-    let file = |(file, all): (&str, Vec<(&str, Quantity)>)| (file.to_string(), all.iter().map(shown).collect());
-    Value::Object(all().into_iter().map(file).collect())
+    let of_group = |(owner, some): &Group| some.iter().map(|of| shown((owner, of))).collect::<Vec<_>>();
+    ALL.iter().map(|(file, groups)| (file.to_string(), groups.iter().flat_map(of_group).collect::<Value>())).collect()
 }
 
 /// What a page needs of them: labels of units by their names, and of every quantity its label and what it is called.
 pub fn labels(units: &BTreeMap<String, String>) -> Value {
-    let label = |unit: Unit| unit.label(units, Unit::made_of).unwrap_or_default();
-    let quantity = |(_, of): (&str, Quantity)| (of.name.to_string(), json!([label(of.unit), spoken(of.name)]));
+    let (mut of_units, mut quantities) = (Map::new(), Map::new());
     // newton.csv counts slipping points under the name of a length.
-    let drawn = all().into_iter().filter(|(file, _)| *file != "newton.csv");
-    let quantities: Map<String, Value> = drawn.flat_map(|(_, all)| all).map(quantity).collect();
-    let units: Map<String, Value> = UNITS.iter().map(|unit| (unit.name.into(), json!(label(*unit)))).collect();
-    json!({ "units": units, "quantities": quantities })
+    for of in ALL.iter().filter(|(file, _)| *file != "newton.csv").flat_map(|(_, all)| *all).flat_map(|(_, some)| *some)
+    {
+        let label = of.unit.label(units, Unit::made_of).unwrap_or_default();
+        quantities.insert(of.name.into(), json!([label, spoken(of.name)]));
+        of_units.insert(of.unit.name.into(), json!(label));
+    }
+    json!({ "units": of_units, "quantities": quantities })
 }

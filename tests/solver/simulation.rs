@@ -486,7 +486,7 @@ fn observers_go_back_with_the_run() {
     let folder = tempfile::tempdir().expect("a folder");
     let start = model.initial_state();
     let mut history = History::create(folder.path(), &model).expect("a table");
-    let mut log = NewtonLog::create(folder.path()).expect("a table");
+    let mut log = NewtonLog::create(folder.path(), &model).expect("a table");
     let mut fields = Fields::create(folder.path(), model.clone(), &start, 2).expect("frames");
     let mut fronts = Fronts::new(folder.path(), &model, &start, 1e-3, Arrive::Rate);
     let mut warnings = Warnings::default();
@@ -521,7 +521,7 @@ fn observers_go_back_with_the_run() {
     let straight = tempfile::tempdir().expect("a folder");
     let mut others: [Box<dyn Observer>; 5] = [
         Box::new(History::create(straight.path(), &model).expect("a table")),
-        Box::new(NewtonLog::create(straight.path()).expect("a table")),
+        Box::new(NewtonLog::create(straight.path(), &model).expect("a table")),
         Box::new(Fields::create(straight.path(), model.clone(), &start, 2).expect("frames")),
         Box::new(Fronts::new(straight.path(), &model, &start, 1e-3, Arrive::Rate)),
         Box::new(Warnings::default()),

@@ -76,7 +76,7 @@ impl Earlier {
         let start = saved.simulation().state();
         let earlier = Self {
             history: goes_on("history").then(|| History::reopen(folder, model)).transpose()?,
-            newton_log: goes_on("newton").then(|| NewtonLog::reopen(folder)).transpose()?,
+            newton_log: goes_on("newton").then(|| NewtonLog::reopen(folder, model)).transpose()?,
             interface: asked.0.then(|| InterfaceStore::reopen(folder, model, start, &case.units)),
             probes: goes_on("probes").then(|| Probes::reopen(folder, model)).transpose()?,
             fields: asked.1.then(|| Fields::reopen(folder, model.clone(), frames(case))).transpose()?,
@@ -141,7 +141,7 @@ impl Outputs {
         });
         Ok(Self {
             history: earlier.history.map_or_else(|| History::create(folder, model), Ok)?,
-            newton_log: earlier.newton_log.map_or_else(|| NewtonLog::create(folder), Ok)?,
+            newton_log: earlier.newton_log.map_or_else(|| NewtonLog::create(folder, model), Ok)?,
             aloud,
             interface: interface.transpose()?,
             probes: probes.transpose()?,

@@ -9,7 +9,7 @@ use super::zarr::Description;
 use crate::contact::pair::ContactPair;
 use crate::model::Model;
 use crate::output::events::{Interface, Point};
-use crate::output::quantities::{LENGTH, NONE, PLACE, Quantity, TIME, Unit, at_points};
+use crate::output::quantities::{LENGTH, NONE, PLACE, Quantity, TIME, Unit, in_store};
 
 /// What a friction-free contact's slip is.
 const FREE_MOTION: &str = "motion along the master so far; the contact has no friction";
@@ -70,7 +70,7 @@ pub fn along(
 
 /// A quantity of a contact.
 pub fn quantity(pair: &ContactPair, prefix: &str, name: &str, units: &BTreeMap<String, String>) -> Description {
-    let known = at_points(name);
+    let known = in_store(name);
     let free = pair.laws.iter().all(|law| law.start().is_frictionless()) && ["slip", "total_slip"].contains(&name);
     let long_name = if free { FREE_MOTION } else { known.map_or(name, |known| known.meaning) };
     let mut attributes: Map<String, Value> = Map::new();

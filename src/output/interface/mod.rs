@@ -80,7 +80,9 @@ impl InterfaceStore {
     pub fn reopen(folder: &Path, model: &Model, start: &State, units: &BTreeMap<String, String>) -> Self {
         let further = |pair: &ContactPair| observables::further(pair.laws.iter().map(|law| law.start()));
         let in_fluid = |pair: &ContactPair| pair.fluid.as_ref().map(|_| "fluid_pressure");
-        let names = |pair: &ContactPair| IN_STORE.into_iter().chain(further(pair)).chain(in_fluid(pair)).collect();
+        let names = |pair: &ContactPair| {
+            IN_STORE.map(|of| of.name).into_iter().chain(further(pair)).chain(in_fluid(pair)).collect()
+        };
         let names: Vec<Vec<&str>> = model.contacts.iter().map(names).collect();
         let prefixes = prefixes(model);
         let (mut fixed, mut places) = (Vec::new(), Vec::new());
