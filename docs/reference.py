@@ -115,7 +115,7 @@ def with_quantities(page, results):
     """The page of results with a table of the quantities of each file where it names one."""
     def table_of(mark):
         rows = [f"| `{one['name']}` | {one['unit'] or '–'} | {in_cell(one['meaning'])} |" for one in results[mark[1]]]
-        return "\n".join([f"<!-- quantities of {mark[1]} -->", "| name | unit | |", "|---|---|---|", *rows, "<!-- end -->"])
+        return "\n".join([f"<!-- quantities of {mark[1]} -->\n", "| name | unit | |", "|---|---|---|", *rows, "\n<!-- end -->"])
 
     return re.sub(r"<!-- quantities of (\S+) -->\n.*?<!-- end -->", table_of, page, flags=re.DOTALL)
 

@@ -16,8 +16,7 @@ use serde::{Deserialize, Serialize};
 use super::files;
 use crate::model::Model;
 use crate::run::error::Error;
-use crate::run::observer::{Attempt, Observer};
-use crate::run::rows::Row;
+use crate::run::observer::{Attempt, Observer, Row};
 
 /// Rows written within this time of each other go to the system together: the call would cost as much as the row.
 const BLINK: Duration = Duration::from_millis(50);

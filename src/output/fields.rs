@@ -17,8 +17,7 @@ use crate::linear::memory::room_for;
 use crate::model::Model;
 use crate::model::state::State;
 use crate::run::error::Error;
-use crate::run::observer::{Attempt, Observer};
-use crate::run::rows::Row;
+use crate::run::observer::{Attempt, Observer, Row};
 
 /// Writes frames of the solids and of the interfaces, in the background while the run goes on.
 #[derive(Debug)]
@@ -45,12 +44,6 @@ pub struct Frames {
     pub every: Option<usize>,
     /// Whether the integration points have frames
     pub points: bool,
-}
-
-impl From<usize> for Frames {
-    fn from(every: usize) -> Self {
-        Self { every: Some(every), points: false }
-    }
 }
 
 /// What the writer of frames is asked for.
@@ -86,7 +79,7 @@ impl Fields {
     ///
     /// # Errors
     /// [`Error::Output`] when a file cannot be written.
-    pub fn create(folder: &Path, model: Arc<Model>, start: &State, frames: impl Into<Frames>) -> Result<Self, Error> {
+    pub fn create(folder: &Path, model: Arc<Model>, start: &State, frames: Frames) -> Result<Self, Error> {
         let mut fields = Self::reopen(folder, model.clone(), frames)?;
         fields.write(&model, start)?;
         Ok(fields)
@@ -96,8 +89,8 @@ impl Fields {
     ///
     /// # Errors
     /// [`Error::Output`] when there is no place for it.
-    pub fn reopen(folder: &Path, model: Arc<Model>, frames: impl Into<Frames>) -> Result<Self, Error> {
-        let (frames_of, rows) = (frames.into(), 0);
+    pub fn reopen(folder: &Path, model: Arc<Model>, frames: Frames) -> Result<Self, Error> {
+        let (frames_of, rows) = (frames, 0);
         let names = [("solid", true), ("contact", !model.contacts.is_empty()), ("points", frames_of.points)];
         let names: Vec<&str> = names.into_iter().filter(|(_, asked)| *asked).map(|(name, _)| name).collect();
         let collections = names.iter().map(|name| Collection::create(folder, name)).collect::<Result<_, _>>()?;

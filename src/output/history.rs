@@ -1,4 +1,4 @@
-//! `history.csv`: a row per accepted increment, or those that an interval leaves (`run/rows.rs`).
+//! `history.csv`: a row per accepted increment, or those that an interval leaves (`run/observer.rs`).
 
 use std::slice;
 

@@ -6,7 +6,6 @@ pub mod control;
 pub mod error;
 pub mod law;
 pub mod observer;
-pub mod rows;
 pub mod simulation;
 
 use std::sync::Arc;
@@ -163,7 +162,7 @@ impl SavedRun {
     ///
     /// # Errors
     /// [`Error::Output`] with the first thing that is not as it was.
-    pub fn check(&self, observers: &[&dyn Observer]) -> Result<(), Error> {
+    pub fn check(&self, observers: &[&mut dyn Observer]) -> Result<(), Error> {
         observers
             .iter()
             .try_for_each(|observer| self.memory(observer.name()).map_or(Ok(()), |memory| observer.check(memory)))

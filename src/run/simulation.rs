@@ -20,8 +20,7 @@ use std::time::Instant;
 
 use super::control::{Candidate, Control, Increment, Midway, Outcome, Phase, RunReport, WallSeconds, is_of};
 use super::error::Error;
-use super::observer::Attempt;
-use super::rows::Row;
+use super::observer::{Attempt, Row};
 use crate::linear::Multifrontal;
 use crate::model::state::{Energy, State};
 use crate::model::{Model, Step};
@@ -155,7 +154,7 @@ impl Simulation {
             local_error: candidate.local_error,
             doubt: candidate.doubt,
         };
-        told.row = Row::of(&self.model, &told, self.control.last_row);
+        told.row = told.row_after(&self.model, self.control.last_row);
         told
     }
 

@@ -10,8 +10,7 @@ use fecontact::model::Model;
 use fecontact::output::events::WaveSpeeds;
 use fecontact::output::fronts::{Arrive, Fronts};
 use fecontact::run::error::Error;
-use fecontact::run::observer::{Attempt, Observer, Verdict};
-use fecontact::run::rows::Row;
+use fecontact::run::observer::{Attempt, Observer, Row, Verdict};
 use fecontact::run::run;
 use serde_json::{Value, json};
 

@@ -30,8 +30,7 @@ use crate::laws::friction::observables;
 use crate::model::Model;
 use crate::model::state::State;
 use crate::run::error::Error;
-use crate::run::observer::{Attempt, Observer};
-use crate::run::rows::Row;
+use crate::run::observer::{Attempt, Observer, Row};
 pub use zarr::{files_of, forget, is_own};
 
 /// Folder of the store in that of the results.
@@ -43,8 +42,6 @@ pub struct InterfaceStore {
     store: Store,
     /// Names of the quantities of each contact
     names: Vec<Vec<&'static str>>,
-    /// Numbers that do not vary: places of the points
-    places: Vec<Vec<f64>>,
     /// A record that is written if an event follows
     held: Option<Record>,
     /// Time of the last record, and slip of every contact and point then
@@ -72,7 +69,7 @@ impl InterfaceStore {
         units: &BTreeMap<String, String>,
     ) -> Result<Self, Error> {
         let mut store = Self::reopen(folder, model, start, units);
-        store.store.create(&store.places)?;
+        store.store.create()?;
         Ok(store)
     }
 
@@ -85,13 +82,10 @@ impl InterfaceStore {
         };
         let names: Vec<Vec<&str>> = model.contacts.iter().map(names).collect();
         let prefixes = prefixes(model);
-        let (mut fixed, mut places) = (Vec::new(), Vec::new());
+        let mut fixed = Vec::new();
         let mut growing = vec![(time(units), None)];
         for ((pair, prefix), names) in model.contacts.iter().zip(&prefixes).zip(&names) {
-            for (description, values) in along(model, pair, prefix, units) {
-                fixed.push((description, values.len()));
-                places.push(values);
-            }
+            fixed.extend(along(model, pair, prefix, units));
             let quantity = |name: &&str| (quantity(pair, prefix, name, units), Some(pair.points.len()));
             growing.extend(names.iter().map(quantity));
         }
@@ -105,7 +99,6 @@ impl InterfaceStore {
         Self {
             store: Store::new(folder.join(STORE), attributes, fixed, growing),
             names,
-            places,
             held: None,
             last: (start.time, start.contacts.iter().map(slips).collect()),
         }
@@ -166,7 +159,7 @@ impl Observer for InterfaceStore {
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
         let saved;
         (saved, self.held, self.last) = csv::recalled(memory)?;
-        self.store.restore(&self.places, saved)
+        self.store.restore(saved)
     }
 
     fn finish(&mut self) -> Result<(), Error> {
