@@ -36,10 +36,6 @@ pub struct HistoryRows {
     bodies: Vec<BodyMeans>,
     /// ∫ N_a ds of the watched sets that are edges
     edges: Vec<EdgeMeans>,
-    /// Which contacts have a column for the force of their fluid
-    fluids: Vec<bool>,
-    /// Whether slip radiates, and the energies have a column for it
-    radiates: bool,
     memory: Memory,
 }
 
@@ -67,8 +63,7 @@ impl Rows for HistoryRows {
         let mut header: Vec<String> = names(&INCREMENT).chain(names(&ENERGIES)).collect();
         header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &CONTACT)));
         header.extend(model.watch.iter().flat_map(|set| of(&set.name, &WATCHED)));
-        let radiates = model.contacts.iter().any(|pair| pair.radiation > 0.0);
-        header.extend(radiates.then(|| RADIATED.name.into()));
+        header.extend(radiates(model).then(|| RADIATED.name.into()));
         let further = |pair: &ContactPair| observables::further(pair.laws.iter().map(|law| law.start()));
         let observed: Vec<Vec<&str>> = model.contacts.iter().map(further).collect();
         for (pair, names) in model.contacts.iter().zip(&observed) {
@@ -78,7 +73,6 @@ impl Rows for HistoryRows {
         header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &RESULTANT)));
         header.extend(model.bodies.iter().flat_map(|body| of(&body.name, &BODY)));
         header.extend(edges.iter().flat_map(|(name, _)| of(name, &EDGES)));
-        let fluids: Vec<bool> = model.contacts.iter().map(|pair| pair.fluid.is_some()).collect();
         let in_fluid = model.contacts.iter().filter(|pair| pair.fluid.is_some());
         header.extend(in_fluid.flat_map(|pair| of(&pair.name, &[FLUID_FORCE])));
         header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &HEAT)));
@@ -88,8 +82,6 @@ impl Rows for HistoryRows {
             middles: model.contacts.iter().map(|pair| pair.middle(&undeformed)).collect(),
             bodies: model.bodies.iter().map(|body| BodyMeans::new(model, body)).collect(),
             edges,
-            fluids,
-            radiates,
             memory: Memory {
                 rotations: Vec::new(),
                 heat: vec![0.0; model.contacts.len()],
@@ -101,7 +93,7 @@ impl Rows for HistoryRows {
 
     fn write(&mut self, table: &mut Table, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
-        let Self { observed, middles, bodies, edges, fluids, radiates, memory } = self;
+        let Self { observed, middles, bodies, edges, memory } = self;
         table.number(state.time);
         table.number(state.dt);
         table.text(&attempt.step.name);
@@ -115,7 +107,7 @@ impl Rows for HistoryRows {
         for set in &model.watch {
             table.numbers(watched_row(set, state));
         }
-        table.numbers(radiates.then_some(state.energy.radiated));
+        table.numbers(radiates(model).then_some(state.energy.radiated));
         for ((pair, states), names) in model.contacts.iter().zip(&state.contacts).zip(observed) {
             table.numbers(names.iter().map(|name| mean(pair, (states, state.time), name)));
         }
@@ -137,7 +129,7 @@ impl Rows for HistoryRows {
             let mean = |i: usize| shares.iter().map(|(node, share)| share * state.displacement[2 * node + i]).sum();
             table.numbers([mean(0), mean(1)]);
         }
-        for (states, _) in state.contacts.iter().zip(fluids).filter(|(_, has)| **has) {
+        for (_, states) in model.contacts.iter().zip(&state.contacts).filter(|(pair, _)| pair.fluid.is_some()) {
             table.number(states.iter().map(|state| state.length * state.fluid).sum());
         }
         for (heat, (old, new)) in memory.heat.iter_mut().zip(attempt.old.contacts.iter().zip(&state.contacts)) {
@@ -163,6 +155,11 @@ impl History {
     pub fn courses(&self) -> &[FrictionCourse] {
         &self.rows.memory.courses
     }
+}
+
+/// Whether slip radiates, and the energies have a column for it.
+fn radiates(model: &Model) -> bool {
+    model.contacts.iter().any(|pair| pair.radiation > 0.0)
 }
 
 fn energy_row(energy: &Energy) -> [f64; ENERGIES.len()] {
