@@ -51,11 +51,9 @@ pub fn along(
     let array = |of: Quantity, value: fn(&Point) -> f64| {
         let mut attributes = Map::new();
         attributes.insert("long_name".into(), json!(format!("{}: {}", pair.name, of.meaning)));
-        let is_place = of.unit == LENGTH;
-        let unit = label(of.unit, units).filter(|_| is_place);
-        attributes.extend(unit.map(|unit| ("units".into(), json!(unit))));
+        attributes.extend(label(of.unit, units).map(|unit| ("units".into(), json!(unit))));
         let dimensions = vec![format!("{prefix}.point")];
-        let number = if is_place { Number::Double } else { Number::Whole };
+        let number = if of.unit == LENGTH { Number::Double } else { Number::Whole };
         let description = Description { name: format!("{prefix}.{}", of.name), number, dimensions, attributes };
         (description, points.iter().map(value).collect())
     };
