@@ -1,7 +1,8 @@
-"""Writes docs/reference/case_file.md from the JSON Schema of the program: python3 docs/reference.py [--check] [PROGRAM].
+"""Writes docs/reference/case_file.md and the tables of docs/reference/outputs.md: python3 docs/reference.py [--check] [PROGRAM].
 
-There is no second truth: keys, types, defaults, units and descriptions are those of `fecontact schema`. With --check nothing is
-written, and the exit code is 1 where the committed page is not what the schema says.
+There is no second truth: keys, types, defaults, units and descriptions are those of `fecontact schema`, names, units and meanings of
+results those of `fecontact schema results`. With --check nothing is written, and the exit code is 1 where a committed page is
+not what the program says.
 """
 
 import json
@@ -11,6 +12,7 @@ import subprocess
 import sys
 
 PAGE = pathlib.Path(__file__).parent / "reference" / "case_file.md"
+RESULTS = PAGE.with_name("outputs.md")
 HEAD = """# The case file
 
 Written by `docs/reference.py` from the JSON Schema that the program prints (`fecontact schema`, `fecontact schema law`); not to be edited.
@@ -109,15 +111,25 @@ def written(case, law):
     return "\n\n".join(part.strip() for part in whole) + "\n"
 
 
+def with_quantities(page, results):
+    """The page of results with a table of the quantities of each file where it names one."""
+    def table_of(mark):
+        rows = [f"| `{one['name']}` | {one['unit'] or '–'} | {in_cell(one['meaning'])} |" for one in results[mark[1]]]
+        return "\n".join([f"<!-- quantities of {mark[1]} -->\n", "| name | unit | |", "|---|---|---|", *rows, "\n<!-- end -->"])
+
+    return re.sub(r"<!-- quantities of (\S+) -->\n.*?<!-- end -->", table_of, page, flags=re.DOTALL)
+
+
 def main():
     arguments = [argument for argument in sys.argv[1:] if argument != "--check"]
     program = arguments[0] if arguments else "target/release/fecontact"
-    case, law = (json.loads(subprocess.check_output([program, "schema", kind])) for kind in ("case", "law"))
-    page = written(case, law)
-    if "--check" not in sys.argv:
-        PAGE.write_text(page)
-    elif PAGE.read_text() != page:
-        sys.exit(f"{PAGE} is not what the schema says: python3 docs/reference.py {program}")
+    of = {kind: json.loads(subprocess.check_output([program, "schema", kind])) for kind in ("case", "law", "results")}
+    pages = {PAGE: written(of["case"], of["law"]), RESULTS: with_quantities(RESULTS.read_text(), of["results"])}
+    for file, page in pages.items():
+        if "--check" not in sys.argv:
+            file.write_text(page)
+        elif file.read_text() != page:
+            sys.exit(f"{file} is not what the program says: python3 docs/reference.py {program}")
 
 
 if __name__ == "__main__":

@@ -65,7 +65,7 @@ enum Command {
         #[arg(long)]
         out: Option<PathBuf>,
     },
-    /// Print the JSON Schema of the case file, or of the test of a law
+    /// Print the JSON Schema of the case file or of the test of a law, or the quantities of results
     Schema {
         /// Of which file
         #[arg(value_enum, default_value_t = Input::Case)]

@@ -21,7 +21,7 @@ MU_S, PRESSURE, TRACTION, DAY = 0.6, 10.0, 4.8, 86400.0
 store = xarray.open_zarr(folder + "/interface.zarr")
 along = np.argsort(store["fault.x"].values)
 x, time = store["fault.x"].values[along], store["time"].values
-slip, fluid = (np.abs(store[f"fault.{name}"].values[:, along]) for name in ("slip", "p_w"))
+slip, fluid = (np.abs(store[f"fault.{name}"].values[:, along]) for name in ("slip", "fluid_pressure"))
 rate = np.gradient(slip, time, axis=0)
 onset = np.flatnonzero(rate.max(axis=1) > 0.01)[0]
 

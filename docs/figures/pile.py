@@ -36,9 +36,9 @@ uplift = np.array([1e3 * grid["displacement"][ids, 1].mean() for ids in cells])
 
 store = xarray.open_zarr(folder / "interface.zarr")
 depth, order = store["shaft.y"].values, store["shaft.y"].values.argsort()
-pressure = store["shaft.p"].values
+pressure = store["shaft.pressure"].values
 with np.errstate(divide="ignore", invalid="ignore"):
-    mobilized = np.where(pressure > 0, np.abs(store["shaft.q"].values) / pressure, np.nan)
+    mobilized = np.where(pressure > 0, np.abs(store["shaft.traction"].values) / pressure, np.nan)
 ends = np.linspace(depth.min(), depth.max(), 2001)
 bearing = 2 * np.pi * RADIUS * np.trapezoid(5 - 8 * ends, ends)
 

@@ -257,6 +257,7 @@ def _put(document: dict[str, Any], place: str, value: Any, file: str) -> None:
 
 
 def schema(of: str = "case") -> dict[str, Any]:
-    """The JSON Schema of a ``"case"``, or of the test of a ``"law"``."""
+    """The JSON Schema of a ``"case"``, or of the test of a ``"law"``; of ``"results"`` the quantities of their files: names, units
+    made of F, L and T, and what they are."""
     found: dict[str, Any] = json.loads(_native.schema(of))
     return found

@@ -9,35 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import _quantities
+
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
     from .law import Drive
     from .result import Result
-
-# Symbols of the fields of an interface.
-_SYMBOLS = {
-    "slip": "slip",
-    "total_slip": "slip, elastic and plastic",
-    "slip_rate": "slip rate",
-    "p": "pressure",
-    "q": "traction",
-    "R": "R",
-    "mu": "μ",
-    "structure": "structure 1/R*",
-    "gap": "gap",
-    "theta": "θ",
-}
-
-# What columns of the history are.
-_LENGTHS = "ux uy edge_ux edge_uy centre_x centre_y contact_length mean_slip mean_elastic_slip max_elastic_slip max_penetration"
-_KINDS = {
-    "time": ("time", "dt"),
-    "length": (*_LENGTHS.split(), "mean_dilation", "mean_wear"),
-    "force": ("normal_force", "tangential_force", "fluid_force", "force_x", "force_y", "fx", "fy"),
-}
-
 
 def friction(result: Result, contact: str | None = None, *, x: str = "time", ax: Axes | None = None, **line: Any) -> Axes:
     """|Q|/N of contacts over time, or over another column of the history.
@@ -84,7 +63,7 @@ def interface(
     Args:
         result: the results.
         contact: one contact; the first unless given.
-        field: of ``result.interface[contact]``, such as ``slip``, ``slip_rate``, ``p``, ``q``, ``mu``.
+        field: of ``result.interface[contact]``, such as ``slip``, ``slip_rate``, ``pressure``, ``traction``, ``mu``.
         x: place by ``"position"``, the way along the slave surface, or by its coordinate ``"x"`` or ``"y"``.
         y: ``"time"``, or ``"row"`` of the history, which are dense where much happens: over cycles of earthquakes an event is
             too short to be seen in time. The axis then bears the times of rows.
@@ -101,7 +80,7 @@ def interface(
         raise ValueError(f"x is {x!r}, y is {y!r}: x is position, x or y; y is time or row")
     order = np.argsort(data[x].values, kind="stable")
     values = np.asarray(data[field].values, dtype=float)[:, order]
-    closed = np.asarray(data["p"].values)[:, order] > 0
+    closed = np.asarray(data["pressure"].values)[:, order] > 0
     shown = np.ma.masked_where(~closed | ~np.isfinite(values), values)
     if log if log is not None else field == "slip_rate":
         shown = np.ma.masked_where(np.abs(shown) <= 0, np.abs(shown))
@@ -111,7 +90,7 @@ def interface(
     times = data["time"].values
     rows = times if y == "time" else np.arange(times.size)
     colours = ax.pcolormesh(data[x].values[order], rows, shown, **{"shading": "nearest", **mesh})
-    label = _SYMBOLS.get(field, field) + _unit(data[field].attrs.get("units"))
+    label = _quantities.spoken(field) + _unit(data[field].attrs.get("units"))
     ax.figure.colorbar(colours, ax=ax, label=label)
     ax.set(xlabel=x + _unit(result.units.get("length")), ylabel=_labelled(result, "time"), title=name)
     if y == "row":
@@ -220,9 +199,7 @@ def _contacts(result: Result, contact: str | None) -> list[str]:
 
 
 def _labelled(result: Result, column: str) -> str:
-    last = column.rsplit(".")[-1]
-    kind = next((kind for kind, names in _KINDS.items() if last in names), "")
-    return column + _unit(result.units.get(kind))
+    return column + _unit(_quantities.unit(column, result.units))
 
 
 def _unit(unit: str | None) -> str:

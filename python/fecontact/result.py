@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pandas as pd
 
-from . import _native
+from . import _native, _quantities
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -258,8 +258,8 @@ def _of_contact(whole: xr.Dataset, prefix: str) -> xr.Dataset:
     """The arrays of one contact, without its name before theirs."""
     own = [name for name in whole.variables if str(name).startswith(f"{prefix}.")]
     part = whole[own]
-    names = {name: str(name)[len(prefix) + 1 :] for name in [*part.variables, *part.dims] if str(name).startswith(f"{prefix}.")}
-    return part.rename(names)
+    of_contact = [name for name in [*part.variables, *part.dims] if str(name).startswith(f"{prefix}.")]
+    return part.rename({name: _quantities.name_of_now(str(name)[len(prefix) + 1 :]) for name in of_contact})
 
 
 def _closed(text: str) -> str:

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use fecontact::case::{self, CaseError, Opened, Written, law_test};
 use fecontact::output::checkpoint::Checkpoint;
+use fecontact::output::quantities;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -78,12 +79,13 @@ impl Case {
     }
 }
 
-/// The JSON Schema of a `"case"`, or of the test of a `"law"`.
+/// The JSON Schema of a `"case"`, or of the test of a `"law"`; the quantities of `"results"` by their files.
 #[pyfunction]
 pub fn schema(of: &str) -> PyResult<String> {
     match of {
         "case" => Ok(case::schema().to_string()),
         "law" => Ok(law_test::schema().to_string()),
-        _ => Err(PyValueError::new_err(format!("there is no schema of `{of}`: give \"case\" or \"law\""))),
+        "results" => Ok(quantities::schema().to_string()),
+        _ => Err(PyValueError::new_err(format!("there is no schema of `{of}`: give \"case\", \"law\" or \"results\""))),
     }
 }

@@ -263,7 +263,7 @@ def test_every_name_of_the_outputs_is_taken(document: dict[str, Any], tmp_path: 
     names = {*frame.point_data, *interface.data_vars, *interface.coords, *interface.dims}
     names |= set(fc.law(PAPER).drive([0, 1], [0, 1], 1.0))
     names |= set(fc.Simulation(document).contacts["base"])
-    assert {"p_w", "fluid_pressure", "wear", "dilation", "total_slip", "elastic_slip", "evaluations", "position"} <= names
+    assert {"fluid_pressure", "wear", "dilation", "total_slip", "elastic_slip", "evaluations", "position"} <= names
     free = set()
     for name in names:
         try:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import pickle
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -71,6 +72,27 @@ def test_tables_and_interface(result: fc.Result) -> None:
     assert base["slip"].attrs["units"] == "mm"
     with pytest.raises(KeyError, match="there are base"):
         result.interface["bas"]
+
+
+def test_stores_of_earlier_versions_are_read(result: fc.Result, tmp_path: Path) -> None:
+    """They called pressure and traction ``p`` and ``q``."""
+    now, old = result.interface["base"], tmp_path / "out"
+    shutil.copytree(result.folder, old)
+    metadata = old / "interface.zarr" / ".zmetadata"
+    text = metadata.read_text()
+    for former, name in (("p", "pressure"), ("q", "traction")):
+        (metadata.parent / f"base.{name}").rename(metadata.parent / f"base.{former}")
+        text = text.replace(f"base.{name}/", f"base.{former}/")
+    metadata.write_text(text)
+    then = fc.Result(old).interface["base"]
+    assert set(then.variables) == set(now.variables)
+    np.testing.assert_array_equal(then["pressure"], now["pressure"])
+
+
+def test_results_are_listed(result: fc.Result) -> None:
+    """Every column of the history, by what stands behind its dot."""
+    listed = {entry["name"].rsplit(".", 1)[-1] for entry in fc.schema("results")["history.csv"]}
+    assert {column.rsplit(".", 1)[-1] for column in result.history} <= listed
 
 
 def test_a_row_that_is_being_written_is_none_yet(result: fc.Result, tmp_path: Path) -> None:
@@ -284,7 +306,7 @@ def test_plots(result: fc.Result) -> None:
         assert fc.plot.friction(result, x=column).get_xlabel() == f"{column} [{unit}]"
     for draw in (fc.plot.slip_fraction, fc.plot.events, fc.plot.path, fc.plot.newton):
         assert draw(result).has_data()
-    for field in ("slip", "slip_rate", "p", "mu"):
+    for field in ("slip", "slip_rate", "pressure", "mu"):
         assert fc.plot.interface(result, "base", field).has_data()
     with pytest.raises(KeyError, match="there are base"):
         fc.plot.friction(result, "bas")

@@ -21,8 +21,8 @@ use self::threads::use_threads;
 pub use crate::case::job::defect;
 use crate::case::{self, Opened, Written, law_test};
 use crate::output::law::LawTable;
-use crate::output::report;
 use crate::output::summary::{self, About, Ending, LawSummary};
+use crate::output::{quantities, report};
 use crate::run::error::Error;
 use crate::run::law::{Hold, LawReport, PathPoint};
 
@@ -33,6 +33,8 @@ pub enum Input {
     Case,
     /// the test of `fecontact law`
     Law,
+    /// what results hold: the quantities of their files
+    Results,
 }
 
 /// `fecontact check`.
@@ -137,6 +139,7 @@ pub fn schema(of: Input) -> Result<(), Failure> {
     let schema = match of {
         Input::Case => case::schema(),
         Input::Law => law_test::schema(),
+        Input::Results => quantities::schema(),
     };
     print(&format!("{schema:#}\n"))
 }

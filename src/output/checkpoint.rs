@@ -27,7 +27,7 @@ pub const PREVIOUS: &str = "checkpoint_prev.bin";
 
 const MAGIC: &[u8] = b"fecontact checkpoint\n";
 /// What stands in the file; another number for every change of it.
-pub const VERSION: u32 = 7;
+pub const VERSION: u32 = 8;
 const HEAD: usize = MAGIC.len() + 16;
 
 /// A run as it was, and what it belongs to.

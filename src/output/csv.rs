@@ -1,13 +1,6 @@
 //! A table on disk: comma, dot, header row, full double precision. Every row reaches the file within a blink, and whole: a
 //! table never ends within a row, whether its run is killed or its disk full.
 //!
-//! # Rows
-//!
-//! Which increments have rows in the tables: all of them or, with an interval, those that are at least so far apart in time.
-//!
-//! Events are never thinned away: where a point of a contact closes, opens, begins to slip or stops, the increments before and
-//! after are rows. So are the last ones of steps, those at the times asked for, and the outputs of explicit increments.
-//!
 //! # Memory
 //!
 //! What observers remember, as bytes.
@@ -21,12 +14,9 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::files;
-use crate::laws::friction::Regime;
 use crate::model::Model;
-use crate::model::scheme::Scheme;
-use crate::model::state::State;
 use crate::run::error::Error;
-use crate::run::observer::Attempt;
+use crate::run::observer::{Attempt, Observer, Row};
 
 /// Rows written within this time of each other go to the system together: the call would cost as much as the row.
 const BLINK: Duration = Duration::from_millis(50);
@@ -60,31 +50,29 @@ pub struct Table {
     flushed: Instant,
 }
 
-/// How a table comes to its file: [`Table::create`] or [`Table::reopen`].
-pub type Opening = fn(&Path, &[String]) -> Result<Table, Error>;
-
 impl Table {
     /// Create the file and write its header.
-    pub fn create(path: &Path, header: &[String]) -> Result<Self, Error> {
+    pub fn create(path: &Path, header: Vec<String>) -> Result<Self, Error> {
         let file = files::create(path).map_err(|cause| failed(path, &cause))?;
+        let line = header.join(",");
         let mut table = Self::of(path, file, header);
-        header.iter().for_each(|name| table.text(name));
+        table.text(&line);
         table.end_row()?;
         table.flush()?;
         Ok(table)
     }
 
     /// Open the file of an earlier run, to be [`cut`](Self::cut) and gone on with.
-    pub fn reopen(path: &Path, header: &[String]) -> Result<Self, Error> {
+    pub fn reopen(path: &Path, header: Vec<String>) -> Result<Self, Error> {
         let file = files::open(path).map_err(|cause| failed(path, &cause))?;
         Ok(Self::of(path, file, header))
     }
 
-    fn of(path: &Path, file: File, header: &[String]) -> Self {
+    fn of(path: &Path, file: File, header: Vec<String>) -> Self {
         Self {
             path: path.to_owned(),
             file,
-            header: header.to_vec(),
+            header,
             rows: Vec::new(),
             row: Vec::new(),
             held: Vec::new(),
@@ -289,53 +277,6 @@ pub fn failed(path: &Path, cause: &dyn std::fmt::Display) -> Error {
     Error::Output { path: path.to_owned(), cause: cause.to_string() }
 }
 
-/// Share of the interval that round-off may take away.
-const ROUND_OFF: f64 = 1e-9;
-
-/// What becomes of an increment.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Row {
-    /// It is a row
-    Written,
-    /// It is a row, and so is the one that was held, if there is one
-    AfterTheHeld,
-    /// It is one if an event follows
-    Held,
-}
-
-/// Judges one accepted increment after the other. It knows the time of the last row, and the regimes of all points of all
-/// contacts after the last increment; nothing before the first one.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct Rows(Option<(f64, Vec<Regime>)>);
-
-impl Rows {
-    /// What becomes of the increment that led to a state.
-    pub fn judge(&mut self, model: &Model, attempt: &Attempt, state: &State) -> Row {
-        let Some(interval) = model.interval else { return Row::Written };
-        let (last, before) = self.0.take().unwrap_or_else(|| (attempt.old.time, regimes(model, attempt.old)));
-        let regimes = regimes(model, state);
-        let row = match regimes != before {
-            true => Row::AfterTheHeld,
-            false if is_kept(model, attempt, state) => Row::Written,
-            false if state.time - last >= interval * (1.0 - ROUND_OFF) => Row::Written,
-            false => Row::Held,
-        };
-        self.0 = Some((if row == Row::Held { last } else { state.time }, regimes));
-        row
-    }
-}
-
-fn is_kept(model: &Model, attempt: &Attempt, state: &State) -> bool {
-    matches!(attempt.step.scheme, Scheme::Explicit { .. })
-        || attempt.ends_step(state)
-        || model.is_output_time(state.time)
-}
-
-fn regimes(model: &Model, state: &State) -> Vec<Regime> {
-    let pairs = model.contacts.iter().zip(&state.contacts);
-    pairs.flat_map(|(pair, states)| pair.points.iter().zip(states).map(|(p, state)| pair.regime(p, state))).collect()
-}
-
 /// The bytes of what an observer remembers.
 pub fn remembered(memory: &impl Serialize) -> Result<Vec<u8>, Error> {
     postcard::to_allocvec(memory).map_err(|cause| failed(Path::new("memory of an observer"), &cause))
@@ -346,19 +287,93 @@ pub fn recalled<M: DeserializeOwned>(bytes: &[u8]) -> Result<M, Error> {
     postcard::from_bytes(bytes).map_err(|cause| failed(Path::new("memory of an observer"), &cause))
 }
 
-/// A table remembers what stands in it.
-pub fn table_memory(table: &mut Table) -> Result<Vec<u8>, Error> {
-    remembered(&table.standing()?)
+/// What stands in a table that a run writes, and is remembered from row to row.
+pub trait Rows: Sized {
+    /// Name of the table without its ending, by which its memory is found as well
+    const NAME: &'static str;
+
+    /// Those of a model, and the header above them.
+    fn new(model: &Model) -> (Self, Vec<String>);
+
+    /// Write the rows of an attempt, if it has any.
+    ///
+    /// # Errors
+    /// [`Error::Output`] when the file cannot take them.
+    fn write(&mut self, table: &mut Table, model: &Model, attempt: &Attempt) -> Result<(), Error>;
+
+    /// What is remembered. Nothing unless it says so.
+    ///
+    /// # Errors
+    /// [`Error::Output`] where it cannot be made bytes.
+    fn save(&self) -> Result<Vec<u8>, Error> {
+        Ok(Vec::new())
+    }
+
+    /// Go on from what was remembered.
+    ///
+    /// # Errors
+    /// [`Error::Output`] where the bytes are not what was remembered.
+    fn restore(&mut self, _memory: &[u8]) -> Result<(), Error> {
+        Ok(())
+    }
 }
 
-/// Whether a table can be gone on with, where the memory begins with what stood in it.
-pub fn check_table(table: &Table, bytes: &[u8]) -> Result<(), Error> {
-    table.check(&recalled(bytes)?)
+/// Writes the table of some rows while a run goes on.
+#[derive(Debug)]
+pub struct Sheet<R> {
+    table: Table,
+    pub(super) rows: R,
 }
 
-/// Cut a table back to what stood in it; what else was remembered.
-pub fn cut_table<M: DeserializeOwned>(table: &mut Table, bytes: &[u8]) -> Result<M, Error> {
-    let (stood, memory) = recalled(bytes)?;
-    table.cut(stood)?;
-    Ok(memory)
+impl<R: Rows> Sheet<R> {
+    /// Create the table in `folder`.
+    ///
+    /// # Errors
+    /// [`Error::Output`] when it cannot be written.
+    pub fn create(folder: &Path, model: &Model) -> Result<Self, Error> {
+        let (rows, header) = R::new(model);
+        Ok(Self { table: Table::create(&file::<R>(folder), header)?, rows })
+    }
+
+    /// The table that is there, to be restored.
+    ///
+    /// # Errors
+    /// [`Error::Output`] when it cannot be opened.
+    pub fn reopen(folder: &Path, model: &Model) -> Result<Self, Error> {
+        let (rows, header) = R::new(model);
+        Ok(Self { table: Table::reopen(&file::<R>(folder), header)?, rows })
+    }
+}
+
+fn file<R: Rows>(folder: &Path) -> PathBuf {
+    folder.join(format!("{}.csv", R::NAME))
+}
+
+impl<R: Rows> Observer for Sheet<R> {
+    fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
+        self.rows.write(&mut self.table, model, attempt)?;
+        self.table.share()
+    }
+
+    fn name(&self) -> &'static str {
+        R::NAME
+    }
+
+    fn save(&mut self) -> Result<Vec<u8>, Error> {
+        remembered(&(self.table.standing()?, self.rows.save()?))
+    }
+
+    fn check(&self, memory: &[u8]) -> Result<(), Error> {
+        self.table.check(&recalled(memory)?)
+    }
+
+    fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
+        let (stood, memory): (Standing, Vec<u8>) = recalled(memory)?;
+        self.table.cut(stood)?;
+        self.rows.restore(&memory)
+    }
+
+    fn finish(&mut self) -> Result<(), Error> {
+        self.table.flush()
+    }
 }

@@ -9,7 +9,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use super::csv::{Row, Rows, failed};
+use super::csv::failed;
 use super::frames::{Shown, contact_frame, points_frame, solid_frame};
 use super::vtu::Grid;
 use super::{csv, files};
@@ -17,7 +17,7 @@ use crate::linear::memory::room_for;
 use crate::model::Model;
 use crate::model::state::State;
 use crate::run::error::Error;
-use crate::run::observer::{Attempt, Observer};
+use crate::run::observer::{Attempt, Observer, Row};
 
 /// Writes frames of the solids and of the interfaces, in the background while the run goes on.
 #[derive(Debug)]
@@ -27,8 +27,8 @@ pub struct Fields {
     /// Names of the series
     names: Vec<&'static str>,
     frames_of: Frames,
-    /// Which increments are rows of the history, and how many there are so far
-    rows: (Rows, usize),
+    /// How many rows there are so far
+    rows: usize,
     /// Times of the frames so far [T]
     times: Vec<f64>,
     /// What the writer is to do; `None` when there is no more
@@ -44,12 +44,6 @@ pub struct Frames {
     pub every: Option<usize>,
     /// Whether the integration points have frames
     pub points: bool,
-}
-
-impl From<usize> for Frames {
-    fn from(every: usize) -> Self {
-        Self { every: Some(every), points: false }
-    }
 }
 
 /// What the writer of frames is asked for.
@@ -85,7 +79,7 @@ impl Fields {
     ///
     /// # Errors
     /// [`Error::Output`] when a file cannot be written.
-    pub fn create(folder: &Path, model: Arc<Model>, start: &State, frames: impl Into<Frames>) -> Result<Self, Error> {
+    pub fn create(folder: &Path, model: Arc<Model>, start: &State, frames: Frames) -> Result<Self, Error> {
         let mut fields = Self::reopen(folder, model.clone(), frames)?;
         fields.write(&model, start)?;
         Ok(fields)
@@ -95,8 +89,8 @@ impl Fields {
     ///
     /// # Errors
     /// [`Error::Output`] when there is no place for it.
-    pub fn reopen(folder: &Path, model: Arc<Model>, frames: impl Into<Frames>) -> Result<Self, Error> {
-        let (frames_of, rows) = (frames.into(), (Rows::default(), 0));
+    pub fn reopen(folder: &Path, model: Arc<Model>, frames: Frames) -> Result<Self, Error> {
+        let (frames_of, rows) = (frames, 0);
         let names = [("solid", true), ("contact", !model.contacts.is_empty()), ("points", frames_of.points)];
         let names: Vec<&str> = names.into_iter().filter(|(_, asked)| *asked).map(|(name, _)| name).collect();
         let collections = names.iter().map(|name| Collection::create(folder, name)).collect::<Result<_, _>>()?;
@@ -167,10 +161,9 @@ fn listed(collections: &mut [Collection]) -> Result<(), Error> {
 impl Observer for Fields {
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
-        let (rows, count) = &mut self.rows;
-        let is_row = rows.judge(model, attempt, state) != Row::Held;
-        *count += usize::from(is_row);
-        let is_due = self.frames_of.every.is_some_and(|every| is_row && count.is_multiple_of(every));
+        let is_row = attempt.row != Row::Held;
+        self.rows += usize::from(is_row);
+        let is_due = self.frames_of.every.is_some_and(|every| is_row && self.rows.is_multiple_of(every));
         match is_due || attempt.ends_step(state) || model.is_output_time(state.time) {
             true => self.write(model, state),
             false => Ok(()),
@@ -183,11 +176,11 @@ impl Observer for Fields {
 
     fn save(&mut self) -> Result<Vec<u8>, Error> {
         self.settle()?;
-        csv::remembered(&(&self.rows, &self.times))
+        csv::remembered(&(self.rows, &self.times))
     }
 
     fn check(&self, memory: &[u8]) -> Result<(), Error> {
-        let (_, times): ((Rows, usize), Vec<f64>) = csv::recalled(memory)?;
+        let (_, times): (usize, Vec<f64>) = csv::recalled(memory)?;
         let frames =
             self.names.iter().flat_map(|name| (0..times.len()).map(|number| self.folder.join(file(name, number))));
         match frames.into_iter().find(|path| !path.is_file()) {
@@ -236,7 +229,8 @@ impl Collection {
             "points" => points_frame,
             _ => contact_frame,
         };
-        let written = frame(model, shown, &mut self.grid).and_then(|()| self.grid.write(&path));
+        frame(model, shown, &mut self.grid);
+        let written = self.grid.write(&path);
         if written.is_err() {
             // Half a frame is of no use.
             let _ = files::remove(&path);

@@ -1,14 +1,11 @@
 //! What a frame shows of a state: bodies, interfaces, integration points.
 
-use std::io;
-
 use nalgebra::Vector2;
 
 use super::vtu::{CellType, Grid, cell_type};
 use crate::contact::force::ContactState;
 use crate::contact::pair;
 use crate::contact::pair::ContactPair;
-use crate::contact::surface::SlavePoint;
 use crate::laws::bulk::CauchyStress;
 use crate::mesh::Element;
 use crate::mesh::configuration::Configuration;
@@ -33,14 +30,14 @@ impl Shown {
 }
 
 /// The bodies.
-pub fn solid_frame(model: &Model, Shown { state, contact_forces }: &Shown, grid: &mut Grid) -> io::Result<()> {
+pub fn solid_frame(model: &Model, Shown { state, contact_forces }: &Shown, grid: &mut Grid) {
     let stresses = nodal_stresses(model, state);
     // A body has one material, and a material serves one body: the two ids agree.
     let body = || model.body_of_element.iter().map(|&body| body as i32);
     grid.begin(|| {
         let cell = |element: &Element| (cell_type(element.kind), element.nodes.clone());
         (model.mesh.nodes.clone(), model.mesh.elements.iter().map(cell).collect())
-    })?;
+    });
     grid.vectors("displacement", &state.displacement);
     grid.vectors("velocity", &state.velocity);
     grid.vectors("acceleration", &state.acceleration);
@@ -49,7 +46,6 @@ pub fn solid_frame(model: &Model, Shown { state, contact_forces }: &Shown, grid:
     add_stresses(grid, &stresses);
     grid.at_cells("body", body());
     grid.at_cells("material", body());
-    Ok(())
 }
 
 /// What contacts put on every node [F].
@@ -70,7 +66,7 @@ fn displacements(state: &State, nodes: &[usize]) -> Vec<Vector2<f64>> {
 }
 
 /// The integration points of the bodies, with their stresses and what the materials remember there.
-pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid) -> io::Result<()> {
+pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid) {
     let elements = &model.mesh.elements;
     let mut names: Vec<&str> = Vec::new();
     for name in model.bodies.iter().flat_map(|body| body.material.variables()) {
@@ -103,12 +99,11 @@ pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid)
     grid.begin(|| {
         let cells = (0..places.len()).map(|k| (CellType::Vertex, vec![k])).collect();
         (places, cells)
-    })?;
+    });
     grid.vectors("displacement", &moved);
     add_stresses(grid, &stresses);
     names.iter().zip(variables).for_each(|(name, values)| grid.at_points(name, 1, values.into_iter()));
     grid.at_cells("body", body.into_iter());
-    Ok(())
 }
 
 fn add_stresses(grid: &mut Grid, stresses: &[CauchyStress]) {
@@ -146,14 +141,8 @@ fn nodal_stresses(model: &Model, state: &State) -> Vec<CauchyStress> {
     sums.into_iter().map(mean).collect()
 }
 
-/// A contact point.
-struct Place<'a> {
-    pair: &'a ContactPair,
-    slave: &'a SlavePoint,
-}
-
 /// The interfaces: a polyline through the contact points along each slave surface.
-pub fn contact_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid) -> io::Result<()> {
+pub fn contact_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid) {
     let points_of = |pair: &ContactPair, x: &Configuration| pair.points.iter().map(|p| p.at(x)).collect::<Vec<_>>();
     let undeformed = model.mesh.undeformed();
     let reference: Vec<Vector2<f64>> = model.contacts.iter().flat_map(|pair| points_of(pair, &undeformed)).collect();
@@ -172,19 +161,13 @@ pub fn contact_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid
         }
         first += pair.points.len();
     }
-    let states = model.contacts.iter().zip(&state.contacts).flat_map(|(pair, states)| {
-        let points = pair.points.iter().zip(states);
-        points.map(move |(slave, state)| (Place { pair, slave }, state))
-    });
-    let all: Vec<(Place, &ContactState)> = states.collect();
-    grid.begin(|| (reference, lines))?;
+    grid.begin(|| (reference, lines));
     grid.vectors("displacement", &displacement);
     for name in pair::field_names(&model.contacts) {
-        let value = |(place, s): &(Place, &ContactState)| {
-            pair::field_value(place.pair, place.slave, s, (state.time, state.dt), name)
+        let of = |(pair, states): (&ContactPair, &Vec<ContactState>)| {
+            pair::field_values(pair, states, (state.time, state.dt), name)
         };
-        grid.at_points(name, 1, all.iter().map(value));
+        grid.at_points(name, 1, model.contacts.iter().zip(&state.contacts).flat_map(of));
     }
     grid.at_cells("contact", contact_id.into_iter());
-    Ok(())
 }

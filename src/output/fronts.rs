@@ -22,50 +22,11 @@ use super::csv;
 use super::csv::Table;
 pub use super::events::Arrive;
 use super::events::{Energies, Interface, Mark, Measures, Passing, WaveSpeeds};
+use super::quantities::{EVENTS, FRONTS, names};
 use crate::model::Model;
 use crate::model::state::State;
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};
-
-/// Columns of `fronts.csv`.
-const FRONTS: [&str; 14] = [
-    "contact",
-    "point",
-    "position",
-    "x",
-    "y",
-    "passage",
-    "arrival",
-    "speed",
-    "speed_over_c_R",
-    "speed_over_c_s",
-    "speed_over_c_p",
-    "event",
-    "rupture_length",
-    "energy_released",
-];
-
-/// Columns of `events.csv`.
-const EVENTS: [&str; 18] = [
-    "contact",
-    "event",
-    "onset",
-    "position",
-    "x",
-    "y",
-    "duration",
-    "over",
-    "length",
-    "mean_slip",
-    "largest_slip",
-    "peak_slip_rate",
-    "stress_drop",
-    "fracture_energy",
-    "energy_released",
-    "energy_radiated",
-    "front_speed",
-    "front_speed_over_c_R",
-];
 
 /// Writes `fronts.csv` and `events.csv` at the end.
 #[derive(Debug)]
@@ -110,7 +71,7 @@ impl Fronts {
     }
 
     fn fronts(&self) -> Result<(), Error> {
-        let mut table = Table::create(&self.folder.join("fronts.csv"), &FRONTS.map(String::from))?;
+        let mut table = Table::create(&self.folder.join("fronts.csv"), names(&FRONTS).collect())?;
         for interface in &self.interfaces {
             let events = interface.reached();
             for (k, point) in interface.points.iter().enumerate() {
@@ -138,7 +99,7 @@ impl Fronts {
     }
 
     fn events(&self) -> Result<(), Error> {
-        let mut table = Table::create(&self.folder.join("events.csv"), &EVENTS.map(String::from))?;
+        let mut table = Table::create(&self.folder.join("events.csv"), names(&EVENTS).collect())?;
         for interface in &self.interfaces {
             let rayleigh = interface.speeds.as_ref().map_or(f64::NAN, |speeds| speeds.rayleigh);
             for (event, m) in interface.events.iter().filter_map(|event| Some((event, Measures::of(event, interface)?)))

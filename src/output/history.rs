@@ -1,6 +1,5 @@
-//! `history.csv`: a row per accepted increment, or those that an interval leaves (`csv.rs`).
+//! `history.csv`: a row per accepted increment, or those that an interval leaves (`run/observer.rs`).
 
-use std::path::Path;
 use std::slice;
 
 use nalgebra::Vector2;
@@ -8,8 +7,11 @@ use serde::{Deserialize, Serialize};
 
 use super::bodies::{BodyMeans, Motion};
 use super::csv;
-use super::csv::{Opening, Rows, Table};
+use super::csv::{Rows, Sheet, Table};
 use super::friction_course::FrictionCourse;
+use super::quantities::{
+    BODY, CONTACT, EDGES, ENERGIES, FLUID_FORCE, HEAT, INCREMENT, Quantity, RADIATED, RESULTANT, WATCHED, names,
+};
 use crate::contact::force::ContactState;
 use crate::contact::nodal_forces::Resultant;
 use crate::contact::pair::ContactPair;
@@ -19,12 +21,14 @@ use crate::mesh::{Group, shape};
 use crate::model::state::{Energy, State};
 use crate::model::{Model, WatchedSet};
 use crate::run::error::Error;
-use crate::run::observer::{Attempt, Observer};
+use crate::run::observer::Attempt;
 
 /// Writes `history.csv`.
+pub type History = Sheet<HistoryRows>;
+
+/// The rows of `history.csv`.
 #[derive(Debug)]
-pub struct History {
-    table: Table,
+pub struct HistoryRows {
     /// Observables of each contact whose means are written
     observed: Vec<Vec<&'static str>>,
     /// Middle of each undeformed slave surface, about which the moments are
@@ -32,17 +36,12 @@ pub struct History {
     bodies: Vec<BodyMeans>,
     /// ∫ N_a ds of the watched sets that are edges
     edges: Vec<EdgeMeans>,
-    /// Which contacts have a column for the force of their fluid
-    fluids: Vec<bool>,
-    /// Whether slip radiates, and the energies have a column for it
-    radiates: bool,
     memory: Memory,
 }
 
 /// What is remembered from row to row.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Memory {
-    rows: Rows,
     /// Rotation of each body, turns counted; none before the first increment [rad]
     rotations: Vec<f64>,
     /// Frictional heat of each contact so far [F·L]
@@ -54,59 +53,17 @@ struct Memory {
 /// A watched set of edges: its name, and the share of its length that each node stands for.
 type EdgeMeans = (String, Vec<(usize, f64)>);
 
-const INCREMENT: [&str; 4] = ["time", "dt", "step", "iterations"];
-const ENERGIES: [&str; 7] = [
-    "kinetic",
-    "strain",
-    "contact_elastic",
-    "friction_dissipation",
-    "damping_dissipation",
-    "external_work",
-    "energy_error",
-];
-const CONTACT: [&str; 8] = [
-    "normal_force",
-    "tangential_force",
-    "contact_length",
-    "slip_fraction",
-    "mean_slip",
-    "max_penetration",
-    "max_elastic_slip",
-    "mean_elastic_slip",
-];
-const WATCHED: [&str; 4] = ["ux", "uy", "fx", "fy"];
-/// Resultant of a contact on its slave, the moment about the middle of the undeformed slave.
-const RESULTANT: [&str; 3] = ["force_x", "force_y", "moment"];
-const BODY: [&str; 6] = ["momentum_x", "momentum_y", "angular_momentum", "centre_x", "centre_y", "rotation"];
-/// Heat of a contact so far, ∫ q v^p ds dt, and its rate over the last increment.
-const HEAT: [&str; 2] = ["frictional_heat", "frictional_power"];
-/// Means by length of a watched set of edges.
-const EDGES: [&str; 2] = ["edge_ux", "edge_uy"];
+impl Rows for HistoryRows {
+    const NAME: &'static str = "history";
 
-impl History {
-    /// Create `history.csv` in `folder`.
-    ///
-    /// # Errors
-    /// [`Error::Output`] when it cannot be written.
-    pub fn create(folder: &Path, model: &Model) -> Result<Self, Error> {
-        Self::with(Table::create, folder, model)
-    }
-
-    /// The `history.csv` that is there, to be restored.
-    ///
-    /// # Errors
-    /// [`Error::Output`] when it cannot be opened.
-    pub fn reopen(folder: &Path, model: &Model) -> Result<Self, Error> {
-        Self::with(Table::reopen, folder, model)
-    }
-
-    fn with(open: Opening, folder: &Path, model: &Model) -> Result<Self, Error> {
-        let of = |name: &str, columns: &[&str]| columns.iter().map(|c| format!("{name}.{c}")).collect::<Vec<_>>();
-        let mut header: Vec<String> = INCREMENT.iter().chain(&ENERGIES).map(|c| (*c).into()).collect();
+    fn new(model: &Model) -> (Self, Vec<String>) {
+        let of = |name: &str, columns: &[Quantity]| {
+            names(columns).map(|column| format!("{name}.{column}")).collect::<Vec<_>>()
+        };
+        let mut header: Vec<String> = names(&INCREMENT).chain(names(&ENERGIES)).collect();
         header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &CONTACT)));
         header.extend(model.watch.iter().flat_map(|set| of(&set.name, &WATCHED)));
-        let radiates = model.contacts.iter().any(|pair| pair.radiation > 0.0);
-        header.extend(radiates.then(|| "radiated".into()));
+        header.extend(radiates(model).then(|| RADIATED.name.into()));
         let further = |pair: &ContactPair| observables::further(pair.laws.iter().map(|law| &law.description));
         let observed: Vec<Vec<&str>> = model.contacts.iter().map(further).collect();
         for (pair, names) in model.contacts.iter().zip(&observed) {
@@ -116,39 +73,27 @@ impl History {
         header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &RESULTANT)));
         header.extend(model.bodies.iter().flat_map(|body| of(&body.name, &BODY)));
         header.extend(edges.iter().flat_map(|(name, _)| of(name, &EDGES)));
-        let fluids: Vec<bool> = model.contacts.iter().map(|pair| pair.fluid.is_some()).collect();
         let in_fluid = model.contacts.iter().filter(|pair| pair.fluid.is_some());
-        header.extend(in_fluid.map(|pair| format!("{}.fluid_force", pair.name)));
+        header.extend(in_fluid.flat_map(|pair| of(&pair.name, &[FLUID_FORCE])));
         header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &HEAT)));
         let undeformed = model.mesh.undeformed();
-        Ok(Self {
-            table: open(&folder.join("history.csv"), &header)?,
+        let rows = Self {
             observed,
             middles: model.contacts.iter().map(|pair| pair.middle(&undeformed)).collect(),
             bodies: model.bodies.iter().map(|body| BodyMeans::new(model, body)).collect(),
             edges,
-            fluids,
-            radiates,
             memory: Memory {
-                rows: Rows::default(),
                 rotations: Vec::new(),
                 heat: vec![0.0; model.contacts.len()],
                 courses: vec![FrictionCourse::default(); model.contacts.len()],
             },
-        })
+        };
+        (rows, header)
     }
 
-    /// How the friction of the contacts went, in their order.
-    pub fn courses(&self) -> &[FrictionCourse] {
-        &self.memory.courses
-    }
-}
-
-impl Observer for History {
-    fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
+    fn write(&mut self, table: &mut Table, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
-        let Self { table, observed, middles, bodies, edges, fluids, radiates, memory } = self;
-        let row = memory.rows.judge(model, attempt, state);
+        let Self { observed, middles, bodies, edges, memory } = self;
         table.number(state.time);
         table.number(state.dt);
         table.text(&attempt.step.name);
@@ -162,7 +107,7 @@ impl Observer for History {
         for set in &model.watch {
             table.numbers(watched_row(set, state));
         }
-        table.numbers(radiates.then_some(state.energy.radiated));
+        table.numbers(radiates(model).then_some(state.energy.radiated));
         for ((pair, states), names) in model.contacts.iter().zip(&state.contacts).zip(observed) {
             table.numbers(names.iter().map(|name| mean(pair, (states, state.time), name)));
         }
@@ -184,7 +129,7 @@ impl Observer for History {
             let mean = |i: usize| shares.iter().map(|(node, share)| share * state.displacement[2 * node + i]).sum();
             table.numbers([mean(0), mean(1)]);
         }
-        for (states, _) in state.contacts.iter().zip(fluids).filter(|(_, has)| **has) {
+        for (_, states) in model.contacts.iter().zip(&state.contacts).filter(|(pair, _)| pair.fluid.is_some()) {
             table.number(states.iter().map(|state| state.length * state.fluid).sum());
         }
         for (heat, (old, new)) in memory.heat.iter_mut().zip(attempt.old.contacts.iter().zip(&state.contacts)) {
@@ -192,30 +137,29 @@ impl Observer for History {
             *heat += more;
             table.numbers([*heat, more / (state.time - attempt.old.time)]);
         }
-        table.end_row_as(row)?;
-        table.share()
+        table.end_row_as(attempt.row)
     }
 
-    fn name(&self) -> &'static str {
-        "history"
-    }
-
-    fn save(&mut self) -> Result<Vec<u8>, Error> {
-        csv::remembered(&(self.table.standing()?, &self.memory))
-    }
-
-    fn check(&self, memory: &[u8]) -> Result<(), Error> {
-        csv::check_table(&self.table, memory)
+    fn save(&self) -> Result<Vec<u8>, Error> {
+        csv::remembered(&self.memory)
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        self.memory = csv::cut_table(&mut self.table, memory)?;
+        self.memory = csv::recalled(memory)?;
         Ok(())
     }
+}
 
-    fn finish(&mut self) -> Result<(), Error> {
-        self.table.flush()
+impl History {
+    /// How the friction of the contacts went, in their order.
+    pub fn courses(&self) -> &[FrictionCourse] {
+        &self.rows.memory.courses
     }
+}
+
+/// Whether slip radiates, and the energies have a column for it.
+fn radiates(model: &Model) -> bool {
+    model.contacts.iter().any(|pair| pair.radiation > 0.0)
 }
 
 fn energy_row(energy: &Energy) -> [f64; ENERGIES.len()] {

@@ -3,25 +3,10 @@
 use std::path::Path;
 
 use super::csv::Table;
+use super::quantities::{LAW, names};
 use crate::laws::friction::{FrictionLaw, FrictionResponse, observables};
 use crate::run::error::Error;
 use crate::run::law::LawRow;
-
-/// The columns of `law.csv` that every law has.
-const COLUMNS: [&str; 12] = [
-    "time",
-    "slip",
-    "pressure",
-    "traction",
-    "R",
-    "mu",
-    "structure",
-    "plastic_slip",
-    "dissipation",
-    "dtraction_dslip",
-    "dtraction_dpressure",
-    "evaluations",
-];
 
 /// Writes `law.csv`.
 #[derive(Debug)]
@@ -36,9 +21,9 @@ impl<'a> LawTable<'a> {
     /// # Errors
     /// [`Error::Output`] when it cannot be written.
     pub fn create(folder: &Path, law: &'a dyn FrictionLaw) -> Result<Self, Error> {
-        let names = COLUMNS.into_iter().chain(observables::further([&law.description()]));
-        let header: Vec<String> = names.map(String::from).collect();
-        Ok(Self { table: Table::create(&folder.join("law.csv"), &header)?, law })
+        let header =
+            names(&LAW).chain(observables::further([&law.description()]).into_iter().map(String::from)).collect();
+        Ok(Self { table: Table::create(&folder.join("law.csv"), header)?, law })
     }
 
     /// Write a row.

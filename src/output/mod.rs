@@ -16,6 +16,7 @@ pub mod interface;
 pub mod law;
 pub mod newton_log;
 pub mod probes;
+pub mod quantities;
 pub mod report;
 mod results;
 pub mod summary;

@@ -2,97 +2,48 @@
 //!
 //! What a gauge at a point of a body reads.
 
-use std::path::Path;
-
 use nalgebra::{Matrix2, Vector2};
 
-use super::csv;
-use super::csv::{Opening, Rows, Table};
+use super::csv::{Rows, Sheet, Table};
+use super::quantities::{HOOP, PROBE, names};
 use crate::laws::bulk::CauchyStress;
 use crate::model::state::State;
 use crate::model::{Model, Probe};
 use crate::run::error::Error;
-use crate::run::observer::{Attempt, Observer};
-
-/// Columns of every probe.
-const READINGS: [&str; 11] =
-    ["ux", "uy", "vx", "vy", "strain_xx", "strain_yy", "strain_xy", "stress_xx", "stress_yy", "stress_zz", "stress_xy"];
-
-/// The strain of hoops, of every probe of rings behind its other columns.
-const HOOP: &str = "strain_zz";
+use crate::run::observer::Attempt;
 
 /// The columns of every probe of a model.
-fn readings(model: &Model) -> impl Iterator<Item = &'static str> {
-    READINGS.into_iter().chain(model.mesh.section.is_axisymmetric().then_some(HOOP))
+fn readings(model: &Model) -> impl Iterator<Item = String> {
+    names(&PROBE).chain(model.mesh.section.is_axisymmetric().then(|| HOOP.name.into()))
 }
 
 /// Writes `probes.csv`.
+pub type Probes = Sheet<ProbeRows>;
+
+/// The rows of `probes.csv`.
 #[derive(Debug)]
-pub struct Probes {
-    table: Table,
-    rows: Rows,
-}
+pub struct ProbeRows;
 
-impl Probes {
-    /// Create `probes.csv` in `folder`.
-    ///
-    /// # Errors
-    /// [`Error::Output`] when it cannot be written.
-    pub fn create(folder: &Path, model: &Model) -> Result<Self, Error> {
-        Self::with(Table::create, folder, model)
-    }
+impl Rows for ProbeRows {
+    const NAME: &'static str = "probes";
 
-    /// The `probes.csv` that is there, to be restored.
-    ///
-    /// # Errors
-    /// [`Error::Output`] when it cannot be opened.
-    pub fn reopen(folder: &Path, model: &Model) -> Result<Self, Error> {
-        Self::with(Table::reopen, folder, model)
-    }
-
-    fn with(open: Opening, folder: &Path, model: &Model) -> Result<Self, Error> {
+    fn new(model: &Model) -> (Self, Vec<String>) {
         let columns = model.probes.iter().flat_map(|probe| readings(model).map(|of| format!("{}.{of}", probe.name)));
-        let header: Vec<String> = std::iter::once("time".into()).chain(columns).collect();
-        Ok(Self { table: open(&folder.join("probes.csv"), &header)?, rows: Rows::default() })
+        (Self, std::iter::once("time".into()).chain(columns).collect())
     }
-}
 
-impl Observer for Probes {
-    fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
+    fn write(&mut self, table: &mut Table, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
-        let row = self.rows.judge(model, attempt, state);
-        self.table.number(state.time);
+        table.number(state.time);
         for probe in &model.probes {
             let Reading { displacement: u, velocity: v, strain, hoop_strain, stress } =
                 Reading::of(probe, model, state);
             let CauchyStress { xx, yy, zz, xy } = stress;
             let hoop = model.mesh.section.is_axisymmetric().then_some(hoop_strain);
             let all = [u.x, u.y, v.x, v.y].into_iter().chain(strain).chain([xx, yy, zz, xy]).chain(hoop);
-            self.table.numbers(all);
+            table.numbers(all);
         }
-        self.table.end_row_as(row)?;
-        self.table.share()
-    }
-
-    fn name(&self) -> &'static str {
-        "probes"
-    }
-
-    fn save(&mut self) -> Result<Vec<u8>, Error> {
-        csv::remembered(&(self.table.standing()?, &self.rows))
-    }
-
-    fn check(&self, memory: &[u8]) -> Result<(), Error> {
-        csv::check_table(&self.table, memory)
-    }
-
-    fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        self.rows = csv::cut_table(&mut self.table, memory)?;
-        Ok(())
-    }
-
-    fn finish(&mut self) -> Result<(), Error> {
-        self.table.flush()
+        table.end_row_as(attempt.row)
     }
 }
 

@@ -89,7 +89,7 @@ impl Simulation {
         Ok(sum / nodes.len() as f64)
     }
 
-    /// A field of a contact by its name, see [`pair::field_value`], one value a slave point in their order.
+    /// A field of a contact by its name, see [`pair::field_values`], one value a slave point in their order.
     ///
     /// # Errors
     /// [`Unknown::Contact`], [`Unknown::Field`].
@@ -99,10 +99,7 @@ impl Simulation {
         if !names.contains(&field) {
             return Err(Unknown::Field { name: field.into(), known: names.join(", ") });
         }
-        let points = pair.points.iter().zip(states);
-        Ok(points
-            .map(|(slave, point)| pair::field_value(pair, slave, point, (self.state().time, self.state().dt), field))
-            .collect())
+        Ok(pair::field_values(pair, states, (self.state().time, self.state().dt), field))
     }
 
     /// Where the slave points of a contact are, in their order [L].

@@ -41,6 +41,8 @@ pub(super) struct Control {
     /// the motion, with its fastest slip, that a static step has stopped although slip became faster, until an increment of it is
     /// accepted
     pub moving: Option<(Arc<State>, f64)>,
+    /// time of the last row of the results [T]
+    pub last_row: f64,
 }
 
 impl Control {

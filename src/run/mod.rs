@@ -162,7 +162,7 @@ impl SavedRun {
     ///
     /// # Errors
     /// [`Error::Output`] with the first thing that is not as it was.
-    pub fn check(&self, observers: &[&dyn Observer]) -> Result<(), Error> {
+    pub fn check(&self, observers: &[&mut dyn Observer]) -> Result<(), Error> {
         observers
             .iter()
             .try_for_each(|observer| self.memory(observer.name()).map_or(Ok(()), |memory| observer.check(memory)))

@@ -1,7 +1,14 @@
 //! Those who watch a run, and what they are told.
 //!
+//! Which accepted increments are rows of the results: all of them or, with an interval, those that are at least so far apart in
+//! time. Events are never thinned away: where a point of a contact closes, opens, begins to slip or stops, the increments before
+//! and after are rows. So are the last ones of steps, those at the times asked for, and the outputs of explicit increments. It
+//! is decided once, by the run; all that is written over time goes by it.
+//!
 //! Why an attempt was given up: in a sentence, and in so few words that they can be counted.
 
+use crate::laws::friction::Regime;
+use crate::model::scheme::Scheme;
 use crate::model::state::State;
 use crate::model::step::{Course, Until};
 use crate::model::told::{count, number};
@@ -26,6 +33,8 @@ pub struct Attempt<'a> {
     pub iterations: &'a [IterationRecord],
     /// the new state, if it was accepted
     pub accepted: Option<&'a State>,
+    /// which row of the results it is, if it was accepted
+    pub row: Row,
     /// what became of it
     pub verdict: Verdict,
     /// why no equilibrium was found, if none was
@@ -44,6 +53,42 @@ impl Attempt<'_> {
         let met = |until: &Until| until.course(*span, [self.old, state]) == Course::Met;
         state.time >= span.end || until.as_ref().is_some_and(met)
     }
+
+    /// Which row it is, where the last one was at a time [T].
+    pub(super) fn row_after(&self, model: &Model, last: f64) -> Row {
+        let Some(new) = self.accepted else { return Row::Held };
+        let Some(interval) = model.interval else { return Row::Written };
+        let is_kept = || {
+            matches!(self.step.scheme, Scheme::Explicit { .. })
+                || self.ends_step(new)
+                || model.is_output_time(new.time)
+                || new.time - last >= interval * (1.0 - ROUND_OFF)
+        };
+        match regimes(model, self.old) != regimes(model, new) {
+            true => Row::AfterTheHeld,
+            false if is_kept() => Row::Written,
+            false => Row::Held,
+        }
+    }
+}
+
+fn regimes(model: &Model, state: &State) -> Vec<Regime> {
+    let pairs = model.contacts.iter().zip(&state.contacts);
+    pairs.flat_map(|(pair, states)| pair.points.iter().zip(states).map(|(p, state)| pair.regime(p, state))).collect()
+}
+
+/// Share of the interval that round-off may take away.
+const ROUND_OFF: f64 = 1e-9;
+
+/// What becomes of an increment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Row {
+    /// It is a row
+    Written,
+    /// It is a row, and so is the one that was held, if there is one
+    AfterTheHeld,
+    /// It is one if an event follows; what was not accepted is none
+    Held,
 }
 
 /// What became of an attempt.

@@ -20,7 +20,7 @@ use std::time::Instant;
 
 use super::control::{Candidate, Control, Increment, Midway, Outcome, Phase, RunReport, WallSeconds, is_of};
 use super::error::Error;
-use super::observer::Attempt;
+use super::observer::{Attempt, Row};
 use crate::linear::Multifrontal;
 use crate::model::state::{Energy, State};
 use crate::model::{Model, Step};
@@ -65,12 +65,14 @@ impl Simulation {
         let model = model.into();
         let work = Workspace::new(&model, Box::<Multifrontal>::default());
         let phase = if model.steps.is_empty() { Phase::Complete } else { Phase::Begin };
+        let state = model.initial_state();
+        let coupling = work.assembler.coupling();
         Self {
             step: Arc::new(model.steps.first().cloned().unwrap_or_default()),
             led: false,
             stopped: false,
-            state: Arc::new(model.initial_state()),
-            control: Control { step: 0, phase, coupling: work.assembler.coupling(), ended: Vec::new(), moving: None },
+            control: Control { step: 0, phase, coupling, ended: Vec::new(), moving: None, last_row: state.time },
+            state: Arc::new(state),
             explicit: None,
             midway: None,
             pause: Arc::new(|| false),
@@ -139,18 +141,21 @@ impl Simulation {
 
     /// What observers are told of a candidate.
     pub fn told<'a>(&'a self, candidate: &'a Candidate) -> Attempt<'a> {
-        Attempt {
+        let mut told = Attempt {
             step: self.step_now(),
             number: candidate.number,
             old: &self.state,
             dt: candidate.dt,
             iterations: &candidate.iterations,
             accepted: candidate.accepted.as_deref(),
+            row: Row::Held,
             verdict: candidate.verdict(),
             cause: candidate.cause(),
             local_error: candidate.local_error,
             doubt: candidate.doubt,
-        }
+        };
+        told.row = told.row_after(&self.model, self.control.last_row);
+        told
     }
 
     /// Try the next increment; `None` after the last one. Nothing changes but that a step begins.
@@ -178,6 +183,7 @@ impl Simulation {
     /// # Errors
     /// [`Error`] when no other attempt can help.
     pub fn follow(&mut self, candidate: Candidate) -> Result<(), Error> {
+        let is_row = self.told(&candidate).row != Row::Held;
         let Candidate { iterations, accepted, increments, outcome, coupling, explicit, .. } = candidate;
         if let Outcome::Paused(midway) = outcome {
             (self.control.coupling, self.explicit, self.midway) = (coupling, explicit, Some(midway));
@@ -193,6 +199,9 @@ impl Simulation {
             self.state = state;
             self.explicit = explicit;
             self.control.moving = None;
+            if is_row {
+                self.control.last_row = self.state.time;
+            }
         }
         match outcome {
             Outcome::Accepted(phase) | Outcome::Rejected(_, phase) | Outcome::Cut(_, phase) => self.enter(phase),
@@ -364,6 +373,7 @@ impl Saved {
         let Energy { kinetic, strain, contact_elastic, .. } = state.energy;
         let initial = kinetic + strain + contact_elastic;
         state.energy = Energy { kinetic, strain, contact_elastic, initial, ..Energy::default() };
+        self.control.last_row = state.time;
         (self.state, self.report) = (Arc::new(state), RunReport::default());
         self
     }

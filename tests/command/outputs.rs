@@ -13,6 +13,7 @@ use fecontact::model::Model;
 use fecontact::model::builder::{Gauge, LoadStep};
 use fecontact::output::bodies::BodyMeans;
 use fecontact::output::interface::{codec, read};
+use fecontact::output::quantities;
 use nalgebra::{Rotation2, Vector2};
 use serde_json::{Value, json};
 use tempfile::TempDir;
@@ -108,7 +109,7 @@ fn the_store_holds_what_the_frames_show() {
         values
     };
     let [slip, total, rate, gap] = ["slip", "total_slip", "slip_rate", "gap"].map(series);
-    let [p, q, ratio, mu, structure] = ["p", "q", "R", "mu", "structure"].map(series);
+    let [p, q, ratio, mu, structure] = ["pressure", "traction", "R", "mu", "structure"].map(series);
     let (mut before, mut slipped) = (vec![0.0; points], 0.0f64);
     for (k, time) in all.iter().enumerate() {
         let shown = frame(&out.join(format!("contact/{:05}.vtu", k + 1)));
@@ -121,8 +122,8 @@ fn the_store_holds_what_the_frames_show() {
         };
         let exact = shown("slip");
         near("slip", &slip, &exact);
-        near("p", &p, &shown("pressure"));
-        near("q", &q, &shown("traction"));
+        near("pressure", &p, &shown("pressure"));
+        near("traction", &q, &shown("traction"));
         near("R", &ratio, &shown("R"));
         near("mu", &mu, &shown("mu"));
         near("structure", &structure, &shown("structure"));
@@ -140,17 +141,72 @@ fn the_store_holds_what_the_frames_show() {
     let is = store::attributes(&store, &of("slip_rate"));
     assert_eq!((&is["units"], &is["relative_error"]), (&json!("mm s-1"), &json!(2f64.powi(-16))));
     assert_eq!(is["_ARRAY_DIMENSIONS"], json!(["time", "base_1.point"]));
-    assert_eq!(store::attributes(&store, &of("p"))["units"], json!("N mm-2"));
+    assert_eq!(store::attributes(&store, &of("pressure"))["units"], json!("N mm-2"));
     assert_eq!(store::attributes(&store, "time")["units"], json!("s"), "`seconds` would be read as a duration");
     assert_eq!(store::attributes(&store, "")["Conventions"], json!("CF-1.11"));
     // The reader that figures are drawn by.
-    let [contact] = &read::contacts(&out, |name| ["p", "slip"].contains(&name)).expect("a store")[..] else { panic!() };
+    let [contact] = &read::contacts(&out, |name| ["pressure", "slip"].contains(&name)).expect("a store")[..] else {
+        panic!()
+    };
     assert_eq!((contact.name.as_str(), &contact.times, contact.quantities.len()), ("base/1", &all, 2));
     let last = all.len() - 1;
-    let read: Vec<f64> = contact.at("p", last).expect("a record").iter().map(|p| f64::from(*p)).collect();
+    let read: Vec<f64> = contact.at("pressure", last).expect("a record").iter().map(|p| f64::from(*p)).collect();
     assert_eq!(read, p[last * points..]);
     let places: Vec<f64> = contact.places.iter().map(|at| at[0]).collect();
     assert_eq!((places, contact.lines.clone()), (store::array(&store, &of("x")).1, vec![0; points]));
+}
+
+/// A store of a version that called pressure and traction `p` and `q` is read by the names of now.
+#[test]
+fn stores_of_earlier_versions_are_read() {
+    let folder = TempDir::new().expect("a folder");
+    run(folder.path(), &dragged(healing(), "gauss_to_segment"));
+    let out = folder.path().join("out");
+    let now = read::contacts(&out, |_| true).expect("a store");
+    let metadata = out.join("interface.zarr/.zmetadata");
+    let mut text = fs::read_to_string(&metadata).expect("its metadata");
+    for (former, name) in [("p", "pressure"), ("q", "traction")] {
+        let [from, to] = [name, former].map(|name| out.join(format!("interface.zarr/base_1.{name}")));
+        fs::rename(from, to).expect("an array");
+        text = text.replace(&format!("base_1.{name}/"), &format!("base_1.{former}/"));
+    }
+    fs::write(metadata, text).expect("the metadata of then");
+    assert_eq!(read::contacts(&out, |_| true).expect("a store"), now);
+    assert!(["pressure", "traction"].iter().all(|name| now[0].quantities.contains_key(*name)));
+}
+
+/// What a run writes has an entry in the table of quantities, under the file that it stands in.
+#[test]
+fn what_is_written_is_listed() {
+    let folder = TempDir::new().expect("a folder");
+    let mut case = dragged(healing(), "gauss_to_segment");
+    case["output"] = json!({"points": true, "fronts": {"slip_rate": 1e-9}});
+    case["probes"] = json!({"gauge": {"at": case["mesh"]["nodes"][0]}});
+    run(folder.path(), &case);
+    let out = folder.path().join("out");
+    let check = |file: &str, found: Vec<String>| {
+        let groups = quantities::ALL.iter().find(|(of, _)| *of == file).expect("it is listed").1;
+        let known: Vec<&str> = groups.iter().flat_map(|(_, some)| *some).map(|quantity| quantity.name).collect();
+        let is =
+            |name: &str, known: &str| known.strip_suffix('…').map_or(name == known, |first| name.starts_with(first));
+        let own: Vec<&str> = found.iter().filter_map(|name| name.rsplit('.').next()).collect();
+        assert!(!own.is_empty() && own.iter().all(|name| known.iter().any(|known| is(name, known))), "{file}: {own:?}");
+    };
+    for file in ["history.csv", "newton.csv", "probes.csv", "fronts.csv", "events.csv"] {
+        let text = fs::read_to_string(out.join(file)).expect("a table");
+        check(file, text.lines().next().expect("a header").split(',').map(String::from).collect());
+    }
+    for kind in ["solid", "contact", "points"] {
+        let shown = frame(&out.join(format!("{kind}/00001.vtu"))).data;
+        let name = |attribute: &Attribute| match attribute {
+            Attribute::DataArray(array) => array.name.clone(),
+            Attribute::Field { name, .. } => name.clone(),
+        };
+        check(&format!("{kind}.pvd"), shown.point.iter().chain(&shown.cell).map(name).collect());
+    }
+    let arrays = fs::read_dir(out.join("interface.zarr")).expect("a store").map(|entry| entry.expect("an array"));
+    let arrays = arrays.filter(|entry| entry.path().is_dir());
+    check("interface.zarr", arrays.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect());
 }
 
 /// What slides without friction is not called slipping, neither in the history nor in frames nor in the store.

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use crate::common::{self, Blocks, Record, close};
 use crate::delayed::DelayedPressure;
 use fecontact::laws::friction::{FrictionLaw, Regime, Sliding};
-use fecontact::output::fields::Fields;
+use fecontact::output::fields::{Fields, Frames};
 use fecontact::output::history::History;
 use serde_json::{Value, json};
 use tempfile::TempDir;
@@ -296,7 +296,9 @@ fn a_law_from_elsewhere_runs_and_its_variables_appear_by_name() {
     let model = Arc::new(model);
     let folder = TempDir::new().unwrap();
     let mut history = History::create(folder.path(), &model).unwrap();
-    let mut fields = Fields::create(folder.path(), model.clone(), &model.initial_state(), 1).unwrap();
+    let mut fields =
+        Fields::create(folder.path(), model.clone(), &model.initial_state(), Frames { every: Some(1), points: false })
+            .unwrap();
     let mut record = Record::default();
     fecontact::run::run(&model, &mut [&mut record, &mut history, &mut fields]).1.unwrap();
     drop((history, fields));

@@ -129,7 +129,7 @@ impl Outputs {
         Self {
             history: History::create(folder, model).expect("history.csv"),
             probes: Probes::create(folder, model).expect("probes.csv"),
-            newton: NewtonLog::create(folder).expect("newton.csv"),
+            newton: NewtonLog::create(folder, model).expect("newton.csv"),
             warnings: Warnings::default(),
         }
     }
@@ -138,7 +138,7 @@ impl Outputs {
         Self {
             history: History::reopen(folder, model).expect("history.csv"),
             probes: Probes::reopen(folder, model).expect("probes.csv"),
-            newton: NewtonLog::reopen(folder).expect("newton.csv"),
+            newton: NewtonLog::reopen(folder, model).expect("newton.csv"),
             warnings: Warnings::default(),
         }
     }

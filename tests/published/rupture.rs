@@ -10,7 +10,7 @@ use fecontact::model::Model;
 use fecontact::output::events::WaveSpeeds;
 use fecontact::output::fronts::{Arrive, Fronts};
 use fecontact::run::error::Error;
-use fecontact::run::observer::{Attempt, Observer, Verdict};
+use fecontact::run::observer::{Attempt, Observer, Row, Verdict};
 use fecontact::run::run;
 use serde_json::{Value, json};
 
@@ -237,6 +237,7 @@ fn fronts_tell_when_and_how_fast_a_given_front_ran() {
             dt: 0.05,
             iterations: &[],
             accepted: Some(&new),
+            row: Row::Written,
             verdict: Verdict::Accepted,
             cause: None,
             doubt: None,

@@ -29,14 +29,14 @@ def check(folder: Path) -> None:
     np.testing.assert_array_equal(store["time"], column("time"))
     for contact, prefix in zip(store.attrs["contacts"], store.attrs["prefixes"]):
         of = lambda name: store[f"{prefix}.{name}"]
-        for name in ["slip", "total_slip", "slip_rate", "p", "q", "R", "mu", "structure", "gap"]:
+        for name in ["slip", "total_slip", "slip_rate", "pressure", "traction", "R", "mu", "structure", "gap"]:
             array = of(name)
             assert array.dims == ("time", f"{prefix}.point") and array.dtype == np.float32, array
             assert np.isfinite(array).all() and array.attrs["long_name"].startswith(contact), array
             assert f"{prefix}.position" in array.coords, array
         if "length" in units:
             assert of("slip").attrs["units"] == of("position").attrs["units"] == units["length"]
-        closed = of("p") > 0
+        closed = of("pressure") > 0
         # Means over the closed length lie between the least and the largest value of closed points.
         mean, error = column(f"{contact}.mean_slip"), of("slip").attrs["relative_error"]
         slack = 2 * error * np.abs(of("slip")).max("%s.point" % prefix).values

@@ -8,7 +8,7 @@ use crate::common::{self, Blocks, close, finish_at, linear};
 use fecontact::model::Model;
 use fecontact::model::builder::{Builder, LoadStep, Place, Support};
 use fecontact::model::state::State;
-use fecontact::output::fields::Fields;
+use fecontact::output::fields::{Fields, Frames};
 use fecontact::output::fronts::{Arrive, Fronts};
 use fecontact::output::history::History;
 use fecontact::output::newton_log::NewtonLog;
@@ -486,8 +486,9 @@ fn observers_go_back_with_the_run() {
     let folder = tempfile::tempdir().expect("a folder");
     let start = model.initial_state();
     let mut history = History::create(folder.path(), &model).expect("a table");
-    let mut log = NewtonLog::create(folder.path()).expect("a table");
-    let mut fields = Fields::create(folder.path(), model.clone(), &start, 2).expect("frames");
+    let mut log = NewtonLog::create(folder.path(), &model).expect("a table");
+    let mut fields =
+        Fields::create(folder.path(), model.clone(), &start, Frames { every: Some(2), points: false }).expect("frames");
     let mut fronts = Fronts::new(folder.path(), &model, &start, 1e-3, Arrive::Rate);
     let mut warnings = Warnings::default();
     let mut simulation = Simulation::new(model.clone());
@@ -521,8 +522,11 @@ fn observers_go_back_with_the_run() {
     let straight = tempfile::tempdir().expect("a folder");
     let mut others: [Box<dyn Observer>; 5] = [
         Box::new(History::create(straight.path(), &model).expect("a table")),
-        Box::new(NewtonLog::create(straight.path()).expect("a table")),
-        Box::new(Fields::create(straight.path(), model.clone(), &start, 2).expect("frames")),
+        Box::new(NewtonLog::create(straight.path(), &model).expect("a table")),
+        Box::new(
+            Fields::create(straight.path(), model.clone(), &start, Frames { every: Some(2), points: false })
+                .expect("frames"),
+        ),
         Box::new(Fronts::new(straight.path(), &model, &start, 1e-3, Arrive::Rate)),
         Box::new(Warnings::default()),
     ];

@@ -58,46 +58,10 @@ fn frames(case: &Case) -> Frames {
     Frames { every: case.output.every(), points: case.output.points }
 }
 
-/// The observers whose files are there already, to be gone on with.
-#[derive(Default)]
-struct Earlier {
+/// The observers of a run; all that the case asks for once it is open.
+pub(super) struct Outputs {
     history: Option<History>,
     newton_log: Option<NewtonLog>,
-    interface: Option<InterfaceStore>,
-    probes: Option<Probes>,
-    fields: Option<Fields>,
-}
-
-impl Earlier {
-    /// Open what the saved run has written, and look whether it is as it was: before anything changes.
-    fn open(folder: &Path, model: &Arc<Model>, case: &Case, saved: &SavedRun) -> Result<Self, Error> {
-        let goes_on = |name: &str| saved.remembers(name);
-        let asked = (goes_on("interface") && !model.contacts.is_empty(), goes_on("fields") && case.output.fields);
-        let start = saved.simulation().state();
-        let earlier = Self {
-            history: goes_on("history").then(|| History::reopen(folder, model)).transpose()?,
-            newton_log: goes_on("newton").then(|| NewtonLog::reopen(folder)).transpose()?,
-            interface: asked.0.then(|| InterfaceStore::reopen(folder, model, start, &case.units)),
-            probes: goes_on("probes").then(|| Probes::reopen(folder, model)).transpose()?,
-            fields: asked.1.then(|| Fields::reopen(folder, model.clone(), frames(case))).transpose()?,
-        };
-        let Self { history, newton_log, interface, probes, fields } = &earlier;
-        let observers = [
-            history.as_ref().map(|history| history as &dyn Observer),
-            newton_log.as_ref().map(|log| log as &dyn Observer),
-            interface.as_ref().map(|interface| interface as &dyn Observer),
-            probes.as_ref().map(|probes| probes as &dyn Observer),
-            fields.as_ref().map(|fields| fields as &dyn Observer),
-        ];
-        saved.check(&observers.into_iter().flatten().collect::<Vec<_>>())?;
-        Ok(earlier)
-    }
-}
-
-/// The observers of a run.
-pub(super) struct Outputs {
-    history: History,
-    newton_log: NewtonLog,
     pub aloud: Aloud,
     interface: Option<InterfaceStore>,
     probes: Option<Probes>,
@@ -115,56 +79,64 @@ impl Outputs {
         aloud: Aloud,
     ) -> Result<Self, Error> {
         let start = saved.map_or_else(|| model.initial_state(), |saved| saved.simulation().state().clone());
-        let earlier = match saved {
-            Some(saved) => Earlier::open(folder, model, case, saved)?,
-            None => Earlier::default(),
-        };
-        let fields = case.output.fields.then(|| match earlier.fields {
-            Some(fields) => Ok(fields),
-            None => Fields::create(folder, model.clone(), &start, frames(case)),
-        });
-        let interface = (!model.contacts.is_empty()).then(|| match earlier.interface {
-            Some(interface) => Ok(interface),
-            None => InterfaceStore::create(folder, model, &start, &case.units),
-        });
-        let probes = (!model.probes.is_empty()).then(|| match earlier.probes {
-            Some(probes) => Ok(probes),
-            None => Probes::create(folder, model),
-        });
-        let fronts = case.output.fronts.map(|fronts| {
-            let arrive = match fronts.arrival {
-                None => Arrive::Rate,
-                Some(ArrivalInput::R(value)) => Arrive::R(value),
-                Some(ArrivalInput::Mu(value)) => Arrive::Mu(value),
-            };
-            Fronts::new(folder, model, &start, fronts.slip_rate, arrive)
-        });
-        Ok(Self {
-            history: earlier.history.map_or_else(|| History::create(folder, model), Ok)?,
-            newton_log: earlier.newton_log.map_or_else(|| NewtonLog::create(folder), Ok)?,
+        let goes_on = |name: &str| saved.is_some_and(|saved| saved.remembers(name));
+        let (has_contacts, has_fields) = (!model.contacts.is_empty(), case.output.fields);
+        let store = || InterfaceStore::reopen(folder, model, &start, &case.units);
+        let series = || Fields::reopen(folder, model.clone(), frames(case));
+        let mut outputs = Self {
+            history: goes_on("history").then(|| History::reopen(folder, model)).transpose()?,
+            newton_log: goes_on("newton").then(|| NewtonLog::reopen(folder, model)).transpose()?,
             aloud,
-            interface: interface.transpose()?,
-            probes: probes.transpose()?,
-            fields: fields.transpose()?,
-            fronts,
-        })
+            interface: (goes_on("interface") && has_contacts).then(store),
+            probes: goes_on("probes").then(|| Probes::reopen(folder, model)).transpose()?,
+            fields: (goes_on("fields") && has_fields).then(series).transpose()?,
+            fronts: case.output.fronts.map(|fronts| {
+                let arrive = match fronts.arrival {
+                    None => Arrive::Rate,
+                    Some(ArrivalInput::R(value)) => Arrive::R(value),
+                    Some(ArrivalInput::Mu(value)) => Arrive::Mu(value),
+                };
+                Fronts::new(folder, model, &start, fronts.slip_rate, arrive)
+            }),
+        };
+        // What goes on is as it was, or nothing changes.
+        saved.map_or(Ok(()), |saved| saved.check(&outputs.observers()))?;
+        if outputs.history.is_none() {
+            outputs.history = Some(History::create(folder, model)?);
+        }
+        if outputs.newton_log.is_none() {
+            outputs.newton_log = Some(NewtonLog::create(folder, model)?);
+        }
+        if outputs.interface.is_none() && has_contacts {
+            outputs.interface = Some(InterfaceStore::create(folder, model, &start, &case.units)?);
+        }
+        if outputs.probes.is_none() && !model.probes.is_empty() {
+            outputs.probes = Some(Probes::create(folder, model)?);
+        }
+        if outputs.fields.is_none() && has_fields {
+            outputs.fields = Some(Fields::create(folder, model.clone(), &start, frames(case))?);
+        }
+        Ok(outputs)
     }
 
     /// How the friction of the contacts went, by their names; of those that bore any.
     pub fn courses(&self, model: &Model) -> BTreeMap<String, FrictionCourse> {
-        let named = model.contacts.iter().zip(self.history.courses());
+        let courses = self.history.iter().flat_map(History::courses);
+        let named = model.contacts.iter().zip(courses);
         let borne = named.filter(|(_, course)| course.is_friction());
         borne.map(|(pair, course)| (pair.name.clone(), course.clone())).collect()
     }
 
     /// All of them.
     pub fn observers<'a, 'b: 'a>(&'b mut self) -> Vec<&'a mut (dyn Observer + 'a)> {
-        let mut observers: Vec<&mut dyn Observer> = vec![&mut self.history, &mut self.newton_log, &mut self.aloud];
-        observers.extend(self.interface.as_mut().map(|interface| interface as &mut dyn Observer));
-        observers.extend(self.probes.as_mut().map(|probes| probes as &mut dyn Observer));
-        observers.extend(self.fields.as_mut().map(|fields| fields as &mut dyn Observer));
-        observers.extend(self.fronts.as_mut().map(|fronts| fronts as &mut dyn Observer));
-        observers
+        fn watch<'a>(observer: &'a mut Option<impl Observer + 'a>) -> Option<&'a mut (dyn Observer + 'a)> {
+            observer.as_mut().map(|observer| observer as &mut dyn Observer)
+        }
+        let Self { history, newton_log, aloud, interface, probes, fields, fronts } = self;
+        let aloud: Option<&mut dyn Observer> = Some(aloud);
+        let all =
+            [watch(history), watch(newton_log), aloud, watch(interface), watch(probes), watch(fields), watch(fronts)];
+        all.into_iter().flatten().collect()
     }
 }
 

@@ -58,7 +58,7 @@ impl Number {
     /// Append a number.
     pub fn write(self, value: f64, bytes: &mut Vec<u8>) {
         match self {
-            Self::Single => bytes.extend_from_slice(&rounded(value).to_le_bytes()),
+            Self::Single => bytes.extend_from_slice(&rounded(value, BITS).to_le_bytes()),
             Self::Double => bytes.extend_from_slice(&value.to_le_bytes()),
             Self::Whole => bytes.extend_from_slice(&(value as i32).to_le_bytes()),
         }
@@ -75,16 +75,14 @@ impl Number {
     }
 }
 
-/// A number with b bits of mantissa.
-pub fn rounded(value: f64) -> f32 {
-    const LOST: u32 = 52 - BITS;
-    if !value.is_finite() {
-        return value as f32;
-    }
-    let bits = value.to_bits();
+/// A number with so many bits of mantissa, half to even.
+pub fn rounded(value: f64, bits: u32) -> f32 {
+    let lost = 52 - bits;
+    let digits = value.to_bits();
     // Half of the last bit, less a little where the last bit is even.
-    let up = (1 << (LOST - 1)) - 1 + ((bits >> LOST) & 1);
-    f64::from_bits((bits + up) & !((1 << LOST) - 1)) as f32
+    let up = (1 << (lost - 1)) - 1 + ((digits >> lost) & 1);
+    let rounded = f64::from_bits(digits.wrapping_add(up) & !((1 << lost) - 1)) as f32;
+    if value.is_finite() && rounded.is_finite() { rounded } else { value as f32 }
 }
 
 /// A chunk for its file.
@@ -102,7 +100,7 @@ pub fn unpacked(packed: &[u8], size: usize, length: usize) -> Result<Vec<u8>, St
 }
 
 /// The first bytes of all numbers, then the second ones, ...
-fn shuffled(bytes: &[u8], size: usize) -> Vec<u8> {
+pub fn shuffled(bytes: &[u8], size: usize) -> Vec<u8> {
     (0..size).flat_map(|k| bytes.iter().skip(k).step_by(size).copied()).collect()
 }
 
@@ -122,16 +120,18 @@ mod tests {
         let mut most = 0.0f64;
         for k in 0..200_000 {
             let value = 10f64.powf(-30.0 + 3e-4 * f64::from(k)) * if k % 2 == 0 { 1.0 } else { -1.0 };
-            most = most.max((f64::from(rounded(value)) - value).abs() / value.abs());
-            assert_eq!(f64::from(rounded(value)).to_bits() & ((1 << (52 - BITS)) - 1), 0);
+            most = most.max((f64::from(rounded(value, BITS)) - value).abs() / value.abs());
+            assert_eq!(f64::from(rounded(value, BITS)).to_bits() & ((1 << (52 - BITS)) - 1), 0);
         }
         assert!(most <= RELATIVE_ERROR && most > 0.99 * RELATIVE_ERROR, "{most}");
         for same in [0.0, 1.0, -2.0, 1.5, f64::INFINITY] {
-            assert_eq!(f64::from(rounded(same)), same);
+            assert_eq!(f64::from(rounded(same, BITS)), same);
         }
-        assert!(rounded(f64::NAN).is_nan());
+        assert!(rounded(f64::NAN, BITS).is_nan());
         // Half way goes to the even neighbour.
-        assert_eq!((rounded(1.0 + 2f64.powi(-16)), rounded(1.0 + 3.0 * 2f64.powi(-16))), (1.0, 1.0 + 2f32.powi(-14)));
+        let near = |halves: f64| rounded(1.0 + halves * 2f64.powi(-16), BITS);
+        assert_eq!((near(1.0), near(3.0)), (1.0, 1.0 + 2f32.powi(-14)));
+        assert_eq!(rounded(f32::MAX.into(), 11), f32::MAX, "what would be infinite stays");
     }
 
     #[test]

@@ -4,18 +4,13 @@
 //! |---|---|---|
 //! | `time` | `time` | t of the rows of `history.csv` [T] |
 //! | `C.position`, `C.x`, `C.y`, `C.line` | `C.point` | undeformed points of contact C: way along the slave, place, number of the unbroken line [L] |
-//! | `C.slip` | `time`, `C.point` | plastic slip so far; the motion along the master where there is no friction [L] |
-//! | `C.total_slip` | | plastic and elastic slip, slip + q/α_t [L] |
-//! | `C.slip_rate` | | plastic slip since the row before over the time since [L/T] |
-//! | `C.p`, `C.q` | | pressure, traction [F/L²] |
-//! | `C.R`, `C.mu`, `C.structure` | | \|q\|/(μ p), μ, 1/R*; as [`observables`] say where a law has none [-] |
-//! | `C.gap` | | g, positive when open [L] |
-//! | `C.θ` … | | what else a law lets observe, by its name; NaN where another law acts |
+//! | `C.slip`, `C.pressure` … | `time`, `C.point` | the quantities of every contact ([`IN_STORE`]); slip rates are plastic slip since the row before over the time since |
+//! | `C.theta` … | | what else a law lets observe, by its name; NaN where another law acts |
 //!
 //! Times and places are as computed; what varies over time is rounded, with a relative error of 2⁻¹⁶ ([`codec`]).
 
+mod arrays;
 pub mod codec;
-mod quantities;
 pub mod read;
 mod zarr;
 
@@ -24,18 +19,18 @@ use std::path::Path;
 
 use serde_json::{Map, json};
 
-use self::quantities::{QUANTITIES, SLIP, SLIP_RATE, along, prefixes, quantity, time};
+use self::arrays::{along, prefixes, quantity, time};
 use self::zarr::Store;
 use super::csv;
-use super::csv::{Row, Rows};
+use super::quantities::IN_STORE;
 use crate::contact::force::ContactState;
+use crate::contact::pair;
 use crate::contact::pair::ContactPair;
-use crate::contact::surface::SlavePoint;
 use crate::laws::friction::observables;
 use crate::model::Model;
 use crate::model::state::State;
 use crate::run::error::Error;
-use crate::run::observer::{Attempt, Observer};
+use crate::run::observer::{Attempt, Observer, Row};
 pub use zarr::{files_of, forget, is_own};
 
 /// Folder of the store in that of the results.
@@ -47,14 +42,16 @@ pub struct InterfaceStore {
     store: Store,
     /// Names of the quantities of each contact
     names: Vec<Vec<&'static str>>,
-    /// Numbers that do not vary: places of the points
-    places: Vec<Vec<f64>>,
-    rows: Rows,
     /// A record that is written if an event follows
     held: Option<Record>,
     /// Time of the last record, and slip of every contact and point then
     last: (f64, Vec<Vec<f64>>),
 }
+
+/// Where the slip stands among the quantities of the store, ...
+const SLIP: usize = 0;
+/// ... and its rate.
+const SLIP_RATE: usize = 2;
 
 /// Time and quantities of all contacts, one after the other.
 type Record = Vec<Vec<f64>>;
@@ -72,28 +69,23 @@ impl InterfaceStore {
         units: &BTreeMap<String, String>,
     ) -> Result<Self, Error> {
         let mut store = Self::reopen(folder, model, start, units);
-        store.store.create(&store.places)?;
+        store.store.create()?;
         Ok(store)
     }
 
     /// The store that is there, to be restored.
     pub fn reopen(folder: &Path, model: &Model, start: &State, units: &BTreeMap<String, String>) -> Self {
         let further = |pair: &ContactPair| observables::further(pair.laws.iter().map(|law| &law.description));
-        let in_fluid = |pair: &ContactPair| pair.fluid.as_ref().map(|_| "p_w");
-        let own = QUANTITIES.iter().map(|(name, ..)| *name);
-        let names: Vec<Vec<&str>> = model
-            .contacts
-            .iter()
-            .map(|pair| own.clone().chain(further(pair)).chain(in_fluid(pair)).collect())
-            .collect();
+        let in_fluid = |pair: &ContactPair| pair.fluid.as_ref().map(|_| "fluid_pressure");
+        let names = |pair: &ContactPair| {
+            IN_STORE.map(|of| of.name).into_iter().chain(further(pair)).chain(in_fluid(pair)).collect()
+        };
+        let names: Vec<Vec<&str>> = model.contacts.iter().map(names).collect();
         let prefixes = prefixes(model);
-        let (mut fixed, mut places) = (Vec::new(), Vec::new());
+        let mut fixed = Vec::new();
         let mut growing = vec![(time(units), None)];
         for ((pair, prefix), names) in model.contacts.iter().zip(&prefixes).zip(&names) {
-            for (description, values) in along(model, pair, prefix, units) {
-                fixed.push((description, values.len()));
-                places.push(values);
-            }
+            fixed.extend(along(model, pair, prefix, units));
             let quantity = |name: &&str| (quantity(pair, prefix, name, units), Some(pair.points.len()));
             growing.extend(names.iter().map(quantity));
         }
@@ -107,21 +99,16 @@ impl InterfaceStore {
         Self {
             store: Store::new(folder.join(STORE), attributes, fixed, growing),
             names,
-            places,
-            rows: Rows::default(),
             held: None,
             last: (start.time, start.contacts.iter().map(slips).collect()),
         }
     }
 
-    /// What a state says; the slip rates are not known yet.
+    /// What a state says; the slip rates are those of its increment yet.
     fn record_of(&self, model: &Model, state: &State) -> Record {
         let mut record = vec![vec![state.time]];
         for ((pair, states), names) in model.contacts.iter().zip(&state.contacts).zip(&self.names) {
-            let values = |name: &&str| {
-                pair.points.iter().zip(states).map(|(p, s)| value(pair, p, (s, state.time), name)).collect()
-            };
-            record.extend(names.iter().map(values));
+            record.extend(names.iter().map(|name| pair::field_values(pair, states, (state.time, state.dt), name)));
         }
         record
     }
@@ -144,10 +131,9 @@ impl InterfaceStore {
 impl Observer for InterfaceStore {
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
-        let row = self.rows.judge(model, attempt, state);
         let record = self.record_of(model, state);
         let held = self.held.take();
-        match row {
+        match attempt.row {
             Row::Held => self.held = Some(record),
             Row::Written => self.write(record)?,
             Row::AfterTheHeld => {
@@ -163,7 +149,7 @@ impl Observer for InterfaceStore {
     }
 
     fn save(&mut self) -> Result<Vec<u8>, Error> {
-        csv::remembered(&(self.store.save()?, &self.rows, &self.held, &self.last))
+        csv::remembered(&(self.store.save()?, &self.held, &self.last))
     }
 
     fn check(&self, memory: &[u8]) -> Result<(), Error> {
@@ -172,26 +158,11 @@ impl Observer for InterfaceStore {
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
         let saved;
-        (saved, self.rows, self.held, self.last) = csv::recalled(memory)?;
-        self.store.restore(&self.places, saved)
+        (saved, self.held, self.last) = csv::recalled(memory)?;
+        self.store.restore(saved)
     }
 
     fn finish(&mut self) -> Result<(), Error> {
         self.store.finish()
-    }
-}
-
-/// A quantity at a point; slip rates come later.
-fn value(pair: &ContactPair, slave: &SlavePoint, (state, time): (&ContactState, f64), name: &str) -> f64 {
-    let friction = &state.friction;
-    match name {
-        "slip" => friction.plastic_slip,
-        "total_slip" => friction.plastic_slip + pair.elastic_slip(slave, friction),
-        "slip_rate" => 0.0,
-        "p" => friction.pressure,
-        "q" => friction.traction,
-        "gap" => state.gap,
-        "p_w" => state.fluid,
-        _ => pair.observed(slave, name, (friction, time)),
     }
 }

@@ -13,6 +13,7 @@ use thiserror::Error;
 use super::STORE;
 use super::codec::{Number, unpacked, unshuffled};
 use super::zarr::{ARRAY, ATTRIBUTES, METADATA};
+use crate::output::quantities::FORMER;
 
 /// What one contact did.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -89,6 +90,11 @@ pub fn contacts(folder: &Path, wanted: impl Fn(&str) -> bool) -> Result<Vec<Stor
     names.into_iter().zip(&prefixes).map(|(name, prefix)| reader.contact(name, prefix, &times, &wanted)).collect()
 }
 
+/// What a quantity of a store is called now; versions before called some otherwise.
+fn name_of_now(quantity: &str) -> &str {
+    FORMER.iter().find(|(former, _)| *former == quantity).map_or(quantity, |(_, now)| now)
+}
+
 struct Reader {
     store: PathBuf,
     metadata: BTreeMap<String, Value>,
@@ -127,7 +133,9 @@ impl Reader {
         for array in self.metadata.keys().filter_map(|key| key.strip_suffix(ARRAY)?.strip_suffix('/')) {
             let quantity = array.strip_prefix(prefix).and_then(|rest| rest.strip_prefix('.'));
             let is_series = |array: &str| self.shape(array).is_ok_and(|shape| shape.shape.len() == 2);
-            let Some(quantity) = quantity.filter(|quantity| wanted(quantity) && is_series(array)) else { continue };
+            let Some(quantity) = quantity.map(name_of_now).filter(|name| wanted(name) && is_series(array)) else {
+                continue;
+            };
             let mut values = Vec::new();
             self.read(array, |value| values.push(value as f32))?;
             if values.len() != times.len() * positions.len() {

@@ -48,8 +48,8 @@ pub type Saved = (u64, Vec<(u32, Vec<u8>)>);
 pub struct Store {
     folder: PathBuf,
     attributes: Value,
-    /// arrays that do not grow, with their lengths
-    fixed: Vec<(Description, usize)>,
+    /// arrays that do not grow, with their values
+    fixed: Vec<(Description, Vec<f64>)>,
     series: Vec<Series>,
     /// R: records of a chunk
     chunk: usize,
@@ -70,7 +70,7 @@ impl Store {
     pub fn new(
         folder: PathBuf,
         attributes: Map<String, Value>,
-        fixed: Vec<(Description, usize)>,
+        fixed: Vec<(Description, Vec<f64>)>,
         growing: Vec<(Description, Option<usize>)>,
     ) -> Self {
         let widest = growing.iter().filter_map(|(_, width)| *width).max().unwrap_or(1);
@@ -89,17 +89,17 @@ impl Store {
         }
     }
 
-    /// Begin it, with the values of the arrays that do not grow, and no records.
+    /// Begin it, without records.
     ///
     /// # Errors
     /// [`Error::Output`] when it cannot be written.
-    pub fn create(&mut self, fixed: &[Vec<f64>]) -> Result<(), Error> {
-        self.describe(fixed)?;
+    pub fn create(&mut self) -> Result<(), Error> {
+        self.describe()?;
         self.flush()
     }
 
     /// Write all that does not grow.
-    fn describe(&self, fixed: &[Vec<f64>]) -> Result<(), Error> {
+    fn describe(&self) -> Result<(), Error> {
         let made = |folder: &Path| files::folder(folder).map_err(|cause| failed(folder, &cause));
         made(&self.folder)?;
         put(&self.folder.join(GROUP), &json_bytes(&group()))?;
@@ -109,7 +109,7 @@ impl Store {
             made(&folder)?;
             put(&folder.join(ATTRIBUTES), &json_bytes(&all_attributes(is)))?;
         }
-        for ((is, _), values) in self.fixed.iter().zip(fixed) {
+        for (is, values) in &self.fixed {
             let mut bytes = Vec::new();
             values.iter().for_each(|value| is.number.write(*value, &mut bytes));
             put(&self.folder.join(&is.name).join("0"), &packed(&bytes, is.number.size(), THOROUGH))?;
@@ -190,18 +190,18 @@ impl Store {
         Ok(())
     }
 
-    /// Go on from what was saved, with the values of the arrays that do not grow; later records are taken back.
+    /// Go on from what was saved; later records are taken back.
     ///
     /// # Errors
     /// [`Error::Output`] when what follows cannot be taken away.
-    pub fn restore(&mut self, fixed: &[Vec<f64>], (records, saved): Saved) -> Result<(), Error> {
+    pub fn restore(&mut self, (records, saved): Saved) -> Result<(), Error> {
         self.records = usize::try_from(records).unwrap_or(usize::MAX);
         let complete = self.records / self.chunk;
         let length = self.records % self.chunk;
         for (series, (crc, chunk)) in self.series.iter_mut().zip(saved) {
             (series.complete, series.chunk) = (crc32fast::Hasher::new_with_initial(crc), chunk);
         }
-        self.describe(fixed)?;
+        self.describe()?;
         self.settled = false;
         // What is taken back is no longer counted when it goes.
         if counted(&self.folder, self.series.iter().map(|series| &*series.is.name)) > records {
@@ -270,7 +270,8 @@ impl Store {
 
     /// The `.zarray` of every array.
     fn shapes(&self) -> impl Iterator<Item = (String, Value)> {
-        let fixed = self.fixed.iter().map(|(is, length)| (is.name.clone(), shape(is, &[*length], &[*length])));
+        let fixed =
+            self.fixed.iter().map(|(is, values)| (is.name.clone(), shape(is, &[values.len()], &[values.len()])));
         let growing = self.series.iter().map(|Series { is, width, .. }| {
             let with = |records: usize| std::iter::once(records).chain(*width).collect::<Vec<_>>();
             (is.name.clone(), shape(is, &with(self.records), &with(self.chunk)))

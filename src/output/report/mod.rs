@@ -18,7 +18,7 @@ use self::run::Run;
 pub use self::source::ReportError;
 use self::source::sources;
 use super::csv::failed;
-use super::files;
+use super::{files, quantities};
 use table::Pack;
 
 /// Name of the page in a folder of results.
@@ -95,7 +95,9 @@ pub fn page(folders: &[PathBuf]) -> Result<String, ReportError> {
     let mut pack = Pack::default();
     let share = ROOM / sources.len().max(1);
     let runs: Vec<Value> = sources.iter().map(|source| Run::new(source, share).show(&mut pack)).collect();
-    Ok(assembled(&json!({ "version": env!("CARGO_PKG_VERSION"), "runs": runs }), &pack))
+    let units = sources.iter().flat_map(|source| source.about.units.clone()).collect();
+    let data = json!({ "version": env!("CARGO_PKG_VERSION"), "runs": runs, "labels": quantities::labels(&units) });
+    Ok(assembled(&data, &pack))
 }
 
 /// The page of its data.

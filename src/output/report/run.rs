@@ -8,7 +8,7 @@ use super::source::{ReportError, Source};
 use super::table::{Column, Columns, Pack, read, sheet};
 use crate::laws::friction::FrictionParameters;
 use crate::output::files;
-use crate::output::results::InterfaceMap;
+use crate::output::interface::read::{StoredContact, contacts};
 
 /// Rows of a table at most.
 const ROWS: usize = 40_000;
@@ -58,7 +58,6 @@ impl<'a> Run<'a> {
             "folder": self.source.folder.display().to_string(),
             "summary": summary,
             "at_work": files::at_work(&self.source.folder),
-            "units": about.units,
             "bounds": bounds.collect::<serde_json::Map<String, Value>>(),
             "history": history,
             "law": law,
@@ -156,13 +155,14 @@ impl<'a> Run<'a> {
     }
 
     /// Values of a quantity of each map at most.
-    fn values(&self, maps: &[InterfaceMap]) -> usize {
+    fn values(&self, maps: &[StoredContact]) -> usize {
         self.fit(0.4, maps.iter().map(|map| map.quantities.len()).sum())
     }
 
     fn maps(&mut self, pack: &mut Pack) -> Vec<Value> {
-        match InterfaceMap::read(&self.source.folder) {
-            Ok(maps) => {
+        match contacts(&self.source.folder, |_| true) {
+            Ok(mut maps) => {
+                maps.retain(|map| !map.times.is_empty());
                 let most = self.values(&maps);
                 maps.iter().enumerate().map(|one| map(one, most, pack, &mut self.notes)).collect()
             }

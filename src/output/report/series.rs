@@ -9,7 +9,8 @@ use serde_json::{Value, json};
 
 use super::table::{Pack, Packed};
 use crate::output::interface::STORE;
-use crate::output::results::{Array, Frame, Grid, InterfaceMap, frames};
+use crate::output::interface::read::StoredContact;
+use crate::output::results::{Array, Frame, Grid, frames};
 
 /// Places before anything moves are shown as they differ from the middle, so that single precision does far from the origin.
 fn middle(points: &[[f64; 2]]) -> [f64; 2] {
@@ -227,12 +228,12 @@ fn end_to_end(positions: &[f64]) -> (Vec<f64>, bool) {
 }
 
 /// The values of the rows that are shown; of slip rates the fastest since the row before.
-fn thinned(name: &str, values: &[f64], shown: &[usize], points: usize) -> Vec<f64> {
+fn thinned(name: &str, values: &[f32], shown: &[usize], points: usize) -> Vec<f64> {
     let mut all = Vec::with_capacity(shown.len() * points);
     let mut first = 0;
     for &row in shown {
         for point in 0..points {
-            let of = |row: usize| values[row * points + point];
+            let of = |row: usize| f64::from(values[row * points + point]);
             let fastest = (first..=row).map(of).max_by(|a, b| a.abs().total_cmp(&b.abs()));
             all.push(if name == "slip_rate" { fastest.unwrap_or(f64::NAN) } else { of(row) });
         }
@@ -242,8 +243,8 @@ fn thinned(name: &str, values: &[f64], shown: &[usize], points: usize) -> Vec<f6
 }
 
 /// The map of the contact of a number for the page, with at most so many values a quantity; what is left out goes to the notes.
-pub fn map((number, map): (usize, &InterfaceMap), most: usize, pack: &mut Pack, notes: &mut Vec<String>) -> Value {
-    let InterfaceMap { contact, times, positions, quantities } = map;
+pub fn map((number, map): (usize, &StoredContact), most: usize, pack: &mut Pack, notes: &mut Vec<String>) -> Value {
+    let StoredContact { name: contact, times, positions, quantities, .. } = map;
     let (points, rows) = (positions.len(), times.len());
     let group = (rows * points).div_ceil(most.max(points)).max(1);
     // The last of each group is shown.

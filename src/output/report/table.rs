@@ -14,6 +14,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::source::ReportError;
+use crate::output::interface::codec::{rounded, shuffled};
 
 /// Columns of words; their values are the numbers of the words.
 const WORDS: [&str; 4] = ["step", "contact", "verdict", "reason"];
@@ -245,7 +246,7 @@ impl Packed {
     /// Single precision with fewer bits.
     pub fn rounded(values: impl ExactSizeIterator<Item = f64>) -> Self {
         let count = values.len();
-        Self::of(values.map(|value| rounded(value as f32).to_le_bytes()), count)
+        Self::of(values.map(|value| rounded(value, BITS).to_le_bytes()), count)
     }
 
     /// Displacements, of which the largest is `size`.
@@ -268,27 +269,13 @@ impl Packed {
 
     /// All first bytes, then all second ones, and so on: alike bytes beside each other.
     fn of<const N: usize>(values: impl Iterator<Item = [u8; N]>, count: usize) -> Self {
-        let mut bytes = vec![0; N * count];
-        for (k, value) in values.enumerate() {
-            value.iter().enumerate().for_each(|(i, byte)| bytes[i * count + k] = *byte);
-        }
+        let mut bytes = Vec::with_capacity(N * count);
+        values.for_each(|value| bytes.extend_from_slice(&value));
         let mut encoder = DeflateEncoder::new(Vec::with_capacity(bytes.len() / 2), Compression::new(4));
         // Writing to a Vec cannot fail.
-        let _ = encoder.write_all(&bytes);
+        let _ = encoder.write_all(&shuffled(&bytes, N));
         Self(STANDARD.encode(encoder.finish().unwrap_or_default()))
     }
-}
-
-/// To [`BITS`] bits behind the leading one, half to even; what is not finite stays.
-fn rounded(value: f32) -> f32 {
-    const DROPPED: u32 = 23 - BITS;
-    let bits = value.to_bits();
-    if !value.is_finite() {
-        return value;
-    }
-    let half = (1 << (DROPPED - 1)) - 1 + ((bits >> DROPPED) & 1);
-    let rounded = f32::from_bits(bits.wrapping_add(half) & !((1 << DROPPED) - 1));
-    if rounded.is_finite() { rounded } else { value }
 }
 
 /// Where packed numbers stand among all of them: start, length.
@@ -308,20 +295,5 @@ impl Pack {
         let start = self.text.len();
         self.text += &packed.0;
         Chunk(start, packed.size())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::rounded;
-
-    #[test]
-    fn rounding_errs_by_half_a_last_bit() {
-        for k in 0..10_000u32 {
-            let value = (k as f32 * 0.37).exp2() * 1e-20 + k as f32 * 1e-9;
-            assert!((rounded(value) - value).abs() <= value.abs() * 2f32.powi(-12), "{value}");
-        }
-        assert!(rounded(f32::NAN).is_nan());
-        assert_eq!((rounded(f32::MAX), rounded(f32::INFINITY)), (f32::MAX, f32::INFINITY));
     }
 }

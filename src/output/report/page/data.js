@@ -74,33 +74,9 @@ async function table(packed) {
   return { rows: packed.rows, names: packed.columns.map((column) => column.name), get: (name) => columns.get(name) };
 }
 
-/** Label of the unit of a quantity; of some, what it is made of. */
-function unitOf(of) {
-  const units = Object.assign({}, ...DATA.runs.map((run) => run.units));
-  const { length, force, time } = units;
-  const made = (parts, text) => (parts.every(Boolean) ? text : "");
-  const derived = {
-    stress: made([force, length], `${force}/${length}²`),
-    energy: made([force, length], `${force}·${length}`),
-    velocity: made([length, time], `${length}/${time}`),
-    acceleration: made([length, time], `${length}/${time}²`),
-    dissipation: made([force, length], `${force}/${length}`),
-  };
-  return units[of] || derived[of] || "";
-}
+/** Label of a unit by its name, as the case has it or made of those that it has. */
+const unitOf = (of) => DATA.labels.units[of] || "";
 
-/** Units of what results are called. */
-const UNITS = {
-  displacement: "length", gap: "length", slip: "length", elastic_slip: "length", slip_rate: "velocity",
-  velocity: "velocity", acceleration: "acceleration", reaction: "force", stress: "stress", von_mises: "stress",
-  pressure: "stress", traction: "stress", dissipation: "dissipation", theta: "time",
-};
-const fieldUnit = (name) => (UNITS[name] ? unitOf(UNITS[name]) : "");
-
-/** Names of quantities as they are read. */
-const NAMES = {
-  slip: "slip", slip_rate: "slip rate", R: "R", mu: "μ", structure: "structure 1/R*", traction: "traction q",
-  pressure: "pressure p", gap: "gap", elastic_slip: "elastic slip", state: "state (0 open, 1 stick, 2 slip)",
-  von_mises: "von Mises stress", theta: "θ",
-};
-const spoken = (name) => NAMES[name] || name.replaceAll("_", " ");
+/** Label of the unit of a quantity, and what it is called. */
+const fieldUnit = (name) => DATA.labels.quantities[name]?.[0] || "";
+const spoken = (name) => DATA.labels.quantities[name]?.[1] || name.replaceAll("_", " ");

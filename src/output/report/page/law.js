@@ -62,7 +62,7 @@ async function showLaw() {
     varies ? overTime(runs, "Pressure over time", [["pressure", "p"]], "pressure p", unitOf("stress"), { include: [0] }) : null,
     varies ? path("Traction over pressure", "pressure", "pressure p") : null,
     ageingChart(runs),
-    overTime(runs, "Dissipation", [["dissipation", "dissipation"]], "dissipation", unitOf("dissipation")),
+    overTime(runs, "Dissipation", [["dissipation", "dissipation"]], "dissipation", fieldUnit("dissipation")),
   ];
   const section = document.getElementById("law");
   section.hidden = false;

@@ -1,0 +1,39 @@
+"""Quantities of results: names, units and meanings, as the program lists them (``fecontact schema results``)."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from functools import cache
+
+from . import _native
+
+
+@cache
+def _files() -> dict[str, dict[str, dict[str, str]]]:
+    """Those of every file by their names, without those of contacts, sets, bodies and probes before them."""
+    listed = json.loads(_native.schema("results"))
+    return {file: {entry["name"].rsplit(".", 1)[-1]: entry for entry in entries} for file, entries in listed.items()}
+
+
+def _known(name: str) -> dict[str, str]:
+    # newton.csv counts slipping points under the name of a length.
+    return next((all_[name] for file, all_ in _files().items() if name in all_ and file != "newton.csv"), {})
+
+
+def spoken(name: str) -> str:
+    """What a quantity is called in figures."""
+    return _known(name).get("spoken", name)
+
+
+def unit(column: str, units: Mapping[str, str]) -> str | None:
+    """The unit of a column, as far as the units of a case label it."""
+    name = column.rsplit(".")[-1]
+    known = _known(name) or _known(name.removeprefix("mean_"))
+    return units.get(known.get("of", ""))
+
+
+def name_of_now(name: str) -> str:
+    """What a quantity of a store is called now; versions before called some otherwise."""
+    store = _files()["interface.zarr"]
+    return next((now for now, entry in store.items() if entry.get("formerly") == name), name)

@@ -1,0 +1,99 @@
+//! What the arrays of the store are called, and what they are.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde_json::{Map, Value, json};
+
+use super::codec::{Number, RELATIVE_ERROR};
+use super::zarr::Description;
+use crate::contact::pair::ContactPair;
+use crate::model::Model;
+use crate::output::events::{Interface, Point};
+use crate::output::quantities::{LENGTH, NONE, PLACE, Quantity, TIME, Unit, in_store};
+
+/// What a friction-free contact's slip is.
+const FREE_MOTION: &str = "motion along the master so far; the contact has no friction";
+
+/// Names of the contacts as they can stand in names of files, each one once.
+pub fn prefixes(model: &Model) -> Vec<String> {
+    let (mut prefixes, mut taken) = (Vec::new(), BTreeSet::new());
+    for pair in &model.contacts {
+        let plain = |c: char| if c.is_alphanumeric() || "_-. +()=".contains(c) { c } else { '_' };
+        let mut prefix: String = pair.name.chars().map(plain).collect();
+        if prefix.starts_with('.') {
+            prefix.replace_range(..1, "_");
+        }
+        while !taken.insert(prefix.to_lowercase()) {
+            prefix.push('_');
+        }
+        prefixes.push(prefix);
+    }
+    prefixes
+}
+
+/// The times of the records.
+pub fn time(units: &BTreeMap<String, String>) -> Description {
+    let mut attributes = Map::new();
+    attributes.insert("long_name".into(), json!("time"));
+    attributes.insert("axis".into(), json!("T"));
+    attributes.extend(label(TIME, units).map(|unit| ("units".into(), json!(unit))));
+    Description { name: "time".into(), number: Number::Double, dimensions: vec!["time".into()], attributes }
+}
+
+/// Where the points of a contact are before anything moves.
+pub fn along(
+    model: &Model,
+    pair: &ContactPair,
+    prefix: &str,
+    units: &BTreeMap<String, String>,
+) -> Vec<(Description, Vec<f64>)> {
+    let points = Interface::new(model, pair).points;
+    let array = |of: Quantity, value: fn(&Point) -> f64| {
+        let mut attributes = Map::new();
+        attributes.insert("long_name".into(), json!(format!("{}: {}", pair.name, of.meaning)));
+        attributes.extend(label(of.unit, units).map(|unit| ("units".into(), json!(unit))));
+        let dimensions = vec![format!("{prefix}.point")];
+        let number = if of.unit == LENGTH { Number::Double } else { Number::Whole };
+        let description = Description { name: format!("{prefix}.{}", of.name), number, dimensions, attributes };
+        (description, points.iter().map(value).collect())
+    };
+    let [position, x, y, line] = PLACE;
+    vec![
+        array(position, |point| point.position),
+        array(x, |point| point.at[0]),
+        array(y, |point| point.at[1]),
+        array(line, |point| point.line as f64),
+    ]
+}
+
+/// A quantity of a contact.
+pub fn quantity(pair: &ContactPair, prefix: &str, name: &str, units: &BTreeMap<String, String>) -> Description {
+    let known = in_store(name);
+    let free = pair.laws.iter().all(|law| law.description.is_frictionless) && ["slip", "total_slip"].contains(&name);
+    let long_name = if free { FREE_MOTION } else { known.map_or(name, |known| known.meaning) };
+    let mut attributes: Map<String, Value> = Map::new();
+    attributes.insert("long_name".into(), json!(format!("{}: {long_name}", pair.name)));
+    attributes.insert("coordinates".into(), json!(["position", "x", "y"].map(|at| format!("{prefix}.{at}")).join(" ")));
+    attributes.insert("relative_error".into(), json!(RELATIVE_ERROR));
+    let unit = known.and_then(|known| label(known.unit, units));
+    attributes.extend(unit.map(|unit| ("units".into(), json!(unit))));
+    let dimensions = vec!["time".into(), format!("{prefix}.point")];
+    Description { name: format!("{prefix}.{name}"), number: Number::Single, dimensions, attributes }
+}
+
+/// The labels of units as CF has them; under their full names numbers of time would be read as durations.
+fn label(unit: Unit, units: &BTreeMap<String, String>) -> Option<String> {
+    let mut units = units.clone();
+    if let Some(time) = units.get_mut("time") {
+        let short = match time.as_str() {
+            "seconds" => "s",
+            "milliseconds" => "ms",
+            "minutes" => "min",
+            "hours" => "h",
+            "days" => "d",
+            other => other,
+        };
+        *time = short.to_string();
+    }
+    if unit == NONE { Some("1".into()) } else { unit.label(&units, Unit::of_store) }
+}

@@ -1,0 +1,431 @@
+//! Quantities: what is recorded is called the same in tables, frames and the store of the interface. Here stands what each is,
+//! and in which unit; columns and arrays follow it in this order, readers of results know it by it, and `fecontact schema
+//! results` prints it.
+//!
+//! Of columns with a dot in their name the table says what stands behind it; `CONTACT`, `SET`, `BODY` and `PROBE` stand for
+//! names of the case.
+
+use std::collections::BTreeMap;
+
+use serde_json::{Map, Value, json};
+
+/// What is recorded: a column of a table, or an array.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quantity {
+    /// its name
+    pub name: &'static str,
+    /// its unit
+    pub unit: Unit,
+    /// what it is
+    pub meaning: &'static str,
+}
+
+/// What a quantity is measured in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Unit {
+    /// the name under which a case may label it, as it labels `length`, `force` and `time`
+    pub name: &'static str,
+    /// powers of force, length and time
+    powers: [i8; 3],
+}
+
+const fn unit(name: &'static str, powers: [i8; 3]) -> Unit {
+    Unit { name, powers }
+}
+
+/// A number, or a word.
+pub const NONE: Unit = unit("none", [0, 0, 0]);
+/// L
+pub const LENGTH: Unit = unit("length", [0, 1, 0]);
+/// F/L²
+pub const STRESS: Unit = unit("stress", [1, -2, 0]);
+/// L/T
+pub const VELOCITY: Unit = unit("velocity", [0, 1, -1]);
+/// T
+pub const TIME: Unit = unit("time", [0, 0, 1]);
+const ANGLE: Unit = unit("angle", [0, 0, 0]);
+const FORCE: Unit = unit("force", [1, 0, 0]);
+const ACCELERATION: Unit = unit("acceleration", [0, 1, -2]);
+const ENERGY: Unit = unit("energy", [1, 1, 0]);
+const POWER: Unit = unit("power", [1, 1, -1]);
+const WORK_PER_AREA: Unit = unit("work_per_area", [1, -1, 0]);
+const MOMENTUM: Unit = unit("momentum", [1, 0, 1]);
+const SPIN: Unit = unit("angular_momentum", [1, 1, 1]);
+const STIFFNESS: Unit = unit("stiffness_per_area", [1, -3, 0]);
+
+impl Unit {
+    /// Made of force, length and time: `F/L²`; nothing for a number.
+    pub fn made_of(self, [force, length, time]: [&str; 3]) -> String {
+        let raised = |power: i8| match power.abs() {
+            2 => "²",
+            3 => "³",
+            _ => "",
+        };
+        let parts = [force, length, time].into_iter().zip(self.powers);
+        let above = parts.clone().filter(|(_, power)| *power > 0).map(|(of, power)| format!("{of}{}", raised(power)));
+        let below = parts.filter(|(_, power)| *power < 0).map(|(of, power)| format!("{of}{}", raised(power)));
+        let [above, below] = [above.collect::<Vec<_>>(), below.collect()].map(|parts| parts.join("·"));
+        match (above.is_empty(), below.is_empty()) {
+            (_, true) => above,
+            (true, false) => format!("1/{below}"),
+            (false, false) => format!("{above}/{below}"),
+        }
+    }
+
+    /// The same as CF has it: `N mm-2`.
+    pub fn of_store(self, [force, length, time]: [&str; 3]) -> String {
+        let parts = [force, length, time].into_iter().zip(self.powers).filter(|(_, power)| *power != 0);
+        let mut parts: Vec<(&str, i8)> = parts.collect();
+        parts.sort_by_key(|(_, power)| *power < 0);
+        let part = |(of, power): (&str, i8)| if power == 1 { of.to_string() } else { format!("{of}{power}") };
+        parts.into_iter().map(part).collect::<Vec<_>>().join(" ")
+    }
+
+    /// Its label in a case: the one given, or `made` of those of force, length and time, if those it needs are known.
+    pub fn label(self, units: &BTreeMap<String, String>, made: fn(Self, [&str; 3]) -> String) -> Option<String> {
+        if let Some(label) = units.get(self.name) {
+            return Some(label.clone());
+        }
+        let labels = ["force", "length", "time"].map(|of| units.get(of));
+        let known = labels.iter().zip(self.powers).all(|(label, power)| power == 0 || label.is_some());
+        (known && self.powers != [0; 3]).then(|| made(self, labels.map(|label| label.map_or("", String::as_str))))
+    }
+}
+
+const fn q(name: &'static str, unit: Unit, meaning: &'static str) -> Quantity {
+    Quantity { name, unit, meaning }
+}
+
+/// Names of quantities, for headers.
+pub fn names(quantities: &[Quantity]) -> impl Iterator<Item = String> {
+    quantities.iter().map(|quantity| quantity.name.into())
+}
+
+/// First columns of `history.csv`.
+pub const INCREMENT: [Quantity; 4] = [
+    q("time", TIME, "t at the end of the increment"),
+    q("dt", TIME, "its length"),
+    q("step", NONE, "name of its step"),
+    q("iterations", NONE, "its linear solves"),
+];
+
+/// Energies of the model.
+pub const ENERGIES: [Quantity; 7] = [
+    q("kinetic", ENERGY, "½ vᵀ M v"),
+    q("strain", ENERGY, "strain energy of the bodies, ∫ W dV"),
+    q("contact_elastic", ENERGY, "∫ (α_n g²/2 + q²/(2 α_t)) ds of the closed contact points"),
+    q("friction_dissipation", ENERGY, "dissipated by friction so far, ∫∫ q v^p ds dt"),
+    q("damping_dissipation", ENERGY, "dissipated by dashpots, absorbing sides, viscosity and the materials so far"),
+    q("external_work", ENERGY, "work of loads, supports, drivers and changes of temperature so far"),
+    q("energy_error", ENERGY, "initial energy + external work − stored − dissipated − radiated: 0 if all is resolved"),
+];
+
+/// Of runs with radiation damping.
+pub const RADIATED: Quantity = q("radiated", ENERGY, "radiated by slip so far, ∫∫ η v² ds dt");
+
+/// Means and sums of a contact; means are taken over the closed length.
+pub const CONTACT: [Quantity; 8] = [
+    q("normal_force", FORCE, "N = ∫ p ds"),
+    q("tangential_force", FORCE, "Q = ∫ q ds, with what slip radiates ∫ (q + η v) ds"),
+    q("contact_length", LENGTH, "closed length"),
+    q("slip_fraction", NONE, "slipping share of the closed length"),
+    q("mean_slip", LENGTH, "mean of the plastic slip"),
+    q("max_penetration", LENGTH, "deepest penetration of a closed point"),
+    q("max_elastic_slip", LENGTH, "largest |q|/α_t"),
+    q("mean_elastic_slip", LENGTH, "mean of q/α_t"),
+];
+
+/// Mean displacement of a watched set, and what its supports put on it.
+pub const WATCHED: [Quantity; 4] = [
+    q("ux", LENGTH, "mean displacement of the nodes along x"),
+    q("uy", LENGTH, "along y"),
+    q("fx", FORCE, "sum of the reactions along x"),
+    q("fy", FORCE, "along y"),
+];
+
+/// Resultant of a contact on its slave.
+pub const RESULTANT: [Quantity; 3] = [
+    q("force_x", FORCE, "pressure, friction and what slip radiates on the slave, without a fluid"),
+    q("force_y", FORCE, "along y"),
+    q("moment", ENERGY, "its moment about the middle of the undeformed slave (the mean of its points by length)"),
+];
+
+/// How a body moves as a whole.
+pub const BODY: [Quantity; 6] = [
+    q("momentum_x", MOMENTUM, "∫ ρ v_x dV"),
+    q("momentum_y", MOMENTUM, "∫ ρ v_y dV"),
+    q("angular_momentum", SPIN, "about the centre of mass"),
+    q("centre_x", LENGTH, "centre of mass"),
+    q("centre_y", LENGTH, "along y"),
+    q("rotation", ANGLE, "of the rigid body nearest to it, turns counted [rad]"),
+];
+
+/// Means by length of a watched set of edges.
+pub const EDGES: [Quantity; 2] = [
+    q("edge_ux", LENGTH, "mean displacement by length of a set of edges along x, ∫ u_x ds/∫ ds"),
+    q("edge_uy", LENGTH, "along y"),
+];
+
+/// Of contacts in a fluid.
+pub const FLUID_FORCE: Quantity = q("fluid_force", FORCE, "∫ p_w ds, of contacts in a fluid");
+
+/// Heat of a contact.
+pub const HEAT: [Quantity; 2] = [
+    q("frictional_heat", ENERGY, "∫∫ q v^p ds dt so far, less work of dilatancy, with that of wear"),
+    q("frictional_power", POWER, "its mean rate over the last increment"),
+];
+
+/// What every probe reads.
+pub const PROBE: [Quantity; 11] = [
+    q("ux", LENGTH, "displacement along x"),
+    q("uy", LENGTH, "along y"),
+    q("vx", VELOCITY, "velocity along x"),
+    q("vy", VELOCITY, "along y"),
+    q("strain_xx", NONE, "Green–Lagrange strain; of `linear` materials sym grad u"),
+    q("strain_yy", NONE, "the same, yy"),
+    q("strain_xy", NONE, "the same, xy"),
+    q("stress_xx", STRESS, "Cauchy stress"),
+    q("stress_yy", STRESS, "the same, yy"),
+    q("stress_zz", STRESS, "the same, zz"),
+    q("stress_xy", STRESS, "the same, xy"),
+];
+
+/// Of every probe of rings, behind its other columns.
+pub const HOOP: Quantity = q("strain_zz", NONE, "strain of the hoops, of rings");
+
+/// Points of a contact, as they lie before anything moves.
+pub const PLACE: [Quantity; 4] = [
+    q("position", LENGTH, "way along the slave, undeformed, from the start of the unbroken line"),
+    q("x", LENGTH, "x of the points, undeformed"),
+    q("y", LENGTH, "y of the points, undeformed"),
+    q("line", NONE, "number of the unbroken line of the slave"),
+];
+
+const GAP: Quantity = q("gap", LENGTH, "g: gap of the surfaces, positive when open");
+const PRESSURE: Quantity = q("pressure", STRESS, "p: contact pressure, positive in compression");
+const TRACTION: Quantity = q("traction", STRESS, "q: friction traction, resisting positive slip");
+const SLIP: Quantity = q("slip", LENGTH, "plastic slip so far, positive along the tangent of the master");
+const ELASTIC_SLIP: Quantity = q("elastic_slip", LENGTH, "q/α_t");
+const TOTAL_SLIP: Quantity = q("total_slip", LENGTH, "plastic and elastic slip, slip + q/α_t");
+const SLIP_RATE: Quantity =
+    q("slip_rate", VELOCITY, "plastic slip since the increment or row before over the time since");
+const RATIO: Quantity = q("R", NONE, "|q|/(μ p): traction over its peak; 0 without friction");
+const MU: Quantity = q("mu", NONE, "μ: peak friction coefficient available now; 0 without friction");
+const STRUCTURE: Quantity = q("structure", NONE, "1/R*: degree of structure; 1 where a law has none");
+const STATE: Quantity =
+    q("state", NONE, "0 open, 1 sticking (or closed without friction), 2 slipping, as the law says");
+const DISSIPATION: Quantity = q("dissipation", WORK_PER_AREA, "work of friction so far, per area");
+
+/// At the points of every contact, in frames: those since the increment before.
+pub const IN_FRAMES: [Quantity; 11] =
+    [GAP, PRESSURE, TRACTION, SLIP, ELASTIC_SLIP, SLIP_RATE, RATIO, MU, STRUCTURE, STATE, DISSIPATION];
+
+/// At the points of every contact, in the store: those since the row before.
+pub const IN_STORE: [Quantity; 9] = [SLIP, TOTAL_SLIP, SLIP_RATE, PRESSURE, TRACTION, GAP, RATIO, MU, STRUCTURE];
+
+/// At the points of some contacts, in both; what else a law remembers or lets observe has a name that it gives.
+pub const OF_SOME: [Quantity; 4] = [
+    q("theta", TIME, "θ: state of rate-and-state friction"),
+    q("dilation", LENGTH, "opening by dilatancy"),
+    q("wear", LENGTH, "depth of wear"),
+    q("fluid_pressure", STRESS, "p_w: pressure of the fluid, beside the contact pressure"),
+];
+
+/// What quantities of the store were called by the versions before, and are called now.
+pub const FORMER: [(&str, &str); 3] = [("p", "pressure"), ("q", "traction"), ("p_w", "fluid_pressure")];
+
+/// A quantity of the store; `None` for one that only a law knows.
+pub fn in_store(name: &str) -> Option<Quantity> {
+    IN_STORE.into_iter().chain(OF_SOME).find(|quantity| quantity.name == name)
+}
+
+/// Columns of `fronts.csv`: a row a passage of a front at a contact point.
+pub const FRONTS: [Quantity; 14] = [
+    q("contact", NONE, "the contact"),
+    q("point", NONE, "number of the point, from 0, as in `interface.zarr`"),
+    q("position", LENGTH, "way along the undeformed slave, from the start of its unbroken line"),
+    q("x", LENGTH, "x of the point, undeformed"),
+    q("y", LENGTH, "y of the point, undeformed"),
+    q("passage", NONE, "number of this arrival at this point, from 1, over all events of the run"),
+    q("arrival", TIME, "when the front passed"),
+    q("speed", VELOCITY, "distance of the two neighbours over the difference of their arrivals (below)"),
+    q("speed_over_c_R", NONE, "speed over that of Rayleigh waves in the body behind the slave; 0 without a density"),
+    q("speed_over_c_s", NONE, "speed over that of shear waves"),
+    q("speed_over_c_p", NONE, "speed over that of pressure waves"),
+    q("event", NONE, "number of the event in `events.csv`; 0 outside of events, as may be with `arrival`"),
+    q("rupture_length", LENGTH, "what the points stand for that the event has reached up to this arrival, each once"),
+    q("energy_released", ENERGY, "by the model since the first arrival: Δ(external work − stored energies)"),
+];
+
+/// Columns of `events.csv`: a row an event of a contact.
+pub const EVENTS: [Quantity; 18] = [
+    q("contact", NONE, "the contact"),
+    q("event", NONE, "number in its contact, from 1"),
+    q("onset", TIME, "time of the first arrival"),
+    q("position", LENGTH, "place of the first arrival along the slave"),
+    q("x", LENGTH, "its x, undeformed"),
+    q("y", LENGTH, "its y, undeformed"),
+    q("duration", TIME, "from the onset to the row in which no point slips faster any more"),
+    q("over", NONE, "1; 0 where the run has ended before the event"),
+    q("length", LENGTH, "what its points stand for"),
+    q("mean_slip", LENGTH, "mean plastic slip, with its sign"),
+    q("largest_slip", LENGTH, "largest plastic slip"),
+    q("peak_slip_rate", VELOCITY, "largest mean slip rate of a point between two rows"),
+    q("stress_drop", STRESS, "mean of q before − q after, positive where slip has unloaded"),
+    q("fracture_energy", WORK_PER_AREA, "mean of ∫ (q − q_min) ds up to where q is least"),
+    q("energy_released", ENERGY, "by the model from the row before the event to its end, elsewhere as well"),
+    q("energy_radiated", ENERGY, "released less the dissipation by friction"),
+    q("front_speed", VELOCITY, "slope of distance over arrivals by least squares, both directions together"),
+    q("front_speed_over_c_R", NONE, "over the Rayleigh wave speed of the body behind the slave"),
+];
+
+/// Columns of `law.csv` that every law has.
+pub const LAW: [Quantity; 12] = [
+    q("time", TIME, "t"),
+    q("slip", LENGTH, "slip along the path, elastic and plastic"),
+    q("pressure", STRESS, "p"),
+    q("traction", STRESS, "q"),
+    q("R", NONE, "|q|/(μ p)"),
+    q("mu", NONE, "μ"),
+    q("structure", NONE, "1/R*"),
+    q("plastic_slip", LENGTH, "plastic slip so far"),
+    q("dissipation", WORK_PER_AREA, "work of friction so far, per area"),
+    q("dtraction_dslip", STIFFNESS, "∂q/∂Δu_t, consistent with the step"),
+    q("dtraction_dpressure", NONE, "∂q/∂p, consistent with the step"),
+    q("evaluations", NONE, "how often the law was evaluated within the step"),
+];
+
+/// Columns of `newton.csv`; those of the aids stand before `verdict` and `reason`.
+pub const NEWTON: [Quantity; 15] = [
+    q("step", NONE, "name of the step"),
+    q("increment", NONE, "number of the increment, from 1"),
+    q("attempt", NONE, "number of the attempt at it, from 1"),
+    q("iteration", NONE, "number of the linear solve; 0 in the row of an attempt that was given up before its first"),
+    q("time", TIME, "t at the end of the increment"),
+    q("residual", NONE, "out-of-balance forces, relative"),
+    q("correction", NONE, "change of the displacements, relative"),
+    q("open", NONE, "open contact points"),
+    q("stick", NONE, "sticking ones"),
+    q("slip", NONE, "slipping ones"),
+    q("linear_residual", NONE, "relative residual of the linear solve"),
+    q("factorized", NONE, "1 where the matrix was factorized anew"),
+    q("stabilization", NONE, "share of the stabilizing forces"),
+    q("flips", NONE, "points that changed between open, stick and slip"),
+    q("pass", NONE, "pass of the augmented Lagrangian"),
+];
+
+/// ... which are these.
+pub const VERDICT: [Quantity; 2] = [
+    q("verdict", NONE, "what became of the attempt (below)"),
+    q("reason", NONE, "why, in words; empty where accepted, commas as semicolons"),
+];
+
+/// Arrays of the frames of bodies.
+const SOLID: [Quantity; 10] = [
+    q("displacement", LENGTH, "u of the nodes"),
+    q("velocity", VELOCITY, "v"),
+    q("acceleration", ACCELERATION, "a"),
+    q("reaction", FORCE, "what supports put on the nodes"),
+    q("contact_force", FORCE, "what contacts put on the nodes"),
+    q("stress", STRESS, "Cauchy stress xx, yy, zz, xy, averaged over the elements at a node"),
+    q("von_mises", STRESS, "von Mises stress"),
+    q("pressure", STRESS, "−tr σ/3"),
+    q("body", NONE, "number of the body of an element"),
+    q("material", NONE, "number of its material"),
+];
+
+/// Of the frames of integration points; what materials remember stands behind, by their names.
+const INTEGRATION_POINTS: [Quantity; 5] = [
+    SOLID[0],
+    q("stress", STRESS, "Cauchy stress xx, yy, zz, xy"),
+    SOLID[6],
+    SOLID[7],
+    q("body", NONE, "number of the body"),
+];
+
+/// Quantities, and whose they are: what stands before the dot in a name.
+pub type Group = (&'static str, &'static [Quantity]);
+
+/// All quantities by their files, in the order of their columns.
+pub const ALL: [(&str, &[Group]); 10] = [
+    (
+        "history.csv",
+        &[
+            ("", &INCREMENT),
+            ("", &ENERGIES),
+            ("CONTACT", &CONTACT),
+            ("SET", &WATCHED),
+            ("", &[RADIATED]),
+            ("CONTACT", &[q("mean_…", NONE, "means of what laws remember, of `dilation` and `wear`, by their names")]),
+            ("CONTACT", &RESULTANT),
+            ("BODY", &BODY),
+            ("SET", &EDGES),
+            ("CONTACT", &[FLUID_FORCE]),
+            ("CONTACT", &HEAT),
+        ],
+    ),
+    ("interface.zarr", &[("", &[INCREMENT[0]]), ("CONTACT", &PLACE), ("CONTACT", &IN_STORE), ("CONTACT", &OF_SOME)]),
+    ("solid.pvd", &[("", &SOLID)]),
+    (
+        "contact.pvd",
+        &[
+            ("", &[SOLID[0]]),
+            ("", &IN_FRAMES),
+            ("", &OF_SOME),
+            ("", &[q("contact", NONE, "number of the contact of a line")]),
+        ],
+    ),
+    ("points.pvd", &[("", &INTEGRATION_POINTS)]),
+    ("probes.csv", &[("", &[INCREMENT[0]]), ("PROBE", &PROBE), ("PROBE", &[HOOP])]),
+    ("fronts.csv", &[("", &FRONTS)]),
+    ("events.csv", &[("", &EVENTS)]),
+    (
+        "newton.csv",
+        &[("", &NEWTON), ("", &[q("aid_…", NONE, "contact points on which each aid acted")]), ("", &VERDICT)],
+    ),
+    ("law.csv", &[("", &LAW), ("", &[OF_SOME[0]])]),
+];
+
+/// What a quantity is called where it is drawn.
+pub fn spoken(name: &str) -> String {
+    match name {
+        "mu" => "μ".into(),
+        "theta" => "θ".into(),
+        "structure" => "structure 1/R*".into(),
+        "pressure" => "pressure p".into(),
+        "traction" => "traction q".into(),
+        "state" => "state (0 open, 1 stick, 2 slip)".into(),
+        "von_mises" => "von Mises stress".into(),
+        _ => name.replace('_', " "),
+    }
+}
+
+/// All quantities by their files, as `fecontact schema results` prints them.
+pub fn schema() -> Value {
+    let shown = |(owner, of): (&str, &Quantity)| {
+        let Quantity { name, unit, meaning } = *of;
+        let whole = if owner.is_empty() { name.into() } else { format!("{owner}.{name}") };
+        let mut entry = json!({
+            "name": whole, "unit": unit.made_of(["F", "L", "T"]), "of": unit.name, "spoken": spoken(name), "meaning": meaning,
+        });
+        if let Some((former, _)) = FORMER.iter().find(|(_, now)| owner == "CONTACT" && *now == name) {
+            entry["formerly"] = json!(former);
+        }
+        entry
+    };
+    let of_group = |(owner, some): &Group| some.iter().map(|of| shown((owner, of))).collect::<Vec<_>>();
+    ALL.iter().map(|(file, groups)| (file.to_string(), groups.iter().flat_map(of_group).collect::<Value>())).collect()
+}
+
+/// What a page needs of them: labels of units by their names, and of every quantity its label and what it is called.
+pub fn labels(units: &BTreeMap<String, String>) -> Value {
+    let (mut of_units, mut quantities) = (Map::new(), Map::new());
+    // newton.csv counts slipping points under the name of a length.
+    for of in ALL.iter().filter(|(file, _)| *file != "newton.csv").flat_map(|(_, all)| *all).flat_map(|(_, some)| *some)
+    {
+        let label = of.unit.label(units, Unit::made_of).unwrap_or_default();
+        quantities.insert(of.name.into(), json!([label, spoken(of.name)]));
+        of_units.insert(of.unit.name.into(), json!(label));
+    }
+    json!({ "units": of_units, "quantities": quantities })
+}
