@@ -162,7 +162,7 @@ fn parameters_of_registered_laws_vary() {
         0.5,
     );
     let case = serde_json::from_value(case).expect("a case");
-    let told = fecontact::case::build(&case, Path::new("test.json")).err().expect("it is refused").to_string();
+    let told = fecontact::case::build(&case, Path::new("test.json")).expect_err("it is refused").to_string();
     assert!(["contacts.base.along.nu", "Known are `mu`, `alpha_t`"].iter().all(|what| told.contains(what)), "{told}");
 }
 

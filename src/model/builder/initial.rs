@@ -161,8 +161,8 @@ fn of_bodies(
     model: &Model,
     place: &str,
 ) -> Checked<Vec<InitialTraction>> {
-    for (key, _) in [("pressure", &given.pressure), ("traction", &given.traction)].iter().filter(|(_, it)| it.is_some())
-    {
+    let besides = [("pressure", &given.pressure), ("traction", &given.traction)];
+    if let Some((key, _)) = besides.iter().find(|(_, it)| it.is_some()) {
         let message = "has no meaning together with of_bodies: leave one out";
         return Err(ModelError::new(format!("{place}.{key}"), message));
     }
