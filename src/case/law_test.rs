@@ -7,11 +7,12 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::Value;
 
+use super::check_units;
 use super::error::{CaseError, Checked, Complaint};
-use super::labels;
 use super::schema::schema_of;
 use crate::laws::friction::{FrictionLaw, FrictionParameters, FrictionState, observables};
 use crate::model::boundary::{Drive, Span};
+use crate::model::builder::check_line;
 use crate::run::law::{Course, LawTest, Phase, Undefined};
 
 /// A test of a friction law alone: the law, and the path of slip and pressure it is driven along.
@@ -105,7 +106,8 @@ pub fn build(input: &LawTestInput, path: &Path) -> Result<LawTest, CaseError> {
 }
 
 fn test(input: &LawTestInput) -> Checked<LawTest> {
-    labels::check(&input.title, &input.units)?;
+    check_line("title", &input.title)?;
+    check_units(&input.units)?;
     let law = law(&input.friction)?;
     let path = match (&input.path, &input.table) {
         (Some(phases), None) => phases_of(input, phases)?,

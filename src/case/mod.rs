@@ -7,25 +7,26 @@ mod again;
 mod error;
 pub mod file;
 pub mod job;
-mod labels;
 pub mod law_test;
 pub mod loading;
 mod read;
 mod report;
 mod resolved;
 mod schema;
-mod translate;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
+use crate::mesh::section::Section;
 use crate::mesh::{Mesh, gmsh};
 use crate::model::Model;
+use crate::model::builder::{Builder, Contact, Gauge, check_line};
 pub use again::Opened;
 pub use error::CaseError;
 use error::{Checked, Complaint};
-use file::{Case, MeshSource};
+use file::{Case, MeshSource, blocks};
 pub use report::{report, understood};
 pub use resolved::resolved;
 
@@ -66,7 +67,7 @@ fn built(case: &Case, mesh: Mesh) -> Checked<Model> {
     if case.begin_with.is_some() {
         return Err(Complaint::new("begin_with", "another case must be opened first: see case::Opened"));
     }
-    let model = translate::model(case, mesh)?.build()?;
+    let model = builder(case, mesh)?.build()?;
     if case.output.every == Some(0) {
         let message = "is 0: must be at least 1 (to write no fields, give \"fields\": false)";
         return Err(Complaint::new("output.every", message));
@@ -82,10 +83,39 @@ fn built(case: &Case, mesh: Mesh) -> Checked<Model> {
     }
 }
 
+/// The builder of a case on its mesh.
+fn builder(case: &Case, mesh: Mesh) -> Checked<Builder> {
+    let section = if case.section == Section::PlaneStrain { mesh.section } else { case.section };
+    check_units(&case.units)?;
+    let given = case.clone();
+    let contact = |(name, contact)| Contact { name, ..contact };
+    let gauge = |(name, gauge)| Gauge { name, ..gauge };
+    Ok(Builder {
+        title: given.title,
+        bodies: given.bodies.into_iter().collect(),
+        point_masses: given.point_masses.into_iter().collect(),
+        periodic: given.periodic,
+        plates: given.plates,
+        contacts: given.contacts.into_iter().map(contact).collect(),
+        velocities: given.initial_velocity.into_iter().collect(),
+        steps: given.steps,
+        watch: given.watch,
+        newton: given.newton,
+        interval: given.output.interval,
+        times: given.output.times,
+        gauges: given.probes.into_iter().map(gauge).collect(),
+        ..Model::builder(mesh).section(section)
+    })
+}
+
+fn check_units(units: &BTreeMap<String, String>) -> Checked<()> {
+    units.iter().try_for_each(|(of, label)| Ok(check_line(&format!("units.{of}"), label)?))
+}
+
 fn mesh(case: &Case, path: &Path) -> Checked<Mesh> {
     let mesh = match &case.mesh {
         MeshSource::Inline(mesh) => mesh.build(),
-        MeshSource::Blocks(blocks) => translate::blocks(blocks, "mesh")?.build(),
+        MeshSource::Blocks(blocks) => file::blocks(blocks, "mesh")?.build(),
         MeshSource::File(file) => gmsh::read(&path.parent().unwrap_or(Path::new("")).join(file)),
     };
     mesh.map_err(|error| Complaint::new("mesh", error))
@@ -98,7 +128,7 @@ fn mesh(case: &Case, path: &Path) -> Checked<Mesh> {
 pub fn blocks_from_text(text: &str) -> Result<Mesh, CaseError> {
     let path = Path::new("mesh");
     let input = read::read_text(text, path)?;
-    let mesh = translate::blocks(&input, "").and_then(|mesh| mesh.build().map_err(|error| Complaint::new("", error)));
+    let mesh = blocks(&input, "").and_then(|mesh| mesh.build().map_err(|error| Complaint::new("", error)));
     mesh.map_err(|complaint| complaint.in_file(path))
 }
 

@@ -1,5 +1,7 @@
 //! Bodies and point masses: their damping, and where each element finds what its material remembers.
 
+use std::sync::Arc;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +15,7 @@ pub struct Body {
     /// name of its group
     pub name: String,
     /// bulk law
-    pub material: Box<dyn Material>,
+    pub material: Arc<dyn Material>,
     /// damping in dynamic steps that say nothing else
     pub damping: Damping,
     /// stress at the start, if it has one

@@ -8,13 +8,12 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::laws::bulk::MaterialParameters;
 use crate::mesh::InlineMesh;
 use crate::mesh::section::Section;
-use crate::model::builder::{Contact, Gauge, LoadStep, Plate};
-use crate::model::imposed::{InitialStress, Thermal};
+use crate::model::NewtonSettings;
+use crate::model::builder::{BodyInput, Contact, Gauge, LoadStep, LoadingPlateInput, PointMassInput};
 use crate::model::written::Written;
-use crate::model::{Damping, NewtonSettings};
+pub(super) use blocks::blocks;
 pub use blocks::{Amount, BlockInput, BlocksInput, GradingInput, MeshInPlace, MiddleInput};
 pub use output::{ArrivalInput, FrontsInput, OutputInput};
 
@@ -108,93 +107,5 @@ impl Written for MeshSource {
 impl<'de> Deserialize<'de> for MeshSource {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         Self::read(deserializer)
-    }
-}
-
-/// A body.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct BodyInput {
-    /// Bulk law
-    pub material: MaterialParameters,
-    /// Element formulation
-    #[serde(default)]
-    pub element: Formulation,
-    /// Damping of the body in dynamic steps; none unless given
-    #[serde(default)]
-    pub damping: Damping,
-    /// Stress of the undeformed body at the start; none unless given
-    pub initial_stress: Option<InitialStress>,
-    /// Thermal expansion; none unless given
-    pub thermal: Option<Thermal>,
-}
-
-/// How the elements of a body are integrated.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Formulation {
-    /// Displacements only, full integration
-    #[default]
-    Displacement,
-    /// Q4 with the mean dilatation of the centre (F-bar): does not lock for ν → 1/2
-    FBar,
-}
-
-/// A mass at every node of a group.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PointMassInput {
-    /// Mass of each node, added to what a body has there [M]
-    pub mass: f64,
-    /// Initial velocity [x, y] of the nodes [L/T]
-    pub velocity: Option<[f64; 2]>,
-}
-
-/// A loading plate.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
-#[serde(untagged)]
-pub enum LoadingPlateInput {
-    /// Group that moves as one, without turning
-    Group(String),
-    /// Group that moves in another way
-    Moving(MovingPlateInput),
-}
-
-impl Written for LoadingPlateInput {
-    const EXPECTING: &'static str =
-        "the name of a group, or {\"on\": group, \"moves\": \"ux_alike\", \"uy_alike\" or \"rigid\"}";
-
-    fn text(text: &str) -> Result<Self, String> {
-        Ok(Self::Group(text.into()))
-    }
-
-    fn object<'de, D: Deserializer<'de>>(object: D) -> Result<Self, D::Error> {
-        MovingPlateInput::deserialize(object).map(Self::Moving)
-    }
-}
-
-impl<'de> Deserialize<'de> for LoadingPlateInput {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Self::read(deserializer)
-    }
-}
-
-/// A loading plate that moves in another way than as one.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct MovingPlateInput {
-    /// Group of its nodes
-    pub on: String,
-    /// How they move
-    pub moves: Plate,
-}
-
-impl LoadingPlateInput {
-    /// Its group, and how it moves.
-    pub fn parts(&self) -> (&str, Plate) {
-        match self {
-            Self::Group(name) => (name, Plate::AsOne),
-            Self::Moving(MovingPlateInput { on, moves }) => (on, *moves),
-        }
     }
 }

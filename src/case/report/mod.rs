@@ -8,10 +8,10 @@ use std::fmt::Write;
 use contact::{contacts, parameters, pressed_too_hard};
 use steps::steps;
 
-use super::file::{ArrivalInput, BodyInput, Case, Formulation, LoadingPlateInput, MeshSource};
+use super::file::{ArrivalInput, Case, MeshSource};
 use crate::mesh::Group;
 use crate::mesh::shape::ElementKind;
-use crate::model::builder::Plate;
+use crate::model::builder::{BodyInput, Formulation, LoadingPlateInput, Plate};
 use crate::model::imposed::{InitialStress, Thermal};
 use crate::model::told::{count, number};
 use crate::model::{Damping, Model, PointMass};

@@ -16,9 +16,9 @@ use crate::time::step_size::EVENT_LOCATION;
 /// Every step.
 pub fn steps(case: &Case, model: &Model) -> Vec<String> {
     let mut lines = Vec::new();
-    let (mut supports, mut loads) = (InForce::new(), InForce::new());
-    let on = |place: &Place| on(place, model);
-    for (step, input) in model.steps.iter().zip(&case.steps) {
+    // The text of each, and the number of the step that gave it last.
+    let mut in_force: BTreeMap<Key, (String, usize)> = BTreeMap::new();
+    for (k, (step, input)) in model.steps.iter().zip(&case.steps).enumerate() {
         lines.push(step.name.clone());
         let mut told = step_lines(step);
         told.extend(input.velocity.iter().map(|(name, velocity)| {
@@ -31,15 +31,21 @@ pub fn steps(case: &Case, model: &Model) -> Vec<String> {
         told.extend(
             input.temperature.iter().map(|(name, given)| format!("temperature of {name}: {}", drive(&given.into()))),
         );
-        let freed = if step.scheme.is_dynamic() { "at once" } else { "its reaction fades over the step" };
-        told.extend(
-            supports.step(written_supports(input, on)).map(|(on, kind)| format!("freed {on}: {kind}, {freed}")),
-        );
-        told.extend(loads.step(input.loads.iter().filter_map(|load| written_load(load, on))).map(|(on, kind)| {
-            let ended = if ENDS_AT_ONCE.contains(&kind) { "at once" } else { "it fades over the step" };
-            format!("ended {on}: {kind}, {ended}")
+        let on = |place: &Place| on(place, model);
+        let loads = input.loads.iter().filter_map(|load| written_load(load, on));
+        for (key, text) in written_supports(input, on).into_iter().chain(loads) {
+            match text {
+                Some(text) => drop(in_force.insert(key, (text, k))),
+                None => {
+                    in_force.remove(&key);
+                    told.push(end(key, step.scheme.is_dynamic()));
+                }
+            }
+        }
+        told.extend(in_force.iter().map(|((verb, on, kind), (text, given))| {
+            let kept = if *given == k { "" } else { " (kept)" };
+            format!("{verb} {on}: {kind} {text}{kept}")
         }));
-        told.extend(supports.lines("held").into_iter().chain(loads.lines("loaded")));
         lines.extend(told.into_iter().map(|line| format!("  {line}")));
         lines.push(format!("  {} prescribed", count(step.supports.len(), "dof")));
     }
@@ -83,47 +89,25 @@ fn step_lines(step: &Step) -> Vec<String> {
     lines
 }
 
-/// What is in force in a step, by place and kind, as it was last written; `null` ends it.
-struct InForce(BTreeMap<(String, &'static str), Written>);
+/// A support or load in words: whether it holds or loads, where, and its kind.
+type Key = (&'static str, String, &'static str);
 
-struct Written {
-    text: String,
-    kept: bool,
-}
+const HELD: &str = "held";
+const LOADED: &str = "loaded";
+
+/// One entry of a step; without a text it ends what was in force.
+type Entry = (Key, Option<String>);
 
 /// Loads without a value that could fade.
 const ENDS_AT_ONCE: [&str; 3] = ["spring", "dashpot", "absorbing side"];
 
-/// Place, kind and value of one entry of a step.
-type Entry = (String, &'static str, Option<String>);
-
-impl InForce {
-    fn new() -> Self {
-        Self(BTreeMap::new())
-    }
-
-    /// Take over what is written; returns what is ended.
-    fn step(&mut self, entries: impl IntoIterator<Item = Entry>) -> impl Iterator<Item = (String, &'static str)> {
-        self.0.values_mut().for_each(|written| written.kept = true);
-        let mut ended = Vec::new();
-        for (on, kind, text) in entries {
-            match text {
-                Some(text) => drop(self.0.insert((on, kind), Written { text, kept: false })),
-                None => {
-                    self.0.remove(&(on.clone(), kind));
-                    ended.push((on, kind));
-                }
-            }
-        }
-        ended.into_iter()
-    }
-
-    fn lines(&self, verb: &str) -> Vec<String> {
-        let kept = |written: &Written| if written.kept { " (kept)" } else { "" };
-        let line = |((on, kind), written): (&(String, &str), &Written)| {
-            format!("{verb} {on}: {kind} {}{}", written.text, kept(written))
-        };
-        self.0.iter().map(line).collect()
+/// How a support or load ends.
+fn end((verb, on, kind): Key, dynamic: bool) -> String {
+    match verb == HELD {
+        true if dynamic => format!("freed {on}: {kind}, at once"),
+        true => format!("freed {on}: {kind}, its reaction fades over the step"),
+        false if ENDS_AT_ONCE.contains(&kind) => format!("ended {on}: {kind}, at once"),
+        false => format!("ended {on}: {kind}, it fades over the step"),
     }
 }
 
@@ -135,7 +119,7 @@ fn on(place: &Place, model: &Model) -> String {
 fn written_supports(step: &LoadStep, on: impl Fn(&Place) -> String) -> Vec<Entry> {
     let mut entries: Vec<Entry> = Vec::new();
     for support in &step.supports {
-        let mut add = |kind, text| entries.push((on(&support.on), kind, text));
+        let mut add = |kind, text| entries.push(((HELD, on(&support.on), kind), text));
         for (kind, given) in [("ux", &support.ux), ("uy", &support.uy), ("along its normal", &support.un)] {
             if let Some(given) = given {
                 add(kind, given.given().map(drive));
@@ -147,7 +131,7 @@ fn written_supports(step: &LoadStep, on: impl Fn(&Place) -> String) -> Vec<Entry
         }
         if let (Some(direction), Some(given)) = (support.along, &support.u) {
             let on = format!("{} along ({})", on(&support.on), direction.map(number).join(", "));
-            entries.push((on, "u", given.given().map(drive)));
+            entries.push(((HELD, on, "u"), given.given().map(drive)));
         }
     }
     entries
@@ -172,7 +156,7 @@ fn written_load(load: &Load, place: impl Fn(&Place) -> String) -> Option<Entry> 
         Action::TotalForce(given) => ("total force", given.map(components)),
         Action::Force(given) => ("force", given.map(components)),
     };
-    Some((place(&load.on), kind, text))
+    Some(((LOADED, place(&load.on), kind), text))
 }
 
 fn driven(how: &str, driver: &Option<Components>) -> String {

@@ -49,16 +49,17 @@ pub struct Imposed {
 impl Imposed {
     /// A law in a body with an initial stress, or with an expansion α when it is heated, or both; `None` if it does not know
     /// a stretch across the plane.
-    pub fn new(law: Box<dyn Material>, stressed: bool, expansion: Option<f64>) -> Option<Self> {
+    pub fn new(law: impl Into<Arc<dyn Material>>, stressed: bool, expansion: Option<f64>) -> Option<Self> {
+        let law = law.into();
         law.spatial()?;
         Some(Self::of(law, false, stressed, expansion))
     }
 
-    fn of(law: Box<dyn Material>, flat: bool, stressed: bool, expansion: Option<f64>) -> Self {
+    fn of(law: Arc<dyn Material>, flat: bool, stressed: bool, expansion: Option<f64>) -> Self {
         let mut names = law.variables().to_vec();
         names.extend(INITIAL_STRESS.iter().filter(|_| stressed));
         names.extend(TEMPERATURE.iter().filter(|_| expansion.is_some()));
-        Self { law: law.into(), flat, stressed, expansion, names }
+        Self { law, flat, stressed, expansion, names }
     }
 
     /// F and F₃₃ as the law under it sees them, at a thermal strain.
@@ -191,7 +192,7 @@ impl Material for Imposed {
 
     fn plane_stress(&self) -> Option<Box<dyn Material>> {
         match self.is_linear() {
-            true => Some(Box::new(Self::of(self.law.plane_stress()?, true, self.stressed, self.expansion))),
+            true => Some(Box::new(Self::of(self.law.plane_stress()?.into(), true, self.stressed, self.expansion))),
             false => Some(Box::new(PlaneStress::new(self.clone()))),
         }
     }

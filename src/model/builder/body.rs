@@ -3,15 +3,18 @@
 //! What is imposed on bodies: their initial stress, and their temperatures.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use nalgebra::Vector2;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::error::{Checked, ModelError, check_finite, check_not_negative, check_size};
 use super::friction::{check_profile, defined};
 use super::groups::{group, kind};
 use super::load_step::LoadStep;
 use super::section;
-use crate::laws::bulk::{Imposed, Material};
+use crate::laws::bulk::{Imposed, Material, MaterialParameters};
 use crate::mesh::{Group, Mesh};
 use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::element::{SolidElement, consistent_mass};
@@ -19,55 +22,93 @@ use crate::model::imposed::{InitialStress, Temperature, Thermal};
 use crate::model::told::number;
 use crate::model::{Body, Damping, Model, PointMass};
 
-/// A body as it is given.
-pub struct GivenBody {
-    /// name of its group
-    pub name: String,
-    /// bulk law
-    pub material: Box<dyn Material>,
-    /// mean dilatation (F-bar) instead of full integration
-    pub f_bar: bool,
-    /// damping in dynamic steps
+/// A body.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BodyInput {
+    /// Bulk law
+    #[schemars(with = "MaterialParameters")]
+    pub material: BulkLaw,
+    /// Element formulation
+    #[serde(default)]
+    pub element: Formulation,
+    /// Damping of the body in dynamic steps; none unless given
+    #[serde(default)]
     pub damping: Damping,
-    /// stress at the start
+    /// Stress of the undeformed body at the start; none unless given
     pub initial_stress: Option<InitialStress>,
-    /// thermal expansion
+    /// Thermal expansion; none unless given
     pub thermal: Option<Thermal>,
 }
 
-/// A point mass as it is given.
-pub struct GivenMass {
-    /// name of its group
-    pub name: String,
-    /// m of each node [M]
+/// The law of a body: by its parameters, as a case writes it, or from code.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(untagged, from = "MaterialParameters")]
+pub enum BulkLaw {
+    /// The parameters
+    Parameters(MaterialParameters),
+    /// The law itself
+    #[serde(skip)]
+    FromCode(Arc<dyn Material>),
+}
+
+impl From<MaterialParameters> for BulkLaw {
+    fn from(parameters: MaterialParameters) -> Self {
+        Self::Parameters(parameters)
+    }
+}
+
+/// How the elements of a body are integrated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Formulation {
+    /// Displacements only, full integration
+    #[default]
+    Displacement,
+    /// Q4 with the mean dilatation of the centre (F-bar): does not lock for ν → 1/2
+    FBar,
+}
+
+/// A mass at every node of a group.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PointMassInput {
+    /// Mass of each node, added to what a body has there [M]
     pub mass: f64,
-    /// initial velocity [L/T]
+    /// Initial velocity [x, y] of the nodes [L/T]
     pub velocity: Option<[f64; 2]>,
 }
 
 /// The bodies, and the number of that which each element belongs to.
-pub fn bodies(given: Vec<GivenBody>, mesh: &Mesh) -> Checked<(Vec<Body>, Vec<usize>)> {
+pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>, Vec<usize>)> {
     let mut bodies = Vec::new();
     let mut body_of_element = vec![usize::MAX; mesh.elements.len()];
-    for GivenBody { name, material, f_bar, damping, initial_stress, thermal } in given {
+    for (name, BodyInput { material, element, damping, initial_stress, thermal }) in given {
         let place = format!("bodies.{name}");
-        let material = with_imposed(material, initial_stress.as_ref(), thermal, &place)?;
-        let material = section::material(material, f_bar, mesh.section, &place)?;
-        let group = group(mesh, &name, &place)?;
+        let law = match material {
+            BulkLaw::Parameters(parameters) => {
+                parameters.build().map_err(|error| ModelError::new(format!("{place}.material"), error))?.into()
+            }
+            BulkLaw::FromCode(law) => law.clone(),
+        };
+        let material = with_imposed(law, initial_stress.as_ref(), *thermal, &place)?;
+        let material = section::material(material, *element, mesh.section, &place)?;
+        let group = group(mesh, name, &place)?;
         let Group::Elements(elements) = group else {
             let message = format!("`{name}` is a group of {}, not of solid elements", kind(group));
             return Err(ModelError::new(place, message));
         };
         check_size(&format!("{place}.material"), "the stiffness lambda + 2 G", material.p_wave_modulus())?;
-        check_damping(damping, &*material, &format!("{place}.damping"))?;
+        check_damping(*damping, &*material, &format!("{place}.damping"))?;
         elements.iter().for_each(|&element| body_of_element[element] = bodies.len());
         let (elements, nodes) = (elements.clone(), mesh.nodes_of(group));
-        if let Some(stress) = &initial_stress {
+        if let Some(stress) = initial_stress {
             let place = format!("{place}.initial_stress");
             check_stress(stress, &nodes, mesh, &place)?;
             check_stiffness(stress, &*material, &nodes, mesh, &place)?;
         }
-        bodies.push(Body { name, material, damping, initial_stress, thermal, elements, nodes });
+        let (name, initial_stress) = (name.clone(), initial_stress.clone());
+        bodies.push(Body { name, material, damping: *damping, initial_stress, thermal: *thermal, elements, nodes });
     }
     match body_of_element.iter().position(|&body| body == usize::MAX) {
         Some(element) => {
@@ -93,21 +134,23 @@ pub fn check_damping(damping: Damping, material: &dyn Material, place: &str) -> 
     Ok(())
 }
 
-/// Integration geometry of every element; `f_bar` says which bodies take the mean dilatation.
-pub fn solids(mesh: &Mesh, bodies: &[Body], body_of_element: &[usize], f_bar: &[bool]) -> Checked<Vec<SolidElement>> {
+/// Integration geometry of every element.
+pub fn solids(mesh: &Mesh, given: &[(String, BodyInput)], body_of_element: &[usize]) -> Checked<Vec<SolidElement>> {
     let mut solids = Vec::with_capacity(mesh.elements.len());
     for (element, &body) in mesh.elements.iter().zip(body_of_element) {
         let positions: Vec<Vector2<f64>> = element.nodes.iter().map(|&node| mesh.nodes[node]).collect();
-        let complain = |error| ModelError::new(format!("bodies.{}.element", bodies[body].name), error);
-        solids.push(SolidElement::new(element.kind, f_bar[body], mesh.section, &positions).map_err(complain)?);
+        let (name, body) = &given[body];
+        let complain = |error| ModelError::new(format!("bodies.{name}.element"), error);
+        let f_bar = body.element == Formulation::FBar;
+        solids.push(SolidElement::new(element.kind, f_bar, mesh.section, &positions).map_err(complain)?);
         consistent_mass(element.kind, mesh.section, &positions, 1.0).map_err(complain)?;
     }
     Ok(solids)
 }
 
 /// The point masses.
-pub fn point_masses(given: &[GivenMass], mesh: &Mesh) -> Checked<Vec<PointMass>> {
-    let point_mass = |GivenMass { name, mass, .. }: &GivenMass| {
+pub fn point_masses(given: &[(String, PointMassInput)], mesh: &Mesh) -> Checked<Vec<PointMass>> {
+    let point_mass = |(name, PointMassInput { mass, .. }): &(String, PointMassInput)| {
         let place = format!("point_masses.{name}");
         let group = group(mesh, name, &place)?;
         if *mass <= 0.0 {
@@ -131,11 +174,11 @@ const PLACES: usize = 50;
 
 /// The law of a body under what is imposed on it.
 pub fn with_imposed(
-    given: Box<dyn Material>,
+    given: Arc<dyn Material>,
     stress: Option<&InitialStress>,
     thermal: Option<Thermal>,
     place: &str,
-) -> Checked<Box<dyn Material>> {
+) -> Checked<Arc<dyn Material>> {
     if let Some(Thermal { expansion, reference }) = thermal {
         check_finite(&format!("{place}.thermal.expansion"), [expansion])?;
         check_finite(&format!("{place}.thermal.reference"), [reference])?;
@@ -144,7 +187,7 @@ pub fn with_imposed(
         return Ok(given);
     }
     match Imposed::new(given, stress.is_some(), thermal.map(|thermal| thermal.expansion)) {
-        Some(imposed) => Ok(Box::new(imposed)),
+        Some(imposed) => Ok(Arc::new(imposed)),
         None => {
             let key = if stress.is_some() { "initial_stress" } else { "thermal" };
             let message = "needs a law that knows a stretch across the plane: take another material, or leave it out";

@@ -86,14 +86,18 @@ impl Builder {
         for contact in &self.contacts {
             check_name("contacts", &contact.name)?;
         }
-        for body in &self.bodies {
-            check_name("bodies", &body.name)?;
+        for (body, _) in &self.bodies {
+            check_name("bodies", body)?;
         }
-        check_title(&self.title)?;
+        check_line("title", &self.title)?;
         check_watched(&self.watch)?;
         check_once("contacts", self.contacts.iter().map(|contact| &contact.name))?;
-        check_once("bodies", self.bodies.iter().map(|body| &body.name))?;
-        check_once("point_masses", self.point_masses.iter().map(|mass| &mass.name))
+        check_once("bodies", self.bodies.iter().map(|(name, _)| name))?;
+        check_once("point_masses", self.point_masses.iter().map(|(name, _)| name))?;
+        let Some(name) = &self.unknown else { return Ok(()) };
+        let known: Vec<&str> = self.bodies.iter().map(|(name, _)| name.as_str()).collect();
+        let message = format!("there is no body of this name; the bodies are {}", known.join(", "));
+        Err(ModelError::new(format!("bodies.{name}"), message))
     }
 }
 
@@ -120,11 +124,11 @@ pub fn check_name(place: &str, name: &str) -> Checked<()> {
     }
 }
 
-/// A title stands in figures, pages and stores, in a line.
-fn check_title(title: &str) -> Checked<()> {
-    match title.chars().find(|c| is_unwritable(*c)) {
+/// Titles and labels of units go into figures, pages and stores as they are: each must be a line of text.
+pub fn check_line(place: &str, text: &str) -> Checked<()> {
+    match text.chars().find(|c| is_unwritable(*c)) {
         Some(character) => {
-            Err(ModelError::new("title", format!("{title:?} has {character:?} in it: give a line of text, without it")))
+            Err(ModelError::new(place, format!("{text:?} has {character:?} in it: give a line of text, without it")))
         }
         None => Ok(()),
     }

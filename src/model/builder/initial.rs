@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::body::GivenMass;
+use super::body::PointMassInput;
 use super::contact::{Contact, InitialTractions};
 use super::error::{Checked, ModelError, check_finite};
 use super::friction::{check_profile, defined, position};
@@ -19,7 +19,11 @@ use crate::model::scheme::Scheme;
 const ROUNDED: f64 = 1e-9;
 
 /// Initial velocity of every dof, from those of bodies and of point masses [L/T].
-pub fn velocities(of_bodies: &[(String, [f64; 2])], masses: &[GivenMass], model: &Model) -> Checked<Vec<f64>> {
+pub fn velocities(
+    of_bodies: &[(String, [f64; 2])],
+    masses: &[(String, PointMassInput)],
+    model: &Model,
+) -> Checked<Vec<f64>> {
     let mut given = Given { velocity: vec![None; model.mesh.nodes.len()], model };
     for (name, value) in of_bodies {
         let place = format!("initial_velocity.{name}");
@@ -30,7 +34,7 @@ pub fn velocities(of_bodies: &[(String, [f64; 2])], masses: &[GivenMass], model:
         };
         given.give(place, &body.nodes, *value)?;
     }
-    for (point, mass) in model.point_masses.iter().zip(masses) {
+    for (point, (_, mass)) in model.point_masses.iter().zip(masses) {
         if let Some(value) = mass.velocity {
             given.give(format!("point_masses.{}.velocity", point.name), &point.nodes, value)?;
         }

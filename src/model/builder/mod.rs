@@ -48,7 +48,9 @@ mod supported;
 mod supports;
 
 pub use along::{Along, LawChoice};
+pub use body::{BodyInput, BulkLaw, Formulation, PointMassInput};
 pub use contact::{Contact, InitialTractions, MasterSide, Normal, Radiation, SlidingRange};
+pub(crate) use error::check_line;
 pub use error::{Checked, ModelError};
 pub use friction::Friction;
 pub use groups::Place;
@@ -58,7 +60,7 @@ pub use load_step::{
 };
 pub use loads::LoadsInForce;
 pub use pair::default_alpha_t;
-pub use plates::Plate;
+pub use plates::{LoadingPlateInput, MovingPlateInput, Plate};
 pub use probes::Gauge;
 
 use crate::laws::bulk::Material;
@@ -68,28 +70,25 @@ use crate::mesh::ties::Ties;
 use crate::model::imposed::{InitialStress, Thermal};
 use crate::model::linkage::Linkage;
 use crate::model::{Damping, Memories, Model, NewtonSettings};
-use body::{GivenBody, GivenMass};
 
 /// What a model is made of; [`Builder::build`] checks it and makes the model.
 pub struct Builder {
-    mesh: Mesh,
-    title: String,
-    bodies: Vec<GivenBody>,
-    f_bar: Vec<String>,
-    damping: Vec<(String, Damping)>,
-    stresses: Vec<(String, InitialStress)>,
-    thermal: Vec<(String, Thermal)>,
-    point_masses: Vec<GivenMass>,
-    periodic: Vec<[String; 2]>,
-    plates: Vec<(String, Plate)>,
-    contacts: Vec<Contact>,
-    velocities: Vec<(String, [f64; 2])>,
-    steps: Vec<LoadStep>,
-    watch: Vec<String>,
-    newton: NewtonSettings,
-    interval: Option<f64>,
-    times: Vec<f64>,
-    gauges: Vec<Gauge>,
+    pub(crate) mesh: Mesh,
+    pub(crate) title: String,
+    pub(crate) bodies: Vec<(String, BodyInput)>,
+    /// A body that is spoken of before it is given, if there is one
+    pub(crate) unknown: Option<String>,
+    pub(crate) point_masses: Vec<(String, PointMassInput)>,
+    pub(crate) periodic: Vec<[String; 2]>,
+    pub(crate) plates: Vec<LoadingPlateInput>,
+    pub(crate) contacts: Vec<Contact>,
+    pub(crate) velocities: Vec<(String, [f64; 2])>,
+    pub(crate) steps: Vec<LoadStep>,
+    pub(crate) watch: Vec<String>,
+    pub(crate) newton: NewtonSettings,
+    pub(crate) interval: Option<f64>,
+    pub(crate) times: Vec<f64>,
+    pub(crate) gauges: Vec<Gauge>,
 }
 
 impl Model {
@@ -99,10 +98,7 @@ impl Model {
             mesh,
             title: String::new(),
             bodies: Vec::new(),
-            f_bar: Vec::new(),
-            damping: Vec::new(),
-            stresses: Vec::new(),
-            thermal: Vec::new(),
+            unknown: None,
             point_masses: Vec::new(),
             periodic: Vec::new(),
             plates: Vec::new(),
@@ -132,33 +128,57 @@ impl Builder {
 
     /// A body: the material of a group of elements.
     pub fn body(mut self, name: impl Into<String>, material: impl Into<Box<dyn Material>>) -> Self {
-        let (name, material) = (name.into(), material.into());
-        let damping = Damping::default();
-        self.bodies.push(GivenBody { name, material, f_bar: false, damping, initial_stress: None, thermal: None });
+        let material = BulkLaw::FromCode(material.into().into());
+        let body = BodyInput {
+            material,
+            element: Formulation::Displacement,
+            damping: Damping::default(),
+            initial_stress: None,
+            thermal: None,
+        };
+        self.bodies.push((name.into(), body));
         self
     }
 
     /// Elements of a body with the mean dilatation of their centre (F-bar), which do not lock for ν → ½: Q4 only.
-    pub fn f_bar(mut self, body: impl Into<String>) -> Self {
-        self.f_bar.push(body.into());
-        self
+    pub fn f_bar(self, body: impl Into<String>) -> Self {
+        self.change(body, |body| body.element = Formulation::FBar)
     }
 
     /// Damping of a body in dynamic steps.
-    pub fn damping(mut self, body: impl Into<String>, damping: Damping) -> Self {
-        self.damping.push((body.into(), damping));
+    pub fn damping(self, body: impl Into<String>, damping: Damping) -> Self {
+        self.change(body, |body| body.damping = damping)
+    }
+
+    /// Stress of a body before anything has moved; displacements count from there.
+    pub fn initial_stress(self, body: impl Into<String>, stress: InitialStress) -> Self {
+        self.change(body, |body| body.initial_stress = Some(stress))
+    }
+
+    /// Thermal expansion of a body, whose temperature the steps give ([`LoadStep::temperature`]).
+    pub fn thermal(self, body: impl Into<String>, thermal: Thermal) -> Self {
+        self.change(body, |body| body.thermal = Some(thermal))
+    }
+
+    /// Change a body that was given before.
+    fn change(mut self, body: impl Into<String>, change: impl FnOnce(&mut BodyInput)) -> Self {
+        let name = body.into();
+        match self.bodies.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, body)) => change(body),
+            None => self.unknown = self.unknown.or(Some(name)),
+        }
         self
     }
 
     /// A mass at every node of a group, added to what a body has there [M].
     pub fn point_mass(mut self, group: impl Into<String>, mass: f64) -> Self {
-        self.point_masses.push(GivenMass { name: group.into(), mass, velocity: None });
+        self.point_masses.push((group.into(), PointMassInput { mass, velocity: None }));
         self
     }
 
     /// A mass at every node of a group that starts with a velocity [M], [L/T].
     pub fn moving_point_mass(mut self, group: impl Into<String>, mass: f64, velocity: [f64; 2]) -> Self {
-        self.point_masses.push(GivenMass { name: group.into(), mass, velocity: Some(velocity) });
+        self.point_masses.push((group.into(), PointMassInput { mass, velocity: Some(velocity) }));
         self
     }
 
@@ -171,13 +191,13 @@ impl Builder {
     /// A loading plate: all nodes of a group move alike, as if glued to a rigid plate that does not turn. What acts on one of them
     /// acts on the plate.
     pub fn plate(mut self, group: impl Into<String>) -> Self {
-        self.plates.push((group.into(), Plate::AsOne));
+        self.plates.push(LoadingPlateInput::Group(group.into()));
         self
     }
 
     /// A loading plate that moves in another way than as one.
     pub fn plate_that(mut self, group: impl Into<String>, moves: Plate) -> Self {
-        self.plates.push((group.into(), moves));
+        self.plates.push(LoadingPlateInput::Moving(MovingPlateInput { on: group.into(), moves }));
         self
     }
 
@@ -231,12 +251,11 @@ impl Builder {
     ///
     /// # Errors
     /// [`ModelError`] names the place, the value and what to do.
-    pub fn build(mut self) -> Checked<Model> {
+    pub fn build(self) -> Checked<Model> {
         self.check_names()?;
-        let f_bar = self.settled()?;
         section::check(&self.mesh)?;
-        let (bodies, body_of_element) = body::bodies(std::mem::take(&mut self.bodies), &self.mesh)?;
-        let solids = body::solids(&self.mesh, &bodies, &body_of_element, &f_bar)?;
+        let (bodies, body_of_element) = body::bodies(&self.bodies, &self.mesh)?;
+        let solids = body::solids(&self.mesh, &self.bodies, &body_of_element)?;
         let mut model = Model {
             memories: Memories::new(&solids, &bodies, &body_of_element),
             title: self.title,

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Matrix2, Vector2};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::error::{Checked, ModelError};
 use super::groups::{Place, group, nodes_at};
@@ -14,6 +14,7 @@ use crate::mesh::Mesh;
 use crate::mesh::ties::Ties;
 use crate::model::Model;
 use crate::model::linkage::{Follower, Linkage, alike, rigid};
+use crate::model::written::Written;
 
 /// How the nodes of a loading plate move.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -31,17 +32,63 @@ pub enum Plate {
     Rigid,
 }
 
+/// A loading plate.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum LoadingPlateInput {
+    /// Group that moves as one, without turning
+    Group(String),
+    /// Group that moves in another way
+    Moving(MovingPlateInput),
+}
+
+impl Written for LoadingPlateInput {
+    const EXPECTING: &'static str =
+        "the name of a group, or {\"on\": group, \"moves\": \"ux_alike\", \"uy_alike\" or \"rigid\"}";
+
+    fn text(text: &str) -> Result<Self, String> {
+        Ok(Self::Group(text.into()))
+    }
+
+    fn object<'de, D: Deserializer<'de>>(object: D) -> Result<Self, D::Error> {
+        MovingPlateInput::deserialize(object).map(Self::Moving)
+    }
+}
+
+impl<'de> Deserialize<'de> for LoadingPlateInput {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Self::read(deserializer)
+    }
+}
+
+/// A loading plate that moves in another way than as one.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MovingPlateInput {
+    /// Group of its nodes
+    pub on: String,
+    /// How they move
+    pub moves: Plate,
+}
+
+impl LoadingPlateInput {
+    /// Its group, and how it moves.
+    pub fn parts(&self) -> (&str, Plate) {
+        match self {
+            Self::Group(name) => (name, Plate::AsOne),
+            Self::Moving(MovingPlateInput { on, moves }) => (on, *moves),
+        }
+    }
+}
+
 /// Partners may be off by this share of the distance between their sides.
 const ROUNDED: f64 = 1e-6;
 
 /// The nodes of loading plates that move as one.
-pub fn plates(given: &[(String, Plate)], mesh: &Mesh) -> Result<Vec<Vec<usize>>, ModelError> {
-    let nodes = |(k, name): (usize, &String)| {
-        let group = mesh.group(name).map_err(|error| ModelError::new(format!("plates[{k}]"), error))?;
-        Ok(mesh.nodes_of(group))
-    };
-    let as_one = given.iter().enumerate().filter(|(_, (_, moves))| *moves == Plate::AsOne);
-    as_one.map(|(k, (name, _))| nodes((k, name))).collect()
+pub fn plates(given: &[LoadingPlateInput], mesh: &Mesh) -> Result<Vec<Vec<usize>>, ModelError> {
+    let as_one =
+        given.iter().map(LoadingPlateInput::parts).enumerate().filter(|(_, (_, moves))| *moves == Plate::AsOne);
+    as_one.map(|(k, (name, _))| Ok(mesh.nodes_of(group(mesh, name, &format!("plates[{k}]"))?))).collect()
 }
 
 /// Ties between the nodes of pairs of sides, and of plates.
@@ -103,13 +150,13 @@ fn partners(names: &[String; 2], mesh: &Mesh, place: &str) -> Result<Vec<[usize;
 }
 
 /// The nodes of plates that follow others.
-pub fn linkage(given: &[(String, Plate)], steps: &[LoadStep], model: &Model) -> Checked<Linkage> {
+pub fn linkage(given: &[LoadingPlateInput], steps: &[LoadStep], model: &Model) -> Checked<Linkage> {
     let mesh = &model.mesh;
     let tied: BTreeSet<usize> = model.ties.pairs().iter().flat_map(|&(copy, original)| [copy, original]).collect();
     let mut held = None;
     let mut linkage = Linkage::default();
     let mut seen: BTreeSet<(usize, usize)> = BTreeSet::new();
-    for (k, (name, plate)) in given.iter().enumerate() {
+    for (k, (name, plate)) in given.iter().map(LoadingPlateInput::parts).enumerate() {
         let components = match plate {
             Plate::AsOne => continue,
             Plate::UxAlike => [true, false],

@@ -1,7 +1,9 @@
 //! What a section asks of mesh, bodies, supports and loads, and what it has no meaning for.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
+use super::body::Formulation;
 use super::error::{Checked, ModelError, check_size};
 use crate::laws::bulk::Material;
 use crate::mesh::Mesh;
@@ -40,16 +42,21 @@ pub fn check(mesh: &Mesh) -> Checked<()> {
 }
 
 /// The law of a body in a section.
-pub fn material(given: Box<dyn Material>, f_bar: bool, section: Section, place: &str) -> Checked<Box<dyn Material>> {
+pub fn material(
+    given: Arc<dyn Material>,
+    element: Formulation,
+    section: Section,
+    place: &str,
+) -> Checked<Arc<dyn Material>> {
     let refused = |key: &str, message: &str| Err(ModelError::new(format!("{place}.{key}"), message));
     match section {
-        Section::PlaneStress { .. } if f_bar => refused(
+        Section::PlaneStress { .. } if element == Formulation::FBar => refused(
             "element",
             "f_bar has nothing to cure in plane stress, where the thickness gives way and elements do not lock for nu near \
              1/2: leave it out",
         ),
         Section::PlaneStress { .. } => match given.plane_stress() {
-            Some(law) => Ok(law),
+            Some(law) => Ok(law.into()),
             None => refused("material", "does not know plane stress: take another law, or plane strain"),
         },
         Section::Axisymmetric if given.spatial().is_none() => {
