@@ -12,7 +12,7 @@ use super::error::{CaseError, Checked, Complaint};
 use super::schema::schema_of;
 use crate::laws::friction::{FrictionLaw, FrictionParameters, FrictionState, observables};
 use crate::model::boundary::{Drive, Span};
-use crate::model::builder::check_line;
+use crate::model::builder::{check_line, check_positive};
 use crate::run::law::{Course, LawTest, Phase, Undefined};
 
 /// A test of a friction law alone: the law, and the path of slip and pressure it is driven along.
@@ -165,7 +165,7 @@ fn phases_of(input: &LawTestInput, phases: &[PhaseInput]) -> Checked<Vec<Phase>>
 }
 
 fn phase_of(input: &LawTestInput, place: &str, phase: &PhaseInput, before: Option<&Phase>) -> Checked<Phase> {
-    check_positive(&format!("{place}.duration"), phase.duration)?;
+    check_positive(&format!("{place}.duration"), phase.duration, "")?;
     let start = before.map_or(0.0, Phase::end);
     let span = Span { start, end: start + phase.duration };
     let (dt_place, dt) = match phase.dt {
@@ -246,15 +246,8 @@ fn table_of(input: &LawTestInput, table: &[[f64; 3]]) -> Checked<Phase> {
     })
 }
 
-fn check_positive(place: &str, value: f64) -> Checked<()> {
-    if value > 0.0 && value.is_finite() {
-        return Ok(());
-    }
-    Err(Complaint::new(place, format!("is {value}: must be positive")))
-}
-
 fn check_dt(place: &str, dt: f64, span: Span) -> Checked<()> {
-    check_positive(place, dt)?;
+    check_positive(place, dt, "")?;
     let steps = (span.end - span.start) / dt;
     if steps > MOST_STEPS {
         let message = format!("is {dt:e}: that makes {steps:.1e} steps of a phase, and {MOST_STEPS:e} are the most");

@@ -22,7 +22,7 @@ use serde_json::Value;
 use crate::mesh::section::Section;
 use crate::mesh::{Mesh, gmsh};
 use crate::model::Model;
-use crate::model::builder::{Builder, Contact, Gauge, check_line};
+use crate::model::builder::{Builder, Contact, Gauge, check_line, check_positive};
 pub use again::Opened;
 pub use error::CaseError;
 use error::{Checked, Complaint};
@@ -75,12 +75,8 @@ fn built(case: &Case, mesh: Mesh) -> Checked<Model> {
     if let Some(minutes) = case.output.checkpoint.filter(|minutes| !(*minutes >= 0.0 && minutes.is_finite())) {
         return Err(Complaint::new("output.checkpoint", format!("is {minutes}: must be minutes, or null for none")));
     }
-    match case.output.fronts.filter(|fronts| !(fronts.slip_rate > 0.0 && fronts.slip_rate.is_finite())) {
-        Some(fronts) => {
-            Err(Complaint::new("output.fronts.slip_rate", format!("is {}: must be positive", fronts.slip_rate)))
-        }
-        None => Ok(model),
-    }
+    check_positive("output.fronts.slip_rate", case.output.fronts.map_or(1.0, |fronts| fronts.slip_rate), "")?;
+    Ok(model)
 }
 
 /// The builder of a case on its mesh.

@@ -118,18 +118,8 @@ impl Simulation {
             Err(cause) if cause.is_collapse() => Outcome::Collapsed(state, cause),
             Err(cause) => Outcome::Stopped(self.unsolvable(cause)),
         };
-        Candidate {
-            number: outputs.attempt,
-            dt: time - self.state.time,
-            iterations: Vec::new(),
-            accepted,
-            local_error: None,
-            doubt: None,
-            increments,
-            outcome,
-            coupling: self.work.assembler.coupling(),
-            explicit,
-        }
+        let dt = time - self.state.time;
+        Candidate { explicit, ..self.without_iterations(outputs.attempt, dt, accepted, increments, outcome) }
     }
 
     /// Quasi-dynamic steps to the next result.
@@ -144,18 +134,21 @@ impl Simulation {
             // How short its steps came to be, and whether that is to blame, the cause says itself.
             Err(cause) => (None, Outcome::Stopped(self.unsolvable(cause))),
         };
-        Candidate {
-            number: 1,
-            dt: length,
-            iterations: Vec::new(),
-            accepted,
-            local_error: None,
-            doubt: None,
-            increments,
-            outcome,
-            coupling: self.work.assembler.coupling(),
-            explicit: None,
-        }
+        self.without_iterations(1, length, accepted, increments, outcome)
+    }
+
+    /// What came of an attempt that solved no equations.
+    fn without_iterations(
+        &self,
+        number: usize,
+        dt: f64,
+        accepted: Option<Arc<State>>,
+        increments: usize,
+        outcome: Outcome,
+    ) -> Candidate {
+        let (iterations, coupling) = (Vec::new(), self.work.assembler.coupling());
+        let (local_error, doubt, explicit) = (None, None, None);
+        Candidate { number, dt, iterations, accepted, local_error, doubt, increments, outcome, coupling, explicit }
     }
 
     /// A rupture is over when no point has slipped fast over the time of calm.

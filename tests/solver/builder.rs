@@ -443,7 +443,7 @@ fn what_is_wrong_is_named() {
             small().body("blok", neo_hookean(1.0, 0.3, 0.0)),
             "bodies.blok: the mesh has no group `blok` (did you mean `block`?)",
         ),
-        (small().f_bar("blok"), "bodies.blok: there is no body of this name; the bodies are block"),
+        (small().f_bar("blok"), "bodies.blok: there is no body `blok`; the bodies are block"),
         (small().contact(on_floor()), "contacts.base: is given twice"),
         (small().contact(Contact { name: "a,b".into(), ..on_floor() }), "contacts: the name \"a,b\" has ',' in it"),
         (second(on_floor().alpha_n(-1.0)), "contacts.b.normal.alpha_n: is -1: must be positive"),

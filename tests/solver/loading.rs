@@ -517,7 +517,7 @@ fn what_a_step_cannot_end_by_is_refused() {
         ),
         (
             step().damping("blok", Damping::default()),
-            "steps[0].damping.blok: there is no body of this name; the bodies are block",
+            "steps[0].damping.blok: there is no body `blok`; the bodies are block",
         ),
         (
             step().damping("block", Damping { mass: -1.0, retardation: 0.0 }),

@@ -9,8 +9,9 @@ use nalgebra::Vector2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::{Checked, ModelError, check_finite, check_not_negative, check_size};
+use super::error::{Checked, ModelError, check_finite, check_not_negative, check_positive, check_size};
 use super::friction::{check_profile, defined};
+use super::groups;
 use super::groups::{group, kind};
 use super::load_step::LoadStep;
 use super::section;
@@ -153,10 +154,7 @@ pub fn point_masses(given: &[(String, PointMassInput)], mesh: &Mesh) -> Checked<
     let point_mass = |(name, PointMassInput { mass, .. }): &(String, PointMassInput)| {
         let place = format!("point_masses.{name}");
         let group = group(mesh, name, &place)?;
-        if *mass <= 0.0 {
-            let message = format!("is {mass}: must be positive (leave the group out for none)");
-            return Err(ModelError::new(format!("{place}.mass"), message));
-        }
+        check_positive(&format!("{place}.mass"), *mass, " (leave the group out for none)")?;
         check_size(&place, "mass", *mass)?;
         Ok(PointMass { name: name.clone(), mass: *mass, nodes: mesh.nodes_of(group) })
     };
@@ -204,13 +202,9 @@ pub fn check_stress(stress: &InitialStress, nodes: &[usize], mesh: &Mesh, place:
             for (key, value) in [("surface", surface), ("weight", weight), ("K0", k0)] {
                 check_finite(&format!("{place}.geostatic.{key}"), [*value])?;
             }
-            if *weight <= 0.0 {
-                let message = format!("is {weight}: must be positive, the density times gravity that acts along -y");
-                return refused("geostatic.weight", message);
-            }
-            if *k0 < 0.0 {
-                return refused("geostatic.K0", format!("is {k0}: must be zero or positive"));
-            }
+            let along_y = ", the density times gravity that acts along -y";
+            check_positive(&format!("{place}.geostatic.weight"), *weight, along_y)?;
+            check_not_negative(&format!("{place}.geostatic.K0"), *k0)?;
             let top = nodes.iter().map(|&node| mesh.nodes[node].y).fold(f64::NEG_INFINITY, f64::max);
             if top > surface + ROUNDED * mesh.diagonal() {
                 let message = format!(
@@ -283,13 +277,10 @@ pub fn temperatures(
     for (name, temperature) in &given.temperature {
         let drive = Drive::from(temperature);
         let place = format!("{place}.temperature.{name}");
-        let refused = |message: String| Err(ModelError::new(place.clone(), message));
-        let Some(number) = model.bodies.iter().position(|body| body.name == *name) else {
-            let known: Vec<&str> = model.bodies.iter().map(|body| body.name.as_str()).collect();
-            return refused(format!("there is no body `{name}`; the bodies are {}", known.join(", ")));
-        };
+        let number = groups::body(model, name, &place)?;
         let Some(thermal) = model.bodies[number].thermal else {
-            return refused(format!("has no effect on a body that does not expand: give bodies.{name}.thermal"));
+            let message = format!("has no effect on a body that does not expand: give bodies.{name}.thermal");
+            return Err(ModelError::new(place, message));
         };
         drive.check().map_err(|message| ModelError::new(&place, message))?;
         let at_rest = || Amplitude { drive: Drive::Table(vec![[0.0, thermal.reference]]), span, before: None };

@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 
 use super::contact::Contact;
-use super::error::{Checked, ModelError};
+use super::error::{Checked, ModelError, check_positive};
 use super::schedule::MOST_INCREMENTS;
 use crate::contact::pair::ContactPair;
 use crate::model::boundary::{Amplitude, Drive, Span};
@@ -38,14 +38,8 @@ pub fn checked_newton(newton: NewtonSettings) -> Checked<NewtonSettings> {
 
 /// Time between the results of explicit steps.
 pub fn checked_interval(interval: Option<f64>) -> Checked<Option<f64>> {
-    match interval.filter(|interval| !(*interval > 0.0 && interval.is_finite())) {
-        Some(interval) => {
-            let message =
-                format!("is {interval}: must be positive (leave it out for a hundredth of each explicit step)");
-            Err(ModelError::new("output.interval", message))
-        }
-        None => Ok(interval),
-    }
+    let otherwise = " (leave it out for a hundredth of each explicit step)";
+    check_positive("output.interval", interval.unwrap_or(1.0), otherwise).map(|()| interval)
 }
 
 /// Explicit steps write a row of results an interval.

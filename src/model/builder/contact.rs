@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::along::Along;
-use super::error::{Checked, ModelError, check_finite};
+use super::error::{Checked, ModelError, check_finite, check_positive};
 use super::friction::{Friction, check_in_time};
 use crate::contact::master::{Circle, Plane, Polyline, Rigid};
 use crate::contact::pair::{BadPressure, ContactPair, Fluid};
@@ -319,10 +319,7 @@ pub fn rigid(side: &MasterSide, place: &str) -> Checked<Rigid> {
         MasterSide::Plane { point, normal } => plane(*point, *normal, place),
         MasterSide::Circle { centre, radius, hole } => {
             check_finite(&format!("{place}.circle.centre"), *centre)?;
-            if !(*radius > 0.0 && radius.is_finite()) {
-                let message = format!("is {radius}: must be positive");
-                return Err(ModelError::new(format!("{place}.circle.radius"), message));
-            }
+            check_positive(&format!("{place}.circle.radius"), *radius, "")?;
             Ok(Rigid::Circle(Circle { centre: Vector2::from(*centre), radius: *radius, hole: *hole }))
         }
         MasterSide::Polyline { points } => {

@@ -9,6 +9,7 @@ use std::collections::BTreeSet;
 use thiserror::Error;
 
 use super::Builder;
+use super::groups::no_body;
 use crate::laws::parameter::InvalidParameter;
 use crate::mesh::names::is_unwritable;
 
@@ -50,6 +51,14 @@ pub fn check_size(place: &str, name: &str, value: f64) -> Checked<()> {
     let (low, high) = (STIFFNESSES.start(), STIFFNESSES.end());
     let message = format!("{name} is {value:.6e}: it must lie between {low:e} and {high:e}; choose other units");
     Err(ModelError::new(place, message))
+}
+
+/// A number that must be positive, with what else is to be said of it.
+pub fn check_positive(place: &str, value: f64, besides: &str) -> Checked<()> {
+    match value > 0.0 && value.is_finite() {
+        true => Ok(()),
+        false => Err(ModelError::new(place, format!("is {value}: must be positive{besides}"))),
+    }
 }
 
 /// A number that must be zero or positive.
@@ -95,9 +104,7 @@ impl Builder {
         check_once("bodies", self.bodies.iter().map(|(name, _)| name))?;
         check_once("point_masses", self.point_masses.iter().map(|(name, _)| name))?;
         let Some(name) = &self.unknown else { return Ok(()) };
-        let known: Vec<&str> = self.bodies.iter().map(|(name, _)| name.as_str()).collect();
-        let message = format!("there is no body of this name; the bodies are {}", known.join(", "));
-        Err(ModelError::new(format!("bodies.{name}"), message))
+        Err(no_body(name, self.bodies.iter().map(|(name, _)| name.as_str()), &format!("bodies.{name}")))
     }
 }
 

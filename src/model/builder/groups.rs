@@ -140,6 +140,18 @@ pub fn group_at<'p>(on: &'p Place, place: &str) -> Checked<&'p str> {
     }
 }
 
+/// The number of a body.
+pub fn body(model: &Model, name: &str, place: &str) -> Checked<usize> {
+    let names = || model.bodies.iter().map(|body| body.name.as_str());
+    names().position(|known| known == name).ok_or_else(|| no_body(name, names(), place))
+}
+
+/// That a body is not among those that there are.
+pub fn no_body<'n>(name: &str, known: impl Iterator<Item = &'n str>, place: &str) -> ModelError {
+    let known: Vec<&str> = known.collect();
+    ModelError::new(place, format!("there is no body `{name}`; the bodies are {}", known.join(", ")))
+}
+
 /// The nodes that some nodes move with, ascending.
 pub fn originals(model: &Model, nodes: &[usize]) -> Vec<usize> {
     let originals: BTreeSet<usize> = nodes.iter().map(|&node| model.ties.original(node)).collect();

@@ -8,6 +8,7 @@ use super::body::PointMassInput;
 use super::contact::{Contact, InitialTractions};
 use super::error::{Checked, ModelError, check_finite};
 use super::friction::{check_profile, defined, position};
+use super::groups;
 use super::load_step::LoadStep;
 use super::section::check_velocities;
 use crate::contact::pair::{ContactPair, InitialTraction};
@@ -27,12 +28,8 @@ pub fn velocities(
     let mut given = Given { velocity: vec![None; model.mesh.nodes.len()], model };
     for (name, value) in of_bodies {
         let place = format!("initial_velocity.{name}");
-        let Some(body) = model.bodies.iter().find(|body| body.name == *name) else {
-            let known: Vec<&str> = model.bodies.iter().map(|body| body.name.as_str()).collect();
-            let message = format!("there is no body `{name}`; the bodies are {}", known.join(", "));
-            return Err(ModelError::new(place, message));
-        };
-        given.give(place, &body.nodes, *value)?;
+        let body = groups::body(model, name, &place)?;
+        given.give(place, &model.bodies[body].nodes, *value)?;
     }
     for (point, (_, mass)) in model.point_masses.iter().zip(masses) {
         if let Some(value) = mass.velocity {

@@ -50,8 +50,8 @@ mod supports;
 pub use along::{Along, LawChoice};
 pub use body::{BodyInput, BulkLaw, Formulation, PointMassInput};
 pub use contact::{Contact, InitialTractions, MasterSide, Normal, Radiation, SlidingRange};
-pub(crate) use error::check_line;
 pub use error::{Checked, ModelError};
+pub(crate) use error::{check_line, check_positive};
 pub use friction::Friction;
 pub use groups::Place;
 pub use load_step::{

@@ -30,7 +30,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::contact::{Contact, MasterSide, Radiation, SlidingRange};
-use super::error::{Checked, ModelError, check_size};
+use super::error::{Checked, ModelError, check_positive, check_size};
 use super::groups::{edges, group, node_lists};
 use super::{along, contact, initial};
 use crate::contact::master::{Master, Rigid};
@@ -160,14 +160,13 @@ fn check_penetrations(contacts: &[Contact], mesh: &Mesh) -> Checked<()> {
 
 fn check_penetration(contact: &Contact, least: f64) -> Checked<()> {
     let Some(penetration) = contact.normal.penetration else { return Ok(()) };
-    let message = if !(penetration > 0.0 && penetration.is_finite()) {
-        format!("is {penetration}: must be positive (leave it out for the plain penalty)")
-    } else if penetration < least {
-        format!("is {penetration:e}: gaps of this model have round-off of {least:.1e}; allow more than that")
-    } else {
+    let place = format!("contacts.{}.normal.penetration", contact.name);
+    check_positive(&place, penetration, " (leave it out for the plain penalty)")?;
+    if penetration >= least {
         return Ok(());
-    };
-    Err(ModelError::new(format!("contacts.{}.normal.penetration", contact.name), message))
+    }
+    let message = format!("is {penetration:e}: gaps of this model have round-off of {least:.1e}; allow more than that");
+    Err(ModelError::new(place, message))
 }
 
 /// Where a contact of edges is evaluated; that of a group of points is at the points.
@@ -239,9 +238,7 @@ fn lone_points(place: &str, contact: &Contact, nodes: &[usize]) -> Checked<Vec<S
             format!("is missing: `{}` is a group of points, and each needs the area it stands for", contact.slave);
         return Err(ModelError::new(at, message));
     };
-    if area <= 0.0 {
-        return Err(ModelError::new(at, format!("is {area}: must be positive")));
-    }
+    check_positive(&at, area, "")?;
     check_size(place, "area", area)?;
     Ok(nodes.iter().map(|&node| lone_point(node, area)).collect())
 }
@@ -309,9 +306,7 @@ pub fn radiation(place: &str, contact: &Contact, model: &Model) -> Checked<f64> 
         Radiation::Given(damping) => damping,
         Radiation::OfBodies(true) => of_bodies(place, &at, contact, model)?,
     };
-    if !(damping > 0.0 && damping.is_finite()) {
-        return Err(ModelError::new(at, format!("is {damping}: must be positive (leave it out for none)")));
-    }
+    check_positive(&at, damping, " (leave it out for none)")?;
     check_size(place, "radiation_damping", damping)?;
     Ok(damping)
 }
@@ -377,10 +372,7 @@ pub fn penalty(place: &str, contact: &Contact, model: &Model) -> Checked<Penalty
             return Err(ModelError::new(at, message));
         }
     };
-    if alpha_n <= 0.0 {
-        let message = format!("is {alpha_n}: must be positive (leave it out for 10 (λ + 2G)/h)");
-        return Err(ModelError::new(at, message));
-    }
+    check_positive(&at, alpha_n, " (leave it out for 10 (λ + 2G)/h)")?;
     check_size(&format!("{place}.normal"), "alpha_n", alpha_n)?;
     let alpha_t = contact.area.is_none().then_some(default_alpha_t(alpha_n));
     Ok(Penalty { alpha_n, alpha_t, compliance: elastic.map_or(0.0, |elastic| 1.0 / elastic) })

@@ -6,8 +6,8 @@ use nalgebra::{Matrix2, Vector2};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error;
 use super::error::{Checked, ModelError};
+use super::{error, groups};
 use crate::mesh::boxes::{Box2, Tree};
 use crate::mesh::shape::ElementKind;
 use crate::model::{Model, Probe};
@@ -99,7 +99,7 @@ pub fn probes(gauges: &[Gauge], model: &Model) -> Checked<Vec<Probe>> {
     for gauge in gauges {
         let place = format!("probes.{}", gauge.name);
         error::check_name(&place, &gauge.name)?;
-        let body = body(gauge, model)?;
+        let body = gauge.body.as_ref().map(|name| groups::body(model, name, &format!("{place}.body"))).transpose()?;
         for (name, at) in gauge.points()? {
             if !taken.insert(name.clone()) {
                 return Err(ModelError::new(place, format!("there is a probe `{name}` already: rename one")));
@@ -128,19 +128,6 @@ fn reach(model: &Model, element: usize) -> Box2 {
     let nodes = model.mesh.elements[element].nodes.iter().map(|&node| model.mesh.nodes[node]);
     let own = Box2::around(nodes).unwrap_or(Box2 { low: Vector2::zeros(), high: Vector2::zeros() });
     own.wider(BULGE * own.size().max())
-}
-
-/// The body that the points of a gauge are to lie in, if it is said.
-fn body(gauge: &Gauge, model: &Model) -> Checked<Option<usize>> {
-    let Some(name) = &gauge.body else { return Ok(None) };
-    match model.bodies.iter().position(|body| body.name == *name) {
-        Some(body) => Ok(Some(body)),
-        None => {
-            let known: Vec<&str> = model.bodies.iter().map(|body| body.name.as_str()).collect();
-            let message = format!("there is no body `{name}`; the bodies are {}", known.join(", "));
-            Err(ModelError::new(format!("probes.{}.body", gauge.name), message))
-        }
-    }
 }
 
 /// (ξ, η) of a place in an element, if it lies there.

@@ -7,7 +7,8 @@
 use std::collections::BTreeMap;
 
 use super::body::{check_damping, in_force, temperatures};
-use super::error::{Checked, ModelError};
+use super::error::{Checked, ModelError, check_positive};
+use super::groups;
 use super::groups::{nodes_at, originals};
 use super::initial::launch;
 use super::load_step::{IncrementSettings, LoadStep, RuptureSettings, UntilSettings};
@@ -60,10 +61,7 @@ struct Schedule<'m> {
 
 impl Schedule<'_> {
     fn next(&mut self, place: &str, given: &LoadStep) -> Checked<Step> {
-        if !(given.duration > 0.0 && given.duration.is_finite()) {
-            let message = format!("is {}: must be positive", given.duration);
-            return Err(ModelError::new(format!("{place}.duration"), message));
-        }
+        check_positive(&format!("{place}.duration"), given.duration, "")?;
         self.scheme = given.scheme.unwrap_or(self.scheme);
         let scheme = self.scheme;
         scheme.check().map_err(|error| ModelError::new(format!("{place}.scheme"), error))?;
@@ -109,15 +107,10 @@ impl Schedule<'_> {
 
     /// Give bodies another damping.
     fn damp(&mut self, given: &BTreeMap<String, Damping>, place: &str) -> Checked<()> {
-        let bodies = &self.model.bodies;
         for (name, damping) in given {
             let place = format!("{place}.damping.{name}");
-            let Some(body) = bodies.iter().position(|body| body.name == *name) else {
-                let known: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
-                let message = format!("there is no body of this name; the bodies are {}", known.join(", "));
-                return Err(ModelError::new(place, message));
-            };
-            check_damping(*damping, &*bodies[body].material, &place)?;
+            let body = groups::body(self.model, name, &place)?;
+            check_damping(*damping, &*self.model.bodies[body].material, &place)?;
             self.damping[body] = *damping;
         }
         Ok(())
@@ -143,9 +136,8 @@ pub fn increments(place: &str, given: Option<IncrementSettings>, span: Span, sch
     };
     let (min, max) = (given.min.unwrap_or(default_min), given.max.unwrap_or(default_max));
     let increments = Increments { initial: given.initial, min, max, error: given.error };
-    for (name, value) in [("initial", Some(given.initial)), ("error", given.error)] {
-        value.map_or(Ok(()), |value| check_positive(&format!("{place}.{name}"), value))?;
-    }
+    check_positive(&format!("{place}.initial"), given.initial, "")?;
+    check_positive(&format!("{place}.error"), given.error.unwrap_or(1.0), "")?;
     check_bounds(place, [min, max], span, scheme)?;
     if given.initial > max || given.initial < min {
         let message = format!("initial = {} must lie between min = {min} and max = {max}", given.initial);
@@ -166,8 +158,8 @@ pub fn increments(place: &str, given: Option<IncrementSettings>, span: Span, sch
 /// Bounds of increments must leave room between them, not be lost in the round-off of the time, and not ask for too many
 /// increments of what is left of a step.
 pub fn check_bounds(place: &str, [min, max]: [f64; 2], left: Span, scheme: Scheme) -> Checked<()> {
-    check_positive(&format!("{place}.min"), min)?;
-    check_positive(&format!("{place}.max"), max)?;
+    check_positive(&format!("{place}.min"), min, "")?;
+    check_positive(&format!("{place}.max"), max, "")?;
     if min > max {
         let message = format!("min = {min} is above max = {max}: increments must have room between them");
         return Err(ModelError::new(place, message));
@@ -188,13 +180,6 @@ pub fn check_bounds(place: &str, [min, max]: [f64; 2], left: Span, scheme: Schem
         return Err(ModelError::new(place, message));
     }
     Ok(())
-}
-
-fn check_positive(place: &str, value: f64) -> Checked<()> {
-    match value > 0.0 && value.is_finite() {
-        true => Ok(()),
-        false => Err(ModelError::new(place, format!("is {value}: must be positive"))),
-    }
 }
 
 /// c₀ of every dof: the nodes of a body share `stabilize` × (λ + 2G) × duration.
@@ -220,9 +205,7 @@ pub fn stabilization(place: &str, given: &LoadStep, scheme: Scheme, model: &Mode
 /// When a step goes on explicitly, and how.
 pub fn rupture(place: &str, given: Option<RuptureSettings>, step: &Step, model: &Model) -> Checked<Option<Rupture>> {
     let Some(RuptureSettings { slip_rate, safety }) = given else { return Ok(None) };
-    if !(slip_rate > 0.0 && slip_rate.is_finite()) {
-        return Err(ModelError::new(format!("{place}.slip_rate"), format!("is {slip_rate}: must be positive")));
-    }
+    check_positive(&format!("{place}.slip_rate"), slip_rate, "")?;
     if matches!(step.scheme, Scheme::Explicit { .. }) {
         return Err(ModelError::new(place, "is for static and implicit steps: this one is explicit throughout"));
     }

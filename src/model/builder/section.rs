@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::body::Formulation;
-use super::error::{Checked, ModelError, check_size};
+use super::error::{Checked, ModelError, check_positive, check_size};
 use crate::laws::bulk::Material;
 use crate::mesh::Mesh;
 use crate::mesh::section::Section;
@@ -20,10 +20,7 @@ const ON_AXIS: f64 = 1e-12;
 pub fn check(mesh: &Mesh) -> Checked<()> {
     match mesh.section {
         Section::PlaneStress { thickness } => {
-            let place = "section.plane_stress.thickness";
-            if thickness <= 0.0 || !thickness.is_finite() {
-                return Err(ModelError::new(place, format!("is {thickness}: must be positive")));
-            }
+            check_positive("section.plane_stress.thickness", thickness, "")?;
             check_size("section.plane_stress", "thickness", thickness)
         }
         Section::Axisymmetric => {
