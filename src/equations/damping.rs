@@ -33,6 +33,7 @@ use super::solids::{Solids, damps_by_stiffness};
 use super::sums::{Dependence, Sums, TrialFailure};
 use super::trial::Trial;
 use crate::linear::SparseMatrix;
+use crate::mesh::configuration::vector;
 use crate::model::boundary::Absorber;
 use crate::model::{Model, Step};
 
@@ -205,9 +206,7 @@ pub fn pull(
     pulls: &mut Vec<Vector2<f64>>,
 ) {
     pulls.clear();
-    pulls.extend(dampers.iter().map(|NodeDamper { node, coefficients }| {
-        -coefficients * Vector2::new(velocity[2 * node], velocity[2 * node + 1])
-    }));
+    pulls.extend(dampers.iter().map(|NodeDamper { node, coefficients }| -coefficients * vector(velocity, *node)));
     for dashpot in step.loads.dashpots.iter().filter(|dashpot| dashpot.driver.is_some()) {
         let node = model.ties.original(dashpot.dof / 2);
         if let Ok(k) = dampers.binary_search_by_key(&node, |damper| damper.node) {

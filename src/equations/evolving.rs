@@ -1,6 +1,5 @@
 //! Bodies that remember, or whose tangent is not symmetric: what they remember is committed and trial state.
 
-use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use super::sums::{Sums, TrialFailure};
@@ -84,9 +83,8 @@ fn evolve(
     u: &[f64],
     tangent: bool,
 ) -> Result<([f64; 2], Contribution), MaterialFailure> {
-    let nodes = &model.mesh.elements[e].nodes;
-    let local: Vec<Vector2<f64>> = nodes.iter().map(|&node| Vector2::new(u[2 * node], u[2 * node + 1])).collect();
-    let mut contribution = Contribution::zero(nodes.clone());
+    let local = model.mesh.vectors(e, u);
+    let mut contribution = Contribution::zero(model.mesh.elements[e].nodes.clone());
     let Contribution { force, tangent: matrix, .. } = &mut contribution;
     let matrix = tangent.then_some(matrix.as_mut_slice());
     let material = &*model.bodies[model.body_of_element[e]].material;

@@ -30,6 +30,7 @@ use nalgebra::{Matrix2, Matrix4, Vector2};
 use super::trial::Trial;
 use crate::linear::SparseMatrix;
 use crate::linear::system::System;
+use crate::mesh::configuration::vector;
 use crate::model::Model;
 use crate::model::linkage::Follower;
 use crate::model::scheme::Coefficients;
@@ -147,7 +148,7 @@ pub(super) fn prescribe(model: &Model, weight: f64, trial: Trial, u: &[f64], tan
         let before = arm(model, [a, b], &trial.old.displacement).0;
         let scheme = trial.step.scheme.coefficients();
         let lever = scheme.map_or(e, |scheme| blended(scheme, [before, e]));
-        let force = Vector2::new(system.residual[2 * b], system.residual[2 * b + 1]);
+        let force = vector(&system.residual, b);
         system.residual[2 * b] = lever.perp(&force) / length;
         system.residual[2 * b + 1] = weight * stretch(model, [a, b], u);
         if tangent {
@@ -188,7 +189,7 @@ pub fn begin(model: &Model, weight: f64, state: &State, matrix: &mut SparseMatri
     for &[a, b] in &model.linkage.rigid {
         let (e, length) = arm(model, [a, b], &state.displacement);
         let spin = e.perp(&relative([a, b], &state.velocity)) / e.norm_squared();
-        right[2 * b] = e.perp(&Vector2::new(right[2 * b], right[2 * b + 1])) / length;
+        right[2 * b] = e.perp(&vector(right, b)) / length;
         right[2 * b + 1] = -weight * spin * spin * e.norm_squared() / length;
         keep_length(model, [a, b], [e, e], weight, matrix);
     }

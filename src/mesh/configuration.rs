@@ -65,7 +65,7 @@ impl<'a> Configuration<'a> {
 
     /// u of a node.
     pub fn displacement(&self, node: usize) -> Vector2<f64> {
-        self.displacement.map_or_else(Vector2::zeros, |u| Vector2::new(u[2 * node], u[2 * node + 1]))
+        self.displacement.map_or_else(Vector2::zeros, |u| vector(u, node))
     }
 
     /// x_to − x_from.
@@ -100,4 +100,10 @@ impl<'a> Configuration<'a> {
         let sum = |of: &dyn Fn(usize) -> Vector2<f64>| weights.iter().map(|&(node, w)| of(node) * w).sum();
         [sum(&|node| self.reference[node] - origin), sum(&|node| self.displacement(node))]
     }
+}
+
+/// The vector of a node among those of all nodes, two numbers each.
+#[inline(always)]
+pub fn vector(values: &[f64], node: usize) -> Vector2<f64> {
+    Vector2::new(values[2 * node], values[2 * node + 1])
 }

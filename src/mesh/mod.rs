@@ -21,7 +21,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector2;
 
-use crate::mesh::configuration::Configuration;
+use crate::mesh::configuration::{Configuration, vector};
 use crate::mesh::section::Section;
 use crate::mesh::shape::ElementKind;
 
@@ -85,6 +85,16 @@ impl Mesh {
     /// The reference configuration.
     pub fn undeformed(&self) -> Configuration<'_> {
         Configuration::undeformed(&self.nodes).within(self.section)
+    }
+
+    /// Reference positions of the nodes of an element [L].
+    pub fn places(&self, element: usize) -> Vec<Vector2<f64>> {
+        self.elements[element].nodes.iter().map(|&node| self.nodes[node]).collect()
+    }
+
+    /// The vectors of the nodes of an element among those of all nodes.
+    pub fn vectors(&self, element: usize, values: &[f64]) -> Vec<Vector2<f64>> {
+        self.elements[element].nodes.iter().map(|&node| vector(values, node)).collect()
     }
 
     /// The group of this name.

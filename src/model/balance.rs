@@ -12,6 +12,7 @@ use super::boundary::Loads;
 use super::element::{Memory, follower_pressure};
 use super::told::number;
 use super::{Body, Model, Step};
+use crate::mesh::configuration::vector;
 
 /// Share of the forces on a body out of balance that is worth a word. Stresses and weights are written with a few digits.
 const OUT_OF_BALANCE: f64 = 1e-6;
@@ -116,7 +117,7 @@ fn add_loads(model: &Model, loads: &Loads, time: f64, forces: &mut Forces) {
         let middle = edge.iter().map(|&node| model.mesh.nodes[node]).sum::<Vector2<f64>>() / edge.len() as f64;
         let pressure = follower_pressure(edge, load.amplitude.value(middle, time), &x);
         for (a, &node) in edge.iter().enumerate() {
-            forces.add(node, Vector2::new(pressure.force[2 * a], pressure.force[2 * a + 1]));
+            forces.add(node, vector(pressure.force.as_slice(), a));
         }
     }
     for spring in &loads.springs {
@@ -134,7 +135,7 @@ fn imbalance(model: &Model, step: &Step, forces: &Forces, body: &Body) -> Imbala
     nodes.sort_unstable();
     nodes.dedup();
     for node in nodes {
-        let mut free = Vector2::new(forces.sum[2 * node], forces.sum[2 * node + 1]);
+        let mut free = vector(&forces.sum, node);
         for dof in [2 * node, 2 * node + 1] {
             all += forces.magnitude[dof].powi(2);
             if let Ok(k) = step.supports.binary_search_by_key(&dof, |support| support.at.dof) {

@@ -20,7 +20,7 @@ pub(crate) mod written;
 
 use std::sync::Arc;
 
-use nalgebra::{DMatrix, DVector, Vector2};
+use nalgebra::{DMatrix, DVector};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -160,20 +160,34 @@ impl Model {
 
     /// Consistent mass matrix of an element, the same for both directions [M].
     pub fn element_mass(&self, element: usize) -> DMatrix<f64> {
+        self.consistent(element, self.bodies[self.body_of_element[element]].material.density())
+    }
+
+    /// ∫ N_a N_b dV of an element, as its mass is distributed [L³].
+    pub fn element_volumes(&self, element: usize) -> DMatrix<f64> {
+        self.consistent(element, 1.0)
+    }
+
+    fn consistent(&self, element: usize, density: f64) -> DMatrix<f64> {
         let Element { kind, nodes } = &self.mesh.elements[element];
-        let positions: Vec<Vector2<f64>> = nodes.iter().map(|&node| self.mesh.nodes[node]).collect();
-        let density = self.bodies[self.body_of_element[element]].material.density();
-        let mass = consistent_mass(*kind, self.mesh.section, &positions, density)
+        let mass = consistent_mass(*kind, self.mesh.section, &self.mesh.places(element), density)
             .expect("elements are checked when the model is built");
         redistributed(mass, |local| self.massless[nodes[local]])
     }
 
     /// Lumped mass of each node of an element [M].
     pub fn element_lumped_mass(&self, element: usize) -> DVector<f64> {
-        let Element { kind, nodes } = &self.mesh.elements[element];
-        let positions: Vec<Vector2<f64>> = nodes.iter().map(|&node| self.mesh.nodes[node]).collect();
-        let density = self.bodies[self.body_of_element[element]].material.density();
-        lumped_mass(*kind, self.mesh.section, &positions, density)
+        self.lumped(element, self.bodies[self.body_of_element[element]].material.density())
+    }
+
+    /// Volume of the lumped mass of each node of an element [L³].
+    pub fn element_lumped_volumes(&self, element: usize) -> DVector<f64> {
+        self.lumped(element, 1.0)
+    }
+
+    fn lumped(&self, element: usize, density: f64) -> DVector<f64> {
+        let mesh = &self.mesh;
+        lumped_mass(mesh.elements[element].kind, mesh.section, &mesh.places(element), density)
             .expect("elements are checked when the model is built")
     }
 

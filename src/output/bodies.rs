@@ -10,9 +10,9 @@
 //! explicit increments by the lumped masses, which are those that keep them; point masses are not of the body. A body without density has the centre of its volume. Of rings they go over the full turn: x components
 //! sum up radial parts, c_x is the mean radius, and L and θ tell of the section alone.
 
-use nalgebra::{DMatrix, DVector, Vector2};
+use nalgebra::Vector2;
 
-use crate::model::element::{consistent_mass, lumped_mass, redistributed};
+use crate::mesh::configuration::vector;
 use crate::model::state::State;
 use crate::model::{Body, Model};
 
@@ -63,11 +63,11 @@ impl BodyMeans {
         let local = |node: &usize| body.nodes.binary_search(node).unwrap_or(0);
         let mut pairs = Vec::new();
         for &element in &body.elements {
-            let (nodes, matrix) = volumes(model, element);
+            let (nodes, matrix) = (&model.mesh.elements[element].nodes, model.element_volumes(element));
             let both = |a: usize| (0..nodes.len()).map(move |b| (a, b));
             let ordered = (0..nodes.len()).flat_map(both).filter(|&(a, b)| nodes[a] <= nodes[b]);
             pairs.extend(ordered.map(|(a, b)| (nodes[a], nodes[b], matrix[(a, b)])));
-            let lumped = lumped_volumes(model, element);
+            let lumped = model.element_lumped_volumes(element);
             for (a, node) in nodes.iter().enumerate() {
                 let (volume, moment, concentrated) = &mut lengths[local(node)];
                 *concentrated += lumped[a];
@@ -97,21 +97,22 @@ impl BodyMeans {
         let (mut shift, mut momentum) = (Vector2::zeros(), Vector2::zeros());
         let (mut turned, mut stayed) = (0.0, self.inertia);
         for &Share { node, volume, moment, lumped } in &self.shares {
-            let u = at(&state.displacement, node);
+            let u = vector(&state.displacement, node);
             shift += u * (volume / self.volume);
-            momentum += at(&state.velocity, node) * (self.density * if is_lumped { lumped } else { volume });
+            momentum += vector(&state.velocity, node) * (self.density * if is_lumped { lumped } else { volume });
             turned += moment.perp(&u);
             stayed += moment.dot(&u);
         }
         let mut angular_momentum = 0.0;
         if self.density > 0.0 && state.velocity.iter().any(|v| *v != 0.0) {
-            let place = |node: usize| (model.mesh.nodes[node] - self.centre) + (at(&state.displacement, node) - shift);
+            let place =
+                |node: usize| (model.mesh.nodes[node] - self.centre) + (vector(&state.displacement, node) - shift);
             // Lumped masses have their centre where they put it.
             let centre = match is_lumped {
                 true => self.shares.iter().map(|share| place(share.node) * (share.lumped / self.volume)).sum(),
                 false => Vector2::zeros(),
             };
-            let spin = |a: usize, b: usize| (place(a) - centre).perp(&at(&state.velocity, b));
+            let spin = |a: usize, b: usize| (place(a) - centre).perp(&vector(&state.velocity, b));
             let volumes: f64 = if is_lumped {
                 self.shares.iter().map(|share| share.lumped * spin(share.node, share.node)).sum()
             } else {
@@ -124,10 +125,6 @@ impl BodyMeans {
     }
 }
 
-fn at(values: &[f64], node: usize) -> Vector2<f64> {
-    Vector2::new(values[2 * node], values[2 * node + 1])
-}
-
 /// One entry a pair of nodes.
 fn summed(mut pairs: Vec<(usize, usize, f64)>) -> Vec<(usize, usize, f64)> {
     pairs.sort_by_key(|&(a, b, _)| (a, b));
@@ -135,21 +132,4 @@ fn summed(mut pairs: Vec<(usize, usize, f64)>) -> Vec<(usize, usize, f64)> {
         (entries[0].0, entries[0].1, entries.iter().map(|(_, _, shared)| shared).sum())
     };
     pairs.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).map(entry).collect()
-}
-
-/// Volume of the lumped mass of each node of an element.
-fn lumped_volumes(model: &Model, element: usize) -> DVector<f64> {
-    let element = &model.mesh.elements[element];
-    let positions: Vec<Vector2<f64>> = element.nodes.iter().map(|&node| model.mesh.nodes[node]).collect();
-    lumped_mass(element.kind, model.mesh.section, &positions, 1.0)
-        .expect("elements are checked when the model is built")
-}
-
-/// ∫ N_a N_b dV of an element, as its mass is distributed.
-fn volumes(model: &Model, element: usize) -> (Vec<usize>, DMatrix<f64>) {
-    let element = &model.mesh.elements[element];
-    let positions: Vec<Vector2<f64>> = element.nodes.iter().map(|&node| model.mesh.nodes[node]).collect();
-    let matrix = consistent_mass(element.kind, model.mesh.section, &positions, 1.0)
-        .expect("elements are checked when the model is built");
-    (element.nodes.clone(), redistributed(matrix, |local| model.massless[element.nodes[local]]))
 }

@@ -60,11 +60,6 @@ fn contact_forces(model: &Model, state: &State) -> Vec<f64> {
     forces
 }
 
-/// Nodal displacements of an element.
-fn displacements(state: &State, nodes: &[usize]) -> Vec<Vector2<f64>> {
-    nodes.iter().map(|&node| Vector2::new(state.displacement[2 * node], state.displacement[2 * node + 1])).collect()
-}
-
 /// The integration points of the bodies, with their stresses and what the materials remember there.
 pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid) {
     let elements = &model.mesh.elements;
@@ -77,7 +72,7 @@ pub fn points_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid)
     let (mut places, mut moved, mut body) = (Vec::new(), Vec::new(), Vec::new());
     let (mut stresses, mut variables) = (Vec::new(), vec![Vec::new(); names.len()]);
     for (e, element) in elements.iter().enumerate() {
-        let (u, number) = (displacements(state, &element.nodes), model.body_of_element[e]);
+        let (u, number) = (model.mesh.vectors(e, &state.displacement), model.body_of_element[e]);
         let (material, memory) = (&*model.bodies[number].material, model.memories.of(e, &state.memory));
         // An element without an answer never occurs in an accepted state.
         let none = || (0..model.solids[e].quadrature_points()).map(|_| CauchyStress::default()).collect();
@@ -117,12 +112,9 @@ fn add_stresses(grid: &mut Grid, stresses: &[CauchyStress]) {
 fn nodal_stresses(model: &Model, state: &State) -> Vec<CauchyStress> {
     let elements = &model.mesh.elements;
     let stresses_of = |e: usize| {
-        let mut u = [Vector2::zeros(); 9];
-        for (u, &node) in u.iter_mut().zip(&elements[e].nodes) {
-            *u = Vector2::new(state.displacement[2 * node], state.displacement[2 * node + 1]);
-        }
+        let u = model.mesh.vectors(e, &state.displacement);
         let material = &*model.bodies[model.body_of_element[e]].material;
-        model.solids[e].nodal_stresses(material, model.memories.of(e, &state.memory), &u[..elements[e].nodes.len()])
+        model.solids[e].nodal_stresses(material, model.memories.of(e, &state.memory), &u)
     };
     let mut sums = vec![([0.0; 4], 0.0); model.mesh.nodes.len()];
     for (element, stresses) in elements.iter().zip((0..elements.len()).map(stresses_of)) {

@@ -73,9 +73,7 @@ impl Reading {
     /// accepted state.
     pub fn of(probe: &Probe, model: &Model, state: &State) -> Self {
         let (element, solid) = (&model.mesh.elements[probe.element], &model.solids[probe.element]);
-        let nodal = |values: &[f64]| -> Vec<Vector2<f64>> {
-            element.nodes.iter().map(|&node| Vector2::new(values[2 * node], values[2 * node + 1])).collect()
-        };
+        let nodal = |values: &[f64]| model.mesh.vectors(probe.element, values);
         let values = element.kind.values(probe.at);
         let mean = |of: &[Vector2<f64>]| of.iter().zip(&values).map(|(of, n)| of * *n).sum::<Vector2<f64>>();
         let (u, v) = (nodal(&state.displacement), nodal(&state.velocity));

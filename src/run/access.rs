@@ -8,6 +8,7 @@ use crate::contact::force::ContactState;
 use crate::contact::pair;
 use crate::contact::pair::ContactPair;
 use crate::mesh::UnknownGroup;
+use crate::mesh::configuration::vector;
 use crate::model::Step;
 use crate::model::boundary::{Drive, Span};
 use crate::model::builder::ModelError;
@@ -187,8 +188,4 @@ impl Simulation {
         let mesh = &self.model().mesh;
         Ok(mesh.nodes_of(mesh.group(group)?))
     }
-}
-
-fn vector(values: &[f64], node: usize) -> Vector2<f64> {
-    Vector2::new(values[2 * node], values[2 * node + 1])
 }

@@ -14,6 +14,7 @@ use crate::equations::evolving::evolves;
 use crate::equations::sums::{TrialFailure, add_blocks};
 use crate::laws::bulk::MaterialFailure;
 use crate::linear::SparseMatrix;
+use crate::mesh::configuration::vector;
 use crate::model::Model;
 
 /// Elements that are done sooner than another thread wakes up.
@@ -203,7 +204,7 @@ impl Runs {
 pub(super) fn nodal(model: &Model, e: usize, all: &[f64]) -> [Vector2<f64>; 9] {
     let mut local = [Vector2::zeros(); 9];
     for (local, &node) in local.iter_mut().zip(&model.mesh.elements[e].nodes) {
-        *local = Vector2::new(all[2 * node], all[2 * node + 1]);
+        *local = vector(all, node);
     }
     local
 }

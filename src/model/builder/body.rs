@@ -5,7 +5,6 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use nalgebra::Vector2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -138,8 +137,8 @@ pub fn check_damping(damping: Damping, material: &dyn Material, place: &str) -> 
 /// Integration geometry of every element.
 pub fn solids(mesh: &Mesh, given: &[(String, BodyInput)], body_of_element: &[usize]) -> Checked<Vec<SolidElement>> {
     let mut solids = Vec::with_capacity(mesh.elements.len());
-    for (element, &body) in mesh.elements.iter().zip(body_of_element) {
-        let positions: Vec<Vector2<f64>> = element.nodes.iter().map(|&node| mesh.nodes[node]).collect();
+    for (e, (element, &body)) in mesh.elements.iter().zip(body_of_element).enumerate() {
+        let positions = mesh.places(e);
         let (name, body) = &given[body];
         let complain = |error| ModelError::new(format!("bodies.{name}.element"), error);
         let f_bar = body.element == Formulation::FBar;

@@ -21,6 +21,7 @@ use nalgebra::{Matrix2, Matrix2x3, Matrix3, Rotation2, RowVector3, Vector2, Vect
 
 use crate::equations::damping::NodeDamper;
 use crate::equations::links::{give, perpendicular, relative};
+use crate::mesh::configuration::vector;
 use crate::model::state::State;
 use crate::model::support::Direction;
 use crate::model::{Model, Step};
@@ -253,9 +254,8 @@ impl Rigid {
     /// F + m a_C along a direction.
     pub fn reaction(&self, at: Direction, force: &[f64], acceleration: &[f64]) -> f64 {
         let [a, b] = self.leaders;
-        let of = |values: &[f64], node: usize| Vector2::new(values[2 * node], values[2 * node + 1]);
-        let center = of(acceleration, a) + (self.shift + self.reference) * relative([a, b], acceleration);
-        at.vector().dot(&(of(force, a) + of(force, b) + center * self.mass))
+        let center = vector(acceleration, a) + (self.shift + self.reference) * relative([a, b], acceleration);
+        at.vector().dot(&(vector(force, a) + vector(force, b) + center * self.mass))
     }
 
     /// What ½ v₋ᵀ M v₊ counts too little, node by node [F·L].
@@ -274,8 +274,7 @@ impl Rigid {
         let turning = self.turning(e, state);
         let a = self.leaders[0];
         let of = |values: &[f64], turning: f64| {
-            let middle =
-                Vector2::new(values[2 * a], values[2 * a + 1]) + self.reference * relative(self.leaders, values);
+            let middle = vector(values, a) + self.reference * relative(self.leaders, values);
             Vector3::new(middle.x, middle.y, turning)
         };
         [of(&state.velocity, turning[0]), of(&state.acceleration, turning[1])]
@@ -292,9 +291,9 @@ impl Rigid {
     pub fn accelerate(&mut self, dt: f64, (u, force): (&[f64], &[f64]), supported: &impl Fn(usize) -> f64) {
         let [a, b] = self.leaders;
         let e = self.arm + relative(self.leaders, u);
-        let of = |node: usize| Vector2::new(force[2 * node], force[2 * node + 1]);
-        let total = of(a) + of(b);
-        let moment = e.perp(&of(b)) - (self.reference * e).perp(&total);
+        let [of_a, of_b] = [a, b].map(|node| vector(force, node));
+        let total = of_a + of_b;
+        let moment = e.perp(&of_b) - (self.reference * e).perp(&total);
         let spin = self.rates[0].z + 0.5 * dt * self.rates[1].z;
         let pulled = self.shift * e * (spin * spin * self.mass) - total;
         let found = self.solve(e, Matrix3::zeros(), Vector3::new(pulled.x, pulled.y, -moment), supported);

@@ -27,6 +27,7 @@ use super::Explicit;
 use crate::contact::master::Master;
 use crate::contact::surface::SegmentWeights;
 use crate::equations::sums::TrialFailure;
+use crate::mesh::configuration::vector;
 use crate::model::element::Memory;
 use crate::model::state::State;
 use crate::model::{Model, Step};
@@ -163,9 +164,8 @@ impl Stability {
     fn change(&self, e: usize, u: &[f64]) -> f64 {
         let places = self.stride * e..self.stride * (e + 1);
         let (nodes, seen) = (&self.nodes[places.clone()], &self.seen[places]);
-        let of = |node: usize| Vector2::new(u[2 * node], u[2 * node + 1]);
-        let first = of(nodes[0]);
-        let square = |(node, seen): (&usize, &Vector2<f64>)| (of(*node) - first - seen).norm_squared();
+        let first = vector(u, nodes[0]);
+        let square = |(node, seen): (&usize, &Vector2<f64>)| (vector(u, *node) - first - seen).norm_squared();
         nodes.iter().zip(seen).map(square).fold(0.0, f64::max).sqrt()
     }
 
@@ -180,10 +180,9 @@ impl Stability {
         for (&e, element) in elements.iter().zip(found) {
             self.elements[e] = element.map_err(IncrementFailure::Start)?;
             let places = self.stride * e..self.stride * (e + 1);
-            let of = |node: usize| Vector2::new(u[2 * node], u[2 * node + 1]);
-            let first = of(self.nodes[places.start]);
+            let first = vector(u, self.nodes[places.start]);
             for (seen, &node) in self.seen[places.clone()].iter_mut().zip(&self.nodes[places]) {
-                *seen = of(node) - first;
+                *seen = vector(u, node) - first;
             }
         }
         Ok(())
@@ -278,9 +277,8 @@ impl Element {
         e: usize,
         (u, memory): (&[f64], &[f64]),
     ) -> Result<Self, TrialFailure> {
-        let nodes = &model.mesh.elements[e].nodes;
         let body = &model.bodies[model.body_of_element[e]];
-        let local: Vec<Vector2<f64>> = nodes.iter().map(|&node| Vector2::new(u[2 * node], u[2 * node + 1])).collect();
+        let local = model.mesh.vectors(e, u);
         let size = if body.material.is_linear() { f64::INFINITY } else { size(model, e, &local) };
         let undeformed = size_at_rest(model, e);
         if size < CRUSHED * undeformed {
