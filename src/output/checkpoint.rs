@@ -143,15 +143,6 @@ fn kept(newest: &Path, previous: &Path) -> std::io::Result<()> {
     }
 }
 
-/// Take the newest checkpoint away where it was of no use: it must not become the previous one.
-///
-/// # Errors
-/// [`Error::Output`].
-pub fn discard_newest(folder: &Path) -> Result<(), Error> {
-    let newest = folder.join(NEWEST);
-    files::remove(&newest).map_err(|cause| failed(&newest, &cause))
-}
-
 /// Read a checkpoint.
 ///
 /// # Errors

@@ -27,6 +27,7 @@
 //!
 //! Speeds of elastic waves, with which fronts are compared.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::contact::force::ContactState;
@@ -213,7 +214,7 @@ pub(super) struct Point {
     pub rubs: bool,
     /// What it was left with by the last increment
     pub mark: Mark,
-    /// Slip rate of that increment [L/T], and what an arrival is told by (see [`Arrive`])
+    /// Slip rate of that increment [L/T], and what an arrival is told by (see [`FrontsInput`])
     pub rate: f64,
     pub signal: f64,
     pub arrivals: Vec<Arrival>,
@@ -240,23 +241,31 @@ pub(super) struct Interface {
     pub events: Vec<SlipEvent>,
 }
 
+/// What counts as a front.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FrontsInput {
+    /// Slip rate whose passage from below is the arrival of a front; an event of slip lasts while a point of the contact
+    /// slips faster [L/T]
+    pub slip_rate: f64,
+    /// What tells of arrivals instead of the slip rate
+    pub arrival: Option<ArrivalInput>,
+}
+
 /// What tells that a front arrives at a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Arrive {
-    /// The slip rate passes that of a front from below.
-    Rate,
-    /// R passes a value from below.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub enum ArrivalInput {
+    /// R passes this value from below [-]
     R(f64),
-    /// μ passes a value from above.
+    /// μ passes this value from above [-]
+    #[serde(rename = "mu")]
     Mu(f64),
 }
 
 /// An increment as fronts see it.
 #[derive(Clone, Copy)]
 pub(super) struct Passing<'a> {
-    /// Slip rate of a front [L/T]
-    pub threshold: f64,
-    pub arrive: Arrive,
+    pub told_by: FrontsInput,
     /// Time and energies of the model at the ends of the last two increments
     pub last: [(f64, Energies); 2],
     /// State at the end of this one
@@ -282,10 +291,10 @@ impl Passing<'_> {
     /// The arrival of a front at a point in this increment, told by the signal at its end. Slip rates are those of the middles
     /// of increments, other signals those of their ends.
     fn arrival(&self, point: &Point, signal: f64, event: usize) -> Option<Arrival> {
-        let (level, mean) = match self.arrive {
-            Arrive::Rate => (self.threshold, true),
-            Arrive::R(level) => (level, false),
-            Arrive::Mu(level) => (-level, false),
+        let (level, mean) = match self.told_by.arrival {
+            None => (self.told_by.slip_rate, true),
+            Some(ArrivalInput::R(level)) => (level, false),
+            Some(ArrivalInput::Mu(level)) => (-level, false),
         };
         if !(point.rubs && point.signal <= level && signal > level) {
             return None;
@@ -335,12 +344,12 @@ impl Interface {
 
     /// The contact after an increment.
     pub fn pass(&mut self, pair: &ContactPair, passing: &Passing, states: &[ContactState]) {
-        let Passing { threshold, after, last: [_, before], .. } = *passing;
+        let Passing { told_by, after, last: [_, before] } = *passing;
         let dt = after.time - before.0;
         let marks: Vec<Mark> = states.iter().map(Mark::of).collect();
         let rate = |(point, mark): (&Point, &Mark)| (mark.slip - point.mark.slip) / dt;
         let rates: Vec<f64> = self.points.iter().zip(&marks).map(rate).collect();
-        let slipping = self.points.iter().zip(&rates).any(|(point, rate)| point.rubs && rate.abs() > threshold);
+        let slipping = self.points.iter().zip(&rates).any(|(point, rate)| point.rubs && rate.abs() > told_by.slip_rate);
         let goes_on = self.events.last().is_some_and(|event| !event.over);
         if slipping && !goes_on {
             self.events.push(SlipEvent::begin(
@@ -356,10 +365,10 @@ impl Interface {
         let points = self.points.iter_mut().zip(marks.iter().zip(&rates)).zip(pair.points.iter().zip(states));
         for ((point, (mark, rate)), (slave, state)) in points {
             let observed = |name| pair.observed(slave, name, (&state.friction, after.time));
-            let signal = match passing.arrive {
-                Arrive::Rate => rate.abs(),
-                Arrive::R(_) => observed("R"),
-                Arrive::Mu(_) => -observed("mu"),
+            let signal = match told_by.arrival {
+                None => rate.abs(),
+                Some(ArrivalInput::R(_)) => observed("R"),
+                Some(ArrivalInput::Mu(_)) => -observed("mu"),
             };
             point.arrivals.extend(passing.arrival(point, signal, event));
             (point.mark, point.rate, point.signal) = (*mark, *rate, signal);

@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 
 use super::csv;
 use super::csv::Table;
-pub use super::events::Arrive;
+pub use super::events::{ArrivalInput, FrontsInput};
 use super::events::{Energies, Interface, Mark, Measures, Passing, WaveSpeeds};
 use super::quantities::{EVENTS, FRONTS, names};
 use crate::model::Model;
@@ -32,10 +32,7 @@ use crate::run::observer::{Attempt, Observer};
 #[derive(Debug)]
 pub struct Fronts {
     folder: PathBuf,
-    /// Slip rate of a front [L/T]
-    threshold: f64,
-    /// What tells of its arrivals
-    arrive: Arrive,
+    told_by: FrontsInput,
     interfaces: Vec<Interface>,
     /// Time at the start
     start: f64,
@@ -45,19 +42,19 @@ pub struct Fronts {
 
 impl Fronts {
     /// Watch for fronts; `start` is the state before the first increment.
-    pub fn new(folder: &Path, model: &Model, start: &State, threshold: f64, arrive: Arrive) -> Self {
+    pub fn new(folder: &Path, model: &Model, start: &State, told_by: FrontsInput) -> Self {
         let mut interfaces: Vec<Interface> = model.contacts.iter().map(|pair| Interface::new(model, pair)).collect();
         // What had slipped before is no event of this run.
         let points =
             interfaces.iter_mut().zip(&start.contacts).flat_map(|(of, states)| of.points.iter_mut().zip(states));
         points.for_each(|(point, state)| point.mark = Mark::of(state));
         let last = [(start.time, Energies::of(start)); 2];
-        Self { folder: folder.into(), threshold, arrive, interfaces, start: start.time, last }
+        Self { folder: folder.into(), told_by, interfaces, start: start.time, last }
     }
 
     fn increment(&mut self, model: &Model, after: &State) {
-        let Self { threshold, arrive, last, .. } = *self;
-        let passing = Passing { threshold, arrive, last, after };
+        let Self { told_by, last, .. } = *self;
+        let passing = Passing { told_by, last, after };
         for ((interface, pair), states) in self.interfaces.iter_mut().zip(&model.contacts).zip(&after.contacts) {
             interface.pass(pair, &passing, states);
         }

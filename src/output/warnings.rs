@@ -5,6 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::audit::Audit;
@@ -74,10 +75,7 @@ impl Observer for Warnings {
             for (point, (old, contact)) in points.filter(|(_, (_, new))| new.friction.pressure > 0.0) {
                 for (kind, message) in concerns(pair, point, state.time, old, contact, &x) {
                     if self.given.insert((number, kind)) {
-                        let at = point.at(&x);
-                        let place =
-                            format!("contact `{}` at ({:.6}, {:.6}), t = {}", pair.name, at.x, at.y, told(state.time));
-                        self.list.push(format!("{place}: {message}"));
+                        self.list.push(format!("{}: {message}", place(pair, point.at(&x), state.time)));
                     }
                 }
             }
@@ -123,9 +121,7 @@ impl Warnings {
             let Some(point) = point else { continue };
             for (kind, message) in left(point.departure(slave, &pair.master, x)) {
                 if self.given.insert((number, kind)) {
-                    let at = slave.at(x);
-                    let place = format!("contact `{}` at ({:.6}, {:.6}), t = {}", pair.name, at.x, at.y, told(time));
-                    self.list.push(format!("{place}: {message}; take finite sliding"));
+                    self.list.push(format!("{}: {message}; take finite sliding", place(pair, slave.at(x), time)));
                 }
             }
         }
@@ -141,13 +137,10 @@ impl Warnings {
         let deepest = pair.deepest_master_node(&state.contacts[number], x);
         let Some((at, depth, share)) = deepest.filter(|(.., share)| *share > DEEP) else { return };
         self.given.insert((number, Kind::DeepMasterNode));
-        let time = told(state.time);
         self.list.push(format!(
-            "contact `{}` at ({:.6}, {:.6}), t = {time}: a node of the master lies {depth:.3e} deep in the slave, {:.1} % of \
-             its edge; refine both sides there, make the finer one the slave, or raise alpha_n",
-            pair.name,
-            at.x,
-            at.y,
+            "{}: a node of the master lies {depth:.3e} deep in the slave, {:.1} % of its edge; refine both sides there, make the \
+             finer one the slave, or raise alpha_n",
+            place(pair, at, state.time),
             100.0 * share
         ));
     }
@@ -178,14 +171,10 @@ impl Warnings {
         let longest = pair.points.iter().filter_map(|point| point.edge_length(x)).fold(0.0, f64::max);
         if depth > UNSEEN * longest {
             self.given.insert((number, Kind::DeepUnseen));
-            let at = node.at(x);
             self.list.push(format!(
-                "contact `{}` at ({:.6}, {:.6}), t = {}: a node that is not on the slave lies {depth:.3e} deep in the rigid master, which \
-                 holds the slave alone back; put the sides that come down on it into the group of the slave",
-                pair.name,
-                at.x,
-                at.y,
-                told(time)
+                "{}: a node that is not on the slave lies {depth:.3e} deep in the rigid master, which holds the slave alone back; \
+                 put the sides that come down on it into the group of the slave",
+                place(pair, node.at(x), time)
             ));
         }
     }
@@ -222,27 +211,35 @@ impl Warnings {
 
     /// The shortest increment is accepted whatever its error.
     fn error_in_time(&mut self, attempt: &Attempt) {
-        let Attempt { step, dt, old, .. } = attempt;
+        let step = attempt.step;
         let Some((error, allowed)) = attempt.local_error.zip(step.increments.error) else { return };
         if error > allowed && self.inexact.insert(step.name.clone()) {
-            let start =
-                format!("step `{}`, t = {}: the increment {dt:.3e} is the shortest allowed", step.name, told(old.time));
-            self.list.push(format!("{start}, and its error {error:.3e} exceeds {allowed:.3e}; lower dt.min"));
+            let found = format!("its error {error:.3e} exceeds {allowed:.3e}");
+            self.list.push(shortest(attempt, &found));
         }
     }
+
     /// The shortest increment is accepted whatever it does not know of touch.
     fn error_of_touch(&mut self, attempt: &Attempt) {
-        let Attempt { step, dt, old, .. } = attempt;
         let Some(doubt) = attempt.doubt.filter(|doubt| *doubt > DOUBT) else { return };
-        if self.doubtful.insert(step.name.clone()) {
-            let start =
-                format!("step `{}`, t = {}: the increment {dt:.3e} is the shortest allowed", step.name, told(old.time));
+        if self.doubtful.insert(attempt.step.name.clone()) {
             let percent = 100.0 * doubt;
             let found =
                 format!("when points touched in it leaves friction of {percent:.1} % of a contact's force in doubt");
-            self.list.push(format!("{start}, and {found}; lower dt.min"));
+            self.list.push(shortest(attempt, &found));
         }
     }
+}
+
+/// Where and when something is found.
+fn place(pair: &ContactPair, at: Vector2<f64>, time: f64) -> String {
+    format!("contact `{}` at ({:.6}, {:.6}), t = {}", pair.name, at.x, at.y, told(time))
+}
+
+/// What is found of an increment that could not be made shorter.
+fn shortest(Attempt { step, dt, old, .. }: &Attempt, found: &str) -> String {
+    let start = format!("step `{}`, t = {}: the increment {dt:.3e} is the shortest allowed", step.name, told(old.time));
+    format!("{start}, and {found}; lower dt.min")
 }
 
 /// Penetration, as a share of the slave's edge, that is worth a warning.

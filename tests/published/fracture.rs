@@ -22,7 +22,7 @@ use std::sync::Arc;
 use crate::common::{self, Blocks, close};
 use fecontact::laws::friction::{FrictionParameters, Sliding};
 use fecontact::model::Model;
-use fecontact::output::fronts::{Arrive, Fronts};
+use fecontact::output::fronts::{ArrivalInput, Fronts, FrontsInput};
 use fecontact::run::error::Error;
 use fecontact::run::observer::{Attempt, Observer};
 use fecontact::run::run;
@@ -316,7 +316,12 @@ fn the_table_of_events_tells_what_a_front_did() {
     let folder = tempfile::tempdir().expect("a folder");
     let half = 0.5 * problem.energy / (PEAK - SLIDING);
     let start = model.initial_state();
-    let mut fronts = Fronts::new(folder.path(), &model, &start, 0.01 * half, Arrive::R(0.999_999));
+    let mut fronts = Fronts::new(
+        folder.path(),
+        &model,
+        &start,
+        FrontsInput { slip_rate: 0.01 * half, arrival: Some(ArrivalInput::R(0.999_999)) },
+    );
     let points = model.contacts[BREAKING].points.len();
     let mut passages = Passages { half, time: 0.0, slips: vec![0.0; points], at: vec![None; points] };
     let mut energies = Energies::default();

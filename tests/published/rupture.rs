@@ -8,7 +8,7 @@ use crate::common::{self, Blocks};
 use fecontact::case;
 use fecontact::model::Model;
 use fecontact::output::events::WaveSpeeds;
-use fecontact::output::fronts::{Arrive, Fronts};
+use fecontact::output::fronts::{Fronts, FrontsInput};
 use fecontact::run::error::Error;
 use fecontact::run::observer::{Attempt, Observer, Row, Verdict};
 use fecontact::run::run;
@@ -215,7 +215,7 @@ fn fronts_tell_when_and_how_fast_a_given_front_ran() {
     let model = case::build(&parsed, Path::new("test.json")).expect("a good case");
     let folder = tempfile::tempdir().expect("a folder");
     let mut old = model.initial_state();
-    let mut fronts = Fronts::new(folder.path(), &model, &old, 0.5, Arrive::Rate);
+    let mut fronts = Fronts::new(folder.path(), &model, &old, FrontsInput { slip_rate: 0.5, arrival: None });
     // From the middle to both ends at 2500 m/s, behind it 1 m/s of slip; after 6.5 s it rests, and at 9 s it starts again.
     let x = fecontact::mesh::configuration::Configuration::undeformed(&model.mesh.nodes);
     let places: Vec<f64> = model.contacts[0].points.iter().map(|point| point.at(&x).x).collect();

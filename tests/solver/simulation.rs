@@ -9,7 +9,7 @@ use fecontact::model::Model;
 use fecontact::model::builder::{Builder, LoadStep, Place, Support};
 use fecontact::model::state::State;
 use fecontact::output::fields::{Fields, Frames};
-use fecontact::output::fronts::{Arrive, Fronts};
+use fecontact::output::fronts::{Fronts, FrontsInput};
 use fecontact::output::history::History;
 use fecontact::output::newton_log::NewtonLog;
 use fecontact::output::warnings::Warnings;
@@ -489,7 +489,7 @@ fn observers_go_back_with_the_run() {
     let mut log = NewtonLog::create(folder.path(), &model).expect("a table");
     let mut fields =
         Fields::create(folder.path(), model.clone(), &start, Frames { every: Some(2), points: false }).expect("frames");
-    let mut fronts = Fronts::new(folder.path(), &model, &start, 1e-3, Arrive::Rate);
+    let mut fronts = Fronts::new(folder.path(), &model, &start, FrontsInput { slip_rate: 1e-3, arrival: None });
     let mut warnings = Warnings::default();
     let mut simulation = Simulation::new(model.clone());
     let mut observers: [&mut dyn Observer; 5] = [&mut history, &mut log, &mut fields, &mut fronts, &mut warnings];
@@ -527,7 +527,7 @@ fn observers_go_back_with_the_run() {
             Fields::create(straight.path(), model.clone(), &start, Frames { every: Some(2), points: false })
                 .expect("frames"),
         ),
-        Box::new(Fronts::new(straight.path(), &model, &start, 1e-3, Arrive::Rate)),
+        Box::new(Fronts::new(straight.path(), &model, &start, FrontsInput { slip_rate: 1e-3, arrival: None })),
         Box::new(Warnings::default()),
     ];
     let mut others: Vec<&mut dyn Observer> =

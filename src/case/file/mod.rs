@@ -15,7 +15,7 @@ use crate::model::builder::{BodyInput, Contact, Gauge, LoadStep, LoadingPlateInp
 use crate::model::written::Written;
 pub(super) use blocks::blocks;
 pub use blocks::{Amount, BlockInput, BlocksInput, GradingInput, MeshInPlace, MiddleInput};
-pub use output::{ArrivalInput, FrontsInput, OutputInput};
+pub use output::OutputInput;
 
 /// A case: mesh, bodies, contacts and steps.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]

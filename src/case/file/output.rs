@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::output::fronts::FrontsInput;
+
 /// What is written.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
@@ -29,27 +31,6 @@ pub struct OutputInput {
     /// Whether a run ends with report.html, one page to look at its results in a browser; `fecontact report` writes it at any
     /// time
     pub report: bool,
-}
-
-/// What counts as a front.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct FrontsInput {
-    /// Slip rate whose passage from below is the arrival of a front; an event of slip lasts while a point of the contact
-    /// slips faster [L/T]
-    pub slip_rate: f64,
-    /// What tells of arrivals instead of the slip rate
-    pub arrival: Option<ArrivalInput>,
-}
-
-/// What tells that a front arrives at a point.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
-pub enum ArrivalInput {
-    /// R passes this value from below [-]
-    R(f64),
-    /// μ passes this value from above [-]
-    #[serde(rename = "mu")]
-    Mu(f64),
 }
 
 impl OutputInput {

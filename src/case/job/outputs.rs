@@ -7,12 +7,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::Warn;
-use crate::case::file::{ArrivalInput, Case};
+use crate::case::file::Case;
 use crate::model::Model;
 use crate::output::fields::{Fields, Frames};
 use crate::output::folder::INTERFACE;
 use crate::output::friction_course::FrictionCourse;
-use crate::output::fronts::{Arrive, Fronts};
+use crate::output::fronts::Fronts;
 use crate::output::history::History;
 use crate::output::interface::InterfaceStore;
 use crate::output::newton_log::NewtonLog;
@@ -90,14 +90,7 @@ impl Outputs {
             interface: (goes_on("interface") && has_contacts).then(store),
             probes: goes_on("probes").then(|| Probes::reopen(folder, model)).transpose()?,
             fields: (goes_on("fields") && has_fields).then(series).transpose()?,
-            fronts: case.output.fronts.map(|fronts| {
-                let arrive = match fronts.arrival {
-                    None => Arrive::Rate,
-                    Some(ArrivalInput::R(value)) => Arrive::R(value),
-                    Some(ArrivalInput::Mu(value)) => Arrive::Mu(value),
-                };
-                Fronts::new(folder, model, &start, fronts.slip_rate, arrive)
-            }),
+            fronts: case.output.fronts.map(|told_by| Fronts::new(folder, model, &start, told_by)),
         };
         // What goes on is as it was, or nothing changes.
         saved.map_or(Ok(()), |saved| saved.check(&outputs.observers()))?;

@@ -8,13 +8,14 @@ use std::fmt::Write;
 use contact::{contacts, parameters, pressed_too_hard};
 use steps::steps;
 
-use super::file::{ArrivalInput, Case, MeshSource};
+use super::file::{Case, MeshSource};
 use crate::mesh::Group;
 use crate::mesh::shape::ElementKind;
 use crate::model::builder::{BodyInput, Formulation, LoadingPlateInput, Plate};
 use crate::model::imposed::{InitialStress, Thermal};
 use crate::model::told::{count, number};
 use crate::model::{Damping, Model, PointMass};
+use crate::output::fronts::ArrivalInput;
 
 /// A readable account of a checked case.
 pub fn report(case: &Case, model: &Model) -> String {

@@ -102,35 +102,23 @@ impl FrictionParameters {
     }
 }
 
-impl From<CoulombParameters> for FrictionParameters {
-    fn from(parameters: CoulombParameters) -> Self {
-        Self::Coulomb(parameters)
-    }
+macro_rules! parameters_of {
+    ($($law:ident $parameters:ty),*) => {$(
+        impl From<$parameters> for FrictionParameters {
+            fn from(parameters: $parameters) -> Self {
+                Self::$law(parameters)
+            }
+        }
+    )*};
 }
 
-impl From<SuperSubloadingParameters> for FrictionParameters {
-    fn from(parameters: SuperSubloadingParameters) -> Self {
-        Self::SuperSubloading(parameters)
-    }
-}
-
-impl From<SlipWeakeningParameters> for FrictionParameters {
-    fn from(parameters: SlipWeakeningParameters) -> Self {
-        Self::SlipWeakening(parameters)
-    }
-}
-
-impl From<RateAndStateParameters> for FrictionParameters {
-    fn from(parameters: RateAndStateParameters) -> Self {
-        Self::RateAndState(parameters)
-    }
-}
-
-impl From<PrescribedSlipParameters> for FrictionParameters {
-    fn from(parameters: PrescribedSlipParameters) -> Self {
-        Self::Prescribed(parameters)
-    }
-}
+parameters_of!(
+    Coulomb CoulombParameters,
+    SuperSubloading SuperSubloadingParameters,
+    SlipWeakening SlipWeakeningParameters,
+    RateAndState RateAndStateParameters,
+    Prescribed PrescribedSlipParameters
+);
 
 impl Numbers for RegisteredParameters {
     fn names(&self) -> Vec<String> {
