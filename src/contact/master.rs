@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 
 use super::point::{MasterPoint, SlavePoint};
 use super::projection::{Bound, FACING, Projection, normal_of, tangent_of};
-use super::surface::Surface;
+use super::surface::{Segment, Surface};
 use crate::mesh::configuration::Configuration;
 
 /// The master side.
@@ -18,6 +18,16 @@ pub enum Master {
     Mesh(Surface),
     /// A rigid body at rest
     Rigid(Rigid),
+}
+
+impl Master {
+    /// The segments of a surface of the mesh; none of a rigid body.
+    pub fn segments(&self) -> &[Segment] {
+        match self {
+            Self::Mesh(surface) => &surface.segments,
+            Self::Rigid(_) => &[],
+        }
+    }
 }
 
 /// A rigid body.

@@ -111,6 +111,16 @@ pub struct Arrival {
 }
 
 impl ContactPair {
+    /// The nodes of the slave's points, some of them several times.
+    pub fn slave_nodes(&self) -> impl Iterator<Item = usize> {
+        self.points.iter().flat_map(|point| point.position.iter().map(|&(node, _)| node))
+    }
+
+    /// The nodes of both sides, some of them several times.
+    pub fn nodes(&self) -> impl Iterator<Item = usize> {
+        self.slave_nodes().chain(self.master.segments().iter().flat_map(|segment| segment.nodes()))
+    }
+
     /// Whether the master is the slave itself.
     pub fn is_own(&self) -> bool {
         matches!(&self.master, Master::Mesh(surface) if surface.own_depth.is_some())

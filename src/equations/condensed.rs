@@ -36,9 +36,9 @@ use std::sync::Arc;
 
 use super::Assembler;
 use super::sums::Dependence;
+use super::supports::fixed;
 use super::term::Term;
 use super::trial::Trial;
-use crate::contact::master::Master;
 use crate::contact::nodal_forces::Closed;
 use crate::contact::pair::ContactPair;
 use crate::contact::response::PairResponse;
@@ -69,15 +69,7 @@ fn bound_at_contacts(model: &Model, step: &Step) -> bool {
     let mut nodes: Vec<usize> = inclined.map(|at| at.node()).chain(model.linkage.nodes()).collect();
     nodes.sort_unstable();
     let is = |node: usize| nodes.binary_search(&model.ties.original(node)).is_ok();
-    let of = |pair: &ContactPair| {
-        let slaves = pair.points.iter().flat_map(|point| &point.position).map(|(node, _)| *node);
-        let masters = match &pair.master {
-            Master::Mesh(surface) => &surface.segments[..],
-            Master::Rigid(_) => &[],
-        };
-        slaves.chain(masters.iter().flat_map(|segment| segment.nodes())).any(is)
-    };
-    !nodes.is_empty() && model.contacts.iter().any(of)
+    !nodes.is_empty() && model.contacts.iter().any(|pair| pair.nodes().any(is))
 }
 
 /// ρ(x) of an increment from one start value on.
@@ -336,20 +328,12 @@ fn sorted(mut nodes: Vec<usize>) -> Vec<usize> {
 
 /// Nodes that a contact couples, or may come to couple: those of each point by itself if they never change.
 fn nodes_of(model: &Model, pair: &ContactPair) -> Vec<Vec<usize>> {
-    let original = |node: usize| model.ties.original(node);
     if let Some(small) = &pair.small {
-        let of_point = |point: &SmallPoint| sorted(point.nodes.iter().map(|node| original(*node)).collect());
+        let of_point = |point: &SmallPoint| model.ties.originals(point.nodes.iter().copied());
         return small.points.iter().flatten().map(of_point).collect();
     }
-    let mut nodes: Vec<usize> = Vec::new();
-    for point in &pair.points {
-        nodes.extend(point.position.iter().map(|&(node, _)| node));
-        nodes.extend(point.length.iter().flat_map(|share| share.tangent.iter().map(|&(node, _)| node)));
-    }
-    if let Master::Mesh(surface) = &pair.master {
-        nodes.extend(surface.segments.iter().flat_map(|segment| segment.nodes()));
-    }
-    vec![sorted(nodes.into_iter().map(original).collect())]
+    let along = pair.points.iter().flat_map(|point| &point.length).flat_map(|share| &share.tangent);
+    vec![model.ties.originals(pair.nodes().chain(along.map(|&(node, _)| node)))]
 }
 
 /// A slave node, and what it is counted from.
@@ -366,15 +350,6 @@ struct Jumps {
     jumps: Vec<Jump>,
     /// Number of each node's jump
     numbers: Vec<Option<u32>>,
-}
-
-/// Dofs that have an equation of their own in a step, not one of forces: supported ones, and copies.
-fn fixed(model: &Model, step: &Step) -> Vec<bool> {
-    let mut fixed = vec![false; model.dofs()];
-    step.supports.iter().for_each(|support| fixed[support.at.dof] = true);
-    model.ties.pairs().iter().for_each(|&(copy, _)| fixed[2 * copy..2 * copy + 2].fill(true));
-    model.linkage.followers.iter().flat_map(|follower| follower.dofs()).for_each(|(_, dof)| fixed[dof] = true);
-    fixed
 }
 
 impl Jumps {

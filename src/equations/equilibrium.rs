@@ -15,9 +15,8 @@
 //! which are differences of displacements over Δt. How far a model lies from the origin does not enter: positions are only
 //! ever subtracted from each other.
 
-use super::links;
 use super::trial::Trial;
-use crate::contact::master::Master;
+use super::{links, supports};
 use crate::contact::pair::ContactPair;
 use crate::contact::response::PairResponse;
 use crate::linear::system::System;
@@ -25,7 +24,7 @@ use crate::linear::{SparseMatrix, norm};
 use crate::mesh::configuration::Configuration;
 use crate::model::boundary::Absorber;
 use crate::model::state::State;
-use crate::model::{Damping, Model, Step};
+use crate::model::{Body, Damping, Model, Step};
 
 /// Errors of a force in units of ε: every element adds a few to each node.
 const ROUND_OFF: f64 = 4.0 * f64::EPSILON;
@@ -83,22 +82,11 @@ impl Equilibrium {
                 stiffness[node][2] += viscous * viscous;
             }
         }
-        let originals = |nodes: Vec<usize>| {
-            let mut nodes: Vec<usize> = nodes.into_iter().map(|node| model.ties.original(node)).collect();
-            nodes.sort_unstable();
-            nodes.dedup();
-            nodes
-        };
-        let bodies = model.bodies.iter().map(|body| Part { nodes: originals(body.nodes.clone()), contact: None });
-        let surfaces = model.contacts.iter().enumerate().map(|(k, pair)| {
-            let slave = pair.points.iter().flat_map(|point| point.position.iter().map(|&(node, _)| node));
-            let master = match &pair.master {
-                Master::Mesh(surface) => &surface.segments[..],
-                Master::Rigid(_) => &[],
-            };
-            let nodes = slave.chain(master.iter().flat_map(|segment| segment.nodes())).collect();
-            Part { nodes: originals(nodes), contact: Some(k) }
-        });
+        let of_body = |body: &Body| Part { nodes: model.ties.originals(body.nodes.iter().copied()), contact: None };
+        let bodies = model.bodies.iter().map(of_body);
+        let of_contact =
+            |(k, pair): (usize, &ContactPair)| Part { nodes: model.ties.originals(pair.nodes()), contact: Some(k) };
+        let surfaces = model.contacts.iter().enumerate().map(of_contact);
         let lone = (0..count).filter(|&node| lone[node]).map(|node| Part { nodes: vec![node], contact: None });
         Self {
             parts: bodies.chain(surfaces).chain(lone).collect(),
@@ -170,11 +158,7 @@ impl Equilibrium {
     ) {
         system.forces = norm(magnitudes);
         let tolerance = model.newton.tolerance;
-        let mut free: Vec<f64> = system.residual.clone();
-        trial.step.supports.iter().for_each(|support| free[support.at.dof] = 0.0);
-        model.ties.pairs().iter().for_each(|&(copy, _)| free[2 * copy..2 * copy + 2].fill(0.0));
-        model.linkage.followers.iter().flat_map(|follower| follower.dofs()).for_each(|(_, dof)| free[dof] = 0.0);
-        model.linkage.rigid.iter().for_each(|[_, b]| free[2 * b + 1] = 0.0);
+        let free = supports::free(model, trial.step, &system.residual);
         let mut round_off = None;
         system.imbalance = missed(model, trial, u);
         for part in &self.parts {
@@ -295,10 +279,6 @@ fn square(values: &[f64], node: usize) -> f64 {
 /// Longest edge of a contact's surfaces; 0 where a point meets a rigid body [L].
 fn longest_edge(pair: &ContactPair, x: &Configuration) -> f64 {
     let slave = pair.points.iter().filter_map(|point| point.edge_length(x));
-    let segments = match &pair.master {
-        Master::Mesh(surface) => &surface.segments[..],
-        Master::Rigid(_) => &[],
-    };
-    let master = segments.iter().map(|segment| x.between(segment.ends[0], segment.ends[1]).norm());
+    let master = pair.master.segments().iter().map(|segment| x.between(segment.ends[0], segment.ends[1]).norm());
     slave.chain(master).fold(0.0, f64::max)
 }

@@ -10,8 +10,8 @@ use super::trial::Trial;
 use crate::equations::sums::TrialFailure;
 use crate::linear::SparseMatrix;
 use crate::linear::system::System;
-use crate::model::Model;
 use crate::model::support::Direction;
+use crate::model::{Model, Step};
 
 /// w: the largest stiffness of the materials and springs; a model of points alone has that of its contacts [F/L].
 pub(super) fn weight(model: &Model) -> f64 {
@@ -20,6 +20,21 @@ pub(super) fn weight(model: &Model) -> f64 {
     let contacts = model.contacts.iter().flat_map(|pair| pair.points.iter().map(|point| pair.alpha_n * point.area));
     let largest = |stiffness: &mut dyn Iterator<Item = f64>| stiffness.reduce(f64::max).filter(|w| *w > 0.0);
     largest(&mut solids.chain(springs)).or_else(|| largest(&mut { contacts })).unwrap_or(1.0)
+}
+
+/// Dofs that have an equation of their own in a step, not one of forces: supported ones, copies, followers, and lengths of plates.
+pub fn fixed(model: &Model, step: &Step) -> Vec<bool> {
+    let mut fixed = vec![false; model.dofs()];
+    step.supports.iter().for_each(|support| fixed[support.at.dof] = true);
+    model.ties.pairs().iter().for_each(|&(copy, _)| fixed[2 * copy..2 * copy + 2].fill(true));
+    model.linkage.followers.iter().flat_map(|follower| follower.dofs()).for_each(|(_, dof)| fixed[dof] = true);
+    model.linkage.rigid.iter().for_each(|[_, b]| fixed[2 * b + 1] = true);
+    fixed
+}
+
+/// The residual of the equations of forces, 0 at all other dofs.
+pub fn free(model: &Model, step: &Step, residual: &[f64]) -> Vec<f64> {
+    residual.iter().zip(fixed(model, step)).map(|(&residual, fixed)| if fixed { 0.0 } else { residual }).collect()
 }
 
 /// Replace the equations of prescribed dofs and of copies.

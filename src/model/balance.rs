@@ -131,10 +131,7 @@ fn add_loads(model: &Model, loads: &Loads, time: f64, forces: &mut Forces) {
 /// What of the forces on the free dofs of a body is out of balance.
 fn imbalance(model: &Model, step: &Step, forces: &Forces, body: &Body) -> Imbalance {
     let (mut resultant, mut square, mut all) = (Vector2::zeros(), 0.0, 0.0);
-    let mut nodes: Vec<usize> = body.nodes.iter().map(|&node| model.ties.original(node)).collect();
-    nodes.sort_unstable();
-    nodes.dedup();
-    for node in nodes {
+    for node in model.ties.originals(body.nodes.iter().copied()) {
         let mut free = vector(&forces.sum, node);
         for dof in [2 * node, 2 * node + 1] {
             all += forces.magnitude[dof].powi(2);

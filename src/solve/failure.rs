@@ -9,9 +9,9 @@ use thiserror::Error;
 
 use super::Workspace;
 use super::newton::NewtonFailure;
-use crate::contact::master::Master;
 use crate::contact::pair::ContactPair;
 use crate::equations::sums::TrialFailure;
+use crate::equations::supports::free;
 use crate::linear::LinearFailure;
 use crate::model::told::number;
 use crate::model::{Body, Model, Step};
@@ -145,7 +145,7 @@ pub fn suspicion(model: &Model, step: &Step, work: &Workspace, cause: &Increment
         }
         _ => return String::new(),
     };
-    let contact = unbalanced.and_then(|node| model.contacts.iter().find(|pair| has(pair, node)));
+    let contact = unbalanced.and_then(|node| model.contacts.iter().find(|pair| pair.nodes().any(|own| own == node)));
     let place = unbalanced.map(|node| {
         let (tag, at) = (model.mesh.node_tags[node], model.mesh.nodes[node]);
         let owner = contact.map(|pair| format!(" of contact `{}`", pair.name)).or_else(|| {
@@ -167,24 +167,10 @@ pub fn suspicion(model: &Model, step: &Step, work: &Workspace, cause: &Increment
 
 /// The free node with the largest force out of balance.
 fn worst_node(model: &Model, step: &Step, residual: &[f64]) -> Option<usize> {
-    let mut free = residual.to_vec();
-    step.supports.iter().for_each(|support| free[support.at.dof] = 0.0);
-    model.ties.pairs().iter().for_each(|&(copy, _)| free[2 * copy..2 * copy + 2].fill(0.0));
-    model.linkage.followers.iter().flat_map(|follower| follower.dofs()).for_each(|(_, dof)| free[dof] = 0.0);
-    model.linkage.rigid.iter().for_each(|[_, b]| free[2 * b + 1] = 0.0);
+    let free = free(model, step, residual);
     let size = |node: &usize| free[2 * node].hypot(free[2 * node + 1]);
     let worst = (0..free.len() / 2).filter(|node| size(node).is_finite()).max_by(|a, b| size(a).total_cmp(&size(b)))?;
     (size(&worst) > 0.0).then_some(worst)
-}
-
-/// Whether a node is on one of the two sides of a contact.
-fn has(pair: &ContactPair, node: usize) -> bool {
-    let on_slave = pair.points.iter().any(|point| point.position.iter().any(|&(own, _)| own == node));
-    let on_master = match &pair.master {
-        Master::Mesh(surface) => surface.segments.iter().any(|segment| segment.nodes().any(|own| own == node)),
-        Master::Rigid(_) => false,
-    };
-    on_slave || on_master
 }
 
 /// A penalty far above the stiffness of the bodies: their own forces are round-off beside those of contact.

@@ -1,6 +1,5 @@
 //! Groups and nodes of the mesh by name.
 
-use std::collections::BTreeSet;
 use std::fmt::{Display, Formatter, Result as Written};
 
 use nalgebra::Vector2;
@@ -152,12 +151,6 @@ pub fn no_body<'n>(name: &str, known: impl Iterator<Item = &'n str>, place: &str
     ModelError::new(place, format!("there is no body `{name}`; the bodies are {}", known.join(", ")))
 }
 
-/// The nodes that some nodes move with, ascending.
-pub fn originals(model: &Model, nodes: &[usize]) -> Vec<usize> {
-    let originals: BTreeSet<usize> = nodes.iter().map(|&node| model.ties.original(node)).collect();
-    originals.into_iter().collect()
-}
-
 /// The watched groups.
 pub fn watched(names: &[String], model: &Model) -> Checked<Vec<WatchedSet>> {
     names.iter().enumerate().map(|(k, name)| watched_set(model, k, name)).collect()
@@ -167,7 +160,7 @@ pub fn watched(names: &[String], model: &Model) -> Checked<Vec<WatchedSet>> {
 fn watched_set(model: &Model, k: usize, name: &str) -> Checked<WatchedSet> {
     let group = group(&model.mesh, name, &format!("watch[{k}]"))?;
     let nodes = model.mesh.nodes_of(group);
-    let held = [0, 1].map(|i| originals(model, &model.held(&nodes, i)));
-    let nodes = if model.plates.is_empty() { originals(model, &nodes) } else { nodes };
+    let held = [0, 1].map(|i| model.ties.originals(model.held(&nodes, i)));
+    let nodes = if model.plates.is_empty() { model.ties.originals(nodes) } else { nodes };
     Ok(WatchedSet { name: name.into(), nodes, held })
 }

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use super::body::{check_damping, in_force, temperatures};
 use super::error::{Checked, ModelError, check_positive};
 use super::groups;
-use super::groups::{nodes_at, originals};
+use super::groups::nodes_at;
 use super::initial::launch;
 use super::load_step::{IncrementSettings, LoadStep, RuptureSettings, UntilSettings};
 use super::loads;
@@ -256,7 +256,7 @@ pub fn until(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Check
         );
     }
     let nodes = nodes_at(&model.mesh, on, &format!("{place}.on"))?;
-    let held = [0, 1].map(|i| originals(model, &model.held(&nodes, i)));
+    let held = [0, 1].map(|i| model.ties.originals(model.held(&nodes, i)));
     let along = |i: usize| {
         let of = |node: &usize| held[i].binary_search(node).is_ok();
         step.supports.iter().any(|support| of(&support.at.node()) && support.at.vector()[i] != 0.0)

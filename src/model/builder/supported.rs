@@ -52,8 +52,8 @@ fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Result<(), ModelErr
     let nodes = model.bodies.iter().flat_map(|body| &body.nodes);
     nodes.for_each(|&node| held[2 * node..2 * node + 2].fill(true));
     // Whether contact holds a node that may part is left to the solver.
-    let points = model.contacts.iter().flat_map(|pair| pair.points.iter().flat_map(|point| &point.position));
-    points.for_each(|&(node, _)| held[2 * node..2 * node + 2].fill(true));
+    let points = model.contacts.iter().flat_map(ContactPair::slave_nodes);
+    points.for_each(|node| held[2 * node..2 * node + 2].fill(true));
     let follow = model.linkage.followers.iter().flat_map(|follower| follower.dofs());
     follow.for_each(|(_, dof)| held[dof] = true);
     for (node, d) in holding(step) {
@@ -239,7 +239,7 @@ impl<'m> Parts<'m> {
         let mut parts: Vec<Part> =
             groups.iter().zip(nodes).map(|(group, nodes)| Part::of(group, nodes, model)).collect();
         for pair in model.contacts.iter().filter(|pair| matches!(pair.master, Master::Rigid(_))) {
-            slaves(pair).flat_map(|node| &of_node[node]).for_each(|&part| parts[part].on_rigid = true);
+            pair.slave_nodes().flat_map(|node| &of_node[node]).for_each(|&part| parts[part].on_rigid = true);
         }
         Self { parts, model, of_node }
     }
@@ -338,7 +338,7 @@ fn joined(model: &Model, owners: &[Vec<usize>]) -> Vec<Vec<usize>> {
     for pair in &model.contacts {
         let Master::Mesh(Surface { segments, .. }) = &pair.master else { continue };
         // A group of edges may run along several bodies.
-        let nodes = slaves(pair).chain(segments.iter().flat_map(|segment| segment.ends));
+        let nodes = pair.slave_nodes().chain(segments.iter().flat_map(|segment| segment.ends));
         let met: Vec<usize> = nodes.flat_map(|node| owners[node].iter().copied()).collect();
         met.windows(2).for_each(|two| joined.join(two[0], two[1]));
     }
@@ -360,11 +360,6 @@ fn bonded(model: &Model, owners: &[Vec<usize>]) -> Vec<(usize, usize)> {
         }
     }
     bonded
-}
-
-/// Nodes of the slave side.
-fn slaves(pair: &ContactPair) -> impl Iterator<Item = usize> {
-    pair.points.iter().flat_map(|point| point.position.iter().map(|&(node, _)| node))
 }
 
 /// Share of an equation below which it says nothing that others do not.
