@@ -166,17 +166,8 @@ pub fn driven(model: &Model, step: &Step, [t0, t1]: [f64; 2], way: impl Fn(usize
         .sum()
 }
 
-/// All dampers of one node: the force −C v.
-#[derive(Clone, Copy, Debug)]
-pub struct NodeDamper {
-    /// the node
-    pub node: usize,
-    /// C [F T/L]
-    pub coefficients: Matrix2<f64>,
-}
-
 /// The dampers of a step, a matrix a node, by the number of the node; those of copies at the nodes they move with.
-pub fn by_node(model: &Model, step: &Step) -> Vec<NodeDamper> {
+pub fn by_node(model: &Model, step: &Step) -> Vec<Absorber> {
     let mut total: BTreeMap<usize, Matrix2<f64>> = BTreeMap::new();
     for (body, damping) in model.bodies.iter().zip(model.dampings(step)).filter(|(_, damping)| damping.mass > 0.0) {
         for &e in &body.elements {
@@ -193,20 +184,20 @@ pub fn by_node(model: &Model, step: &Step) -> Vec<NodeDamper> {
     for absorber in &step.loads.absorbers {
         *total.entry(model.ties.original(absorber.node)).or_default() += absorber.coefficients;
     }
-    total.into_iter().map(|(node, coefficients)| NodeDamper { node, coefficients }).collect()
+    total.into_iter().map(|(node, coefficients)| Absorber { node, coefficients }).collect()
 }
 
 /// Write the force of every damper on its node over `pulls` [F].
 pub fn pull(
     model: &Model,
     step: &Step,
-    dampers: &[NodeDamper],
+    dampers: &[Absorber],
     time: f64,
     velocity: &[f64],
     pulls: &mut Vec<Vector2<f64>>,
 ) {
     pulls.clear();
-    pulls.extend(dampers.iter().map(|NodeDamper { node, coefficients }| -coefficients * vector(velocity, *node)));
+    pulls.extend(dampers.iter().map(|Absorber { node, coefficients }| -coefficients * vector(velocity, *node)));
     for dashpot in step.loads.dashpots.iter().filter(|dashpot| dashpot.driver.is_some()) {
         let node = model.ties.original(dashpot.dof / 2);
         if let Ok(k) = dampers.binary_search_by_key(&node, |damper| damper.node) {

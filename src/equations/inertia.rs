@@ -7,7 +7,7 @@
 use nalgebra::{DMatrix, Vector2};
 
 use super::coupling::Layout;
-use super::links::{self, Turning};
+use super::links::{self, Turning, blend};
 use super::sums::{Dependence, add_blocks};
 use super::trial::Trial;
 use crate::linear::SparseMatrix;
@@ -115,11 +115,6 @@ impl Inertia {
         tangent.add_columns(mass, &self.factors);
         self.turning.iter().for_each(|plate| plate.stiffen(model, self.scheme, &self.factors, mass, tangent));
     }
-}
-
-/// The share `weight` of the old value and the rest of the new one.
-fn blend(weight: f64, old: f64, new: f64) -> f64 {
-    weight * old + (1.0 - weight) * new
 }
 
 /// Stored: ½ vᵀ M v [F·L].

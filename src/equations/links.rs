@@ -381,6 +381,7 @@ pub fn turning_at_end(model: &Model, end: Trial, [ahead, found]: [&[f64]; 2], sc
     model.linkage.spread(u);
 }
 
-fn blend(weight: f64, old: f64, new: f64) -> f64 {
+/// The share `weight` of the old value and the rest of the new one.
+pub(super) fn blend(weight: f64, old: f64, new: f64) -> f64 {
     weight * old + (1.0 - weight) * new
 }

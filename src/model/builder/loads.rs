@@ -231,36 +231,27 @@ impl Changing<'_> {
     }
 
     fn springs(self, given: Option<&SpringLoad>) -> Checked<Loads> {
-        let link = given.map(|SpringLoad { kx, ky, driver }| Link {
+        let link = given.map(|given| Link {
             key: "spring",
-            values: [("kx", *kx), ("ky", *ky)],
-            driver,
+            values: [("kx", given.kx), ("ky", given.ky)],
+            driver: &given.driver,
         });
-        let before = |component: usize| {
-            let spring = self.before.springs.iter().find(|spring| spring.dof % 2 == component);
-            spring.and_then(|spring| spring.driver.clone())
-        };
-        let mut springs = Vec::new();
-        for (dof, stiffness, driver) in self.links(link, before)? {
-            springs.push(Spring { dof, stiffness, driver });
-        }
+        let before = |component: usize| self.before.springs.iter().find(|spring| spring.dof % 2 == component);
+        let links = self.links(link, |component| before(component)?.driver.clone())?;
+        let springs = links.into_iter().map(|(dof, stiffness, driver)| Spring { dof, stiffness, driver }).collect();
         Ok(Loads { springs, ..Loads::default() })
     }
 
     fn dashpots(self, given: Option<&DashpotLoad>) -> Checked<Loads> {
-        let link = given.map(|DashpotLoad { cx, cy, driver }| Link {
+        let link = given.map(|given| Link {
             key: "dashpot",
-            values: [("cx", *cx), ("cy", *cy)],
-            driver,
+            values: [("cx", given.cx), ("cy", given.cy)],
+            driver: &given.driver,
         });
-        let before = |component: usize| {
-            let dashpot = self.before.dashpots.iter().find(|dashpot| dashpot.dof % 2 == component);
-            dashpot.and_then(|dashpot| dashpot.driver.clone())
-        };
-        let mut dashpots = Vec::new();
-        for (dof, coefficient, driver) in self.links(link, before)? {
-            dashpots.push(Dashpot { dof, coefficient, driver });
-        }
+        let before = |component: usize| self.before.dashpots.iter().find(|dashpot| dashpot.dof % 2 == component);
+        let links = self.links(link, |component| before(component)?.driver.clone())?;
+        let dashpots =
+            links.into_iter().map(|(dof, coefficient, driver)| Dashpot { dof, coefficient, driver }).collect();
         Ok(Loads { dashpots, ..Loads::default() })
     }
 

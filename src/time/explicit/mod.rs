@@ -33,9 +33,10 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use super::accept::take_stock;
-use crate::equations::damping::{self, NodeDamper};
+use crate::equations::damping;
 use crate::equations::sums::TrialFailure;
 use crate::equations::{Assembler, Trial};
+use crate::model::boundary::Absorber;
 use crate::model::state::State;
 use crate::model::support::Prescribed;
 use crate::model::{Model, Step};
@@ -68,7 +69,7 @@ pub struct Explicit {
     /// Plates of which one component is alike, and rigid ones
     plates: Plates,
     /// Dashpots, absorbing sides and damping by the masses, one entry a node
-    dampers: Vec<NodeDamper>,
+    dampers: Vec<Absorber>,
     /// Their forces [F]
     pulls: Vec<Vector2<f64>>,
     /// Mean velocity of an increment if bodies are viscous [L/T]

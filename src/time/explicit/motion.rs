@@ -4,9 +4,10 @@ use nalgebra::Matrix2;
 use rayon::prelude::*;
 
 use super::{CHUNK, Explicit};
-use crate::equations::damping::{self, NodeDamper};
+use crate::equations::damping;
 use crate::equations::sums::TrialFailure;
 use crate::equations::{Assembler, Evaluation, Trial};
+use crate::model::boundary::Absorber;
 use crate::model::scheme::{start_acceleration, supported_rates};
 use crate::model::state::State;
 use crate::model::support::Direction;
@@ -169,7 +170,7 @@ impl Explicit {
     fn damp(&mut self, time: f64, dt: f64, state: &mut State) {
         damping::pull(&self.model, &self.step, &self.dampers, time, &state.velocity, &mut self.pulls);
         let alone = self.dampers.iter().zip(&self.pulls).filter(|(damper, _)| !self.plates.has(damper.node));
-        for (NodeDamper { node, coefficients }, pull) in alone {
+        for (Absorber { node, coefficients }, pull) in alone {
             let inertia = Matrix2::identity() * self.mass[*node] + coefficients * (0.5 * dt);
             let Some(inverse) = inertia.try_inverse() else { continue };
             let change = inverse * pull;

@@ -19,9 +19,9 @@
 
 use nalgebra::{Matrix2, Matrix2x3, Matrix3, Rotation2, RowVector3, Vector2, Vector3};
 
-use crate::equations::damping::NodeDamper;
 use crate::equations::links::{give, perpendicular, relative};
 use crate::mesh::configuration::vector;
+use crate::model::boundary::Absorber;
 use crate::model::state::State;
 use crate::model::support::Direction;
 use crate::model::{Model, Step};
@@ -103,7 +103,7 @@ impl Plates {
     pub fn damp(
         &mut self,
         (model, dt): (&Model, f64),
-        (dampers, pulls): (&[NodeDamper], &[Vector2<f64>]),
+        (dampers, pulls): (&[Absorber], &[Vector2<f64>]),
         (u, mass): (&[f64], &[f64]),
         state: &mut State,
     ) {
@@ -111,7 +111,7 @@ impl Plates {
             return;
         }
         let mut own: Vec<(f64, f64)> = self.alike.iter().map(|plate| (plate.mass, 0.0)).collect();
-        for (NodeDamper { node, coefficients }, pull) in dampers.iter().zip(pulls).filter(|(at, _)| self.has(at.node)) {
+        for (Absorber { node, coefficients }, pull) in dampers.iter().zip(pulls).filter(|(at, _)| self.has(at.node)) {
             let plates = [0, 1].map(|i| self.alike.iter().position(|plate| plate.leads(*node, i)));
             // What an absorbing side couples of the two components is with the pull alone.
             for i in (0..2).filter(|_| plates != [None; 2]) {
@@ -301,7 +301,7 @@ impl Rigid {
     }
 
     /// (8) for its dampers.
-    pub fn damp(&mut self, dt: f64, (dampers, pulls): (&[NodeDamper], &[Vector2<f64>]), u: &[f64]) {
+    pub fn damp(&mut self, dt: f64, (dampers, pulls): (&[Absorber], &[Vector2<f64>]), u: &[f64]) {
         let e = self.arm + relative(self.leaders, u);
         let (mut resisting, mut pulled) = (Matrix3::zeros(), Vector3::zeros());
         for (node, share) in &self.nodes {
