@@ -3,26 +3,20 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._plain import refused
 
-if TYPE_CHECKING:
-    from .law import Law
-
 Array = NDArray[np.float64]
 
 
-def steady(law: Law, rate: Array) -> Array:
-    """The coefficient of steady sliding of every set of parameters at every rate."""
-    if not (rate > 0).all():
-        raise refused("law", "rate", f"is {rate.min()}: must be positive")
-    law.check()
-    sets = [np.asarray(_coefficient(json.loads(text), rate)) for text in law._sets]
-    return np.stack([np.broadcast_to(one, rate.shape) for one in sets]).reshape((*law.shape, *rate.shape))
+def steady(sets: Iterable[str], rate: Array) -> Array:
+    """The coefficient of steady sliding of every set of parameters (JSON) at every rate, shape (sets, rates)."""
+    return np.stack([np.broadcast_to(_coefficient(json.loads(text), rate), rate.shape) for text in sets])
 
 
 def _coefficient(given: dict[str, Any], rate: Array) -> Array:

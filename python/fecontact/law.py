@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _native
 from ._plain import plain, refused
+from ._steady import steady
 
 Array = NDArray[np.float64]
 
@@ -195,9 +196,11 @@ class Law:
         Raises:
             CaseError: the law has no steady state, or a parameter is wrong.
         """
-        from ._steady import steady
-
-        return steady(self, _finite("rate", rate))
+        rates = _finite("rate", rate)
+        if not (rates > 0).all():
+            raise refused("law", "rate", f"is {rates.min()}: must be positive")
+        self.check()
+        return steady(self._sets, rates).reshape((*self.shape, *rates.shape))
 
     def _course(self, name: str, given: ArrayLike, samples: int) -> Array:
         values = _finite(name, given)

@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _quantities
+from .law import Drive
+from .result import Result, friction_ratio, labelled
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
-
-    from .law import Drive
-    from .result import Result
 
 def friction(result: Result, contact: str | None = None, *, x: str = "time", ax: Axes | None = None, **line: Any) -> Axes:
     """|Q|/N of contacts over time, or over another column of the history.
@@ -31,10 +30,8 @@ def friction(result: Result, contact: str | None = None, *, x: str = "time", ax:
     ax = _axes(ax)
     history = result.history
     for name in _contacts(result, contact):
-        normal, tangential = history[f"{name}.normal_force"], history[f"{name}.tangential_force"]
-        ratio = (tangential.abs() / normal).where(normal > 0)
-        ax.plot(history[x], ratio, **{"label": name, **line})
-    ax.set(xlabel=_labelled(result, x), ylabel="|Q|/N [-]")
+        ax.plot(history[x], friction_ratio(history, name), **{"label": name, **line})
+    ax.set(xlabel=labelled(result, x), ylabel="|Q|/N [-]")
     return _legend(ax)
 
 
@@ -43,7 +40,7 @@ def slip_fraction(result: Result, contact: str | None = None, *, ax: Axes | None
     ax = _axes(ax)
     for name in _contacts(result, contact):
         ax.plot(result.history["time"], result.history[f"{name}.slip_fraction"], **{"label": name, **line})
-    ax.set(xlabel=_labelled(result, "time"), ylabel="slip fraction [-]", ylim=(-0.03, 1.03))
+    ax.set(xlabel=labelled(result, "time"), ylabel="slip fraction [-]", ylim=(-0.03, 1.03))
     return _legend(ax)
 
 
@@ -92,11 +89,11 @@ def interface(
     colours = ax.pcolormesh(data[x].values[order], rows, shown, **{"shading": "nearest", **mesh})
     label = _quantities.spoken(field) + _unit(data[field].attrs.get("units"))
     ax.figure.colorbar(colours, ax=ax, label=label)
-    ax.set(xlabel=x + _unit(result.units.get("length")), ylabel=_labelled(result, "time"), title=name)
+    ax.set(xlabel=x + _unit(result.units.get("length")), ylabel=labelled(result, "time"), title=name)
     if y == "row":
         ticks = np.unique(np.linspace(0, times.size - 1, 7).astype(int))
         ax.set_yticks(ticks, [f"{times[tick]:.5g}" for tick in ticks])
-        ax.set_ylabel(_labelled(result, "time") + ", a row of the history a step up")
+        ax.set_ylabel(labelled(result, "time") + ", a row of the history a step up")
     return ax
 
 
@@ -148,16 +145,14 @@ def events(result: Result, *, ax: Axes | None = None, **points: Any) -> Axes:
     table = result.events
     for name, own in table.groupby("contact", sort=False):
         ax.plot(own["onset"], own["largest_slip"], **{"marker": "o", "linestyle": "", "label": name, **points})
-    ax.set(xlabel=_labelled(result, "time"), ylabel="largest slip" + _unit(result.units.get("length")))
+    ax.set(xlabel=labelled(result, "time"), ylabel="largest slip" + _unit(result.units.get("length")))
     return _legend(ax)
 
 
 def path(drive: Drive | Result, contact: str | None = None, *, ax: Axes | None = None, **line: Any) -> Axes:
     """Traction over pressure: of a law that was driven, or N and Q of a contact."""
-    from .law import Drive as Driven
-
     ax = _axes(ax)
-    if isinstance(drive, Driven):
+    if isinstance(drive, Drive):
         pressures = np.atleast_2d(drive["pressure"].reshape(-1, drive["time"].size))
         tractions = np.atleast_2d(drive["traction"].reshape(-1, drive["time"].size))
         for pressure, traction in zip(pressures, tractions):
@@ -196,10 +191,6 @@ def _contacts(result: Result, contact: str | None) -> list[str]:
     if not known:
         raise ValueError("this run has no contacts")
     return known if contact is None else [contact]
-
-
-def _labelled(result: Result, column: str) -> str:
-    return column + _unit(_quantities.unit(column, result.units))
 
 
 def _unit(unit: str | None) -> str:

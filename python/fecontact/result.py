@@ -166,15 +166,30 @@ class Result:
         from matplotlib.backends.backend_svg import FigureCanvasSVG
         from matplotlib.figure import Figure
 
-        from . import plot
-
         figure = Figure(figsize=(6.4, 2.8), layout="constrained")
         FigureCanvasSVG(figure)
-        plot.friction(self, ax=figure.add_subplot())
+        axes = figure.add_subplot()
+        for name in self.contacts:
+            axes.plot(self.history["time"], friction_ratio(self.history, name), label=name)
+        axes.set(xlabel=labelled(self, "time"), ylabel="|Q|/N [-]")
+        if len(self.contacts) > 1:
+            axes.legend()
         text = io.StringIO()
         figure.savefig(text, format="svg")
         svg = text.getvalue()
         return svg[svg.index("<svg") :]
+
+
+def friction_ratio(history: pd.DataFrame, contact: str) -> pd.Series:
+    """|Q|/N of a contact, where it is pressed [-]."""
+    normal, tangential = history[f"{contact}.normal_force"], history[f"{contact}.tangential_force"]
+    return (tangential.abs() / normal).where(normal > 0)
+
+
+def labelled(result: Result, column: str) -> str:
+    """A column with its unit."""
+    unit = _quantities.unit(column, result.units)
+    return f"{column} [{unit}]" if unit else column
 
 
 class Fields(Sequence[Any]):
