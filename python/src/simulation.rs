@@ -196,7 +196,7 @@ impl Simulation {
         self.with(|under_way| {
             let UnderWay { opened, run, loading, .. } = under_way;
             let by = by.unwrap_or_else(|| run.state().time);
-            loading::load((&opened.case, "load".as_ref()), run, loading, (&document, by))
+            loading::load(&opened.case, "load".as_ref(), run, loading, &document, by)
                 .map_err(|error| case_error(py, &error))
         })
     }
@@ -228,7 +228,7 @@ impl Simulation {
         let Saved { run, loading, of } = saved.get();
         self.with(|under_way| {
             let model = under_way.run.model().clone();
-            let taken_up = under_way.opened.take_up(run.clone(), (&of.document, &of.mesh), &model);
+            let taken_up = under_way.opened.take_up(run.clone(), &of.document, &of.mesh, &model);
             under_way.run = Run::resume(model, taken_up.map_err(|error| case_error(py, &error))?);
             (under_way.loading, under_way.last) = (loading.clone(), None);
             Ok(())

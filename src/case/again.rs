@@ -122,7 +122,8 @@ impl Opened {
     pub fn take_up(
         &self,
         run: Saved,
-        (before, mesh): (&Value, &MeshPrint),
+        before: &Value,
+        mesh: &MeshPrint,
         model: &Arc<Model>,
     ) -> Result<Saved, CaseError> {
         unchanged(before, &self.document, run.begun()).map_err(|complaint| complaint.in_file(&self.path))?;
@@ -143,7 +144,7 @@ impl Opened {
             let [(_, highest), (_, lowest)] = friction.bounds()[..] else { continue };
             let allowed = lowest * (1.0 - SAME)..=highest * (1.0 + SAME);
             let mu = |(point, contact): (&SlavePoint, &ContactState)| {
-                pair.observed(point, "mu", (&contact.friction, state.time))
+                pair.observed(point, "mu", &contact.friction, state.time)
             };
             let of_law = ["mu_s", "mu_k"].iter().any(|name| input.along.parameters.contains_key(*name));
             let varies = of_law || !input.along.law.is_empty();

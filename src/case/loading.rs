@@ -41,19 +41,22 @@ impl Loading {
 /// # Errors
 /// [`CaseError`], with the place within the load.
 pub fn load(
-    (case, path): (&Case, &Path),
+    case: &Case,
+    path: &Path,
     simulation: &mut Simulation,
     loading: &mut Option<Loading>,
-    (document, by): (&Value, f64),
+    document: &Value,
+    by: f64,
 ) -> Result<(), CaseError> {
-    changed(case, simulation, loading, (document, by)).map_err(|complaint| complaint.in_file(path))
+    changed(case, simulation, loading, document, by).map_err(|complaint| complaint.in_file(path))
 }
 
 fn changed(
     case: &Case,
     simulation: &mut Simulation,
     loading: &mut Option<Loading>,
-    (document, by): (&Value, f64),
+    document: &Value,
+    by: f64,
 ) -> Checked<()> {
     let now = simulation.state().time;
     if !(by >= now && by.is_finite()) {

@@ -65,7 +65,7 @@ impl CutEdge {
     pub fn cut(&mut self, edge: &[usize], surface: &Surface, index: &Index, x: &Configuration) {
         let Self { overlaps, candidates, cuts, around } = self;
         candidates.clear();
-        facing(edge, surface, index, x, (around, candidates));
+        facing(edge, surface, index, x, around, candidates);
         cuts.clear();
         cuts.extend(candidates.iter().flat_map(|overlap| overlap.ends));
         if edge.len() == 3 {
@@ -98,7 +98,8 @@ fn facing(
     surface: &Surface,
     index: &Index,
     x: &Configuration,
-    (around, candidates): (&mut Vec<usize>, &mut Vec<Overlap>),
+    around: &mut Vec<usize>,
+    candidates: &mut Vec<Overlap>,
 ) {
     let along = x.between(edge[0], edge[1]);
     let reach = REACH * along.norm();

@@ -168,7 +168,7 @@ impl ContactPair {
     }
 
     /// What the law of a point shows by a name of a state at a time; NaN where its parameters have no good values then.
-    pub fn observed(&self, slave: &SlavePoint, name: &str, (state, time): (&FrictionState, f64)) -> f64 {
+    pub fn observed(&self, slave: &SlavePoint, name: &str, state: &FrictionState, time: f64) -> f64 {
         self.ask_law(slave, [time, time], |law| law.observe(name, state)).unwrap_or(f64::NAN)
     }
 
@@ -393,7 +393,7 @@ pub fn field_names(pairs: &[ContactPair]) -> Vec<&'static str> {
 /// Values of a field at the points of a contact, at a time after an increment of length Δt; the names are explained where outputs
 /// list them ([`quantities`](crate::output::quantities)). Any other name is what the laws observe under it: where a law has
 /// none, `R` and `mu` are 0 and `structure` is 1, and what else it does not know is NaN.
-pub fn field_values(pair: &ContactPair, states: &[ContactState], (time, dt): (f64, f64), name: &str) -> Vec<f64> {
+pub fn field_values(pair: &ContactPair, states: &[ContactState], time: f64, dt: f64, name: &str) -> Vec<f64> {
     let rate = if dt > 0.0 { 1.0 / dt } else { 0.0 };
     let value = |(slave, state): (&SlavePoint, &ContactState)| {
         let friction = &state.friction;
@@ -412,7 +412,7 @@ pub fn field_values(pair: &ContactPair, states: &[ContactState], (time, dt): (f6
                 Regime::Stick => 1.0,
                 Regime::Slip => 2.0,
             },
-            _ => pair.observed(slave, name, (friction, time)),
+            _ => pair.observed(slave, name, friction, time),
         }
     };
     pair.points.iter().zip(states).map(value).collect()

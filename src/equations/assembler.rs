@@ -153,7 +153,7 @@ impl Assembler {
         supports::prescribe(model, self.weight, trial, u, tangent, system)?;
         let mass = self.mass.as_ref().filter(|_| trial.step.scheme.coefficients().is_some());
         self.equilibrium.retard(model, trial.step);
-        self.equilibrium.measure((model, mass), trial, u, &self.magnitudes, system);
+        self.equilibrium.measure(model, mass, trial, u, &self.magnitudes, system);
         self.seconds.assembly += clock.elapsed().as_secs_f64();
         Ok(())
     }
@@ -216,8 +216,9 @@ impl Assembler {
             match term {
                 Term::Solids => {
                     let elastic = solids.add(u, v, &mut sums)?;
-                    let found = (&mut *memory, [&mut *dissipated, &mut *heating]);
-                    *strain_energy = elastic + evolving.add(model, (trial, u), found, &mut sums)?;
+                    let evolved = evolving.add(model, trial, u, memory, &mut sums)?;
+                    *strain_energy = elastic + evolved.stored;
+                    (*dissipated, *heating) = (evolved.dissipated, evolved.heating);
                 }
                 Term::Interfaces => interfaces::add(responses, &mut sums),
                 Term::Loads => {
@@ -228,7 +229,7 @@ impl Assembler {
                 Term::Stabilization => *stabilization = damping::add_stabilization(trial, u, damping, &mut sums),
                 Term::Damping => {
                     let momentum = damping::momentum(model, trial.step, layout, damping_mass);
-                    damping::add_damping(model, solids, momentum, (trial, u), damping, &mut sums);
+                    damping::add_damping(model, solids, momentum, trial, u, damping, &mut sums);
                 }
                 // Blended with the forces of before, once all of these are known.
                 Term::Inertia => {}
@@ -339,7 +340,7 @@ impl Assembler {
     /// Square of what round-off can leave at every node, at the displacement that was evaluated last [F²].
     pub fn round_off(&self, trial: Trial, u: &[f64]) -> Vec<f64> {
         let mass = self.mass.as_ref().filter(|_| trial.step.scheme.coefficients().is_some());
-        self.equilibrium.round_off((&self.model, mass), trial, u, &self.magnitudes)
+        self.equilibrium.round_off(&self.model, mass, trial, u, &self.magnitudes)
     }
 
     /// Keep the trial states of the contact points for the accepted state.

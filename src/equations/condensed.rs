@@ -95,11 +95,13 @@ pub struct CondensedEquations<'a> {
 impl<'a> CondensedEquations<'a> {
     /// From the displacement u₀, where ρ₀ is given; `bodies` without contact were just evaluated there.
     pub fn new(
-        (nodes, bodies): (&'a ContactNodes, &'a Condensed),
+        nodes: &'a ContactNodes,
+        bodies: &'a Condensed,
         trial: Trial,
         u: &[f64],
         constant: Vec<f64>,
-        (assembler, system): (&Assembler, &System),
+        assembler: &Assembler,
+        system: &System,
     ) -> Self {
         let fixed = fixed(assembler.model(), trial.step);
         let free = nodes.nodes.iter().flat_map(|&node| [!fixed[2 * node], !fixed[2 * node + 1]]).collect();
@@ -274,12 +276,7 @@ impl ContactNodes {
     }
 
     /// The matrix on that pattern from the tangent of the bodies.
-    pub fn counted(
-        &self,
-        (model, step): (&Model, &Step),
-        bodies: &SparseMatrix,
-        pattern: &Arc<Pattern>,
-    ) -> SparseMatrix {
+    pub fn counted(&self, model: &Model, step: &Step, bodies: &SparseMatrix, pattern: &Arc<Pattern>) -> SparseMatrix {
         let mut sum = SparseMatrix::zero(pattern.clone());
         self.jumps.matrix(bodies, &fixed(model, step), &mut sum);
         sum
@@ -291,7 +288,7 @@ impl ContactNodes {
     }
 
     /// Their equations along the normal eliminated from S of the bodies, if all of them are jumps.
-    pub fn eliminated(&self, (model, step): (&Model, &Step), bodies: &Condensed) -> Option<Eliminated> {
+    pub fn eliminated(&self, model: &Model, step: &Step, bodies: &Condensed) -> Option<Eliminated> {
         let (fixed, share) = (fixed(model, step), contact_share(step));
         let steady = |&node: &usize| {
             let steady = self.jumps.steady(node, &fixed)?;
@@ -301,7 +298,7 @@ impl ContactNodes {
     }
 
     /// The right-hand side that goes with it.
-    pub fn balanced(&self, (model, step): (&Model, &Step), residual: &[f64]) -> Vec<f64> {
+    pub fn balanced(&self, model: &Model, step: &Step, residual: &[f64]) -> Vec<f64> {
         let mut balanced = residual.to_vec();
         self.jumps.balance(&fixed(model, step), &mut balanced);
         balanced

@@ -80,7 +80,8 @@ pub(super) fn add_damping(
     model: &Model,
     solids: &mut Solids,
     momentum: Option<&SparseMatrix>,
-    (trial, u): (Trial, &[f64]),
+    trial: Trial,
+    u: &[f64],
     damping: &mut [f64],
     sums: &mut Sums,
 ) {

@@ -150,7 +150,8 @@ impl Equilibrium {
     /// Norm of the forces at work, and how far the worst part is from equilibrium, (1) and (2).
     pub(super) fn measure(
         &self,
-        (model, mass): (&Model, Option<&SparseMatrix>),
+        model: &Model,
+        mass: Option<&SparseMatrix>,
         trial: Trial,
         u: &[f64],
         magnitudes: &[f64],
@@ -168,7 +169,7 @@ impl Equilibrium {
             let share = if residual <= tolerance * forces {
                 if forces > 0.0 { residual / forces } else { 0.0 }
             } else {
-                let round_off = round_off.get_or_insert_with(|| self.round_off((model, mass), trial, u, magnitudes));
+                let round_off = round_off.get_or_insert_with(|| self.round_off(model, mass, trial, u, magnitudes));
                 let hidden = part.nodes.iter().map(|&node| round_off[node]).sum::<f64>().sqrt();
                 residual / forces.max(hidden / tolerance)
             };
@@ -205,7 +206,8 @@ impl Equilibrium {
     /// ρ² at every node [F²].
     pub(super) fn round_off(
         &self,
-        (model, mass): (&Model, Option<&SparseMatrix>),
+        model: &Model,
+        mass: Option<&SparseMatrix>,
         trial: Trial,
         u: &[f64],
         magnitudes: &[f64],

@@ -30,27 +30,25 @@ impl Evolving {
         Self(if all.contains(&true) { all } else { Vec::new() })
     }
 
-    /// Add the forces of these elements and what they store; their variables at the end of the trial, what they dissipate and the
-    /// work of their temperatures are written over those `found`.
+    /// Add the forces of these elements; their variables at the end of the trial are written over `memory`.
     pub fn add(
         &self,
         model: &Model,
-        (trial, u): (Trial, &[f64]),
-        found: (&mut Vec<f64>, [&mut f64; 2]),
+        trial: Trial,
+        u: &[f64],
+        memory: &mut Vec<f64>,
         sums: &mut Sums,
-    ) -> Result<f64, TrialFailure> {
-        let (memory, [heat, heating]) = found;
+    ) -> Result<Evolved, TrialFailure> {
         let old = &trial.old.memory;
         if memory.len() != old.len() {
             // The initial stress of constant elements stays as it is.
             memory.clone_from(old);
         }
-        let mut energy = 0.0;
-        (*heat, *heating) = (0.0, 0.0);
+        let mut all = Evolved::default();
         let wanted = sums.tangent.is_some();
         let one = |(e, new): (usize, &mut [f64])| {
             let old = model.memories.of(e, old);
-            model.write_temperatures((trial.step, trial.moment()), e, old, new);
+            model.write_temperatures(trial.step, trial.moment(), e, old, new);
             let found = evolve(model, e, Memory { dt: trial.dt, old, new: &mut *new }, u, wanted);
             let found = found.map_err(|failure| TrialFailure::material(model, e, failure))?;
             Ok((found, model.heating(e, [old, new])))
@@ -65,14 +63,25 @@ impl Evolving {
             let answers: Vec<Result<_, TrialFailure>> = batch.into_par_iter().map(one).collect();
             for answer in answers {
                 let (([stored, dissipated], contribution), work) = answer?;
-                energy += stored;
-                *heat += dissipated;
-                *heating += work;
+                all.stored += stored;
+                all.dissipated += dissipated;
+                all.heating += work;
                 sums.contribute(&contribution);
             }
         }
-        Ok(energy)
+        Ok(all)
     }
+}
+
+/// Energies of these elements in an increment [F·L].
+#[derive(Default)]
+pub struct Evolved {
+    /// ∫ W dV at its end
+    pub stored: f64,
+    /// What they dissipated
+    pub dissipated: f64,
+    /// Work of their temperatures
+    pub heating: f64,
 }
 
 /// What one element adds, with its stored energy and what it dissipates.

@@ -94,7 +94,7 @@ impl Model {
 
     /// Write T − T₀ over the variables of an element's material at a moment of a step. A body to which no step has given a
     /// temperature stays as it is.
-    pub fn write_temperatures(&self, (step, at): (&Step, Moment), element: usize, old: &[f64], new: &mut [f64]) {
+    pub fn write_temperatures(&self, step: &Step, at: Moment, element: usize, old: &[f64], new: &mut [f64]) {
         let (body, Some((count, rise))) = (self.body_of_element[element], self.rises(element)) else { return };
         let reference = self.bodies[body].thermal.map_or(0.0, |thermal| thermal.reference);
         let given = step.temperatures.iter().find(|temperature| temperature.body == body);

@@ -96,7 +96,7 @@ impl Mark {
 
 impl SlipEvent {
     /// It begins after the increment before, by whose end points were left with their marks, and the model with its energies.
-    pub fn begin(number: usize, marks: impl Iterator<Item = Mark>, (until, energies): (f64, Energies)) -> Self {
+    pub fn begin(number: usize, marks: impl Iterator<Item = Mark>, until: f64, energies: Energies) -> Self {
         let course = |mark: Mark| Course { before: mark, least: mark, last: mark, peak_rate: 0.0 };
         Self { number, until, over: false, energies: [energies; 2], courses: marks.map(course).collect() }
     }
@@ -355,7 +355,8 @@ impl Interface {
             self.events.push(SlipEvent::begin(
                 self.events.len() + 1,
                 self.points.iter().map(|point| point.mark),
-                before,
+                before.0,
+                before.1,
             ));
         }
         let event = if slipping || goes_on { self.events.len() } else { 0 };
@@ -364,7 +365,7 @@ impl Interface {
         }
         let points = self.points.iter_mut().zip(marks.iter().zip(&rates)).zip(pair.points.iter().zip(states));
         for ((point, (mark, rate)), (slave, state)) in points {
-            let observed = |name| pair.observed(slave, name, (&state.friction, after.time));
+            let observed = |name| pair.observed(slave, name, &state.friction, after.time);
             let signal = match told_by.arrival {
                 None => rate.abs(),
                 Some(ArrivalInput::R(_)) => observed("R"),

@@ -157,7 +157,7 @@ pub fn contact_frame(model: &Model, Shown { state, .. }: &Shown, grid: &mut Grid
     grid.vectors("displacement", &displacement);
     for name in pair::field_names(&model.contacts) {
         let of = |(pair, states): (&ContactPair, &Vec<ContactState>)| {
-            pair::field_values(pair, states, (state.time, state.dt), name)
+            pair::field_values(pair, states, state.time, state.dt, name)
         };
         grid.at_points(name, 1, model.contacts.iter().zip(&state.contacts).flat_map(of));
     }

@@ -109,7 +109,7 @@ impl Rows for HistoryRows {
         }
         table.numbers(radiates(model).then_some(state.energy.radiated));
         for ((pair, states), names) in model.contacts.iter().zip(&state.contacts).zip(observed) {
-            table.numbers(names.iter().map(|name| mean(pair, (states, state.time), name)));
+            table.numbers(names.iter().map(|name| mean(pair, states, state.time, name)));
         }
         let x = model.configuration(&state.displacement);
         for ((pair, states), middle) in model.contacts.iter().zip(&state.contacts).zip(middles) {
@@ -197,10 +197,10 @@ fn contact_row(pair: &ContactPair, states: &[ContactState]) -> [f64; CONTACT.len
 }
 
 /// Mean of an observable over the closed length; 0 where nothing is closed.
-fn mean(pair: &ContactPair, (states, time): (&[ContactState], f64), name: &str) -> f64 {
+fn mean(pair: &ContactPair, states: &[ContactState], time: f64, name: &str) -> f64 {
     let (mut sum, mut closed) = (0.0, 0.0);
     for (point, state) in pair.points.iter().zip(states).filter(|(_, state)| state.regime() != Regime::Open) {
-        sum += state.length * pair.observed(point, name, (&state.friction, time));
+        sum += state.length * pair.observed(point, name, &state.friction, time);
         closed += state.length;
     }
     if closed > 0.0 { sum / closed } else { 0.0 }

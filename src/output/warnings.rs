@@ -301,7 +301,7 @@ fn concerns(
     let deep = deep.map(|message| (Kind::DeepPenetration, message));
     let yields = yields_work([&old.friction, &contact.friction]).map(|message| (Kind::YieldsWork, message));
     let coarse =
-        law.and_then(|law| unresolved(pair, (point, &law), contact, x)).map(|message| (Kind::Unresolved, message));
+        law.and_then(|law| unresolved(pair, point, &law, contact, x)).map(|message| (Kind::Unresolved, message));
     deep.into_iter().chain(several.map(|message| (Kind::SeveralAnswers, message))).chain(coarse).chain(yields)
 }
 
@@ -327,7 +327,8 @@ fn yields_work([old, new]: [&FrictionState; 2]) -> Option<String> {
 /// What is to be said of an edge that is longer than the process zone of a front that runs along it.
 fn unresolved(
     pair: &ContactPair,
-    (point, law): (&SlavePoint, &Description),
+    point: &SlavePoint,
+    law: &Description,
     contact: &ContactState,
     x: &Configuration,
 ) -> Option<String> {

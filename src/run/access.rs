@@ -100,7 +100,7 @@ impl Simulation {
         if !names.contains(&field) {
             return Err(Unknown::Field { name: field.into(), known: names.join(", ") });
         }
-        Ok(pair::field_values(pair, states, (self.state().time, self.state().dt), field))
+        Ok(pair::field_values(pair, states, self.state().time, self.state().dt, field))
     }
 
     /// Where the slave points of a contact are, in their order [L].

@@ -59,7 +59,7 @@ impl Simulation {
                             Outcome::Rejected(Verdict::Passed, again(dt, Touching::default()))
                         }
                         course => {
-                            let phase = after(step, &new, course, (next, touching));
+                            let phase = after(step, &new, course, next, touching);
                             accepted = Some(Arc::new(new));
                             Outcome::Accepted(phase)
                         }
@@ -173,7 +173,7 @@ fn course(step: &Step, states: [&State; 2]) -> Option<Course> {
 }
 
 /// How it goes on after an accepted increment.
-fn after(step: &Step, new: &State, course: Option<Course>, (next, touching): (f64, Touching)) -> Phase {
+fn after(step: &Step, new: &State, course: Option<Course>, next: f64, touching: Touching) -> Phase {
     let dt = match course {
         Some(Course::Met) => return Phase::Met,
         Some(_) if new.time >= step.span.end => return Phase::Missed,

@@ -128,7 +128,7 @@ fn round(
 ) -> Option<Result<(), NewtonFailure<TrialFailure>>> {
     let Workspace { assembler, iteration, system, foreseen, interface, .. } = work;
     let Interface { nodes, whole, solver, condensed, .. } = interface.as_mut()?;
-    let round = Round::begin((nodes, &rung.bodies), trial, u, assembler, system).ok()?;
+    let round = Round::begin(nodes, &rung.bodies, trial, u, assembler, system).ok()?;
     let mut all = u.to_vec();
     let (iterations, result) = newton::solve(
         nodes.gather(u),

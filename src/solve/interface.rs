@@ -145,9 +145,9 @@ impl Interface {
         self.rungs.drain(..(self.rungs.len() + 1).saturating_sub(most.max(1)));
         let Self { nodes, bodies, system, pattern, condensation, .. } = self;
         bodies.assemble(trial, &trial.old.displacement, &[], Request::Tangent, system)?;
-        let matrix = nodes.counted((bodies.model(), trial.step), &system.tangent, pattern);
+        let matrix = nodes.counted(bodies.model(), trial.step, &system.tangent, pattern);
         let rung = |condensed| {
-            let eliminated = nodes.eliminated((bodies.model(), trial.step), &condensed);
+            let eliminated = nodes.eliminated(bodies.model(), trial.step, &condensed);
             Arc::new(Rung { bodies: condensed, eliminated })
         };
         Ok(condensation.condense(&matrix).map(rung))
@@ -175,16 +175,17 @@ impl<'a> Round<'a> {
     /// # Errors
     /// [`TrialFailure`] when a load has no value.
     pub fn begin(
-        (nodes, bodies): (&'a ContactNodes, &'a Condensed),
+        nodes: &'a ContactNodes,
+        bodies: &'a Condensed,
         trial: Trial,
         u: &[f64],
         assembler: &mut Assembler,
         system: &mut System,
     ) -> Result<Self, TrialFailure> {
         assembler.assemble(trial, u, &[], Request::Residual, system)?;
-        let forwarded = bodies.forward(&nodes.balanced((assembler.model(), trial.step), &system.residual));
+        let forwarded = bodies.forward(&nodes.balanced(assembler.model(), trial.step, &system.residual));
         let constant = forwarded.right.clone();
-        let equations = CondensedEquations::new((nodes, bodies), trial, u, constant, (assembler, system));
+        let equations = CondensedEquations::new(nodes, bodies, trial, u, constant, assembler, system);
         Ok(Self { equations, bodies, forwarded })
     }
 

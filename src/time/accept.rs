@@ -14,7 +14,7 @@ pub fn accept(model: &Model, step: &Step, time: f64, u: &mut Vec<f64>, found: &m
         support.at.add(*reaction, &mut found.loads);
         support.at.put(*reaction, &mut state.reaction);
     }
-    let flows = Flows::between(model, step, (state, time), u, found);
+    let flows = Flows::between(model, step, state, time, u, found);
     state.energy.external_work += flows.work + found.heating;
     state.energy.damping_dissipation += flows.damping + found.dissipated;
     state.energy.stabilization += flows.stabilization;

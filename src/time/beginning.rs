@@ -35,7 +35,7 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
     launch(model, step, &mut state);
     if step.scheme.is_dynamic() {
         let dt = step.increments.initial;
-        keep_to_supports(model, (step, dt), &mut state);
+        keep_to_supports(model, step, dt, &mut state);
         let is_new = rests(old) || old.is_of_explicit() || !step.launch.is_empty();
         let anew = if is_new { vec![true; model.mesh.nodes.len()] } else { jumps(step, old, &state, work)? };
         start_dynamics(model, step, anew, &mut state, work)?;
@@ -80,7 +80,7 @@ pub fn led(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> Res
 }
 
 /// Give what supports hold when a run begins, and was given a velocity with its body, that of the support.
-pub fn keep_to_supports(model: &Model, (step, dt): (&Step, f64), state: &mut State) {
+pub fn keep_to_supports(model: &Model, step: &Step, dt: f64, state: &mut State) {
     if state.increment > 0 {
         return;
     }

@@ -82,7 +82,7 @@ fn strength_follows_the_time() {
             close("q", contact.friction.traction, mu * 2.0, 1e-10);
         }
         let pair = &run.model.contacts[0];
-        let observed = pair::field_values(pair, &state.contacts[0], (state.time, state.dt), "R");
+        let observed = pair::field_values(pair, &state.contacts[0], state.time, state.dt, "R");
         close("R", observed[1], 1.0, 1e-12);
     }
     // From Coulomb's law with a constant coefficient it differs by far.

@@ -552,7 +552,7 @@ fn loads_are_led_between_increments() {
     let mut run = Simulation::new(fecontact::case::build(&case, path).expect("a model"));
     let mut loading = None;
     let mut lead = |run: &mut Simulation, load: Value, by: f64| {
-        fecontact::case::loading::load((&case, path), run, &mut loading, (&load, by)).map_err(|error| error.to_string())
+        fecontact::case::loading::load(&case, path, run, &mut loading, &load, by).map_err(|error| error.to_string())
     };
     let next = |run: &mut Simulation| {
         run.next_increment().expect("it goes on").expect("there is one");

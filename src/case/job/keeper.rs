@@ -76,7 +76,8 @@ impl Keeper {
     /// Before every attempt, after the last one, and where one stops the run.
     pub fn look(
         &mut self,
-        (simulation, observers): (&Simulation, &mut [&mut dyn Observer]),
+        simulation: &Simulation,
+        observers: &mut [&mut dyn Observer],
         moment: Moment,
         lock: &Lock,
     ) -> Result<(), Error> {

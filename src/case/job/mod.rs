@@ -223,7 +223,7 @@ impl Work {
             summary::write(first, &folder.path)?;
         }
         let result = watch_with(simulation, &mut observers, &mut |simulation, observers, moment| {
-            keeper.look((simulation, observers), moment, &folder.lock)
+            keeper.look(simulation, observers, moment, &folder.lock)
         });
         drop(observers);
         self.courses = outputs.courses(model);

@@ -87,14 +87,14 @@ impl Solids {
     pub fn viscous(&mut self, [u, v]: [&[f64]; 2], force: &mut [f64], magnitudes: Option<&mut [f64]>) {
         let Self { model, constant, others, retardation } = self;
         constant.evaluate(retardation, Pass::Viscous { v, scaled: magnitudes.is_some() });
-        others.evaluate_viscous((model, retardation), [u, v]);
+        others.evaluate_viscous(model, retardation, [u, v]);
         self.write(force, magnitudes);
     }
 
     /// The same, after [`Solids::add`] has found those of the constant elements.
     pub fn other_viscous(&mut self, motion: [&[f64]; 2], force: &mut [f64]) {
         let Self { model, constant, others, retardation } = self;
-        others.evaluate_viscous((model, retardation), motion);
+        others.evaluate_viscous(model, retardation, motion);
         gather([(&others.places, &others.forces), (&constant.places, &constant.others)], force);
     }
 

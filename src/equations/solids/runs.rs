@@ -147,7 +147,7 @@ impl Runs {
     }
 
     /// Viscous forces of all elements.
-    pub fn evaluate_viscous(&mut self, (model, retardation): (&Model, &[f64]), [u, v]: [&[f64]; 2]) {
+    pub fn evaluate_viscous(&mut self, model: &Model, retardation: &[f64], [u, v]: [&[f64]; 2]) {
         for run in &self.runs {
             let law = (&*model.bodies[run.body].material, retardation[run.body]);
             let one = |(e, forces): (usize, &mut [Vector2<f64>])| {

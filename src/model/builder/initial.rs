@@ -101,14 +101,9 @@ fn tied<V: PartialEq>(place: &str, velocity: &[V], model: &Model) -> Checked<()>
 }
 
 /// Start a contact closed, if its tractions and its law allow it.
-pub fn close(
-    pair: &mut ContactPair,
-    (given, slave): (&InitialTractions, &str),
-    model: &Model,
-    place: &str,
-) -> Checked<()> {
+pub fn close(pair: &mut ContactPair, given: &InitialTractions, slave: &str, model: &Model, place: &str) -> Checked<()> {
     let initial = match given.of_bodies {
-        true => of_bodies(pair, (given, slave), model, place)?,
+        true => of_bodies(pair, given, slave, model, place)?,
         false => as_given(pair, given, model, place)?,
     };
     for (point, InitialTraction { pressure, traction }) in pair.points.iter().zip(&initial) {
@@ -158,7 +153,8 @@ fn as_given(pair: &ContactPair, given: &InitialTractions, model: &Model, place: 
 /// The tractions with which the initial stress of the slave's body ends at the contact.
 fn of_bodies(
     pair: &ContactPair,
-    (given, slave): (&InitialTractions, &str),
+    given: &InitialTractions,
+    slave: &str,
     model: &Model,
     place: &str,
 ) -> Checked<Vec<InitialTraction>> {

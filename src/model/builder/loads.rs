@@ -311,7 +311,7 @@ const TIMES: u32 = 100;
 const PLACES: usize = 50;
 
 /// Refuse the expressions of a step that have no value at one of many times and places, named by their keys.
-pub fn check_defined(place: &str, given: &LoadStep, (scheme, span): (Scheme, Span), model: &Model) -> Checked<()> {
+pub fn check_defined(place: &str, given: &LoadStep, scheme: Scheme, span: Span, model: &Model) -> Checked<()> {
     // A static step is not looked at where it starts.
     let first = u32::from(!scheme.is_dynamic());
     let times = || (first..=TIMES).map(|k| span.start + f64::from(k) / f64::from(TIMES) * (span.end - span.start));

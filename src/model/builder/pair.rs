@@ -137,7 +137,7 @@ fn body(contact: &Contact, first: Option<&SlavePoint>, model: &Model) -> Option<
 /// How the surfaces lie at the start: as they are, closed, or to be fitted.
 fn start(pair: &mut ContactPair, contact: &Contact, model: &Model, place: &str) -> Checked<()> {
     if let Some(initial) = &contact.initial {
-        initial::close(pair, (initial, &contact.slave), model, &format!("{place}.initial"))?;
+        initial::close(pair, initial, &contact.slave, model, &format!("{place}.initial"))?;
     }
     if contact.shrink_fit {
         if contact.initial.is_some() {

@@ -82,7 +82,7 @@ impl Schedule<'_> {
         }
         self.damp(&given.damping, place)?;
         temperatures(&mut self.temperatures, given, place, span, self.model)?;
-        loads::check_defined(place, given, (scheme, span), self.model)?;
+        loads::check_defined(place, given, scheme, span, self.model)?;
         let stabilization = stabilization(&format!("{place}.stabilize"), given, scheme, self.model)?;
         let increments = if stabilization.is_empty() { increments } else { increments.at_most(0.5 * given.duration) };
         let mut step = Step {

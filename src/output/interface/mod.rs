@@ -108,7 +108,7 @@ impl InterfaceStore {
     fn record_of(&self, model: &Model, state: &State) -> Record {
         let mut record = vec![vec![state.time]];
         for ((pair, states), names) in model.contacts.iter().zip(&state.contacts).zip(&self.names) {
-            record.extend(names.iter().map(|name| pair::field_values(pair, states, (state.time, state.dt), name)));
+            record.extend(names.iter().map(|name| pair::field_values(pair, states, state.time, state.dt, name)));
         }
         record
     }

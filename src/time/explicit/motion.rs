@@ -46,7 +46,7 @@ impl Explicit {
     /// The forces and accelerations at the start of the step.
     pub(super) fn start(&mut self, state: &mut State, assembler: &mut Assembler) -> Result<(), IncrementFailure> {
         let (model, step) = (&*self.model.clone(), &*self.step.clone());
-        keep_to_supports(model, (step, self.stable), state);
+        keep_to_supports(model, step, self.stable, state);
         let still = Trial::new(state, step, state.time, 0.0);
         assembler.evaluation.damping.fill(0.0);
         if model.is_viscous(step) {

@@ -56,7 +56,7 @@ pub struct Interface<'a> {
 
 impl Interface<'_> {
     /// All rates at a time after t₀, from the slips since then and the states, both in one list; `now` is the run time.
-    pub fn rates(&self, (now, since): (f64, f64), z: &[f64], rates: &mut Vec<Rates>) {
+    pub fn rates(&self, now: f64, since: f64, z: &[f64], rates: &mut Vec<Rates>) {
         let points = 0..self.points.len();
         let all = points.into_par_iter().with_min_len(PART).map(|k| self.point(k, now, since, z));
         all.collect_into_vec(rates);

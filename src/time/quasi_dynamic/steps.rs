@@ -65,7 +65,7 @@ impl<'a> Steps<'a> {
         };
         let weights = interface.points.iter().enumerate().map(weight).collect();
         let mut rates = vec![Vec::new(); STAGES];
-        interface.rates((start, 0.0), &z, &mut rates[0]);
+        interface.rates(start, 0.0, &z, &mut rates[0]);
         let (trial, last, works) = (z.clone(), vec![0.0; n], vec![[0.0; 2]; n]);
         Self { interface, weights, tolerance, start, since: 0.0, z, last, works, rates, trial }
     }
@@ -86,7 +86,7 @@ impl<'a> Steps<'a> {
             self.advance(A[stage], h);
             let since = self.since + C[stage] * h;
             let mut rates = std::mem::take(&mut self.rates[stage]);
-            self.interface.rates((self.start + since, since), &self.trial, &mut rates);
+            self.interface.rates(self.start + since, since, &self.trial, &mut rates);
             self.rates[stage] = rates;
             if let Some(worst) = self.rates[stage].iter().position(|rates| !rates.is_good()) {
                 return Tried::Refused { share: SHARES[0], worst, rates: self.rates[stage][worst] };
