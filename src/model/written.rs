@@ -76,8 +76,29 @@ impl<'de, T: Written> Visitor<'de> for Forms<T> {
 /// Reads and writes an enum with a variant that is a plain text, perhaps one that is a plain number, and others that are objects of
 /// one key: `written!(Type, "what is expected", number: Variant, text: Variant)`. The type derives the form of the objects with
 /// `#[serde(remote = "Self")]`, and skips the plain variants there.
+///
+/// With `object: Inner => make` behind them an object is read as another type, of which `make` makes the enum, and what is written the
+/// enum derives itself.
 macro_rules! written {
     ($type:ident, $expecting:literal, $(number: $number:ident,)? text: $text:ident) => {
+        $crate::model::written::written!(@ $type, $expecting, [$($number)?], $text, |object| Self::deserialize(object));
+
+        impl serde::Serialize for $type {
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                match self {
+                    $(Self::$number(value) => serializer.serialize_f64(*value),)?
+                    Self::$text(text) => serializer.serialize_str(text.as_ref()),
+                    object => Self::serialize(object, serializer),
+                }
+            }
+        }
+    };
+    ($type:ident, $expecting:literal, $(number: $number:ident,)? text: $text:ident, object: $inner:ty => $make:expr) => {
+        $crate::model::written::written!(
+            @ $type, $expecting, [$($number)?], $text, |object| <$inner as serde::Deserialize>::deserialize(object).map($make)
+        );
+    };
+    (@ $type:ident, $expecting:literal, [$($number:ident)?], $text:ident, |$object:ident| $read:expr) => {
         impl $crate::model::written::Written for $type {
             const EXPECTING: &'static str = $expecting;
 
@@ -89,24 +110,14 @@ macro_rules! written {
                 text.parse().map(Self::$text).map_err(|error| error.to_string())
             }
 
-            fn object<'de, D: serde::Deserializer<'de>>(object: D) -> Result<Self, D::Error> {
-                Self::deserialize(object)
+            fn object<'de, D: serde::Deserializer<'de>>($object: D) -> Result<Self, D::Error> {
+                $read
             }
         }
 
         impl<'de> serde::Deserialize<'de> for $type {
             fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
                 $crate::model::written::Written::read(deserializer)
-            }
-        }
-
-        impl serde::Serialize for $type {
-            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-                match self {
-                    $(Self::$number(value) => serializer.serialize_f64(*value),)?
-                    Self::$text(text) => serializer.serialize_str(text.as_ref()),
-                    object => Self::serialize(object, serializer),
-                }
             }
         }
     };

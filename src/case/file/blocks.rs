@@ -4,12 +4,13 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize};
 
+use super::MeshSource;
 use crate::case::error::{Checked, Complaint};
 use crate::mesh::{Block, BlockError, BlockKind, Blocks, Grading, InlineMesh};
 use crate::model::boundary::Expression;
-use crate::model::written::Written;
+use crate::model::written::written;
 
 /// A mesh of blocks: quadrilaterals with straight sides or arcs, each divided into rows and columns of elements. Blocks of one body
 /// that share a whole side are joined there, with the same nodes; those of different bodies never are
@@ -78,27 +79,13 @@ impl Default for GradingInput {
     }
 }
 
-impl Written for GradingInput {
-    const EXPECTING: &'static str = "the ratio of the last size to the first, or {\"middle\": ratio of the size in the middle to those at the ends}";
-
-    fn number(value: f64) -> Option<Self> {
-        Some(Self::Ratio(value))
-    }
-
-    fn text(text: &str) -> Result<Self, String> {
-        Ok(Self::Expression(text.into()))
-    }
-
-    fn object<'de, D: Deserializer<'de>>(object: D) -> Result<Self, D::Error> {
-        MiddleInput::deserialize(object).map(Self::Middle)
-    }
-}
-
-impl<'de> Deserialize<'de> for GradingInput {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Self::read(deserializer)
-    }
-}
+written!(
+    GradingInput,
+    "the ratio of the last size to the first, or {\"middle\": ratio of the size in the middle to those at the ends}",
+    number: Ratio,
+    text: Expression,
+    object: MiddleInput => Self::Middle
+);
 
 /// Sizes that are alike at both ends.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -108,20 +95,10 @@ pub struct MiddleInput {
     pub middle: Amount,
 }
 
-/// A mesh that stands in the case, node by node or as blocks.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(try_from = "MeshKeys")]
-pub enum MeshInPlace {
-    /// Node by node
-    Inline(InlineMesh),
-    /// Blocks
-    Blocks(BlocksInput),
-}
-
-/// All keys of either.
+/// A mesh that stands in the case: all keys of blocks, and of nodes.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct MeshKeys {
+pub(super) struct MeshKeys {
     nodes: Option<Vec<[f64; 2]>>,
     elements: Option<BTreeMap<String, Vec<Vec<usize>>>>,
     edges: Option<BTreeMap<String, Vec<Vec<usize>>>>,
@@ -131,7 +108,7 @@ struct MeshKeys {
     apart: Option<Vec<String>>,
 }
 
-impl TryFrom<MeshKeys> for MeshInPlace {
+impl TryFrom<MeshKeys> for MeshSource {
     type Error = String;
 
     fn try_from(keys: MeshKeys) -> Result<Self, String> {

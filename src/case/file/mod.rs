@@ -6,6 +6,7 @@ mod output;
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
+use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::mesh::InlineMesh;
@@ -13,8 +14,9 @@ use crate::mesh::section::Section;
 use crate::model::NewtonSettings;
 use crate::model::builder::{BodyInput, Contact, Gauge, LoadStep, LoadingPlateInput, PointMassInput};
 use crate::model::written::Written;
+use blocks::MeshKeys;
 pub(super) use blocks::blocks;
-pub use blocks::{Amount, BlockInput, BlocksInput, GradingInput, MeshInPlace, MiddleInput};
+pub use blocks::{Amount, BlockInput, BlocksInput, GradingInput, MiddleInput};
 pub use output::OutputInput;
 
 /// A case: mesh, bodies, contacts and steps.
@@ -97,10 +99,7 @@ impl Written for MeshSource {
     }
 
     fn object<'de, D: Deserializer<'de>>(object: D) -> Result<Self, D::Error> {
-        Ok(match MeshInPlace::deserialize(object)? {
-            MeshInPlace::Inline(mesh) => Self::Inline(mesh),
-            MeshInPlace::Blocks(blocks) => Self::Blocks(blocks),
-        })
+        MeshKeys::deserialize(object)?.try_into().map_err(D::Error::custom)
     }
 }
 

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Matrix2, Vector2};
 use schemars::JsonSchema;
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize};
 
 use super::error::{Checked, ModelError};
 use super::groups::{Place, group, nodes_at};
@@ -14,7 +14,7 @@ use crate::mesh::Mesh;
 use crate::mesh::ties::Ties;
 use crate::model::Model;
 use crate::model::linkage::{Follower, Linkage, alike, rigid};
-use crate::model::written::Written;
+use crate::model::written::written;
 
 /// How the nodes of a loading plate move.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -42,24 +42,12 @@ pub enum LoadingPlateInput {
     Moving(MovingPlateInput),
 }
 
-impl Written for LoadingPlateInput {
-    const EXPECTING: &'static str =
-        "the name of a group, or {\"on\": group, \"moves\": \"ux_alike\", \"uy_alike\" or \"rigid\"}";
-
-    fn text(text: &str) -> Result<Self, String> {
-        Ok(Self::Group(text.into()))
-    }
-
-    fn object<'de, D: Deserializer<'de>>(object: D) -> Result<Self, D::Error> {
-        MovingPlateInput::deserialize(object).map(Self::Moving)
-    }
-}
-
-impl<'de> Deserialize<'de> for LoadingPlateInput {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Self::read(deserializer)
-    }
-}
+written!(
+    LoadingPlateInput,
+    "the name of a group, or {\"on\": group, \"moves\": \"ux_alike\", \"uy_alike\" or \"rigid\"}",
+    text: Group,
+    object: MovingPlateInput => Self::Moving
+);
 
 /// A loading plate that moves in another way than as one.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
