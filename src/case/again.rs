@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use serde_json::{Map, Value};
 
-use super::error::{CaseError, Checked, Complaint};
+use super::error::CaseError;
 use super::file::Case;
 use super::read::clipped;
 use super::resolved::with_defaults;
@@ -17,6 +17,7 @@ use crate::contact::force::ContactState;
 use crate::contact::surface::SlavePoint;
 use crate::mesh::Mesh;
 use crate::model::Model;
+use crate::model::builder::{Checked, ModelError};
 use crate::model::state::State;
 use crate::output::checkpoint::{self, Checkpoint, MeshPrint};
 use crate::run::{Saved, SavedRun};
@@ -73,7 +74,7 @@ impl Opened {
     pub fn resume(written: Written, checkpoint: Checkpoint) -> Result<Self, CaseError> {
         let Written { path, mut document, .. } = written;
         let path = path.as_path();
-        let complain = |complaint: Complaint| complaint.in_file(path);
+        let complain = |complaint: ModelError| complaint.in_file(path);
         let before = document_of(&checkpoint).map_err(complain)?;
         join(&mut document, &steps(&before)[..checkpoint.taken_over.min(steps(&before).len())]);
         unchanged(&before, &document, checkpoint.begun).map_err(complain)?;
@@ -131,7 +132,7 @@ impl Opened {
     }
 
     fn not_of(&self, place: &str, message: String) -> CaseError {
-        Complaint::new(place, format!("{message}, so the run cannot go on from its checkpoint")).in_file(&self.path)
+        ModelError::new(place, format!("{message}, so the run cannot go on from its checkpoint")).in_file(&self.path)
     }
 
     /// A structure that the other case has left must be one of the law as it is now.
@@ -151,7 +152,7 @@ impl Opened {
             if let Some(mu) = pair.points.iter().zip(states).map(mu).find(|mu| !varies && !allowed.contains(mu)) {
                 let place = format!("contacts.{}.friction", pair.name);
                 let message = format!("a point comes with mu = {mu}, outside mu_k = {lowest} to mu_s = {highest}");
-                return Err(Complaint::new(place, message));
+                return Err(ModelError::new(place, message));
             }
         }
         Ok(())
@@ -196,12 +197,12 @@ fn join(document: &mut Value, before: &[Value]) {
 
 fn document_of(checkpoint: &Checkpoint) -> Checked<Value> {
     serde_json::from_str(&checkpoint.case)
-        .map_err(|cause| Complaint::new("", format!("the case of the checkpoint: {cause}")))
+        .map_err(|cause| ModelError::new("", format!("the case of the checkpoint: {cause}")))
 }
 
 /// Let a case begin with the end of another; the checkpoint read, and its file.
 fn begun(document: &mut Value, source: &Path) -> Checked<(PathBuf, Checkpoint)> {
-    let complain = |message: String| Complaint::new("begin_with", message);
+    let complain = |message: String| ModelError::new("begin_with", message);
     let (file, checkpoint) = if source.is_dir() {
         let newest = checkpoint::newest(source);
         // What is damaged is not begun with: the one before it is not from the end.
@@ -289,7 +290,7 @@ pub fn told(differences: Vec<Difference>, what: &str) -> Checked<()> {
         .collect();
     let more =
         if differences.len() > TOLD { format!(", and {} more", differences.len() - TOLD) } else { String::new() };
-    Err(Complaint::new("", format!("{what}: {}{more}", told.join("; "))))
+    Err(ModelError::new("", format!("{what}: {}{more}", told.join("; "))))
 }
 
 /// The keys of a value; none unless it is an object.

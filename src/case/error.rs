@@ -23,31 +23,7 @@ fn within(place: &str) -> String {
     if place.is_empty() { String::new() } else { format!("{}: ", in_line(place)) }
 }
 
-/// A complaint about a place in the case; the file is added at the top.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Complaint {
-    /// path of the key
-    pub place: String,
-    /// what is wrong, and what to do
-    pub message: String,
-}
-
-/// What is read, once it is found to be good.
-pub type Checked<T> = Result<T, Complaint>;
-
-/// The model speaks of its places in the words of a case.
-impl From<ModelError> for Complaint {
-    fn from(ModelError { place, message }: ModelError) -> Self {
-        Self { place, message }
-    }
-}
-
-impl Complaint {
-    /// A complaint.
-    pub fn new(place: impl Into<String>, message: impl ToString) -> Self {
-        Self { place: place.into(), message: message.to_string() }
-    }
-
+impl ModelError {
     /// With the file it is about.
     pub fn in_file(self, file: &Path) -> CaseError {
         CaseError { file: file.to_owned(), place: self.place, message: self.message }

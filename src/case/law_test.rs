@@ -8,11 +8,11 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::check_units;
-use super::error::{CaseError, Checked, Complaint};
+use super::error::CaseError;
 use super::schema::schema_of;
 use crate::laws::friction::{FrictionLaw, FrictionParameters, FrictionState, observables};
 use crate::model::boundary::{Drive, Span};
-use crate::model::builder::{check_line, check_positive};
+use crate::model::builder::{Checked, ModelError, check_line, check_positive};
 use crate::run::law::{Course, LawTest, Phase, Undefined};
 
 /// A test of a friction law alone: the law, and the path of slip and pressure it is driven along.
@@ -112,7 +112,7 @@ fn test(input: &LawTestInput) -> Checked<LawTest> {
     let path = match (&input.path, &input.table) {
         (Some(phases), None) => phases_of(input, phases)?,
         (None, Some(table)) => vec![table_of(input, table)?],
-        _ => return Err(Complaint::new("", "must give either \"path\", a list of phases, or \"table\"")),
+        _ => return Err(ModelError::new("", "must give either \"path\", a list of phases, or \"table\"")),
     };
     let start = start(input, law.as_ref(), path[0].pressure(path[0].start()))?;
     Ok(LawTest { law, start, path })
@@ -120,23 +120,23 @@ fn test(input: &LawTestInput) -> Checked<LawTest> {
 
 fn law(parameters: &FrictionParameters) -> Checked<Box<dyn FrictionLaw>> {
     if let Some(message) = parameters.unknown() {
-        return Err(Complaint::new("friction.name", message));
+        return Err(ModelError::new("friction.name", message));
     }
     // There is no mesh from which a stiffness could be chosen: NaN stands for none.
     let law = parameters.build(f64::NAN).map_err(|error| match error.name {
         "alpha_t" if error.value.is_nan() => {
-            Complaint::new("friction", "the key `alpha_t` is missing here: a law alone has no mesh to choose it from")
+            ModelError::new("friction", "the key `alpha_t` is missing here: a law alone has no mesh to choose it from")
         }
-        _ => Complaint::new("friction", error),
+        _ => ModelError::new("friction", error),
     })?;
     let named = observables::check_names(&law.description());
-    named.map_err(|message| Complaint::new("friction", format!("the names of the law: {message}")))?;
+    named.map_err(|message| ModelError::new("friction", format!("the names of the law: {message}")))?;
     Ok(law.controlled().unwrap_or(law))
 }
 
 fn start(input: &LawTestInput, law: &dyn FrictionLaw, pressure: f64) -> Checked<FrictionState> {
     if let Some(negative) = input.initial.pressure.filter(|pressure| *pressure < 0.0) {
-        return Err(Complaint::new("initial.pressure", format!("is {negative}: must be zero or positive")));
+        return Err(ModelError::new("initial.pressure", format!("is {negative}: must be zero or positive")));
     }
     let at_rest = law.initial_state(0.0, 0.0);
     let traction = input.initial.traction;
@@ -148,7 +148,7 @@ fn start(input: &LawTestInput, law: &dyn FrictionLaw, pressure: f64) -> Checked<
              pressure or the structure",
             observables::value(law, "mu", &at_rest)
         );
-        return Err(Complaint::new("initial.traction", message));
+        return Err(ModelError::new("initial.traction", message));
     }
     Ok(law.initial_state(pressure, traction))
 }
@@ -159,7 +159,7 @@ fn phases_of(input: &LawTestInput, phases: &[PhaseInput]) -> Checked<Vec<Phase>>
         path.push(phase_of(input, &format!("path[{k}]"), phase, path.last())?);
     }
     match path.is_empty() {
-        true => Err(Complaint::new("path", "is empty: give at least one phase")),
+        true => Err(ModelError::new("path", "is empty: give at least one phase")),
         false => Ok(path),
     }
 }
@@ -187,13 +187,13 @@ fn phase_of(input: &LawTestInput, place: &str, phase: &PhaseInput, before: Optio
     }
     Phase::new(span, slip, pressure, dt).map_err(|Undefined { quantity, time }| {
         let message = format!("is not a finite number at the time {time}: check the expression");
-        Complaint::new(format!("{place}.{quantity}"), message)
+        ModelError::new(format!("{place}.{quantity}"), message)
     })
 }
 
 /// How a quantity varies that has `reached` a value, if that is known.
 fn course(place: &str, given: Option<&Drive>, reached: Option<f64>) -> Checked<Course> {
-    let complain = |message: &str| Err(Complaint::new(place, message));
+    let complain = |message: &str| Err(ModelError::new(place, message));
     let Some(given) = given else {
         return match reached {
             Some(value) => Ok(Course { drive: Drive::Constant(value), start: value }),
@@ -201,7 +201,7 @@ fn course(place: &str, given: Option<&Drive>, reached: Option<f64>) -> Checked<C
         };
     };
     let drive = given.clone();
-    drive.check().map_err(|message| Complaint::new(place, message))?;
+    drive.check().map_err(|message| ModelError::new(place, message))?;
     match (&drive, reached) {
         (given, _) if given.depends_on_position() => {
             complain("x and y have no meaning here: the only variable is the time t")
@@ -218,18 +218,18 @@ fn check_continuous(place: &str, course: &Course, reached: f64, span: Span) -> C
     // What is not finite is complained of later.
     if (first - reached).abs() > SAME * first.abs().max(reached.abs()).max(f64::MIN_POSITIVE) {
         let message = format!("jumps from {reached} to {first} at the time {}: begin where it was", span.start);
-        return Err(Complaint::new(place, message));
+        return Err(ModelError::new(place, message));
     }
     Ok(())
 }
 
 fn table_of(input: &LawTestInput, table: &[[f64; 3]]) -> Checked<Phase> {
     let [[start, _, pressure], .., [end, _, _]] = table else {
-        return Err(Complaint::new("table", "must have two rows [time, slip, pressure] or more"));
+        return Err(ModelError::new("table", "must have two rows [time, slip, pressure] or more"));
     };
     if let Some(pair) = table.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
         let message = format!("the times must ascend: {} follows {}", pair[1][0], pair[0][0]);
-        return Err(Complaint::new("table", message));
+        return Err(ModelError::new("table", message));
     }
     let span = Span { start: *start, end: *end };
     if let Some(dt) = input.dt {
@@ -239,10 +239,10 @@ fn table_of(input: &LawTestInput, table: &[[f64; 3]]) -> Checked<Phase> {
     let [slip, pressures] = [1, 2].map(|k| Course { drive: column(k), start: 0.0 });
     if let Some(given) = input.initial.pressure.filter(|given| given != pressure) {
         let message = format!("is {given}, but the table starts at {pressure}: leave it out");
-        return Err(Complaint::new("initial.pressure", message));
+        return Err(ModelError::new("initial.pressure", message));
     }
     Phase::new(span, slip, pressures, input.dt.unwrap_or(f64::INFINITY)).map_err(|Undefined { quantity, time }| {
-        Complaint::new("table", format!("the {quantity} is not a finite number at the time {time}"))
+        ModelError::new("table", format!("the {quantity} is not a finite number at the time {time}"))
     })
 }
 
@@ -251,12 +251,12 @@ fn check_dt(place: &str, dt: f64, span: Span) -> Checked<()> {
     let steps = (span.end - span.start) / dt;
     if steps > MOST_STEPS {
         let message = format!("is {dt:e}: that makes {steps:.1e} steps of a phase, and {MOST_STEPS:e} are the most");
-        return Err(Complaint::new(place, message));
+        return Err(ModelError::new(place, message));
     }
     let least = SHORTEST_STEP * span.end.abs().max(span.start.abs());
     if dt < least {
         let message = format!("is {dt:e}: at the time {:e} steps below {least:.1e} are lost in round-off", span.end);
-        return Err(Complaint::new(place, message));
+        return Err(ModelError::new(place, message));
     }
     Ok(())
 }

@@ -4,11 +4,11 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::error::{CaseError, Checked, Complaint};
+use super::error::CaseError;
 use super::file::Case;
 use super::read;
 use crate::model::boundary::Span;
-use crate::model::builder::{Load, LoadsInForce};
+use crate::model::builder::{Checked, Load, LoadsInForce, ModelError};
 use crate::run::Simulation;
 
 /// The loads of a step under way, which its caller changes.
@@ -25,7 +25,7 @@ impl Loading {
         let model = simulation.model();
         if simulation.has_ended_early() {
             let message = "cannot be given after a step that `until` has ended before its time: give it in the steps";
-            return Err(Complaint::new("load", message));
+            return Err(ModelError::new("load", message));
         }
         let step = simulation.step_number();
         if let Some(before) = before.filter(|before| before.step == step) {
@@ -60,7 +60,7 @@ fn changed(
 ) -> Checked<()> {
     let now = simulation.state().time;
     if !(by >= now && by.is_finite()) {
-        return Err(Complaint::new("by", format!("is {by}: must be a time from now on, and now is {now}")));
+        return Err(ModelError::new("by", format!("is {by}: must be a time from now on, and now is {now}")));
     }
     let load: Load = read::input(document)?;
     let mut changed = Loading::of(case, simulation, loading.as_ref())?;

@@ -22,10 +22,9 @@ use serde_json::Value;
 use crate::mesh::section::Section;
 use crate::mesh::{Mesh, gmsh};
 use crate::model::Model;
-use crate::model::builder::{Builder, Contact, Gauge, check_line, check_positive};
+use crate::model::builder::{Builder, Checked, Contact, Gauge, ModelError, check_line, check_positive};
 pub use again::Opened;
 pub use error::CaseError;
-use error::{Checked, Complaint};
 use file::{Case, MeshSource, blocks};
 pub use report::{report, understood};
 pub use resolved::resolved;
@@ -65,15 +64,15 @@ pub fn build_on(case: &Case, mesh: Mesh, path: &Path) -> Result<Model, CaseError
 
 fn built(case: &Case, mesh: Mesh) -> Checked<Model> {
     if case.begin_with.is_some() {
-        return Err(Complaint::new("begin_with", "another case must be opened first: see case::Opened"));
+        return Err(ModelError::new("begin_with", "another case must be opened first: see case::Opened"));
     }
     let model = builder(case, mesh)?.build()?;
     if case.output.every == Some(0) {
         let message = "is 0: must be at least 1 (to write no fields, give \"fields\": false)";
-        return Err(Complaint::new("output.every", message));
+        return Err(ModelError::new("output.every", message));
     }
     if let Some(minutes) = case.output.checkpoint.filter(|minutes| !(*minutes >= 0.0 && minutes.is_finite())) {
-        return Err(Complaint::new("output.checkpoint", format!("is {minutes}: must be minutes, or null for none")));
+        return Err(ModelError::new("output.checkpoint", format!("is {minutes}: must be minutes, or null for none")));
     }
     check_positive("output.fronts.slip_rate", case.output.fronts.map_or(1.0, |fronts| fronts.slip_rate), "")?;
     Ok(model)
@@ -105,7 +104,7 @@ fn builder(case: &Case, mesh: Mesh) -> Checked<Builder> {
 }
 
 fn check_units(units: &BTreeMap<String, String>) -> Checked<()> {
-    units.iter().try_for_each(|(of, label)| Ok(check_line(&format!("units.{of}"), label)?))
+    units.iter().try_for_each(|(of, label)| check_line(&format!("units.{of}"), label))
 }
 
 fn mesh(case: &Case, path: &Path) -> Checked<Mesh> {
@@ -114,7 +113,7 @@ fn mesh(case: &Case, path: &Path) -> Checked<Mesh> {
         MeshSource::Blocks(blocks) => file::blocks(blocks, "mesh")?.build(),
         MeshSource::File(file) => gmsh::read(&path.parent().unwrap_or(Path::new("")).join(file)),
     };
-    mesh.map_err(|error| Complaint::new("mesh", error))
+    mesh.map_err(|error| ModelError::new("mesh", error))
 }
 
 /// A mesh of blocks from its text, as `mesh` of a case has it.
@@ -124,7 +123,7 @@ fn mesh(case: &Case, path: &Path) -> Checked<Mesh> {
 pub fn blocks_from_text(text: &str) -> Result<Mesh, CaseError> {
     let path = Path::new("mesh");
     let input = read::read_text(text, path)?;
-    let mesh = blocks(&input, "").and_then(|mesh| mesh.build().map_err(|error| Complaint::new("", error)));
+    let mesh = blocks(&input, "").and_then(|mesh| mesh.build().map_err(|error| ModelError::new("", error)));
     mesh.map_err(|complaint| complaint.in_file(path))
 }
 

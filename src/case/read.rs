@@ -20,8 +20,9 @@ use serde_json::error::Category;
 use serde_json::{Map, Value};
 use serde_path_to_error::{Path as KeyPath, Segment};
 
-use super::error::{CaseError, Complaint};
+use super::error::CaseError;
 use crate::mesh::names::{in_line, nearest};
+use crate::model::builder::ModelError;
 
 /// No case is larger: large meshes have files of their own [MiB].
 const LARGEST: u64 = 16;
@@ -34,8 +35,7 @@ const TAGS: [&str; 2] = ["model", "law"];
 /// # Errors
 /// [`CaseError`] when the file cannot be read or is not what it should be.
 pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, CaseError> {
-    let input = text(path).and_then(|text| document(&text)).and_then(|document| input(&document));
-    input.map_err(|complaint| complaint.in_file(path))
+    read_document(path).map(|(_, input)| input)
 }
 
 /// Read what would be the text of a file; `path` is for complaints.
@@ -43,7 +43,7 @@ pub fn read<T: DeserializeOwned>(path: &Path) -> Result<T, CaseError> {
 /// # Errors
 /// As [`read`].
 pub fn read_text<T: DeserializeOwned>(text: &str, path: &Path) -> Result<T, CaseError> {
-    document(text).and_then(|document| input(&document)).map_err(|complaint| complaint.in_file(path))
+    read_document_text(text, path).map(|(_, input)| input)
 }
 
 /// The document of a file, and what it says.
@@ -64,8 +64,8 @@ pub fn read_document_text<T: DeserializeOwned>(text: &str, path: &Path) -> Resul
     read.map(|(input, document)| (document, input)).map_err(|complaint| complaint.in_file(path))
 }
 
-fn text(path: &Path) -> Result<String, Complaint> {
-    let complain = |message: &str| Complaint::new("", message);
+fn text(path: &Path) -> Result<String, ModelError> {
+    let complain = |message: &str| ModelError::new("", message);
     let unreadable = |cause: std::io::Error| match cause.kind() {
         ErrorKind::NotFound => complain("there is no such file; check the path"),
         _ => complain(&format!("cannot be read: {cause}")),
@@ -88,11 +88,11 @@ fn text(path: &Path) -> Result<String, Complaint> {
     }
 }
 
-fn document(text: &str) -> Result<Value, Complaint> {
+fn document(text: &str) -> Result<Value, ModelError> {
     let mut json = serde_json::Deserializer::from_str(text);
     let Document(document) = serde_path_to_error::deserialize(&mut json)
-        .map_err(|error| Complaint::new(place(error.path(), None), not_json(error.inner())))?;
-    json.end().map_err(|error| Complaint::new("", format!("goes on after the end of its JSON object: {error}")))?;
+        .map_err(|error| ModelError::new(place(error.path(), None), not_json(error.inner())))?;
+    json.end().map_err(|error| ModelError::new("", format!("goes on after the end of its JSON object: {error}")))?;
     Ok(document)
 }
 
@@ -179,11 +179,11 @@ impl<'de> Visitor<'de> for DocumentVisitor {
     }
 }
 
-pub(super) fn input<T: DeserializeOwned>(document: &Value) -> Result<T, Complaint> {
+pub(super) fn input<T: DeserializeOwned>(document: &Value) -> Result<T, ModelError> {
     serde_path_to_error::deserialize(Strict(document)).map_err(|error| {
         let message = error.inner().to_string();
         let key = blamed_key::<T>(document, error.path(), &message);
-        Complaint::new(place(error.path(), key.as_deref()), explain(&message))
+        ModelError::new(place(error.path(), key.as_deref()), explain(&message))
     })
 }
 

@@ -7,9 +7,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::MeshSource;
-use crate::case::error::{Checked, Complaint};
 use crate::mesh::{Block, BlockError, BlockKind, Blocks, Grading, InlineMesh};
 use crate::model::boundary::Expression;
+use crate::model::builder::{Checked, ModelError};
 use crate::model::written::written;
 
 /// A mesh of blocks: quadrilaterals with straight sides or arcs, each divided into rows and columns of elements. Blocks of one body
@@ -148,9 +148,9 @@ pub fn blocks(input: &BlocksInput, place: &str) -> Checked<InlineMesh> {
     let blocks = input.blocks.iter().enumerate().map(block).collect::<Checked<_>>()?;
     if let Some(name) = input.parameters.keys().find(|name| !parameters.words.borrow().contains(*name)) {
         let message = "stands in no expression of the mesh, so it changes nothing: use it, or leave it out";
-        return Err(Complaint::new(at(&format!("parameters.{name}")), message));
+        return Err(ModelError::new(at(&format!("parameters.{name}")), message));
     }
-    let complain = |BlockError { place, message }| Complaint::new(at(&place), message);
+    let complain = |BlockError { place, message }| ModelError::new(at(&place), message);
     Blocks { blocks, apart: input.apart.clone() }.mesh().map_err(complain)
 }
 
@@ -170,7 +170,7 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
 /// Those that others depend on come first, whatever their order.
 fn parameters<'p>(input: &'p BTreeMap<String, Amount>, place: &str) -> Checked<Parameters<'p>> {
     if let Some((name, why)) = input.keys().find_map(|name| Some((name, Expression::refused_name(name)?))) {
-        return Err(Complaint::new(format!("{place}.{name}"), why));
+        return Err(ModelError::new(format!("{place}.{name}"), why));
     }
     let needs = |amount: &'p Amount| -> BTreeSet<&'p str> {
         match amount {
@@ -224,7 +224,7 @@ impl Parameters<'_> {
         let own = words(text).filter_map(|word| self.numbers.get_key_value(word));
         let value = constant(&own.map(|(name, number)| (*name, *number)).collect());
         // Who is told what is wrong is told of all the names there are.
-        value.or_else(|_| constant(&self.numbers)).map_err(|message| Complaint::new(place, message))
+        value.or_else(|_| constant(&self.numbers)).map_err(|message| ModelError::new(place, message))
     }
 
     fn point(&self, [x, y]: &[Amount; 2], place: &str) -> Checked<[f64; 2]> {
@@ -236,7 +236,7 @@ impl Parameters<'_> {
         let value = self.value(amount, place)?;
         if !(value > 0.5 && value < 1e15 && (value - value.round()).abs() <= 1e-9 * value) {
             let message = format!("is {value}: must be a whole number, 1 or more, such as \"round(L/h)\" gives");
-            return Err(Complaint::new(place, message));
+            return Err(ModelError::new(place, message));
         }
         Ok(value.round() as usize)
     }
