@@ -313,15 +313,11 @@ impl ContactPair {
     fn mean_place(&self, k: &Kinematics) -> Weights {
         let slaves = self.points.iter().flat_map(|point| &point.length).flat_map(|share| &share.at);
         let slaves: BTreeSet<usize> = slaves.map(|(node, _)| *node).collect();
-        let meets_itself = self.meets_itself();
+        let meets_itself = self.is_own();
         let own = |(&node, &w): (&usize, &f64)| {
             let is_slave = if meets_itself { w > 0.0 } else { slaves.contains(&node) };
             is_slave.then_some((node, w))
         };
         k.nodes.iter().zip(&k.relative).filter_map(own).collect()
-    }
-
-    fn meets_itself(&self) -> bool {
-        matches!(&self.master, super::master::Master::Mesh(surface) if surface.own_depth.is_some())
     }
 }

@@ -12,10 +12,9 @@ impl Joined {
     }
 
     /// The lowest of those joined with one.
-    fn lowest(&mut self, of: usize) -> usize {
+    pub fn lowest(&self, of: usize) -> usize {
         let mut at = of;
         while self.0[at] != at {
-            self.0[at] = self.0[self.0[at]];
             at = self.0[at];
         }
         at
@@ -23,12 +22,13 @@ impl Joined {
 
     /// Join two, and all that are joined with them.
     pub fn join(&mut self, a: usize, b: usize) {
-        let [a, b] = [a, b].map(|of| self.lowest(of));
-        self.0[a.max(b)] = a.min(b);
+        let [low, high] = [self.lowest(a).min(self.lowest(b)), self.lowest(a).max(self.lowest(b))];
+        // The ways from both are short from now on.
+        [a, b, high].into_iter().for_each(|of| self.0[of] = low);
     }
 
     /// Groups of those joined, each ascending, in the order of their lowest.
-    pub fn groups(mut self) -> Vec<Vec<usize>> {
+    pub fn groups(self) -> Vec<Vec<usize>> {
         let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for of in 0..self.0.len() {
             groups.entry(self.lowest(of)).or_default().push(of);

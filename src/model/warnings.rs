@@ -24,7 +24,7 @@ impl Model {
         let farthest = farthest(&self.mesh);
         let of_contact = |pair: &ContactPair| {
             // What starts closed has no gaps, and a surface commonly lies free of itself at the start.
-            let warnings = match pair.initial.is_some() || is_its_own_master(pair) {
+            let warnings = match pair.initial.is_some() || pair.is_own() {
                 true => Vec::new(),
                 false => Gaps::of(self, pair, farthest).warnings(),
             };
@@ -129,10 +129,6 @@ fn idle_radiation(model: &Model) -> Option<String> {
             pair.name
         )
     })
-}
-
-fn is_its_own_master(pair: &ContactPair) -> bool {
-    matches!(&pair.master, Master::Mesh(surface) if surface.own_depth.is_some())
 }
 
 /// A share of the shortest edge to which positions should be known: displacements of interest are thousands of times larger.

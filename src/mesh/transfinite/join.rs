@@ -7,6 +7,7 @@ use nalgebra::Vector2;
 use super::grid::Grid;
 use super::{BlockError, Blocks};
 use crate::mesh::boxes::{Box2, Tree};
+use crate::mesh::joined::Joined;
 
 /// Places nearer to each other than this share of the shortest side are the same.
 const SAME: f64 = 1e-6;
@@ -26,7 +27,7 @@ pub fn joined(blocks: &Blocks, grids: &[Grid]) -> Result<Vec<usize>, BlockError>
         blocks,
         grids,
         apart: blocks.blocks.iter().map(|block| [0, 1, 2, 3].map(|side| is_apart(&block.sides[side]))).collect(),
-        first: (0..slots).collect(),
+        same: Joined::new(slots),
         partner: vec![[None; 4]; grids.len()],
     };
     let pairs = neighbours(blocks, grids);
@@ -67,8 +68,8 @@ struct Join<'b> {
     grids: &'b [Grid],
     /// sides that are not to be joined
     apart: Vec<[bool; 4]>,
-    /// an earlier slot of the same node, or itself
-    first: Vec<usize>,
+    /// slots of the same node
+    same: Joined,
     /// what each side is joined to
     partner: Vec<[Option<Side>; 4]>,
 }
@@ -111,7 +112,7 @@ impl Join<'_> {
             return Err(self.complain(one, other, "on the same side of it: the two lie on each other; remove one"));
         }
         self.partners(one, other)?;
-        a.into_iter().zip(b).for_each(|(a, b)| self.unite(a, b));
+        a.into_iter().zip(b).for_each(|(a, b)| self.same.join(a, b));
         Ok(())
     }
 
@@ -140,18 +141,6 @@ impl Join<'_> {
         BlockError::new(format!("blocks[{}]", other.0), what)
     }
 
-    fn unite(&mut self, a: usize, b: usize) {
-        let (a, b) = (self.root(a), self.root(b));
-        self.first[a.max(b)] = a.min(b);
-    }
-
-    fn root(&self, mut slot: usize) -> usize {
-        while self.first[slot] != slot {
-            slot = self.first[slot];
-        }
-        slot
-    }
-
     /// How near places of two blocks are the same.
     fn near(&self, a: usize, b: usize) -> f64 {
         let corners = [a, b].map(|block| [0, 1, 2, 3].map(|corner| self.grids[block].corner(corner)));
@@ -164,12 +153,12 @@ impl Join<'_> {
     fn refuse_touching(&self, a: usize, b: usize) -> Result<(), BlockError> {
         let near = self.near(a, b);
         for corner in 0..4 {
-            let (slot, at) = (self.root(self.grids[a].side(corner)[0]), self.grids[a].corner(corner));
+            let (slot, at) = (self.same.lowest(self.grids[a].side(corner)[0]), self.grids[a].corner(corner));
             let touched: Vec<usize> = (0..4).filter(|side| self.grids[b].distance(*side, at) <= near).collect();
             let apart = |block: usize, sides: &[usize]| sides.iter().any(|side| self.apart[block][*side]);
             let Some(side) = touched.first() else { continue };
             let joined =
-                touched.iter().any(|side| self.grids[b].side(*side).iter().any(|&node| self.root(node) == slot));
+                touched.iter().any(|side| self.grids[b].side(*side).iter().any(|&node| self.same.lowest(node) == slot));
             if !(joined || apart(a, &[corner, (corner + 3) % 4]) || apart(b, &touched)) {
                 let message = format!(
                     "its corner {corner} lies on side {side} of blocks[{b}] and is not joined to it: blocks of a body are joined \
@@ -195,15 +184,12 @@ impl Join<'_> {
     }
 
     /// Numbers in the order in which nodes come first.
-    fn numbers(&self) -> Vec<usize> {
-        let mut numbers = vec![0; self.first.len()];
-        let mut next = 0;
-        for slot in 0..numbers.len() {
-            let root = self.root(slot);
-            numbers[slot] = if root == slot { next } else { numbers[root] };
-            next += usize::from(root == slot);
-        }
-        numbers
+    fn numbers(self) -> Vec<usize> {
+        let nodes = self.same.groups().into_iter().enumerate();
+        let mut slots: Vec<(usize, usize)> =
+            nodes.flat_map(|(number, slots)| slots.into_iter().map(move |slot| (slot, number))).collect();
+        slots.sort_unstable();
+        slots.into_iter().map(|(_, number)| number).collect()
     }
 }
 
