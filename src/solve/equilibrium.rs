@@ -29,7 +29,7 @@ use super::newton::{self, NewtonFailure};
 use super::{IterationRecord, Workspace};
 use crate::contact::force::ContactState;
 use crate::equations::sums::TrialFailure;
-use crate::equations::{Assembler, ContactCounts, Trial};
+use crate::equations::{Assembler, Trial};
 use crate::linear::system::Request;
 use crate::linear::{LinearFailure, SparseMatrix};
 use crate::model::Model;
@@ -173,8 +173,8 @@ struct Watch {
     begins: bool,
     extrapolated: bool,
     tangents: usize,
-    /// What was seen after each correction of the present solution
-    seen: Vec<Seen>,
+    /// What was seen after each correction of the present solution: all but the correction itself
+    seen: Vec<IterationRecord>,
     flips: Flips,
     floating: Option<String>,
     /// What acted in the tangent since the last correction
@@ -207,16 +207,28 @@ impl Watch {
             self.acted.start = usize::from(self.extrapolated && self.records.is_empty() && self.tangents == 0);
             self.tangents += 1;
         } else if self.tangents > 0 && request == Request::Residual {
-            let acted = std::mem::take(&mut self.acted);
-            self.seen.push(look(assembler, &mut self.flips, forces, acted));
+            let evaluation = &assembler.evaluation;
+            self.seen.push(IterationRecord {
+                contacts: assembler.contact_counts(),
+                flips: self.flips.count(&evaluation.contacts),
+                stabilization: evaluation.stabilization / forces.max(f64::MIN_POSITIVE),
+                acted: std::mem::take(&mut self.acted),
+                ..IterationRecord::default()
+            });
         }
     }
 
     /// Keep the iterations of a solution with what was seen after each.
     fn record(&mut self, iterations: Vec<newton::Iteration>) {
-        let seen = std::mem::take(&mut self.seen);
+        let mut seen = std::mem::take(&mut self.seen);
         self.tangents = 0;
-        self.records.extend(records(iterations, seen));
+        // The last state may not have been evaluated.
+        seen.resize(iterations.len(), IterationRecord::default());
+        let record = |(newton, seen): (newton::Iteration, IterationRecord)| {
+            let acted = Acted { downhill: usize::from(newton.searched), ..seen.acted };
+            IterationRecord { newton, pass: 1, acted, ..seen }
+        };
+        self.records.extend(iterations.into_iter().zip(seen).map(record));
     }
 }
 
@@ -253,30 +265,6 @@ fn settings(model: &Model) -> newton::Settings {
 fn is_unaided(trial: Trial) -> bool {
     let Trial { old, step, .. } = trial;
     old.last_increment.is_none() || (!step.stabilization.is_empty() && trial.stabilization_left() == 0.0)
-}
-
-/// What was seen after a correction: contacts, their flips, the share of stabilization in the forces, and what acted.
-type Seen = (ContactCounts, usize, f64, Acted);
-
-fn look(assembler: &Assembler, flips: &mut Flips, forces: f64, acted: Acted) -> Seen {
-    let evaluation = &assembler.evaluation;
-    let share = evaluation.stabilization / forces.max(f64::MIN_POSITIVE);
-    (assembler.contact_counts(), flips.count(&evaluation.contacts), share, acted)
-}
-
-/// The iterations with what was seen after each.
-fn records(iterations: Vec<newton::Iteration>, mut seen: Vec<Seen>) -> Vec<IterationRecord> {
-    // The last state may not have been evaluated.
-    seen.resize(iterations.len(), (ContactCounts::default(), 0, 0.0, Acted::default()));
-    let record = |(newton, (contacts, flips, stabilization, acted)): (newton::Iteration, Seen)| IterationRecord {
-        newton,
-        contacts,
-        flips,
-        pass: 1,
-        stabilization,
-        acted: Acted { downhill: usize::from(newton.searched), ..acted },
-    };
-    iterations.into_iter().zip(seen).map(record).collect()
 }
 
 /// The start value of an increment, and whether it is another one than the committed displacement.

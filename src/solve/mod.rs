@@ -60,7 +60,7 @@ impl Workspace {
 }
 
 /// One row of the convergence record.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct IterationRecord {
     /// residual, correction, linear residual
     pub newton: Iteration,
