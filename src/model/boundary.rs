@@ -334,7 +334,7 @@ impl Dashpot {
 /// n and tangent s. Plane waves that meet the side at a right angle leave as if the body went on.
 ///
 /// Source: Lysmer & Kuhlemeyer (1969), J. Eng. Mech. Div. ASCE 95, 859.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Absorber {
     /// the node
     pub node: usize,

@@ -68,7 +68,7 @@ struct Constants {
     supports: Vec<Direction>,
     /// Stiffnesses of springs, and coefficients of dashpots
     at_dofs: [Vec<(usize, f64)>; 2],
-    absorbers: Vec<(usize, [f64; 4])>,
+    absorbers: Vec<Absorber>,
     damping: Vec<Damping>,
 }
 
@@ -76,12 +76,11 @@ impl Constants {
     fn of(model: &Model, step: &Step) -> Self {
         let springs = step.loads.springs.iter().map(|&Spring { dof, stiffness, .. }| (dof, stiffness)).collect();
         let dashpots = step.loads.dashpots.iter().map(|&Dashpot { dof, coefficient, .. }| (dof, coefficient)).collect();
-        let absorber = |Absorber { node, coefficients: c }: &Absorber| (*node, [c[0], c[1], c[2], c[3]]);
         Self {
             scheme: step.scheme,
             supports: step.supports.iter().map(|support| support.at).collect(),
             at_dofs: [springs, dashpots],
-            absorbers: step.loads.absorbers.iter().map(absorber).collect(),
+            absorbers: step.loads.absorbers.clone(),
             damping: model.dampings(step),
         }
     }
