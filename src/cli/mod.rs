@@ -66,11 +66,8 @@ pub fn law(path: &Path, out: Option<PathBuf>) -> Result<(), Failure> {
         case: path.display().to_string(),
         title: input.title,
         units: input.units,
-        section: None,
         friction: [("law".into(), input.friction)].into(),
-        wave_speeds: [0.0; 3],
-        front_slip_rate: None,
-        understood: Vec::new(),
+        ..About::default()
     };
     let begun =
         LawSummary { ending: Ending::running(&folder.files), about: about.clone(), report: LawReport::default() };

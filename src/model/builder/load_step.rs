@@ -15,7 +15,7 @@ use crate::model::step::Part;
 pub const MET: f64 = 1e-6;
 
 /// A step: a time span with its scheme and increments, supports and loads.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Step")]
 pub struct LoadStep {
@@ -215,20 +215,7 @@ impl Support {
 impl LoadStep {
     /// A step that changes nothing yet.
     pub fn new(name: impl Into<String>, duration: f64) -> Self {
-        Self {
-            name: name.into(),
-            duration,
-            scheme: None,
-            dt: None,
-            stabilize: None,
-            rupture: None,
-            velocity: BTreeMap::new(),
-            damping: BTreeMap::new(),
-            until: None,
-            temperature: BTreeMap::new(),
-            supports: Vec::new(),
-            loads: Vec::new(),
-        }
+        Self { name: name.into(), duration, ..Self::default() }
     }
 
     /// With another time scheme.

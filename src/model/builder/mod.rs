@@ -72,6 +72,7 @@ use crate::model::linkage::Linkage;
 use crate::model::{Damping, Memories, Model, NewtonSettings};
 
 /// What a model is made of; [`Builder::build`] checks it and makes the model.
+#[derive(Default)]
 pub struct Builder {
     pub(crate) mesh: Mesh,
     pub(crate) title: String,
@@ -94,23 +95,7 @@ pub struct Builder {
 impl Model {
     /// A model from code: what is on the mesh, and what happens to it.
     pub fn builder(mesh: Mesh) -> Builder {
-        Builder {
-            mesh,
-            title: String::new(),
-            bodies: Vec::new(),
-            unknown: None,
-            point_masses: Vec::new(),
-            periodic: Vec::new(),
-            plates: Vec::new(),
-            contacts: Vec::new(),
-            velocities: Vec::new(),
-            steps: Vec::new(),
-            watch: Vec::new(),
-            newton: NewtonSettings::default(),
-            interval: None,
-            times: Vec::new(),
-            gauges: Vec::new(),
-        }
+        Builder { mesh, ..Builder::default() }
     }
 }
 
