@@ -83,7 +83,7 @@ impl DenseLu {
         self.rows = vec![0; size];
         self.places = vec![0; size];
         let needed = factor::lu_in_place_scratch::<usize, f64>(size, size, Par::Seq, Default::default());
-        self.room = Some(MemBuffer::new(needed.or(solve::solve_in_place_scratch::<usize, f64>(size, 1, Par::Seq))));
+        self.room = Some(MemBuffer::new(needed));
     }
 }
 
@@ -99,12 +99,10 @@ impl LinearSolver for DenseLu {
     }
 
     fn solve(&mut self, b: &mut [f64]) {
-        let Self { size, factors, rows, places, room } = self;
-        let Some(room) = room else { return b.fill(f64::NAN) };
-        let lu = MatRef::from_column_major_slice(factors, *size, *size);
-        let right = MatMut::from_column_major_slice_mut(b, *size, 1);
-        let exchanges = PermRef::new_checked(rows, places, *size);
-        solve::solve_in_place_with_conj(lu, lu, exchanges, faer::Conj::No, right, Par::Seq, MemStack::new(room));
+        match self.room {
+            Some(_) => self.solve_columns(b),
+            None => b.fill(f64::NAN),
+        }
     }
 }
 

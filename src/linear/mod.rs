@@ -104,12 +104,12 @@ const HOPELESS: f64 = 1e-6;
 /// Source: Arioli, Demmel & Duff (1989), Solving sparse linear systems with sparse backward error, doi:10.1137/0610013.
 pub fn solve(solver: &mut dyn LinearSolver, matrix: &SparseMatrix, b: &[f64]) -> Result<Solution, LinearFailure> {
     solver.factorize(matrix)?;
-    let mut solution = refined(solver, matrix, b);
+    let mut solution = refined(solver, matrix, b, REFINEMENTS);
     let stalled = |solution: &Solution| solution.backward_error.is_nan() || solution.backward_error > STALLED;
     if stalled(&solution) && matrix.values.iter().chain(b).all(|value| value.is_finite()) {
         let mut other = SparseLu::default();
         if other.factorize(matrix).is_ok() {
-            let second = refined(&mut other, matrix, b);
+            let second = refined(&mut other, matrix, b, REFINEMENTS);
             if second.backward_error < solution.backward_error || solution.backward_error.is_nan() {
                 let perturbed_pivots = solution.perturbed_pivots;
                 solution = Solution { perturbed_pivots, fallback: true, ..second };
@@ -127,25 +127,18 @@ pub fn solve(solver: &mut dyn LinearSolver, matrix: &SparseMatrix, b: &[f64]) ->
 
 /// Solve A x = b with the factors of an earlier [`solve`] on the same A, as they are.
 pub fn solve_again(solver: &mut dyn LinearSolver, matrix: &SparseMatrix, b: &[f64]) -> Solution {
-    let mut x = b.to_vec();
-    solver.solve(&mut x);
-    if solver.is_stable() {
-        return stable(matrix, x, b);
-    }
-    let (residual, backward_error) = backward_error(matrix, &x, b);
-    let perturbed_pivots = solver.perturbed_pivots();
-    Solution { x, residual: relative(&residual, b), backward_error, perturbed_pivots, fallback: false }
+    refined(solver, matrix, b, 0)
 }
 
-/// Solve with the last factors, and refine as long as it helps.
-fn refined(solver: &mut dyn LinearSolver, matrix: &SparseMatrix, b: &[f64]) -> Solution {
+/// Solve with the last factors, and refine so many times at most, as long as it helps.
+fn refined(solver: &mut dyn LinearSolver, matrix: &SparseMatrix, b: &[f64], most: usize) -> Solution {
     let mut x = b.to_vec();
     solver.solve(&mut x);
     if solver.is_stable() {
         return stable(matrix, x, b);
     }
     let (mut residual, mut backward_error) = backward_error(matrix, &x, b);
-    for _ in 0..REFINEMENTS {
+    for _ in 0..most {
         if backward_error <= EXACT {
             break;
         }
