@@ -4,6 +4,7 @@
 //! What is worth a warning at one point of a contact.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
@@ -29,7 +30,7 @@ use crate::time::touching::DOUBT;
 const UNSEEN: f64 = 0.05;
 
 /// Collects warnings; each kind once a contact or step, where it is met first.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Default, Serialize, Deserialize)]
 pub struct Warnings {
     /// the warnings so far
     pub list: Vec<String>,
@@ -46,7 +47,15 @@ pub struct Warnings {
     closed: BTreeSet<usize>,
     /// The balance of energies so far
     pub audit: Audit,
+    /// Who is told of them as they come, and of how many that is done
+    #[serde(skip)]
+    warn: Option<Warn>,
+    #[serde(skip)]
+    told: usize,
 }
+
+/// Who is told a warning.
+pub type Warn = Arc<dyn Fn(&str) + Send + Sync>;
 
 impl Observer for Warnings {
     fn name(&self) -> &'static str {
@@ -58,7 +67,9 @@ impl Observer for Warnings {
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        *self = csv::recalled(memory)?;
+        *self = Self { warn: self.warn.take(), ..csv::recalled(memory)? };
+        // Those were told when they came.
+        self.told = self.list.len();
         Ok(())
     }
 
@@ -92,6 +103,7 @@ impl Observer for Warnings {
                 self.deep_master_node(number, pair, state, &x);
             }
         }
+        self.tell();
         Ok(())
     }
 
@@ -103,11 +115,22 @@ impl Observer for Warnings {
             self.list.push(format!("contact `{name}` has never closed: {near}"));
         }
         self.list.extend(self.audit.concern());
+        self.tell();
         Ok(())
     }
 }
 
 impl Warnings {
+    /// After those of a model, which have been told already: `warn` is told all others as they come.
+    pub fn aloud(list: Vec<String>, warn: Warn) -> Self {
+        Self { told: list.len(), list, warn: Some(warn), ..Self::default() }
+    }
+
+    fn tell(&mut self) {
+        self.warn.iter().for_each(|warn| self.list[self.told..].iter().for_each(|warning| warn(warning)));
+        self.told = self.list.len();
+    }
+
     /// Points that have left what small sliding keeps, closed or not: an open one may miss what it would touch.
     fn no_small_sliding(
         &mut self,

@@ -24,12 +24,14 @@ use crate::output::folder::Folder;
 use crate::output::friction_course::FrictionCourse;
 use crate::output::fronts::Fronts;
 use crate::output::summary::{self, About, Ending, Summary};
+pub use crate::output::warnings::Warn;
+use crate::output::warnings::Warnings;
 use crate::run::control::RunReport;
 use crate::run::error::Error;
 use crate::run::observer::Observer;
 use crate::run::{SavedRun, Simulation, watch_with};
 use keeper::Keeper;
-use outputs::{Aloud, Outputs, files};
+use outputs::{Outputs, files};
 
 /// Why a job cannot begin; nothing was written.
 #[derive(Debug, Error)]
@@ -207,8 +209,8 @@ impl Work {
         if !resumes {
             summary::write(first, &folder.path)?;
         }
-        let aloud = Aloud::new(model.warnings(), warn);
-        let mut outputs = Outputs::open(&folder.path, model, &opened.case, saved.as_ref(), aloud)?;
+        let warnings = Warnings::aloud(model.warnings(), warn);
+        let mut outputs = Outputs::open(&folder.path, model, &opened.case, saved.as_ref(), warnings)?;
         let mut observers = outputs.observers();
         if let Some(progress) = &mut progress {
             observers.push(&mut **progress);
@@ -228,15 +230,12 @@ impl Work {
         drop(observers);
         self.courses = outputs.courses(model);
         self.chatter = outputs.fronts.as_ref().map(Fronts::chatter);
-        self.supplied = outputs.aloud.warnings.audit.supplied;
-        self.warnings = std::mem::take(&mut outputs.aloud.warnings.list);
+        self.supplied = outputs.warnings.audit.supplied;
+        self.warnings = std::mem::take(&mut outputs.warnings.list);
         self.warnings.extend(keeper.concern);
         result
     }
 }
-
-/// Who is told a warning.
-pub type Warn = Arc<dyn Fn(&str) + Send + Sync>;
 
 /// Why a run is to end before its time, if it is.
 pub type Ends = Arc<dyn Fn() -> Option<Error> + Send + Sync>;

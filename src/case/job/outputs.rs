@@ -1,12 +1,9 @@
 //! The observers of a run, and the files they write.
-//!
-//! Warnings that are told as they come, each once.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::Warn;
 use crate::case::file::Case;
 use crate::model::Model;
 use crate::output::fields::{Fields, Frames};
@@ -21,7 +18,7 @@ use crate::output::warnings::Warnings;
 use crate::output::{checkpoint, report};
 use crate::run::SavedRun;
 use crate::run::error::Error;
-use crate::run::observer::{Attempt, Observer};
+use crate::run::observer::Observer;
 
 /// What a run writes beside `summary.json`; folders of frames end in `/`.
 pub(super) fn files(case: &Case, model: &Model) -> Vec<&'static str> {
@@ -62,7 +59,7 @@ fn frames(case: &Case) -> Frames {
 pub(super) struct Outputs {
     history: Option<History>,
     newton_log: Option<NewtonLog>,
-    pub aloud: Aloud,
+    pub warnings: Warnings,
     interface: Option<InterfaceStore>,
     probes: Option<Probes>,
     fields: Option<Fields>,
@@ -76,7 +73,7 @@ impl Outputs {
         model: &Arc<Model>,
         case: &Case,
         saved: Option<&SavedRun>,
-        aloud: Aloud,
+        warnings: Warnings,
     ) -> Result<Self, Error> {
         let start = saved.map_or_else(|| model.initial_state(), |saved| saved.simulation().state().clone());
         let goes_on = |name: &str| saved.is_some_and(|saved| saved.remembers(name));
@@ -86,7 +83,7 @@ impl Outputs {
         let mut outputs = Self {
             history: goes_on("history").then(|| History::reopen(folder, model)).transpose()?,
             newton_log: goes_on("newton").then(|| NewtonLog::reopen(folder, model)).transpose()?,
-            aloud,
+            warnings,
             interface: (goes_on("interface") && has_contacts).then(store),
             probes: goes_on("probes").then(|| Probes::reopen(folder, model)).transpose()?,
             fields: (goes_on("fields") && has_fields).then(series).transpose()?,
@@ -125,62 +122,17 @@ impl Outputs {
         fn watch<'a>(observer: &'a mut Option<impl Observer + 'a>) -> Option<&'a mut (dyn Observer + 'a)> {
             observer.as_mut().map(|observer| observer as &mut dyn Observer)
         }
-        let Self { history, newton_log, aloud, interface, probes, fields, fronts } = self;
-        let aloud: Option<&mut dyn Observer> = Some(aloud);
-        let all =
-            [watch(history), watch(newton_log), aloud, watch(interface), watch(probes), watch(fields), watch(fronts)];
+        let Self { history, newton_log, warnings, interface, probes, fields, fronts } = self;
+        let warnings: Option<&mut dyn Observer> = Some(warnings);
+        let all = [
+            watch(history),
+            watch(newton_log),
+            warnings,
+            watch(interface),
+            watch(probes),
+            watch(fields),
+            watch(fronts),
+        ];
         all.into_iter().flatten().collect()
-    }
-}
-
-/// The warnings of a run, and who tells them.
-pub(super) struct Aloud {
-    pub warnings: Warnings,
-    warn: Warn,
-    /// how many have been told
-    told: usize,
-}
-
-impl Aloud {
-    /// With the warnings that have been told already.
-    pub fn new(list: Vec<String>, warn: Warn) -> Self {
-        let told = list.len();
-        let mut warnings = Warnings::default();
-        warnings.list = list;
-        Self { warnings, warn, told }
-    }
-
-    fn tell(&mut self) {
-        self.warnings.list[self.told..].iter().for_each(|warning| (self.warn)(warning));
-        self.told = self.warnings.list.len();
-    }
-}
-
-impl Observer for Aloud {
-    fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
-        let recorded = self.warnings.record(model, attempt);
-        self.tell();
-        recorded
-    }
-
-    fn name(&self) -> &'static str {
-        self.warnings.name()
-    }
-
-    fn save(&mut self) -> Result<Vec<u8>, Error> {
-        self.warnings.save()
-    }
-
-    fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        self.warnings.restore(memory)?;
-        // Those were told when they came.
-        self.told = self.warnings.list.len();
-        Ok(())
-    }
-
-    fn finish(&mut self) -> Result<(), Error> {
-        let finished = self.warnings.finish();
-        self.tell();
-        finished
     }
 }
