@@ -3,19 +3,29 @@
 //! A mesh comes from a gmsh file ([`gmsh::read`]), from blocks ([`Blocks`]), or node by node from the case file or from code
 //! ([`InlineMesh::build`]). Readers only fill in a raw mesh; one check turns it into a [`Mesh`], so that a mesh keeps its promises wherever it comes from.
 
-pub mod boxes;
 mod check;
 pub mod configuration;
 mod error;
-pub mod few;
 pub mod gmsh;
 mod inline;
-pub mod joined;
 pub mod names;
 pub mod section;
 pub mod shape;
-pub mod ties;
 mod transfinite;
+
+cfg_if::cfg_if! {
+    if #[cfg(feature = "internals")] {
+        pub mod boxes;
+        pub mod few;
+        pub mod joined;
+        pub mod ties;
+    } else {
+        pub(crate) mod boxes;
+        pub(crate) mod few;
+        pub(crate) mod joined;
+        pub(crate) mod ties;
+    }
+}
 
 use std::collections::BTreeMap;
 

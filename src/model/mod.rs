@@ -1,22 +1,32 @@
 //! The problem to solve: mesh, bodies, contact pairs, and the steps with their supports, loads and schemes.
 
-pub mod aids;
 mod balance;
 mod body;
 pub mod boundary;
 pub mod builder;
-pub mod element;
 mod expression;
 pub mod imposed;
-pub mod linkage;
 pub mod method;
 pub mod scheme;
 pub mod state;
 pub mod step;
 pub mod support;
-pub mod told;
 pub mod warnings;
 pub(crate) mod written;
+
+cfg_if::cfg_if! {
+    if #[cfg(feature = "internals")] {
+        pub mod aids;
+        pub mod element;
+        pub mod linkage;
+        pub mod told;
+    } else {
+        pub(crate) mod aids;
+        pub(crate) mod element;
+        pub(crate) mod linkage;
+        pub(crate) mod told;
+    }
+}
 
 use std::sync::Arc;
 
