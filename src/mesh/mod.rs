@@ -4,25 +4,28 @@
 //! ([`InlineMesh::build`]). Readers only fill in a raw mesh; one check turns it into a [`Mesh`], so that a mesh keeps its promises wherever it comes from.
 
 mod check;
-pub mod configuration;
 mod error;
 pub mod gmsh;
 mod inline;
-pub mod names;
 pub mod section;
-pub mod shape;
 mod transfinite;
 
 cfg_if::cfg_if! {
     if #[cfg(feature = "internals")] {
         pub mod boxes;
+        pub mod configuration;
         pub mod few;
         pub mod joined;
+        pub mod names;
+        pub mod shape;
         pub mod ties;
     } else {
         pub(crate) mod boxes;
+        pub(crate) mod configuration;
         pub(crate) mod few;
         pub(crate) mod joined;
+        pub(crate) mod names;
+        pub(crate) mod shape;
         pub(crate) mod ties;
     }
 }
@@ -32,12 +35,12 @@ use std::collections::BTreeMap;
 use nalgebra::Vector2;
 
 use crate::mesh::configuration::Configuration;
-use crate::mesh::section::Section;
-use crate::mesh::shape::ElementKind;
 
 pub use error::MeshError;
 pub use inline::InlineMesh;
 pub use names::UnknownGroup;
+pub use section::Section;
+pub use shape::ElementKind;
 pub use transfinite::{Block, BlockError, BlockKind, Blocks, Grading};
 
 /// A solid element: its kind and its nodes, counter-clockwise.

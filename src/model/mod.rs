@@ -5,26 +5,32 @@ mod body;
 pub mod boundary;
 pub mod builder;
 mod expression;
-pub mod imposed;
-pub mod method;
-pub mod scheme;
 pub mod state;
-pub mod step;
-pub mod support;
-pub mod warnings;
 pub(crate) mod written;
 
 cfg_if::cfg_if! {
     if #[cfg(feature = "internals")] {
         pub mod aids;
         pub mod element;
+        pub mod imposed;
         pub mod linkage;
+        pub mod method;
+        pub mod scheme;
+        pub mod step;
+        pub mod support;
         pub mod told;
+        pub mod warnings;
     } else {
         pub(crate) mod aids;
         pub(crate) mod element;
+        pub(crate) mod imposed;
         pub(crate) mod linkage;
+        pub(crate) mod method;
+        pub(crate) mod scheme;
+        pub(crate) mod step;
+        pub(crate) mod support;
         pub(crate) mod told;
+        pub(crate) mod warnings;
     }
 }
 
@@ -44,7 +50,11 @@ use boundary::Loads;
 use element::{SolidElement, consistent_mass, lumped_mass, redistributed};
 use linkage::Linkage;
 use method::Chosen;
-use state::{Energy, State, StepStart};
+use state::StepStart;
+pub use imposed::{InitialStress, Thermal};
+pub use method::Method;
+pub use scheme::Scheme;
+pub use state::{Energy, State};
 pub use step::{Increments, Rupture, Step};
 
 /// When Newton's method stops.

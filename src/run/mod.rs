@@ -1,26 +1,38 @@
 //! The run: step after step, increment after increment, with cut-back, and observers that see every attempt.
 
-pub mod access;
 mod attempt;
-pub mod control;
 pub mod error;
 pub mod law;
 pub mod observer;
-pub mod simulation;
+
+cfg_if::cfg_if! {
+    if #[cfg(feature = "internals")] {
+        pub mod access;
+        pub mod control;
+        pub mod simulation;
+    } else {
+        pub(crate) mod access;
+        pub(crate) mod control;
+        pub(crate) mod simulation;
+    }
+}
 
 use std::sync::Arc;
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::Model;
-use crate::model::state::State;
+use crate::model::{Model, State};
 use crate::run::error::Error;
 use crate::run::observer::Observer;
 pub use access::{Axis, Unknown};
-use control::RunReport;
-pub use control::{Candidate, Increment};
-pub use simulation::{Saved, Simulation};
+pub use control::{Candidate, Increment, RunReport, WallSeconds};
+pub use simulation::{Pause, Saved, Simulation};
+
+pub use crate::equations::ContactCounts;
+pub use crate::solve::IterationRecord;
+pub use crate::solve::failure::IncrementFailure;
+pub use crate::solve::newton::Iteration;
 
 /// Run all steps of a model. The report comes back from a stopped run as well.
 ///
