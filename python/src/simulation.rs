@@ -204,7 +204,7 @@ impl Simulation {
     /// Bounds of the increments of the step under way [T].
     fn increments(&self, py: Python, max: Option<f64>, min: Option<f64>) -> PyResult<()> {
         let bounded = self.with(|under_way| Ok(under_way.run.bound_increments(max, min)))?;
-        bounded.map_err(|ModelError { place, message }| {
+        bounded.map_err(|ModelError { place, message, .. }| {
             complaint(py, "increments", place.trim_start_matches("increments").trim_start_matches('.'), message)
         })
     }

@@ -51,6 +51,7 @@ pub struct Evaluation {
 
 /// Numbers of contact points by status.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ContactCounts {
     /// open
     pub open: usize,

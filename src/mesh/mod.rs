@@ -45,6 +45,7 @@ pub use transfinite::{Block, BlockError, BlockKind, Blocks, Grading};
 
 /// A solid element: its kind and its nodes, counter-clockwise.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Element {
     /// kind
     pub kind: ElementKind,
@@ -54,6 +55,7 @@ pub struct Element {
 
 /// An edge of the boundary of a body, oriented so that the body lies on its left.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Edge {
     /// node numbers: start, end, and the middle node of a quadratic edge
     pub nodes: Vec<usize>,
@@ -63,6 +65,7 @@ pub struct Edge {
 
 /// A named set of the mesh.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub enum Group {
     /// Solid elements (a gmsh physical surface), by element number, ascending
     Elements(Vec<usize>),
@@ -74,6 +77,7 @@ pub enum Group {
 
 /// A checked mesh: every node is used, every element is counter-clockwise, has positive area and belongs to one body.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Mesh {
     /// X: reference position of each node [L]
     pub nodes: Vec<Vector2<f64>>,

@@ -9,6 +9,7 @@ use super::few::Few;
 
 /// Kind of a solid element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum ElementKind {
     /// Linear triangle, 3 nodes
     T3,

@@ -48,6 +48,8 @@ pub struct PointMass {
 // C = η M + τ K, K being that of `laws::bulk`'s viscous stress.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct Damping {
     /// Force per momentum: damps slow motions most, free flight included [1/T]
     pub mass: f64,
@@ -55,6 +57,18 @@ pub struct Damping {
     /// and makes explicit increments shorter [T]
     #[serde(rename = "stiffness")]
     pub retardation: f64,
+}
+
+impl Damping {
+    /// With a force per momentum [1/T].
+    pub fn mass(self, mass: f64) -> Self {
+        Self { mass, ..self }
+    }
+
+    /// With a viscous stress: this time times the elastic stress of the rate of strain [T].
+    pub fn retardation(self, retardation: f64) -> Self {
+        Self { retardation, ..self }
+    }
 }
 
 /// The part of every element in [`State::memory`](super::state::State::memory): one behind the other in the elements' order, as long

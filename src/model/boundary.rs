@@ -12,6 +12,7 @@ use super::written::written;
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(remote = "Self", rename_all = "snake_case")]
 #[schemars(!remote)]
+#[non_exhaustive]
 pub enum Drive {
     /// Value at the start of the step plus rate × time since [1/T]
     Rate(f64),
@@ -45,6 +46,7 @@ written!(
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(remote = "Self", rename_all = "snake_case")]
 #[schemars(rename = "Temperature")]
+#[non_exhaustive]
 pub enum BodyTemperature {
     /// Value at the start of the step plus rate × time since [1/T]
     Rate(f64),
@@ -95,6 +97,7 @@ impl From<&BodyTemperature> for Drive {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(remote = "Self", rename_all = "snake_case")]
 #[schemars(!remote)]
+#[non_exhaustive]
 pub enum Profile {
     /// Pairs of x and value, x ascending
     X(Vec<[f64; 2]>),

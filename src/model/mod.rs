@@ -48,12 +48,12 @@ use aids::Aids;
 pub use body::{Body, Damping, Memories, PointMass};
 use boundary::Loads;
 use element::{SolidElement, consistent_mass, lumped_mass, redistributed};
+pub use imposed::{InitialStress, Thermal};
 use linkage::Linkage;
 use method::Chosen;
-use state::StepStart;
-pub use imposed::{InitialStress, Thermal};
 pub use method::Method;
 pub use scheme::Scheme;
+use state::StepStart;
 pub use state::{Energy, State};
 pub use step::{Increments, Rupture, Step};
 
@@ -61,11 +61,25 @@ pub use step::{Increments, Rupture, Step};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 #[schemars(rename = "Newton")]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct NewtonSettings {
     /// Out-of-balance force relative to the forces at work
     pub tolerance: f64,
     /// Linear solves an increment before it is cut
     pub max_iterations: usize,
+}
+
+impl NewtonSettings {
+    /// With another tolerance [-].
+    pub fn tolerance(self, tolerance: f64) -> Self {
+        Self { tolerance, ..self }
+    }
+
+    /// With another limit of linear solves.
+    pub fn max_iterations(self, max_iterations: usize) -> Self {
+        Self { max_iterations, ..self }
+    }
 }
 
 impl Default for NewtonSettings {
@@ -87,6 +101,7 @@ pub struct WatchedSet {
 
 /// The model; it does not change while it is solved.
 #[derive(Debug)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Model {
     /// title
     pub title: String,

@@ -9,6 +9,7 @@ use crate::contact::force::ContactState;
 
 /// The accepted state at the end of an increment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct State {
     /// t [T]
     pub time: f64,
@@ -85,6 +86,7 @@ pub struct StepStart {
 
 /// Energies [F·L]; the dissipations and the external work are totals since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Energy {
     /// ½ vᵀ M v
     pub kinetic: f64,

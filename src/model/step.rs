@@ -23,6 +23,7 @@ use super::support::{Direction, Motion, Prescribed};
 
 /// How increments are chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Increments {
     /// first Δt [T]
     pub initial: f64,
@@ -44,6 +45,7 @@ impl Increments {
 
 /// A step: a time span with its supports, loads, scheme and increments.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Step {
     /// name, for messages and output
     pub name: String,

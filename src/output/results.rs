@@ -8,6 +8,7 @@ use vtkio::model::{Attribute, Attributes, DataSet, UnstructuredGridPiece, Vertex
 
 /// A frame that is listed.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Frame {
     /// [T]
     pub time: f64,
@@ -17,6 +18,7 @@ pub struct Frame {
 
 /// Values at the points or cells of a grid.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Array {
     /// what they are
     pub name: String,
@@ -28,6 +30,7 @@ pub struct Array {
 
 /// Points and cells with what is known there.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Grid {
     /// places before anything moves [L]
     pub points: Vec<[f64; 2]>,

@@ -8,6 +8,7 @@ use crate::solve::failure::IncrementFailure;
 
 /// Why a run stopped.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum Error {
     /// An increment cannot be made small enough.
     #[error("step `{step}` stopped at time {}: {cause} (increment {dt:.3e}, smallest allowed {min:.3e}){suspicion}", told(*time))]

@@ -18,6 +18,7 @@ use crate::run::error::Error;
 
 /// A test of a law: where it starts and where it is led.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct LawTest {
     /// the law
     pub law: Box<dyn FrictionLaw>,
@@ -93,6 +94,7 @@ pub struct Phase {
 
 /// Slip or pressure over one phase.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Course {
     /// how it varies
     pub drive: Drive,
@@ -102,6 +104,7 @@ pub struct Course {
 
 /// A quantity of the path has no finite value.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Undefined {
     /// "slip" or "pressure"
     pub quantity: &'static str,
@@ -318,6 +321,7 @@ fn highest(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
 
 /// One step along the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LawRow {
     /// t [T]
     pub time: f64,
@@ -331,6 +335,7 @@ pub struct LawRow {
 
 /// A point of the path, as far as peaks and holds are concerned.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct PathPoint {
     /// t [T]
     pub time: f64,
@@ -352,6 +357,7 @@ impl PathPoint {
 
 /// A time without slip, and the peak of friction in the slip that follows.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Hold {
     /// its length [T]
     pub duration: f64,
@@ -361,6 +367,7 @@ pub struct Hold {
 
 /// Peaks of |q|/p: over all steps, and after every hold.
 #[derive(Clone, Debug, Default, Serialize)]
+#[non_exhaustive]
 pub struct Peaks {
     /// the highest |q|/p at the end of a step, the first where several are equal
     pub peak: Option<PathPoint>,
@@ -393,6 +400,7 @@ impl Peaks {
 
 /// What a test of a law amounts to.
 #[derive(Clone, Debug, Default, Serialize)]
+#[non_exhaustive]
 pub struct LawReport {
     /// steps answered
     pub steps: usize,

@@ -54,6 +54,7 @@ pub fn watch(simulation: &mut Simulation, observers: &mut [&mut dyn Observer]) -
 
 /// Where a run is when something is done between its attempts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Moment {
     /// Before an attempt, or after the last one
     Between,
@@ -120,6 +121,7 @@ type Memories = Vec<(String, Vec<u8>)>;
 
 /// A run and its observers as they were.
 #[derive(Clone)]
+#[must_use]
 pub struct SavedRun {
     simulation: Saved,
     observers: Memories,
@@ -165,7 +167,6 @@ impl SavedRun {
     }
 
     /// The place it has come to, for another run with its own observers to begin from: [`Saved::begin`].
-    #[must_use]
     pub fn begin(self) -> Self {
         Self { simulation: self.simulation.begin(), observers: Vec::new() }
     }

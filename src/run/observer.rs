@@ -20,6 +20,7 @@ use crate::solve::newton::NewtonFailure;
 
 /// An attempt at one increment, accepted or not.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Attempt<'a> {
     /// the step
     pub step: &'a Step,
@@ -82,6 +83,7 @@ const ROUND_OFF: f64 = 1e-9;
 
 /// What becomes of an increment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Row {
     /// It is a row
     Written,
@@ -93,6 +95,7 @@ pub enum Row {
 
 /// What became of an attempt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Verdict {
     /// It led to a new state, or paused on its way there.
     Accepted,

@@ -284,6 +284,7 @@ impl Iterator for Simulation {
 /// A run as it was: state, control and counts, for the same model. What is computed after [`super::Simulation::resume`] has the same
 /// bits as if the run had never stopped.
 #[derive(Clone)]
+#[must_use]
 pub struct Saved {
     pub(super) step: Arc<Step>,
     pub(super) state: Arc<State>,
@@ -367,7 +368,6 @@ impl Saved {
     }
 
     /// The same place, from where another run begins: it counts its increments, and the energies that come and go, from here.
-    #[must_use]
     pub fn begin(mut self) -> Self {
         let mut state = State::clone(&self.state);
         let Energy { kinetic, strain, contact_elastic, .. } = state.energy;

@@ -18,6 +18,7 @@ use crate::model::{Body, Model, Step};
 
 /// Why one increment failed; a smaller one may succeed.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum IncrementFailure {
     /// Newton's method found no equilibrium.
     #[error(transparent)]

@@ -61,6 +61,7 @@ impl Workspace {
 
 /// One row of the convergence record.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct IterationRecord {
     /// residual, correction, linear residual
     pub newton: Iteration,

@@ -50,6 +50,7 @@ pub struct Settings {
 
 /// One linear solve, and where it led.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Iteration {
     /// ‖r‖/‖f‖ of the worst part after the correction; NaN if the corrected state could not be evaluated [-]
     pub residual: f64,

@@ -7,12 +7,26 @@ use crate::laws::parameter::{InvalidParameter, numbers, require, require_positiv
 /// Parameters of [`PrescribedSlip`] as the case file writes them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct PrescribedSlipParameters {
     /// V: slip rate of the slave along +s, of either sign [L/T]
     pub slip_rate: f64,
     /// α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies [F/L³]
     #[serde(default)]
     pub alpha_t: Option<f64>,
+}
+
+impl PrescribedSlipParameters {
+    /// With the tangential stiffness left to the contact.
+    pub fn new(slip_rate: f64) -> Self {
+        Self { slip_rate, alpha_t: None }
+    }
+
+    /// With this tangential stiffness [F/L³].
+    pub fn alpha_t(self, alpha_t: f64) -> Self {
+        Self { alpha_t: Some(alpha_t), ..self }
+    }
 }
 
 numbers!(PrescribedSlipParameters: "slip_rate" slip_rate; "alpha_t" alpha_t);

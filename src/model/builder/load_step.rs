@@ -18,6 +18,8 @@ pub const MET: f64 = 1e-6;
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Step")]
+#[non_exhaustive]
+#[must_use]
 pub struct LoadStep {
     /// Name in messages and results
     pub name: String,
@@ -65,6 +67,8 @@ pub struct LoadStep {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Increments")]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct IncrementSettings {
     /// First increment [T]
     pub initial: f64,
@@ -85,6 +89,23 @@ impl From<f64> for IncrementSettings {
     }
 }
 
+impl IncrementSettings {
+    /// Never cut below this [T].
+    pub fn min(self, min: f64) -> Self {
+        Self { min: Some(min), ..self }
+    }
+
+    /// Never growing beyond this [T].
+    pub fn max(self, max: f64) -> Self {
+        Self { max: Some(max), ..self }
+    }
+
+    /// As long as their estimated error stays below this [L].
+    pub fn error(self, error: f64) -> Self {
+        Self { error: Some(error), ..self }
+    }
+}
+
 /// When a step goes on explicitly, and returns to its own scheme. An increment in which a contact point slips faster than
 /// `slip_rate`, or that cannot be solved, is halved down to `dt.min` and, if that does not help, made explicitly. The step
 /// returns when no point has slipped that fast, on the mean of the time that a shear wave takes across the model. What slides
@@ -93,6 +114,8 @@ impl From<f64> for IncrementSettings {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Rupture")]
+#[non_exhaustive]
+#[must_use]
 pub struct RuptureSettings {
     /// Slip rate above which increments are explicit [L/T]
     pub slip_rate: f64,
@@ -101,12 +124,26 @@ pub struct RuptureSettings {
     pub safety: f64,
 }
 
+impl From<f64> for RuptureSettings {
+    fn from(slip_rate: f64) -> Self {
+        Self { slip_rate, safety: nine_tenths() }
+    }
+}
+
+impl RuptureSettings {
+    /// Explicit increments as another share of the longest that is stable [-].
+    pub fn safety(self, safety: f64) -> Self {
+        Self { safety, ..self }
+    }
+}
+
 /// A reaction that ends a step: displacement control up to a force. The increment in which the force passes its value is made
 /// shorter until it has it. Supports that were to come to a value stay where the step has ended; tables and expressions go on by
 /// the time of the run. Exactly one of `fx`, `fy` and `force` is given
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Until")]
+#[non_exhaustive]
 pub struct UntilSettings {
     /// Whose reaction: what supports put on these nodes
     pub on: Place,
@@ -138,6 +175,8 @@ impl UntilSettings {
 /// A support on a group or a node.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct Support {
     /// Where
     pub on: Place,
@@ -167,6 +206,7 @@ pub struct Support {
 /// A rigid rotation.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Rotation {
     /// Centre [L]
     pub about: [f64; 2],
@@ -247,9 +287,9 @@ impl LoadStep {
         Self { stabilize: Some(share), ..self }
     }
 
-    /// Going on explicitly while a contact slips faster than this [L/T].
-    pub fn rupture(self, slip_rate: f64) -> Self {
-        Self { rupture: Some(RuptureSettings { slip_rate, safety: nine_tenths() }), ..self }
+    /// Going on explicitly while a contact slips faster than this: a slip rate [L/T], or all settings.
+    pub fn rupture(self, rupture: impl Into<RuptureSettings>) -> Self {
+        Self { rupture: Some(rupture.into()), ..self }
     }
 
     /// With another damping of a body from this step on.
@@ -297,6 +337,8 @@ impl LoadStep {
 /// A load: exactly one kind an entry. It replaces the load of its kind that an earlier step gave there.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct Load {
     /// Where
     pub on: Place,
@@ -363,6 +405,7 @@ pub enum Action<'l> {
 /// Components of a vector; zero unless given.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Components {
     /// x component
     pub x: Option<Drive>,
@@ -393,6 +436,8 @@ impl<D: Into<Drive>> From<[D; 2]> for Change<Components> {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Spring")]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct SpringLoad {
     /// Stiffness in x [F/L]
     #[serde(default)]
@@ -404,10 +449,24 @@ pub struct SpringLoad {
     pub driver: Option<Components>,
 }
 
+impl SpringLoad {
+    /// Of the stiffness along x and along y, to the ground [F/L].
+    pub fn new(kx: f64, ky: f64) -> Self {
+        Self { kx, ky, driver: None }
+    }
+
+    /// To a far end that moves: its displacement [L].
+    pub fn driver(self, driver: impl Into<Components>) -> Self {
+        Self { driver: Some(driver.into()), ..self }
+    }
+}
+
 /// A dashpot: force c (v_driver − v). In statics v is the mean velocity of the increment.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Dashpot")]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct DashpotLoad {
     /// Coefficient in x [F T/L]
     #[serde(default)]
@@ -419,17 +478,41 @@ pub struct DashpotLoad {
     pub driver: Option<Components>,
 }
 
+impl DashpotLoad {
+    /// Of the coefficient along x and along y, to the ground [F T/L].
+    pub fn new(cx: f64, cy: f64) -> Self {
+        Self { cx, cy, driver: None }
+    }
+
+    /// To a far end that moves: its velocity [L/T].
+    pub fn driver(self, driver: impl Into<Components>) -> Self {
+        Self { driver: Some(driver.into()), ..self }
+    }
+}
+
+impl From<SpringLoad> for Change<SpringLoad> {
+    fn from(spring: SpringLoad) -> Self {
+        Self::To(spring)
+    }
+}
+
+impl From<DashpotLoad> for Change<DashpotLoad> {
+    fn from(dashpot: DashpotLoad) -> Self {
+        Self::To(dashpot)
+    }
+}
+
 /// To the ground.
 impl From<[f64; 2]> for Change<SpringLoad> {
     fn from([kx, ky]: [f64; 2]) -> Self {
-        Self::To(SpringLoad { kx, ky, driver: None })
+        Self::To(SpringLoad::new(kx, ky))
     }
 }
 
 /// To the ground.
 impl From<[f64; 2]> for Change<DashpotLoad> {
     fn from([cx, cy]: [f64; 2]) -> Self {
-        Self::To(DashpotLoad { cx, cy, driver: None })
+        Self::To(DashpotLoad::new(cx, cy))
     }
 }
 

@@ -71,6 +71,7 @@ use crate::model::{Damping, Memories, Model, NewtonSettings};
 use body::{GivenBody, GivenMass};
 
 /// What a model is made of; [`Builder::build`] checks it and makes the model.
+#[must_use]
 pub struct Builder {
     mesh: Mesh,
     title: String,

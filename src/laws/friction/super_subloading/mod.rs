@@ -270,6 +270,8 @@ impl FrictionLaw for SuperSubloading {
 /// Parameters of [`SuperSubloading`](super::SuperSubloading) as the case file writes them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct SuperSubloadingParameters {
     /// μ_s: static friction coefficient, μ_s ≥ μ_k [-]
     pub mu_s: f64,
@@ -329,6 +331,51 @@ impl SuperSubloadingParameters {
             integration: Integration::default(),
             tolerance: None,
         }
+    }
+
+    /// Losing strength with slip at the rate κ [1/L].
+    pub fn kappa(self, kappa: f64) -> Self {
+        Self { kappa, ..self }
+    }
+
+    /// Recovering at rest at the rate ξ [1/T].
+    pub fn xi(self, xi: f64) -> Self {
+        Self { xi, ..self }
+    }
+
+    /// With other exponents of weakening and recovery [-].
+    pub fn exponents(self, m: f64, n: f64) -> Self {
+        Self { m, n, ..self }
+    }
+
+    /// Starting with this structure 1/R* [-].
+    pub fn structure(self, structure: f64) -> Self {
+        Self { structure: Some(structure), ..self }
+    }
+
+    /// With another approach to full sliding.
+    pub fn approach(self, approach: Approach) -> Self {
+        Self { approach, ..self }
+    }
+
+    /// With an elastic core R_e [-].
+    pub fn elastic_core(self, elastic_core: f64) -> Self {
+        Self { elastic_core, ..self }
+    }
+
+    /// With another integration of an increment.
+    pub fn integration(self, integration: Integration) -> Self {
+        Self { integration, ..self }
+    }
+
+    /// With another tolerance of the controlled integration [-].
+    pub fn tolerance(self, tolerance: f64) -> Self {
+        Self { tolerance: Some(tolerance), ..self }
+    }
+
+    /// With this tangential stiffness [F/L³].
+    pub fn alpha_t(self, alpha_t: f64) -> Self {
+        Self { alpha_t: Some(alpha_t), ..self }
     }
 }
 
