@@ -37,7 +37,7 @@
 //! ```
 //!
 //! Between two increments supports can be led ([`run::Simulation::lead`]) and loads changed ([`case::loading`]), a candidate can be dropped
-//! ([`run::Simulation::attempt`]), and a run saved and resumed to the same bits ([`run::SavedRun`], in
+//! ([`run::Simulation::try_increment`]), and a run saved and resumed to the same bits ([`run::SavedRun`], in
 //! a file by [`output::checkpoint`]).
 //!
 //! # The way through the house

@@ -31,9 +31,9 @@ fuzz_target!(|text: &str| {
     }
     let mut simulation = Simulation::new(model);
     for _ in 0..3 {
-        let Ok(Some(candidate)) = simulation.attempt() else { return };
+        let Ok(Some(candidate)) = simulation.try_increment() else { return };
         assert!(candidate.state().is_none_or(|state| state.displacement.iter().all(|u| u.is_finite())));
-        if simulation.follow(candidate).is_err() {
+        if simulation.apply(candidate).is_err() {
             return;
         }
     }

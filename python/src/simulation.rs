@@ -265,11 +265,11 @@ impl Simulation {
 /// Attempts until one is accepted; none after the last, nor where the end was asked for.
 fn next(run: &mut Run, ends: &Ends) -> Result<Option<Increment>, Error> {
     while ends().is_none()
-        && let Some(candidate) = run.attempt()?
+        && let Some(candidate) = run.try_increment()?
     {
         let (step, state) = (run.step().name.clone(), candidate.shared_state());
         let iterations = candidate.iterations().len();
-        run.follow(candidate)?;
+        run.apply(candidate)?;
         if let Some(state) = state {
             return Ok(Some(Increment { state, step, iterations }));
         }

@@ -93,7 +93,7 @@ fn attempts(
         let clock = Instant::now();
         between(simulation, observers, Moment::Between)?;
         simulation.observed(clock.elapsed().as_secs_f64());
-        let candidate = match simulation.attempt() {
+        let candidate = match simulation.try_increment() {
             Ok(Some(candidate)) => candidate,
             Ok(None) => return Ok(()),
             Err(error) => {
@@ -103,7 +103,7 @@ fn attempts(
         };
         let clock = Instant::now();
         if candidate.is_paused() {
-            simulation.follow(candidate)?;
+            simulation.apply(candidate)?;
             continue;
         }
         if candidate.stops() {
@@ -112,7 +112,7 @@ fn attempts(
         let told = simulation.told(&candidate);
         observers.iter_mut().try_for_each(|observer| observer.record(simulation.model(), &told))?;
         simulation.observed(clock.elapsed().as_secs_f64());
-        simulation.follow(candidate)?;
+        simulation.apply(candidate)?;
     }
 }
 

@@ -7,7 +7,7 @@
 //!         Implicit ⇄ Rupture                      where a contact slips too fast for implicit increments
 //! ```
 //!
-//! [`Simulation::attempt`] finds a [`Candidate`] and changes nothing; [`Simulation::follow`] goes on as it says: to its new
+//! [`Simulation::try_increment`] finds a [`Candidate`] and changes nothing; [`Simulation::apply`] goes on as it says: to its new
 //! state if it was accepted, else to another attempt. A candidate that is dropped has never been: the next attempt finds it
 //! again, to the same bits.
 //!
@@ -162,7 +162,7 @@ impl Simulation {
     ///
     /// # Errors
     /// [`Error::Unsolvable`] when a step cannot begin.
-    pub fn attempt(&mut self) -> Result<Option<Candidate>, Error> {
+    pub fn try_increment(&mut self) -> Result<Option<Candidate>, Error> {
         if self.stopped {
             return Ok(None);
         }
@@ -182,7 +182,7 @@ impl Simulation {
     ///
     /// # Errors
     /// [`Error`] when no other attempt can help.
-    pub fn follow(&mut self, candidate: Candidate) -> Result<(), Error> {
+    pub fn apply(&mut self, candidate: Candidate) -> Result<(), Error> {
         let is_row = self.told(&candidate).row != Row::Held;
         let Candidate { iterations, accepted, increments, outcome, coupling, explicit, .. } = candidate;
         if let Outcome::Paused(midway) = outcome {
@@ -223,10 +223,10 @@ impl Simulation {
     /// # Errors
     /// [`Error`] when no increment is short enough.
     pub fn next_increment(&mut self) -> Result<Option<Increment>, Error> {
-        while let Some(candidate) = self.attempt()? {
+        while let Some(candidate) = self.try_increment()? {
             let (step, old) = (self.step.clone(), self.state.clone());
             let (state, iterations) = (candidate.accepted.clone(), candidate.iterations.clone());
-            self.follow(candidate)?;
+            self.apply(candidate)?;
             if let Some(state) = state {
                 return Ok(Some(Increment { step, old, state, iterations }));
             }

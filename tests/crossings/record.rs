@@ -158,9 +158,9 @@ fn led(mut simulation: Simulation, outputs: &mut Outputs) -> Result<Led, String>
 /// Attempts that are made twice, the first time for nothing.
 fn dropped(mut simulation: Simulation, outputs: &mut Outputs) -> Result<Led, String> {
     let result = loop {
-        let first = simulation.attempt();
+        let first = simulation.try_increment();
         drop(first);
-        match simulation.attempt() {
+        match simulation.try_increment() {
             Ok(None) => break Ok(()),
             Err(error) => break Err(error.to_string()),
             Ok(Some(candidate)) => {
@@ -170,7 +170,7 @@ fn dropped(mut simulation: Simulation, outputs: &mut Outputs) -> Result<Led, Str
                     .into_iter()
                     .try_for_each(|observer| observer.record(simulation.model(), &told))
                     .expect("tables can be written");
-                if let Err(error) = simulation.follow(candidate) {
+                if let Err(error) = simulation.apply(candidate) {
                     break Err(error.to_string());
                 }
             }
@@ -183,14 +183,14 @@ fn dropped(mut simulation: Simulation, outputs: &mut Outputs) -> Result<Led, Str
 /// Some attempts; false where the run has ended.
 fn attempts(simulation: &mut Simulation, outputs: &mut Outputs, number: usize) -> bool {
     for _ in 0..number {
-        let Ok(Some(candidate)) = simulation.attempt() else { return false };
+        let Ok(Some(candidate)) = simulation.try_increment() else { return false };
         let told = simulation.told(&candidate);
         outputs
             .all()
             .into_iter()
             .try_for_each(|observer| observer.record(simulation.model(), &told))
             .expect("tables can be written");
-        if simulation.follow(candidate).is_err() {
+        if simulation.apply(candidate).is_err() {
             return false;
         }
     }
