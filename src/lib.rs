@@ -74,7 +74,7 @@
 //!    [`model::support::Prescribed`] dof of the [`model::Step`].
 //! 2. [`run`] asks for an increment, [`time::increment`] sets a [`equations::Trial`] for it, and [`solve::equilibrium`] finds
 //!    the displacement u at its end, iterate by iterate.
-//! 3. At every iterate `equations/interfaces.rs` asks each [`contact::pair`] for its points' answers. `contact/search.rs` and
+//! 3. At every iterate `equations/contacts.rs` asks each [`contact::pair`] for its points' answers. `contact/search.rs` and
 //!    `contact/projection.rs` find the foot, and [`contact::kinematics`] the arc on the master from the committed foot to this
 //!    one: that is Δu_t. [`contact::force`] hands it to the law as [`laws::friction::Sliding::slip`], with p and Δt.
 //! 4. The law returns q, its tangents and a new [`laws::friction::FrictionState`], whose `plastic_increment` is what of Δu_t

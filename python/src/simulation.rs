@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use fecontact::case::job::{Ends, defect};
-use fecontact::case::loading::{self, Loading};
+use fecontact::case::loading::{self, LoadChanges};
 use fecontact::case::{CaseError, Opened};
 use fecontact::model::builder::ModelError;
 use fecontact::model::state::State;
@@ -26,7 +26,7 @@ use crate::pool::Pool;
 #[pyclass(frozen, module = "fecontact._native")]
 pub struct Saved {
     run: fecontact::run::Saved,
-    loading: Option<Loading>,
+    loading: Option<LoadChanges>,
     of: Arc<Origin>,
 }
 
@@ -54,7 +54,7 @@ pub struct Simulation {
 struct UnderWay {
     opened: Opened,
     run: Run,
-    loading: Option<Loading>,
+    loading: Option<LoadChanges>,
     last: Option<Arc<State>>,
     of: Arc<Origin>,
 }

@@ -55,7 +55,7 @@ pub use method::Method;
 pub use scheme::Scheme;
 use state::StepStart;
 pub use state::{Energy, State};
-pub use step::{Increments, Rupture, Step};
+pub use step::{ForceComponent, Increments, Rupture, Step};
 
 /// When Newton's method stops.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -132,38 +132,38 @@ pub struct Until {
     /// nodes whose reactions along x and y are its own
     pub held: [Vec<usize>; 2],
     /// which part of the sum of their reactions
-    pub part: Part,
+    pub part: ForceComponent,
     /// F̄ [F]
     pub value: f64,
     /// Share of F̄ within which it is met [-]
     pub tolerance: f64,
 }
 
-/// Part of a force.
+/// A component of a force, or its magnitude.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum ForceComponent {
     /// along x
     X,
     /// along y
     Y,
     /// its size
-    Size,
+    Magnitude,
 }
 
-impl Part {
+impl ForceComponent {
     /// Its name in a case.
     pub fn name(self) -> &'static str {
         match self {
             Self::X => "fx",
             Self::Y => "fy",
-            Self::Size => "force",
+            Self::Magnitude => "force",
         }
     }
 }
 
 /// How an increment lies to the end of its step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Course {
+pub enum UntilStatus {
     /// The reaction has its value: the step ends
     Met,
     /// It has passed it, and would meet it in an increment so long [T]
@@ -177,9 +177,9 @@ impl Until {
     pub fn force(&self, reaction: &[f64]) -> f64 {
         let force = self.vector(reaction);
         match self.part {
-            Part::X => force.x,
-            Part::Y => force.y,
-            Part::Size => force.norm(),
+            ForceComponent::X => force.x,
+            ForceComponent::Y => force.y,
+            ForceComponent::Magnitude => force.norm(),
         }
     }
 
@@ -195,9 +195,9 @@ impl Until {
         let way = after - before;
         let straight = |before: f64, way: f64| [(self.value - before) / way; 2];
         let shares = match self.part {
-            Part::X => straight(before.x, way.x),
-            Part::Y => straight(before.y, way.y),
-            Part::Size => {
+            ForceComponent::X => straight(before.x, way.x),
+            ForceComponent::Y => straight(before.y, way.y),
+            ForceComponent::Magnitude => {
                 // |before + s way| = value
                 let (square, rate) = (way.norm_squared(), before.dot(&way));
                 let short = before.norm_squared() - self.value * self.value;
@@ -210,16 +210,16 @@ impl Until {
     }
 
     /// How an increment of a step lies to the end.
-    pub fn course(&self, span: Span, [old, new]: [&State; 2]) -> Course {
+    pub fn course(&self, span: Span, [old, new]: [&State; 2]) -> UntilStatus {
         let clock = SHORTEST * (span.end - span.start) + 64.0 * f64::EPSILON * new.time.abs();
         let share = self.share([old, new]);
         let passed = share.is_some_and(|share| share < 1.0);
         if self.is_met(new) || passed && new.dt <= clock {
-            return Course::Met;
+            return UntilStatus::Met;
         }
         match share {
-            Some(share) if passed => Course::Passed(share * new.dt),
-            share => Course::Before(share.map(|share| (share - 1.0) * new.dt)),
+            Some(share) if passed => UntilStatus::Passed(share * new.dt),
+            share => UntilStatus::Before(share.map(|share| (share - 1.0) * new.dt)),
         }
     }
 

@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 use super::csv;
 use super::csv::Table;
 pub use super::events::Arrive;
-use super::events::{Energies, Interface, Mark, Measures, Passing, WaveSpeeds};
+use super::events::{ContactPoints, Energies, Mark, Measures, Passing, WaveSpeeds};
 use super::quantities::{EVENTS, FRONTS, names};
 use crate::model::Model;
 use crate::model::state::State;
@@ -36,7 +36,7 @@ pub struct Fronts {
     threshold: f64,
     /// What tells of its arrivals
     arrive: Arrive,
-    interfaces: Vec<Interface>,
+    interfaces: Vec<ContactPoints>,
     /// Time at the start
     start: f64,
     /// Time and energies of the model at the ends of the last two increments
@@ -46,7 +46,8 @@ pub struct Fronts {
 impl Fronts {
     /// Watch for fronts; `start` is the state before the first increment.
     pub fn new(folder: &Path, model: &Model, start: &State, threshold: f64, arrive: Arrive) -> Self {
-        let mut interfaces: Vec<Interface> = model.contacts.iter().map(|pair| Interface::new(model, pair)).collect();
+        let mut interfaces: Vec<ContactPoints> =
+            model.contacts.iter().map(|pair| ContactPoints::new(model, pair)).collect();
         // What had slipped before is no event of this run.
         let points =
             interfaces.iter_mut().zip(&start.contacts).flat_map(|(of, states)| of.points.iter_mut().zip(states));

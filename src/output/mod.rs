@@ -17,7 +17,7 @@ cfg_if::cfg_if! {
         pub mod friction_course;
         pub mod fronts;
         pub mod history;
-        pub mod interface;
+        pub mod store;
         pub mod law;
         pub mod newton_log;
         pub mod probes;
@@ -37,7 +37,7 @@ cfg_if::cfg_if! {
         pub(crate) mod friction_course;
         pub(crate) mod fronts;
         pub(crate) mod history;
-        pub(crate) mod interface;
+        pub(crate) mod store;
         pub(crate) mod law;
         pub(crate) mod newton_log;
         pub(crate) mod probes;

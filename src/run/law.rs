@@ -82,8 +82,8 @@ impl LawTest {
 #[derive(Clone, Debug)]
 pub struct Phase {
     span: Span,
-    slip: Course,
-    pressure: Course,
+    slip: PathDrive,
+    pressure: PathDrive,
     /// longest step [T]
     dt: f64,
     /// times closer than this are the same [T]
@@ -95,7 +95,7 @@ pub struct Phase {
 /// Slip or pressure over one phase.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct Course {
+pub struct PathDrive {
     /// how it varies
     pub drive: Drive,
     /// value at the start of the phase, from which a constant and a rate count
@@ -126,7 +126,7 @@ impl Phase {
     ///
     /// # Errors
     /// [`Undefined`] where an expression has no finite value.
-    pub fn new(span: Span, slip: Course, pressure: Course, dt: f64) -> Result<Self, Undefined> {
+    pub fn new(span: Span, slip: PathDrive, pressure: PathDrive, dt: f64) -> Result<Self, Undefined> {
         let mut phase = Self { span, slip, pressure, dt, resolution: 0.0, stops: Vec::new() };
         let mut knots: Vec<f64> = [&phase.slip, &phase.pressure].iter().flat_map(|course| course.knots(span)).collect();
         knots.sort_by(f64::total_cmp);
@@ -214,7 +214,7 @@ impl Phase {
     }
 }
 
-impl Course {
+impl PathDrive {
     /// Value at a time of the span.
     pub fn value(&self, time: f64, span: Span) -> f64 {
         self.drive.value(Vector2::zeros(), time, span, self.start)

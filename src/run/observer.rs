@@ -10,7 +10,7 @@
 use crate::laws::friction::Regime;
 use crate::model::scheme::Scheme;
 use crate::model::state::State;
-use crate::model::step::{Course, Until};
+use crate::model::step::{Until, UntilStatus};
 use crate::model::told::{count, number};
 use crate::model::{Model, Step};
 use crate::run::error::Error;
@@ -51,7 +51,7 @@ impl Attempt<'_> {
     /// Whether the step ends with the new state: at its time, or with the reaction that ends it.
     pub fn ends_step(&self, state: &State) -> bool {
         let Step { span, until, .. } = self.step;
-        let met = |until: &Until| until.course(*span, [self.old, state]) == Course::Met;
+        let met = |until: &Until| until.course(*span, [self.old, state]) == UntilStatus::Met;
         state.time >= span.end || until.as_ref().is_some_and(met)
     }
 

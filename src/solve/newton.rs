@@ -126,7 +126,7 @@ pub fn solve<E>(
     let mut iterations: Vec<Iteration> = Vec::new();
     let result = (|| {
         evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
-        let mut course = Course::new(settings);
+        let mut course = Convergence::new(settings);
         while let Some(plan) = course.judge(&mut iterations, system)? {
             let here = if plan.searched { system.residual.clone() } else { Vec::new() };
             if plan.factorized {
@@ -184,7 +184,7 @@ impl Plan {
 }
 
 /// What the iterations have shown so far.
-struct Course {
+struct Convergence {
     settings: Settings,
     /// ‖r‖ of the first iterates, the largest
     largest_start: f64,
@@ -198,7 +198,7 @@ struct Course {
     searches: bool,
 }
 
-impl Course {
+impl Convergence {
     fn new(settings: Settings) -> Self {
         Self {
             settings,

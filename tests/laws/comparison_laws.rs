@@ -3,7 +3,7 @@
 use super::random::Random;
 use crate::strokes::strokes;
 use fecontact::laws::friction::{
-    FrictionLaw, FrictionResponse, FrictionState, Loading, PrescribedSlip, PrescribedSlipParameters, RateAndState,
+    FrictionLaw, FrictionResponse, FrictionState, PointLoad, PrescribedSlip, PrescribedSlipParameters, RateAndState,
     RateAndStateParameters, STEEPEST, Sliding, SlipWeakening, SlipWeakeningParameters, StateEvolution,
 };
 
@@ -593,7 +593,7 @@ fn the_slip_rate_follows_from_traction_and_state() {
         let log = (rate.abs() / (2.0 * reference_rate)).ln() + psi / a;
         let arsinh = if log > 20.0 { log + std::f64::consts::LN_2 } else { log.exp().asinh() };
         let traction = rate.signum() * a * pressure * arsinh + damping * rate;
-        let found = rates.slip_rate(x, Loading { traction, pressure, damping });
+        let found = rates.slip_rate(x, PointLoad { traction, pressure, damping });
         // Round-off of τ is that of its larger part, and friction makes an error of arsinh times its size of it.
         let allowed = 1e-13 * (1.0 + arsinh + psi / a) * (1.0 + damping * rate.abs() / (a * pressure));
         assert_close(found / rate, 1.0, allowed.min(1e-6), &format!("V = {rate:e}, x = {x}, a = {a}"));

@@ -379,7 +379,7 @@ pub enum LawFailure {
 /// What acts on a point of an interface that radiates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
-pub struct Loading {
+pub struct PointLoad {
     /// τ = q + η V: what friction and radiation damping carry together [F/L²]
     pub traction: f64,
     /// p [F/L²]
@@ -396,7 +396,7 @@ pub struct Loading {
 /// ```
 pub trait RateLaw: Debug + Send + Sync {
     /// V; not a number where the law has no answer [L/T].
-    fn slip_rate(&self, x: f64, loading: Loading) -> f64;
+    fn slip_rate(&self, x: f64, loading: PointLoad) -> f64;
 
     /// ẋ at a slip rate [1/T].
     fn evolution(&self, _x: f64, _slip_rate: f64) -> f64 {

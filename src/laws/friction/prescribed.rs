@@ -1,7 +1,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, Loading, RateLaw, Regime, Sliding};
+use super::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, PointLoad, RateLaw, Regime, Sliding};
 use crate::laws::parameter::{InvalidParameter, numbers, require, require_positive};
 
 /// Parameters of [`PrescribedSlip`] as the case file writes them.
@@ -95,7 +95,7 @@ impl FrictionLaw for PrescribedSlip {
 }
 
 impl RateLaw for PrescribedSlip {
-    fn slip_rate(&self, _: f64, _: Loading) -> f64 {
+    fn slip_rate(&self, _: f64, _: PointLoad) -> f64 {
         self.slip_rate
     }
 

@@ -9,7 +9,7 @@ use super::groups::Place;
 use crate::model::Damping;
 use crate::model::boundary::{BodyTemperature, Drive};
 use crate::model::scheme::{Scheme, nine_tenths};
-use crate::model::step::Part;
+use crate::model::step::ForceComponent;
 
 /// Share of a force within which it is met unless told otherwise.
 pub const MET: f64 = 1e-6;
@@ -165,8 +165,9 @@ fn met() -> f64 {
 
 impl UntilSettings {
     /// Part of the reaction and its value, if exactly one is given.
-    pub fn part(&self) -> Option<(Part, f64)> {
-        let parts = [(Part::X, self.fx), (Part::Y, self.fy), (Part::Size, self.force)];
+    pub fn part(&self) -> Option<(ForceComponent, f64)> {
+        let parts =
+            [(ForceComponent::X, self.fx), (ForceComponent::Y, self.fy), (ForceComponent::Magnitude, self.force)];
         let mut given = parts.into_iter().filter_map(|(part, value)| Some((part, value?)));
         given.next().filter(|_| given.next().is_none())
     }
@@ -299,8 +300,9 @@ impl LoadStep {
     }
 
     /// Ending before its time when the reaction of a place comes to a value, met to a millionth of it [F].
-    pub fn until(self, on: impl Into<Place>, part: Part, value: f64) -> Self {
-        let [fx, fy, force] = [Part::X, Part::Y, Part::Size].map(|one| (one == part).then_some(value));
+    pub fn until(self, on: impl Into<Place>, part: ForceComponent, value: f64) -> Self {
+        let [fx, fy, force] =
+            [ForceComponent::X, ForceComponent::Y, ForceComponent::Magnitude].map(|one| (one == part).then_some(value));
         Self { until: Some(UntilSettings { on: on.into(), fx, fy, force, tolerance: MET }), ..self }
     }
 

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::sensitivity::{Direction, SensitiveLaw, Variation};
 use super::{
-    Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Loading, RateLaw,
+    Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, PointLoad, RateLaw,
     Regime, Sliding, traction_at_yield,
 };
 use crate::laws::parameter::{InvalidParameter, numbers, require_not_negative, require_positive};
@@ -195,7 +195,7 @@ const OUTWEIGHS: f64 = 0.5;
 /// ẋ = (V₀ e⁻ˣ − V)/D_c   or   ẋ = −V/D_c (x + ln(V/V₀))
 /// ```
 impl RateLaw for RateAndState {
-    fn slip_rate(&self, x: f64, Loading { traction, pressure, damping }: Loading) -> f64 {
+    fn slip_rate(&self, x: f64, PointLoad { traction, pressure, damping }: PointLoad) -> f64 {
         let Coefficients { a, reference_rate, .. } = self.coefficients;
         if traction == 0.0 {
             return 0.0;

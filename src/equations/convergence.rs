@@ -40,7 +40,7 @@ const LOST: f64 = 10.0;
 
 /// What must be in equilibrium by itself.
 #[derive(Clone, Debug)]
-struct Part {
+struct BalancedSet {
     nodes: Vec<usize>,
     /// Number of the contact whose forces measure it; all forces do if it is none
     contact: Option<usize>,
@@ -48,8 +48,8 @@ struct Part {
 
 /// The parts of a model, and what round-off can leave at their nodes.
 #[derive(Clone, Debug)]
-pub(super) struct Equilibrium {
-    parts: Vec<Part>,
+pub(super) struct ConvergenceCriterion {
+    parts: Vec<BalancedSet>,
     /// Σ (C h)², Σ C² and Σ (τ C)² of the elements at each node
     stiffness: Vec<[f64; 3]>,
     /// that of the bodies for which these are
@@ -65,7 +65,7 @@ pub(super) struct Equilibrium {
     own: Vec<f64>,
 }
 
-impl Equilibrium {
+impl ConvergenceCriterion {
     pub(super) fn new(model: &Model) -> Self {
         let count = model.mesh.nodes.len();
         let mut stiffness = vec![[0.0; 3]; count];
@@ -89,7 +89,8 @@ impl Equilibrium {
             nodes.dedup();
             nodes
         };
-        let bodies = model.bodies.iter().map(|body| Part { nodes: originals(body.nodes.clone()), contact: None });
+        let bodies =
+            model.bodies.iter().map(|body| BalancedSet { nodes: originals(body.nodes.clone()), contact: None });
         let surfaces = model.contacts.iter().enumerate().map(|(k, pair)| {
             let slave = pair.points.iter().flat_map(|point| point.position.iter().map(|&(node, _)| node));
             let master = match &pair.master {
@@ -97,9 +98,9 @@ impl Equilibrium {
                 Master::Rigid(_) => &[],
             };
             let nodes = slave.chain(master.iter().flat_map(|segment| segment.nodes())).collect();
-            Part { nodes: originals(nodes), contact: Some(k) }
+            BalancedSet { nodes: originals(nodes), contact: Some(k) }
         });
-        let lone = (0..count).filter(|&node| lone[node]).map(|node| Part { nodes: vec![node], contact: None });
+        let lone = (0..count).filter(|&node| lone[node]).map(|node| BalancedSet { nodes: vec![node], contact: None });
         Self {
             parts: bodies.chain(surfaces).chain(lone).collect(),
             stiffness,
@@ -158,7 +159,7 @@ impl Equilibrium {
     }
 }
 
-impl Equilibrium {
+impl ConvergenceCriterion {
     /// Norm of the forces at work, and how far the worst part is from equilibrium, (1) and (2).
     pub(super) fn measure(
         &self,
