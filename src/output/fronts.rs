@@ -131,7 +131,8 @@ impl Observer for Fronts {
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        (self.interfaces, self.start, self.last) = csv::recalled(memory)?;
+        (self.interfaces, self.start, self.last) =
+            csv::recalled::<(Vec<ContactPoints>, f64, [(f64, Energies); 2])>(memory)?;
         Ok(())
     }
 

@@ -145,7 +145,7 @@ impl Rows for HistoryRows {
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        self.memory = csv::recalled(memory)?;
+        self.memory = csv::recalled::<Memory>(memory)?;
         Ok(())
     }
 }

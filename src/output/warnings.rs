@@ -57,7 +57,7 @@ impl Observer for Warnings {
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        *self = csv::recalled(memory)?;
+        *self = csv::recalled::<Warnings>(memory)?;
         Ok(())
     }
 

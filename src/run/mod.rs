@@ -27,7 +27,7 @@ use crate::run::error::Error;
 use crate::run::observer::Observer;
 pub use access::{Axis, Unknown};
 pub use control::{Candidate, Increment, RunReport, WallSeconds};
-pub use simulation::{Pause, Saved, Simulation};
+pub use simulation::{NotResumable, Pause, Saved, Simulation};
 
 pub use crate::equations::ContactCounts;
 pub use crate::solve::IterationRecord;
@@ -156,8 +156,8 @@ impl SavedRun {
     /// From a file.
     ///
     /// # Errors
-    /// As [`Saved::from_bytes`].
-    pub fn from_bytes(bytes: RunBytes, model: &Arc<Model>) -> Result<Self, String> {
+    /// [`NotResumable`].
+    pub fn from_bytes(bytes: RunBytes, model: &Arc<Model>) -> Result<Self, NotResumable> {
         Ok(Self { simulation: Saved::from_bytes(&bytes.simulation, model)?, observers: bytes.observers })
     }
 

@@ -296,6 +296,18 @@ pub struct Saved {
     pub(super) led: bool,
 }
 
+/// Why a saved run cannot go on.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NotResumable {
+    /// The bytes are those of no run.
+    #[error("{0}")]
+    Unreadable(String),
+    /// The run is one of another model.
+    #[error("it is not of this model")]
+    OtherModel,
+}
+
 /// What goes to a file.
 type Written = (State, Control, Option<ExplicitMemory>, Option<Midway>, RunReport);
 
@@ -333,29 +345,30 @@ impl Saved {
     /// The run that the bytes tell of. Steps that had not begun may have changed since, or have come after the last one.
     ///
     /// # Errors
-    /// Why they tell of no run of this model.
-    pub fn from_bytes(bytes: &[u8], model: &Arc<Model>) -> Result<Self, String> {
-        let written: Written = postcard::from_bytes(bytes).map_err(|cause| cause.to_string())?;
+    /// [`NotResumable`].
+    pub fn from_bytes(bytes: &[u8], model: &Arc<Model>) -> Result<Self, NotResumable> {
+        let written: Written =
+            postcard::from_bytes(bytes).map_err(|cause| NotResumable::Unreadable(cause.to_string()))?;
         Self::fitted(written, None, model)
     }
 
     /// The run on another model, whose steps that have not begun may be other ones, or come after the last one.
     ///
     /// # Errors
-    /// Why it is no run of this model.
-    pub fn on(self, model: &Arc<Model>) -> Result<Self, String> {
+    /// [`NotResumable::OtherModel`].
+    pub fn on(self, model: &Arc<Model>) -> Result<Self, NotResumable> {
         let Self { step, state, control, explicit, midway, report, led } = self;
         let memory = explicit.as_ref().map(Explicit::memory);
         Self::fitted((Arc::unwrap_or_clone(state), control, memory, midway, report), led.then_some(step), model)
     }
 
     /// A run of a model, with the step under way if its caller has changed it.
-    fn fitted(run: Written, led: Option<Arc<Step>>, model: &Arc<Model>) -> Result<Self, String> {
+    fn fitted(run: Written, led: Option<Arc<Step>>, model: &Arc<Model>) -> Result<Self, NotResumable> {
         let (state, mut control, memory, midway, report) = run;
         let fits = |memory: &ExplicitMemory| memory.fits(model);
         let on_its_way = midway.as_ref().is_none_or(|midway| is_of(&midway.state, model) && memory.is_some());
         if !(is_of(&state, model) && control.fits(model) && memory.as_ref().is_none_or(fits) && on_its_way) {
-            return Err("it is not of this model".into());
+            return Err(NotResumable::OtherModel);
         }
         if matches!(control.phase, Phase::Complete) && control.step < model.steps.len() {
             control.phase = Phase::Begin;

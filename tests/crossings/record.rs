@@ -210,7 +210,7 @@ fn resumed(document: &Value, folder: &Path, model: &Arc<Model>, outputs: &mut Ou
     let model = built(document)?;
     let saved: RunBytes = serde_json::from_slice(&text).expect("bytes");
     *outputs = Outputs::reopen(folder, &model);
-    let saved = SavedRun::from_bytes(saved, &model)?;
+    let saved = SavedRun::from_bytes(saved, &model).map_err(|error| error.to_string())?;
     let simulation = saved.resume(&model, &mut outputs.all()).map_err(|error| error.to_string())?;
     led(simulation, outputs)
 }
@@ -225,7 +225,7 @@ fn begun(document: &Value, folder: &Path, model: &Arc<Model>, outputs: &mut Outp
         return Ok((first, ended));
     }
     let saved = SavedRun::new(&first, &mut []).and_then(SavedRun::bytes).map_err(|error| error.to_string())?;
-    let saved = SavedRun::from_bytes(saved, model)?.begin();
+    let saved = SavedRun::from_bytes(saved, model).map_err(|error| error.to_string())?.begin();
     *outputs = Outputs::create(folder, model);
     let simulation = saved.resume(model, &mut []).map_err(|error| error.to_string())?;
     led(simulation, outputs)
