@@ -15,7 +15,7 @@
 //!     .rectangle("ground", [8, 2], [0.0, -1.0], [4.0, 0.0])
 //!     .rectangle("block", [5, 3], [1.0, 0.0], [3.0, 1.0])
 //!     .build()?;
-//! let rubber = NeoHookean::new(&ElasticConstants { young: 1000.0, poisson: 0.3, density: 0.0 })?;
+//! let rubber = NeoHookean::new(&ElasticConstants::new(1000.0, 0.3))?;
 //! let press = LoadStep::new("press", 1.0).dt(0.5).fix("ground_bottom").support(Support::on("block_top").ux(0.0).uy(-0.01));
 //! let drag = LoadStep::new("drag", 2.0).dt(0.5).support(Support::on("block_top").ux(Drive::Rate(0.05)));
 //! let model = Model::builder(mesh)
@@ -36,9 +36,24 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Between two increments supports can be led ([`run::Simulation::lead`]) and loads changed ([`case::loading`]), a candidate can be dropped
-//! ([`run::Simulation::try_increment`]), and a run saved and resumed to the same bits ([`run::SavedRun`], in
-//! a file by [`output::checkpoint`]).
+//! Between two increments supports can be led ([`run::Simulation::lead`]) and loads changed ([`model::builder::LoadsInForce`]), a
+//! candidate can be dropped ([`run::Simulation::try_increment`]), and a run saved and resumed to the same bits
+//! ([`run::Saved`], in memory or as bytes).
+//!
+//! # What is published
+//!
+//! A program that uses the library names it with `default-features = false`, and sees these rooms:
+//!
+//! | room | what it offers |
+//! |---|---|
+//! | [`model`] | [`model::Model::builder`] and what is given to it: bodies, [`model::builder::Contact`], [`model::builder::LoadStep`], supports and loads |
+//! | [`run`] | [`run::Simulation`], increment by increment; [`run::observer`]s of a whole run; [`run::law`], a friction law along a path |
+//! | [`laws`] | friction and bulk laws, with the traits by which others are written: [`laws::friction::FrictionLaw`], [`laws::bulk::Material`] |
+//! | [`mesh`] | meshes from gmsh ([`mesh::gmsh`]), from blocks ([`mesh::Blocks`]), from code ([`mesh::InlineMesh`]) |
+//! | [`output::results`] | frames of a folder of results, as plain numbers |
+//!
+//! Inputs are made by `new` and setters, and what comes back may grow: nearly all structures and enums are `non_exhaustive`. The
+//! feature `internals`, which the program (`cli`) turns on, opens all rooms; what only it shows changes without notice.
 //!
 //! # The way through the house
 //!

@@ -63,6 +63,7 @@ pub struct ContactCounts {
 
 impl ContactCounts {
     /// Count the points of all pairs.
+    #[doc(hidden)]
     pub fn of(pairs: &[ContactPair], contacts: &[Vec<ContactState>]) -> Self {
         let mut counts = Self::default();
         let regimes = |(pair, states): (&ContactPair, &Vec<ContactState>)| {

@@ -7,7 +7,6 @@ mod check;
 mod error;
 pub mod gmsh;
 mod inline;
-pub mod section;
 mod transfinite;
 
 cfg_if::cfg_if! {
@@ -17,6 +16,7 @@ cfg_if::cfg_if! {
         pub mod few;
         pub mod joined;
         pub mod names;
+        pub mod section;
         pub mod shape;
         pub mod ties;
     } else {
@@ -25,6 +25,7 @@ cfg_if::cfg_if! {
         pub(crate) mod few;
         pub(crate) mod joined;
         pub(crate) mod names;
+        pub(crate) mod section;
         pub(crate) mod shape;
         pub(crate) mod ties;
     }
@@ -95,11 +96,13 @@ pub struct Mesh {
 
 impl Mesh {
     /// The configuration x = X + u.
+    #[doc(hidden)]
     pub fn displaced<'a>(&'a self, displacement: &'a [f64]) -> Configuration<'a> {
         Configuration::new(&self.nodes, displacement).within(self.section)
     }
 
     /// The reference configuration.
+    #[doc(hidden)]
     pub fn undeformed(&self) -> Configuration<'_> {
         Configuration::undeformed(&self.nodes).within(self.section)
     }

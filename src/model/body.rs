@@ -9,6 +9,7 @@ use crate::laws::bulk::Material;
 
 /// A body: a material on a group of elements.
 #[derive(Debug)]
+#[doc(hidden)]
 pub struct Body {
     /// name of its group
     pub name: String,
@@ -35,6 +36,7 @@ impl Body {
 
 /// A mass at every node of a group.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct PointMass {
     /// name of the group
     pub name: String,
@@ -74,6 +76,7 @@ impl Damping {
 /// The part of every element in [`State::memory`](super::state::State::memory): one behind the other in the elements' order, as long
 /// as its points and variables ask for, and of no length where a material remembers nothing.
 #[derive(Clone, Debug)]
+#[doc(hidden)]
 pub struct Memories {
     /// Where each part starts, and where the last one ends
     starts: Vec<usize>,

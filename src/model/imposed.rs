@@ -91,6 +91,7 @@ pub struct Temperature {
     pub amplitude: Amplitude,
 }
 
+#[doc(hidden)]
 impl Model {
     /// What the materials remember at the start, in bodies with an initial stress or without.
     pub fn initial_memory(&self) -> Vec<f64> {

@@ -163,6 +163,7 @@ pub struct Coefficients {
     pub gamma: f64,
 }
 
+#[doc(hidden)]
 impl Scheme {
     /// Whether masses have inertia.
     pub fn is_dynamic(self) -> bool {

@@ -37,6 +37,7 @@ pub struct Increments {
 
 impl Increments {
     /// The same, but none longer than `longest`: a stabilized step has a last increment after its dashpots have faded.
+    #[doc(hidden)]
     pub fn at_most(self, longest: f64) -> Self {
         let Self { initial, min, max, error } = self;
         Self { initial: initial.min(longest), min: min.min(longest), max: max.min(longest), error }
@@ -56,25 +57,34 @@ pub struct Step {
     /// increments
     pub increments: Increments,
     /// when and how the step goes on explicitly, if it may
+    #[doc(hidden)]
     pub rupture: Option<Box<Rupture>>,
     /// prescribed directions, ascending by their dofs
+    #[doc(hidden)]
     pub supports: Vec<Prescribed>,
     /// directions that were prescribed in the step before and are free in this static one: their reaction is ramped off
+    #[doc(hidden)]
     pub released: Vec<Direction>,
     /// velocities that nodes take when the step begins [L/T]
+    #[doc(hidden)]
     pub launch: Vec<(usize, [f64; 2])>,
     /// loads, springs and dashpots
     pub loads: Loads,
     /// temperatures of the bodies that have been given one
+    #[doc(hidden)]
     pub temperatures: Vec<Temperature>,
     /// damping of every body
+    #[doc(hidden)]
     pub damping: Vec<Damping>,
     /// reaction that ends the step before its time
+    #[doc(hidden)]
     pub until: Option<Until>,
     /// c₀ of every dof: dashpots c₀ (1 − share of the step that has passed) that hold bodies until contact does [F T/L]
+    #[doc(hidden)]
     pub stabilization: Vec<f64>,
 }
 
+#[doc(hidden)]
 impl Step {
     /// The same at other times: all of it that begins with this step or one after it.
     #[must_use]
@@ -109,6 +119,7 @@ impl Step {
 
 /// When a static or implicit step turns to explicit increments, and back.
 #[derive(Clone, Debug)]
+#[doc(hidden)]
 pub struct Rupture {
     /// Slip rate of a contact point above which it does [L/T]
     pub slip_rate: f64,

@@ -1,6 +1,20 @@
 //! What a folder of results holds, as plain numbers: for those who show it.
 //!
 //! Frames of bodies and interfaces: what a `.pvd` lists, and the VTU files behind it.
+//!
+//! ```no_run
+//! use std::path::Path;
+//!
+//! use fecontact::output::results::{Grid, frames};
+//!
+//! let folder = Path::new("out/block_on_ground");
+//! for frame in frames(folder, "contact")?.unwrap_or_default() {
+//!     let grid = Grid::read(&folder.join(&frame.file))?;
+//!     let pressure = grid.at_points.iter().find(|array| array.name == "pressure");
+//!     println!("t = {}: {:?}", frame.time, pressure.map(|array| &array.values));
+//! }
+//! # Ok::<(), String>(())
+//! ```
 
 use std::path::{Path, PathBuf};
 

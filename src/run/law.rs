@@ -8,6 +8,27 @@
 //! # Report
 //!
 //! What a friction law driven alone answered, and what its answers amount to.
+//!
+//! ```
+//! use fecontact::laws::friction::{SuperSubloading, SuperSubloadingParameters};
+//! use fecontact::model::boundary::{Drive, Span};
+//! use fecontact::run::law::{LawTest, PathDrive, Phase};
+//!
+//! let parameters = SuperSubloadingParameters::new(0.4, 0.2, 1000.0).kappa(100.0).xi(0.01);
+//! let law = SuperSubloading::new(&parameters, 1e5)?;
+//! let slip = PathDrive::new(Drive::Rate(0.1), 0.0);
+//! let pressure = PathDrive::new(Drive::Constant(10.0), 10.0);
+//! let slide = Phase::new(Span { start: 0.0, end: 1.0 }, slip, pressure, 0.01)?;
+//! let mut tractions = Vec::new();
+//! let (report, ended) = LawTest::new(law, vec![slide]).run(|row| {
+//!     tractions.push(row.response.state.traction);
+//!     Ok(())
+//! });
+//! ended?;
+//! let peak = report.peaks.peak.expect("it slides");
+//! assert!(peak.coefficient > 0.3 && tractions.last().is_some_and(|q| *q < 2.1));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use nalgebra::Vector2;
 use serde::Serialize;
@@ -29,6 +50,12 @@ pub struct LawTest {
 }
 
 impl LawTest {
+    /// A law led along a path from rest, under the pressure at its start.
+    pub fn new(law: impl FrictionLaw + 'static, path: Vec<Phase>) -> Self {
+        let pressure = path.first().map_or(0.0, |phase| phase.pressure(phase.start()));
+        Self { start: law.initial_state(pressure, 0.0), law: Box::new(law), path }
+    }
+
     /// Lead the law along its path, telling every step. The report comes back from a stopped test as well.
     ///
     /// The first row is the start: what the law answers to no slip in no time.
@@ -100,6 +127,13 @@ pub struct PathDrive {
     pub drive: Drive,
     /// value at the start of the phase, from which a constant and a rate count
     pub start: f64,
+}
+
+impl PathDrive {
+    /// Varying from a value at the start of the phase on.
+    pub fn new(drive: Drive, start: f64) -> Self {
+        Self { drive, start }
+    }
 }
 
 /// A quantity of the path has no finite value.
@@ -382,6 +416,7 @@ pub struct Peaks {
 
 impl Peaks {
     /// Take note of the next row.
+    #[doc(hidden)]
     pub fn note(&mut self, now: PathPoint) {
         let higher = |than: &PathPoint| now.coefficient > than.coefficient;
         let Some(last) = self.last.replace(now) else { return };
@@ -417,6 +452,7 @@ pub struct LawReport {
 
 impl LawReport {
     /// Take note of the next row.
+    #[doc(hidden)]
     pub fn note(&mut self, row: &LawRow) {
         let FrictionResponse { state, evaluations, .. } = row.response;
         let FrictionState { pressure, traction, dissipation, .. } = state;

@@ -135,6 +135,7 @@ impl Simulation {
     }
 
     /// Add to the time that observers took [s].
+    #[doc(hidden)]
     pub fn observed(&mut self, seconds: f64) {
         self.report.wall_s.output += seconds;
     }

@@ -74,5 +74,6 @@ pub struct IterationRecord {
     /// ‖forces that stabilize‖/‖forces at work‖ after the correction [-]
     pub stabilization: f64,
     /// what the aids did in its tangent
+    #[doc(hidden)]
     pub acted: Acted,
 }

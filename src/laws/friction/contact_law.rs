@@ -63,6 +63,7 @@ impl Dilatancy {
 /// Sources: J. F. Archard, J. Appl. Phys. 24 (1953) 981; (1) P. Segall, J. R. Rice, J. Geophys. Res. 100 (1995) 22155, whose
 /// porosity goes to that of its state over a distance of slip in the same way.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[doc(hidden)]
 pub struct Offsets {
     /// Dilatancy
     pub dilatancy: Option<Dilatancy>,
@@ -126,6 +127,7 @@ impl Offsets {
 
 /// Friction of contact points: first the law is asked, then what its slip does to the opening.
 #[derive(Debug)]
+#[doc(hidden)]
 pub struct ContactLaw {
     /// The law
     pub law: Box<dyn FrictionLaw>,

@@ -22,7 +22,7 @@ mod rate_and_state;
 mod root;
 pub mod sensitivity;
 mod slip_weakening;
-pub mod state;
+mod state;
 mod super_subloading;
 
 use std::fmt::Debug;
@@ -37,7 +37,7 @@ pub use prescribed::{PrescribedSlip, PrescribedSlipParameters};
 pub use rate_and_state::{RateAndState, RateAndStateParameters, StateEvolution};
 pub use sensitivity::SensitiveLaw;
 pub use slip_weakening::{SlipWeakening, SlipWeakeningParameters};
-pub use state::{FrictionState, Regime};
+pub use state::{FrictionState, MOST_VARIABLES, Regime};
 pub use super_subloading::{Approach, Integration, Onset, Rise, SuperSubloading, SuperSubloadingParameters};
 
 /// No law answers a tangent |∂q/∂Δu_t| above this many times α_t, or |∂q/∂p| above it. Where two roots of a law's equation

@@ -12,6 +12,7 @@ use crate::model::scheme::{Scheme, nine_tenths};
 use crate::model::step::ForceComponent;
 
 /// Share of a force within which it is met unless told otherwise.
+#[doc(hidden)]
 pub const MET: f64 = 1e-6;
 
 /// A step: a time span with its scheme and increments, supports and loads.
@@ -165,6 +166,7 @@ fn met() -> f64 {
 
 impl UntilSettings {
     /// Part of the reaction and its value, if exactly one is given.
+    #[doc(hidden)]
     pub fn part(&self) -> Option<(ForceComponent, f64)> {
         let parts =
             [(ForceComponent::X, self.fx), (ForceComponent::Y, self.fy), (ForceComponent::Magnitude, self.force)];
@@ -222,6 +224,7 @@ impl Support {
     }
 
     /// Its displacements, with their keys.
+    #[doc(hidden)]
     pub fn displacements(&self) -> impl Iterator<Item = (&'static str, &Change<Drive>)> {
         let all = [("ux", &self.ux), ("uy", &self.uy), ("u", &self.u), ("un", &self.un)];
         all.into_iter().filter_map(|(key, change)| Some((key, change.as_ref()?)))
@@ -381,6 +384,7 @@ pub struct Load {
 
 /// The one thing that a load does.
 #[derive(Clone, Copy, Debug)]
+#[doc(hidden)]
 pub enum Action<'l> {
     /// `pressure`
     Pressure(Option<&'l Drive>),
@@ -537,6 +541,7 @@ impl Load {
     }
 
     /// What it does, where exactly one thing is given; without a value where that ends.
+    #[doc(hidden)]
     pub fn action(&self) -> Option<Action<'_>> {
         let given = [
             self.pressure.as_ref().map(|change| Action::Pressure(change.given())),

@@ -12,7 +12,7 @@
 //!     .rectangle("ground", [8, 2], [0.0, -1.0], [4.0, 0.0])
 //!     .rectangle("block", [5, 3], [1.0, 0.0], [3.0, 1.0])
 //!     .build()?;
-//! let rubber = NeoHookean::new(&ElasticConstants { young: 1000.0, poisson: 0.3, density: 0.0 })?;
+//! let rubber = NeoHookean::new(&ElasticConstants::new(1000.0, 0.3))?;
 //! let model = Model::builder(mesh)
 //!     .body("block", rubber)
 //!     .body("ground", rubber)
