@@ -67,12 +67,12 @@ impl MaterialParameters {
 
 impl ElasticConstants {
     /// Of a body without mass.
-    pub fn new(young: f64, poisson: f64) -> Self {
+    pub const fn new(young: f64, poisson: f64) -> Self {
         Self { young, poisson, density: 0.0 }
     }
 
     /// With a density [M/L³].
-    pub fn density(self, density: f64) -> Self {
+    pub const fn density(self, density: f64) -> Self {
         Self { density, ..self }
     }
 

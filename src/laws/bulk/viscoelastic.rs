@@ -30,12 +30,12 @@ pub struct ViscoelasticConstants {
 
 impl ViscoelasticConstants {
     /// Of a body without mass.
-    pub fn new(young: f64, poisson: f64, relaxing: f64, tau: f64) -> Self {
+    pub const fn new(young: f64, poisson: f64, relaxing: f64, tau: f64) -> Self {
         Self { young, poisson, relaxing, tau, density: 0.0 }
     }
 
     /// With a density [M/L³].
-    pub fn density(self, density: f64) -> Self {
+    pub const fn density(self, density: f64) -> Self {
         Self { density, ..self }
     }
 }

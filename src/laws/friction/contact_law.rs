@@ -24,12 +24,12 @@ pub struct Dilatancy {
 
 impl Dilatancy {
     /// Without a limit.
-    pub fn new(rate: f64) -> Self {
+    pub const fn new(rate: f64) -> Self {
         Self { rate, limit: None }
     }
 
     /// Up to an opening [L].
-    pub fn limit(self, limit: f64) -> Self {
+    pub const fn limit(self, limit: f64) -> Self {
         Self { limit: Some(limit), ..self }
     }
 

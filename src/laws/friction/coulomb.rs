@@ -24,12 +24,12 @@ numbers!(CoulombParameters: "mu" mu; "alpha_t" alpha_t);
 
 impl CoulombParameters {
     /// With the tangential stiffness left to the contact.
-    pub fn new(mu: f64) -> Self {
+    pub const fn new(mu: f64) -> Self {
         Self { mu, alpha_t: None }
     }
 
     /// With this tangential stiffness [F/L³].
-    pub fn alpha_t(self, alpha_t: f64) -> Self {
+    pub const fn alpha_t(self, alpha_t: f64) -> Self {
         Self { alpha_t: Some(alpha_t), ..self }
     }
 }

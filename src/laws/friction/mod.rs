@@ -286,7 +286,7 @@ pub struct Sliding {
 
 impl Sliding {
     /// The increment Δu_t under the pressure p at its end, in the time Δt.
-    pub fn new(slip: f64, pressure: f64, dt: f64) -> Self {
+    pub const fn new(slip: f64, pressure: f64, dt: f64) -> Self {
         Self { slip, pressure, dt }
     }
 
@@ -378,7 +378,6 @@ pub enum LawFailure {
 
 /// What acts on a point of an interface that radiates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct PointLoad {
     /// τ = q + η V: what friction and radiation damping carry together [F/L²]
     pub traction: f64,

@@ -19,12 +19,12 @@ pub struct PrescribedSlipParameters {
 
 impl PrescribedSlipParameters {
     /// With the tangential stiffness left to the contact.
-    pub fn new(slip_rate: f64) -> Self {
+    pub const fn new(slip_rate: f64) -> Self {
         Self { slip_rate, alpha_t: None }
     }
 
     /// With this tangential stiffness [F/L³].
-    pub fn alpha_t(self, alpha_t: f64) -> Self {
+    pub const fn alpha_t(self, alpha_t: f64) -> Self {
         Self { alpha_t: Some(alpha_t), ..self }
     }
 }

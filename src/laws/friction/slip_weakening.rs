@@ -33,17 +33,17 @@ numbers!(SlipWeakeningParameters: "mu_s" mu_s, "mu_d" mu_d, "D_c" critical_slip,
 
 impl SlipWeakeningParameters {
     /// Without cohesion, the tangential stiffness left to the contact.
-    pub fn new(mu_s: f64, mu_d: f64, critical_slip: f64) -> Self {
+    pub const fn new(mu_s: f64, mu_d: f64, critical_slip: f64) -> Self {
         Self { mu_s, mu_d, critical_slip, cohesion: 0.0, alpha_t: None }
     }
 
     /// With a strength without pressure [F/L²].
-    pub fn cohesion(self, cohesion: f64) -> Self {
+    pub const fn cohesion(self, cohesion: f64) -> Self {
         Self { cohesion, ..self }
     }
 
     /// With this tangential stiffness [F/L³].
-    pub fn alpha_t(self, alpha_t: f64) -> Self {
+    pub const fn alpha_t(self, alpha_t: f64) -> Self {
         Self { alpha_t: Some(alpha_t), ..self }
     }
 }

@@ -47,23 +47,23 @@ pub struct RateAndStateParameters {
 
 impl RateAndStateParameters {
     /// Ageing, sliding steadily at the reference rate at the start, with the tangential stiffness left to the contact.
-    pub fn new(f_0: f64, reference_rate: f64, a: f64, b: f64, critical_slip: f64) -> Self {
-        let evolution = StateEvolution::default();
+    pub const fn new(f_0: f64, reference_rate: f64, a: f64, b: f64, critical_slip: f64) -> Self {
+        let evolution = StateEvolution::Ageing;
         Self { f_0, reference_rate, a, b, critical_slip, evolution, theta: None, alpha_t: None }
     }
 
     /// With another evolution of the state.
-    pub fn evolution(self, evolution: StateEvolution) -> Self {
+    pub const fn evolution(self, evolution: StateEvolution) -> Self {
         Self { evolution, ..self }
     }
 
     /// Starting with this state θ [T].
-    pub fn theta(self, theta: f64) -> Self {
+    pub const fn theta(self, theta: f64) -> Self {
         Self { theta: Some(theta), ..self }
     }
 
     /// With this tangential stiffness [F/L³].
-    pub fn alpha_t(self, alpha_t: f64) -> Self {
+    pub const fn alpha_t(self, alpha_t: f64) -> Self {
         Self { alpha_t: Some(alpha_t), ..self }
     }
 }

@@ -315,7 +315,7 @@ numbers!(SuperSubloadingParameters: "mu_s" mu_s, "mu_k" mu_k, "r" r, "kappa" kap
 
 impl SuperSubloadingParameters {
     /// Neither weakening nor recovery, the tangential stiffness left to the contact, all else as in a case that says no more.
-    pub fn new(mu_s: f64, mu_k: f64, r: f64) -> Self {
+    pub const fn new(mu_s: f64, mu_k: f64, r: f64) -> Self {
         Self {
             mu_s,
             mu_k,
@@ -326,59 +326,59 @@ impl SuperSubloadingParameters {
             m: one(),
             n: one(),
             structure: None,
-            approach: Approach::default(),
+            approach: Approach::Logarithmic,
             elastic_core: 0.0,
-            integration: Integration::default(),
+            integration: Integration::Controlled,
             tolerance: None,
         }
     }
 
     /// Losing strength with slip at the rate κ [1/L].
-    pub fn kappa(self, kappa: f64) -> Self {
+    pub const fn kappa(self, kappa: f64) -> Self {
         Self { kappa, ..self }
     }
 
     /// Recovering at rest at the rate ξ [1/T].
-    pub fn xi(self, xi: f64) -> Self {
+    pub const fn xi(self, xi: f64) -> Self {
         Self { xi, ..self }
     }
 
     /// With other exponents of weakening and recovery [-].
-    pub fn exponents(self, m: f64, n: f64) -> Self {
+    pub const fn exponents(self, m: f64, n: f64) -> Self {
         Self { m, n, ..self }
     }
 
     /// Starting with this structure 1/R* [-].
-    pub fn structure(self, structure: f64) -> Self {
+    pub const fn structure(self, structure: f64) -> Self {
         Self { structure: Some(structure), ..self }
     }
 
     /// With another approach to full sliding.
-    pub fn approach(self, approach: Approach) -> Self {
+    pub const fn approach(self, approach: Approach) -> Self {
         Self { approach, ..self }
     }
 
     /// With an elastic core R_e [-].
-    pub fn elastic_core(self, elastic_core: f64) -> Self {
+    pub const fn elastic_core(self, elastic_core: f64) -> Self {
         Self { elastic_core, ..self }
     }
 
     /// With another integration of an increment.
-    pub fn integration(self, integration: Integration) -> Self {
+    pub const fn integration(self, integration: Integration) -> Self {
         Self { integration, ..self }
     }
 
     /// With another tolerance of the controlled integration [-].
-    pub fn tolerance(self, tolerance: f64) -> Self {
+    pub const fn tolerance(self, tolerance: f64) -> Self {
         Self { tolerance: Some(tolerance), ..self }
     }
 
     /// With this tangential stiffness [F/L³].
-    pub fn alpha_t(self, alpha_t: f64) -> Self {
+    pub const fn alpha_t(self, alpha_t: f64) -> Self {
         Self { alpha_t: Some(alpha_t), ..self }
     }
 }
 
-fn one() -> f64 {
+const fn one() -> f64 {
     1.0
 }
