@@ -8,7 +8,8 @@ use nalgebra::Vector2;
 
 use super::error::{Checked, ModelError, check_not_negative};
 use super::groups::{Place, edges, group_at, node_lists, nodes_at};
-use super::load_step::{Action, Change, Components, DashpotLoad, Load, LoadStep, SpringLoad};
+use super::load::{Action, Change, Components, DashpotLoad, Load, SpringLoad};
+use super::load_step::LoadStep;
 use super::plates::plate_of_moment;
 use super::section::check_gravity;
 use super::shares::{Share, absorbers, edge_shares, even_shares, mass_shares, pressure_shares};

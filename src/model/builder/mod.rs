@@ -36,6 +36,7 @@ mod error;
 mod friction;
 mod groups;
 mod initial;
+mod load;
 mod load_step;
 mod loads;
 mod pair;
@@ -52,10 +53,8 @@ pub use contact::{Contact, InitialTractions, MasterSide, Normal, Radiation, Slid
 pub use error::{Checked, ModelError};
 pub use friction::Friction;
 pub use groups::Place;
-pub use load_step::{
-    Action, Change, Components, DashpotLoad, IncrementSettings, Load, LoadStep, MET, Rotation, RuptureSettings,
-    SpringLoad, Support, UntilSettings,
-};
+pub use load::{Action, Change, Components, DashpotLoad, Load, SpringLoad};
+pub use load_step::{IncrementSettings, LoadStep, MET, Rotation, RuptureSettings, Support, UntilSettings};
 pub use loads::LoadsInForce;
 pub use pair::default_alpha_t;
 pub use plates::Plate;
