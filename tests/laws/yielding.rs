@@ -89,9 +89,12 @@ impl Material for VonMises {
         let deviator = left * trial;
         let stored = deviator.component_mul(&twice).dot(&deviator) / (4.0 * shear) + 0.5 * bulk * volume * volume;
         let hardened = |equivalent: f64| 0.5 * self.hardening * equivalent * equivalent;
-        Ok(
-            with!(MaterialResponse::new(Matrix2::new(stress[0], stress[3], stress[3], stress[1]), Matrix4::from_columns(&[0, 1, 2, 3].map(varied)), stored + hardened(new[4])), stress_zz: stress[2], dissipation: left * q * slip - (hardened(new[4]) - hardened(before))),
-        )
+        let first = Matrix2::new(stress[0], stress[3], stress[3], stress[1]);
+        let tangent = Matrix4::from_columns(&[0, 1, 2, 3].map(varied));
+        let mut response = MaterialResponse::new(first, tangent, stored + hardened(new[4]));
+        response.stress_zz = stress[2];
+        response.dissipation = left * q * slip - (hardened(new[4]) - hardened(before));
+        Ok(response)
     }
 }
 
