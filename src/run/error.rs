@@ -4,7 +4,11 @@ use thiserror::Error;
 
 use crate::laws::friction::LawFailure;
 use crate::model::scheme::told;
-use crate::solve::failure::IncrementFailure;
+
+pub use crate::equations::sums::TrialFailure;
+pub use crate::linear::LinearFailure;
+pub use crate::solve::failure::IncrementFailure;
+pub use crate::solve::newton::NewtonFailure;
 
 /// Why a run stopped.
 #[derive(Debug, Error)]

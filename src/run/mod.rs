@@ -31,7 +31,6 @@ pub use simulation::{NotResumable, Pause, Saved, Simulation};
 
 pub use crate::equations::ContactCounts;
 pub use crate::solve::IterationRecord;
-pub use crate::solve::failure::IncrementFailure;
 pub use crate::solve::newton::Iteration;
 
 /// Run all steps of a model. The report comes back from a stopped run as well.

@@ -70,6 +70,7 @@ pub struct Iteration {
 
 /// Why no solution was found; `E` is why the equations could not be evaluated.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub enum NewtonFailure<E> {
     /// The equations could not be evaluated at a trial state.
     #[error("{0}")]
