@@ -6,6 +6,39 @@
 //! is decided once, by the run; all that is written over time goes by it.
 //!
 //! Why an attempt was given up: in a sentence, and in so few words that they can be counted.
+//!
+//! ```
+//! use std::sync::Arc;
+//!
+//! use fecontact::laws::bulk::{ElasticConstants, NeoHookean};
+//! use fecontact::mesh::InlineMesh;
+//! use fecontact::model::Model;
+//! use fecontact::model::builder::{LoadStep, Support};
+//! use fecontact::run::error::Error;
+//! use fecontact::run::observer::{Attempt, Observer};
+//! use fecontact::run::run;
+//!
+//! /// Linear solves of every increment.
+//! struct Solves(Vec<usize>);
+//!
+//! impl Observer for Solves {
+//!     fn record(&mut self, _model: &Model, attempt: &Attempt) -> Result<(), Error> {
+//!         if attempt.accepted.is_some() {
+//!             self.0.push(attempt.iterations.len());
+//!         }
+//!         Ok(())
+//!     }
+//! }
+//!
+//! let mesh = InlineMesh::default().rectangle("block", [2, 2], [0.0, 0.0], [1.0, 1.0]).build()?;
+//! let press = LoadStep::new("press", 1.0).dt(0.5).fix("block_bottom").support(Support::on("block_top").ux(0.0).uy(-0.1));
+//! let rubber = NeoHookean::new(&ElasticConstants::new(1000.0, 0.3))?;
+//! let model = Arc::new(Model::builder(mesh).body("block", rubber).step(press).build()?);
+//! let mut solves = Solves(Vec::new());
+//! let (report, end) = run(&model, &mut [&mut solves]);
+//! assert_eq!((end?.time, report.newton_iterations), (1.0, solves.0.iter().sum()));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::laws::friction::Regime;
 use crate::model::scheme::Scheme;
