@@ -15,7 +15,7 @@
 //!     .rectangle("ground", [8, 2], [0.0, -1.0], [4.0, 0.0])
 //!     .rectangle("block", [5, 3], [1.0, 0.0], [3.0, 1.0])
 //!     .build()?;
-//! let rubber = NeoHookean::new(&ElasticConstants { young: 1000.0, poisson: 0.3, density: 0.0 })?;
+//! let rubber = NeoHookean::new(&ElasticConstants::new(1000.0, 0.3))?;
 //! let press = LoadStep::new("press", 1.0).dt(0.5).fix("ground_bottom").support(Support::on("block_top").ux(0.0).uy(-0.01));
 //! let drag = LoadStep::new("drag", 2.0).dt(0.5).support(Support::on("block_top").ux(Drive::Rate(0.05)));
 //! let model = Model::builder(mesh)
@@ -36,9 +36,24 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Between two increments supports can be led ([`run::Simulation::lead`]) and loads changed ([`case::loading`]), a candidate can be dropped
-//! ([`run::Simulation::attempt`]), and a run saved and resumed to the same bits ([`run::SavedRun`], in
-//! a file by [`output::checkpoint`]).
+//! Between two increments supports can be led ([`run::Simulation::lead`]) and loads changed ([`model::builder::LoadsInForce`]), a
+//! candidate can be dropped ([`run::Simulation::try_increment`]), and a run saved and resumed to the same bits
+//! ([`run::Saved`], in memory or as bytes).
+//!
+//! # What is published
+//!
+//! A program that uses the library names it with `default-features = false`, and sees these rooms:
+//!
+//! | room | what it offers |
+//! |---|---|
+//! | [`model`] | [`model::Model::builder`] and what is given to it: bodies, [`model::builder::Contact`], [`model::builder::LoadStep`], supports and loads |
+//! | [`run`] | [`run::Simulation`], increment by increment; [`run::observer`]s of a whole run; [`run::law`], a friction law along a path |
+//! | [`laws`] | friction and bulk laws, with the traits by which others are written: [`laws::friction::FrictionLaw`], [`laws::bulk::Material`] |
+//! | [`mesh`] | meshes from gmsh ([`mesh::gmsh`]), from blocks ([`mesh::Blocks`]), from code ([`mesh::InlineMesh`]) |
+//! | [`output::results`] | frames of a folder of results, as plain numbers |
+//!
+//! Inputs are made by `new` and setters, and what comes back may grow: nearly all structures and enums are `non_exhaustive`. The
+//! feature `internals`, which the program (`cli`) turns on, opens all rooms; what only it shows changes without notice.
 //!
 //! # The way through the house
 //!
@@ -74,7 +89,7 @@
 //!    [`model::support::Prescribed`] dof of the [`model::Step`].
 //! 2. [`run`] asks for an increment, [`time::increment`] sets a [`equations::Trial`] for it, and [`solve::equilibrium`] finds
 //!    the displacement u at its end, iterate by iterate.
-//! 3. At every iterate `equations/interfaces.rs` asks each [`contact::pair`] for its points' answers. `contact/search.rs` and
+//! 3. At every iterate `equations/contacts.rs` asks each [`contact::pair`] for its points' answers. `contact/search.rs` and
 //!    `contact/projection.rs` find the foot, and [`contact::kinematics`] the arc on the master from the committed foot to this
 //!    one: that is Δu_t. [`contact::force`] hands it to the law as [`laws::friction::Sliding::slip`], with p and Δt.
 //! 4. The law returns q, its tangents and a new [`laws::friction::FrictionState`], whose `plastic_increment` is what of Δu_t
@@ -104,18 +119,39 @@
 //! - Sums run in a fixed order: the same input gives the same bits on any number of threads.
 //! - A room imports only from lower ones, and no files import each other in a circle; `tests/layers.rs` holds the list.
 
+#![cfg_attr(
+    not(feature = "internals"),
+    allow(dead_code, unused_imports, reason = "what the program and its tests use beyond what is published")
+)]
+#![cfg_attr(
+    not(feature = "internals"),
+    allow(rustdoc::private_intra_doc_links, reason = "the map of the house names rooms that are not published")
+)]
 #![allow(rustdoc::broken_intra_doc_links, reason = "units stand in brackets: [L], [F]")]
 
-pub mod case;
 #[cfg(feature = "cli")]
 pub mod cli;
-pub mod contact;
-pub mod equations;
 pub mod laws;
-pub mod linear;
 pub mod mesh;
 pub mod model;
 pub mod output;
 pub mod run;
-pub mod solve;
-pub mod time;
+
+// The rooms behind the published ones: open to the program, its tests and benches alone.
+cfg_if::cfg_if! {
+    if #[cfg(feature = "internals")] {
+        pub mod case;
+        pub mod contact;
+        pub mod equations;
+        pub mod linear;
+        pub mod solve;
+        pub mod time;
+    } else {
+        mod case;
+        mod contact;
+        mod equations;
+        mod linear;
+        mod solve;
+        mod time;
+    }
+}

@@ -8,7 +8,7 @@ use fecontact::mesh::{InlineMesh, Mesh};
 use fecontact::run::Simulation;
 use libfuzzer_sys::fuzz_target;
 
-/// What a case finds whose mesh is a file.
+/// What a case finds whose mesh is a file, or blocks.
 fn blocks() -> Mesh {
     let blocks = InlineMesh::default().rectangle("ground", [4, 1], [0.0, -1.0], [4.0, 0.0]);
     blocks.rectangle("block", [3, 1], [0.5, 0.0], [3.5, 1.0]).build().expect("a mesh")
@@ -19,7 +19,7 @@ fuzz_target!(|text: &str| {
     let Ok(case) = case::from_text(text, path) else { return };
     let built = match case.mesh {
         MeshSource::Inline(_) => case::build(&case, path),
-        MeshSource::File(_) => case::build_on(&case, blocks(), path),
+        MeshSource::File(_) | MeshSource::Blocks(_) => case::build_on(&case, blocks(), path),
     };
     let model = match built {
         Ok(model) => model,
@@ -31,9 +31,9 @@ fuzz_target!(|text: &str| {
     }
     let mut simulation = Simulation::new(model);
     for _ in 0..3 {
-        let Ok(Some(candidate)) = simulation.attempt() else { return };
+        let Ok(Some(candidate)) = simulation.try_increment() else { return };
         assert!(candidate.state().is_none_or(|state| state.displacement.iter().all(|u| u.is_finite())));
-        if simulation.follow(candidate).is_err() {
+        if simulation.apply(candidate).is_err() {
             return;
         }
     }

@@ -32,13 +32,13 @@ const COLUMNS: [&str; 10] = [
 ];
 
 /// A path as arrays; slips and pressures have a row for every set of parameters, or one for all.
-pub struct Course<'a> {
+pub struct LawPath<'a> {
     pub time: &'a [f64],
     pub slip: &'a Array2<f64>,
     pub pressure: &'a Array2<f64>,
 }
 
-impl Course<'_> {
+impl LawPath<'_> {
     /// Time, slip and pressure of one set of parameters.
     pub fn rows(&self, k: usize) -> Vec<[f64; 3]> {
         let row = |array: &Array2<f64>, i: usize| array[[k.min(array.nrows() - 1), i]];
@@ -74,7 +74,7 @@ struct Step {
 pub fn sensitivities(py: Python, parameters: &str) -> PyResult<Vec<&'static str>> {
     let parameters = document(parameters)?;
     let still = Array2::zeros((1, 2));
-    let course = Course { time: &[0.0, 1.0], slip: &still, pressure: &still };
+    let course = LawPath { time: &[0.0, 1.0], slip: &still, pressure: &still };
     let test = course.test(0, &parameters, &json!({})).map_err(|error| case_error(py, &error))?;
     Ok(test.law.sensitivities().map_or(Vec::new(), |law| law.parameters().to_vec()))
 }
@@ -96,7 +96,7 @@ pub fn drive<'py>(
     let parameters = documents(&parameters)?;
     let initial = document(initial)?;
     let (time, slip, pressure) = (time.as_array().to_vec(), slip.as_array().to_owned(), pressure.as_array().to_owned());
-    let course = Course { time: &time, slip: &slip, pressure: &pressure };
+    let course = LawPath { time: &time, slip: &slip, pressure: &pressure };
     let pool = Pool::new(threads)?;
     let ask = Ask { initial: &initial, by: &by, raised: &pool.raised };
     let answered: Vec<Result<Answers, Refusal>> = pool.watched(py, || {
@@ -162,7 +162,7 @@ struct Ask<'a> {
     raised: &'a Raised,
 }
 
-fn answers(course: &Course, k: usize, parameters: &Value, ask: Ask) -> Result<Answers, Refusal> {
+fn answers(course: &LawPath, k: usize, parameters: &Value, ask: Ask) -> Result<Answers, Refusal> {
     let Ask { initial, by, raised } = ask;
     goes_on(raised).map_err(|error| Refusal::Stopped(error.to_string()))?;
     let test = course.test(k, parameters, initial).map_err(Refusal::Case)?;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use fecontact::laws::friction::state::MOST_VARIABLES;
+use fecontact::laws::friction::MOST_VARIABLES;
 use fecontact::laws::friction::{
     Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LawFailure, Regime, Sliding, observables,
     register,

@@ -33,7 +33,7 @@ impl Observer for Progress {
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let Some(state) = attempt.accepted else { return Ok(()) };
         let end = model.steps.last().map_or(0.0, |step| step.span.end);
-        let ContactCounts { open, stick, slip } = ContactCounts::of(&model.contacts, &state.contacts);
+        let ContactCounts { open, stick, slip, .. } = ContactCounts::of(&model.contacts, &state.contacts);
         let name = attempt.step.name.clone();
         let place = (name, state.time, end, attempt.dt, state.increment, attempt.iterations.len(), [open, stick, slip]);
         self.0.lock().unwrap_or_else(PoisonError::into_inner).place = Some(place);

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use fecontact::case::job::{Ends, defect};
-use fecontact::case::loading::{self, Loading};
+use fecontact::case::loading::{self, LoadChanges};
 use fecontact::case::{CaseError, Opened};
 use fecontact::model::builder::ModelError;
 use fecontact::model::state::State;
@@ -26,7 +26,7 @@ use crate::pool::Pool;
 #[pyclass(frozen, module = "fecontact._native")]
 pub struct Saved {
     run: fecontact::run::Saved,
-    loading: Option<Loading>,
+    loading: Option<LoadChanges>,
     of: Arc<Origin>,
 }
 
@@ -54,7 +54,7 @@ pub struct Simulation {
 struct UnderWay {
     opened: Opened,
     run: Run,
-    loading: Option<Loading>,
+    loading: Option<LoadChanges>,
     last: Option<Arc<State>>,
     of: Arc<Origin>,
 }
@@ -204,7 +204,7 @@ impl Simulation {
     /// Bounds of the increments of the step under way [T].
     fn increments(&self, py: Python, max: Option<f64>, min: Option<f64>) -> PyResult<()> {
         let bounded = self.with(|under_way| Ok(under_way.run.bound_increments(max, min)))?;
-        bounded.map_err(|ModelError { place, message }| {
+        bounded.map_err(|ModelError { place, message, .. }| {
             complaint(py, "increments", place.trim_start_matches("increments").trim_start_matches('.'), message)
         })
     }
@@ -265,11 +265,11 @@ impl Simulation {
 /// Attempts until one is accepted; none after the last, nor where the end was asked for.
 fn next(run: &mut Run, ends: &Ends) -> Result<Option<Increment>, Error> {
     while ends().is_none()
-        && let Some(candidate) = run.attempt()?
+        && let Some(candidate) = run.try_increment()?
     {
         let (step, state) = (run.step().name.clone(), candidate.shared_state());
         let iterations = candidate.iterations().len();
-        run.follow(candidate)?;
+        run.apply(candidate)?;
         if let Some(state) = state {
             return Ok(Some(Increment { state, step, iterations }));
         }

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use crate::law::{Course, Refusal, documents};
+use crate::law::{LawPath, Refusal, documents};
 use crate::pool::{Pool, Raised};
 
 /// What a ride answers, in this order, before ∂F/∂parameter for those asked for.
@@ -33,7 +33,7 @@ pub fn ride<'py>(
     let parameters = documents(&parameters)?;
     let (machine, time) = (machine.as_array().to_owned(), time.as_array().to_vec());
     let (load_point, pressure) = (load_point.as_array().to_owned(), pressure.as_array().to_owned());
-    let course = Course { time: &time, slip: &load_point, pressure: &pressure };
+    let course = LawPath { time: &time, slip: &load_point, pressure: &pressure };
     let pool = Pool::new(threads)?;
     let one = |(k, parameters): (usize, &Value)| {
         ridden(&course, (k, parameters), [machine[[k, 0]], machine[[k, 1]]], start, (&by, &pool.raised))
@@ -50,7 +50,7 @@ pub fn ride<'py>(
 
 /// Columns of one ride.
 fn ridden(
-    course: &Course,
+    course: &LawPath,
     (k, parameters): (usize, &Value),
     [stiffness, mass]: [f64; 2],
     (initial, tolerance): (f64, f64),

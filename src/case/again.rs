@@ -107,7 +107,7 @@ impl Opened {
         let Some(Checkpoint { mesh, run, .. }) = self.start.take() else { return Ok((model, None)) };
         let complain = |message: String| self.not_of(if self.resumes { "" } else { "begin_with" }, message);
         check_mesh(&mesh, &model).map_err(complain)?;
-        let saved = SavedRun::from_bytes(run, &model).map_err(complain)?;
+        let saved = SavedRun::from_bytes(run, &model).map_err(|error| complain(error.to_string()))?;
         if self.resumes {
             return Ok((model, Some(saved)));
         }
@@ -128,7 +128,9 @@ impl Opened {
         model: &Arc<Model>,
     ) -> Result<Saved, CaseError> {
         unchanged(before, &self.document, run.begun()).map_err(|complaint| complaint.in_file(&self.path))?;
-        check_mesh(mesh, model).and_then(|()| run.on(model)).map_err(|message| self.not_of("", message))
+        check_mesh(mesh, model)
+            .and_then(|()| run.on(model).map_err(|error| error.to_string()))
+            .map_err(|message| self.not_of("", message))
     }
 
     fn not_of(&self, place: &str, message: String) -> CaseError {

@@ -13,7 +13,7 @@ use super::schema::schema_of;
 use crate::laws::friction::{FrictionLaw, FrictionParameters, FrictionState, observables};
 use crate::model::boundary::{Drive, Span};
 use crate::model::builder::{Checked, ModelError, check_line, check_positive};
-use crate::run::law::{Course, LawTest, Phase, Undefined};
+use crate::run::law::{LawTest, PathDrive, Phase, Undefined};
 
 /// A test of a friction law alone: the law, and the path of slip and pressure it is driven along.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
@@ -192,11 +192,11 @@ fn phase_of(input: &LawTestInput, place: &str, phase: &PhaseInput, before: Optio
 }
 
 /// How a quantity varies that has `reached` a value, if that is known.
-fn course(place: &str, given: Option<&Drive>, reached: Option<f64>) -> Checked<Course> {
+fn course(place: &str, given: Option<&Drive>, reached: Option<f64>) -> Checked<PathDrive> {
     let complain = |message: &str| Err(ModelError::new(place, message));
     let Some(given) = given else {
         return match reached {
-            Some(value) => Ok(Course { drive: Drive::Constant(value), start: value }),
+            Some(value) => Ok(PathDrive { drive: Drive::Constant(value), start: value }),
             None => complain("is missing: give it here, or as initial.pressure"),
         };
     };
@@ -208,12 +208,12 @@ fn course(place: &str, given: Option<&Drive>, reached: Option<f64>) -> Checked<C
         }
         (Drive::Rate(_), None) => complain("a rate needs a value to start from: give initial.pressure"),
         // Nothing to start from: it is there from the start.
-        (Drive::Constant(value), None) => Ok(Course { start: *value, drive }),
-        _ => Ok(Course { drive, start: reached.unwrap_or(0.0) }),
+        (Drive::Constant(value), None) => Ok(PathDrive { start: *value, drive }),
+        _ => Ok(PathDrive { drive, start: reached.unwrap_or(0.0) }),
     }
 }
 
-fn check_continuous(place: &str, course: &Course, reached: f64, span: Span) -> Checked<()> {
+fn check_continuous(place: &str, course: &PathDrive, reached: f64, span: Span) -> Checked<()> {
     let first = course.value(span.start, span);
     // What is not finite is complained of later.
     if (first - reached).abs() > SAME * first.abs().max(reached.abs()).max(f64::MIN_POSITIVE) {
@@ -236,7 +236,7 @@ fn table_of(input: &LawTestInput, table: &[[f64; 3]]) -> Checked<Phase> {
         check_dt("dt", dt, span)?;
     }
     let column = |k: usize| Drive::Table(table.iter().map(|row| [row[0], row[k]]).collect());
-    let [slip, pressures] = [1, 2].map(|k| Course { drive: column(k), start: 0.0 });
+    let [slip, pressures] = [1, 2].map(|k| PathDrive { drive: column(k), start: 0.0 });
     if let Some(given) = input.initial.pressure.filter(|given| given != pressure) {
         let message = format!("is {given}, but the table starts at {pressure}: leave it out");
         return Err(ModelError::new("initial.pressure", message));

@@ -13,13 +13,13 @@ use crate::run::Simulation;
 
 /// The loads of a step under way, which its caller changes.
 #[derive(Clone)]
-pub struct Loading {
+pub struct LoadChanges {
     /// number of the step
     step: usize,
     in_force: LoadsInForce,
 }
 
-impl Loading {
+impl LoadChanges {
     /// The loads of a case in the step under way of its run, with what the caller has changed in it `before`.
     fn of(case: &Case, simulation: &Simulation, before: Option<&Self>) -> Checked<Self> {
         let model = simulation.model();
@@ -44,7 +44,7 @@ pub fn load(
     case: &Case,
     path: &Path,
     simulation: &mut Simulation,
-    loading: &mut Option<Loading>,
+    loading: &mut Option<LoadChanges>,
     document: &Value,
     by: f64,
 ) -> Result<(), CaseError> {
@@ -54,7 +54,7 @@ pub fn load(
 fn changed(
     case: &Case,
     simulation: &mut Simulation,
-    loading: &mut Option<Loading>,
+    loading: &mut Option<LoadChanges>,
     document: &Value,
     by: f64,
 ) -> Checked<()> {
@@ -63,7 +63,7 @@ fn changed(
         return Err(ModelError::new("by", format!("is {by}: must be a time from now on, and now is {now}")));
     }
     let load: Load = read::input(document)?;
-    let mut changed = Loading::of(case, simulation, loading.as_ref())?;
+    let mut changed = LoadChanges::of(case, simulation, loading.as_ref())?;
     changed.in_force.change_within(&load, "load", Span { start: now, end: by }, simulation.model())?;
     let loads = changed.in_force.all();
     simulation.change(|step| step.loads = loads.clone());

@@ -54,7 +54,7 @@ use crate::mesh::configuration::Configuration;
 
 /// A point on the way through its law: first what the law is asked for, then what follows from its answer.
 #[derive(Debug)]
-pub struct Loading<'a> {
+pub struct PointEvaluation<'a> {
     pair: &'a ContactPair,
     slave: &'a SlavePoint,
     /// The law that holds in the increment
@@ -76,7 +76,7 @@ pub struct Loading<'a> {
     pub sliding: Sliding,
 }
 
-impl<'a> Loading<'a> {
+impl<'a> PointEvaluation<'a> {
     /// What the law is asked for at a point in its place, which has these kinematics if it is closed.
     ///
     /// # Errors

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::force::{Loading, PointPlace, closes, place};
+use super::force::{PointEvaluation, PointPlace, closes, place};
 use super::kinematics::{Kinematics, Meeting};
 use super::master::Master;
 use super::mortar::{Committed, Overlaps, Room};
@@ -30,7 +30,7 @@ const TOGETHER: usize = 16;
 pub struct PairResponse {
     /// Trial states
     pub states: Vec<ContactState>,
-    parts: Vec<Part>,
+    parts: Vec<Chunk>,
     kept: Kept,
 }
 
@@ -46,7 +46,7 @@ struct Kept {
 
 /// Points that one thread evaluates.
 #[derive(Clone, Debug, Default)]
-struct Part {
+struct Chunk {
     closed: ClosedPoints,
     /// Kinematics of the points at hand
     kinematics: Vec<Kinematics>,
@@ -165,8 +165,8 @@ impl<P: Fn(usize) -> Presumption + Sync> Question<'_, P> {
         let PairResponse { states, parts, .. } = response;
         states.clear();
         states.extend_from_slice(old);
-        parts.resize_with(points.len().div_ceil(PART), Part::default);
-        let one = |(number, (part, states)): (usize, (&mut Part, &mut [ContactState]))| {
+        parts.resize_with(points.len().div_ceil(PART), Chunk::default);
+        let one = |(number, (part, states)): (usize, (&mut Chunk, &mut [ContactState]))| {
             let numbers = PART * number..PART * number + states.len();
             part.evaluate(self, numbers, old, states, &place);
         };
@@ -178,7 +178,7 @@ impl<P: Fn(usize) -> Presumption + Sync> Question<'_, P> {
     }
 }
 
-impl Part {
+impl Chunk {
     /// Some points at a time: where they are, what their laws say, what follows.
     fn evaluate<P: Fn(usize) -> Presumption>(
         &mut self,
@@ -202,7 +202,7 @@ impl Part {
                 let increment = PointIncrement { during, presumption: (question.presumed)(first + i) };
                 kinematics.varied = question.varied;
                 let place = place(first + i, slave, old, increment, (&mut *kinematics, room));
-                match Loading::new((pair, slave, &laws[slave.law]), old, increment, place, kinematics) {
+                match PointEvaluation::new((pair, slave, &laws[slave.law]), old, increment, place, kinematics) {
                     Ok(loading) => {
                         sliding[i] = loading.sliding;
                         loadings[i] = Some(loading);

@@ -13,9 +13,9 @@ use std::time::Instant;
 
 use crate::contact::pair::Presumption;
 use crate::contact::response::PairResponse;
+use crate::equations::convergence::ConvergenceCriterion;
 use crate::equations::coupling::{Coupling, Layout};
 use crate::equations::damping::ByMass;
-use crate::equations::equilibrium::Equilibrium;
 use crate::equations::evaluation::{ContactCounts, Evaluation, Seconds};
 use crate::equations::evolving::Evolving;
 use crate::equations::inertia::{self, Inertia};
@@ -23,7 +23,7 @@ use crate::equations::solids::Solids;
 use crate::equations::sums::{Sums, TrialFailure};
 use crate::equations::term::Term;
 use crate::equations::trial::Trial;
-use crate::equations::{damping, interfaces, links, loads, supports};
+use crate::equations::{contacts, damping, links, loads, supports};
 use crate::linear::SparseMatrix;
 use crate::linear::system::{Request, System};
 use crate::model::Model;
@@ -41,7 +41,7 @@ pub struct Assembler {
     weight: f64,
     /// Sum of the forces' magnitudes at each dof [F]
     magnitudes: Vec<f64>,
-    equilibrium: Equilibrium,
+    equilibrium: ConvergenceCriterion,
     /// Contacts where nothing is presumed, kept for their memory
     responses: Vec<PairResponse>,
     /// What was found at the last evaluated displacement
@@ -75,7 +75,7 @@ impl Assembler {
             damping_mass: None,
             weight: supports::weight(model),
             magnitudes: vec![0.0; model.dofs()],
-            equilibrium: Equilibrium::new(model),
+            equilibrium: ConvergenceCriterion::new(model),
             responses: Vec::new(),
             evaluation: Evaluation::default(),
             seconds: Seconds::default(),
@@ -220,10 +220,10 @@ impl Assembler {
                     *strain_energy = elastic + evolved.stored;
                     (*dissipated, *heating) = (evolved.dissipated, evolved.heating);
                 }
-                Term::Interfaces => interfaces::add(responses, &mut sums),
+                Term::Interfaces => contacts::add(responses, &mut sums),
                 Term::Loads => {
                     loads::add(model, trial, u, loads, &mut sums)?;
-                    interfaces::add_fluids(model, responses, loads);
+                    contacts::add_fluids(model, responses, loads);
                 }
                 Term::Dampers => damping::add_dampers(model, trial, u, damping, &mut sums)?,
                 Term::Stabilization => *stabilization = damping::add_stabilization(trial, u, damping, &mut sums),
@@ -311,7 +311,7 @@ impl Assembler {
             return Ok(());
         }
         let clock = Instant::now();
-        let answer = interfaces::respond(&self.model, trial, u, presumed, request, responses);
+        let answer = contacts::respond(&self.model, trial, u, presumed, request, responses);
         self.seconds.contact += clock.elapsed().as_secs_f64();
         answer
     }

@@ -12,7 +12,7 @@
 //! ```
 //! Whatever the scheme, forces are taken at both ends of the increment.
 
-use super::{damping, interfaces, links};
+use super::{contacts, damping, links};
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::laws::friction::Regime;
@@ -51,6 +51,7 @@ pub struct Evaluation {
 
 /// Numbers of contact points by status.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ContactCounts {
     /// open
     pub open: usize,
@@ -62,6 +63,7 @@ pub struct ContactCounts {
 
 impl ContactCounts {
     /// Count the points of all pairs.
+    #[doc(hidden)]
     pub fn of(pairs: &[ContactPair], contacts: &[Vec<ContactState>]) -> Self {
         let mut counts = Self::default();
         let regimes = |(pair, states): (&ContactPair, &Vec<ContactState>)| {
@@ -113,13 +115,13 @@ impl Flows {
         let way = |dof: usize| u[dof] - old.displacement[dof];
         let driven = damping::driven(model, step, times, way);
         let damped = if model.is_damped(step) { mean_work([&old.damping, &found.damping], ends) } else { 0.0 };
-        let fitted = interfaces::fitted(model, [&old.contacts, &found.contacts], times);
+        let fitted = contacts::fitted(model, [&old.contacts, &found.contacts], times);
         Self {
             work: mean_work([&old.external, &found.loads], ends) + driven + fitted,
             damping: driven - damped + relaxed(model, step, old, u),
             stabilization: damping::stabilization_dissipated(step, times, way),
-            friction: interfaces::dissipated(&old.contacts, &found.contacts),
-            radiated: interfaces::radiated(&old.contacts, &found.contacts),
+            friction: contacts::dissipated(&old.contacts, &found.contacts),
+            radiated: contacts::radiated(&old.contacts, &found.contacts),
         }
     }
 }

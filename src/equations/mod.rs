@@ -26,13 +26,13 @@
 
 pub mod assembler;
 pub mod condensed;
+pub mod contacts;
+mod convergence;
 mod coupling;
 pub mod damping;
-mod equilibrium;
 pub mod evaluation;
 mod evolving;
 pub mod inertia;
-pub mod interfaces;
 pub mod links;
 mod loads;
 pub mod slip_operator;

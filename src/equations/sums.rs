@@ -90,6 +90,7 @@ pub enum Dependence {
 
 /// Why the equations could not be evaluated at a trial state.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub enum TrialFailure {
     /// An element has no volume left.
     #[error(
@@ -168,7 +169,7 @@ pub enum TrialFailure {
 
 impl TrialFailure {
     /// The failure of a material law in an element, with the names of its file.
-    pub fn material(model: &Model, e: usize, cause: MaterialFailure) -> Self {
+    pub(crate) fn material(model: &Model, e: usize, cause: MaterialFailure) -> Self {
         let (element, body, at) = named(model, e);
         match cause {
             MaterialFailure::Inverted { jacobian } => Self::Inverted { element, body, at, jacobian },
@@ -177,7 +178,7 @@ impl TrialFailure {
     }
 
     /// An element of which only a share of its size is left.
-    pub fn crushed(model: &Model, e: usize, share: f64) -> Self {
+    pub(crate) fn crushed(model: &Model, e: usize, share: f64) -> Self {
         let (element, body, at) = named(model, e);
         Self::Crushed { element, body, at, share }
     }

@@ -1,7 +1,7 @@
 //! The terms of the equations.
 
 use super::sums::Dependence;
-use super::{damping, inertia, interfaces, loads, solids};
+use super::{contacts, damping, inertia, loads, solids};
 use crate::model::{Model, Step};
 
 /// A term of the equations.
@@ -32,7 +32,7 @@ impl Term {
     pub fn dependence(self, model: &Model, step: &Step) -> Dependence {
         match self {
             Self::Solids => solids::dependence(model),
-            Self::Interfaces => interfaces::dependence(model),
+            Self::Interfaces => contacts::dependence(model),
             Self::Loads => loads::dependence(step),
             Self::Dampers => damping::damper_dependence(step),
             Self::Stabilization => damping::stabilization_dependence(step),

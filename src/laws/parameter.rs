@@ -7,6 +7,7 @@ use thiserror::Error;
 /// A parameter that is not allowed.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("\"{name}\" is {value}, but {allowed}")]
+#[non_exhaustive]
 pub struct InvalidParameter {
     /// key in the case file
     pub name: &'static str,
@@ -47,6 +48,7 @@ pub fn require_not_negative(name: &'static str, value: f64) -> Result<(), Invali
 /// A name that no parameter of a law has.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("`{name}` is no parameter of this law; known are `{}`", known.join("`, `"))]
+#[non_exhaustive]
 pub struct UnknownParameter {
     /// the name
     pub name: String,

@@ -16,6 +16,7 @@ use thiserror::Error;
 
 /// Why a linear system was not solved.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub enum LinearFailure {
     /// The matrix has no inverse, or none that double precision can find: what the solver met.
     #[error("the linear system is singular ({0})")]

@@ -9,6 +9,7 @@ use super::names::in_line;
 
 /// Why a mesh was refused.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum MeshError {
     /// Any of the others, in a file.
     #[error("{}: {cause}", in_line(&file.to_string_lossy()))]

@@ -13,6 +13,8 @@ use super::{Mesh, MeshError, check};
 /// A mesh given in the case file. Nodes are numbered from 0 in the order of `nodes`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct InlineMesh {
     /// Position [x, y] of each node
     pub nodes: Vec<[f64; 2]>,

@@ -3,35 +3,50 @@
 //! A mesh comes from a gmsh file ([`gmsh::read`]), from blocks ([`Blocks`]), or node by node from the case file or from code
 //! ([`InlineMesh::build`]). Readers only fill in a raw mesh; one check turns it into a [`Mesh`], so that a mesh keeps its promises wherever it comes from.
 
-pub mod boxes;
 mod check;
-pub mod configuration;
 mod error;
-pub mod few;
 pub mod gmsh;
 mod inline;
-pub mod joined;
-pub mod names;
-pub mod section;
-pub mod shape;
-pub mod ties;
 mod transfinite;
+
+cfg_if::cfg_if! {
+    if #[cfg(feature = "internals")] {
+        pub mod boxes;
+        pub mod configuration;
+        pub mod few;
+        pub mod joined;
+        pub mod names;
+        pub mod section;
+        pub mod shape;
+        pub mod ties;
+    } else {
+        pub(crate) mod boxes;
+        pub(crate) mod configuration;
+        pub(crate) mod few;
+        pub(crate) mod joined;
+        pub(crate) mod names;
+        pub(crate) mod section;
+        pub(crate) mod shape;
+        pub(crate) mod ties;
+    }
+}
 
 use std::collections::BTreeMap;
 
 use nalgebra::Vector2;
 
 use crate::mesh::configuration::{Configuration, vector};
-use crate::mesh::section::Section;
-use crate::mesh::shape::ElementKind;
 
 pub use error::MeshError;
 pub use inline::InlineMesh;
 pub use names::UnknownGroup;
+pub use section::Section;
+pub use shape::ElementKind;
 pub use transfinite::{Block, BlockError, BlockKind, Blocks, Grading};
 
 /// A solid element: its kind and its nodes, counter-clockwise.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Element {
     /// kind
     pub kind: ElementKind,
@@ -41,6 +56,7 @@ pub struct Element {
 
 /// An edge of the boundary of a body, oriented so that the body lies on its left.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Edge {
     /// node numbers: start, end, and the middle node of a quadratic edge
     pub nodes: Vec<usize>,
@@ -50,6 +66,7 @@ pub struct Edge {
 
 /// A named set of the mesh.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub enum Group {
     /// Solid elements (a gmsh physical surface), by element number, ascending
     Elements(Vec<usize>),
@@ -61,6 +78,7 @@ pub enum Group {
 
 /// A checked mesh: every node is used, every element is counter-clockwise, has positive area and belongs to one body.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Mesh {
     /// X: reference position of each node [L]
     pub nodes: Vec<Vector2<f64>>,
@@ -78,11 +96,13 @@ pub struct Mesh {
 
 impl Mesh {
     /// The configuration x = X + u.
+    #[doc(hidden)]
     pub fn displaced<'a>(&'a self, displacement: &'a [f64]) -> Configuration<'a> {
         Configuration::new(&self.nodes, displacement).within(self.section)
     }
 
     /// The reference configuration.
+    #[doc(hidden)]
     pub fn undeformed(&self) -> Configuration<'_> {
         Configuration::undeformed(&self.nodes).within(self.section)
     }

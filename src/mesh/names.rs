@@ -51,6 +51,7 @@ fn steers(c: char) -> bool {
 /// A name that no group of the mesh has.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("the mesh has no group `{name}`{}; it has {}", suggestion(nearest), listing(groups))]
+#[non_exhaustive]
 pub struct UnknownGroup {
     /// the name that was asked for
     pub name: String,

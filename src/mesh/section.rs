@@ -25,6 +25,7 @@ use serde::{Deserialize, Serialize};
 /// What the plane stands for in space.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[non_exhaustive]
 pub enum Section {
     /// A slice of thickness 1 of bodies that go on without end across the plane: forces, masses and energies per unit of
     /// thickness

@@ -9,6 +9,7 @@ use super::few::Few;
 
 /// Kind of a solid element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum ElementKind {
     /// Linear triangle, 3 nodes
     T3,
@@ -141,6 +142,7 @@ impl ElementKind {
     }
 
     /// Quadrature of the stiffness (full integration: T3 1, T6 3, Q4 4, Q8 and Q9 9 points).
+    #[doc(hidden)]
     pub fn quadrature(self) -> Vec<QuadraturePoint> {
         match self {
             Self::T3 => vec![QuadraturePoint { at: [1.0 / 3.0; 2], weight: 0.5 }],
@@ -151,6 +153,7 @@ impl ElementKind {
     }
 
     /// Quadrature of the consistent mass, exact for N_a N_b on an undistorted element.
+    #[doc(hidden)]
     pub fn mass_quadrature(self) -> Vec<QuadraturePoint> {
         match self {
             Self::T3 => triangle_rule(&[(1.0 / 6.0, 1.0 / 6.0)]),

@@ -11,6 +11,7 @@ use crate::laws::bulk::Material;
 
 /// A body: a material on a group of elements.
 #[derive(Debug)]
+#[doc(hidden)]
 pub struct Body {
     /// name of its group
     pub name: String,
@@ -37,6 +38,7 @@ impl Body {
 
 /// A mass at every node of a group.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct PointMass {
     /// name of the group
     pub name: String,
@@ -50,6 +52,8 @@ pub struct PointMass {
 // C = η M + τ K, K being that of `laws::bulk`'s viscous stress.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct Damping {
     /// Force per momentum: damps slow motions most, free flight included [1/T]
     pub mass: f64,
@@ -59,9 +63,22 @@ pub struct Damping {
     pub retardation: f64,
 }
 
+impl Damping {
+    /// With a force per momentum [1/T].
+    pub fn mass(self, mass: f64) -> Self {
+        Self { mass, ..self }
+    }
+
+    /// With a viscous stress: this time times the elastic stress of the rate of strain [T].
+    pub fn retardation(self, retardation: f64) -> Self {
+        Self { retardation, ..self }
+    }
+}
+
 /// The part of every element in [`State::memory`](super::state::State::memory): one behind the other in the elements' order, as long
 /// as its points and variables ask for, and of no length where a material remembers nothing.
 #[derive(Clone, Debug)]
+#[doc(hidden)]
 pub struct Memories {
     /// Where each part starts, and where the last one ends
     starts: Vec<usize>,

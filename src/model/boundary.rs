@@ -12,6 +12,7 @@ use super::written::written;
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(remote = "Self", rename_all = "snake_case")]
 #[schemars(!remote)]
+#[non_exhaustive]
 pub enum Drive {
     /// Value at the start of the step plus rate × time since [1/T]
     Rate(f64),
@@ -45,6 +46,7 @@ written!(
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(remote = "Self", rename_all = "snake_case")]
 #[schemars(rename = "Temperature")]
+#[non_exhaustive]
 pub enum BodyTemperature {
     /// Value at the start of the step plus rate × time since [1/T]
     Rate(f64),
@@ -95,6 +97,7 @@ impl From<&BodyTemperature> for Drive {
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(remote = "Self", rename_all = "snake_case")]
 #[schemars(!remote)]
+#[non_exhaustive]
 pub enum Profile {
     /// Pairs of x and value, x ascending
     X(Vec<[f64; 2]>),
@@ -240,6 +243,7 @@ fn interpolate(table: &[[f64; 2]], at: f64) -> f64 {
 
 /// A drive over one step, and what it took over from at the step's start.
 #[derive(Clone, Debug)]
+#[doc(hidden)]
 pub struct Amplitude {
     /// how it varies
     pub drive: Drive,
@@ -283,6 +287,7 @@ impl Amplitude {
 
 /// A load that does not depend on the deformation: traction, gravity or nodal force.
 #[derive(Clone, Debug)]
+#[doc(hidden)]
 pub struct DeadLoad {
     /// 0 for x, 1 for y
     pub component: usize,
@@ -294,6 +299,7 @@ pub struct DeadLoad {
 
 /// Pressure on edges that follows the surface.
 #[derive(Clone, Debug)]
+#[doc(hidden)]
 pub struct FollowerPressure {
     /// pressure, positive toward the body [F/L²]
     pub amplitude: Amplitude,
@@ -303,6 +309,7 @@ pub struct FollowerPressure {
 
 /// A spring from a node to the ground or to a moving driver: force k (u_driver − u).
 #[derive(Clone, Debug)]
+#[doc(hidden)]
 pub struct Spring {
     /// dof it acts on
     pub dof: usize,
@@ -314,6 +321,7 @@ pub struct Spring {
 
 /// A dashpot from a node to the ground or to a moving driver: force c (v_driver − v).
 #[derive(Clone, Debug)]
+#[doc(hidden)]
 pub struct Dashpot {
     /// dof it acts on
     pub dof: usize,
@@ -335,6 +343,7 @@ impl Dashpot {
 ///
 /// Source: Lysmer & Kuhlemeyer (1969), J. Eng. Mech. Div. ASCE 95, 859.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Absorber {
     /// the node
     pub node: usize,
@@ -344,6 +353,7 @@ pub struct Absorber {
 
 /// A moment on a rigid plate, counter-clockwise: a couple of forces on its leaders that turns with it.
 #[derive(Clone, Debug)]
+#[doc(hidden)]
 pub struct PlateMoment {
     /// A and B
     pub plate: [usize; 2],
@@ -355,19 +365,26 @@ pub struct PlateMoment {
 #[derive(Clone, Debug, Default)]
 pub struct Loads {
     /// forces that stay as they are
+    #[doc(hidden)]
     pub dead: Vec<DeadLoad>,
     /// forces that turn with the surface
+    #[doc(hidden)]
     pub pressures: Vec<FollowerPressure>,
     /// springs
+    #[doc(hidden)]
     pub springs: Vec<Spring>,
     /// dashpots
+    #[doc(hidden)]
     pub dashpots: Vec<Dashpot>,
     /// absorbing sides
+    #[doc(hidden)]
     pub absorbers: Vec<Absorber>,
     /// moments on plates
+    #[doc(hidden)]
     pub moments: Vec<PlateMoment>,
 }
 
+#[doc(hidden)]
 impl Loads {
     /// What of them varies in time.
     pub fn amplitudes(&mut self) -> impl Iterator<Item = &mut Amplitude> {
@@ -382,6 +399,7 @@ impl Loads {
 
 /// A moment at which it is asked how a quantity varies.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Moment {
     /// t [T]
     pub time: f64,

@@ -13,6 +13,7 @@ use crate::laws::bulk::{CauchyStress, TEMPERATURE};
 /// such as "-9.81" for a gravity, for a number grows from zero over the step
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[non_exhaustive]
 pub enum InitialStress {
     /// Ground at rest under its weight along -y: σ_yy = −weight (surface − y), and σ_xx = σ_zz = K0 σ_yy; σ_zz = 0 in a plate
     Geostatic {
@@ -59,12 +60,26 @@ impl InitialStress {
 /// one sees the strain less α (T − T₀).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct Thermal {
     /// α: strain per temperature, against the undeformed body [1/Θ]
     pub expansion: f64,
     /// T₀: temperature of the undeformed body, which it has until a step gives another [Θ]
     #[serde(default)]
     pub reference: f64,
+}
+
+impl Thermal {
+    /// Of a body that is undeformed at the temperature 0.
+    pub fn new(expansion: f64) -> Self {
+        Self { expansion, reference: 0.0 }
+    }
+
+    /// Undeformed at another temperature [Θ].
+    pub fn reference(self, reference: f64) -> Self {
+        Self { reference, ..self }
+    }
 }
 
 /// Temperature of a body over a step.
@@ -76,6 +91,7 @@ pub struct Temperature {
     pub amplitude: Amplitude,
 }
 
+#[doc(hidden)]
 impl Model {
     /// What the materials remember at the start, in bodies with an initial stress or without.
     pub fn initial_memory(&self) -> Vec<f64> {

@@ -140,6 +140,7 @@ pub fn rigid(nodes: &[usize], [a, b]: [usize; 2], place: impl Fn(usize) -> Vecto
     nodes.iter().filter(|node| **node != a && **node != b).map(follower).collect()
 }
 
+#[doc(hidden)]
 impl Model {
     /// Those of some nodes, ascending, whose reactions along x (0) or y (1) are theirs: that of a plate is with one of its nodes, and
     /// is theirs if the whole plate is.

@@ -13,6 +13,7 @@ use crate::mesh::{Group, Mesh};
 /// Where contact is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Method {
     /// At the slave's nodes, with tributary lengths
     NodeToSegment,

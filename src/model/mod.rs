@@ -1,22 +1,39 @@
 //! The problem to solve: mesh, bodies, contact pairs, and the steps with their supports, loads and schemes.
 
-pub mod aids;
 mod balance;
 mod body;
 pub mod boundary;
 pub mod builder;
-pub mod element;
 mod expression;
-pub mod imposed;
-pub mod linkage;
-pub mod method;
-pub mod scheme;
-pub mod state;
-pub mod step;
-pub mod support;
-pub mod told;
-pub mod warnings;
 pub(crate) mod written;
+
+cfg_if::cfg_if! {
+    if #[cfg(feature = "internals")] {
+        pub mod aids;
+        pub mod element;
+        pub mod imposed;
+        pub mod linkage;
+        pub mod method;
+        pub mod scheme;
+        pub mod state;
+        pub mod step;
+        pub mod support;
+        pub mod told;
+        pub mod warnings;
+    } else {
+        pub(crate) mod aids;
+        pub(crate) mod element;
+        pub(crate) mod imposed;
+        pub(crate) mod linkage;
+        pub(crate) mod method;
+        pub(crate) mod scheme;
+        pub(crate) mod state;
+        pub(crate) mod step;
+        pub(crate) mod support;
+        pub(crate) mod told;
+        pub(crate) mod warnings;
+    }
+}
 
 use std::sync::Arc;
 
@@ -32,20 +49,38 @@ use aids::Aids;
 pub use body::{Body, Damping, Memories, PointMass};
 use boundary::Loads;
 use element::{SolidElement, consistent_mass, lumped_mass, redistributed};
+pub use imposed::{InitialStress, Thermal};
 use linkage::Linkage;
 use method::Chosen;
-use state::{Energy, State, StepStart};
-pub use step::{Increments, Rupture, Step};
+pub use method::Method;
+pub use scheme::Scheme;
+use state::StepStart;
+pub use state::{Energy, State};
+pub use step::{ForceComponent, Increments, Rupture, Step};
 
 /// When Newton's method stops.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 #[schemars(rename = "Newton")]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct NewtonSettings {
     /// Out-of-balance force relative to the forces at work
     pub tolerance: f64,
     /// Linear solves an increment before it is cut
     pub max_iterations: usize,
+}
+
+impl NewtonSettings {
+    /// With another tolerance [-].
+    pub fn tolerance(self, tolerance: f64) -> Self {
+        Self { tolerance, ..self }
+    }
+
+    /// With another limit of linear solves.
+    pub fn max_iterations(self, max_iterations: usize) -> Self {
+        Self { max_iterations, ..self }
+    }
 }
 
 impl Default for NewtonSettings {
@@ -56,6 +91,7 @@ impl Default for NewtonSettings {
 
 /// A set of nodes whose mean displacement and reaction the history reports.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct WatchedSet {
     /// name of the group
     pub name: String,
@@ -67,53 +103,73 @@ pub struct WatchedSet {
 
 /// The model; it does not change while it is solved.
 #[derive(Debug)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Model {
     /// title
     pub title: String,
     /// mesh
     pub mesh: Mesh,
     /// whether the elements' mass has been moved away from each node (see [`crate::model::element::redistributed`])
+    #[doc(hidden)]
     pub massless: Vec<bool>,
     /// bodies
+    #[doc(hidden)]
     pub bodies: Vec<Body>,
     /// nodes of periodic sides and of loading plates
+    #[doc(hidden)]
     pub ties: Ties,
     /// nodes that follow others: plates that turn, or of which one component is alike
+    #[doc(hidden)]
     pub linkage: Linkage,
     /// nodes of each loading plate, ascending
+    #[doc(hidden)]
     pub plates: Vec<Vec<usize>>,
     /// point masses
+    #[doc(hidden)]
     pub point_masses: Vec<PointMass>,
     /// body of each element
+    #[doc(hidden)]
     pub body_of_element: Vec<usize>,
     /// integration geometry of each element
+    #[doc(hidden)]
     pub solids: Vec<SolidElement>,
     /// where each element finds what its material remembers, in [`State::memory`]
+    #[doc(hidden)]
     pub memories: Memories,
     /// contact pairs
+    #[doc(hidden)]
     pub contacts: Vec<ContactPair>,
     /// where each contact is evaluated, and why; none for a slave group of points
+    #[doc(hidden)]
     pub methods: Vec<Option<Chosen>>,
     /// steps, in order
     pub steps: Vec<Step>,
     /// watched sets
+    #[doc(hidden)]
     pub watch: Vec<WatchedSet>,
     /// initial velocity of every dof [L/T]
+    #[doc(hidden)]
     pub initial_velocity: Vec<f64>,
     /// Forces of an initial stress of the bodies on every dof, which balance initial tractions of contacts, if any [F]
+    #[doc(hidden)]
     pub prestress: Vec<f64>,
     /// Least time between two rows of the history of implicit steps, and between the results of explicit ones [T]
+    #[doc(hidden)]
     pub interval: Option<f64>,
     /// Times that increments end at, ascending, because fields are written then [T]
+    #[doc(hidden)]
     pub times: Vec<f64>,
     /// Points of the bodies that are watched
+    #[doc(hidden)]
     pub probes: Vec<Probe>,
     /// when Newton's method stops
     pub newton: NewtonSettings,
     /// what makes iterations converge, all of it unless switched off for an experiment
+    #[doc(hidden)]
     pub aids: Aids,
 }
 
+#[doc(hidden)]
 impl Model {
     /// Number of dofs, two a node.
     pub fn dofs(&self) -> usize {
@@ -238,6 +294,7 @@ fn near(time: f64) -> f64 {
 
 /// A point that moves with a body, at which motion, strain and stress are asked for, as a gauge there would read them.
 #[derive(Clone, Debug, PartialEq)]
+#[doc(hidden)]
 pub struct Probe {
     /// its name in results
     pub name: String,

@@ -70,6 +70,7 @@ use crate::laws::parameter::{InvalidParameter, require};
 /// Time scheme of a step, as the case file names it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
+#[non_exhaustive]
 pub enum Scheme {
     /// Equilibrium without inertia; time only drives loads and the ageing of friction.
     #[default]
@@ -162,6 +163,7 @@ pub struct Coefficients {
     pub gamma: f64,
 }
 
+#[doc(hidden)]
 impl Scheme {
     /// Whether masses have inertia.
     pub fn is_dynamic(self) -> bool {

@@ -9,6 +9,7 @@ use crate::contact::force::ContactState;
 
 /// The accepted state at the end of an increment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct State {
     /// t [T]
     pub time: f64,
@@ -23,25 +24,33 @@ pub struct State {
     /// a [L/T²]
     pub acceleration: Vec<f64>,
     /// F: internal + contact − external forces [F]
+    #[doc(hidden)]
     pub force: Vec<f64>,
     /// Forces put on the nodes from outside: loads, and reactions at prescribed dofs [F]
+    #[doc(hidden)]
     pub external: Vec<f64>,
     /// Forces that dashpots put on the nodes [F]
+    #[doc(hidden)]
     pub damping: Vec<f64>,
     /// Reactions: what the supports put on the nodes [F]
     pub reaction: Vec<f64>,
     /// One list a contact pair, one entry a slave point
+    #[doc(hidden)]
     pub contacts: Vec<Vec<ContactState>>,
     /// What the materials remember, element by element ([`crate::model::Memories`])
+    #[doc(hidden)]
     pub memory: Vec<f64>,
     /// Displacement increment of the last increment of this step; `None` at its start, and after explicit increments
+    #[doc(hidden)]
     pub last_increment: Option<LastIncrement>,
     /// Values at the start of the current step, the same for all its states
+    #[doc(hidden)]
     pub step_start: Arc<StepStart>,
     /// Energies
     pub energy: Energy,
 }
 
+#[doc(hidden)]
 impl State {
     /// Begin a step: what it counts from is the present state.
     pub fn begin_step(&mut self) {
@@ -65,6 +74,7 @@ impl State {
 
 /// The last accepted increment, from which the next start value is extrapolated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[doc(hidden)]
 pub struct LastIncrement {
     /// Δt [T]
     pub dt: f64,
@@ -76,6 +86,7 @@ pub struct LastIncrement {
 
 /// What supports remember from the start of a step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[doc(hidden)]
 pub struct StepStart {
     /// u at the start of the step [L]
     pub displacement: Vec<f64>,
@@ -85,6 +96,7 @@ pub struct StepStart {
 
 /// Energies [F·L]; the dissipations and the external work are totals since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Energy {
     /// ½ vᵀ M v
     pub kinetic: f64,

@@ -23,6 +23,7 @@ use super::support::{Direction, Motion, Prescribed};
 
 /// How increments are chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Increments {
     /// first Δt [T]
     pub initial: f64,
@@ -36,6 +37,7 @@ pub struct Increments {
 
 impl Increments {
     /// The same, but none longer than `longest`: a stabilized step has a last increment after its dashpots have faded.
+    #[doc(hidden)]
     pub fn at_most(self, longest: f64) -> Self {
         let Self { initial, min, max, error } = self;
         Self { initial: initial.min(longest), min: min.min(longest), max: max.min(longest), error }
@@ -44,6 +46,7 @@ impl Increments {
 
 /// A step: a time span with its supports, loads, scheme and increments.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Step {
     /// name, for messages and output
     pub name: String,
@@ -54,25 +57,34 @@ pub struct Step {
     /// increments
     pub increments: Increments,
     /// when and how the step goes on explicitly, if it may
+    #[doc(hidden)]
     pub rupture: Option<Box<Rupture>>,
     /// prescribed directions, ascending by their dofs
+    #[doc(hidden)]
     pub supports: Vec<Prescribed>,
     /// directions that were prescribed in the step before and are free in this static one: their reaction is ramped off
+    #[doc(hidden)]
     pub released: Vec<Direction>,
     /// velocities that nodes take when the step begins [L/T]
+    #[doc(hidden)]
     pub launch: Vec<(usize, [f64; 2])>,
     /// loads, springs and dashpots
     pub loads: Loads,
     /// temperatures of the bodies that have been given one
+    #[doc(hidden)]
     pub temperatures: Vec<Temperature>,
     /// damping of every body
+    #[doc(hidden)]
     pub damping: Vec<Damping>,
     /// reaction that ends the step before its time
+    #[doc(hidden)]
     pub until: Option<Until>,
     /// c₀ of every dof: dashpots c₀ (1 − share of the step that has passed) that hold bodies until contact does [F T/L]
+    #[doc(hidden)]
     pub stabilization: Vec<f64>,
 }
 
+#[doc(hidden)]
 impl Step {
     /// The same at other times: all of it that begins with this step or one after it.
     #[must_use]
@@ -107,6 +119,7 @@ impl Step {
 
 /// When a static or implicit step turns to explicit increments, and back.
 #[derive(Clone, Debug)]
+#[doc(hidden)]
 pub struct Rupture {
     /// Slip rate of a contact point above which it does [L/T]
     pub slip_rate: f64,
@@ -130,38 +143,38 @@ pub struct Until {
     /// nodes whose reactions along x and y are its own
     pub held: [Vec<usize>; 2],
     /// which part of the sum of their reactions
-    pub part: Part,
+    pub part: ForceComponent,
     /// F̄ [F]
     pub value: f64,
     /// Share of F̄ within which it is met [-]
     pub tolerance: f64,
 }
 
-/// Part of a force.
+/// A component of a force, or its magnitude.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum ForceComponent {
     /// along x
     X,
     /// along y
     Y,
     /// its size
-    Size,
+    Magnitude,
 }
 
-impl Part {
+impl ForceComponent {
     /// Its name in a case.
     pub fn name(self) -> &'static str {
         match self {
             Self::X => "fx",
             Self::Y => "fy",
-            Self::Size => "force",
+            Self::Magnitude => "force",
         }
     }
 }
 
 /// How an increment lies to the end of its step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Course {
+pub enum UntilStatus {
     /// The reaction has its value: the step ends
     Met,
     /// It has passed it, and would meet it in an increment so long [T]
@@ -175,9 +188,9 @@ impl Until {
     pub fn force(&self, reaction: &[f64]) -> f64 {
         let force = self.vector(reaction);
         match self.part {
-            Part::X => force.x,
-            Part::Y => force.y,
-            Part::Size => force.norm(),
+            ForceComponent::X => force.x,
+            ForceComponent::Y => force.y,
+            ForceComponent::Magnitude => force.norm(),
         }
     }
 
@@ -193,9 +206,9 @@ impl Until {
         let way = after - before;
         let straight = |before: f64, way: f64| [(self.value - before) / way; 2];
         let shares = match self.part {
-            Part::X => straight(before.x, way.x),
-            Part::Y => straight(before.y, way.y),
-            Part::Size => {
+            ForceComponent::X => straight(before.x, way.x),
+            ForceComponent::Y => straight(before.y, way.y),
+            ForceComponent::Magnitude => {
                 // |before + s way| = value
                 let (square, rate) = (way.norm_squared(), before.dot(&way));
                 let short = before.norm_squared() - self.value * self.value;
@@ -208,16 +221,16 @@ impl Until {
     }
 
     /// How an increment of a step lies to the end.
-    pub fn course(&self, span: Span, [old, new]: [&State; 2]) -> Course {
+    pub fn course(&self, span: Span, [old, new]: [&State; 2]) -> UntilStatus {
         let clock = SHORTEST * (span.end - span.start) + 64.0 * f64::EPSILON * new.time.abs();
         let share = self.share([old, new]);
         let passed = share.is_some_and(|share| share < 1.0);
         if self.is_met(new) || passed && new.dt <= clock {
-            return Course::Met;
+            return UntilStatus::Met;
         }
         match share {
-            Some(share) if passed => Course::Passed(share * new.dt),
-            share => Course::Before(share.map(|share| (share - 1.0) * new.dt)),
+            Some(share) if passed => UntilStatus::Passed(share * new.dt),
+            share => UntilStatus::Before(share.map(|share| (share - 1.0) * new.dt)),
         }
     }
 

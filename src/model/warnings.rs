@@ -42,6 +42,7 @@ impl Model {
     }
 
     /// Where contacts are evaluated whose method was left open.
+    #[doc(hidden)]
     pub fn choices(&self) -> Vec<String> {
         self.told_of_methods(|chosen| chosen.because.map(|because| format!("{}, {because}", chosen.method.name())))
     }

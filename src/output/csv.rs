@@ -364,11 +364,11 @@ impl<R: Rows> Observer for Sheet<R> {
     }
 
     fn check(&self, memory: &[u8]) -> Result<(), Error> {
-        self.table.check(&recalled(memory)?)
+        self.table.check(&recalled::<(Standing, Vec<u8>)>(memory)?.0)
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        let (stood, memory): (Standing, Vec<u8>) = recalled(memory)?;
+        let (stood, memory) = recalled::<(Standing, Vec<u8>)>(memory)?;
         self.table.cut(stood)?;
         self.rows.restore(&memory)
     }

@@ -47,7 +47,7 @@ pub(super) struct SlipEvent {
     /// Of the model when it began, and by `until`
     pub energies: [Energies; 2],
     /// What each point did
-    pub courses: Vec<Course>,
+    pub courses: Vec<PointRecord>,
 }
 
 /// What loads and stored energies have given, and what friction took, since the start of the run [F·L].
@@ -68,7 +68,7 @@ impl Energies {
 
 /// What a point did in an event.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(super) struct Course {
+pub(super) struct PointRecord {
     /// Plastic slip, traction and work before
     before: Mark,
     /// When |q| was least
@@ -97,7 +97,7 @@ impl Mark {
 impl SlipEvent {
     /// It begins after the increment before, by whose end points were left with their marks, and the model with its energies.
     pub fn begin(number: usize, marks: impl Iterator<Item = Mark>, until: f64, energies: Energies) -> Self {
-        let course = |mark: Mark| Course { before: mark, least: mark, last: mark, peak_rate: 0.0 };
+        let course = |mark: Mark| PointRecord { before: mark, least: mark, last: mark, peak_rate: 0.0 };
         Self { number, until, over: false, energies: [energies; 2], courses: marks.map(course).collect() }
     }
 
@@ -114,7 +114,7 @@ impl SlipEvent {
     }
 }
 
-impl Course {
+impl PointRecord {
     /// Slip so far
     pub fn slip(&self) -> f64 {
         self.last.slip - self.before.slip
@@ -152,8 +152,8 @@ pub(super) struct Measures {
 
 impl Measures {
     /// What it amounts to; nothing if no front has reached a point.
-    pub fn of(event: &SlipEvent, interface: &Interface) -> Option<Self> {
-        let reached: Vec<(&Point, &Course, f64)> = interface
+    pub fn of(event: &SlipEvent, interface: &ContactPoints) -> Option<Self> {
+        let reached: Vec<(&Point, &PointRecord, f64)> = interface
             .points
             .iter()
             .zip(&event.courses)
@@ -164,10 +164,11 @@ impl Measures {
             .collect();
         let (first, _, onset) = *reached.iter().min_by(|a, b| a.2.total_cmp(&b.2))?;
         let length: f64 = reached.iter().map(|(point, ..)| point.length).sum();
-        let mean = |of: &dyn Fn(&Course) -> f64| {
+        let mean = |of: &dyn Fn(&PointRecord) -> f64| {
             reached.iter().map(|(point, course, _)| point.length * of(course)).sum::<f64>() / length
         };
-        let largest = |of: &dyn Fn(&Course) -> f64| reached.iter().map(|(_, course, _)| of(course)).fold(0.0, f64::max);
+        let largest =
+            |of: &dyn Fn(&PointRecord) -> f64| reached.iter().map(|(_, course, _)| of(course)).fold(0.0, f64::max);
         let [start, end] = event.energies;
         let released = end.given - start.given;
         Some(Self {
@@ -175,11 +176,11 @@ impl Measures {
             position: first.position,
             at: first.at,
             length,
-            mean_slip: mean(&Course::slip),
+            mean_slip: mean(&PointRecord::slip),
             largest_slip: largest(&|course| course.slip().abs()),
             peak_slip_rate: largest(&|course| course.peak_rate),
-            stress_drop: mean(&Course::stress_drop),
-            fracture_energy: mean(&Course::fracture_energy),
+            stress_drop: mean(&PointRecord::stress_drop),
+            fracture_energy: mean(&PointRecord::fracture_energy),
             released,
             radiated: released - (end.friction - start.friction),
             front_speed: front_speed(first, onset, &reached),
@@ -188,7 +189,7 @@ impl Measures {
 }
 
 /// Slope of the distance from the first point of a line over the time of arrival; NaN where there is none.
-fn front_speed(first: &Point, onset: f64, reached: &[(&Point, &Course, f64)]) -> f64 {
+fn front_speed(first: &Point, onset: f64, reached: &[(&Point, &PointRecord, f64)]) -> f64 {
     let near = reached.iter().filter(|(point, ..)| point.line == first.line);
     let pairs: Vec<[f64; 2]> =
         near.map(|(point, _, time)| [time - onset, (point.position - first.position).abs()]).collect();
@@ -233,7 +234,7 @@ pub(super) struct Arrival {
 
 /// The points of one contact.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct Interface {
+pub(super) struct ContactPoints {
     pub name: String,
     pub speeds: Option<WaveSpeeds>,
     pub points: Vec<Point>,
@@ -320,7 +321,7 @@ impl Passing<'_> {
     }
 }
 
-impl Interface {
+impl ContactPoints {
     pub fn new(model: &Model, pair: &ContactPair) -> Self {
         let x = model.mesh.undeformed();
         let mut points: Vec<Point> = Vec::with_capacity(pair.points.len());

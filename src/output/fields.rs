@@ -180,7 +180,7 @@ impl Observer for Fields {
     }
 
     fn check(&self, memory: &[u8]) -> Result<(), Error> {
-        let (_, times): (usize, Vec<f64>) = csv::recalled(memory)?;
+        let (_, times) = csv::recalled::<(usize, Vec<f64>)>(memory)?;
         let frames =
             self.names.iter().flat_map(|name| (0..times.len()).map(|number| self.folder.join(file(name, number))));
         match frames.into_iter().find(|path| !path.is_file()) {
@@ -190,7 +190,7 @@ impl Observer for Fields {
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        (self.rows, self.times) = csv::recalled(memory)?;
+        (self.rows, self.times) = csv::recalled::<(usize, Vec<f64>)>(memory)?;
         self.ask(Task::Keep(self.times.clone()))?;
         self.settle()
     }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::files::Lock;
-use super::{checkpoint, files, interface, report};
+use super::{checkpoint, files, report, store};
 use crate::run::error::Error;
 
 /// What commands write; a folder ends in `/` and holds numbered frames.
@@ -116,7 +116,7 @@ fn is_written(input: &Path, folder: &Path, outputs: &[&str]) -> bool {
     let (Ok(input), Ok(folder)) = (input.canonicalize(), folder.canonicalize()) else { return false };
     let Ok(below) = input.strip_prefix(folder) else { return false };
     outputs.iter().chain([&SUMMARY]).any(|name| match name.strip_suffix('/') {
-        Some(_) if *name == INTERFACE => below.starts_with(interface::STORE) && interface::is_own(&input),
+        Some(_) if *name == INTERFACE => below.starts_with(store::STORE) && store::is_own(&input),
         Some(frames) => below.parent() == Some(Path::new(frames)) && is_frame(&input),
         None => below == Path::new(name),
     })
@@ -169,7 +169,7 @@ fn clear(folder: &Path, earlier: &[String]) -> Result<(), (PathBuf, std::io::Err
         match name.ends_with('/') {
             true => {
                 parts(&path, name).into_iter().try_for_each(remove)?;
-                interface::forget(&path);
+                store::forget(&path);
             }
             false => {
                 remove(files::aside(&path))?;
@@ -185,7 +185,7 @@ fn clear(folder: &Path, earlier: &[String]) -> Result<(), (PathBuf, std::io::Err
 /// The files of ours in a folder of a kind.
 fn parts(folder: &Path, name: &str) -> Vec<PathBuf> {
     // A folder that cannot be read has nothing that could be taken away.
-    if name == INTERFACE { interface::files_of(folder).unwrap_or_default() } else { frames(folder) }
+    if name == INTERFACE { store::files_of(folder).unwrap_or_default() } else { frames(folder) }
 }
 
 /// The frames in a folder of its own; nothing where it is a link.

@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 use super::csv;
 use super::csv::Table;
 pub use super::events::{ArrivalInput, FrontsInput};
-use super::events::{Energies, Interface, Mark, Measures, Passing, WaveSpeeds};
+use super::events::{ContactPoints, Energies, Mark, Measures, Passing, WaveSpeeds};
 use super::quantities::{EVENTS, FRONTS, names};
 use crate::model::Model;
 use crate::model::state::State;
@@ -33,7 +33,7 @@ use crate::run::observer::{Attempt, Observer};
 pub struct Fronts {
     folder: PathBuf,
     told_by: FrontsInput,
-    interfaces: Vec<Interface>,
+    interfaces: Vec<ContactPoints>,
     /// Time at the start
     start: f64,
     /// Time and energies of the model at the ends of the last two increments
@@ -43,7 +43,8 @@ pub struct Fronts {
 impl Fronts {
     /// Watch for fronts; `start` is the state before the first increment.
     pub fn new(folder: &Path, model: &Model, start: &State, told_by: FrontsInput) -> Self {
-        let mut interfaces: Vec<Interface> = model.contacts.iter().map(|pair| Interface::new(model, pair)).collect();
+        let mut interfaces: Vec<ContactPoints> =
+            model.contacts.iter().map(|pair| ContactPoints::new(model, pair)).collect();
         // What had slipped before is no event of this run.
         let points =
             interfaces.iter_mut().zip(&start.contacts).flat_map(|(of, states)| of.points.iter_mut().zip(states));
@@ -127,7 +128,8 @@ impl Observer for Fronts {
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        (self.interfaces, self.start, self.last) = csv::recalled(memory)?;
+        (self.interfaces, self.start, self.last) =
+            csv::recalled::<(Vec<ContactPoints>, f64, [(f64, Energies); 2])>(memory)?;
         Ok(())
     }
 

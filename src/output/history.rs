@@ -15,7 +15,7 @@ use super::quantities::{
 use crate::contact::force::ContactState;
 use crate::contact::nodal_forces::Resultant;
 use crate::contact::pair::ContactPair;
-use crate::equations::interfaces;
+use crate::equations::contacts;
 use crate::laws::friction::{Regime, observables};
 use crate::mesh::{Group, shape};
 use crate::model::state::{Energy, State};
@@ -133,7 +133,7 @@ impl Rows for HistoryRows {
             table.number(states.iter().map(|state| state.length * state.fluid).sum());
         }
         for (heat, (old, new)) in memory.heat.iter_mut().zip(attempt.old.contacts.iter().zip(&state.contacts)) {
-            let more = interfaces::dissipated(slice::from_ref(old), slice::from_ref(new));
+            let more = contacts::dissipated(slice::from_ref(old), slice::from_ref(new));
             *heat += more;
             table.numbers([*heat, more / (state.time - attempt.old.time)]);
         }
@@ -145,7 +145,7 @@ impl Rows for HistoryRows {
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        self.memory = csv::recalled(memory)?;
+        self.memory = csv::recalled::<Memory>(memory)?;
         Ok(())
     }
 }

@@ -1,24 +1,50 @@
 //! What a run leaves behind: observers of every attempt, and the files they write.
 
-pub mod audit;
-pub mod bodies;
-pub mod checkpoint;
 mod csv;
-pub mod events;
-pub mod fields;
-pub mod files;
-pub mod folder;
 mod frames;
-pub mod friction_course;
-pub mod fronts;
-pub mod history;
-pub mod interface;
-pub mod law;
-pub mod newton_log;
-pub mod probes;
-pub mod quantities;
-pub mod report;
-mod results;
-pub mod summary;
-pub mod vtu;
-pub mod warnings;
+pub mod results;
+
+// What writes these files: the program's own.
+cfg_if::cfg_if! {
+    if #[cfg(feature = "internals")] {
+        pub mod audit;
+        pub mod bodies;
+        pub mod checkpoint;
+        pub mod events;
+        pub mod fields;
+        pub mod files;
+        pub mod folder;
+        pub mod friction_course;
+        pub mod fronts;
+        pub mod history;
+        pub mod store;
+        pub mod law;
+        pub mod newton_log;
+        pub mod probes;
+        pub mod quantities;
+        pub mod report;
+        pub mod summary;
+        pub mod vtu;
+        pub mod warnings;
+    } else {
+        pub(crate) mod audit;
+        pub(crate) mod bodies;
+        pub(crate) mod checkpoint;
+        pub(crate) mod events;
+        pub(crate) mod fields;
+        pub(crate) mod files;
+        pub(crate) mod folder;
+        pub(crate) mod friction_course;
+        pub(crate) mod fronts;
+        pub(crate) mod history;
+        pub(crate) mod store;
+        pub(crate) mod law;
+        pub(crate) mod newton_log;
+        pub(crate) mod probes;
+        pub(crate) mod quantities;
+        pub(crate) mod report;
+        pub(crate) mod summary;
+        pub(crate) mod vtu;
+        pub(crate) mod warnings;
+    }
+}

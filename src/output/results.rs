@@ -1,6 +1,20 @@
 //! What a folder of results holds, as plain numbers: for those who show it.
 //!
 //! Frames of bodies and interfaces: what a `.pvd` lists, and the VTU files behind it.
+//!
+//! ```no_run
+//! use std::path::Path;
+//!
+//! use fecontact::output::results::{Grid, frames};
+//!
+//! let folder = Path::new("out/block_on_ground");
+//! for frame in frames(folder, "contact")?.unwrap_or_default() {
+//!     let grid = Grid::read(&folder.join(&frame.file))?;
+//!     let pressure = grid.at_points.iter().find(|array| array.name == "pressure");
+//!     println!("t = {}: {:?}", frame.time, pressure.map(|array| &array.values));
+//! }
+//! # Ok::<(), String>(())
+//! ```
 
 use std::path::{Path, PathBuf};
 
@@ -8,6 +22,7 @@ use vtkio::model::{Attribute, Attributes, DataSet, UnstructuredGridPiece, Vertex
 
 /// A frame that is listed.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Frame {
     /// [T]
     pub time: f64,
@@ -17,6 +32,7 @@ pub struct Frame {
 
 /// Values at the points or cells of a grid.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Array {
     /// what they are
     pub name: String,
@@ -28,6 +44,7 @@ pub struct Array {
 
 /// Points and cells with what is known there.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Grid {
     /// places before anything moves [L]
     pub points: Vec<[f64; 2]>,

@@ -17,6 +17,7 @@ use crate::model::support::{Direction, Motion, Prescribed};
 
 /// A name that a run does not know.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum Unknown {
     /// No group of the mesh.
     #[error(transparent)]

@@ -13,7 +13,7 @@ use super::simulation::Simulation;
 use crate::model::Step;
 use crate::model::scheme::Scheme;
 use crate::model::state::State;
-use crate::model::step::{Course, Until};
+use crate::model::step::{Until, UntilStatus};
 use crate::solve::IterationRecord;
 use crate::solve::failure::{IncrementFailure, suspicion};
 use crate::time::beginning::{begin, go_on, led};
@@ -54,7 +54,7 @@ impl Simulation {
                     _ if ruptures && shortest => Outcome::Rejected(Verdict::Rupture, self.rupture()),
                     _ if ruptures => Outcome::Rejected(Verdict::Rupture, again(CUT * dt, Touching::default())),
                     Judgement { accepted: true, next, .. } => match course(step, [old, &new]) {
-                        Some(Course::Passed(dt)) => {
+                        Some(UntilStatus::Passed(dt)) => {
                             let dt = Until::shorter(dt, new.dt, number);
                             Outcome::Rejected(Verdict::Passed, again(dt, Touching::default()))
                         }
@@ -168,16 +168,16 @@ impl Simulation {
 }
 
 /// How an increment lies to the reaction that ends the step, if one does.
-fn course(step: &Step, states: [&State; 2]) -> Option<Course> {
+fn course(step: &Step, states: [&State; 2]) -> Option<UntilStatus> {
     step.until.as_ref().map(|until| until.course(step.span, states))
 }
 
 /// How it goes on after an accepted increment.
-fn after(step: &Step, new: &State, course: Option<Course>, next: f64, touching: Touching) -> Phase {
+fn after(step: &Step, new: &State, course: Option<UntilStatus>, next: f64, touching: Touching) -> Phase {
     let dt = match course {
-        Some(Course::Met) => return Phase::Met,
+        Some(UntilStatus::Met) => return Phase::Met,
         Some(_) if new.time >= step.span.end => return Phase::Missed,
-        Some(Course::Before(Some(left))) => next.min(left),
+        Some(UntilStatus::Before(Some(left))) => next.min(left),
         _ => next,
     };
     Phase::Implicit { dt, attempt: 1, touching }

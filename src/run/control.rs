@@ -190,6 +190,7 @@ pub(super) struct Midway {
 }
 
 /// An attempt at one increment, or at explicit ones up to the next output. Nothing has changed yet.
+#[must_use]
 pub struct Candidate {
     pub(super) number: usize,
     pub(super) dt: f64,
@@ -221,6 +222,7 @@ pub(super) enum Outcome {
 }
 
 /// An accepted increment, or the explicit ones up to an output.
+#[non_exhaustive]
 pub struct Increment {
     /// its step
     pub step: Arc<Step>,
@@ -293,6 +295,7 @@ impl Candidate {
 
 /// Counts and times of a run.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct RunReport {
     /// accepted increments
     pub increments: usize,
@@ -331,6 +334,7 @@ impl RunReport {
 
 /// Wall time by phase [s].
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct WallSeconds {
     /// everything
     pub total: f64,

@@ -4,10 +4,15 @@ use thiserror::Error;
 
 use crate::laws::friction::LawFailure;
 use crate::model::scheme::told;
-use crate::solve::failure::IncrementFailure;
+
+pub use crate::equations::sums::TrialFailure;
+pub use crate::linear::LinearFailure;
+pub use crate::solve::failure::IncrementFailure;
+pub use crate::solve::newton::NewtonFailure;
 
 /// Why a run stopped.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum Error {
     /// An increment cannot be made small enough.
     #[error("step `{step}` stopped at time {}: {cause} (increment {dt:.3e}, smallest allowed {min:.3e}){suspicion}", told(*time))]

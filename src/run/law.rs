@@ -8,6 +8,27 @@
 //! # Report
 //!
 //! What a friction law driven alone answered, and what its answers amount to.
+//!
+//! ```
+//! use fecontact::laws::friction::{SuperSubloading, SuperSubloadingParameters};
+//! use fecontact::model::boundary::{Drive, Span};
+//! use fecontact::run::law::{LawTest, PathDrive, Phase};
+//!
+//! let parameters = SuperSubloadingParameters::new(0.4, 0.2, 1000.0).kappa(100.0).xi(0.01);
+//! let law = SuperSubloading::new(&parameters, 1e5)?;
+//! let slip = PathDrive::new(Drive::Rate(0.1), 0.0);
+//! let pressure = PathDrive::new(Drive::Constant(10.0), 10.0);
+//! let slide = Phase::new(Span { start: 0.0, end: 1.0 }, slip, pressure, 0.01)?;
+//! let mut tractions = Vec::new();
+//! let (report, ended) = LawTest::new(law, vec![slide]).run(|row| {
+//!     tractions.push(row.response.state.traction);
+//!     Ok(())
+//! });
+//! ended?;
+//! let peak = report.peaks.peak.expect("it slides");
+//! assert!(peak.coefficient > 0.3 && tractions.last().is_some_and(|q| *q < 2.1));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use nalgebra::Vector2;
 use serde::Serialize;
@@ -18,6 +39,7 @@ use crate::run::error::Error;
 
 /// A test of a law: where it starts and where it is led.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct LawTest {
     /// the law
     pub law: Box<dyn FrictionLaw>,
@@ -28,6 +50,12 @@ pub struct LawTest {
 }
 
 impl LawTest {
+    /// A law led along a path from rest, under the pressure at its start.
+    pub fn new(law: impl FrictionLaw + 'static, path: Vec<Phase>) -> Self {
+        let pressure = path.first().map_or(0.0, |phase| phase.pressure(phase.start()));
+        Self { start: law.initial_state(pressure, 0.0), law: Box::new(law), path }
+    }
+
     /// Lead the law along its path, telling every step. The report comes back from a stopped test as well.
     ///
     /// The first row is the start: what the law answers to no slip in no time.
@@ -81,8 +109,8 @@ impl LawTest {
 #[derive(Clone, Debug)]
 pub struct Phase {
     span: Span,
-    slip: Course,
-    pressure: Course,
+    slip: PathDrive,
+    pressure: PathDrive,
     /// longest step [T]
     dt: f64,
     /// times closer than this are the same [T]
@@ -93,15 +121,24 @@ pub struct Phase {
 
 /// Slip or pressure over one phase.
 #[derive(Clone, Debug)]
-pub struct Course {
+#[non_exhaustive]
+pub struct PathDrive {
     /// how it varies
     pub drive: Drive,
     /// value at the start of the phase, from which a constant and a rate count
     pub start: f64,
 }
 
+impl PathDrive {
+    /// Varying from a value at the start of the phase on.
+    pub fn new(drive: Drive, start: f64) -> Self {
+        Self { drive, start }
+    }
+}
+
 /// A quantity of the path has no finite value.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Undefined {
     /// "slip" or "pressure"
     pub quantity: &'static str,
@@ -123,7 +160,7 @@ impl Phase {
     ///
     /// # Errors
     /// [`Undefined`] where an expression has no finite value.
-    pub fn new(span: Span, slip: Course, pressure: Course, dt: f64) -> Result<Self, Undefined> {
+    pub fn new(span: Span, slip: PathDrive, pressure: PathDrive, dt: f64) -> Result<Self, Undefined> {
         let mut phase = Self { span, slip, pressure, dt, resolution: 0.0, stops: Vec::new() };
         let mut knots: Vec<f64> = [&phase.slip, &phase.pressure].iter().flat_map(|course| course.knots(span)).collect();
         knots.sort_by(f64::total_cmp);
@@ -211,7 +248,7 @@ impl Phase {
     }
 }
 
-impl Course {
+impl PathDrive {
     /// Value at a time of the span.
     pub fn value(&self, time: f64, span: Span) -> f64 {
         self.drive.value(Vector2::zeros(), time, span, self.start)
@@ -318,6 +355,7 @@ fn highest(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
 
 /// One step along the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LawRow {
     /// t [T]
     pub time: f64,
@@ -331,6 +369,7 @@ pub struct LawRow {
 
 /// A point of the path, as far as peaks and holds are concerned.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct PathPoint {
     /// t [T]
     pub time: f64,
@@ -352,6 +391,7 @@ impl PathPoint {
 
 /// A time without slip, and the peak of friction in the slip that follows.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Hold {
     /// its length [T]
     pub duration: f64,
@@ -361,6 +401,7 @@ pub struct Hold {
 
 /// Peaks of |q|/p: over all steps, and after every hold.
 #[derive(Clone, Debug, Default, Serialize)]
+#[non_exhaustive]
 pub struct Peaks {
     /// the highest |q|/p at the end of a step, the first where several are equal
     pub peak: Option<PathPoint>,
@@ -375,6 +416,7 @@ pub struct Peaks {
 
 impl Peaks {
     /// Take note of the next row.
+    #[doc(hidden)]
     pub fn note(&mut self, now: PathPoint) {
         let higher = |than: &PathPoint| now.coefficient > than.coefficient;
         let Some(last) = self.last.replace(now) else { return };
@@ -393,6 +435,7 @@ impl Peaks {
 
 /// What a test of a law amounts to.
 #[derive(Clone, Debug, Default, Serialize)]
+#[non_exhaustive]
 pub struct LawReport {
     /// steps answered
     pub steps: usize,
@@ -409,6 +452,7 @@ pub struct LawReport {
 
 impl LawReport {
     /// Take note of the next row.
+    #[doc(hidden)]
     pub fn note(&mut self, row: &LawRow) {
         let FrictionResponse { state, evaluations, .. } = row.response;
         let FrictionState { pressure, traction, dissipation, .. } = state;

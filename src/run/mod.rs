@@ -1,26 +1,37 @@
 //! The run: step after step, increment after increment, with cut-back, and observers that see every attempt.
 
-pub mod access;
 mod attempt;
-pub mod control;
 pub mod error;
 pub mod law;
 pub mod observer;
-pub mod simulation;
+
+cfg_if::cfg_if! {
+    if #[cfg(feature = "internals")] {
+        pub mod access;
+        pub mod control;
+        pub mod simulation;
+    } else {
+        pub(crate) mod access;
+        pub(crate) mod control;
+        pub(crate) mod simulation;
+    }
+}
 
 use std::sync::Arc;
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::Model;
-use crate::model::state::State;
+use crate::model::{Model, State};
 use crate::run::error::Error;
 use crate::run::observer::Observer;
 pub use access::{Axis, Unknown};
-use control::RunReport;
-pub use control::{Candidate, Increment};
-pub use simulation::{Saved, Simulation};
+pub use control::{Candidate, Increment, RunReport, WallSeconds};
+pub use simulation::{NotResumable, Pause, Saved, Simulation};
+
+pub use crate::equations::ContactCounts;
+pub use crate::solve::IterationRecord;
+pub use crate::solve::newton::Iteration;
 
 /// Run all steps of a model. The report comes back from a stopped run as well.
 ///
@@ -42,6 +53,7 @@ pub fn watch(simulation: &mut Simulation, observers: &mut [&mut dyn Observer]) -
 
 /// Where a run is when something is done between its attempts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Moment {
     /// Before an attempt, or after the last one
     Between,
@@ -80,7 +92,7 @@ fn attempts(
         let clock = Instant::now();
         between(simulation, observers, Moment::Between)?;
         simulation.observed(clock.elapsed().as_secs_f64());
-        let candidate = match simulation.attempt() {
+        let candidate = match simulation.try_increment() {
             Ok(Some(candidate)) => candidate,
             Ok(None) => return Ok(()),
             Err(error) => {
@@ -90,7 +102,7 @@ fn attempts(
         };
         let clock = Instant::now();
         if candidate.is_paused() {
-            simulation.follow(candidate)?;
+            simulation.apply(candidate)?;
             continue;
         }
         if candidate.stops() {
@@ -99,7 +111,7 @@ fn attempts(
         let told = simulation.told(&candidate);
         observers.iter_mut().try_for_each(|observer| observer.record(simulation.model(), &told))?;
         simulation.observed(clock.elapsed().as_secs_f64());
-        simulation.follow(candidate)?;
+        simulation.apply(candidate)?;
     }
 }
 
@@ -108,6 +120,7 @@ type Memories = Vec<(String, Vec<u8>)>;
 
 /// A run and its observers as they were.
 #[derive(Clone)]
+#[must_use]
 pub struct SavedRun {
     simulation: Saved,
     observers: Memories,
@@ -142,8 +155,8 @@ impl SavedRun {
     /// From a file.
     ///
     /// # Errors
-    /// As [`Saved::from_bytes`].
-    pub fn from_bytes(bytes: RunBytes, model: &Arc<Model>) -> Result<Self, String> {
+    /// [`NotResumable`].
+    pub fn from_bytes(bytes: RunBytes, model: &Arc<Model>) -> Result<Self, NotResumable> {
         Ok(Self { simulation: Saved::from_bytes(&bytes.simulation, model)?, observers: bytes.observers })
     }
 
@@ -153,7 +166,6 @@ impl SavedRun {
     }
 
     /// The place it has come to, for another run with its own observers to begin from: [`Saved::begin`].
-    #[must_use]
     pub fn begin(self) -> Self {
         Self { simulation: self.simulation.begin(), observers: Vec::new() }
     }

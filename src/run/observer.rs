@@ -6,11 +6,44 @@
 //! is decided once, by the run; all that is written over time goes by it.
 //!
 //! Why an attempt was given up: in a sentence, and in so few words that they can be counted.
+//!
+//! ```
+//! use std::sync::Arc;
+//!
+//! use fecontact::laws::bulk::{ElasticConstants, NeoHookean};
+//! use fecontact::mesh::InlineMesh;
+//! use fecontact::model::Model;
+//! use fecontact::model::builder::{LoadStep, Support};
+//! use fecontact::run::error::Error;
+//! use fecontact::run::observer::{Attempt, Observer};
+//! use fecontact::run::run;
+//!
+//! /// Linear solves of every increment.
+//! struct Solves(Vec<usize>);
+//!
+//! impl Observer for Solves {
+//!     fn record(&mut self, _model: &Model, attempt: &Attempt) -> Result<(), Error> {
+//!         if attempt.accepted.is_some() {
+//!             self.0.push(attempt.iterations.len());
+//!         }
+//!         Ok(())
+//!     }
+//! }
+//!
+//! let mesh = InlineMesh::default().rectangle("block", [2, 2], [0.0, 0.0], [1.0, 1.0]).build()?;
+//! let press = LoadStep::new("press", 1.0).dt(0.5).fix("block_bottom").support(Support::on("block_top").ux(0.0).uy(-0.1));
+//! let rubber = NeoHookean::new(&ElasticConstants::new(1000.0, 0.3))?;
+//! let model = Arc::new(Model::builder(mesh).body("block", rubber).step(press).build()?);
+//! let mut solves = Solves(Vec::new());
+//! let (report, end) = run(&model, &mut [&mut solves]);
+//! assert_eq!((end?.time, report.newton_iterations), (1.0, solves.0.iter().sum()));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::laws::friction::Regime;
 use crate::model::scheme::Scheme;
 use crate::model::state::State;
-use crate::model::step::{Course, Until};
+use crate::model::step::{Until, UntilStatus};
 use crate::model::told::{count, number};
 use crate::model::{Model, Step};
 use crate::run::error::Error;
@@ -20,6 +53,7 @@ use crate::solve::newton::NewtonFailure;
 
 /// An attempt at one increment, accepted or not.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Attempt<'a> {
     /// the step
     pub step: &'a Step,
@@ -50,7 +84,7 @@ impl Attempt<'_> {
     /// Whether the step ends with the new state: at its time, or with the reaction that ends it.
     pub fn ends_step(&self, state: &State) -> bool {
         let Step { span, until, .. } = self.step;
-        let met = |until: &Until| until.course(*span, [self.old, state]) == Course::Met;
+        let met = |until: &Until| until.course(*span, [self.old, state]) == UntilStatus::Met;
         state.time >= span.end || until.as_ref().is_some_and(met)
     }
 
@@ -82,6 +116,7 @@ const ROUND_OFF: f64 = 1e-9;
 
 /// What becomes of an increment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Row {
     /// It is a row
     Written,
@@ -93,6 +128,7 @@ pub enum Row {
 
 /// What became of an attempt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Verdict {
     /// It led to a new state, or paused on its way there.
     Accepted,

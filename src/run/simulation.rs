@@ -7,7 +7,7 @@
 //!         Implicit ⇄ Rupture                      where a contact slips too fast for implicit increments
 //! ```
 //!
-//! [`Simulation::attempt`] finds a [`Candidate`] and changes nothing; [`Simulation::follow`] goes on as it says: to its new
+//! [`Simulation::try_increment`] finds a [`Candidate`] and changes nothing; [`Simulation::apply`] goes on as it says: to its new
 //! state if it was accepted, else to another attempt. A candidate that is dropped has never been: the next attempt finds it
 //! again, to the same bits.
 //!
@@ -135,6 +135,7 @@ impl Simulation {
     }
 
     /// Add to the time that observers took [s].
+    #[doc(hidden)]
     pub fn observed(&mut self, seconds: f64) {
         self.report.wall_s.output += seconds;
     }
@@ -162,7 +163,7 @@ impl Simulation {
     ///
     /// # Errors
     /// [`Error::Unsolvable`] when a step cannot begin.
-    pub fn attempt(&mut self) -> Result<Option<Candidate>, Error> {
+    pub fn try_increment(&mut self) -> Result<Option<Candidate>, Error> {
         if self.stopped {
             return Ok(None);
         }
@@ -182,7 +183,7 @@ impl Simulation {
     ///
     /// # Errors
     /// [`Error`] when no other attempt can help.
-    pub fn follow(&mut self, candidate: Candidate) -> Result<(), Error> {
+    pub fn apply(&mut self, candidate: Candidate) -> Result<(), Error> {
         let is_row = self.told(&candidate).row != Row::Held;
         let Candidate { iterations, accepted, increments, outcome, coupling, explicit, .. } = candidate;
         if let Outcome::Paused(midway) = outcome {
@@ -223,10 +224,10 @@ impl Simulation {
     /// # Errors
     /// [`Error`] when no increment is short enough.
     pub fn next_increment(&mut self) -> Result<Option<Increment>, Error> {
-        while let Some(candidate) = self.attempt()? {
+        while let Some(candidate) = self.try_increment()? {
             let (step, old) = (self.step.clone(), self.state.clone());
             let (state, iterations) = (candidate.accepted.clone(), candidate.iterations.clone());
-            self.follow(candidate)?;
+            self.apply(candidate)?;
             if let Some(state) = state {
                 return Ok(Some(Increment { step, old, state, iterations }));
             }
@@ -284,6 +285,7 @@ impl Iterator for Simulation {
 /// A run as it was: state, control and counts, for the same model. What is computed after [`super::Simulation::resume`] has the same
 /// bits as if the run had never stopped.
 #[derive(Clone)]
+#[must_use]
 pub struct Saved {
     pub(super) step: Arc<Step>,
     pub(super) state: Arc<State>,
@@ -293,6 +295,18 @@ pub struct Saved {
     pub(super) report: RunReport,
     /// Whether its caller has changed the step under way
     pub(super) led: bool,
+}
+
+/// Why a saved run cannot go on.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NotResumable {
+    /// The bytes are those of no run.
+    #[error("{0}")]
+    Unreadable(String),
+    /// The run is one of another model.
+    #[error("it is not of this model")]
+    OtherModel,
 }
 
 /// What goes to a file.
@@ -332,29 +346,30 @@ impl Saved {
     /// The run that the bytes tell of. Steps that had not begun may have changed since, or have come after the last one.
     ///
     /// # Errors
-    /// Why they tell of no run of this model.
-    pub fn from_bytes(bytes: &[u8], model: &Arc<Model>) -> Result<Self, String> {
-        let written: Written = postcard::from_bytes(bytes).map_err(|cause| cause.to_string())?;
+    /// [`NotResumable`].
+    pub fn from_bytes(bytes: &[u8], model: &Arc<Model>) -> Result<Self, NotResumable> {
+        let written: Written =
+            postcard::from_bytes(bytes).map_err(|cause| NotResumable::Unreadable(cause.to_string()))?;
         Self::fitted(written, None, model)
     }
 
     /// The run on another model, whose steps that have not begun may be other ones, or come after the last one.
     ///
     /// # Errors
-    /// Why it is no run of this model.
-    pub fn on(self, model: &Arc<Model>) -> Result<Self, String> {
+    /// [`NotResumable::OtherModel`].
+    pub fn on(self, model: &Arc<Model>) -> Result<Self, NotResumable> {
         let Self { step, state, control, explicit, midway, report, led } = self;
         let memory = explicit.as_ref().map(Explicit::memory);
         Self::fitted((Arc::unwrap_or_clone(state), control, memory, midway, report), led.then_some(step), model)
     }
 
     /// A run of a model, with the step under way if its caller has changed it.
-    fn fitted(run: Written, led: Option<Arc<Step>>, model: &Arc<Model>) -> Result<Self, String> {
+    fn fitted(run: Written, led: Option<Arc<Step>>, model: &Arc<Model>) -> Result<Self, NotResumable> {
         let (state, mut control, memory, midway, report) = run;
         let fits = |memory: &ExplicitMemory| memory.fits(model);
         let on_its_way = midway.as_ref().is_none_or(|midway| is_of(&midway.state, model) && memory.is_some());
         if !(is_of(&state, model) && control.fits(model) && memory.as_ref().is_none_or(fits) && on_its_way) {
-            return Err("it is not of this model".into());
+            return Err(NotResumable::OtherModel);
         }
         if matches!(control.phase, Phase::Complete) && control.step < model.steps.len() {
             control.phase = Phase::Begin;
@@ -367,7 +382,6 @@ impl Saved {
     }
 
     /// The same place, from where another run begins: it counts its increments, and the energies that come and go, from here.
-    #[must_use]
     pub fn begin(mut self) -> Self {
         let mut state = State::clone(&self.state);
         let Energy { kinetic, strain, contact_elastic, .. } = state.energy;

@@ -21,10 +21,10 @@
 //!
 //! The augmented Lagrangian: multipliers that leave no more penetration than allowed.
 
+use super::condensed_newton::{CondensedNewton, Round, Rung};
 use super::contact_iteration::{Acted, Flips};
 use super::failure::IncrementFailure;
 use super::floating::null_motion;
-use super::interface::{Interface, Round, Rung};
 use super::newton::{self, NewtonFailure};
 use super::{IterationRecord, Workspace};
 use crate::contact::force::ContactState;
@@ -127,7 +127,7 @@ fn round(
     work: &mut Workspace,
 ) -> Option<Result<(), NewtonFailure<TrialFailure>>> {
     let Workspace { assembler, iteration, system, foreseen, interface, .. } = work;
-    let Interface { nodes, whole, solver, condensed, .. } = interface.as_mut()?;
+    let CondensedNewton { nodes, whole, solver, condensed, .. } = interface.as_mut()?;
     let round = Round::begin(nodes, &rung.bodies, trial, u, assembler, system).ok()?;
     let mut all = u.to_vec();
     let (iterations, result) = newton::solve(

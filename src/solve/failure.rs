@@ -18,6 +18,7 @@ use crate::model::{Body, Model, Step};
 
 /// Why one increment failed; a smaller one may succeed.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum IncrementFailure {
     /// Newton's method found no equilibrium.
     #[error(transparent)]
@@ -79,12 +80,14 @@ fn density_hint(cause: &LinearFailure) -> &'static str {
 
 impl IncrementFailure {
     /// Whether shorter explicit increments have a chance: an element collapsed, or the motion grew without bounds.
+    #[doc(hidden)]
     pub fn is_collapse(&self) -> bool {
         use TrialFailure::{Crushed, Inverted, Material};
         matches!(self, Self::Unbounded | Self::Start(Inverted { .. } | Crushed { .. } | Material { .. }))
     }
 
     /// The same, after shorter increments have not helped.
+    #[doc(hidden)]
     pub fn after_all(self) -> Self {
         match self {
             Self::Start(failure) if Self::Start(failure.clone()).is_collapse() => Self::Collapsed(failure),
@@ -111,6 +114,7 @@ impl IncrementFailure {
     }
 
     /// Whether a smaller increment has a chance.
+    #[doc(hidden)]
     pub fn is_retryable(&self) -> bool {
         match self {
             Self::Newton(NewtonFailure::Linear(LinearFailure::TooLarge { .. })) => false,

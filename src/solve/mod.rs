@@ -1,11 +1,11 @@
 //! Solving the equations of one increment: Newton's method, the contact iteration, the augmented Lagrangian, and what
 //! holds bodies that float.
 
+pub mod condensed_newton;
 pub mod contact_iteration;
 pub mod equilibrium;
 pub mod failure;
 pub mod floating;
-pub mod interface;
 pub mod newton;
 
 use std::sync::Arc;
@@ -16,8 +16,8 @@ use crate::equations::{Assembler, ContactCounts};
 use crate::linear::LinearSolver;
 use crate::linear::system::System;
 use crate::model::{Model, Step};
+use condensed_newton::CondensedNewton;
 use contact_iteration::{Acted, ContactIteration};
-use interface::Interface;
 use newton::Iteration;
 
 /// What is kept from one increment to the next to save work; it does not change any answer.
@@ -30,7 +30,7 @@ pub struct Workspace {
     pub solver: Box<dyn LinearSolver>,
     pub(crate) system: System,
     /// Linear bodies condensed on the nodes at contacts, where that is worth it
-    interface: Option<Interface>,
+    interface: Option<CondensedNewton>,
     /// Contact states to which the motion before the last attempt would have led, had it gone on
     pub foreseen: Vec<Vec<ContactState>>,
     /// Seconds spent in linear solves
@@ -47,7 +47,7 @@ impl Workspace {
             iteration: ContactIteration::default(),
             solver,
             system,
-            interface: Interface::new(model).filter(|_| model.aids.condense),
+            interface: CondensedNewton::new(model).filter(|_| model.aids.condense),
             foreseen: Vec::new(),
             linear_seconds: 0.0,
         }
@@ -61,6 +61,7 @@ impl Workspace {
 
 /// One row of the convergence record.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct IterationRecord {
     /// residual, correction, linear residual
     pub newton: Iteration,
@@ -73,5 +74,6 @@ pub struct IterationRecord {
     /// ‖forces that stabilize‖/‖forces at work‖ after the correction [-]
     pub stabilization: f64,
     /// what the aids did in its tangent
+    #[doc(hidden)]
     pub acted: Acted,
 }

@@ -50,6 +50,7 @@ pub struct Settings {
 
 /// One linear solve, and where it led.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Iteration {
     /// ‖r‖/‖f‖ of the worst part after the correction; NaN if the corrected state could not be evaluated [-]
     pub residual: f64,
@@ -69,6 +70,7 @@ pub struct Iteration {
 
 /// Why no solution was found; `E` is why the equations could not be evaluated.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub enum NewtonFailure<E> {
     /// The equations could not be evaluated at a trial state.
     #[error("{0}")]
@@ -125,7 +127,7 @@ pub fn solve<E>(
     let mut iterations: Vec<Iteration> = Vec::new();
     let result = (|| {
         evaluate(&u, Request::Residual, system).map_err(NewtonFailure::Evaluation)?;
-        let mut course = Course::new(settings);
+        let mut course = Convergence::new(settings);
         while let Some(plan) = course.judge(&mut iterations, system)? {
             let here = if plan.searched { system.residual.clone() } else { Vec::new() };
             if plan.factorized {
@@ -183,7 +185,7 @@ impl Plan {
 }
 
 /// What the iterations have shown so far.
-struct Course {
+struct Convergence {
     settings: Settings,
     /// ‖r‖ of the first iterates, the largest
     largest_start: f64,
@@ -197,7 +199,7 @@ struct Course {
     searches: bool,
 }
 
-impl Course {
+impl Convergence {
     fn new(settings: Settings) -> Self {
         Self {
             settings,

@@ -2,7 +2,7 @@
 //! is kept.
 
 use crate::equations::evaluation::Flows;
-use crate::equations::{Evaluation, interfaces};
+use crate::equations::{Evaluation, contacts};
 use crate::model::state::State;
 use crate::model::{Model, Step};
 
@@ -44,7 +44,7 @@ pub fn heat(step: &Step, found: &Evaluation, state: &mut State) {
 /// What motion and contacts store at the end of an increment; at the start of a run the audit begins with it.
 pub fn take_stock(model: &Model, kinetic: f64, state: &mut State) {
     state.energy.kinetic = kinetic;
-    state.energy.contact_elastic = interfaces::stored(model, &state.contacts);
+    state.energy.contact_elastic = contacts::stored(model, &state.contacts);
     if state.increment == 0 {
         state.energy.initial = state.energy.kinetic + state.energy.contact_elastic;
     }

@@ -8,6 +8,7 @@ mod delayed;
 mod convergence;
 mod input;
 mod law;
+mod layout;
 mod many;
 mod mutations;
 mod outputs;

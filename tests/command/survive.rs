@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use crate::common::{Blocks, store};
 use fecontact::output::checkpoint;
 use fecontact::output::files::Lock;
-use fecontact::output::interface::read;
+use fecontact::output::store::read;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 

@@ -1,25 +1,26 @@
 //! Small models for tests that drive the whole solver: meshes of blocks, models from code and from JSON, runs that keep
 //! every state.
-#![allow(dead_code, reason = "each test program uses a part")]
+#![allow(dead_code, unused_imports, reason = "each test program uses a part")]
 
+#[cfg(feature = "internals")]
+mod cases;
 pub mod store;
 
-use std::path::Path;
 use std::sync::Arc;
 
-use fecontact::case;
 use fecontact::laws::bulk::{ElasticConstants, Linear, NeoHookean};
 use fecontact::mesh::{InlineMesh, Mesh};
-use fecontact::model::Model;
 use fecontact::model::boundary::{Drive, Expression};
 use fecontact::model::builder::{Builder, MasterSide};
-use fecontact::model::state::State;
-use fecontact::run::control::RunReport;
+use fecontact::model::{Model, State};
 use fecontact::run::error::Error;
 use fecontact::run::observer::{Attempt, Observer};
-use fecontact::run::run;
+use fecontact::run::{RunReport, run};
 use nalgebra::{Rotation2, Vector2};
 use serde_json::{Value, json};
+
+#[cfg(feature = "internals")]
+pub use cases::*;
 
 /// A mesh of blocks of Q4 elements, and of rings. A block named `b` brings the groups `b` (elements), `b_bottom`, `b_right`,
 /// `b_top` and `b_left` (edges).
@@ -93,7 +94,7 @@ impl Blocks {
 
 /// Constants of an elastic material.
 pub fn elastic(young: f64, poisson: f64, density: f64) -> ElasticConstants {
-    ElasticConstants { young, poisson, density }
+    ElasticConstants::new(young, poisson).density(density)
 }
 
 /// A neo-Hookean material.
@@ -162,17 +163,6 @@ pub fn turned(v: [f64; 2], angle: f64) -> [f64; 2] {
     (Rotation2::new(angle) * Vector2::from(v)).into()
 }
 
-/// The model of a case.
-pub fn model(case: &Value) -> Model {
-    model_at(case, Path::new("test.json"))
-}
-
-/// The model of a case whose mesh is found from a path.
-pub fn model_at(case: &Value, path: &Path) -> Model {
-    let parsed = serde_json::from_value(case.clone()).unwrap_or_else(|error| panic!("{error}"));
-    case::build(&parsed, path).unwrap_or_else(|error| panic!("{error}"))
-}
-
 /// Keeps every accepted state; counts the attempts that were not accepted.
 #[derive(Default)]
 pub struct Record {
@@ -236,16 +226,6 @@ impl Finished {
             [n + contact.length * contact.friction.pressure, t + contact.length * contact.friction.traction]
         })
     }
-}
-
-/// Run a case to its end.
-pub fn finish(case: &Value) -> Finished {
-    finish_at(case, Path::new("test.json"))
-}
-
-/// Run a case whose mesh is found from a path.
-pub fn finish_at(case: &Value, path: &Path) -> Finished {
-    finished(model_at(case, path))
 }
 
 /// Run a model to its end.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use fecontact::contact::force::{
-    Closed, ClosedPoints, ContactState, Loading, PointIncrement, PointPlace, Tractions, closes, place,
+    Closed, ClosedPoints, ContactState, PointEvaluation, PointIncrement, PointPlace, Tractions, closes, place,
 };
 use fecontact::contact::kinematics::{Kinematics, kinematics};
 use fecontact::contact::master::{Circle, Master, Plane, Polyline, Rigid};
@@ -159,7 +159,8 @@ fn finish(
     kinematics: &mut Kinematics,
 ) -> (ContactState, Option<Kept>) {
     let law = pair.law(&pair.points[k]);
-    let loading = Loading::new((pair, &pair.points[k], law), old, increment, place, kinematics).expect("a good law");
+    let loading =
+        PointEvaluation::new((pair, &pair.points[k], law), old, increment, place, kinematics).expect("a good law");
     let answer = law.respond(&old.friction, loading.sliding);
     let mut closed = ClosedPoints::default();
     let state = loading.finish(answer, &mut closed).expect("a finite increment");

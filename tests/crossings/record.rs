@@ -158,9 +158,9 @@ fn led(mut simulation: Simulation, outputs: &mut Outputs) -> Result<Led, String>
 /// Attempts that are made twice, the first time for nothing.
 fn dropped(mut simulation: Simulation, outputs: &mut Outputs) -> Result<Led, String> {
     let result = loop {
-        let first = simulation.attempt();
+        let first = simulation.try_increment();
         drop(first);
-        match simulation.attempt() {
+        match simulation.try_increment() {
             Ok(None) => break Ok(()),
             Err(error) => break Err(error.to_string()),
             Ok(Some(candidate)) => {
@@ -170,7 +170,7 @@ fn dropped(mut simulation: Simulation, outputs: &mut Outputs) -> Result<Led, Str
                     .into_iter()
                     .try_for_each(|observer| observer.record(simulation.model(), &told))
                     .expect("tables can be written");
-                if let Err(error) = simulation.follow(candidate) {
+                if let Err(error) = simulation.apply(candidate) {
                     break Err(error.to_string());
                 }
             }
@@ -183,14 +183,14 @@ fn dropped(mut simulation: Simulation, outputs: &mut Outputs) -> Result<Led, Str
 /// Some attempts; false where the run has ended.
 fn attempts(simulation: &mut Simulation, outputs: &mut Outputs, number: usize) -> bool {
     for _ in 0..number {
-        let Ok(Some(candidate)) = simulation.attempt() else { return false };
+        let Ok(Some(candidate)) = simulation.try_increment() else { return false };
         let told = simulation.told(&candidate);
         outputs
             .all()
             .into_iter()
             .try_for_each(|observer| observer.record(simulation.model(), &told))
             .expect("tables can be written");
-        if simulation.follow(candidate).is_err() {
+        if simulation.apply(candidate).is_err() {
             return false;
         }
     }
@@ -210,7 +210,7 @@ fn resumed(document: &Value, folder: &Path, model: &Arc<Model>, outputs: &mut Ou
     let model = built(document)?;
     let saved: RunBytes = serde_json::from_slice(&text).expect("bytes");
     *outputs = Outputs::reopen(folder, &model);
-    let saved = SavedRun::from_bytes(saved, &model)?;
+    let saved = SavedRun::from_bytes(saved, &model).map_err(|error| error.to_string())?;
     let simulation = saved.resume(&model, &mut outputs.all()).map_err(|error| error.to_string())?;
     led(simulation, outputs)
 }
@@ -225,7 +225,7 @@ fn begun(document: &Value, folder: &Path, model: &Arc<Model>, outputs: &mut Outp
         return Ok((first, ended));
     }
     let saved = SavedRun::new(&first, &mut []).and_then(SavedRun::bytes).map_err(|error| error.to_string())?;
-    let saved = SavedRun::from_bytes(saved, model)?.begin();
+    let saved = SavedRun::from_bytes(saved, model).map_err(|error| error.to_string())?.begin();
     *outputs = Outputs::create(folder, model);
     let simulation = saved.resume(model, &mut []).map_err(|error| error.to_string())?;
     led(simulation, outputs)

@@ -3,7 +3,7 @@
 use super::random::Random;
 use crate::strokes::strokes;
 use fecontact::laws::friction::{
-    FrictionLaw, FrictionResponse, FrictionState, Loading, PrescribedSlip, PrescribedSlipParameters, RateAndState,
+    FrictionLaw, FrictionResponse, FrictionState, PointLoad, PrescribedSlip, PrescribedSlipParameters, RateAndState,
     RateAndStateParameters, STEEPEST, Sliding, SlipWeakening, SlipWeakeningParameters, StateEvolution,
 };
 
@@ -22,20 +22,11 @@ fn with_psi(psi: f64) -> FrictionState {
     FrictionState::default().with_variables([10.0 * ((psi - 0.6) / 0.015).exp()])
 }
 
-const WEAKENING: SlipWeakeningParameters =
-    SlipWeakeningParameters { mu_s: 0.6, mu_d: 0.5, critical_slip: 1.0, cohesion: 0.0, alpha_t: Some(1000.0) };
+const WEAKENING: SlipWeakeningParameters = SlipWeakeningParameters::new(0.6, 0.5, 1.0).alpha_t(1000.0);
 
 /// Laboratory values, in micrometres, seconds and megapascals.
-const RATE_AND_STATE: RateAndStateParameters = RateAndStateParameters {
-    f_0: 0.6,
-    reference_rate: 1.0,
-    a: 0.010,
-    b: 0.015,
-    critical_slip: 10.0,
-    evolution: StateEvolution::Ageing,
-    theta: None,
-    alpha_t: Some(0.5),
-};
+const RATE_AND_STATE: RateAndStateParameters =
+    RateAndStateParameters::new(0.6, 1.0, 0.010, 0.015, 10.0).evolution(StateEvolution::Ageing).alpha_t(0.5);
 
 fn weakening(parameters: SlipWeakeningParameters) -> SlipWeakening {
     SlipWeakening::new(&parameters, f64::NAN).expect("valid parameters")
@@ -46,7 +37,7 @@ fn rate_and_state(parameters: RateAndStateParameters) -> RateAndState {
 }
 
 fn respond(law: &dyn FrictionLaw, old: &FrictionState, slip: f64, pressure: f64, dt: f64) -> FrictionResponse {
-    law.respond(old, Sliding { slip, pressure, dt }).expect("a finite increment is answered")
+    law.respond(old, Sliding::new(slip, pressure, dt)).expect("a finite increment is answered")
 }
 
 fn assert_close(actual: f64, expected: f64, tolerance: f64, what: &str) {
@@ -120,12 +111,12 @@ fn weakening_counts_slip_to_and_fro_and_never_heals() {
 
 #[test]
 fn weakening_with_cohesion_and_an_initial_excess() {
-    let law = weakening(SlipWeakeningParameters { cohesion: 2.0, ..WEAKENING });
+    let law = weakening(WEAKENING.cohesion(2.0));
     let state = respond(&law, &law.initial_state(0.0, 0.0), 0.01, 10.0, 1.0).state;
     // 10 is above c + μ_s p = 8: Δλ = 2/(α_t − W p).
     assert_close(state.plastic_slip, 2.0 / 999.0, 1e-15, "slip");
     assert_close(state.traction, 8.0 - 2.0 / 999.0, 1e-12, "traction");
-    let over = FrictionState { traction: 8.5, pressure: 10.0, ..law.initial_state(0.0, 0.0) };
+    let over = with!(law.initial_state(0.0, 0.0), traction: 8.5, pressure: 10.0);
     assert_close(respond(&law, &over, 0.0, 10.0, 0.0).state.plastic_slip, 0.5 / 999.0, 1e-15, "excess slips off");
     assert_eq!(law.description().starting_limit(10.0), f64::INFINITY);
 }
@@ -133,14 +124,14 @@ fn weakening_with_cohesion_and_an_initial_excess() {
 /// α_t D_c/b: below it no slip, however fast, weakens faster than the contact gives way.
 #[test]
 fn rate_and_state_has_one_answer_below_a_pressure() {
-    let law = rate_and_state(RateAndStateParameters { alpha_t: Some(5.0), ..RATE_AND_STATE });
+    let law = rate_and_state(RATE_AND_STATE.alpha_t(5.0));
     let RateAndStateParameters { b, critical_slip, .. } = RATE_AND_STATE;
     assert_close(law.description().uniqueness_limit().expect("a limit"), 5.0 * critical_slip / b, 1e-12, "limit");
 }
 
 #[test]
 fn weakening_that_outruns_the_contact_snaps_to_the_dynamic_coefficient() {
-    let law = weakening(SlipWeakeningParameters { alpha_t: Some(0.9), ..WEAKENING });
+    let law = weakening(WEAKENING.alpha_t(0.9));
     assert_close(law.description().uniqueness_limit().expect("a limit"), 9.0, 1e-12, "limit");
     let state = respond(&law, &law.initial_state(0.0, 0.0), 7.0, 10.0, 1.0).state;
     assert_eq!((mu_of(&law, &state), state.traction), (0.5, 5.0));
@@ -153,15 +144,15 @@ fn weakening_tangents_are_exact() {
     let mut random = Random(1);
     let mut smooth = 0;
     for k in 0..3000 {
-        let law = weakening(SlipWeakeningParameters {
-            alpha_t: Some(10f64.powf(random.between(-0.3, 3.0))),
-            cohesion: if k % 2 == 0 { 0.0 } else { random.between(0.0, 3.0) },
-            ..WEAKENING
-        });
+        let law = weakening(WEAKENING.alpha_t(10f64.powf(random.between(-0.3, 3.0))).cohesion(if k % 2 == 0 {
+            0.0
+        } else {
+            random.between(0.0, 3.0)
+        }));
         let pressure = random.between(0.1, 20.0);
         let slipped = random.between(0.0, 1.2);
         let start = law.initial_state(0.0, 0.0).with_variables([slipped]);
-        let old = FrictionState { traction: random.between(-8.0, 8.0), pressure, ..start };
+        let old = with!(start, traction: random.between(-8.0, 8.0), pressure: pressure);
         let slip = random.between(-20.0, 20.0) / law.description().stiffness;
         smooth += usize::from(check_tangents(&law, &old, slip, random.between(0.1, 20.0), 1.0));
     }
@@ -189,7 +180,7 @@ fn weakening_dissipates_what_the_work_leaves() {
 /// with a reversal inside books the same as a thousand.
 #[test]
 fn weakening_dissipates_the_strength_over_the_slip() {
-    let law = weakening(SlipWeakeningParameters { cohesion: 1.5, ..WEAKENING });
+    let law = weakening(WEAKENING.cohesion(1.5));
     let turns = [0.3, -0.2, 0.4, -0.6, 0.5, 0.0];
     let points: Vec<[f64; 2]> = [0.0].iter().chain(&turns).map(|u| [*u, 10.0]).collect();
     for parts in [1, 2, 3, 7, 1000] {
@@ -217,7 +208,7 @@ fn weakening_dissipates_the_strength_over_the_slip() {
 /// as one, and the trapezoidal rule tends to it.
 #[test]
 fn weakening_dissipates_the_same_in_one_increment_as_in_many() {
-    let law = weakening(SlipWeakeningParameters { cohesion: 0.5, critical_slip: 0.05, ..WEAKENING });
+    let law = weakening(with!(WEAKENING.cohesion(0.5), critical_slip: 0.05));
     let cases = [
         [[0.0, 10.0], [0.02, 14.0]],
         [[0.0, 10.0], [0.04, 4.0]],
@@ -233,8 +224,7 @@ fn weakening_dissipates_the_same_in_one_increment_as_in_many() {
             let what = format!("{line:?} in {parts}");
             assert_close(many.dissipation, one.dissipation, 1e-12 * one.dissipation, &what);
         }
-        let (parts, mut old, mut work) =
-            (200_000, FrictionState { pressure: line[0][1], ..law.initial_state(0.0, 0.0) }, 0.0);
+        let (parts, mut old, mut work) = (200_000, with!(law.initial_state(0.0, 0.0), pressure: line[0][1]), 0.0);
         for k in 1..=parts {
             let share = f64::from(k) / f64::from(parts);
             let slip = line[1][0] / f64::from(parts);
@@ -251,8 +241,8 @@ fn weakening_dissipates_the_same_in_one_increment_as_in_many() {
 /// the rest in a thousand increments.
 #[test]
 fn weakening_dissipates_the_same_from_above_the_strength() {
-    let law = weakening(SlipWeakeningParameters { cohesion: 0.5, critical_slip: 0.05, ..WEAKENING });
-    let at = |above: f64| FrictionState { traction: 6.5 + above, pressure: 10.0, ..law.initial_state(0.0, 0.0) };
+    let law = weakening(with!(WEAKENING.cohesion(0.5), critical_slip: 0.05));
+    let at = |above: f64| with!(law.initial_state(0.0, 0.0), traction: 6.5 + above, pressure: 10.0);
     for [slip, pressure] in [[0.02, 14.0], [0.04, 4.0], [0.3, 25.0], [0.3, 9.0]] {
         let smooth = respond(&law, &at(-1e-9), slip, pressure, 1.0).state.dissipation;
         for rounding in [-1e-15, 0.0, 1e-15, 1e-12] {
@@ -276,12 +266,12 @@ fn weakening_dissipates_the_same_from_above_the_strength() {
 /// Parameters may change between increments: μ = max(μ_s − W D, μ_d) with those of now, and D of all slip.
 #[test]
 fn weakening_counts_its_slip_whatever_the_parameters_are() {
-    let first = weakening(SlipWeakeningParameters { mu_s: 0.8, mu_d: 0.2, ..WEAKENING });
+    let first = weakening(with!(WEAKENING, mu_s: 0.8, mu_d: 0.2));
     let slid = respond(&first, &first.initial_state(0.0, 0.0), 0.258, 10.0, 1.0).state;
     // 1000 (0.258 − D) = 10 (0.8 − 0.6 D)
     assert_close(slid.plastic_slip, 250.0 / 994.0, 1e-14, "D");
     for (mu_s, mu_d, critical_slip) in [(0.6, 0.2, 1.0), (0.9, 0.1, 0.5), (0.4, 0.39, 0.1)] {
-        let then = weakening(SlipWeakeningParameters { mu_s, mu_d, critical_slip, ..WEAKENING });
+        let then = weakening(with!(WEAKENING, mu_s: mu_s, mu_d: mu_d, critical_slip: critical_slip));
         let mu = f64::max(mu_s - (mu_s - mu_d) / critical_slip * 250.0 / 994.0, mu_d);
         assert_close(mu_of(&then, &slid), mu, 1e-14, "mu");
     }
@@ -290,7 +280,7 @@ fn weakening_counts_its_slip_whatever_the_parameters_are() {
 /// A snap releases what the contact had stored: nothing is lost from the account.
 #[test]
 fn a_snap_dissipates_what_it_releases() {
-    let law = weakening(SlipWeakeningParameters { alpha_t: Some(0.9), ..WEAKENING });
+    let law = weakening(WEAKENING.alpha_t(0.9));
     // Elastic up to 6, down to 5 at once, and on at 5.
     let work = 0.5 * 6.0 * 6.0 / 0.9 + 5.0 * (7.0 - 6.0 / 0.9);
     for parts in [1, 2, 1000] {
@@ -306,9 +296,9 @@ fn a_snap_dissipates_what_it_releases() {
 #[test]
 fn rate_and_state_dissipates_the_work_of_slip_to_and_fro() {
     for evolution in [StateEvolution::Ageing, StateEvolution::Slip] {
-        let law = rate_and_state(RateAndStateParameters { evolution, alpha_t: Some(5.0), ..RATE_AND_STATE });
+        let law = rate_and_state(RATE_AND_STATE.evolution(evolution).alpha_t(5.0));
         let loops = |parts: u32| {
-            let (mut old, mut work) = (FrictionState { pressure: 100.0, ..law.initial_state(0.0, 0.0) }, 0.0);
+            let (mut old, mut work) = (with!(law.initial_state(0.0, 0.0), pressure: 100.0), 0.0);
             for k in 0..8 * parts {
                 let slip = if (k / parts).is_multiple_of(2) { 1.0 } else { -1.0 } * 100.0 / f64::from(parts);
                 let new = respond(&law, &old, slip, 100.0, slip.abs()).state;
@@ -329,7 +319,7 @@ fn rate_and_state_dissipates_the_work_of_slip_to_and_fro() {
 fn steady_sliding_has_the_coefficient_of_its_rate() {
     for evolution in [StateEvolution::Ageing, StateEvolution::Slip] {
         for rate in [1e-6, 1e-2, 1.0, 50.0, 1e4] {
-            let law = rate_and_state(RateAndStateParameters { evolution, ..RATE_AND_STATE });
+            let law = rate_and_state(RATE_AND_STATE.evolution(evolution));
             let mut state = law.initial_state(0.0, 0.0);
             for _ in 0..3000 {
                 state = respond(&law, &state, 0.5, 100.0, 0.5 / rate).state;
@@ -344,11 +334,7 @@ fn steady_sliding_has_the_coefficient_of_its_rate() {
 #[test]
 fn a_jump_of_the_rate_acts_directly_and_then_by_the_state() {
     // A stiff contact, so that the plastic slip follows the total: the jump is a ln 10, then −b ln 10 decays over D_c.
-    let law = rate_and_state(RateAndStateParameters {
-        alpha_t: Some(1e6),
-        evolution: StateEvolution::Slip,
-        ..RATE_AND_STATE
-    });
+    let law = rate_and_state(RATE_AND_STATE.alpha_t(1e6).evolution(StateEvolution::Slip));
     let mut state = law.initial_state(0.0, 0.0);
     for _ in 0..10 {
         state = respond(&law, &state, 1.0, 100.0, 1.0).state;
@@ -371,7 +357,7 @@ fn rest_heals_with_the_logarithm_of_time_in_the_ageing_law_only() {
     for (evolution, healed) in
         [(StateEvolution::Ageing, 0.015 * (1e4 / 10.0 + 1.0f64).ln()), (StateEvolution::Slip, 0.0)]
     {
-        let law = rate_and_state(RateAndStateParameters { evolution, ..RATE_AND_STATE });
+        let law = rate_and_state(RATE_AND_STATE.evolution(evolution));
         let at_rest = respond(&law, &law.initial_state(0.0, 0.0), 0.0, 100.0, 1e4).state;
         assert_close(psi_of(&law, &at_rest), 0.6 + healed, 1e-12, "pressed");
         assert_close(
@@ -380,7 +366,7 @@ fn rest_heals_with_the_logarithm_of_time_in_the_ageing_law_only() {
             1e-12,
             "parted",
         );
-        let quick = FrictionState { traction: 30.0, pressure: 100.0, ..law.initial_state(0.0, 0.0) };
+        let quick = with!(law.initial_state(0.0, 0.0), traction: 30.0, pressure: 100.0);
         let now = respond(&law, &quick, 0.1, 100.0, 0.0).state;
         assert_eq!((now.traction, psi_of(&law, &now), now.plastic_slip), (30.05, 0.6, 0.0), "no time, no slip");
     }
@@ -393,7 +379,7 @@ fn rates(p: &RateAndStateParameters, pressure: f64, v: f64, [q, theta]: [f64; 2]
     let y = slip_rate.abs() * theta / p.critical_slip;
     let dtheta = match p.evolution {
         StateEvolution::Ageing => 1.0 - y,
-        StateEvolution::Slip => -y * y.ln(),
+        _ => -y * y.ln(),
     };
     [p.alpha_t.expect("given") * (v - slip_rate), dtheta]
 }
@@ -401,7 +387,7 @@ fn rates(p: &RateAndStateParameters, pressure: f64, v: f64, [q, theta]: [f64; 2]
 #[test]
 fn increments_converge_to_the_differential_equations() {
     for evolution in [StateEvolution::Ageing, StateEvolution::Slip] {
-        let p = RateAndStateParameters { evolution, ..RATE_AND_STATE };
+        let p = RATE_AND_STATE.evolution(evolution);
         let law = rate_and_state(p);
         // Slip at V₀, then ten times as fast, then back at a third: 60 s by the method of Runge and Kutta.
         let rate = |t: f64| {
@@ -429,7 +415,7 @@ fn increments_converge_to_the_differential_equations() {
         }
         let error = |steps: u32| {
             let dt = 60.0 / f64::from(steps);
-            let mut state = FrictionState { traction: 59.0, pressure: 100.0, ..law.initial_state(0.0, 0.0) };
+            let mut state = with!(law.initial_state(0.0, 0.0), traction: 59.0, pressure: 100.0);
             for k in 0..steps {
                 state = respond(&law, &state, rate((f64::from(k) + 0.5) * dt) * dt, 100.0, dt).state;
             }
@@ -450,7 +436,7 @@ fn rate_and_state_tangents_are_exact() {
         let evolution = if k % 2 == 0 { StateEvolution::Ageing } else { StateEvolution::Slip };
         // The weakening b p/D_c is 0.15 at the usual pressure: some contacts are softer than that.
         let alpha_t = Some(10f64.powf(random.between(-1.0, 2.0)));
-        let law = rate_and_state(RateAndStateParameters { evolution, alpha_t, ..RATE_AND_STATE });
+        let law = rate_and_state(with!(RATE_AND_STATE.evolution(evolution), alpha_t: alpha_t));
         let pressure = random.between(1.0, 150.0);
         let psi = random.between(0.5, 0.7);
         let old = with_psi(psi).loaded(pressure, random.between(-80.0, 80.0));
@@ -468,7 +454,7 @@ fn answers_meet_their_equations_and_are_the_first_root() {
     for k in 0..20000 {
         let evolution = if k % 2 == 0 { StateEvolution::Ageing } else { StateEvolution::Slip };
         let alpha_t = 10f64.powf(random.between(-2.0, 3.0));
-        let p = RateAndStateParameters { evolution, alpha_t: Some(alpha_t), ..RATE_AND_STATE };
+        let p = RATE_AND_STATE.evolution(evolution).alpha_t(alpha_t);
         let law = rate_and_state(p);
         let psi0 = random.between(0.3, 0.8);
         let old = with_psi(psi0).loaded(100.0, 0.0);
@@ -486,7 +472,7 @@ fn answers_meet_their_equations_and_are_the_first_root() {
             let log0 = (psi0 - 0.6) / 0.015;
             let log = match evolution {
                 StateEvolution::Ageing => (log0.exp() * (-x).exp() + dt / 10.0 * (1.0 - (-x).exp()) / x).ln(),
-                StateEvolution::Slip => log0 * (-x).exp() - v.ln() * (1.0 - (-x).exp()),
+                _ => log0 * (-x).exp() - v.ln() * (1.0 - (-x).exp()),
             };
             let psi = 0.6 + 0.015 * log;
             let w = (0.5 * v).ln() + psi / 0.01;
@@ -516,22 +502,22 @@ fn answers_meet_their_equations_and_are_the_first_root() {
 #[test]
 fn parameters_out_of_range_are_named() {
     for (parameters, name) in [
-        (RateAndStateParameters { f_0: 0.0, ..RATE_AND_STATE }, "f_0"),
-        (RateAndStateParameters { reference_rate: 0.0, ..RATE_AND_STATE }, "V_0"),
-        (RateAndStateParameters { a: 0.0, ..RATE_AND_STATE }, "a"),
-        (RateAndStateParameters { b: -1.0, ..RATE_AND_STATE }, "b"),
-        (RateAndStateParameters { critical_slip: f64::NAN, ..RATE_AND_STATE }, "D_c"),
-        (RateAndStateParameters { theta: Some(0.0), ..RATE_AND_STATE }, "theta"),
-        (RateAndStateParameters { alpha_t: Some(-1.0), ..RATE_AND_STATE }, "alpha_t"),
+        (with!(RATE_AND_STATE, f_0: 0.0), "f_0"),
+        (with!(RATE_AND_STATE, reference_rate: 0.0), "V_0"),
+        (with!(RATE_AND_STATE, a: 0.0), "a"),
+        (with!(RATE_AND_STATE, b: -1.0), "b"),
+        (with!(RATE_AND_STATE, critical_slip: f64::NAN), "D_c"),
+        (RATE_AND_STATE.theta(0.0), "theta"),
+        (RATE_AND_STATE.alpha_t(-1.0), "alpha_t"),
     ] {
         assert_eq!(RateAndState::new(&parameters, 1.0).expect_err("refused").name, name);
     }
     for (parameters, name) in [
-        (SlipWeakeningParameters { mu_d: 0.0, ..WEAKENING }, "mu_d"),
-        (SlipWeakeningParameters { mu_s: 0.4, ..WEAKENING }, "mu_s"),
-        (SlipWeakeningParameters { critical_slip: 0.0, ..WEAKENING }, "D_c"),
-        (SlipWeakeningParameters { cohesion: -1.0, ..WEAKENING }, "cohesion"),
-        (SlipWeakeningParameters { alpha_t: Some(0.0), ..WEAKENING }, "alpha_t"),
+        (with!(WEAKENING, mu_d: 0.0), "mu_d"),
+        (with!(WEAKENING, mu_s: 0.4), "mu_s"),
+        (with!(WEAKENING, critical_slip: 0.0), "D_c"),
+        (WEAKENING.cohesion(-1.0), "cohesion"),
+        (WEAKENING.alpha_t(0.0), "alpha_t"),
     ] {
         assert_eq!(SlipWeakening::new(&parameters, 1.0).expect_err("refused").name, name);
     }
@@ -543,20 +529,20 @@ fn no_increment_panics_or_is_not_a_number() {
     let magnitude = |random: &mut Random, low, high| 10f64.powf(random.between(low, high));
     for k in 0..100_000 {
         let law: Box<dyn FrictionLaw> = match k % 3 {
-            0 => Box::new(weakening(SlipWeakeningParameters {
+            0 => Box::new(weakening(with!(
+                WEAKENING,
                 critical_slip: magnitude(&mut random, -9.0, 3.0),
                 alpha_t: Some(magnitude(&mut random, -3.0, 12.0)),
-                ..WEAKENING
-            })),
-            _ => Box::new(rate_and_state(RateAndStateParameters {
+            ))),
+            _ => Box::new(rate_and_state(with!(
+                RATE_AND_STATE,
                 a: magnitude(&mut random, -6.0, 0.0),
                 b: if k % 7 == 0 { 0.0 } else { magnitude(&mut random, -6.0, 0.0) },
                 critical_slip: magnitude(&mut random, -9.0, 3.0),
                 reference_rate: magnitude(&mut random, -9.0, 3.0),
                 evolution: if k % 3 == 1 { StateEvolution::Ageing } else { StateEvolution::Slip },
                 alpha_t: Some(magnitude(&mut random, -3.0, 12.0)),
-                ..RATE_AND_STATE
-            })),
+            ))),
         };
         let mut state = law.initial_state(0.0, 0.0);
         for _ in 0..4 {
@@ -582,7 +568,7 @@ fn the_slip_rate_follows_from_traction_and_state() {
     let mut random = Random(5);
     for k in 0..4000 {
         let evolution = [StateEvolution::Ageing, StateEvolution::Slip][k % 2];
-        let parameters = RateAndStateParameters { evolution, a: 0.003 + 0.03 * random.unit(), ..RATE_AND_STATE };
+        let parameters = with!(RATE_AND_STATE.evolution(evolution), a: 0.003 + 0.03 * random.unit());
         let law = rate_and_state(parameters);
         let rates = law.rates().expect("it has rates");
         let RateAndStateParameters { f_0, reference_rate, a, b, critical_slip, .. } = parameters;
@@ -593,7 +579,7 @@ fn the_slip_rate_follows_from_traction_and_state() {
         let log = (rate.abs() / (2.0 * reference_rate)).ln() + psi / a;
         let arsinh = if log > 20.0 { log + std::f64::consts::LN_2 } else { log.exp().asinh() };
         let traction = rate.signum() * a * pressure * arsinh + damping * rate;
-        let found = rates.slip_rate(x, Loading { traction, pressure, damping });
+        let found = rates.slip_rate(x, PointLoad { traction, pressure, damping });
         // Round-off of τ is that of its larger part, and friction makes an error of arsinh times its size of it.
         let allowed = 1e-13 * (1.0 + arsinh + psi / a) * (1.0 + damping * rate.abs() / (a * pressure));
         assert_close(found / rate, 1.0, allowed.min(1e-6), &format!("V = {rate:e}, x = {x}, a = {a}"));
@@ -601,7 +587,7 @@ fn the_slip_rate_follows_from_traction_and_state() {
         let slid = rate.abs() * theta / critical_slip;
         let expected = match evolution {
             StateEvolution::Ageing => (1.0 - slid) / theta,
-            StateEvolution::Slip => -slid * slid.ln() / theta,
+            _ => -slid * slid.ln() / theta,
         };
         let size = (1.0 + slid * (1.0 + slid.ln().abs())) / theta;
         assert_close(rates.evolution(x, rate) / size, expected / size, 1e-12, "evolution");
@@ -614,9 +600,9 @@ fn the_slip_rate_follows_from_traction_and_state() {
 /// Prescribed slip: q follows the elastic slip, with that tangent, and its work is that of the mean traction.
 #[test]
 fn prescribed_slip_is_slip_at_its_rate() {
-    let parameters = PrescribedSlipParameters { slip_rate: -0.3, alpha_t: Some(50.0) };
+    let parameters = PrescribedSlipParameters::new(-0.3).alpha_t(50.0);
     let law = PrescribedSlip::new(&parameters, f64::NAN).expect("valid parameters");
-    let old = FrictionState { traction: 2.0, pressure: 1.0, plastic_slip: 0.5, ..FrictionState::default() };
+    let old = with!(FrictionState::default(), traction: 2.0, pressure: 1.0, plastic_slip: 0.5);
     let answer = respond(&law, &old, 0.1, 4.0, 0.5);
     // 2 + 50 (0.1 + 0.15), and −0.15 (2 + 14.5)/2
     assert_close(answer.state.traction, 14.5, 1e-13, "q");
@@ -633,11 +619,11 @@ fn prescribed_slip_is_slip_at_its_rate() {
 fn absurd_increments_of_rate_and_state_are_answered_or_refused() {
     let numbers = [0.0, 1e-320, 1e-30, 1.0, 1e30, 1e300, f64::MAX, f64::INFINITY, f64::NAN];
     for evolution in [StateEvolution::Ageing, StateEvolution::Slip] {
-        let law = rate_and_state(RateAndStateParameters { evolution, alpha_t: Some(1e4), ..RATE_AND_STATE });
+        let law = rate_and_state(RATE_AND_STATE.evolution(evolution).alpha_t(1e4));
         let mut answered = 0;
         for k in 0..numbers.len().pow(3) {
             let [slip, pressure, dt] = [k % 9, k / 9 % 9, k / 81].map(|k| numbers[k]);
-            if let Ok(answer) = law.respond(&law.initial_state(0.0, 0.0), Sliding { slip, pressure, dt }) {
+            if let Ok(answer) = law.respond(&law.initial_state(0.0, 0.0), Sliding::new(slip, pressure, dt)) {
                 assert!(answer.state.traction.is_finite() && answer.dtraction_dslip.is_finite());
                 answered += 1;
             }

@@ -6,16 +6,8 @@ use fecontact::laws::friction::{
 };
 
 /// Velocity steps around 1e-3, a hold, and a slide, in millimetres, seconds and megapascals.
-const LABORATORY: RateAndStateParameters = RateAndStateParameters {
-    f_0: 0.6,
-    reference_rate: 1e-3,
-    a: 0.010,
-    b: 0.015,
-    critical_slip: 0.02,
-    evolution: StateEvolution::Ageing,
-    theta: None,
-    alpha_t: Some(1000.0),
-};
+const LABORATORY: RateAndStateParameters =
+    RateAndStateParameters::new(0.6, 1e-3, 0.010, 0.015, 0.02).evolution(StateEvolution::Ageing).alpha_t(1000.0);
 
 const EVOLUTIONS: [StateEvolution; 2] = [StateEvolution::Ageing, StateEvolution::Slip];
 
@@ -56,7 +48,7 @@ fn driven(law: &dyn FrictionLaw, increments: usize) -> Vec<FrictionResponse> {
         for i in 1..=increments {
             let share = 1.0 / increments as f64;
             let pressure = pressure(k) + share * i as f64 * (pressure(k + 1) - pressure(k));
-            let sliding = Sliding { slip: rate(k) * SAMPLE * share, pressure, dt: SAMPLE * share };
+            let sliding = Sliding::new(rate(k) * SAMPLE * share, pressure, SAMPLE * share);
             last = law.respond(&state, sliding).expect("an answer");
             state = last.state;
         }
@@ -76,7 +68,7 @@ fn integrated(p: &RateAndStateParameters) -> Vec<[f64; 3]> {
         let y = slip_rate * log.exp() / p.critical_slip;
         let dlog = match p.evolution {
             StateEvolution::Ageing => (1.0 - y) * (-log).exp(),
-            StateEvolution::Slip => -y * y.ln() * (-log).exp(),
+            _ => -y * y.ln() * (-log).exp(),
         };
         [alpha_t * (v - slip_rate), dlog, q * v]
     };
@@ -111,7 +103,7 @@ fn differences(answers: &[FrictionResponse], exact: &[[f64; 3]]) -> [f64; 3] {
 #[test]
 fn coarse_records_are_answered_by_the_differential_equations() {
     for evolution in EVOLUTIONS {
-        let parameters = RateAndStateParameters { evolution, ..LABORATORY };
+        let parameters = LABORATORY.evolution(evolution);
         let exact = integrated(&parameters);
         for increments in [1, 3, 20] {
             let [traction, state, work] = differences(&driven(&*law(&parameters), increments), &exact);
@@ -132,7 +124,7 @@ fn coarse_records_are_answered_by_the_differential_equations() {
 fn sensitivities_along_records_are_those_of_the_answers() {
     const CHANGES: [(f64, f64); 4] = [(1.0, 8.0), (-1.0, -8.0), (2.0, -1.0), (-2.0, 1.0)];
     for evolution in EVOLUTIONS {
-        let parameters = RateAndStateParameters { evolution, theta: Some(17.0), ..LABORATORY };
+        let parameters = LABORATORY.evolution(evolution).theta(17.0);
         let law = law(&parameters);
         let sensitive = law.sensitivities().expect("differentiated");
         for name in sensitive.parameters() {
@@ -140,8 +132,8 @@ fn sensitivities_along_records_are_those_of_the_answers() {
             let mut found = Vec::new();
             let mut old = start(&*law);
             for (k, answer) in driven(&*law, 1).iter().enumerate() {
-                let sliding = Sliding { slip: rate(k) * SAMPLE, pressure: pressure(k + 1), dt: SAMPLE };
-                let along = Direction { state: by, slip: 0.0, parameter: Some(*name) };
+                let sliding = Sliding::new(rate(k) * SAMPLE, pressure(k + 1), SAMPLE);
+                let along = with!(Direction::default(), state: by, slip: 0.0, parameter: Some(*name));
                 [by, _] = sensitive.vary(&old, sliding, [along, Direction::default()]).expect("an answer");
                 (old, found) = (answer.state, [found, vec![by]].concat());
             }
@@ -180,13 +172,13 @@ fn value(p: &RateAndStateParameters, name: &str) -> f64 {
 fn with(p: &RateAndStateParameters, name: &str, share: f64) -> RateAndStateParameters {
     let changed = value(p, name) * (1.0 + share);
     match name {
-        "f_0" => RateAndStateParameters { f_0: changed, ..*p },
-        "V_0" => RateAndStateParameters { reference_rate: changed, ..*p },
-        "a" => RateAndStateParameters { a: changed, ..*p },
-        "b" => RateAndStateParameters { b: changed, ..*p },
-        "D_c" => RateAndStateParameters { critical_slip: changed, ..*p },
-        "alpha_t" => RateAndStateParameters { alpha_t: Some(changed), ..*p },
-        _ => RateAndStateParameters { theta: Some(changed), ..*p },
+        "f_0" => with!(*p, f_0: changed),
+        "V_0" => with!(*p, reference_rate: changed),
+        "a" => with!(*p, a: changed),
+        "b" => with!(*p, b: changed),
+        "D_c" => with!(*p, critical_slip: changed),
+        "alpha_t" => p.alpha_t(changed),
+        _ => p.theta(changed),
     }
 }
 
@@ -195,10 +187,10 @@ fn with(p: &RateAndStateParameters, name: &str, share: f64) -> RateAndStateParam
 #[test]
 fn theta_at_a_constant_rate_has_its_closed_form() {
     let theta: f64 = 100.0;
-    let law = law(&RateAndStateParameters { theta: Some(theta), alpha_t: Some(1e9), ..LABORATORY });
+    let law = law(&LABORATORY.theta(theta).alpha_t(1e9));
     let mut state = start(&*law);
     for k in 1..=4 {
-        let sliding = Sliding { slip: 0.1, pressure: 5.0, dt: 10.0 };
+        let sliding = Sliding::new(0.1, 5.0, 10.0);
         state = law.respond(&state, sliding).expect("an answer").state;
         let exact = 2.0 + (theta - 2.0) * (-5.0 * f64::from(k)).exp();
         assert!((state.variables[0] / exact - 1.0).abs() < 1e-6, "{k}: {} for {exact}", state.variables[0]);
@@ -212,11 +204,11 @@ fn theta_at_a_constant_rate_has_its_closed_form() {
 fn reversals_creep_on_however_long_the_increment() {
     for evolution in EVOLUTIONS {
         for alpha_t in [5.0, 50.0, 1000.0] {
-            let law = law(&RateAndStateParameters { evolution, alpha_t: Some(alpha_t), ..LABORATORY });
+            let law = law(&LABORATORY.evolution(evolution).alpha_t(alpha_t));
             let stroke = |increments: usize| {
                 let share = 1.0 / increments as f64;
                 let lead = |state: FrictionState, slip: f64| {
-                    let sliding = Sliding { slip: slip * share, pressure: 5.0, dt: 5.0 * share };
+                    let sliding = Sliding::new(slip * share, 5.0, 5.0 * share);
                     (0..increments).fold(state, |state, _| law.respond(&state, sliding).expect("an answer").state)
                 };
                 lead(lead(start(&*law), 1.0), -5.0 / alpha_t)
@@ -232,10 +224,10 @@ fn reversals_creep_on_however_long_the_increment() {
 #[test]
 fn tangents_of_long_increments_are_right() {
     for evolution in EVOLUTIONS {
-        let law = law(&RateAndStateParameters { evolution, ..LABORATORY });
+        let law = law(&LABORATORY.evolution(evolution));
         for (slip, pressure) in [(2e-3, 5.0), (1e-2, 6.0), (0.0, 5.5), (-1e-2, 4.0), (0.1, 5.0)] {
             let respond = |slip: f64, pressure: f64| {
-                law.respond(&start(&*law), Sliding { slip, pressure, dt: 1.0 }).expect("an answer")
+                law.respond(&start(&*law), Sliding::new(slip, pressure, 1.0)).expect("an answer")
             };
             let answer = respond(slip, pressure);
             let quotient = |[ds, dp]: [f64; 2]| {

@@ -20,36 +20,26 @@ fn mu_of(state: &FrictionState) -> f64 {
 const PRESSURE: f64 = 98.1;
 
 /// The paper's data.
-const PAPER: SuperSubloadingParameters = SuperSubloadingParameters {
-    mu_s: 0.4,
-    mu_k: 0.2,
-    alpha_t: Some(1000.0),
-    r: 100.0,
-    kappa: 10.0,
-    xi: 0.002,
-    m: 1.0,
-    n: 1.0,
-    structure: Some(2.0),
-    approach: Approach::Logarithmic,
-    elastic_core: 0.0,
-    integration: Integration::BackwardEuler,
-    tolerance: None,
-};
+const PAPER: SuperSubloadingParameters = SuperSubloadingParameters::new(0.4, 0.2, 100.0)
+    .alpha_t(1000.0)
+    .kappa(10.0)
+    .xi(0.002)
+    .structure(2.0)
+    .approach(Approach::Logarithmic)
+    .integration(Integration::BackwardEuler);
 
 /// One backward-Euler step an increment.
-const BACKWARD_EULER: SuperSubloadingParameters =
-    SuperSubloadingParameters { integration: Integration::BackwardEuler, ..PAPER };
+const BACKWARD_EULER: SuperSubloadingParameters = PAPER.integration(Integration::BackwardEuler);
 
 /// Constant coefficient 0.2: only R evolves.
-const CONSTANT: SuperSubloadingParameters =
-    SuperSubloadingParameters { mu_s: 0.2, kappa: 0.0, xi: 0.0, structure: None, ..PAPER };
+const CONSTANT: SuperSubloadingParameters = with!(PAPER.kappa(0.0).xi(0.0), mu_s: 0.2, structure: None);
 
 fn law(parameters: &SuperSubloadingParameters) -> SuperSubloading {
     SuperSubloading::new(parameters, f64::NAN).expect("valid parameters")
 }
 
 fn respond(law: &dyn FrictionLaw, old: &FrictionState, slip: f64, pressure: f64, dt: f64) -> FrictionResponse {
-    law.respond(old, Sliding { slip, pressure, dt }).expect("a finite increment is answered")
+    law.respond(old, Sliding::new(slip, pressure, dt)).expect("a finite increment is answered")
 }
 
 /// The states after each of `steps` equal increments at constant pressure.
@@ -95,7 +85,7 @@ fn minus_li(y: f64) -> f64 {
 fn distance(approach: Approach, y: f64) -> f64 {
     match approach {
         Approach::Logarithmic => minus_li(y),
-        Approach::Cotangent => -(0.5 * PI * (1.0 - y)).sin().ln() * 2.0 / PI,
+        _ => -(0.5 * PI * (1.0 - y)).sin().ln() * 2.0 / PI,
     }
 }
 
@@ -125,7 +115,7 @@ fn monotone_loading_gives_the_tabled_slips() {
 fn both_approaches_integrate_exactly_with_an_elastic_core() {
     for approach in [Approach::Logarithmic, Approach::Cotangent] {
         for elastic_core in [0.0, 0.3, 0.8] {
-            let law = law(&SuperSubloadingParameters { approach, elastic_core, ..CONSTANT });
+            let law = law(&CONSTANT.approach(approach).elastic_core(elastic_core));
             for y in [0.05, 0.5, 0.9, 0.999] {
                 let ratio = elastic_core + (1.0 - elastic_core) * y;
                 let force = ratio * 0.2 * PRESSURE;
@@ -141,7 +131,7 @@ fn both_approaches_integrate_exactly_with_an_elastic_core() {
 
 #[test]
 fn softening_converges_to_an_exponential_of_plastic_slip() {
-    let law = law(&SuperSubloadingParameters { xi: 0.0, ..BACKWARD_EULER });
+    let law = law(&BACKWARD_EULER.xi(0.0));
     let error = |steps| {
         let state = loaded(&law, 0.1, 0.0, steps);
         (mu_of(&state) - (0.2 + 0.2 * (-10.0 * state.plastic_slip / 0.2).exp())).abs()
@@ -152,7 +142,7 @@ fn softening_converges_to_an_exponential_of_plastic_slip() {
 
 #[test]
 fn the_attained_peak_converges_to_25_0175() {
-    let law = law(&SuperSubloadingParameters { xi: 0.0, ..BACKWARD_EULER });
+    let law = law(&BACKWARD_EULER.xi(0.0));
     let peak = |steps| {
         let path = drive(&law, law.initial_state(0.0, 0.0), 0.08, 0.0, steps);
         let (index, state) =
@@ -170,21 +160,15 @@ fn the_attained_peak_converges_to_25_0175() {
 #[test]
 fn what_the_parameters_mean_is_what_the_law_does() {
     let sets = [
-        SuperSubloadingParameters { integration: Integration::Controlled, ..PAPER },
-        SuperSubloadingParameters { r: 400.0, kappa: 2.0, xi: 0.02, structure: None, ..PAPER },
-        SuperSubloadingParameters { r: 1000.0, m: 2.0, n: 3.0, structure: Some(1.5), ..PAPER },
-        SuperSubloadingParameters { r: 300.0, m: 0.5, n: 0.5, elastic_core: 0.3, structure: Some(1.0), ..PAPER },
-        SuperSubloadingParameters { r: 80.0, approach: Approach::Cotangent, ..PAPER },
+        PAPER.integration(Integration::Controlled),
+        with!(PAPER.kappa(2.0).xi(0.02), r: 400.0, structure: None),
+        with!(PAPER.exponents(2.0, 3.0).structure(1.5), r: 1000.0),
+        with!(PAPER.exponents(0.5, 0.5).elastic_core(0.3).structure(1.0), r: 300.0),
+        with!(PAPER.approach(Approach::Cotangent), r: 80.0),
     ];
     for parameters in sets {
-        let of_start =
-            law(&SuperSubloadingParameters { integration: Integration::Controlled, alpha_t: Some(1e6), ..parameters });
-        let of_rest = law(&SuperSubloadingParameters {
-            integration: Integration::Controlled,
-            alpha_t: Some(1e6),
-            structure: None,
-            ..parameters
-        });
+        let of_start = law(&parameters.integration(Integration::Controlled).alpha_t(1e6));
+        let of_rest = law(&with!(parameters.integration(Integration::Controlled).alpha_t(1e6), structure: None));
         let onset = of_start.onset().expect("the law says so");
         assert_eq!((onset.rested, onset.residual), (of_rest.onset().expect("the law says so").rested, parameters.mu_k));
         for (law, rise) in [(&of_rest, onset.rested), (&of_start, onset.fresh)] {
@@ -207,8 +191,7 @@ fn what_the_parameters_mean_is_what_the_law_does() {
         assert_close(mu_of(&rested), half, 1e-12, &format!("rest of half of {parameters:?}"));
     }
     // Friction that only rises, to the kinetic coefficient or to the static one, has no peak.
-    let only =
-        |kappa: f64, mu_s: f64| law(&SuperSubloadingParameters { kappa, mu_s, structure: None, xi: 0.0, ..PAPER });
+    let only = |kappa: f64, mu_s: f64| law(&with!(PAPER.kappa(kappa).xi(0.0), mu_s: mu_s, structure: None));
     for (law, limit) in [(only(0.0, 0.4), 0.4), (only(1e5, 0.4), 0.2), (only(10.0, 0.2), 0.2)] {
         let onset = law.onset().expect("the law says so");
         assert_eq!((onset.rested.peak, onset.rested.slip, onset.half_healed), (limit, None, None));
@@ -218,7 +201,7 @@ fn what_the_parameters_mean_is_what_the_law_does() {
 #[test]
 fn ageing_at_rest_converges_to_its_closed_forms() {
     for n in [1.0, 2.0, 0.5] {
-        let law = law(&SuperSubloadingParameters { xi: 0.4, n, structure: Some(1.0), ..BACKWARD_EULER });
+        let law = law(&with!(BACKWARD_EULER.xi(0.4).structure(1.0), n: n));
         // The deficit d = 1 − μ/μ_s obeys ḋ = −(ξ/μ_s) d^n, here with ξ/μ_s = 1 and d₀ = 1/2.
         let time = 0.8;
         let deficit = if n == 1.0 {
@@ -237,7 +220,7 @@ fn ageing_at_rest_converges_to_its_closed_forms() {
 
 #[test]
 fn recovery_with_a_small_exponent_ends_at_the_static_coefficient() {
-    let law = law(&SuperSubloadingParameters { xi: 0.4, n: 0.5, structure: Some(1.0), ..PAPER });
+    let law = law(&with!(PAPER.xi(0.4).structure(1.0), n: 0.5));
     let rested = loaded(&law, 0.0, 1e6, 10);
     assert_close(mu_of(&rested), 0.4, 1e-9, "μ");
     assert!(respond(&law, &rested, 0.05, PRESSURE, 0.0).state.traction > 0.2 * PRESSURE);
@@ -245,11 +228,11 @@ fn recovery_with_a_small_exponent_ends_at_the_static_coefficient() {
 
 #[test]
 fn the_integration_converges_to_the_rate_equations_at_first_order() {
-    let parameters = SuperSubloadingParameters { xi: 0.05, ..BACKWARD_EULER };
+    let parameters = BACKWARD_EULER.xi(0.05);
     let (amplitude, end) = (0.1, 4.0);
     let pressure = |t: f64| PRESSURE * (1.0 + 0.2 * (3.0 * t).sin());
     let law = law(&parameters);
-    let start = FrictionState { pressure: PRESSURE, ..law.initial_state(0.0, 0.0) };
+    let start = with!(law.initial_state(0.0, 0.0), pressure: PRESSURE);
     let expected = rate_form(&parameters, start, end, |t| amplitude * t.cos(), &pressure);
     let traction = |steps: usize| {
         let dt = end / steps as f64;
@@ -319,7 +302,7 @@ fn steady_sliding_reaches_its_coefficient_at_every_speed() {
 #[test]
 fn steady_sliding_balances_loss_and_recovery_with_other_exponents() {
     for (m, n) in [(2.0, 0.5), (0.5, 2.0), (1.5, 1.0), (1.0, 3.0)] {
-        let law = law(&SuperSubloadingParameters { m, n, ..PAPER });
+        let law = law(&PAPER.exponents(m, n));
         let speed = 1e-3;
         let state = loaded(&law, 20.0, 20.0 / speed, 4000);
         let loss = 10.0 * (mu_of(&state) / 0.2 - 1.0).powf(m) * speed;
@@ -331,8 +314,8 @@ fn steady_sliding_balances_loss_and_recovery_with_other_exponents() {
 
 #[test]
 fn a_sharp_law_of_constant_coefficient_is_coulomb_friction() {
-    let sharp = law(&SuperSubloadingParameters { r: 1e9, integration: Integration::BackwardEuler, ..CONSTANT });
-    let coulomb = Coulomb::new(&CoulombParameters { mu: 0.2, alpha_t: None }, 1000.0).expect("valid parameters");
+    let sharp = law(&with!(CONSTANT.integration(Integration::BackwardEuler), r: 1e9));
+    let coulomb = Coulomb::new(&CoulombParameters::new(0.2), 1000.0).expect("valid parameters");
     let mut random = Random(1);
     let (mut a, mut b) = (sharp.initial_state(0.0, 0.0), coulomb.initial_state(0.0, 0.0));
     for _ in 0..10_000 {
@@ -348,9 +331,9 @@ fn a_sharp_law_of_constant_coefficient_is_coulomb_friction() {
 /// slip sets in.
 #[test]
 fn a_sharp_law_of_constant_coefficient_dissipates_like_coulomb_friction() {
-    let coulomb = Coulomb::new(&CoulombParameters { mu: 0.2, alpha_t: None }, 1000.0).expect("valid parameters");
+    let coulomb = Coulomb::new(&CoulombParameters::new(0.2), 1000.0).expect("valid parameters");
     for (integration, jumps) in [(Integration::BackwardEuler, false), (Integration::Controlled, true)] {
-        let sharp = law(&SuperSubloadingParameters { r: 1e9, integration, ..CONSTANT });
+        let sharp = law(&with!(CONSTANT.integration(integration), r: 1e9));
         let mut random = Random(1);
         let (mut a, mut b) = (sharp.initial_state(0.0, 0.0), coulomb.initial_state(0.0, 0.0));
         for _ in 0..3000 {
@@ -366,7 +349,7 @@ fn a_sharp_law_of_constant_coefficient_dissipates_like_coulomb_friction() {
 
 #[test]
 fn coulomb_friction_sticks_then_slides() {
-    let law = Coulomb::new(&CoulombParameters { mu: 0.5, alpha_t: Some(100.0) }, f64::NAN).expect("valid parameters");
+    let law = Coulomb::new(&CoulombParameters::new(0.5).alpha_t(100.0), f64::NAN).expect("valid parameters");
     let stuck = respond(&law, &law.initial_state(0.0, 0.0), 0.1, 40.0, 1.0);
     assert_eq!((stuck.state.traction, stuck.dtraction_dslip, stuck.dtraction_dpressure), (10.0, 100.0, 0.0));
     let slid = respond(&law, &stuck.state, -0.5, 40.0, 1.0);
@@ -384,7 +367,7 @@ fn without_friction_slip_is_free() {
 
 #[test]
 fn inside_the_elastic_core_nothing_slips() {
-    let core = law(&SuperSubloadingParameters { elastic_core: 0.5, ..CONSTANT });
+    let core = law(&CONSTANT.elastic_core(0.5));
     let limit = 0.5 * 0.2 * PRESSURE / 1000.0;
     let state = loaded(&core, limit * (1.0 - 1e-9), 1.0, 10);
     assert!(state.traction > 9.8);
@@ -418,10 +401,9 @@ fn friction_against_negative_slip_is_the_mirror_image() {
 
 #[test]
 fn forced_oscillation_reverses_twice_a_period_at_every_step_size() {
-    let law = law(&SuperSubloadingParameters { structure: Some(1.0), ..PAPER });
+    let law = law(&PAPER.structure(1.0));
     for dt in [1e-4, 1e-3, 1e-2, 0.05, 0.1, 0.3] {
-        let mut state =
-            FrictionState { traction: 19.62, pressure: PRESSURE, ..FrictionState::default().with_variables([0.2]) };
+        let mut state = with!(FrictionState::default().with_variables([0.2]), traction: 19.62, pressure: PRESSURE);
         let periods = 5;
         let steps = (f64::from(periods) * 2.0 * PI / dt) as u32;
         let mut reversals = 0;
@@ -469,7 +451,7 @@ fn unloading_is_elastic() {
 
 #[test]
 fn coulomb_loops_dissipate_their_area() {
-    let law = Coulomb::new(&CoulombParameters { mu: 0.2, alpha_t: None }, 1000.0).expect("valid parameters");
+    let law = Coulomb::new(&CoulombParameters::new(0.2), 1000.0).expect("valid parameters");
     let (limit, amplitude) = (0.2 * PRESSURE, 0.1);
     let turns = [0.0, 1.0, -1.0, 1.0, -1.0, 1.0].map(|turn| [turn * amplitude, PRESSURE]);
     for parts in [1, 2, 3, 7, 1000] {
@@ -497,13 +479,13 @@ fn coulomb_loops_dissipate_their_area() {
 /// is seven.
 #[test]
 fn coulomb_increments_add_up() {
-    let law = Coulomb::new(&CoulombParameters { mu: 0.3, alpha_t: None }, 1000.0).expect("valid parameters");
+    let law = Coulomb::new(&CoulombParameters::new(0.3), 1000.0).expect("valid parameters");
     let mut random = Random(5);
     let mut slid = 0;
     for _ in 0..20_000 {
         let pressure = [random.magnitude(-3.0, 2.0), random.magnitude(-3.0, 2.0)];
         let traction = 0.3 * pressure[0] * random.between(-1.0, 1.0);
-        let old = FrictionState { traction, pressure: pressure[0], ..law.initial_state(0.0, 0.0) };
+        let old = with!(law.initial_state(0.0, 0.0), traction: traction, pressure: pressure[0]);
         let slip = random.sign() * random.magnitude(-6.0, 0.0);
         let one = respond(&law, &old, slip, pressure[1], 1.0).state;
         let many = (1..=7).fold(old, |old, k| {
@@ -523,7 +505,7 @@ fn coulomb_increments_add_up() {
 fn super_subloading_loops_dissipate_their_closed_form() {
     let strength = 0.2 * PRESSURE;
     for integration in [Integration::BackwardEuler, Integration::Controlled] {
-        let law = law(&SuperSubloadingParameters { integration, ..CONSTANT });
+        let law = law(&CONSTANT.integration(integration));
         for parts in [1, 2, 3, 7, 100] {
             let (mut points, mut work, mut before, mut at) = (vec![[0.0, PRESSURE]], 0.0, 0.0, 0.0);
             for (k, ratio) in [0.6, 0.9, 0.99, 0.5, 0.999, 0.95].into_iter().enumerate() {
@@ -544,17 +526,13 @@ fn super_subloading_loops_dissipate_their_closed_form() {
 /// with a much smaller tolerance, and those against the trapezoidal ∮ q du.
 #[test]
 fn controlled_increments_dissipate_the_work_of_their_path() {
-    let base = SuperSubloadingParameters { integration: Integration::Controlled, xi: 0.05, ..PAPER };
-    let variants = [
-        base,
-        SuperSubloadingParameters { m: 1.5, n: 0.7, elastic_core: 0.2, ..base },
-        SuperSubloadingParameters { approach: Approach::Cotangent, structure: Some(1.3), ..base },
-    ];
+    let base = PAPER.integration(Integration::Controlled).xi(0.05);
+    let variants =
+        [base, base.exponents(1.5, 0.7).elastic_core(0.2), base.approach(Approach::Cotangent).structure(1.3)];
     let points = [[0.0, 60.0], [0.12, 80.0], [-0.1, 90.0], [0.15, 50.0], [0.0, 70.0]];
     for parameters in variants {
-        let fine_law = law(&SuperSubloadingParameters { tolerance: Some(1e-10), ..parameters });
-        let (mut old, mut work, parts) =
-            (FrictionState { pressure: 60.0, ..fine_law.initial_state(0.0, 0.0) }, 0.0, 4000);
+        let fine_law = law(&parameters.tolerance(1e-10));
+        let (mut old, mut work, parts) = (with!(fine_law.initial_state(0.0, 0.0), pressure: 60.0), 0.0, 4000);
         for stroke in points.windows(2) {
             let [[u0, p0], [u1, p1]] = [stroke[0], stroke[1]];
             for k in 1..=parts {
@@ -580,15 +558,9 @@ fn controlled_increments_dissipate_the_work_of_their_path() {
 /// ∮ q du of many.
 #[test]
 fn a_snap_dissipates_what_it_releases() {
-    let parameters = SuperSubloadingParameters {
-        alpha_t: Some(200.0),
-        r: 2000.0,
-        integration: Integration::Controlled,
-        xi: 0.0,
-        ..PAPER
-    };
+    let parameters = with!(PAPER.alpha_t(200.0).integration(Integration::Controlled).xi(0.0), r: 2000.0);
     let law = law(&parameters);
-    let (mut old, mut work, parts) = (FrictionState { pressure: PRESSURE, ..law.initial_state(0.0, 0.0) }, 0.0, 20_000);
+    let (mut old, mut work, parts) = (with!(law.initial_state(0.0, 0.0), pressure: PRESSURE), 0.0, 20_000);
     let mut snapped = 0.0f64;
     for _ in 0..parts {
         let slip = 0.4 / f64::from(parts);
@@ -617,11 +589,8 @@ fn differences(law: &dyn FrictionLaw, old: &FrictionState, at: Sliding, du: f64,
 
 #[test]
 fn tangents_agree_with_differences() {
-    let variants = [
-        PAPER,
-        SuperSubloadingParameters { m: 1.5, n: 0.7, elastic_core: 0.2, ..PAPER },
-        SuperSubloadingParameters { approach: Approach::Cotangent, m: 0.6, n: 2.0, ..PAPER },
-    ];
+    let variants =
+        [PAPER, PAPER.exponents(1.5, 0.7).elastic_core(0.2), PAPER.approach(Approach::Cotangent).exponents(0.6, 2.0)];
     for parameters in variants {
         let law = law(&parameters);
         let stick = loaded(&law, 0.01, 1.0, 10);
@@ -645,7 +614,7 @@ fn tangents_agree_with_differences() {
             ("opening", slide, 0.01, -1.0),
         ];
         for (what, old, slip, pressure) in cases {
-            let sliding = Sliding { slip, pressure, dt: 0.1 };
+            let sliding = Sliding::new(slip, pressure, 0.1);
             let answer = respond(&law, &old, slip, pressure, 0.1);
             let (dslip, dpressure) = differences(&law, &old, sliding, 1e-8, 1e-6 * pressure.abs());
             assert_close(answer.dtraction_dslip, dslip, 1e-5 * 1000.0, &format!("∂q/∂Δu, {what}"));
@@ -662,9 +631,10 @@ fn random_parameters(random: &mut Random, integration: Integration) -> SuperSubl
     let mu_k = random.magnitude(-2.0, 0.0);
     let exponent = |random: &mut Random| if random.chance(0.7) { 1.0 } else { random.between(0.3, 3.0) };
     let or_zero = |random: &mut Random, low, high| if random.chance(0.2) { 0.0 } else { random.magnitude(low, high) };
-    SuperSubloadingParameters {
+    with!(
+        PAPER,
         mu_s: if random.chance(0.1) { mu_k } else { mu_k * random.between(1.0, 5.0) },
-        mu_k,
+        mu_k: mu_k,
         alpha_t: Some(random.magnitude(1.0, 6.0)),
         r: random.magnitude(0.0, 4.0),
         kappa: or_zero(random, -1.0, 2.0),
@@ -674,9 +644,9 @@ fn random_parameters(random: &mut Random, integration: Integration) -> SuperSubl
         structure: None,
         approach: if random.chance(0.7) { Approach::Logarithmic } else { Approach::Cotangent },
         elastic_core: if random.chance(0.7) { 0.0 } else { random.between(0.0, 0.95) },
-        integration,
+        integration: integration,
         tolerance: (integration == Integration::Controlled).then_some(1e-3),
-    }
+    )
 }
 
 fn random_state(random: &mut Random, parameters: &SuperSubloadingParameters) -> FrictionState {
@@ -691,11 +661,7 @@ fn random_state(random: &mut Random, parameters: &SuperSubloadingParameters) -> 
         x if x < 0.6 => random.magnitude(-12.0, 0.0),
         _ => random.unit(),
     };
-    FrictionState {
-        traction: random.sign() * ratio * mu * pressure,
-        pressure,
-        ..FrictionState::default().with_variables([mu])
-    }
+    with!(FrictionState::default().with_variables([mu]), traction: random.sign() * ratio * mu * pressure, pressure: pressure)
 }
 
 fn random_sliding(random: &mut Random, parameters: &SuperSubloadingParameters, old: &FrictionState) -> Sliding {
@@ -706,7 +672,7 @@ fn random_sliding(random: &mut Random, parameters: &SuperSubloadingParameters, o
         x if x < 0.7 => old.pressure * random.between(0.5, 1.5),
         _ => old.pressure * random.magnitude(-6.0, 6.0),
     };
-    Sliding { slip, pressure, dt: if random.chance(0.2) { 0.0 } else { random.magnitude(-6.0, 6.0) } }
+    Sliding::new(slip, pressure, if random.chance(0.2) { 0.0 } else { random.magnitude(-6.0, 6.0) })
 }
 
 /// What must hold for every answer.
@@ -734,7 +700,7 @@ fn branch(
     let reversed = trial * old.traction.signum() < 0.0;
     let elastic = match parameters.integration {
         Integration::Controlled => !reversed && trial.abs() * old.pressure <= old.traction.abs() * at.pressure,
-        Integration::BackwardEuler => {
+        _ => {
             let aged = mu_of(&respond(law, old, 0.0, -1.0, at.dt).state);
             let ratio = if reversed { 0.0 } else { old.ratio(mu_of(old)).min(1.0) };
             trial.abs() <= ratio.max(parameters.elastic_core) * aged * at.pressure
@@ -805,7 +771,7 @@ fn answer_a_million_random_increments(integration: Integration, sample: usize) {
             }
             let old = state;
             let at = random_sliding(&mut random, &parameters, &old);
-            let Sliding { slip, pressure, dt } = at;
+            let Sliding { slip, pressure, dt, .. } = at;
             let answer = match law.respond(&old, at) {
                 Err(LawFailure::NotConverged { .. }) => {
                     failed.fetch_add(1, Ordering::Relaxed);
@@ -839,7 +805,7 @@ fn answer_a_million_random_increments(integration: Integration, sample: usize) {
                 one_step: integration == Integration::BackwardEuler,
             };
             let answer_at = |slip, pressure| {
-                let at = Sliding { slip, pressure, dt };
+                let at = Sliding::new(slip, pressure, dt);
                 Some((branch(&law, &parameters, &old, at), law.respond(&old, at).ok()?))
             };
             let by_slip = by_slip.agrees(|h| answer_at(slip + h, pressure), alpha_t);
@@ -880,7 +846,7 @@ fn absurd_increments_are_answered_or_refused() {
         for pressure in numbers {
             for dt in numbers {
                 for old in states {
-                    if let Ok(answer) = law.respond(&old, Sliding { slip, pressure, dt }) {
+                    if let Ok(answer) = law.respond(&old, Sliding::new(slip, pressure, dt)) {
                         check_answer(&PAPER, &old, &answer);
                         answered += i32::from(answer.state.traction > 0.0);
                     }
@@ -889,7 +855,7 @@ fn absurd_increments_are_answered_or_refused() {
         }
     }
     assert!(answered > 100, "only {answered} were answered with friction");
-    let backwards = law.respond(&law.initial_state(0.0, 0.0), Sliding { slip: 0.0, pressure: 1.0, dt: -1.0 });
+    let backwards = law.respond(&law.initial_state(0.0, 0.0), Sliding::new(0.0, 1.0, -1.0));
     assert_eq!(backwards, Err(LawFailure::NegativeTime { dt: -1.0 }));
 }
 
@@ -899,9 +865,9 @@ fn absurd_increments_are_answered_or_refused() {
 fn the_uniqueness_limit_is_where_the_slope_can_vanish() {
     let limit = |parameters| law(&parameters).description().uniqueness_limit();
     assert_close(limit(PAPER).expect("a limit"), 100.0, 1e-10, "limit");
-    let steep = SuperSubloadingParameters { mu_s: 0.8, m: 2.0, structure: None, ..PAPER };
+    let steep = with!(PAPER, mu_s: 0.8, m: 2.0, structure: None);
     assert_close(limit(steep).expect("a limit"), 1000.0 / (10.0 * 9.0), 1e-10, "limit");
-    assert_eq!(limit(SuperSubloadingParameters { kappa: 0.0, ..PAPER }), None);
+    assert_eq!(limit(PAPER.kappa(0.0)), None);
     assert_eq!(limit(CONSTANT), None);
 }
 
@@ -910,19 +876,19 @@ fn beyond_the_uniqueness_limit_the_first_root_is_taken() {
     let mut random = Random(4);
     let mut several = 0;
     for _ in 0..300 {
-        let parameters = SuperSubloadingParameters {
+        let parameters = with!(
+            BACKWARD_EULER,
             alpha_t: Some(random.magnitude(1.0, 3.0)),
             r: random.magnitude(1.5, 3.5),
             kappa: random.magnitude(0.5, 1.5),
             mu_s: random.between(0.3, 1.0),
             structure: None,
             approach: if random.chance(0.5) { Approach::Logarithmic } else { Approach::Cotangent },
-            ..BACKWARD_EULER
-        };
+        );
         let law = law(&parameters);
         let mu = parameters.mu_s * random.between(0.8, 1.0);
         let traction = random.between(0.1, 0.99) * mu * PRESSURE;
-        let old = FrictionState { traction, pressure: PRESSURE, ..FrictionState::default().with_variables([mu]) };
+        let old = with!(FrictionState::default().with_variables([mu]), traction: traction, pressure: PRESSURE);
         let slip = (mu * PRESSURE - traction) * random.between(0.0, 1.1) / law.description().stiffness;
         let roots = scan(&parameters, &old, slip, 0.1);
         let found = respond(&law, &old, slip, PRESSURE, 0.1).state.plastic_increment;
@@ -988,7 +954,7 @@ fn bad_parameters_are_refused_by_name_and_value() {
         let refusal = SuperSubloading::new(&parameters, 1.0).expect_err(message);
         assert_eq!(refusal.to_string(), message);
     }
-    let coulomb = |mu, alpha_t| Coulomb::new(&CoulombParameters { mu, alpha_t: Some(alpha_t) }, 1.0);
+    let coulomb = |mu, alpha_t| Coulomb::new(&CoulombParameters::new(mu).alpha_t(alpha_t), 1.0);
     assert_eq!(coulomb(0.0, 1.0).expect_err("mu").name, "mu");
     assert_eq!(coulomb(0.1, 0.0).expect_err("alpha_t").name, "alpha_t");
 }
@@ -1023,13 +989,8 @@ fn the_case_file_names_a_law_and_its_parameters() {
 /// of evaluations stays.
 #[test]
 fn the_controlled_answer_jumps_only_where_sub_steps_change() {
-    let law = law(&SuperSubloadingParameters {
-        integration: Integration::Controlled,
-        xi: 0.02,
-        structure: Some(1.8),
-        ..PAPER
-    });
-    let old = FrictionState { traction: 2.0, pressure: 20.0, ..law.initial_state(0.0, 0.0) };
+    let law = law(&PAPER.integration(Integration::Controlled).xi(0.02).structure(1.8));
+    let old = with!(law.initial_state(0.0, 0.0), traction: 2.0, pressure: 20.0);
     let (step, pressure) = (1e-6, 30.0);
     let at = |k: usize| respond(&law, &old, 0.005 + step * k as f64, pressure, 0.3);
     let (mut smooth, mut jump, mut jumps) = (0.0f64, 0.0f64, 0);

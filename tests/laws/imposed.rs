@@ -52,14 +52,14 @@ impl Under {
     fn stretched(&self, f: &Vector5<f64>, rise: f64) -> (Stretched, Vec<f64>) {
         let deformation = Matrix2::from_column_slice(&f.as_slice()[..4]);
         let mut new = self.at(rise);
-        let straining = Straining { deformation, stretch: f[4], dt: 0.1, old: &self.variables };
+        let straining = with!(Straining::new(deformation, &self.variables), stretch: f[4], dt: 0.1);
         (self.law.spatial().expect("it is known").stretched(&straining, &mut new).unwrap(), new)
     }
 
     /// The answer in plane.
     fn evolve(&self, f: &Matrix2<f64>, rise: f64) -> (MaterialResponse, Vec<f64>) {
         let mut new = self.at(rise);
-        let straining = Straining { deformation: *f, stretch: 1.0, dt: 0.1, old: &self.variables };
+        let straining = with!(Straining::new(*f, &self.variables), dt: 0.1);
         (self.law.respond(&straining, &mut new).unwrap(), new)
     }
 }
@@ -181,7 +181,7 @@ fn free_and_held_bodies_have_their_closed_forms() {
         assert!(answer.energy < 1e-15 && new[new.len() - 1].abs() < 1e-15);
         let stressed = Under::new(model, Some(STRESS), true);
         let new = stressed.stretched(&f, rise).1;
-        let straining = Straining { deformation: free, stretch: theta, dt: 0.0, old: &new };
+        let straining = with!(Straining::new(free, &new), stretch: theta);
         let sigma = stressed.law.spatial().unwrap().cauchy(&straining).unwrap();
         let given = q * Matrix2::new(STRESS[0], STRESS[2], STRESS[2], STRESS[1]) * q.transpose();
         assert!((sigma.xx - given.m11).abs() < 1e-14 && (sigma.zz - STRESS[3]).abs() < 1e-14, "{model}: {sigma:?}");

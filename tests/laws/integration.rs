@@ -26,7 +26,7 @@ fn law(other: Value) -> Box<dyn FrictionLaw> {
 }
 
 fn pressed(mu: f64, traction: f64) -> FrictionState {
-    FrictionState { traction, pressure: PRESSURE, ..FrictionState::default().with_variables([mu]) }
+    with!(FrictionState::default().with_variables([mu]), traction: traction, pressure: PRESSURE)
 }
 
 /// Follow a polyline of (time, slip, pressure), each stretch in `parts` increments; the states at its corners.
@@ -38,7 +38,7 @@ fn follow(law: &dyn FrictionLaw, start: FrictionState, corners: &[[f64; 3]], par
         for k in 1..=parts {
             let share = 1.0 / parts as f64;
             let pressure = p0 + (p1 - p0) * k as f64 * share;
-            let sliding = Sliding { slip: (u1 - u0) * share, pressure, dt: (t1 - t0) * share };
+            let sliding = Sliding::new((u1 - u0) * share, pressure, (t1 - t0) * share);
             state = law.respond(&state, sliding).unwrap().state;
         }
         states.push(state);
@@ -119,7 +119,7 @@ fn backward_euler_needs_few_evaluations() {
         let mut most = 0;
         for k in 0..(7.0 / dt) as usize {
             let [a, b] = [k, k + 1].map(|k| (k as f64 * dt).sin());
-            let answer = law.respond(&state, Sliding { slip: b - a, pressure: PRESSURE, dt }).unwrap();
+            let answer = law.respond(&state, Sliding::new(b - a, PRESSURE, dt)).unwrap();
             most = most.max(answer.evaluations);
             state = answer.state;
         }
@@ -177,7 +177,7 @@ fn one_increment_is_right_to_the_tolerance() {
     ] {
         let [kappa, xi, m, n] = numbers;
         let law = law(json!({"kappa": kappa, "xi": xi, "m": m, "n": n}));
-        let sliding = Sliding { slip: to[1], pressure: to[2], dt: to[0] };
+        let sliding = Sliding::new(to[1], to[2], to[0]);
         let state = law.respond(&start, sliding).unwrap().state;
         let [q, mu, work] = rate_form(numbers, start, [0.0, 0.0, PRESSURE], to, 200_000);
         let allowed = 5.0 * 1e-6 * MU_S * to[2].max(PRESSURE);
@@ -201,7 +201,7 @@ fn steps_taken_alone_are_right_to_their_bounds() {
         let start = pressed(mu, random.between(0.02, 1.0).powf(0.3) * mu * PRESSURE);
         let slip = random.magnitude(-8.0, -2.0);
         let pressure = PRESSURE * (1.0 + if random.chance(0.5) { 0.0 } else { random.between(-1e-3, 1e-3) });
-        let sliding = Sliding { slip, pressure, dt: random.magnitude(-7.0, -1.0) };
+        let sliding = Sliding::new(slip, pressure, random.magnitude(-7.0, -1.0));
         let law = law(json!({"kappa": kappa, "xi": xi}));
         let answer = law.respond(&start, sliding).unwrap();
         if !(1..=2).contains(&answer.evaluations) {
@@ -238,7 +238,7 @@ fn tangents_belong_to_the_answers() {
             (pressed(0.25, 15.0), [-0.001, 98.1, 1.0]),
             (pressed(0.4, 0.0), [0.01, 98.1, 1.0]),
         ] {
-            let at = |slip: f64, pressure: f64| law.respond(&start, Sliding { slip, pressure, dt }).unwrap();
+            let at = |slip: f64, pressure: f64| law.respond(&start, Sliding::new(slip, pressure, dt)).unwrap();
             let answer = at(slip, pressure);
             let (du, dp) = (1e-7 * slip.abs(), 1e-6 * pressure);
             let by_slip =
@@ -271,7 +271,7 @@ fn increments() -> Vec<Sliding> {
     (0..60)
         .map(|k| {
             let slip = if k % 7 == 0 || k == 34 { 0.0 } else { 0.02 * (next() - if k % 20 < 14 { 0.2 } else { 0.9 }) };
-            Sliding { slip, pressure: if k == 33 { -1.0 } else { 0.7 + 0.6 * next() }, dt: 0.1 + next() }
+            Sliding::new(slip, if k == 33 { -1.0 } else { 0.7 + 0.6 * next() }, 0.1 + next())
         })
         .collect()
 }
@@ -281,7 +281,7 @@ fn tractions(given: &Value, stretch: f64) -> Vec<f64> {
     let law = any(given);
     let mut state = law.initial_state(0.0, 0.0);
     let lead = |sliding: &Sliding| {
-        state = law.respond(&state, Sliding { slip: stretch * sliding.slip, ..*sliding }).unwrap().state;
+        state = law.respond(&state, with!(*sliding, slip: stretch * sliding.slip)).unwrap().state;
         state.traction
     };
     increments().iter().map(lead).collect()
@@ -307,8 +307,8 @@ fn sensitivities_are_those_of_differences() {
             let (mut old, mut states) = (law.initial_state(0.0, 0.0), [sensitive.start(name), Variation::default()]);
             let mut exact = Vec::new();
             for sliding in increments() {
-                let by_parameter = Direction { state: states[0], slip: 0.0, parameter: Some(*name) };
-                let by_slip = Direction { state: states[1], slip: sliding.slip, parameter: None };
+                let by_parameter = with!(Direction::default(), state: states[0], slip: 0.0, parameter: Some(*name));
+                let by_slip = with!(Direction::default(), state: states[1], slip: sliding.slip);
                 states = sensitive.vary(&old, sliding, [by_parameter, by_slip]).unwrap();
                 old = law.respond(&old, sliding).unwrap().state;
                 exact.push(states.map(|state| state.traction));

@@ -1,5 +1,14 @@
 //! The laws alone: friction and bulk, against closed forms, differential equations and differences.
 
+/// A value with other fields: structures that may grow are not written out from outside the library.
+macro_rules! with {
+    ($value:expr $(, $field:ident: $new:expr)+ $(,)?) => {{
+        let mut value = $value;
+        $(value.$field = $new;)+
+        value
+    }};
+}
+
 #[path = "../common/mod.rs"]
 mod common;
 #[path = "../common/strokes.rs"]

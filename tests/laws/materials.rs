@@ -234,7 +234,7 @@ fn impossible_constants_are_named() {
         }
     }
     for (key, value) in [("E", f64::NAN), ("E", f64::INFINITY), ("nu", f64::NAN), ("density", f64::INFINITY)] {
-        let mut constants = fecontact::laws::bulk::ElasticConstants { young: 1.0, poisson: 0.2, density: 1.0 };
+        let mut constants = fecontact::laws::bulk::ElasticConstants::new(1.0, 0.2).density(1.0);
         match key {
             "E" => constants.young = value,
             "nu" => constants.poisson = value,
@@ -278,7 +278,7 @@ fn viscoelastic() -> Box<dyn Material> {
 /// The answer to an increment, and the variables it leaves.
 fn evolve(material: &dyn Material, f: &Matrix2<f64>, dt: f64, old: &[f64]) -> (MaterialResponse, Vec<f64>) {
     let mut new = vec![0.0; old.len()];
-    let evolution = material.respond(&Straining { deformation: *f, stretch: 1.0, dt, old }, &mut new).unwrap();
+    let evolution = material.respond(&with!(Straining::new(*f, old), dt: dt), &mut new).unwrap();
     (evolution, new)
 }
 
@@ -415,7 +415,7 @@ fn dissipation_is_never_negative() {
 /// The answer of a law with a stretch h across the plane to an increment from what it remembers.
 fn stretched(material: &dyn Material, f: &Vector5<f64>, dt: f64, old: &[f64]) -> Stretched {
     let deformation = Matrix2::from_column_slice(&f.as_slice()[..4]);
-    let straining = Straining { deformation, stretch: f[4], dt, old };
+    let straining = with!(Straining::new(deformation, old), stretch: f[4], dt: dt);
     material.spatial().expect("it is known").stretched(&straining, &mut old.to_vec()).unwrap()
 }
 
@@ -451,7 +451,7 @@ fn across_the_plane_stress_and_tangent_are_derivatives() {
             }
             let flat = stretched(&*material, &Vector5::from_iterator(plane.iter().copied().chain([1.0])), dt, &old);
             let mut new = vec![0.0; count];
-            let straining = Straining { deformation: plane, stretch: 1.0, dt, old: &old };
+            let straining = with!(Straining::new(plane, &old), dt: dt);
             let known = material.respond(&straining, &mut new).unwrap();
             let sigma = flat.stress[4] / if material.is_linear() { 1.0 } else { plane.determinant() };
             assert!(

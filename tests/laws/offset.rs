@@ -23,14 +23,14 @@ fn moving(text: &str, dilatancy: Option<Dilatancy>, wear: Option<f64>) -> Result
 }
 
 fn answer(law: &ContactLaw, old: &FrictionState, slip: f64, pressure: f64) -> FrictionState {
-    law.respond(old, Sliding { slip, pressure, dt: 0.1 }).expect("an answer").state
+    law.respond(old, Sliding::new(slip, pressure, 0.1)).expect("an answer").state
 }
 
 /// q, d and their tangents against central differences, from a state that has dilated and worn: sticking, slipping either way,
 /// with the pressure falling and rising. Friction is that of the law alone.
 #[test]
 fn tangents_of_opening_equal_differences() {
-    let dilatancy = Dilatancy { rate: 0.25, limit: Some(0.03) };
+    let dilatancy = Dilatancy::new(0.25).limit(0.03);
     let (mut slips, mut reversals) = (0, 0);
     for text in LAWS {
         let frictionless = text.contains("frictionless");
@@ -43,7 +43,7 @@ fn tangents_of_opening_equal_differences() {
             let start = answer(&moving, &moving.law.initial_state(20.0, 0.0), 0.03, 22.0);
             for (slip, pressure) in [(2e-5, 22.0), (2e-2, 25.0), (-6e-2, 18.0), (5e-2, 21.0)] {
                 let at = |slip, pressure| answer(&moving, &start, slip, pressure);
-                let response = moving.respond(&start, Sliding { slip, pressure, dt: 0.1 }).expect("an answer");
+                let response = moving.respond(&start, Sliding::new(slip, pressure, 0.1)).expect("an answer");
                 assert_eq!(response.state.traction, answer(&alone, &start, slip, pressure).traction);
                 let (h, k) = (1e-7, 1e-4);
                 let by_slip = (at(slip + h, pressure).opening - at(slip - h, pressure).opening) / (2.0 * h);
@@ -70,7 +70,7 @@ fn tangents_of_opening_equal_differences() {
 #[test]
 fn to_and_fro_dilation_goes_on_and_wear_adds_up() {
     let (rate, limit, wear, pressure) = (0.25, 0.03, 2e-4, 20.0);
-    let moving = moving(LAWS[0], Some(Dilatancy { rate, limit: Some(limit) }), Some(wear)).expect("good");
+    let moving = moving(LAWS[0], Some(Dilatancy::new(rate).limit(limit)), Some(wear)).expect("good");
     let alone: ContactLaw = law(LAWS[0]).into();
     let (mut state, mut plain) = (moving.law.initial_state(pressure, 0.0), alone.law.initial_state(pressure, 0.0));
     let mut way = 0.0;
@@ -94,7 +94,7 @@ fn to_and_fro_dilation_goes_on_and_wear_adds_up() {
 #[test]
 fn dilatancy_stays_below_the_least_friction() {
     for (text, least) in [(LAWS[0], 0.4), (LAWS[1], 0.3), (LAWS[2], 0.3)] {
-        let offset = |rate: f64| moving(text, Some(Dilatancy { rate, limit: None }), None);
+        let offset = |rate: f64| moving(text, Some(Dilatancy::new(rate)), None);
         assert!(offset(0.99 * least).is_ok(), "{text}");
         for rate in [least, 1.1 * least] {
             let error = offset(rate).expect_err("sliding would yield work");
@@ -103,7 +103,7 @@ fn dilatancy_stays_below_the_least_friction() {
         }
     }
     // Steady friction of rate and state falls with the logarithm of the rate, without end: a run watches it.
-    assert!(moving(LAWS[3], Some(Dilatancy { rate: 0.55, limit: None }), None).is_ok());
+    assert!(moving(LAWS[3], Some(Dilatancy::new(0.55)), None).is_ok());
 }
 
 /// What has no meaning is refused by name.
@@ -116,7 +116,7 @@ fn bad_parameters_are_named() {
         (0.1, Some(f64::NAN), None, "dilatancy.limit"),
         (0.1, None, Some(-1.0), "wear"),
     ] {
-        let error = moving(LAWS[0], Some(Dilatancy { rate, limit }), wear).expect_err("bad");
+        let error = moving(LAWS[0], Some(with!(Dilatancy::new(rate), limit: limit)), wear).expect_err("bad");
         assert_eq!(error.name, name);
     }
 }

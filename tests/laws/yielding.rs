@@ -89,13 +89,12 @@ impl Material for VonMises {
         let deviator = left * trial;
         let stored = deviator.component_mul(&twice).dot(&deviator) / (4.0 * shear) + 0.5 * bulk * volume * volume;
         let hardened = |equivalent: f64| 0.5 * self.hardening * equivalent * equivalent;
-        Ok(MaterialResponse {
-            stress: Matrix2::new(stress[0], stress[3], stress[3], stress[1]),
-            tangent: Matrix4::from_columns(&[0, 1, 2, 3].map(varied)),
-            energy: stored + hardened(new[4]),
-            stress_zz: stress[2],
-            dissipation: left * q * slip - (hardened(new[4]) - hardened(before)),
-        })
+        let first = Matrix2::new(stress[0], stress[3], stress[3], stress[1]);
+        let tangent = Matrix4::from_columns(&[0, 1, 2, 3].map(varied));
+        let mut response = MaterialResponse::new(first, tangent, stored + hardened(new[4]));
+        response.stress_zz = stress[2];
+        response.dissipation = left * q * slip - (hardened(new[4]) - hardened(before));
+        Ok(response)
     }
 }
 
@@ -103,13 +102,13 @@ const STRENGTH: f64 = 0.3;
 const HARDENING: f64 = 8.0;
 
 fn law() -> VonMises {
-    let lame = ElasticConstants { young: 100.0, poisson: 0.3, density: 0.0 }.lame().expect("good constants");
+    let lame = ElasticConstants::new(100.0, 0.3).lame().expect("good constants");
     VonMises { lame, strength: STRENGTH, hardening: HARDENING }
 }
 
 fn answer(f: Matrix2<f64>, old: &[f64]) -> (MaterialResponse, Vec<f64>) {
     let mut new = vec![0.0; old.len()];
-    let response = law().respond(&Straining { deformation: f, stretch: 1.0, dt: 1.0, old }, &mut new);
+    let response = law().respond(&with!(Straining::new(f, old), dt: 1.0), &mut new);
     (response.expect("an answer"), new)
 }
 

@@ -323,7 +323,7 @@ fn a_case_that_asks_for_fronts_has_its_files_and_figures() {
     fecontact(&["run", path, "--out", out_name, "--quiet"]);
     let [fronts, history] = ["fronts.csv", "history.csv"].map(|name| rows(&out.join(name)));
     // 24 edges of 2 km with two points each, at every row of the history.
-    let stored = fecontact::output::interface::read::contacts(&out, |name| name == "slip").expect("a store");
+    let stored = fecontact::output::store::read::contacts(&out, |name| name == "slip").expect("a store");
     assert_eq!((history.len(), stored[0].times.len(), stored[0].quantities["slip"].len()), (20, 20, 20 * 48));
     // Positions run from one end of the slave to the other.
     assert!(stored[0].positions.windows(2).all(|pair| pair[0] < pair[1]) && stored[0].positions[0] == 0.0);

@@ -16,7 +16,7 @@ use fecontact::model::builder::{Builder, Change, Contact, Load, LoadStep, Master
 use fecontact::model::imposed::Thermal;
 use fecontact::model::scheme::Scheme;
 use fecontact::model::state::State;
-use fecontact::model::step::Part;
+use fecontact::model::step::ForceComponent;
 use fecontact::model::{Damping, Model, NewtonSettings};
 use fecontact::run::run;
 use serde_json::{Value, json};
@@ -422,11 +422,11 @@ fn a_step_ends_when_a_reaction_has_its_value() {
         let value = share * full;
         let run = run_through(
             block(0.0, false)
-                .step(press(LoadStep::new("press", 1.0).dt(dt).until("block_top", Part::Y, value)))
+                .step(press(LoadStep::new("press", 1.0).dt(dt).until("block_top", ForceComponent::Y, value)))
                 .step(LoadStep::new("hold", 0.25))
                 .step(LoadStep::new("back", 2.0).support(Support::on("block_top").uy(Drive::Rate(0.1))).until(
                     "block_bottom",
-                    Part::Size,
+                    ForceComponent::Magnitude,
                     0.5 * -value,
                 ))
                 .step(LoadStep::new("rest", 1.0).support(Support::on("block_top").uy(Drive::Rate(0.0)))),
@@ -451,7 +451,7 @@ fn a_reaction_that_is_not_reached_stops_the_run() {
             .step(LoadStep::new("press", 1.0).dt(0.5).support(Support::on("block_top").ux(0.0).uy(-0.02)))
             .step(LoadStep::new("drag", 1.0).dt(0.25).support(Support::on("block_top").ux(Drive::Rate(0.05))).until(
                 "block_top",
-                Part::X,
+                ForceComponent::X,
                 fx,
             ))
             .step(LoadStep::new("stay", 0.5).support(Support::on("block_top").ux(Drive::Rate(0.0))))
@@ -487,7 +487,7 @@ fn a_jump_past_the_value_is_told() {
         .dt(0.25)
         .support(Support::on("block_bottom").ux(0.0).uy(0.0))
         .support(Support::on("block_top").ux(0.0).uy(jump))
-        .until("block_top", Part::Y, -3.0);
+        .until("block_top", ForceComponent::Y, -3.0);
     let model = Arc::new(block(0.0, false).step(step).build().expect("a model"));
     let mut warnings = fecontact::output::warnings::Warnings::default();
     let (_, result) = run(&model, &mut [&mut warnings]);
@@ -504,11 +504,17 @@ fn what_a_step_cannot_end_by_is_refused() {
             .support(Support::on("block_bottom").ux(0.0).uy(0.0))
             .support(Support::on("block_top").uy(-0.1))
     };
-    let on_top = || step().until("block_top", Part::Y, -1.0);
+    let on_top = || step().until("block_top", ForceComponent::Y, -1.0);
     for (step, words) in [
-        (step().until("top", Part::Y, -1.0), "steps[0].until.on: the mesh has no group `top`"),
-        (step().until("block_top", Part::X, -1.0), "steps[0].until.on: block_top has no support along x in this step"),
-        (step().until("block_right", Part::Size, f64::NAN), "steps[0].until.force: is NaN: must be zero or positive"),
+        (step().until("top", ForceComponent::Y, -1.0), "steps[0].until.on: the mesh has no group `top`"),
+        (
+            step().until("block_top", ForceComponent::X, -1.0),
+            "steps[0].until.on: block_top has no support along x in this step",
+        ),
+        (
+            step().until("block_right", ForceComponent::Magnitude, f64::NAN),
+            "steps[0].until.force: is NaN: must be zero or positive",
+        ),
         (on_top().scheme(Scheme::Explicit { safety: 0.9 }), "steps[0].until: ends static and implicit steps alone"),
         (on_top().stabilize(1e-3), "steps[0].until: ends the step before its time, and what fades over the step"),
         (
@@ -541,7 +547,7 @@ fn what_warms_by_the_time_of_the_run_may_end_a_step() {
     let held = || LoadStep::new("warm", 1.0).dt(0.3).fix("block_bottom").support(Support::on("block_top").uy(0.0));
     let growing = BodyTemperature::Expression(Expression::parse("0.4 * t").unwrap());
     for warmth in [BodyTemperature::Rate(0.4), growing, BodyTemperature::Table(vec![[0.0, 0.0], [2.0, 0.8]])] {
-        let warm = held().temperature("block", warmth).until("block_top", Part::Y, -2.0);
+        let warm = held().temperature("block", warmth).until("block_top", ForceComponent::Y, -2.0);
         let run = run_through(block().step(warm).step(LoadStep::new("on", 1.0)));
         close("met", run.reaction("block_top", run.at(0.5))[1], -2.0, 2e-6);
         close("goes on", run.reaction("block_top", run.last())[1], -6.0, 1e-5);
@@ -549,12 +555,12 @@ fn what_warms_by_the_time_of_the_run_may_end_a_step() {
     }
     // After −4 of a temperature, −6 by pressing: k = E A/L = 200.
     let press = Support::on("block_top").uy(Drive::Rate(-0.02));
-    let press = LoadStep::new("press", 1.0).support(press).until("block_top", Part::Y, -6.0);
+    let press = LoadStep::new("press", 1.0).support(press).until("block_top", ForceComponent::Y, -6.0);
     let run = run_through(block().step(held().temperature("block", 0.4)).step(press));
     close("pressed", run.reaction("block_top", run.last())[1], -6.0, 6e-6);
     close("so long", run.last().time, 1.5, 1e-6);
     for given in [BodyTemperature::Constant(0.4), BodyTemperature::X(vec![[0.0, 0.2], [2.0, 0.4]])] {
-        let warm = held().temperature("block", given).until("block_top", Part::Y, -2.0);
+        let warm = held().temperature("block", given).until("block_top", ForceComponent::Y, -2.0);
         let told = told(block().step(warm));
         let words = "steps[0].until: ends the step before its time, and the temperature of `block`, given as a number or by place, \
                      would not be there yet: give it in the step before, or as a rate";
@@ -573,10 +579,10 @@ fn a_shrink_fit_is_not_cut_short() {
             .body("block", linear(100.0, 0.0, 1.0))
             .contact(Contact { shrink_fit: true, ..fit })
             .step(first.dt(0.5).support(Support::on("block_top").ux(0.0).uy(0.0)))
-            .step(LoadStep::new("press", 1.0).support(draw).until("block_top", Part::Y, -2.5))
+            .step(LoadStep::new("press", 1.0).support(draw).until("block_top", ForceComponent::Y, -2.5))
     };
     let fit = || LoadStep::new("fit", 1.0);
-    let told = told(model(fit().until("block_top", Part::Y, -1.0)));
+    let told = told(model(fit().until("block_top", ForceComponent::Y, -1.0)));
     let words =
         "steps[0].until: ends the step before its time, and the overlap of `fit`, brought in over the first step";
     assert!(told.starts_with(words), "{told}");

@@ -29,15 +29,15 @@ fn repository(file: &str) -> (Value, std::path::PathBuf) {
 fn redone_and_resumed(model: &Arc<Model>) -> Vec<State> {
     let mut simulation = Simulation::new(model.clone());
     let mut states = Vec::new();
-    while let Some(dropped) = simulation.attempt().expect("the step begins") {
+    while let Some(dropped) = simulation.try_increment().expect("the step begins") {
         let bytes = simulation.save().bytes().expect("it can be written");
         let saved = Saved::from_bytes(&bytes, model).expect("it can be read");
         simulation = Simulation::resume(model.clone(), saved);
-        let again = simulation.attempt().expect("it begins").expect("there is one");
+        let again = simulation.try_increment().expect("it begins").expect("there is one");
         assert_eq!(dropped.is_accepted(), again.is_accepted());
         assert!(dropped.state() == again.state(), "the attempt at {} is another one", simulation.state().time);
         states.extend(again.state().cloned());
-        simulation.follow(again).expect("it goes on");
+        simulation.apply(again).expect("it goes on");
     }
     states
 }
@@ -118,11 +118,11 @@ fn a_dropped_attempt_leaves_the_iterations_as_they_are() {
             let mut all = Vec::new();
             loop {
                 if drops {
-                    drop(simulation.attempt().expect("it begins"));
+                    drop(simulation.try_increment().expect("it begins"));
                 }
-                let Some(candidate) = simulation.attempt().expect("it begins") else { return all };
+                let Some(candidate) = simulation.try_increment().expect("it begins") else { return all };
                 all.extend_from_slice(candidate.iterations());
-                simulation.follow(candidate).expect("it goes on");
+                simulation.apply(candidate).expect("it goes on");
             }
         };
         let (straight, dropped) = (iterations(false), iterations(true));
@@ -360,7 +360,7 @@ fn a_caller_controls_the_force_by_leading_a_support() {
 fn an_increment_is_rejected_by_its_caller_and_a_run_stopped() {
     let mut simulation = Simulation::new(pulled_square().build().expect("a good model"));
     simulation.lead("square_top", Axis::Y, 0.01, 10.0).expect("a support");
-    let candidate = simulation.attempt().expect("it begins").expect("an increment");
+    let candidate = simulation.try_increment().expect("it begins").expect("an increment");
     assert!(
         candidate.is_accepted() && candidate.state().is_some_and(|state| state.displacement.iter().any(|u| *u != 0.0))
     );
@@ -494,22 +494,22 @@ fn observers_go_back_with_the_run() {
     let mut simulation = Simulation::new(model.clone());
     let mut observers: [&mut dyn Observer; 5] = [&mut history, &mut log, &mut fields, &mut fronts, &mut warnings];
     for _ in 0..4 {
-        let candidate = simulation.attempt().expect("it begins").expect("an increment");
+        let candidate = simulation.try_increment().expect("it begins").expect("an increment");
         let told = simulation.told(&candidate);
         observers.iter_mut().for_each(|observer| observer.record(&model, &told).expect("it writes"));
-        simulation.follow(candidate).expect("it goes on");
+        simulation.apply(candidate).expect("it goes on");
     }
     let saved = SavedRun::new(&simulation, &mut observers).expect("it is saved");
     let step = |simulation: &mut Simulation, observers: &mut [&mut dyn Observer]| {
-        while let Some(candidate) = simulation.attempt().expect("it begins") {
+        while let Some(candidate) = simulation.try_increment().expect("it begins") {
             let told = simulation.told(&candidate);
             observers.iter_mut().for_each(|observer| observer.record(&model, &told).expect("it writes"));
-            simulation.follow(candidate).expect("it goes on");
+            simulation.apply(candidate).expect("it goes on");
         }
     };
     step(&mut simulation, &mut observers);
     // What is told so far reaches the disk with the memories.
-    SavedRun::new(&simulation, &mut observers).expect("it is saved");
+    drop(SavedRun::new(&simulation, &mut observers).expect("it is saved"));
     let tables = |folder: &Path| ["history.csv", "newton.csv"].map(|file| std::fs::read(folder.join(file)).unwrap());
     let first = tables(folder.path());
     let mut again = saved.resume(&model, &mut observers).expect("it goes back");

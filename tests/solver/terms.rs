@@ -384,7 +384,7 @@ fn contact_forces_are_weighted_by_the_section() {
             // The end-point rule is exact for w, which is linear.
             let area = 2.0 * (1.0 + 0.1 * shift) + 0.2;
             close(&format!("{method} on {master}: force"), force, -alpha_n * depth * area, 1e-12);
-            let stored = fecontact::equations::interfaces::stored(&model, &found.contacts);
+            let stored = fecontact::equations::contacts::stored(&model, &found.contacts);
             close(&format!("{method} on {master}: energy"), stored, 0.5 * alpha_n * depth * depth * area, 1e-12);
         }
     }

@@ -435,7 +435,7 @@ fn loads_changed_on_the_way_act_at_once() {
                     }
                 });
                 // An attempt that is dropped leaves no trace.
-                drop(run.attempt().expect("it begins"));
+                drop(run.try_increment().expect("it begins"));
                 run = Simulation::resume(run.model().clone(), run.save());
             }
         }

@@ -52,6 +52,8 @@ pub use viscoelastic::{Viscoelastic, ViscoelasticConstants};
 
 /// What a law answers at the end of an increment; it writes its new variables itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct MaterialResponse {
     /// P: first Piola–Kirchhoff stress, in plane part [F/L²]
     pub stress: Matrix2<f64>,
@@ -65,8 +67,16 @@ pub struct MaterialResponse {
     pub dissipation: f64,
 }
 
+impl MaterialResponse {
+    /// P, ∂P/∂F and W of a law that has neither stress across the plane nor dissipation, unless these fields are set.
+    pub fn new(stress: Matrix2<f64>, tangent: Matrix4<f64>, energy: f64) -> Self {
+        Self { stress, tangent, energy, stress_zz: 0.0, dissipation: 0.0 }
+    }
+}
+
 /// What a law is asked for at one quadrature point: where an increment ends, and what the law remembers from its start.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Straining<'a> {
     /// F at the end, in plane [-]
     pub deformation: Matrix2<f64>,
@@ -76,6 +86,13 @@ pub struct Straining<'a> {
     pub dt: f64,
     /// The committed [`variables`](Material::variables)
     pub old: &'a [f64],
+}
+
+impl<'a> Straining<'a> {
+    /// In plane strain, at once.
+    pub fn new(deformation: Matrix2<f64>, old: &'a [f64]) -> Self {
+        Self { deformation, stretch: 1.0, dt: 0.0, old }
+    }
 }
 
 /// σ: Cauchy stress, tension positive [F/L²]
@@ -106,6 +123,7 @@ impl CauchyStress {
 
 /// Why a law could not answer; the increment is tried again with a smaller step.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum MaterialFailure {
     /// The deformation has no volume left: J = det F ≤ 0, or not a number.
     #[error("the material is turned inside out (J = {jacobian:.3e})")]

@@ -9,6 +9,7 @@ use crate::laws::parameter::{InvalidParameter, require, require_not_negative, re
 /// A bulk material: its law and its constants.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "model", rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum MaterialParameters {
     /// Linear elasticity: small strains and rotations only
     Linear(ElasticConstants),
@@ -25,6 +26,8 @@ pub enum MaterialParameters {
 /// Constants of an isotropic elastic material.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct ElasticConstants {
     /// E: Young's modulus, E > 0 [F/L²]
     #[serde(rename = "E")]
@@ -63,6 +66,16 @@ impl MaterialParameters {
 }
 
 impl ElasticConstants {
+    /// Of a body without mass.
+    pub const fn new(young: f64, poisson: f64) -> Self {
+        Self { young, poisson, density: 0.0 }
+    }
+
+    /// With a density [M/L³].
+    pub const fn density(self, density: f64) -> Self {
+        Self { density, ..self }
+    }
+
     /// λ and G, once all constants are found to be allowed.
     ///
     /// # Errors

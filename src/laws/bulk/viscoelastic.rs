@@ -9,6 +9,8 @@ use crate::laws::parameter::{InvalidParameter, require_positive};
 /// Constants of [`Viscoelastic`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct ViscoelasticConstants {
     /// E: Young's modulus that is left when all has relaxed, E > 0 [F/L²]
     #[serde(rename = "E")]
@@ -24,6 +26,18 @@ pub struct ViscoelasticConstants {
     /// ρ₀: mass per reference volume, ρ₀ ≥ 0 [M/L³]
     #[serde(default)]
     pub density: f64,
+}
+
+impl ViscoelasticConstants {
+    /// Of a body without mass.
+    pub const fn new(young: f64, poisson: f64, relaxing: f64, tau: f64) -> Self {
+        Self { young, poisson, relaxing, tau, density: 0.0 }
+    }
+
+    /// With a density [M/L³].
+    pub const fn density(self, density: f64) -> Self {
+        Self { density, ..self }
+    }
 }
 
 /// A neo-Hookean body beside one Maxwell arm: the standard linear solid at large rotations.

@@ -11,6 +11,8 @@ use crate::laws::parameter::{InvalidParameter, require_positive};
 /// largest opening.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct Dilatancy {
     /// tan ψ: opening per plastic slip at the start, whichever way it goes; below the least coefficient that friction can come to
     /// (mu, mu_k, mu_d), for the work that lifts the load is friction's [-]
@@ -21,6 +23,16 @@ pub struct Dilatancy {
 }
 
 impl Dilatancy {
+    /// Without a limit.
+    pub const fn new(rate: f64) -> Self {
+        Self { rate, limit: None }
+    }
+
+    /// Up to an opening [L].
+    pub const fn limit(self, limit: f64) -> Self {
+        Self { limit: Some(limit), ..self }
+    }
+
     /// δ₁ and ∂δ₁/∂λ.
     fn after(self, dilation: f64, slip: f64) -> [f64; 2] {
         let Some(limit) = self.limit else { return [dilation + self.rate * slip, self.rate] };
@@ -51,6 +63,7 @@ impl Dilatancy {
 /// Sources: J. F. Archard, J. Appl. Phys. 24 (1953) 981; (1) P. Segall, J. R. Rice, J. Geophys. Res. 100 (1995) 22155, whose
 /// porosity goes to that of its state over a distance of slip in the same way.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[doc(hidden)]
 pub struct Offsets {
     /// Dilatancy
     pub dilatancy: Option<Dilatancy>,
@@ -114,6 +127,7 @@ impl Offsets {
 
 /// Friction of contact points: first the law is asked, then what its slip does to the opening.
 #[derive(Debug)]
+#[doc(hidden)]
 pub struct ContactLaw {
     /// The law
     pub law: Box<dyn FrictionLaw>,

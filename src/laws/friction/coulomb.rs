@@ -10,6 +10,8 @@ use crate::laws::parameter::{InvalidParameter, numbers, require_positive};
 /// Parameters of [`Coulomb`] as the case file writes them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct CoulombParameters {
     /// μ: friction coefficient, μ > 0 [-]
     pub mu: f64,
@@ -22,8 +24,13 @@ numbers!(CoulombParameters: "mu" mu; "alpha_t" alpha_t);
 
 impl CoulombParameters {
     /// With the tangential stiffness left to the contact.
-    pub fn new(mu: f64) -> Self {
+    pub const fn new(mu: f64) -> Self {
         Self { mu, alpha_t: None }
+    }
+
+    /// With this tangential stiffness [F/L³].
+    pub const fn alpha_t(self, alpha_t: f64) -> Self {
+        Self { alpha_t: Some(alpha_t), ..self }
     }
 }
 

@@ -22,7 +22,7 @@ mod rate_and_state;
 mod root;
 pub mod sensitivity;
 mod slip_weakening;
-pub mod state;
+mod state;
 mod super_subloading;
 
 use std::fmt::Debug;
@@ -37,7 +37,7 @@ pub use prescribed::{PrescribedSlip, PrescribedSlipParameters};
 pub use rate_and_state::{RateAndState, RateAndStateParameters, StateEvolution};
 pub use sensitivity::SensitiveLaw;
 pub use slip_weakening::{SlipWeakening, SlipWeakeningParameters};
-pub use state::{FrictionState, Regime};
+pub use state::{FrictionState, MOST_VARIABLES, Regime};
 pub use super_subloading::{Approach, Integration, Onset, Rise, SuperSubloading, SuperSubloadingParameters};
 
 /// No law answers a tangent |∂q/∂Δu_t| above this many times α_t, or |∂q/∂p| above it. Where two roots of a law's equation
@@ -54,6 +54,8 @@ const LEAST_SLOPE: f64 = 1.0 / STEEPEST;
 /// δq = ∂q/∂Δu_t δΔu_t + ∂q/∂p δp,   δd = ∂d/∂Δu_t δΔu_t + ∂d/∂p δp        d: opening, 0 for most laws
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct FrictionResponse {
     /// State at the end of the increment
     pub state: FrictionState,
@@ -70,9 +72,14 @@ pub struct FrictionResponse {
 }
 
 impl FrictionResponse {
+    /// The answer of a law whose surfaces stay as far apart as they are, with ∂q/∂Δu_t and ∂q/∂p.
+    pub fn new(state: FrictionState, dtraction_dslip: f64, dtraction_dpressure: f64) -> Self {
+        Self { state, dtraction_dslip, dtraction_dpressure, ..Self::default() }
+    }
+
     /// The answer that `state` follows without plastic slip, where q has the tangent `stiffness` by slip.
     pub fn elastic(state: FrictionState, stiffness: f64) -> Self {
-        Self { state, dtraction_dslip: stiffness, ..Self::default() }
+        Self::new(state, stiffness, 0.0)
     }
 
     /// The answer of surfaces that do not ride up on each other in this increment, from the state `old` on: neither lift nor its
@@ -139,21 +146,19 @@ pub type Answer = Result<FrictionResponse, LawFailure>;
 ///
 /// impl FrictionLaw for Oil {
 ///     fn respond(&self, old: &FrictionState, sliding: Sliding) -> Result<FrictionResponse, LawFailure> {
-///         let Sliding { slip, pressure, dt } = sliding.checked()?;
+///         let Sliding { slip, pressure, dt, .. } = sliding.checked()?;
 ///         if pressure <= 0.0 || dt == 0.0 {
 ///             let traction = if pressure > 0.0 { old.traction } else { 0.0 };
 ///             return FrictionResponse::elastic(old.stuck(traction, pressure.max(0.0)), 0.0).checked(1.0);
 ///         }
 ///         let dtraction_dslip = self.viscosity / dt;
 ///         let traction = dtraction_dslip * slip;
-///         let state = FrictionState {
-///             plastic_slip: old.plastic_slip + slip,
-///             plastic_increment: slip,
-///             dissipation: old.dissipation + traction * slip,
-///             regime: if slip == 0.0 { Regime::Stick } else { Regime::Slip },
-///             ..old.stuck(traction, pressure)
-///         };
-///         FrictionResponse { state, dtraction_dslip, ..Default::default() }.checked(dtraction_dslip)
+///         let mut state = old.stuck(traction, pressure);
+///         state.plastic_slip += slip;
+///         state.plastic_increment = slip;
+///         state.dissipation += traction * slip;
+///         state.regime = if slip == 0.0 { Regime::Stick } else { Regime::Slip };
+///         FrictionResponse::new(state, dtraction_dslip, 0.0).checked(dtraction_dslip)
 ///     }
 ///
 ///     fn description(&self) -> Description {
@@ -162,7 +167,7 @@ pub type Answer = Result<FrictionResponse, LawFailure>;
 /// }
 ///
 /// let oil = Oil { viscosity: 2.0 };
-/// let answer = oil.respond(&oil.initial_state(0.0, 0.0), Sliding { slip: 0.3, pressure: 5.0, dt: 0.1 })?;
+/// let answer = oil.respond(&oil.initial_state(0.0, 0.0), Sliding::new(0.3, 5.0, 0.1))?;
 /// assert_eq!((answer.state.traction, answer.state.regime), (6.0, Regime::Slip));
 /// # Ok::<(), LawFailure>(())
 /// ```
@@ -222,6 +227,7 @@ pub trait FrictionLaw: Debug + Send + Sync {
 /// What a friction law says of itself, whatever a point does. What a law does not say is left as in
 /// [`default`](Self::default): no stiffness, no variables, no bounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Description {
     /// α_t: tangential contact stiffness; the contact stores q²/(2 α_t). 0 where it stores nothing [F/L³]
     pub stiffness: f64,
@@ -268,6 +274,7 @@ impl Description {
 
 /// Relative motion of the two surfaces during one increment.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Sliding {
     /// Δu_t: slip increment of the slave relative to the master along +s [L]
     pub slip: f64,
@@ -278,6 +285,11 @@ pub struct Sliding {
 }
 
 impl Sliding {
+    /// The increment Δu_t under the pressure p at its end, in the time Δt.
+    pub const fn new(slip: f64, pressure: f64, dt: f64) -> Self {
+        Self { slip, pressure, dt }
+    }
+
     /// Refuses what no law can answer.
     ///
     /// # Errors
@@ -296,6 +308,7 @@ impl Sliding {
 
 /// Why a law could not answer; the increment is tried again with a smaller step.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum LawFailure {
     /// The increment itself is not a finite number.
     #[error("friction was asked for a slip {slip}, pressure {pressure} and time {dt} that are not all finite")]
@@ -365,7 +378,7 @@ pub enum LawFailure {
 
 /// What acts on a point of an interface that radiates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Loading {
+pub struct PointLoad {
     /// τ = q + η V: what friction and radiation damping carry together [F/L²]
     pub traction: f64,
     /// p [F/L²]
@@ -382,7 +395,7 @@ pub struct Loading {
 /// ```
 pub trait RateLaw: Debug + Send + Sync {
     /// V; not a number where the law has no answer [L/T].
-    fn slip_rate(&self, x: f64, loading: Loading) -> f64;
+    fn slip_rate(&self, x: f64, loading: PointLoad) -> f64;
 
     /// ẋ at a slip rate [1/T].
     fn evolution(&self, _x: f64, _slip_rate: f64) -> f64 {

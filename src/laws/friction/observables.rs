@@ -50,6 +50,7 @@ const LONGEST: usize = 64;
 ///
 /// # Errors
 /// What is wrong with which name, and what to do.
+#[doc(hidden)]
 pub fn check_names(description: &Description) -> Result<(), String> {
     let Description { variables, opening, .. } = description;
     if variables.len() > MOST_VARIABLES {
@@ -87,6 +88,7 @@ fn check_each(names: &[&str]) -> Result<(), String> {
 }
 
 /// Names of the further observables of some laws, each once, in order of appearance.
+#[doc(hidden)]
 pub fn further<'a>(laws: impl IntoIterator<Item = &'a Description>) -> Vec<&'static str> {
     let mut names = Vec::new();
     for name in laws.into_iter().flat_map(|law| law.observables().iter().chain(law.opening)) {

@@ -17,6 +17,7 @@ use crate::laws::parameter::{InvalidParameter, Numbers, UnknownParameter, requir
 /// A friction law and its parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "law", rename_all = "snake_case", deny_unknown_fields)]
+#[non_exhaustive]
 pub enum FrictionParameters {
     /// No friction
     // Not a unit variant: serde would let any other key pass.
@@ -161,6 +162,8 @@ pub fn register(
 /// A registered law as the case file writes it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct RegisteredParameters {
     /// The name by which the program that calls the library has registered it
     pub name: String,
@@ -173,6 +176,22 @@ pub struct RegisteredParameters {
 }
 
 impl RegisteredParameters {
+    /// A law by the name under which it is registered, without parameters.
+    pub fn new(name: impl Into<String>) -> Self {
+        Self { name: name.into(), parameters: BTreeMap::new(), alpha_t: None }
+    }
+
+    /// With a parameter.
+    pub fn parameter(mut self, name: impl Into<String>, value: f64) -> Self {
+        self.parameters.insert(name.into(), value);
+        self
+    }
+
+    /// With this tangential stiffness [F/L³].
+    pub fn alpha_t(self, alpha_t: f64) -> Self {
+        Self { alpha_t: Some(alpha_t), ..self }
+    }
+
     /// The law; `default_alpha_t` serves where the case gives no `alpha_t`.
     ///
     /// # Errors

@@ -1,18 +1,32 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, Loading, RateLaw, Regime, Sliding};
+use super::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, PointLoad, RateLaw, Regime, Sliding};
 use crate::laws::parameter::{InvalidParameter, numbers, require, require_positive};
 
 /// Parameters of [`PrescribedSlip`] as the case file writes them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct PrescribedSlipParameters {
     /// V: slip rate of the slave along +s, of either sign [L/T]
     pub slip_rate: f64,
     /// α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies [F/L³]
     #[serde(default)]
     pub alpha_t: Option<f64>,
+}
+
+impl PrescribedSlipParameters {
+    /// With the tangential stiffness left to the contact.
+    pub const fn new(slip_rate: f64) -> Self {
+        Self { slip_rate, alpha_t: None }
+    }
+
+    /// With this tangential stiffness [F/L³].
+    pub const fn alpha_t(self, alpha_t: f64) -> Self {
+        Self { alpha_t: Some(alpha_t), ..self }
+    }
 }
 
 numbers!(PrescribedSlipParameters: "slip_rate" slip_rate; "alpha_t" alpha_t);
@@ -81,7 +95,7 @@ impl FrictionLaw for PrescribedSlip {
 }
 
 impl RateLaw for PrescribedSlip {
-    fn slip_rate(&self, _: f64, _: Loading) -> f64 {
+    fn slip_rate(&self, _: f64, _: PointLoad) -> f64 {
         self.slip_rate
     }
 

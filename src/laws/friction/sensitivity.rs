@@ -7,6 +7,7 @@ use super::{FrictionState, LawFailure, Sliding};
 
 /// Derivatives of a state, per unit of what it is differentiated by.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Variation {
     /// of q [F/L²]
     pub traction: f64,
@@ -16,6 +17,7 @@ pub struct Variation {
 
 /// What an answer is differentiated by: how that which it follows from varies, the pressure and the time being given.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Direction {
     /// of the state at the start
     pub state: Variation,

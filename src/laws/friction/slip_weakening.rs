@@ -11,6 +11,8 @@ use crate::laws::parameter::{InvalidParameter, numbers, require, require_not_neg
 /// Parameters of [`SlipWeakening`] as the case file writes them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct SlipWeakeningParameters {
     /// μ_s: static friction coefficient, μ_s ≥ μ_d [-]
     pub mu_s: f64,
@@ -31,8 +33,18 @@ numbers!(SlipWeakeningParameters: "mu_s" mu_s, "mu_d" mu_d, "D_c" critical_slip,
 
 impl SlipWeakeningParameters {
     /// Without cohesion, the tangential stiffness left to the contact.
-    pub fn new(mu_s: f64, mu_d: f64, critical_slip: f64) -> Self {
+    pub const fn new(mu_s: f64, mu_d: f64, critical_slip: f64) -> Self {
         Self { mu_s, mu_d, critical_slip, cohesion: 0.0, alpha_t: None }
+    }
+
+    /// With a strength without pressure [F/L²].
+    pub const fn cohesion(self, cohesion: f64) -> Self {
+        Self { cohesion, ..self }
+    }
+
+    /// With this tangential stiffness [F/L³].
+    pub const fn alpha_t(self, alpha_t: f64) -> Self {
+        Self { alpha_t: Some(alpha_t), ..self }
     }
 }
 

@@ -7,6 +7,8 @@ pub const MOST_VARIABLES: usize = 4;
 
 /// What friction remembers at one contact point between increments.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct FrictionState {
     /// q: traction that resists the slip of the slave along +s [F/L²]
     pub traction: f64,

@@ -41,18 +41,18 @@ pub struct Factors {
 }
 
 /// The part of the factors that belongs to consecutive fronts.
-struct Part<'a> {
+struct FrontBlock<'a> {
     values: &'a mut [f64],
     exchanges: &'a mut [u32],
     replaced: &'a mut [usize],
 }
 
-impl<'a> Part<'a> {
+impl<'a> FrontBlock<'a> {
     /// Cut off the part of the first `fronts`.
-    fn take(&mut self, fronts: &[Front]) -> Part<'a> {
+    fn take(&mut self, fronts: &[Front]) -> FrontBlock<'a> {
         let values = fronts.iter().map(|front| front.values.len()).sum();
         let pivots = fronts.iter().map(|front| front.pivots).sum();
-        Part {
+        FrontBlock {
             values: self.values.split_off_mut(..values).unwrap_or_default(),
             exchanges: self.exchanges.split_off_mut(..pivots).unwrap_or_default(),
             replaced: self.replaced.split_off_mut(..fronts.len()).unwrap_or_default(),
@@ -86,7 +86,7 @@ impl Factors {
         self.exchanges.resize(2 * symbolic.nodes.len(), 0);
         self.replaced.resize(symbolic.fronts.len(), 0);
         let Self { values, exchanges, replaced, .. } = self;
-        let mut rest = Part { values, exchanges, replaced };
+        let mut rest = FrontBlock { values, exchanges, replaced };
         let job = Job::new(symbolic, |fronts| rest.take(fronts));
         let rooms = std::mem::take(&mut self.rooms);
         let (waiting, new) = (Waiting::default(), Waiting::default());
@@ -116,7 +116,7 @@ struct Numeric<'a> {
 
 impl Numeric<'_> {
     /// Eliminate light fronts one after another.
-    fn forest(&self, forest: &Forest, mut rest: Part) {
+    fn forest(&self, forest: &Forest, mut rest: FrontBlock) {
         let fronts = &self.symbolic.fronts;
         let mut room = lock(&self.rooms).pop().unwrap_or_default();
         room.resize(room.len().max(forest.room), 0.0);
@@ -160,7 +160,7 @@ impl Numeric<'_> {
     }
 
     /// Eliminate one heavy front.
-    fn heavy(&self, number: u32, part: Part) {
+    fn heavy(&self, number: u32, part: FrontBlock) {
         let fronts = &self.symbolic.fronts;
         let front = &fronts[number as usize];
         match self.actions[number as usize] {
@@ -189,7 +189,7 @@ impl Numeric<'_> {
     }
 
     /// Sum up a front, eliminate its pivots, and write what it passes on over `below`.
-    fn eliminate(&self, front: &Front, part: Part, children: &[(&Front, &[f64])], below: &mut [f64]) {
+    fn eliminate(&self, front: &Front, part: FrontBlock, children: &[(&Front, &[f64])], below: &mut [f64]) {
         let (lower, upper) = part.values.split_at_mut(front.size() * front.pivots);
         lower.fill(0.0);
         upper.fill(0.0);

@@ -255,6 +255,7 @@ impl Sides {
 
 /// How the sizes of elements vary along a side: as a geometric series.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Grading {
     /// size of the last over that of the first
     Ratio(f64),

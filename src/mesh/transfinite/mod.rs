@@ -33,6 +33,7 @@ const MOST: f64 = 4e6;
 
 /// Elements of a block.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
 pub enum BlockKind {
     /// Bilinear, 4 nodes
     #[default]
@@ -53,6 +54,8 @@ impl BlockKind {
 
 /// A quadrilateral divided into rows and columns of elements.
 #[derive(Clone, Debug)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct Block {
     /// body that its elements belong to
     pub body: String,
@@ -90,6 +93,28 @@ impl Block {
         let sides = ["bottom", "right", "top", "left"].map(|side| Some(format!("{name}_{side}")));
         Self { sides, ..Self::new(name, [[x, y], [right, y], [right, top], [x, top]], elements) }
     }
+
+    /// With sizes of elements that vary along side 0 and along side 1.
+    pub fn grading(self, grading: [Grading; 2]) -> Self {
+        Self { grading, ..self }
+    }
+
+    /// Of another kind of elements.
+    pub fn kind(self, kind: BlockKind) -> Self {
+        Self { kind, ..self }
+    }
+
+    /// With a side, 0 to 3, on a circle around a centre, along its shorter arc [L].
+    pub fn arc(mut self, side: usize, centre: [f64; 2]) -> Self {
+        self.arcs[side] = Some(centre);
+        self
+    }
+
+    /// With a name of a side, 0 to 3.
+    pub fn side(mut self, side: usize, name: impl Into<String>) -> Self {
+        self.sides[side] = Some(name.into());
+        self
+    }
 }
 
 /// Blocks, joined where two of one body share a side.
@@ -97,13 +122,15 @@ impl Block {
 /// ```
 /// use fecontact::mesh::{Block, Blocks, Grading};
 ///
-/// let ground = Block { grading: [Grading::Ratio(1.0), Grading::Ratio(0.2)], ..Block::rectangle("ground", [8, 4], [0.0, -1.0], [4.0, 0.0]) };
+/// let ground = Block::rectangle("ground", [8, 4], [0.0, -1.0], [4.0, 0.0]).grading([Grading::Ratio(1.0), Grading::Ratio(0.2)]);
 /// let block = Block::rectangle("block", [5, 3], [1.0, 0.0], [3.0, 1.0]);
-/// let mesh = Blocks { blocks: vec![ground, block], apart: vec![] }.mesh()?.build()?;
+/// let mesh = Blocks::new([ground, block]).mesh()?.build()?;
 /// assert_eq!((mesh.nodes.len(), mesh.elements.len()), (9 * 5 + 6 * 4, 47));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct Blocks {
     /// blocks; nodes are numbered in their order, row by row from side 0 on
     pub blocks: Vec<Block>,
@@ -114,6 +141,7 @@ pub struct Blocks {
 /// What is wrong with a block, and what to do.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{place}: {message}")]
+#[non_exhaustive]
 pub struct BlockError {
     /// such as `blocks[1].elements`
     pub place: String,
@@ -128,6 +156,11 @@ impl BlockError {
 }
 
 impl Blocks {
+    /// Blocks that are joined where they share a side.
+    pub fn new(blocks: impl Into<Vec<Block>>) -> Self {
+        Self { blocks: blocks.into(), apart: Vec::new() }
+    }
+
     /// The mesh: a body of each name, and a group of edges for each name of sides.
     ///
     /// # Errors

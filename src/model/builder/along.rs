@@ -18,6 +18,8 @@ use crate::model::boundary::Profile;
 
 /// What of friction varies along the slave, and in time: expressions may have the run time t besides x and y.
 #[derive(Clone, Debug, Default, Serialize, JsonSchema)]
+#[non_exhaustive]
+#[must_use]
 pub struct Along {
     /// Other laws than `friction` on parts of the slave; where several say so, the first holds
     #[schemars(default)]
@@ -29,6 +31,18 @@ pub struct Along {
 }
 
 impl Along {
+    /// With a parameter that varies.
+    pub fn parameter(mut self, name: impl Into<String>, profile: impl Into<Profile>) -> Self {
+        self.parameters.insert(name.into(), profile.into());
+        self
+    }
+
+    /// With another law on a part of the slave.
+    pub fn law(mut self, law: LawChoice) -> Self {
+        self.law.push(law);
+        self
+    }
+
     /// Whether nothing varies.
     pub fn is_empty(&self) -> bool {
         self.law.is_empty() && self.parameters.is_empty()
@@ -38,6 +52,8 @@ impl Along {
 /// A law on a part of the slave.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
+#[must_use]
 pub struct LawChoice {
     /// It holds where this is positive
     #[serde(rename = "where")]
@@ -47,6 +63,19 @@ pub struct LawChoice {
     /// Its parameters that vary along the slave, and in time, by name
     #[serde(default)]
     pub along: BTreeMap<String, Profile>,
+}
+
+impl LawChoice {
+    /// A law where a profile is positive.
+    pub fn new(place: impl Into<Profile>, friction: impl Into<FrictionParameters>) -> Self {
+        Self { place: place.into(), friction: friction.into(), along: BTreeMap::new() }
+    }
+
+    /// With a parameter that varies.
+    pub fn parameter(mut self, name: impl Into<String>, profile: impl Into<Profile>) -> Self {
+        self.along.insert(name.into(), profile.into());
+        self
+    }
 }
 
 impl<'de> Deserialize<'de> for Along {
@@ -133,7 +162,7 @@ pub fn friction(given: &Friction, along: &Along, structure: Option<&Profile>, pl
         let name = format!("along.law[{k}]");
         let varying = profiles(along, &format!("{name}.along"));
         let other = with_varying(law.clone(), varying, place, &format!("{name}.friction"))?;
-        friction = friction.but_where(&name, positive.clone(), other);
+        friction = friction.in_region(&name, positive.clone(), other);
     }
     Ok(friction)
 }

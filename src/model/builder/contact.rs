@@ -18,6 +18,8 @@ use crate::model::written::written;
 /// A contact pair.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct Contact {
     /// Name in messages and results; a case has it before the contact
     #[serde(skip)]
@@ -83,6 +85,7 @@ pub struct Contact {
 /// Normal contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Normal {
     /// α_n: pressure per penetration [F/L³]; unless given 10 (λ + 2G)/h, with λ + 2G of the softer of the two sides and the
     /// depth h of the elements behind the slave. A slave group of points has none behind it and needs a number
@@ -96,6 +99,7 @@ pub struct Normal {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[schemars(rename = "Sliding")]
+#[non_exhaustive]
 pub enum SlidingRange {
     /// Any way: every point meets what it faces at the time
     #[default]
@@ -112,6 +116,7 @@ pub enum SlidingRange {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(remote = "Self", rename_all = "snake_case", deny_unknown_fields)]
 #[schemars(rename = "Master")]
+#[non_exhaustive]
 pub enum MasterSide {
     /// A rigid half-space
     Plane {
@@ -156,6 +161,7 @@ impl From<&str> for MasterSide {
 /// Radiation damping of a contact in static steps: whether, or how much.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged, expecting = "must be true, false or a number")]
+#[non_exhaustive]
 pub enum Radiation {
     /// That of the bodies' impedances, dashpots in series, or none
     OfBodies(bool),
@@ -173,6 +179,7 @@ impl Default for Radiation {
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Initial")]
+#[non_exhaustive]
 pub struct InitialTractions {
     /// p: contact pressure, zero or positive [F/L²]
     pub pressure: Option<Profile>,
@@ -231,6 +238,31 @@ impl Contact {
         Self { method: Some(method), ..self }
     }
 
+    /// At this many Gauss points an edge.
+    pub fn points(self, points: usize) -> Self {
+        Self { points: Some(points), ..self }
+    }
+
+    /// With a master whose edges are smoothed to a curve.
+    pub fn smooth(self) -> Self {
+        Self { smooth: true, ..self }
+    }
+
+    /// Of surfaces that overlap at the start and are pressed apart over the first step.
+    pub fn shrink_fit(self) -> Self {
+        Self { shrink_fit: true, ..self }
+    }
+
+    /// With the mass of the slave's nodes moved away from them, which leaves impact without ringing.
+    pub fn massless(self) -> Self {
+        Self { massless: true, ..self }
+    }
+
+    /// With friction that varies along the slave, and in time.
+    pub fn along(self, along: Along) -> Self {
+        Self { along, ..self }
+    }
+
     /// With the pressure raised until no closed gap is larger (augmented Lagrangian) [L].
     pub fn penetration(mut self, largest: f64) -> Self {
         self.normal.penetration = Some(largest);
@@ -277,6 +309,12 @@ impl Contact {
     /// Closed from the start under the tractions with which the initial stress of the slave's body ends there.
     pub fn initial_of_bodies(self) -> Self {
         Self { initial: Some(InitialTractions { of_bodies: true, ..InitialTractions::default() }), ..self }
+    }
+
+    /// Starting with this structure 1/R*, by reference position.
+    pub fn structure(mut self, structure: impl Into<Profile>) -> Self {
+        self.initial.get_or_insert_default().structure = Some(structure.into());
+        self
     }
 
     /// With bodies whose initial stress is in equilibrium with the tractions it starts with.

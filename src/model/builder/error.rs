@@ -16,6 +16,7 @@ use crate::mesh::names::is_unwritable;
 /// Something in a model that cannot be solved as it is given.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{}{message}", if place.is_empty() { String::new() } else { format!("{place}: ") })]
+#[non_exhaustive]
 pub struct ModelError {
     /// Path of what is meant, in the words of the case file: `bodies.block.material`, `steps[0].supports[1].ux`
     pub place: String,

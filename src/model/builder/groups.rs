@@ -16,6 +16,7 @@ use crate::model::{Model, WatchedSet};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(remote = "Self", rename_all = "snake_case")]
 #[schemars(!remote)]
+#[non_exhaustive]
 pub enum Place {
     /// Single node: its tag in the mesh file (its number from 0 in a mesh given in place)
     Node(u64),

@@ -1,23 +1,27 @@
-//! A load step and its loads as they are given: what is not given is as in the step before.
+//! A load step as it is given: what is not given is as in the step before. Its loads are in [`super::load`].
 
 use std::collections::BTreeMap;
 
-use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::groups::Place;
+use super::load::{Change, Load, present};
 use crate::model::Damping;
 use crate::model::boundary::{BodyTemperature, Drive};
 use crate::model::scheme::{Scheme, nine_tenths};
-use crate::model::step::Part;
+use crate::model::step::ForceComponent;
 
 /// Share of a force within which it is met unless told otherwise.
+#[doc(hidden)]
 pub const MET: f64 = 1e-6;
 
 /// A step: a time span with its scheme and increments, supports and loads.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Step")]
+#[non_exhaustive]
+#[must_use]
 pub struct LoadStep {
     /// Name in messages and results
     pub name: String,
@@ -65,6 +69,8 @@ pub struct LoadStep {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Increments")]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct IncrementSettings {
     /// First increment [T]
     pub initial: f64,
@@ -85,6 +91,23 @@ impl From<f64> for IncrementSettings {
     }
 }
 
+impl IncrementSettings {
+    /// Never cut below this [T].
+    pub fn min(self, min: f64) -> Self {
+        Self { min: Some(min), ..self }
+    }
+
+    /// Never growing beyond this [T].
+    pub fn max(self, max: f64) -> Self {
+        Self { max: Some(max), ..self }
+    }
+
+    /// As long as their estimated error stays below this [L].
+    pub fn error(self, error: f64) -> Self {
+        Self { error: Some(error), ..self }
+    }
+}
+
 /// When a step goes on explicitly, and returns to its own scheme. An increment in which a contact point slips faster than
 /// `slip_rate`, or that cannot be solved, is halved down to `dt.min` and, if that does not help, made explicitly. The step
 /// returns when no point has slipped that fast, on the mean of the time that a shear wave takes across the model. What slides
@@ -93,6 +116,8 @@ impl From<f64> for IncrementSettings {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Rupture")]
+#[non_exhaustive]
+#[must_use]
 pub struct RuptureSettings {
     /// Slip rate above which increments are explicit [L/T]
     pub slip_rate: f64,
@@ -101,12 +126,26 @@ pub struct RuptureSettings {
     pub safety: f64,
 }
 
+impl From<f64> for RuptureSettings {
+    fn from(slip_rate: f64) -> Self {
+        Self { slip_rate, safety: nine_tenths() }
+    }
+}
+
+impl RuptureSettings {
+    /// Explicit increments as another share of the longest that is stable [-].
+    pub fn safety(self, safety: f64) -> Self {
+        Self { safety, ..self }
+    }
+}
+
 /// A reaction that ends a step: displacement control up to a force. The increment in which the force passes its value is made
 /// shorter until it has it. Supports that were to come to a value stay where the step has ended; tables and expressions go on by
 /// the time of the run. Exactly one of `fx`, `fy` and `force` is given
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Until")]
+#[non_exhaustive]
 pub struct UntilSettings {
     /// Whose reaction: what supports put on these nodes
     pub on: Place,
@@ -128,8 +167,10 @@ fn met() -> f64 {
 
 impl UntilSettings {
     /// Part of the reaction and its value, if exactly one is given.
-    pub fn part(&self) -> Option<(Part, f64)> {
-        let parts = [(Part::X, self.fx), (Part::Y, self.fy), (Part::Size, self.force)];
+    #[doc(hidden)]
+    pub fn part(&self) -> Option<(ForceComponent, f64)> {
+        let parts =
+            [(ForceComponent::X, self.fx), (ForceComponent::Y, self.fy), (ForceComponent::Magnitude, self.force)];
         let mut given = parts.into_iter().filter_map(|(part, value)| Some((part, value?)));
         given.next().filter(|_| given.next().is_none())
     }
@@ -138,6 +179,8 @@ impl UntilSettings {
 /// A support on a group or a node.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct Support {
     /// Where
     pub on: Place,
@@ -167,6 +210,7 @@ pub struct Support {
 /// A rigid rotation.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct Rotation {
     /// Centre [L]
     pub about: [f64; 2],
@@ -181,6 +225,7 @@ impl Support {
     }
 
     /// Its displacements, with their keys.
+    #[doc(hidden)]
     pub fn displacements(&self) -> impl Iterator<Item = (&'static str, &Change<Drive>)> {
         let all = [("ux", &self.ux), ("uy", &self.uy), ("u", &self.u), ("un", &self.un)];
         all.into_iter().filter_map(|(key, change)| Some((key, change.as_ref()?)))
@@ -234,9 +279,9 @@ impl LoadStep {
         Self { stabilize: Some(share), ..self }
     }
 
-    /// Going on explicitly while a contact slips faster than this [L/T].
-    pub fn rupture(self, slip_rate: f64) -> Self {
-        Self { rupture: Some(RuptureSettings { slip_rate, safety: nine_tenths() }), ..self }
+    /// Going on explicitly while a contact slips faster than this: a slip rate [L/T], or all settings.
+    pub fn rupture(self, rupture: impl Into<RuptureSettings>) -> Self {
+        Self { rupture: Some(rupture.into()), ..self }
     }
 
     /// With another damping of a body from this step on.
@@ -246,8 +291,9 @@ impl LoadStep {
     }
 
     /// Ending before its time when the reaction of a place comes to a value, met to a millionth of it [F].
-    pub fn until(self, on: impl Into<Place>, part: Part, value: f64) -> Self {
-        let [fx, fy, force] = [Part::X, Part::Y, Part::Size].map(|one| (one == part).then_some(value));
+    pub fn until(self, on: impl Into<Place>, part: ForceComponent, value: f64) -> Self {
+        let [fx, fy, force] =
+            [ForceComponent::X, ForceComponent::Y, ForceComponent::Magnitude].map(|one| (one == part).then_some(value));
         Self { until: Some(UntilSettings { on: on.into(), fx, fy, force, tolerance: MET }), ..self }
     }
 
@@ -278,289 +324,5 @@ impl LoadStep {
     pub fn load(mut self, load: Load) -> Self {
         self.loads.push(load);
         self
-    }
-}
-
-/// A load: exactly one kind an entry. It replaces the load of its kind that an earlier step gave there.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Load {
-    /// Where
-    pub on: Place,
-    /// Pressure on edges that follows the surface, positive toward the body [F/L²]
-    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
-    pub pressure: Option<Change<Drive>>,
-    /// Pressure on edges that keeps the force and direction it has on the undeformed edges, positive toward the body [F/L²]
-    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
-    pub dead_pressure: Option<Change<Drive>>,
-    /// Traction on reference edges that keeps its direction [F/L²]
-    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
-    pub traction: Option<Change<Components>>,
-    /// Acceleration of gravity on a body or on point masses [L/T²]
-    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
-    pub gravity: Option<Change<Components>>,
-    /// Force on every node of the group [F]
-    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
-    pub force: Option<Change<Components>>,
-    /// Force on edges as a whole, spread over them as an even traction: a unit of depth in plane strain, the thickness of a
-    /// plate, the full turn of a ring. Its expressions depend on t alone [F]
-    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
-    pub total_force: Option<Change<Components>>,
-    /// Moment on a plate that moves as a rigid body, counter-clockwise; it turns with the plate [F L]
-    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
-    pub moment: Option<Change<Drive>>,
-    /// Spring at every node of the group, to the ground or to a moving driver; what it does to the node counts as work
-    /// from outside
-    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
-    pub spring: Option<Change<SpringLoad>>,
-    /// Dashpot at every node of the group, to the ground or to a moving driver
-    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
-    pub dashpot: Option<Change<DashpotLoad>>,
-    /// true: a side of a body absorbs waves, as if the body went on (Lysmer-Kuhlemeyer: dashpots rho c_p along the normal
-    /// and rho c_s along the side, of the undeformed body); false or null ends it
-    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
-    pub absorbing: Option<Change<bool>>,
-}
-
-/// The one thing that a load does.
-#[derive(Clone, Copy, Debug)]
-pub enum Action<'l> {
-    /// `pressure`
-    Pressure(Option<&'l Drive>),
-    /// `dead_pressure`
-    DeadPressure(Option<&'l Drive>),
-    /// `traction`
-    Traction(Option<&'l Components>),
-    /// `gravity`
-    Gravity(Option<&'l Components>),
-    /// `force`
-    Force(Option<&'l Components>),
-    /// `total_force`
-    TotalForce(Option<&'l Components>),
-    /// `moment`
-    Moment(Option<&'l Drive>),
-    /// `spring`
-    Spring(Option<&'l SpringLoad>),
-    /// `dashpot`
-    Dashpot(Option<&'l DashpotLoad>),
-    /// `absorbing`, and whether it does
-    Absorbing(bool),
-}
-
-/// Components of a vector; zero unless given.
-#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Components {
-    /// x component
-    pub x: Option<Drive>,
-    /// y component
-    pub y: Option<Drive>,
-}
-
-impl Components {
-    /// The component along x (0) or y (1).
-    pub fn along(&self, component: usize) -> Option<&Drive> {
-        if component == 0 { self.x.as_ref() } else { self.y.as_ref() }
-    }
-}
-
-impl<D: Into<Drive>> From<[D; 2]> for Components {
-    fn from([x, y]: [D; 2]) -> Self {
-        Self { x: Some(x.into()), y: Some(y.into()) }
-    }
-}
-
-impl<D: Into<Drive>> From<[D; 2]> for Change<Components> {
-    fn from(components: [D; 2]) -> Self {
-        Self::To(components.into())
-    }
-}
-
-/// A spring.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "Spring")]
-pub struct SpringLoad {
-    /// Stiffness in x [F/L]
-    #[serde(default)]
-    pub kx: f64,
-    /// Stiffness in y [F/L]
-    #[serde(default)]
-    pub ky: f64,
-    /// Displacement of the far end; the ground unless given [L]
-    pub driver: Option<Components>,
-}
-
-/// A dashpot: force c (v_driver − v). In statics v is the mean velocity of the increment.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "Dashpot")]
-pub struct DashpotLoad {
-    /// Coefficient in x [F T/L]
-    #[serde(default)]
-    pub cx: f64,
-    /// Coefficient in y [F T/L]
-    #[serde(default)]
-    pub cy: f64,
-    /// Velocity of the far end; the ground unless given [L/T]
-    pub driver: Option<Components>,
-}
-
-/// To the ground.
-impl From<[f64; 2]> for Change<SpringLoad> {
-    fn from([kx, ky]: [f64; 2]) -> Self {
-        Self::To(SpringLoad { kx, ky, driver: None })
-    }
-}
-
-/// To the ground.
-impl From<[f64; 2]> for Change<DashpotLoad> {
-    fn from([cx, cy]: [f64; 2]) -> Self {
-        Self::To(DashpotLoad { cx, cy, driver: None })
-    }
-}
-
-impl Load {
-    /// Nothing yet at a place.
-    fn on(place: impl Into<Place>) -> Self {
-        Self {
-            on: place.into(),
-            pressure: None,
-            dead_pressure: None,
-            traction: None,
-            gravity: None,
-            force: None,
-            total_force: None,
-            moment: None,
-            spring: None,
-            dashpot: None,
-            absorbing: None,
-        }
-    }
-
-    /// What it does, where exactly one thing is given; without a value where that ends.
-    pub fn action(&self) -> Option<Action<'_>> {
-        let given = [
-            self.pressure.as_ref().map(|change| Action::Pressure(change.given())),
-            self.dead_pressure.as_ref().map(|change| Action::DeadPressure(change.given())),
-            self.traction.as_ref().map(|change| Action::Traction(change.given())),
-            self.gravity.as_ref().map(|change| Action::Gravity(change.given())),
-            self.force.as_ref().map(|change| Action::Force(change.given())),
-            self.total_force.as_ref().map(|change| Action::TotalForce(change.given())),
-            self.moment.as_ref().map(|change| Action::Moment(change.given())),
-            self.spring.as_ref().map(|change| Action::Spring(change.given())),
-            self.dashpot.as_ref().map(|change| Action::Dashpot(change.given())),
-            self.absorbing.as_ref().map(|change| Action::Absorbing(change.given() == Some(&true))),
-        ];
-        let mut given = given.into_iter().flatten();
-        given.next().filter(|_| given.next().is_none())
-    }
-
-    /// Pressure on edges that follows the surface, positive toward the body [F/L²]; [`Change::End`] fades it over the step.
-    pub fn pressure(on: impl Into<Place>, pressure: impl Into<Change<Drive>>) -> Self {
-        Self { pressure: Some(pressure.into()), ..Self::on(on) }
-    }
-
-    /// Pressure on reference edges that keeps its force and direction, positive toward the body [F/L²].
-    pub fn dead_pressure(on: impl Into<Place>, pressure: impl Into<Change<Drive>>) -> Self {
-        Self { dead_pressure: Some(pressure.into()), ..Self::on(on) }
-    }
-
-    /// Traction on reference edges that keeps its direction [F/L²].
-    pub fn traction(on: impl Into<Place>, traction: impl Into<Change<Components>>) -> Self {
-        Self { traction: Some(traction.into()), ..Self::on(on) }
-    }
-
-    /// Gravity on a body or on point masses [L/T²].
-    pub fn gravity(on: impl Into<Place>, acceleration: impl Into<Change<Components>>) -> Self {
-        Self { gravity: Some(acceleration.into()), ..Self::on(on) }
-    }
-
-    /// Force on every node [F].
-    pub fn force(on: impl Into<Place>, force: impl Into<Change<Components>>) -> Self {
-        Self { force: Some(force.into()), ..Self::on(on) }
-    }
-
-    /// Force on edges as a whole, spread over them as an even traction: a unit of depth in plane strain, the thickness of a
-    /// plate, the full turn of a ring [F].
-    pub fn total_force(on: impl Into<Place>, force: impl Into<Change<Components>>) -> Self {
-        Self { total_force: Some(force.into()), ..Self::on(on) }
-    }
-
-    /// A moment on a plate that turns, counter-clockwise [F L].
-    pub fn moment(on: impl Into<Place>, moment: impl Into<Change<Drive>>) -> Self {
-        Self { moment: Some(moment.into()), ..Self::on(on) }
-    }
-
-    /// Springs of the stiffnesses k_x, k_y at every node [F/L]; [`Change::End`] takes them away at once.
-    pub fn spring(on: impl Into<Place>, stiffness: impl Into<Change<SpringLoad>>) -> Self {
-        Self { spring: Some(stiffness.into()), ..Self::on(on) }
-    }
-
-    /// Dashpots of the coefficients c_x, c_y at every node [F T/L].
-    pub fn dashpot(on: impl Into<Place>, coefficients: impl Into<Change<DashpotLoad>>) -> Self {
-        Self { dashpot: Some(coefficients.into()), ..Self::on(on) }
-    }
-
-    /// A side that absorbs waves.
-    pub fn absorbing(on: impl Into<Place>) -> Self {
-        Self { absorbing: Some(Change::To(true)), ..Self::on(on) }
-    }
-}
-
-/// What a step does to a support or a load: give it anew, or end it.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Change<T> {
-    /// From now on it is this
-    To(T),
-    /// It ends
-    End,
-}
-
-impl<T> Change<T> {
-    /// What is given, if it does not end.
-    pub fn given(&self) -> Option<&T> {
-        match self {
-            Self::To(given) => Some(given),
-            Self::End => None,
-        }
-    }
-}
-
-impl<T: Serialize> Serialize for Change<T> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.given().serialize(serializer)
-    }
-}
-
-impl<T: JsonSchema> JsonSchema for Change<T> {
-    fn inline_schema() -> bool {
-        true
-    }
-
-    fn schema_name() -> std::borrow::Cow<'static, str> {
-        Option::<T>::schema_name()
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        Option::<T>::json_schema(generator)
-    }
-}
-
-/// Tell a key that is `null`, which ends what an earlier step gave, from one that is absent and changes nothing.
-fn present<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Change<T>>, D::Error> {
-    let given = Option::deserialize(deserializer)?;
-    Ok(Some(given.map_or(Change::End, Change::To)))
-}
-
-impl From<f64> for Change<Drive> {
-    fn from(value: f64) -> Self {
-        Self::To(value.into())
-    }
-}
-
-impl From<Drive> for Change<Drive> {
-    fn from(drive: Drive) -> Self {
-        Self::To(drive)
     }
 }

@@ -8,7 +8,8 @@ use nalgebra::Vector2;
 
 use super::error::{Checked, ModelError, check_not_negative};
 use super::groups::{Place, edges, group_at, node_lists, nodes_at};
-use super::load_step::{Action, Change, Components, DashpotLoad, Load, LoadStep, SpringLoad};
+use super::load::{Action, Change, Components, DashpotLoad, Load, SpringLoad};
+use super::load_step::LoadStep;
 use super::plates::plate_of_moment;
 use super::section::check_gravity;
 use super::shares::{Share, absorbers, edge_shares, even_shares, mass_shares, pressure_shares};
@@ -21,7 +22,31 @@ use crate::model::told::number;
 /// The most changes of a load within its steps of which the last depends on the first, from place to place.
 const MOST_REMEMBERED: usize = 1000;
 
-/// Loads by place and kind, with the amplitudes that the next step takes over from.
+/// Loads by place and kind, with the amplitudes that the next step takes over from. With it a caller changes a load between two
+/// increments of a run:
+///
+/// ```
+/// use fecontact::laws::bulk::{ElasticConstants, Linear};
+/// use fecontact::mesh::InlineMesh;
+/// use fecontact::model::Model;
+/// use fecontact::model::boundary::Span;
+/// use fecontact::model::builder::{Load, LoadStep, LoadsInForce};
+/// use fecontact::run::Simulation;
+///
+/// let mesh = InlineMesh::default().rectangle("block", [2, 2], [0.0, 0.0], [1.0, 1.0]).build()?;
+/// let steps = [LoadStep::new("press", 1.0).dt(0.25).fix("block_bottom").load(Load::dead_pressure("block_top", 1.0))];
+/// let steel = Linear::new(&ElasticConstants::new(1000.0, 0.3))?;
+/// let mut run = Simulation::new(Model::builder(mesh).body("block", steel).step(steps[0].clone()).build()?);
+/// run.next_increment()?;
+/// // From now on up to twice the pressure, at the end of the step.
+/// let mut loads = LoadsInForce::of_step(run.step_number(), &steps, run.model())?;
+/// let rest = Span { start: run.state().time, end: 1.0 };
+/// loads.change_within(&Load::dead_pressure("block_top", 2.0), "load", rest, run.model())?;
+/// run.change(|step| step.loads = loads.all());
+/// while run.next_increment()?.is_some() {}
+/// assert!((run.reaction("block_bottom")?.y - 2.0).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Default)]
 pub struct LoadsInForce(BTreeMap<(String, Kind), Loads>);
 
@@ -113,7 +138,7 @@ impl LoadsInForce {
     }
 
     /// Give a load anew, or end it.
-    pub fn change(&mut self, load: &Load, place: &str, span: Span, model: &Model) -> Checked<()> {
+    pub(super) fn change(&mut self, load: &Load, place: &str, span: Span, model: &Model) -> Checked<()> {
         let action = action(load, place)?;
         let (kind, ends) = kind(action);
         let on = load.on.settled(&model.mesh).map_err(|message| ModelError::new(format!("{place}.on"), message))?;

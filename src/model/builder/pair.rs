@@ -345,6 +345,7 @@ const NORMAL: f64 = 10.0;
 const TANGENTIAL: f64 = 0.5;
 
 /// α_t of a law that has none of its own, by (1) [F/L³].
+#[doc(hidden)]
 pub fn default_alpha_t(alpha_n: f64) -> f64 {
     TANGENTIAL * alpha_n
 }

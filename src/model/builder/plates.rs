@@ -20,6 +20,7 @@ use crate::model::written::written;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[schemars(rename = "PlateMotion")]
+#[non_exhaustive]
 pub enum Plate {
     /// Alike, without turning: what the name of the group alone says
     #[default]

@@ -16,6 +16,8 @@ use crate::model::{Model, Probe};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Probe")]
+#[non_exhaustive]
+#[must_use]
 pub struct Gauge {
     /// Name in results; a case has it before the gauge
     #[serde(skip)]
@@ -56,7 +58,6 @@ impl Gauge {
     }
 
     /// The body it is in, for places where two bodies touch.
-    #[must_use]
     pub fn of(self, body: impl Into<String>) -> Self {
         Self { body: Some(body.into()), ..self }
     }

@@ -19,7 +19,7 @@ use super::supports::{InForce, freed, supports};
 use crate::contact::pair::ContactPair;
 use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::scheme::Scheme;
-use crate::model::step::{Part, Until};
+use crate::model::step::{ForceComponent, Until};
 use crate::model::support::{Motion, Prescribed};
 use crate::model::{Body, Damping, Increments, Model, Rupture, Step};
 
@@ -245,8 +245,9 @@ pub fn until(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Check
     let Some((part, value)) = given_until.part() else {
         return refused("", "must give exactly one of fx, fy and force".into());
     };
-    if !value.is_finite() || part == Part::Size && value < 0.0 {
-        let kind = if part == Part::Size { "zero or positive, the size of a force" } else { "a finite number" };
+    if !value.is_finite() || part == ForceComponent::Magnitude && value < 0.0 {
+        let kind =
+            if part == ForceComponent::Magnitude { "zero or positive, the size of a force" } else { "a finite number" };
         return refused(&format!(".{}", part.name()), format!("is {value}: must be {kind}"));
     }
     if !(tolerance > 0.0 && tolerance <= LOOSEST) {
@@ -262,9 +263,9 @@ pub fn until(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Check
         step.supports.iter().any(|support| of(&support.at.node()) && support.at.vector()[i] != 0.0)
     };
     let (has, axis) = match part {
-        Part::X => (along(0), " along x"),
-        Part::Y => (along(1), " along y"),
-        Part::Size => (along(0) || along(1), ""),
+        ForceComponent::X => (along(0), " along x"),
+        ForceComponent::Y => (along(1), " along y"),
+        ForceComponent::Magnitude => (along(0) || along(1), ""),
     };
     if !has {
         let message =

@@ -30,7 +30,8 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::error::{Checked, ModelError};
 use super::groups::{Place, edges, nodes_at};
-use super::load_step::{Change, Rotation, Support};
+use super::load::Change;
+use super::load_step::{Rotation, Support};
 use super::plates::check_support;
 use super::shares::pressure_shares;
 use crate::mesh::Edge;

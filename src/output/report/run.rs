@@ -8,7 +8,7 @@ use super::source::{ReportError, Source};
 use super::table::{Column, Columns, Pack, read, sheet};
 use crate::laws::friction::FrictionParameters;
 use crate::output::files;
-use crate::output::interface::read::{StoredContact, contacts};
+use crate::output::store::read::{StoredContact, contacts};
 
 /// Rows of a table at most.
 const ROWS: usize = 40_000;

@@ -8,9 +8,9 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::table::{Pack, Packed};
-use crate::output::interface::STORE;
-use crate::output::interface::read::StoredContact;
 use crate::output::results::{Array, Frame, Grid, frames};
+use crate::output::store::STORE;
+use crate::output::store::read::StoredContact;
 
 /// Places before anything moves are shown as they differ from the middle, so that single precision does far from the origin.
 fn middle(points: &[[f64; 2]]) -> [f64; 2] {

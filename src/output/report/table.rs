@@ -14,7 +14,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::source::ReportError;
-use crate::output::interface::codec::{rounded, shuffled};
+use crate::output::store::codec::{rounded, shuffled};
 
 /// Columns of words; their values are the numbers of the words.
 const WORDS: [&str; 4] = ["step", "contact", "verdict", "reason"];

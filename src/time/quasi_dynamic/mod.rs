@@ -1,17 +1,17 @@
 //! Quasi-dynamic steps: linear bodies without inertia, radiation damping, and friction whose slip rate follows from traction
 //! and state. The interface alone is integrated, explicitly and with error control (`steps.rs`), by the differential equations of
-//! `interface.rs`; the bodies are condensed on it once a step ([`crate::equations::slip_operator`]), and follow where a result is asked
+//! `slip_equations.rs`; the bodies are condensed on it once a step ([`crate::equations::slip_operator`]), and follow where a result is asked
 //! for. Rates of slip may change by ten decades and more in one run, and lengths of steps with them.
 //!
 //! Source: Rice (1993), J. Geophys. Res. 98, 9885; Erickson et al. (2023), Bull. Seismol. Soc. Am. 113, 499 (how the community
 //! compares such runs).
 
-mod interface;
+mod slip_equations;
 mod steps;
 
 use std::sync::Arc;
 
-use self::interface::{Interface, Rates, with_rates};
+use self::slip_equations::{Rates, SlipEquations, with_rates};
 use self::steps::{Steps, Tried};
 use super::accept::{accept, take_stock};
 use crate::contact::force::ContactState;
@@ -137,10 +137,10 @@ impl QuasiDynamic {
         Ok(Gone { steps: gone, next })
     }
 
-    fn interface<'a>(&'a self, state: &'a State) -> Interface<'a> {
+    fn interface<'a>(&'a self, state: &'a State) -> SlipEquations<'a> {
         let states = self.model.contacts.iter().zip(&state.contacts);
         let points = states.flat_map(|(pair, states)| pair.points.iter().zip(states).map(move |(p, s)| (pair, p, s)));
-        Interface { points: points.collect(), by_slip: self.jumps.by_slip(), loading: &self.loading.tractions }
+        SlipEquations { points: points.collect(), by_slip: self.jumps.by_slip(), loading: &self.loading.tractions }
     }
 
     /// The contact states that steps have come to, and the jumps since they began.

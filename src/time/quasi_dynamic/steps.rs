@@ -14,7 +14,7 @@
 //! ```
 //! The last stage is the first of the next step. Source: Dormand & Prince (1980), J. Comput. Appl. Math. 6, 19.
 
-use super::interface::{Interface, Rates, with_rates};
+use super::slip_equations::{Rates, SlipEquations, with_rates};
 
 /// Part of the length that the error allows which is taken.
 const SAFETY: f64 = 0.9;
@@ -32,7 +32,7 @@ pub enum Tried {
 
 /// The integration from one state on.
 pub struct Steps<'a> {
-    interface: Interface<'a>,
+    interface: SlipEquations<'a>,
     /// w, and |∂τ/∂s|/p [-], [1/L]
     weights: Vec<[f64; 2]>,
     tolerance: f64,
@@ -53,7 +53,7 @@ pub struct Steps<'a> {
 
 impl<'a> Steps<'a> {
     /// Begin at a time.
-    pub fn new(interface: Interface<'a>, start: f64, tolerance: f64) -> Self {
+    pub fn new(interface: SlipEquations<'a>, start: f64, tolerance: f64) -> Self {
         let n = interface.points.len();
         let state = |&(pair, slave, state): &(_, _, &crate::contact::force::ContactState)| {
             with_rates(pair, slave, start, |law| law.evolving(&state.friction)).unwrap_or(f64::NAN)

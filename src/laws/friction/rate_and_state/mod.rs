@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::sensitivity::{Direction, SensitiveLaw, Variation};
 use super::{
-    Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, Loading, RateLaw,
+    Answer, Description, FrictionLaw, FrictionResponse, FrictionState, LEAST_SLOPE, LawFailure, PointLoad, RateLaw,
     Regime, Sliding, traction_at_yield,
 };
 use crate::laws::parameter::{InvalidParameter, numbers, require_not_negative, require_positive};
@@ -19,6 +19,8 @@ use relaxation::{Coefficients, Relaxation, Relaxed, arsinh_of_exp};
 /// Parameters of [`RateAndState`] as the case file writes them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct RateAndStateParameters {
     /// f₀: friction coefficient in steady sliding at V₀, f₀ > 0 [-]
     pub f_0: f64,
@@ -41,6 +43,29 @@ pub struct RateAndStateParameters {
     /// α_t: tangential contact stiffness, α_t > 0; by default chosen from the mesh and the bodies [F/L³]
     #[serde(default)]
     pub alpha_t: Option<f64>,
+}
+
+impl RateAndStateParameters {
+    /// Ageing, sliding steadily at the reference rate at the start, with the tangential stiffness left to the contact.
+    pub const fn new(f_0: f64, reference_rate: f64, a: f64, b: f64, critical_slip: f64) -> Self {
+        let evolution = StateEvolution::Ageing;
+        Self { f_0, reference_rate, a, b, critical_slip, evolution, theta: None, alpha_t: None }
+    }
+
+    /// With another evolution of the state.
+    pub const fn evolution(self, evolution: StateEvolution) -> Self {
+        Self { evolution, ..self }
+    }
+
+    /// Starting with this state θ [T].
+    pub const fn theta(self, theta: f64) -> Self {
+        Self { theta: Some(theta), ..self }
+    }
+
+    /// With this tangential stiffness [F/L³].
+    pub const fn alpha_t(self, alpha_t: f64) -> Self {
+        Self { alpha_t: Some(alpha_t), ..self }
+    }
 }
 
 numbers!(
@@ -170,7 +195,7 @@ const OUTWEIGHS: f64 = 0.5;
 /// ẋ = (V₀ e⁻ˣ − V)/D_c   or   ẋ = −V/D_c (x + ln(V/V₀))
 /// ```
 impl RateLaw for RateAndState {
-    fn slip_rate(&self, x: f64, Loading { traction, pressure, damping }: Loading) -> f64 {
+    fn slip_rate(&self, x: f64, PointLoad { traction, pressure, damping }: PointLoad) -> f64 {
         let Coefficients { a, reference_rate, .. } = self.coefficients;
         if traction == 0.0 {
             return 0.0;

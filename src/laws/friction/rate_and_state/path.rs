@@ -2,7 +2,7 @@
 
 use super::RateAndState;
 use crate::laws::friction::sensitivity::{Direction, Variation};
-use crate::laws::friction::{Answer, FrictionResponse, FrictionState, LawFailure, Loading, RateLaw, Regime, Sliding};
+use crate::laws::friction::{Answer, FrictionResponse, FrictionState, LawFailure, PointLoad, RateLaw, Regime, Sliding};
 
 /// Error of a sub-step in |q| and in the mean of q over the slip, relative to f₀ p, and in (a + b) ln θ, relative to f₀: the
 /// errors of several, and of what they start from, come to at most 1e-6.
@@ -106,7 +106,7 @@ impl<'a> Ramp<'a> {
     }
 
     fn rate(&self, state: &FrictionState) -> f64 {
-        let loading = Loading { traction: state.traction, pressure: state.pressure, damping: 0.0 };
+        let loading = PointLoad { traction: state.traction, pressure: state.pressure, damping: 0.0 };
         self.law.slip_rate(self.law.evolving(state), loading)
     }
 

@@ -10,6 +10,7 @@ use crate::laws::friction::{LEAST_SLOPE, LawFailure};
 /// Evolution of the state θ of rate-and-state friction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub enum StateEvolution {
     /// Ageing law, θ̇ = 1 − V θ/D_c: heals at rest
     #[default]

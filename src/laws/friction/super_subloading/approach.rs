@@ -139,6 +139,7 @@ impl SlidingCurve {
 /// Tribology International 43:2120.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub enum Approach {
     /// U = −r ln y
     #[default]

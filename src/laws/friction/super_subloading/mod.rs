@@ -270,6 +270,8 @@ impl FrictionLaw for SuperSubloading {
 /// Parameters of [`SuperSubloading`](super::SuperSubloading) as the case file writes them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
 pub struct SuperSubloadingParameters {
     /// μ_s: static friction coefficient, μ_s ≥ μ_k [-]
     pub mu_s: f64,
@@ -313,7 +315,7 @@ numbers!(SuperSubloadingParameters: "mu_s" mu_s, "mu_k" mu_k, "r" r, "kappa" kap
 
 impl SuperSubloadingParameters {
     /// Neither weakening nor recovery, the tangential stiffness left to the contact, all else as in a case that says no more.
-    pub fn new(mu_s: f64, mu_k: f64, r: f64) -> Self {
+    pub const fn new(mu_s: f64, mu_k: f64, r: f64) -> Self {
         Self {
             mu_s,
             mu_k,
@@ -324,14 +326,59 @@ impl SuperSubloadingParameters {
             m: one(),
             n: one(),
             structure: None,
-            approach: Approach::default(),
+            approach: Approach::Logarithmic,
             elastic_core: 0.0,
-            integration: Integration::default(),
+            integration: Integration::Controlled,
             tolerance: None,
         }
     }
+
+    /// Losing strength with slip at the rate κ [1/L].
+    pub const fn kappa(self, kappa: f64) -> Self {
+        Self { kappa, ..self }
+    }
+
+    /// Recovering at rest at the rate ξ [1/T].
+    pub const fn xi(self, xi: f64) -> Self {
+        Self { xi, ..self }
+    }
+
+    /// With other exponents of weakening and recovery [-].
+    pub const fn exponents(self, m: f64, n: f64) -> Self {
+        Self { m, n, ..self }
+    }
+
+    /// Starting with this structure 1/R* [-].
+    pub const fn structure(self, structure: f64) -> Self {
+        Self { structure: Some(structure), ..self }
+    }
+
+    /// With another approach to full sliding.
+    pub const fn approach(self, approach: Approach) -> Self {
+        Self { approach, ..self }
+    }
+
+    /// With an elastic core R_e [-].
+    pub const fn elastic_core(self, elastic_core: f64) -> Self {
+        Self { elastic_core, ..self }
+    }
+
+    /// With another integration of an increment.
+    pub const fn integration(self, integration: Integration) -> Self {
+        Self { integration, ..self }
+    }
+
+    /// With another tolerance of the controlled integration [-].
+    pub const fn tolerance(self, tolerance: f64) -> Self {
+        Self { tolerance: Some(tolerance), ..self }
+    }
+
+    /// With this tangential stiffness [F/L³].
+    pub const fn alpha_t(self, alpha_t: f64) -> Self {
+        Self { alpha_t: Some(alpha_t), ..self }
+    }
 }
 
-fn one() -> f64 {
+const fn one() -> f64 {
     1.0
 }

@@ -19,6 +19,7 @@ use crate::laws::friction::root::{Argument, bracketed_root};
 /// How the evolution of an increment is integrated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub enum Integration {
     /// Sub-steps of second order, as many as the tolerance asks for
     #[default]
@@ -403,6 +404,7 @@ fn logarithmic(power: f64, x: f64) -> f64 {
 
 /// What the parameters of a law mean for the coefficient q/p, with slip so fast that nothing heals meanwhile.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Onset {
     /// from long rest, μ = μ_s
     pub rested: Rise,
@@ -418,6 +420,7 @@ pub struct Onset {
 
 /// How friction rises in fast slip.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Rise {
     /// largest q/p = R μ [-]
     pub peak: f64,

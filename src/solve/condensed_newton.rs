@@ -32,7 +32,7 @@ pub const MOST_MEMORY: usize = 2 << 30;
 const DENSE: f64 = 3.0;
 
 /// The bodies of a model condensed on the nodes at its contacts.
-pub struct Interface {
+pub struct CondensedNewton {
     /// the nodes
     pub nodes: ContactNodes,
     /// Whether LU of all their equations is worth it, not only of the half that varies while nothing opens
@@ -86,7 +86,7 @@ impl Constants {
     }
 }
 
-impl Interface {
+impl CondensedNewton {
     /// The interface of a model whose increments are worth condensing.
     pub fn new(model: &Arc<Model>) -> Option<Self> {
         if model.contacts.is_empty() || !model.steps.iter().any(|step| is_linear(model, step)) {

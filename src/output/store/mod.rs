@@ -20,7 +20,7 @@ use std::path::Path;
 use serde_json::{Map, json};
 
 use self::arrays::{along, prefixes, quantity, time};
-use self::zarr::Store;
+use self::zarr::{Saved, Store};
 use super::csv;
 use super::quantities::IN_STORE;
 use crate::contact::force::ContactState;
@@ -55,6 +55,9 @@ const SLIP_RATE: usize = 2;
 
 /// Time and quantities of all contacts, one after the other.
 type Record = Vec<Vec<f64>>;
+
+/// What is remembered: of the store, and of the records.
+type Memory = (Saved, Option<Record>, (f64, Vec<Vec<f64>>));
 
 impl InterfaceStore {
     /// Create the store in `folder`; `start` is the state before the first increment. Units are labels of `length`, `force`,
@@ -153,12 +156,12 @@ impl Observer for InterfaceStore {
     }
 
     fn check(&self, memory: &[u8]) -> Result<(), Error> {
-        self.store.check(&csv::recalled(memory)?)
+        self.store.check(&csv::recalled::<Memory>(memory)?.0)
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
         let saved;
-        (saved, self.held, self.last) = csv::recalled(memory)?;
+        (saved, self.held, self.last) = csv::recalled::<Memory>(memory)?;
         self.store.restore(saved)
     }
 

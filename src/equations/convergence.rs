@@ -39,7 +39,7 @@ const LOST: f64 = 10.0;
 
 /// What must be in equilibrium by itself.
 #[derive(Clone, Debug)]
-struct Part {
+struct BalancedSet {
     nodes: Vec<usize>,
     /// Number of the contact whose forces measure it; all forces do if it is none
     contact: Option<usize>,
@@ -47,8 +47,8 @@ struct Part {
 
 /// The parts of a model, and what round-off can leave at their nodes.
 #[derive(Clone, Debug)]
-pub(super) struct Equilibrium {
-    parts: Vec<Part>,
+pub(super) struct ConvergenceCriterion {
+    parts: Vec<BalancedSet>,
     /// Σ (C h)², Σ C² and Σ (τ C)² of the elements at each node
     stiffness: Vec<[f64; 3]>,
     /// that of the bodies for which these are
@@ -64,7 +64,7 @@ pub(super) struct Equilibrium {
     own: Vec<f64>,
 }
 
-impl Equilibrium {
+impl ConvergenceCriterion {
     pub(super) fn new(model: &Model) -> Self {
         let count = model.mesh.nodes.len();
         let mut stiffness = vec![[0.0; 3]; count];
@@ -82,12 +82,15 @@ impl Equilibrium {
                 stiffness[node][2] += viscous * viscous;
             }
         }
-        let of_body = |body: &Body| Part { nodes: model.ties.originals(body.nodes.iter().copied()), contact: None };
+        let of_body =
+            |body: &Body| BalancedSet { nodes: model.ties.originals(body.nodes.iter().copied()), contact: None };
         let bodies = model.bodies.iter().map(of_body);
-        let of_contact =
-            |(k, pair): (usize, &ContactPair)| Part { nodes: model.ties.originals(pair.nodes()), contact: Some(k) };
+        let of_contact = |(k, pair): (usize, &ContactPair)| BalancedSet {
+            nodes: model.ties.originals(pair.nodes()),
+            contact: Some(k),
+        };
         let surfaces = model.contacts.iter().enumerate().map(of_contact);
-        let lone = (0..count).filter(|&node| lone[node]).map(|node| Part { nodes: vec![node], contact: None });
+        let lone = (0..count).filter(|&node| lone[node]).map(|node| BalancedSet { nodes: vec![node], contact: None });
         Self {
             parts: bodies.chain(surfaces).chain(lone).collect(),
             stiffness,
@@ -146,7 +149,7 @@ impl Equilibrium {
     }
 }
 
-impl Equilibrium {
+impl ConvergenceCriterion {
     /// Norm of the forces at work, and how far the worst part is from equilibrium, (1) and (2).
     pub(super) fn measure(
         &self,

@@ -8,7 +8,7 @@ use super::codec::{Number, RELATIVE_ERROR};
 use super::zarr::Description;
 use crate::contact::pair::ContactPair;
 use crate::model::Model;
-use crate::output::events::{Interface, Point};
+use crate::output::events::{ContactPoints, Point};
 use crate::output::quantities::{LENGTH, NONE, PLACE, Quantity, TIME, Unit, in_store};
 
 /// What a friction-free contact's slip is.
@@ -47,7 +47,7 @@ pub fn along(
     prefix: &str,
     units: &BTreeMap<String, String>,
 ) -> Vec<(Description, Vec<f64>)> {
-    let points = Interface::new(model, pair).points;
+    let points = ContactPoints::new(model, pair).points;
     let array = |of: Quantity, value: fn(&Point) -> f64| {
         let mut attributes = Map::new();
         attributes.insert("long_name".into(), json!(format!("{}: {}", pair.name, of.meaning)));

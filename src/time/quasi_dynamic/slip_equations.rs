@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use crate::contact::force::ContactState;
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
-use crate::laws::friction::{Loading, RateLaw};
+use crate::laws::friction::{PointLoad, RateLaw};
 
 /// Points that one thread takes at a time; their order does not matter to any sum.
 const PART: usize = 32;
@@ -45,7 +45,7 @@ impl Rates {
 }
 
 /// The points of all contacts from one state on.
-pub struct Interface<'a> {
+pub struct SlipEquations<'a> {
     /// contact, point and state at t₀ of each
     pub points: Vec<(&'a ContactPair, &'a SlavePoint, &'a ContactState)>,
     /// Y of (3), row by row
@@ -54,7 +54,7 @@ pub struct Interface<'a> {
     pub loading: &'a [f64],
 }
 
-impl Interface<'_> {
+impl SlipEquations<'_> {
     /// All rates at a time after t₀, from the slips since then and the states, both in one list; `now` is the run time.
     pub fn rates(&self, now: f64, since: f64, z: &[f64], rates: &mut Vec<Rates>) {
         let points = 0..self.points.len();
@@ -68,7 +68,7 @@ impl Interface<'_> {
         let change = |row: usize| dot(&self.by_slip[row * n..(row + 1) * n], &z[..n]) + self.loading[row] * since;
         let pressure = start.friction.pressure + change(k);
         let traction = start.friction.traction + start.radiation - change(n + k);
-        let loading = Loading { traction, pressure, damping: pair.radiation };
+        let loading = PointLoad { traction, pressure, damping: pair.radiation };
         let answer = with_rates(pair, slave, now, |law| {
             let slip_rate = law.slip_rate(z[n + k], loading);
             (slip_rate, law.evolution(z[n + k], slip_rate))

@@ -1,0 +1,338 @@
+//! Loads as they are given, and what a step changes or ends.
+
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::groups::Place;
+use crate::model::boundary::Drive;
+
+/// A load: exactly one kind an entry. It replaces the load of its kind that an earlier step gave there.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
+pub struct Load {
+    /// Where
+    pub on: Place,
+    /// Pressure on edges that follows the surface, positive toward the body [F/L²]
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub pressure: Option<Change<Drive>>,
+    /// Pressure on edges that keeps the force and direction it has on the undeformed edges, positive toward the body [F/L²]
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub dead_pressure: Option<Change<Drive>>,
+    /// Traction on reference edges that keeps its direction [F/L²]
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub traction: Option<Change<Components>>,
+    /// Acceleration of gravity on a body or on point masses [L/T²]
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub gravity: Option<Change<Components>>,
+    /// Force on every node of the group [F]
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub force: Option<Change<Components>>,
+    /// Force on edges as a whole, spread over them as an even traction: a unit of depth in plane strain, the thickness of a
+    /// plate, the full turn of a ring. Its expressions depend on t alone [F]
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub total_force: Option<Change<Components>>,
+    /// Moment on a plate that moves as a rigid body, counter-clockwise; it turns with the plate [F L]
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub moment: Option<Change<Drive>>,
+    /// Spring at every node of the group, to the ground or to a moving driver; what it does to the node counts as work
+    /// from outside
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub spring: Option<Change<SpringLoad>>,
+    /// Dashpot at every node of the group, to the ground or to a moving driver
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub dashpot: Option<Change<DashpotLoad>>,
+    /// true: a side of a body absorbs waves, as if the body went on (Lysmer-Kuhlemeyer: dashpots rho c_p along the normal
+    /// and rho c_s along the side, of the undeformed body); false or null ends it
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub absorbing: Option<Change<bool>>,
+}
+
+/// The one thing that a load does.
+#[derive(Clone, Copy, Debug)]
+#[doc(hidden)]
+pub enum Action<'l> {
+    /// `pressure`
+    Pressure(Option<&'l Drive>),
+    /// `dead_pressure`
+    DeadPressure(Option<&'l Drive>),
+    /// `traction`
+    Traction(Option<&'l Components>),
+    /// `gravity`
+    Gravity(Option<&'l Components>),
+    /// `force`
+    Force(Option<&'l Components>),
+    /// `total_force`
+    TotalForce(Option<&'l Components>),
+    /// `moment`
+    Moment(Option<&'l Drive>),
+    /// `spring`
+    Spring(Option<&'l SpringLoad>),
+    /// `dashpot`
+    Dashpot(Option<&'l DashpotLoad>),
+    /// `absorbing`, and whether it does
+    Absorbing(bool),
+}
+
+/// Components of a vector; zero unless given.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+pub struct Components {
+    /// x component
+    pub x: Option<Drive>,
+    /// y component
+    pub y: Option<Drive>,
+}
+
+impl Components {
+    /// The component along x (0) or y (1).
+    pub fn along(&self, component: usize) -> Option<&Drive> {
+        if component == 0 { self.x.as_ref() } else { self.y.as_ref() }
+    }
+}
+
+impl<D: Into<Drive>> From<[D; 2]> for Components {
+    fn from([x, y]: [D; 2]) -> Self {
+        Self { x: Some(x.into()), y: Some(y.into()) }
+    }
+}
+
+impl<D: Into<Drive>> From<[D; 2]> for Change<Components> {
+    fn from(components: [D; 2]) -> Self {
+        Self::To(components.into())
+    }
+}
+
+/// A spring.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Spring")]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
+pub struct SpringLoad {
+    /// Stiffness in x [F/L]
+    #[serde(default)]
+    pub kx: f64,
+    /// Stiffness in y [F/L]
+    #[serde(default)]
+    pub ky: f64,
+    /// Displacement of the far end; the ground unless given [L]
+    pub driver: Option<Components>,
+}
+
+impl SpringLoad {
+    /// Of the stiffness along x and along y, to the ground [F/L].
+    pub fn new(kx: f64, ky: f64) -> Self {
+        Self { kx, ky, driver: None }
+    }
+
+    /// To a far end that moves: its displacement [L].
+    pub fn driver(self, driver: impl Into<Components>) -> Self {
+        Self { driver: Some(driver.into()), ..self }
+    }
+}
+
+/// A dashpot: force c (v_driver − v). In statics v is the mean velocity of the increment.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Dashpot")]
+#[cfg_attr(not(feature = "internals"), non_exhaustive)]
+#[must_use]
+pub struct DashpotLoad {
+    /// Coefficient in x [F T/L]
+    #[serde(default)]
+    pub cx: f64,
+    /// Coefficient in y [F T/L]
+    #[serde(default)]
+    pub cy: f64,
+    /// Velocity of the far end; the ground unless given [L/T]
+    pub driver: Option<Components>,
+}
+
+impl DashpotLoad {
+    /// Of the coefficient along x and along y, to the ground [F T/L].
+    pub fn new(cx: f64, cy: f64) -> Self {
+        Self { cx, cy, driver: None }
+    }
+
+    /// To a far end that moves: its velocity [L/T].
+    pub fn driver(self, driver: impl Into<Components>) -> Self {
+        Self { driver: Some(driver.into()), ..self }
+    }
+}
+
+impl From<SpringLoad> for Change<SpringLoad> {
+    fn from(spring: SpringLoad) -> Self {
+        Self::To(spring)
+    }
+}
+
+impl From<DashpotLoad> for Change<DashpotLoad> {
+    fn from(dashpot: DashpotLoad) -> Self {
+        Self::To(dashpot)
+    }
+}
+
+/// To the ground.
+impl From<[f64; 2]> for Change<SpringLoad> {
+    fn from([kx, ky]: [f64; 2]) -> Self {
+        Self::To(SpringLoad::new(kx, ky))
+    }
+}
+
+/// To the ground.
+impl From<[f64; 2]> for Change<DashpotLoad> {
+    fn from([cx, cy]: [f64; 2]) -> Self {
+        Self::To(DashpotLoad::new(cx, cy))
+    }
+}
+
+impl Load {
+    /// Nothing yet at a place.
+    fn on(place: impl Into<Place>) -> Self {
+        Self {
+            on: place.into(),
+            pressure: None,
+            dead_pressure: None,
+            traction: None,
+            gravity: None,
+            force: None,
+            total_force: None,
+            moment: None,
+            spring: None,
+            dashpot: None,
+            absorbing: None,
+        }
+    }
+
+    /// What it does, where exactly one thing is given; without a value where that ends.
+    #[doc(hidden)]
+    pub fn action(&self) -> Option<Action<'_>> {
+        let given = [
+            self.pressure.as_ref().map(|change| Action::Pressure(change.given())),
+            self.dead_pressure.as_ref().map(|change| Action::DeadPressure(change.given())),
+            self.traction.as_ref().map(|change| Action::Traction(change.given())),
+            self.gravity.as_ref().map(|change| Action::Gravity(change.given())),
+            self.force.as_ref().map(|change| Action::Force(change.given())),
+            self.total_force.as_ref().map(|change| Action::TotalForce(change.given())),
+            self.moment.as_ref().map(|change| Action::Moment(change.given())),
+            self.spring.as_ref().map(|change| Action::Spring(change.given())),
+            self.dashpot.as_ref().map(|change| Action::Dashpot(change.given())),
+            self.absorbing.as_ref().map(|change| Action::Absorbing(change.given() == Some(&true))),
+        ];
+        let mut given = given.into_iter().flatten();
+        given.next().filter(|_| given.next().is_none())
+    }
+
+    /// Pressure on edges that follows the surface, positive toward the body [F/L²]; [`Change::End`] fades it over the step.
+    pub fn pressure(on: impl Into<Place>, pressure: impl Into<Change<Drive>>) -> Self {
+        Self { pressure: Some(pressure.into()), ..Self::on(on) }
+    }
+
+    /// Pressure on reference edges that keeps its force and direction, positive toward the body [F/L²].
+    pub fn dead_pressure(on: impl Into<Place>, pressure: impl Into<Change<Drive>>) -> Self {
+        Self { dead_pressure: Some(pressure.into()), ..Self::on(on) }
+    }
+
+    /// Traction on reference edges that keeps its direction [F/L²].
+    pub fn traction(on: impl Into<Place>, traction: impl Into<Change<Components>>) -> Self {
+        Self { traction: Some(traction.into()), ..Self::on(on) }
+    }
+
+    /// Gravity on a body or on point masses [L/T²].
+    pub fn gravity(on: impl Into<Place>, acceleration: impl Into<Change<Components>>) -> Self {
+        Self { gravity: Some(acceleration.into()), ..Self::on(on) }
+    }
+
+    /// Force on every node [F].
+    pub fn force(on: impl Into<Place>, force: impl Into<Change<Components>>) -> Self {
+        Self { force: Some(force.into()), ..Self::on(on) }
+    }
+
+    /// Force on edges as a whole, spread over them as an even traction: a unit of depth in plane strain, the thickness of a
+    /// plate, the full turn of a ring [F].
+    pub fn total_force(on: impl Into<Place>, force: impl Into<Change<Components>>) -> Self {
+        Self { total_force: Some(force.into()), ..Self::on(on) }
+    }
+
+    /// A moment on a plate that turns, counter-clockwise [F L].
+    pub fn moment(on: impl Into<Place>, moment: impl Into<Change<Drive>>) -> Self {
+        Self { moment: Some(moment.into()), ..Self::on(on) }
+    }
+
+    /// Springs of the stiffnesses k_x, k_y at every node [F/L]; [`Change::End`] takes them away at once.
+    pub fn spring(on: impl Into<Place>, stiffness: impl Into<Change<SpringLoad>>) -> Self {
+        Self { spring: Some(stiffness.into()), ..Self::on(on) }
+    }
+
+    /// Dashpots of the coefficients c_x, c_y at every node [F T/L].
+    pub fn dashpot(on: impl Into<Place>, coefficients: impl Into<Change<DashpotLoad>>) -> Self {
+        Self { dashpot: Some(coefficients.into()), ..Self::on(on) }
+    }
+
+    /// A side that absorbs waves.
+    pub fn absorbing(on: impl Into<Place>) -> Self {
+        Self { absorbing: Some(Change::To(true)), ..Self::on(on) }
+    }
+}
+
+/// What a step does to a support or a load: give it anew, or end it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Change<T> {
+    /// From now on it is this
+    To(T),
+    /// It ends
+    End,
+}
+
+impl<T> Change<T> {
+    /// What is given, if it does not end.
+    pub fn given(&self) -> Option<&T> {
+        match self {
+            Self::To(given) => Some(given),
+            Self::End => None,
+        }
+    }
+}
+
+impl<T: Serialize> Serialize for Change<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.given().serialize(serializer)
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for Change<T> {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        Option::<T>::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        Option::<T>::json_schema(generator)
+    }
+}
+
+/// Tell a key that is `null`, which ends what an earlier step gave, from one that is absent and changes nothing.
+pub(super) fn present<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<Change<T>>, D::Error> {
+    let given = Option::deserialize(deserializer)?;
+    Ok(Some(given.map_or(Change::End, Change::To)))
+}
+
+impl From<f64> for Change<Drive> {
+    fn from(value: f64) -> Self {
+        Self::To(value.into())
+    }
+}
+
+impl From<Drive> for Change<Drive> {
+    fn from(drive: Drive) -> Self {
+        Self::To(drive)
+    }
+}
