@@ -130,7 +130,7 @@ impl Opened {
     }
 
     fn not_of(&self, place: &str, message: String) -> CaseError {
-        Complaint::new(place, format!("{message}, so the run cannot go on from its checkpoint")).in_file(&self.path)
+        Complaint::new(place, format!("{message}; the run cannot be resumed from its checkpoint")).in_file(&self.path)
     }
 
     /// A structure that the other case has left must be one of the law as it is now.
@@ -149,7 +149,10 @@ impl Opened {
             let varies = of_law || !input.along.law.is_empty();
             if let Some(mu) = pair.points.iter().zip(states).map(mu).find(|mu| !varies && !allowed.contains(mu)) {
                 let place = format!("contacts.{}.friction", pair.name);
-                let message = format!("a point comes with mu = {mu}, outside mu_k = {lowest} to mu_s = {highest}");
+                let message = format!(
+                    "a point carries over mu = {mu}, outside the range from mu_k = {lowest} to mu_s \
+                                       = {highest}"
+                );
                 return Err(Complaint::new(place, message));
             }
         }
@@ -215,7 +218,7 @@ fn begun(document: &mut Value, source: &Path) -> Checked<(PathBuf, Checkpoint)> 
     };
     if !checkpoint.complete {
         let message =
-            format!("{}: has not come to its end: go on with it first (fecontact run --resume)", source.display());
+            format!("{}: the run is not complete: resume it first (fecontact run --resume)", source.display());
         return Err(complain(message));
     }
     let before = document_of(&checkpoint)?;
@@ -227,7 +230,7 @@ fn begun(document: &mut Value, source: &Path) -> Checked<(PathBuf, Checkpoint)> 
         }
     }
     differences.retain(|difference| !difference.is_variant());
-    told(differences, "this case is not one that can begin there")?;
+    told(differences, "this case cannot begin with the end of that run")?;
     join(document, steps(&before));
     Ok((file, checkpoint))
 }

@@ -142,7 +142,7 @@ fn start(input: &LawTestInput, law: &dyn FrictionLaw, pressure: f64) -> Checked<
     let strength = law.description().starting_limit(pressure);
     if traction.abs() > strength * (1.0 + SAME) {
         let message = format!(
-            "is {traction}, beyond the strength mu p = {} · {pressure} = {strength} at the start: lower it, or raise the \
+            "is {traction}, above the initial strength mu p = {} · {pressure} = {strength}: lower it, or raise the \
              pressure or the structure",
             observables::value(law, "mu", &at_rest)
         );
@@ -215,7 +215,7 @@ fn check_continuous(place: &str, course: &Course, reached: f64, span: Span) -> C
     let first = course.value(span.start, span);
     // What is not finite is complained of later.
     if (first - reached).abs() > SAME * first.abs().max(reached.abs()).max(f64::MIN_POSITIVE) {
-        let message = format!("jumps from {reached} to {first} at the time {}: begin where it was", span.start);
+        let message = format!("jumps from {reached} to {first} at t = {}: start from the value reached", span.start);
         return Err(Complaint::new(place, message));
     }
     Ok(())
@@ -226,7 +226,7 @@ fn table_of(input: &LawTestInput, table: &[[f64; 3]]) -> Checked<Phase> {
         return Err(Complaint::new("table", "must have two rows [time, slip, pressure] or more"));
     };
     if let Some(pair) = table.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
-        let message = format!("the times must ascend: {} follows {}", pair[1][0], pair[0][0]);
+        let message = format!("the times must increase: {} follows {}", pair[1][0], pair[0][0]);
         return Err(Complaint::new("table", message));
     }
     let span = Span { start: *start, end: *end };
@@ -255,7 +255,10 @@ fn check_dt(place: &str, dt: f64, span: Span) -> Checked<()> {
     check_positive(place, dt)?;
     let steps = (span.end - span.start) / dt;
     if steps > MOST_STEPS {
-        let message = format!("is {dt:e}: that makes {steps:.1e} steps of a phase, and {MOST_STEPS:e} are the most");
+        let message = format!(
+            "is {dt:e}: that makes {steps:.1e} steps in a phase, and at most {MOST_STEPS:e} are \
+                               allowed"
+        );
         return Err(Complaint::new(place, message));
     }
     let least = SHORTEST_STEP * span.end.abs().max(span.start.abs());

@@ -92,7 +92,7 @@ fn document(text: &str) -> Result<Value, Complaint> {
     let mut json = serde_json::Deserializer::from_str(text);
     let Document(document) = serde_path_to_error::deserialize(&mut json)
         .map_err(|error| Complaint::new(place(error.path(), None), not_json(error.inner())))?;
-    json.end().map_err(|error| Complaint::new("", format!("goes on after the end of its JSON object: {error}")))?;
+    json.end().map_err(|error| Complaint::new("", format!("has text after the end of its JSON object: {error}")))?;
     Ok(document)
 }
 
@@ -106,11 +106,11 @@ fn not_json(error: &serde_json::Error) -> String {
             format!("the file ends too early, at line {line}: a brace, bracket or quotation mark is not closed")
         }
         (_, "number out of range") => {
-            format!("the number at line {line}, column {column} is too large for a computer to hold")
+            format!("the number at line {line}, column {column} is too large for double precision")
         }
         (_, "expected value" | "expected ident") => format!(
-            "no JSON value stands at line {line}, column {column}: give a number, \"text\", true, false, null, […] or \
-             {{…}} (JSON has no NaN and no infinity)"
+            "there is no JSON value at line {line}, column {column}: give a number, \"text\", true, false, null, […] \
+             or {{…}} (JSON has no NaN and no infinity)"
         ),
         (Category::Syntax, _) => format!("this is not JSON: {cause} at line {line}, column {column}"),
         _ => format!("{cause} (line {line}, column {column})"),
@@ -171,7 +171,7 @@ impl<'de> Visitor<'de> for DocumentVisitor {
         let mut object = Map::new();
         while let Some((key, Document(value))) = entries.next_entry::<String, Document>()? {
             if object.contains_key(&key) {
-                return Err(A::Error::custom(format!("the key `{key}` stands here twice: keep one, or rename one")));
+                return Err(A::Error::custom(format!("the key `{key}` appears here twice: keep one, or rename one")));
             }
             object.insert(key, value);
         }
@@ -366,7 +366,7 @@ fn unknown(message: &str) -> String {
     let known: Vec<&str> = quoted.collect();
     let name_shown = clipped(name);
     if known.is_empty() {
-        return format!("`{name_shown}` is not known here: leave it out, nothing more may stand in this object");
+        return format!("`{name_shown}` is not known here: leave it out, this object takes no further keys");
     }
     let meant =
         nearest(name, known.iter().copied()).map_or_else(String::new, |near| format!("; did you mean `{near}`?"));

@@ -94,7 +94,7 @@ pub fn law(path: &Path, out: Option<PathBuf>) -> Result<(), Failure> {
 /// The last lines of a test on stderr.
 fn conclude_law(report: &LawReport, folder: &Path) {
     let LawReport { steps, most_evaluations, peaks, dissipation, warnings } = report;
-    say!("{steps} steps, at most {most_evaluations} evaluations of the law's equation in one");
+    say!("{steps} steps, at most {most_evaluations} evaluations of the law's equation per step");
     if let Some(PathPoint { time, slip, coefficient, mu }) = peaks.peak {
         say!("peak |q|/p = {coefficient:.6} at t = {time:.6}, slip = {slip:.6}, where mu was {mu:.6}");
     }

@@ -119,7 +119,7 @@ impl Observer for Progress {
                 say!("{}", message(model, attempt, false));
                 self.lines += 1;
                 if self.lines == LINES {
-                    say!("… from here on not every increment has a line");
+                    say!("… from here on only some increments are printed");
                 }
                 self.next = if self.lines < LINES { now } else { now + PAUSE };
             }
@@ -160,7 +160,7 @@ fn message(model: &Model, attempt: &Attempt, terse: bool) -> String {
 
 /// That an attempt was given up, and why; in a `terse` line what it failed by.
 fn given_up(attempt: &Attempt, terse: bool) -> String {
-    let what = if attempt.verdict == Verdict::Unsolved { "given up" } else { "repeated" };
+    let what = if attempt.verdict == Verdict::Unsolved { "rejected" } else { "repeated" };
     let when = match attempt.iterations.len() {
         0 => "before a solve".into(),
         solves => format!("after {}", count(solves, "iteration")),

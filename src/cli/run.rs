@@ -81,11 +81,11 @@ impl Told {
     pub fn start(Job { opened, model, saved, damage, .. }: &Job, voice: &Voice) -> Self {
         let saved = saved.as_ref().filter(|_| opened.resumes());
         if let Some(damage) = damage {
-            voice.warn(&format!("{damage}; the checkpoint before it is taken"));
+            voice.warn(&format!("{damage}; the previous checkpoint is used"));
         }
         match saved.map(|saved| saved.simulation().state()) {
             Some(state) => {
-                voice.say(&format!("going on from t = {} after {} increments", told(state.time), state.increment));
+                voice.say(&format!("resuming at t = {} after {} increments", told(state.time), state.increment));
             }
             None => {
                 model.warnings().iter().for_each(|warning| voice.warn(warning));
@@ -116,9 +116,9 @@ fn conclude(summary: &Summary, model: &Model, folder: &Path, supplied: f64) {
         report.wall_s.total,
         folder.display()
     );
-    summary.friction_course.iter().for_each(|(name, course)| say!("contact `{name}` {course}"));
+    summary.friction_course.iter().for_each(|(name, course)| say!("contact `{name}`: {course}"));
     if !report.given_up.is_empty() {
-        say!("given up: {}; `reason` in newton.csv tells of each", most_first(&report.given_up));
+        say!("rejected attempts: {} (see column `reason` of newton.csv)", most_first(&report.given_up));
     }
     if model.steps.iter().any(|step| step.scheme.is_dynamic() || step.rupture.is_some()) {
         audit(&report.energy, supplied);
@@ -136,7 +136,7 @@ fn most_first(given_up: &BTreeMap<String, usize>) -> String {
 fn audit(energy: &Energy, supplied: f64) {
     let share = if supplied > 0.0 { 100.0 * energy.error() / supplied } else { 0.0 };
     let radiated = if energy.radiated > 0.0 { format!(", {:.6e} radiated", energy.radiated) } else { String::new() };
-    say!("energy: {:.6e} at the start, {:.6e} from outside", energy.initial, energy.external_work);
+    say!("energy: {:.6e} initial, {:.6e} external work", energy.initial, energy.external_work);
     say!(
         "        {:.6e} kinetic, {:.6e} strain, {:.6e} in contacts",
         energy.kinetic,
@@ -144,7 +144,7 @@ fn audit(energy: &Energy, supplied: f64) {
         energy.contact_elastic
     );
     say!(
-        "        {:.6e} taken by friction, {:.6e} by damping{radiated}, {:.1e} ({share:.4} %) unaccounted for",
+        "        {:.6e} dissipated by friction, {:.6e} by damping{radiated}, {:.1e} ({share:.4} %) unaccounted for",
         energy.friction_dissipation,
         energy.damping_dissipation,
         energy.error()

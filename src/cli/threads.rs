@@ -53,7 +53,7 @@ fn as_usual() -> Result<(), Failure> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from).min(MOST);
     let fitting = address_space().map_or(cores, |left| cores.min(left / (THREAD * MIB)));
     let waiting = (1..fitting).map_while(|_| started().ok()).collect();
-    set_to_work(waiting).map_err(|cause| Failure::BadInput(format!("the threads cannot be set to work: {cause}")))
+    set_to_work(waiting).map_err(|cause| Failure::BadInput(format!("the threads cannot be started: {cause}")))
 }
 
 /// Refuse more threads than the limit of the address space leaves room for: one that is made, and finds no memory when its turn
@@ -78,7 +78,7 @@ fn started() -> io::Result<Sender<ThreadBuilder>> {
 
 /// Make this thread and those that wait the ones of all parallel work.
 fn set_to_work(mut waiting: Vec<Sender<ThreadBuilder>>) -> Result<(), String> {
-    let lost = || io::Error::other("a thread is gone");
+    let lost = || io::Error::other("a thread has ended unexpectedly");
     let pool = ThreadPoolBuilder::new().num_threads(waiting.len() + 1).use_current_thread();
     let pool = pool.spawn_handler(|thread| waiting.pop().and_then(|one| one.send(thread).ok()).ok_or_else(lost));
     pool.build_global().map_err(|error| error.to_string())

@@ -103,7 +103,7 @@ impl SlipOperator {
         let mut system = bodies.system();
         let mut condensation = Condensation::new(system.tangent.pattern.clone(), &nodes.nodes)?;
         bodies.assemble(trial, &vec![0.0; model.dofs()], &[], Request::Tangent, &mut system)?;
-        let held = || LinearFailure::Singular("something is held by contact alone, or by nothing".into());
+        let held = || LinearFailure::Singular("a body is constrained only by contact, or not at all".into());
         let condensed = condensation.condense(&system.tangent).ok_or_else(held)?;
         let points: Vec<Facing> = model.contacts.iter().flat_map(|pair| facing(model, pair, &nodes)).collect();
         let mut moving: Vec<Option<usize>> = vec![None; nodes.nodes.len()];

@@ -93,7 +93,7 @@ pub enum Dependence {
 pub enum TrialFailure {
     /// An element has no volume left.
     #[error(
-        "element {element} of body `{body}` is turned inside out (J = {jacobian:.3e}) at ({}, {})", number(at[0]), number(at[1])
+        "element {element} of body `{body}` is inverted (det F = {jacobian:.3e}) at ({}, {})", number(at[0]), number(at[1])
     )]
     Inverted {
         /// its tag in the mesh file
@@ -107,7 +107,7 @@ pub enum TrialFailure {
     },
     /// An element has hardly any volume left.
     #[error(
-        "element {element} of body `{body}` is crushed to {share:.1e} of its size at ({}, {})", number(at[0]), number(at[1])
+        "element {element} of body `{body}` is compressed to {share:.1e} of its size at ({}, {})", number(at[0]), number(at[1])
     )]
     Crushed {
         /// its tag in the mesh file

@@ -46,7 +46,7 @@ pub fn require_not_negative(name: &'static str, value: f64) -> Result<(), Invali
 
 /// A name that no parameter of a law has.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("`{name}` is no parameter of this law; known are `{}`", known.join("`, `"))]
+#[error("`{name}` is not a parameter of this law; known are `{}`", known.join("`, `"))]
 pub struct UnknownParameter {
     /// the name
     pub name: String,

@@ -55,7 +55,7 @@ impl DenseLu {
         factor::lu_in_place(lu, rows, places, Par::Seq, MemStack::new(room), Default::default());
         let vanished = |k: &usize| factors[k * *size + k] == 0.0;
         match (0..*size).find(vanished) {
-            Some(k) => Err(LinearFailure::Singular(format!("pivot {k} of {size} vanished"))),
+            Some(k) => Err(LinearFailure::Singular(format!("pivot {k} of {size} is zero"))),
             None => Ok(()),
         }
     }

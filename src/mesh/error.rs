@@ -259,8 +259,8 @@ pub enum MeshError {
     },
     /// A line between two bodies that are glued together.
     #[error(
-        "line {line} of `{group}` lies between `{first}` and `{second}`, which share its nodes and so cannot slide \
-         or part; contact needs separate nodes on the two sides: draw the curve once for each body (in gmsh without \
+        "line {line} of `{group}` lies between `{first}` and `{second}`, which share its nodes and so cannot slide or \
+         separate; contact needs separate nodes on the two sides: draw the curve once for each body (in gmsh without \
          Coherence or fragments)"
     )]
     EdgeShared {
@@ -295,4 +295,4 @@ pub enum MeshError {
 }
 
 const EXPORT: &str =
-    "export it anew with `gmsh -2 -format msh41 file.geo`, or Mesh.MshFileVersion = 4.1 in the .geo file";
+    "export it again with `gmsh -2 -format msh41 file.geo`, or Mesh.MshFileVersion = 4.1 in the .geo file";

@@ -213,7 +213,7 @@ fn bad_name(line: &str) -> MeshError {
 /// What stands where the parser gave up without a word.
 fn unexpected(bytes: &[u8], offset: usize, encoding: Encoding) -> String {
     if encoding != Encoding::Ascii {
-        return "the numbers there are not those that the format has at this place".into();
+        return "the numbers there do not match the format".into();
     }
     let begin = bytes[..offset.min(bytes.len())].iter().rposition(|&b| b == b'\n').map_or(0, |end| end + 1);
     let line = bytes[begin..].split(|&b| b == b'\n').next().unwrap_or_default();

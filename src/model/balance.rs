@@ -58,8 +58,8 @@ fn told(body: &Body, found: &Imbalance, later: &Imbalance, step: &Step) -> Strin
     let [x, y, percent] = [rounded(found.resultant.x), rounded(found.resultant.y), 100.0 * found.share].map(number);
     let cure = match later.share <= OUT_OF_BALANCE {
         true => format!(
-            "it would be balanced at the end of the step `{}`, whose loads grow from zero: give them as expressions, such as \
-             \"-9.81\" for a gravity, which act from the start",
+            "it would be in equilibrium at the end of the step `{}`, whose loads grow from zero: give them as \
+             expressions, such as \"-9.81\" for a gravity, which act from the start",
             step.name
         ),
         false => "check initial_stress against gravity and the density, loads on free sides, and what contacts carry at the start \
@@ -67,8 +67,8 @@ fn told(body: &Body, found: &Imbalance, later: &Imbalance, step: &Step) -> Strin
             .into(),
     };
     format!(
-        "body `{}` is not at rest under its initial stress: {percent} % of the forces at work are out of balance, with the \
-         resultant ({x}, {y}); {cure}",
+        "body `{}` is not in equilibrium under its initial stress: the imbalance is {percent} % of the acting forces, \
+         with the resultant ({x}, {y}); {cure}",
         body.name
     )
 }

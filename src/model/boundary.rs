@@ -181,7 +181,7 @@ impl Drive {
             _ => return Ok(()),
         };
         match table.windows(2).find(|pair| pair[1][0] < pair[0][0] || pair[1][0] == pair[0][0] && !may_jump) {
-            Some(pair) => Err(format!("the {kind} of the table must ascend: {} follows {}", pair[1][0], pair[0][0])),
+            Some(pair) => Err(format!("the {kind} of the table must increase: {} follows {}", pair[1][0], pair[0][0])),
             None => Ok(()),
         }
     }

@@ -316,7 +316,7 @@ impl<'t> Reader<'t> {
             if digits == 0 { 0 } else { 1 + power.len() - unsigned.len() + digits }
         });
         let number = &rest[..mantissa + exponent];
-        let value = number.parse().map_err(|_| (self.at, format!("`{number}` is no number")))?;
+        let value = number.parse().map_err(|_| (self.at, format!("`{number}` is not a number")))?;
         self.at += number.len();
         self.operations.push(Operation::Number(value));
         match self.text[self.at..].chars().next() {
@@ -395,7 +395,7 @@ impl<'t> Reader<'t> {
             ',' => "a comma stands between the values of a function only; decimals have a point".into(),
             '(' => "an operator is missing before the bracket".into(),
             c if c.is_alphanumeric() || c == '_' || c == '.' => "an operator is missing here".into(),
-            c => format!("`{c}` is no operator: there are + - * / ^ and brackets"),
+            c => format!("`{c}` is not an operator: there are + - * / ^ and brackets"),
         }
     }
 }
@@ -405,7 +405,7 @@ fn refused_name(name: &str) -> Option<&'static str> {
     let mut letters = name.chars();
     let first = letters.next().is_some_and(|c| c.is_alphabetic() || c == '_');
     if !first || !letters.all(|c| c.is_alphanumeric() || c == '_') {
-        return Some("is no name: a name has letters, digits and _, and begins with a letter");
+        return Some("is not a name: a name has letters, digits and _, and begins with a letter");
     }
     if CONSTANTS.iter().any(|(known, _)| *known == name) {
         return Some("is a constant: choose another name");

@@ -58,7 +58,7 @@ impl Model {
 fn uncertain_times(model: &Model) -> Option<String> {
     let step = model.steps.iter().find(|step| step.until.is_some()).filter(|_| !model.times.is_empty())?;
     Some(format!(
-        "step `{}` may end before its time (until), and all that follows then comes earlier: output.times after its start may \
+        "step `{}` may end early (until), and all that follows then comes earlier: output.times after its start may \
          lie in other steps, or after the end of the run, and are not written then",
         step.name
     ))
@@ -88,7 +88,7 @@ fn lost_velocity(model: &Model) -> Option<String> {
     let moving = model.initial_velocity.iter().any(|v| *v != 0.0);
     moving.then(|| {
         format!(
-            "the initial velocities are lost: the first step, `{}`, is static; give it a dynamic scheme",
+            "the initial velocities have no effect: the first step, `{}`, is static; give it a dynamic scheme",
             first.name
         )
     })
@@ -109,7 +109,7 @@ fn many_increments(model: &Model) -> Option<String> {
         steps.map(|step| (step.span.end - step.span.start) / longest(step)).sum()
     };
     let (implicit, explicit) = (of_steps(false), of_steps(true));
-    let told = |count: f64, why: &str| format!("this takes at least {count:.1e} increments{why}");
+    let told = |count: f64, why: &str| format!("the run takes at least {count:.1e} increments{why}");
     match (implicit > MANY[0], explicit > MANY[1]) {
         (true, _) => Some(told(implicit, ", each a row of history.csv: lengthen dt (initial, max) unless it is meant")),
         (_, true) => Some(told(
@@ -125,7 +125,7 @@ fn idle_radiation(model: &Model) -> Option<String> {
     let pair = model.contacts.iter().find(|pair| pair.radiation > 0.0)?;
     model.steps.iter().all(|step| step.scheme.is_dynamic()).then(|| {
         format!(
-            "the radiation damping of contact `{}` acts in no step: all have inertia, which radiates by itself",
+            "the radiation damping of contact `{}` has no effect: all steps have inertia, which radiates by itself",
             pair.name
         )
     })
@@ -159,8 +159,8 @@ fn coarse_positions(mesh: &Mesh) -> Option<String> {
     let known = f64::EPSILON * farthest;
     (known > KNOWN * shortest).then(|| {
         format!(
-            "nodes lie up to {} from the origin, and down to {} from each other: their positions have {known:.0e} of round-off, \
-             and so have initial gaps and overlaps; move the model to the origin before its mesh is written",
+            "nodes lie up to {} from the origin, and down to {} from each other: the round-off of their positions, and \
+             of initial gaps and overlaps, is {known:.0e}; move the model to the origin before its mesh is written",
             number(farthest),
             number(shortest)
         )
@@ -239,18 +239,19 @@ impl Gaps {
     fn warnings(&self) -> Vec<String> {
         let Self { points, facing, low: (low, at), .. } = *self;
         if facing == 0 {
-            let none = "no point of the slave faces the master; check which groups are named, and where they lie";
+            let none = "no point of the slave has a projection on the master; check the groups named and their \
+                        positions";
             return vec![none.into()];
         }
         let mut warnings = Vec::new();
         if facing < points {
-            let never = if self.small { ", and never touch it in small sliding" } else { "" };
-            warnings.push(format!("{} of the slave face no part of the master{never}", self.beside()));
+            let never = if self.small { ", and never come into contact in small sliding" } else { "" };
+            warnings.push(format!("{} of the slave without a projection on the master{never}", self.beside()));
         }
         if low < 0.0 {
             warnings.push(format!(
-                "surfaces overlap by up to {} at the start, at ({}, {}), and press from the first increment on; move them \
-                 apart, or bring the overlap in over the first step (shrink_fit)",
+                "surfaces overlap by up to {} at the start, at ({}, {}), and are in contact from the first increment \
+                 on; move them apart, or bring the overlap in over the first step (shrink_fit)",
                 number(-low),
                 number(at.x),
                 number(at.y)
@@ -262,7 +263,7 @@ impl Gaps {
     fn told(&self) -> String {
         let Self { facing, low: (low, _), high, .. } = *self;
         match facing {
-            0 => format!("initial gap: {}, and none faces the master", self.beside()),
+            0 => format!("initial gap: {}, none with a projection on the master", self.beside()),
             _ if low == high => format!("initial gap {} everywhere", number(low)),
             _ => format!("initial gap from {} to {}", number(low), number(high)),
         }

@@ -59,10 +59,10 @@ impl Audit {
         let largest = self.steps.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
         let (name, _, remedy) = largest?;
         let percent = 100.0 * worst.abs() / self.supplied;
-        let fate = if worst < 0.0 { "came from nowhere" } else { "is lost" };
+        let fate = if worst < 0.0 { "gain" } else { "loss" };
         Some(format!(
-            "the energies do not balance: by t = {}, {:.3e} {fate}, {percent:.3} % of all there was ({:.3e} at the start and \
-             from outside), most of it in step `{name}`: {remedy}",
+            "energy balance violated by t = {}: spurious {fate} of {:.3e}, {percent:.3} % of the {:.3e} supplied \
+             (initial energy + external work), mostly in step `{name}`: {remedy}",
             told(time),
             worst.abs(),
             self.supplied
@@ -85,7 +85,7 @@ fn round_off(model: &Model, state: &State) -> f64 {
 fn remedy(model: &Model, step: &Step) -> &'static str {
     let keeps_all = match step.scheme {
         Scheme::Static => return "take shorter increments (dt.max, dt.min)",
-        Scheme::QuasiDynamic { .. } => return "take fewer steps from one result to the next (quasi_dynamic.every)",
+        Scheme::QuasiDynamic { .. } => return "take fewer steps per row of results (quasi_dynamic.every)",
         Scheme::Explicit { .. } => {
             return "lower the safety of the explicit scheme, or give the bodies viscosity (damping.stiffness)";
         }
@@ -97,16 +97,20 @@ fn remedy(model: &Model, step: &Step) -> &'static str {
     let rings = !model.contacts.is_empty() && !model.massless.contains(&true);
     match (keeps_all, rings) {
         (true, true) => {
-            "an impact sets nodes ringing that increments do not resolve: make the contact `massless`, take a scheme that \
-             damps (hht), or shorter increments (dt.error)"
+            "impact excites oscillations that the increments do not resolve: make the contact `massless`, take a \
+             scheme that damps (hht), or shorter increments (dt.error)"
         }
         (true, false) => {
-            "take a scheme that damps what increments do not resolve (hht), or shorter increments (dt.error)"
+            "take a scheme that damps frequencies that the increments do not resolve (hht), or shorter increments \
+             (dt.error)"
         }
         (false, true) => {
-            "what increments do not resolve is damped, or rings where bodies strike: take shorter increments (dt.error), or \
-             make the contact `massless`"
+            "frequencies that the increments do not resolve are damped, or excited by impact: take shorter increments \
+             (dt.error), or make the contact `massless`"
         }
-        (false, false) => "what increments do not resolve is damped by the scheme: take shorter increments (dt.error)",
+        (false, false) => {
+            "the scheme damps frequencies that the increments do not resolve: take shorter increments \
+                           (dt.error)"
+        }
     }
 }

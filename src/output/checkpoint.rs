@@ -84,7 +84,7 @@ impl MeshPrint {
     /// What differs in another mesh, if anything does.
     pub fn difference(&self, other: &Self) -> Option<String> {
         let parts = [
-            ("nodes", self.nodes, other.nodes, "lie elsewhere"),
+            ("nodes", self.nodes, other.nodes, "are at other positions"),
             ("elements", self.elements, other.elements, "have other nodes"),
             ("groups", self.groups, other.groups, "have other names or members"),
         ];

@@ -146,7 +146,7 @@ impl Table {
     fn can_go_on_from(&self, &Standing { length, crc, .. }: &Standing) -> io::Result<()> {
         let changed = |what: String| {
             Err(io::Error::other(format!(
-                "was changed since the checkpoint was written: {what}; put it back as it was, or begin anew in another folder"
+                "was changed since the checkpoint was written: {what}; restore it, or start a new run in another folder"
             )))
         };
         let is = self.file.metadata()?.len();
@@ -160,7 +160,7 @@ impl Table {
         match had.iter().find(|name| !self.header.contains(name)) {
             None => Ok(()),
             Some(gone) => Err(io::Error::other(format!(
-                "has the column `{gone}`, which would be lost: ask for it in the case as before"
+                "has the column `{gone}`, which would be lost: request it in the case as before"
             ))),
         }
     }

@@ -185,7 +185,7 @@ impl Observer for Fields {
             self.names.iter().flat_map(|name| (0..times.len()).map(|number| self.folder.join(file(name, number))));
         match frames.into_iter().find(|path| !path.is_file()) {
             None => Ok(()),
-            Some(path) => Err(failed(&path, &"was there when the checkpoint was written, and is gone")),
+            Some(path) => Err(failed(&path, &"existed when the checkpoint was written, and is missing")),
         }
     }
 

@@ -77,7 +77,10 @@ impl Folder {
             (what.to_owned(), format!("results cannot be written here: {cause}"))
         };
         if let Some(input) = inputs.iter().find(|input| is_written(input, path, outputs)) {
-            return Err((input.clone(), "is read by this run, which would write over it: choose another --out".into()));
+            return Err((
+                input.clone(),
+                "is an input of this run, which would overwrite it: choose another --out".into(),
+            ));
         }
         let made = !path.exists();
         std::fs::create_dir_all(path).map_err(|cause| cannot(path, &cause))?;

@@ -62,10 +62,10 @@ impl fmt::Display for FrictionCourse {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match (self.first_slip, self.full_slip) {
             (None, _) => write!(f, "sticks")?,
-            (Some(first), None) => write!(f, "slips in part from t = {}", number(first))?,
-            (Some(first), Some(all)) if first == all => write!(f, "slips from t = {}", number(first))?,
+            (Some(first), None) => write!(f, "partial slip from t = {}", number(first))?,
+            (Some(first), Some(all)) if first == all => write!(f, "full sliding from t = {}", number(first))?,
             (Some(first), Some(all)) => {
-                write!(f, "slips from t = {}, all of it at t = {}", number(first), number(all))?
+                write!(f, "partial slip from t = {}, full sliding from t = {}", number(first), number(all))?
             }
         }
         if let [Some(largest), Some(last)] = [self.largest, self.last] {
@@ -73,7 +73,7 @@ impl fmt::Display for FrictionCourse {
                 |borne: Borne| format!("{} ({:.4} of the normal force)", number(borne.tangential_force), borne.ratio);
             write!(
                 f,
-                "; tangential force at most {} at t = {}, {} at the end",
+                "; peak tangential force {} at t = {}, {} at the end",
                 told(largest),
                 number(largest.time),
                 told(last)

@@ -126,9 +126,9 @@ pub const RADIATED: Quantity = q("radiated", ENERGY, "radiated by slip so far, �
 /// Means and sums of a contact; means are taken over the closed length.
 pub const CONTACT: [Quantity; 8] = [
     q("normal_force", FORCE, "N = ∫ p ds"),
-    q("tangential_force", FORCE, "Q = ∫ q ds, with what slip radiates ∫ (q + η v) ds"),
+    q("tangential_force", FORCE, "Q = ∫ q ds, with radiation damping ∫ (q + η v) ds"),
     q("contact_length", LENGTH, "closed length"),
-    q("slip_fraction", NONE, "slipping share of the closed length"),
+    q("slip_fraction", NONE, "slipping fraction of the closed length"),
     q("mean_slip", LENGTH, "mean of the plastic slip"),
     q("max_penetration", LENGTH, "deepest penetration of a closed point"),
     q("max_elastic_slip", LENGTH, "largest |q|/α_t"),
@@ -145,7 +145,7 @@ pub const WATCHED: [Quantity; 4] = [
 
 /// Resultant of a contact on its slave.
 pub const RESULTANT: [Quantity; 3] = [
-    q("force_x", FORCE, "pressure, friction and what slip radiates on the slave, without a fluid"),
+    q("force_x", FORCE, "forces of pressure, friction and radiation damping on the slave, without a fluid"),
     q("force_y", FORCE, "along y"),
     q("moment", ENERGY, "its moment about the middle of the undeformed slave (the mean of its points by length)"),
 ];
@@ -157,12 +157,12 @@ pub const BODY: [Quantity; 6] = [
     q("angular_momentum", SPIN, "about the centre of mass"),
     q("centre_x", LENGTH, "centre of mass"),
     q("centre_y", LENGTH, "along y"),
-    q("rotation", ANGLE, "of the rigid body nearest to it, turns counted [rad]"),
+    q("rotation", ANGLE, "mean rotation: that of the nearest rigid motion, full turns counted [rad]"),
 ];
 
 /// Means by length of a watched set of edges.
 pub const EDGES: [Quantity; 2] = [
-    q("edge_ux", LENGTH, "mean displacement by length of a set of edges along x, ∫ u_x ds/∫ ds"),
+    q("edge_ux", LENGTH, "length-weighted mean displacement of a set of edges along x, ∫ u_x ds/∫ ds"),
     q("edge_uy", LENGTH, "along y"),
 ];
 
@@ -171,7 +171,7 @@ pub const FLUID_FORCE: Quantity = q("fluid_force", FORCE, "∫ p_w ds, of contac
 
 /// Heat of a contact.
 pub const HEAT: [Quantity; 2] = [
-    q("frictional_heat", ENERGY, "∫∫ q v^p ds dt so far, less work of dilatancy, with that of wear"),
+    q("frictional_heat", ENERGY, "∫∫ q v^p ds dt so far, less work of dilatancy, plus that of wear"),
     q("frictional_power", POWER, "its mean rate over the last increment"),
 ];
 
@@ -191,14 +191,14 @@ pub const PROBE: [Quantity; 11] = [
 ];
 
 /// Of every probe of rings, behind its other columns.
-pub const HOOP: Quantity = q("strain_zz", NONE, "strain of the hoops, of rings");
+pub const HOOP: Quantity = q("strain_zz", NONE, "hoop strain, of axisymmetric bodies");
 
 /// Points of a contact, as they lie before anything moves.
 pub const PLACE: [Quantity; 4] = [
-    q("position", LENGTH, "way along the slave, undeformed, from the start of the unbroken line"),
+    q("position", LENGTH, "arc length along the undeformed slave, from the start of its connected line"),
     q("x", LENGTH, "x of the points, undeformed"),
     q("y", LENGTH, "y of the points, undeformed"),
-    q("line", NONE, "number of the unbroken line of the slave"),
+    q("line", NONE, "number of the connected line of the slave"),
 ];
 
 const GAP: Quantity = q("gap", LENGTH, "g: gap of the surfaces, positive when open");
@@ -228,7 +228,7 @@ pub const OF_SOME: [Quantity; 4] = [
     q("theta", TIME, "θ: state of rate-and-state friction"),
     q("dilation", LENGTH, "opening by dilatancy"),
     q("wear", LENGTH, "depth of wear"),
-    q("fluid_pressure", STRESS, "p_w: pressure of the fluid, beside the contact pressure"),
+    q("fluid_pressure", STRESS, "p_w: pressure of the fluid, in addition to the contact pressure"),
 ];
 
 /// What quantities of the store were called by the versions before, and are called now.
@@ -243,18 +243,28 @@ pub fn in_store(name: &str) -> Option<Quantity> {
 pub const FRONTS: [Quantity; 14] = [
     q("contact", NONE, "the contact"),
     q("point", NONE, "number of the point, from 0, as in `interface.zarr`"),
-    q("position", LENGTH, "way along the undeformed slave, from the start of its unbroken line"),
+    q("position", LENGTH, "arc length along the undeformed slave, from the start of its connected line"),
     q("x", LENGTH, "x of the point, undeformed"),
     q("y", LENGTH, "y of the point, undeformed"),
     q("passage", NONE, "number of this arrival at this point, from 1, over all events of the run"),
-    q("arrival", TIME, "when the front passed"),
+    q("arrival", TIME, "time of arrival of the front"),
     q("speed", VELOCITY, "distance of the two neighbours over the difference of their arrivals (below)"),
     q("speed_over_c_R", NONE, "speed over that of Rayleigh waves in the body behind the slave; 0 without a density"),
     q("speed_over_c_s", NONE, "speed over that of shear waves"),
     q("speed_over_c_p", NONE, "speed over that of pressure waves"),
     q("event", NONE, "number of the event in `events.csv`; 0 outside of events, as may be with `arrival`"),
-    q("rupture_length", LENGTH, "what the points stand for that the event has reached up to this arrival, each once"),
-    q("energy_released", ENERGY, "by the model since the first arrival: Δ(external work − stored energies)"),
+    q(
+        "rupture_length",
+        LENGTH,
+        "summed tributary length of the points ruptured by the event up to this arrival, each \
+                                 counted once",
+    ),
+    q(
+        "energy_released",
+        ENERGY,
+        "energy released by the model since the first arrival: Δ(external work − stored \
+                                  energies)",
+    ),
 ];
 
 /// Columns of `events.csv`: a row an event of a contact.
@@ -267,14 +277,14 @@ pub const EVENTS: [Quantity; 18] = [
     q("y", LENGTH, "its y, undeformed"),
     q("duration", TIME, "from the onset to the row in which no point slips faster any more"),
     q("over", NONE, "1; 0 where the run has ended before the event"),
-    q("length", LENGTH, "what its points stand for"),
+    q("length", LENGTH, "summed tributary length of its points"),
     q("mean_slip", LENGTH, "mean plastic slip, with its sign"),
     q("largest_slip", LENGTH, "largest plastic slip"),
     q("peak_slip_rate", VELOCITY, "largest mean slip rate of a point between two rows"),
-    q("stress_drop", STRESS, "mean of q before − q after, positive where slip has unloaded"),
-    q("fracture_energy", WORK_PER_AREA, "mean of ∫ (q − q_min) ds up to where q is least"),
-    q("energy_released", ENERGY, "by the model from the row before the event to its end, elsewhere as well"),
-    q("energy_radiated", ENERGY, "released less the dissipation by friction"),
+    q("stress_drop", STRESS, "mean stress drop, q before − q after, positive where slip has unloaded"),
+    q("fracture_energy", WORK_PER_AREA, "mean of ∫ (q − q_min) dδ over the slip δ up to where q is least"),
+    q("energy_released", ENERGY, "energy released by the whole model from the row before the event to its end"),
+    q("energy_radiated", ENERGY, "released energy less the dissipation by friction"),
     q("front_speed", VELOCITY, "slope of distance over arrivals by least squares, both directions together"),
     q("front_speed_over_c_R", NONE, "over the Rayleigh wave speed of the body behind the slave"),
 ];
@@ -300,7 +310,7 @@ pub const NEWTON: [Quantity; 15] = [
     q("step", NONE, "name of the step"),
     q("increment", NONE, "number of the increment, from 1"),
     q("attempt", NONE, "number of the attempt at it, from 1"),
-    q("iteration", NONE, "number of the linear solve; 0 in the row of an attempt that was given up before its first"),
+    q("iteration", NONE, "number of the linear solve; 0 in the row of an attempt rejected before its first"),
     q("time", TIME, "t at the end of the increment"),
     q("residual", NONE, "out-of-balance forces, relative"),
     q("correction", NONE, "change of the displacements, relative"),
@@ -309,15 +319,15 @@ pub const NEWTON: [Quantity; 15] = [
     q("slip", NONE, "slipping ones"),
     q("linear_residual", NONE, "relative residual of the linear solve"),
     q("factorized", NONE, "1 where the matrix was factorized anew"),
-    q("stabilization", NONE, "share of the stabilizing forces"),
+    q("stabilization", NONE, "fraction of the stabilizing forces"),
     q("flips", NONE, "points that changed between open, stick and slip"),
-    q("pass", NONE, "pass of the augmented Lagrangian"),
+    q("pass", NONE, "augmentation of the augmented Lagrangian"),
 ];
 
 /// ... which are these.
 pub const VERDICT: [Quantity; 2] = [
-    q("verdict", NONE, "what became of the attempt (below)"),
-    q("reason", NONE, "why, in words; empty where accepted, commas as semicolons"),
+    q("verdict", NONE, "outcome of the attempt (below)"),
+    q("reason", NONE, "why it was rejected; empty where accepted, commas as semicolons"),
 ];
 
 /// Arrays of the frames of bodies.
@@ -325,8 +335,8 @@ const SOLID: [Quantity; 10] = [
     q("displacement", LENGTH, "u of the nodes"),
     q("velocity", VELOCITY, "v"),
     q("acceleration", ACCELERATION, "a"),
-    q("reaction", FORCE, "what supports put on the nodes"),
-    q("contact_force", FORCE, "what contacts put on the nodes"),
+    q("reaction", FORCE, "forces of the supports on the nodes"),
+    q("contact_force", FORCE, "forces of the contacts on the nodes"),
     q("stress", STRESS, "Cauchy stress xx, yy, zz, xy, averaged over the elements at a node"),
     q("von_mises", STRESS, "von Mises stress"),
     q("pressure", STRESS, "−tr σ/3"),
@@ -356,7 +366,15 @@ pub const ALL: [(&str, &[Group]); 10] = [
             ("CONTACT", &CONTACT),
             ("SET", &WATCHED),
             ("", &[RADIATED]),
-            ("CONTACT", &[q("mean_…", NONE, "means of what laws remember, of `dilation` and `wear`, by their names")]),
+            (
+                "CONTACT",
+                &[q(
+                    "mean_…",
+                    NONE,
+                    "means of the internal variables of laws, of `dilation` and `wear`, by \
+                                             their names",
+                )],
+            ),
             ("CONTACT", &RESULTANT),
             ("BODY", &BODY),
             ("SET", &EDGES),
@@ -381,7 +399,11 @@ pub const ALL: [(&str, &[Group]); 10] = [
     ("events.csv", &[("", &EVENTS)]),
     (
         "newton.csv",
-        &[("", &NEWTON), ("", &[q("aid_…", NONE, "contact points on which each aid acted")]), ("", &VERDICT)],
+        &[
+            ("", &NEWTON),
+            ("", &[q("aid_…", NONE, "contact points on which each convergence aid acted")]),
+            ("", &VERDICT),
+        ],
     ),
     ("law.csv", &[("", &LAW), ("", &[OF_SOME[0]])]),
 ];

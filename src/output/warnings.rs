@@ -99,8 +99,8 @@ impl Observer for Warnings {
 
     fn finish(&mut self) -> Result<(), Error> {
         for (name, gap) in self.open.values() {
-            let near = gap.map_or("no part of its surfaces has faced the other".into(), |gap| {
-                format!("its surfaces came no nearer than {gap:.3e}")
+            let near = gap.map_or("no slave point had a projection on the master".into(), |gap| {
+                format!("its smallest gap was {gap:.3e}")
             });
             self.list.push(format!("contact `{name}` has never closed: {near}"));
         }
@@ -143,7 +143,7 @@ impl Warnings {
         self.given.insert((number, Kind::DeepMasterNode));
         let time = told(state.time);
         self.list.push(format!(
-            "contact `{}` at ({:.6}, {:.6}), t = {time}: a node of the master lies {depth:.3e} deep in the slave, {:.1} % of \
+            "contact `{}` at ({:.6}, {:.6}), t = {time}: a master node penetrates the slave by {depth:.3e}, {:.1} % of \
              its edge; refine both sides there, make the finer one the slave, or raise alpha_n",
             pair.name,
             at.x,
@@ -180,8 +180,8 @@ impl Warnings {
             self.given.insert((number, Kind::DeepUnseen));
             let at = node.at(x);
             self.list.push(format!(
-                "contact `{}` at ({:.6}, {:.6}), t = {}: a node that is not on the slave lies {depth:.3e} deep in the rigid master, which \
-                 holds the slave alone back; put the sides that come down on it into the group of the slave",
+                "contact `{}` at ({:.6}, {:.6}), t = {}: a node outside the slave group penetrates the rigid master by \
+                 {depth:.3e}; the master acts only on slave nodes: add the touching sides to the slave group",
                 pair.name,
                 at.x,
                 at.y,
@@ -212,11 +212,17 @@ impl Warnings {
         if (pivots > 0 || fallback) && self.perturbed.insert(attempt.step.name.clone()) {
             let start = format!("step `{}`, t = {}", attempt.step.name, told(attempt.old.time + attempt.dt));
             let found = match (pivots, fallback) {
-                (0, _) => "the fronts of the tangent were not exact enough, and a slower solver took over".into(),
-                (pivots, false) => format!("{pivots} pivots of the tangent vanished and were replaced"),
-                (pivots, true) => format!("{pivots} pivots of the tangent vanished, and a slower solver took over"),
+                (0, _) => {
+                    "the factorization of the tangent was not accurate enough, and a slower solver was used".into()
+                }
+                (pivots, false) => format!("{pivots} pivots of the tangent were nearly zero and were replaced"),
+                (pivots, true) => format!(
+                    "{pivots} pivots of the tangent were nearly zero, and a slower solver was \
+                                           used"
+                ),
             };
-            self.list.push(format!("{start}: {found}; the equations are solved, but something may be barely held"));
+            self.list
+                .push(format!("{start}: {found}; the equations are solved, but a body may be almost unconstrained"));
         }
     }
 
@@ -238,8 +244,10 @@ impl Warnings {
             let start =
                 format!("step `{}`, t = {}: the increment {dt:.3e} is the shortest allowed", step.name, told(old.time));
             let percent = 100.0 * doubt;
-            let found =
-                format!("when points touched in it leaves friction of {percent:.1} % of a contact's force in doubt");
+            let found = format!(
+                "contact closed within it, so that the friction force is uncertain by {percent:.1} % of the \
+                         contact force"
+            );
             self.list.push(format!("{start}, and {found}; lower dt.min"));
         }
     }
@@ -278,8 +286,8 @@ enum Kind {
 /// What is to be said of a pressure past the bound of uniqueness.
 pub fn several_answers(pressure: f64, limit: f64) -> String {
     format!(
-        "the pressure {pressure:.6e} passes {limit:.6e}, above which weakening may outrun the contact stiffness and the \
-         answer snaps; raise alpha_t"
+        "the pressure {pressure:.6e} exceeds {limit:.6e}, above which the response is not unique: slip weakening may \
+         exceed the contact stiffness, and the traction jumps; raise alpha_t"
     )
 }
 
@@ -319,8 +327,8 @@ fn yields_work([old, new]: [&FrictionState; 2]) -> Option<String> {
     let yields = new.regime == Regime::Slip && opened > 0.0 && gained > GIVEN_BACK * friction * slip;
     yields.then(|| {
         format!(
-            "sliding yields work instead of taking it: friction has come down to |q|/p = {:.4}, and the surfaces open by {:.4} per \
-             slip (dilatancy.rate); lower that, or raise the friction",
+            "sliding produces energy: friction has dropped to |q|/p = {:.4}, and the surfaces open by {:.4} per slip \
+             (dilatancy.rate); lower that, or raise the friction",
             friction / new.pressure,
             opened / slip
         )
@@ -339,8 +347,8 @@ fn unresolved(
     let zone = PROCESS_ZONE * pair.modulus / weakening;
     (edge > zone).then(|| {
         format!(
-            "the edge of {edge:.3e} is longer than the process zone of its friction, 0.88 G/((1 − ν) p |dμ/dδ|) = {zone:.3e}: when and \
-             how fast slip spreads follows the mesh; take edges of a third of it"
+            "the edge of {edge:.3e} is longer than the process zone of its friction, 0.88 G/((1 − ν) p |dμ/dδ|) = \
+             {zone:.3e}: onset and speed of slip fronts depend on the mesh; take edges of a third of it"
         )
     })
 }
@@ -348,29 +356,29 @@ fn unresolved(
 /// What is to be said of a point that has left what small sliding keeps.
 fn left(departure: Option<Departure>) -> impl Iterator<Item = (Kind, String)> {
     let Some(Departure { slid, share, turned, stretched }) = departure else {
-        let message = "the surface has slid past the end of the rigid master, and small sliding holds it there";
+        let message = "the surface has slid past the end of the rigid master, but small sliding keeps it in contact";
         return [Some((Kind::SlidFar, message.into())), None, None].into_iter().flatten();
     };
     let far = (share > LITTLE_SLIP).then(|| {
         let message = format!(
-            "the surfaces have slid by {slid:.3e} since the start, {:.1} % of the distance between nodes, and small sliding keeps what faced \
-             what: tractions that vary from node to node are off by about as much",
+            "the surfaces have slid by {slid:.3e} since the start, {:.1} % of the distance between nodes, but small \
+             sliding keeps the initial projections: tractions that vary from node to node are wrong by about as much",
             100.0 * share
         );
         (Kind::SlidFar, message)
     });
     let turned = (turned > LITTLE_TURN).then(|| {
         let message = format!(
-            "a surface has turned by {turned:.3} rad since the start, and small sliding keeps its direction: tractions are \
-             off by about {:.1} % of the pressure",
+            "a surface has rotated by {turned:.3} rad since the start, but small sliding keeps its direction: \
+             tractions are wrong by about {:.1} % of the pressure",
             100.0 * turned
         );
         (Kind::TurnedFar, message)
     });
     let stretched = (stretched > LITTLE_TURN).then(|| {
         let message = format!(
-            "an edge of the slave has become {:.1} % longer or shorter since the start, and small sliding keeps its length: \
-             tractions are off by as much",
+            "an edge of the slave has become {:.1} % longer or shorter since the start, but small sliding keeps its \
+             length: tractions are wrong by as much",
             100.0 * stretched
         );
         (Kind::StretchedFar, message)

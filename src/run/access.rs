@@ -37,7 +37,7 @@ pub enum Unknown {
         known: String,
     },
     /// Nothing is prescribed there.
-    #[error("`{group}` has no support along {axis} in step `{step}` that could be led")]
+    #[error("`{group}` has no support along {axis} in step `{step}` that could be driven")]
     Support {
         /// the group
         group: String,

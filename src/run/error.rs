@@ -37,7 +37,7 @@ pub enum Error {
     },
     /// The reaction that was to end a step has not come to its value.
     #[error(
-        "step `{step}` came to its end at time {} before {part} of `{on}` reached {value}: it is {reached:.6e}; give the step \
+        "step `{step}` ended at time {} before {part} of `{on}` reached {value}: it is {reached:.6e}; make the step \
          longer, or move farther (until)",
         told(*time)
     )]

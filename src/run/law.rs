@@ -70,8 +70,8 @@ impl LawTest {
             self.law.description().uniqueness_limit().filter(|limit| report.warnings.is_empty() && pressure > *limit)
         {
             report.warnings.push(format!(
-                "the pressure {pressure:.6e} at t = {time} passes {limit:.6e}, above which weakening may outrun the \
-                 contact stiffness and the answer snaps; raise alpha_t"
+                "the pressure {pressure:.6e} at t = {time} exceeds {limit:.6e}, above which the response is not \
+                 unique: slip weakening may exceed the contact stiffness, and the traction jumps; raise alpha_t"
             ));
         }
     }

@@ -180,11 +180,14 @@ impl Attempt<'_> {
         Some(match verdict {
             Verdict::Accepted => return None,
             Verdict::Unsolved => cause.map_or_else(|| "not solved".into(), |cause| self.unsolved(cause)),
-            Verdict::Passed => "solved, but the reaction that ends the step passed its value".into(),
+            Verdict::Passed => "solved, but the reaction overshot the value that ends the step".into(),
             Verdict::Error => self.inexact(),
             Verdict::Touch => {
                 let share = 100.0 * self.doubt.unwrap_or_default();
-                format!("solved, but points touched on the way: {share:.2} % of a contact's force depends on when")
+                format!(
+                    "solved, but contact closed within the increment; friction force uncertain by {share:.2} % of \
+                         the contact force"
+                )
             }
             Verdict::Rupture => {
                 let rate = step.rupture.as_ref().map_or(0.0, |rupture| rupture.slip_rate);
@@ -203,10 +206,13 @@ impl Attempt<'_> {
         let closed = last.contacts.stick + last.contacts.slip;
         match last.flips {
             _ if closed == 0 && last.contacts.open > 0 => {
-                format!("{cause}; all contact points had opened on the way, and nothing held the bodies")
+                format!(
+                    "{cause}; all contact points had opened during the iterations, and nothing constrained the \
+                         bodies"
+                )
             }
             0 => cause.to_string(),
-            flips => format!("{cause}; {} still changed between open, stick and slip", count(flips, "contact point")),
+            flips => format!("{cause}; {} still changing between open, stick and slip", count(flips, "contact point")),
         }
     }
 
@@ -217,7 +223,9 @@ impl Attempt<'_> {
             Some(error) if error > allowed => {
                 format!("solved, but the local error {} is above dt.error = {}", rounded(error), number(allowed))
             }
-            _ => "solved, but a contact began to slip, stopped or turned round, at a moment that dt.error wants to be met".into(),
+            _ => "solved, but a contact began to slip, stopped or reversed at a time that dt.error requires to be \
+                  located"
+                .into(),
         }
     }
 }
@@ -228,9 +236,9 @@ impl Verdict {
         match self {
             Self::Accepted => "accepted",
             Self::Unsolved => "not solved",
-            Self::Passed => "reaction passed",
-            Self::Error => "error in time",
-            Self::Touch => "points touched",
+            Self::Passed => "reaction overshot",
+            Self::Error => "time error",
+            Self::Touch => "contact closure",
             Self::Rupture => "rupture",
         }
     }

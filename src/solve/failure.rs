@@ -30,26 +30,24 @@ pub enum IncrementFailure {
     Start(TrialFailure),
     /// The augmented Lagrangian did not bring the surfaces together.
     #[error(
-        "the penetration is still too large after {passes} passes of the augmented Lagrangian: raise alpha_n, or allow more"
+        "the penetration is still too large after {passes} augmentations: raise alpha_n, or allow more penetration"
     )]
     Penetration {
         /// solutions with better and better multipliers
         passes: usize,
     },
     /// The velocities of an explicit run are not finite any more.
-    #[error(
-        "the motion grows beyond all bounds: lower the safety of the explicit scheme, or look at loads and supports"
-    )]
+    #[error("the motion grows without bound: lower the safety of the explicit scheme, or check loads and supports")]
     Unbounded,
     /// An element collapsed in explicit increments of any length.
     #[error(
-        "{0}, in shorter increments as well: the mesh is crushed there; let it be struck or driven more slowly, make it \
-         finer or stiffer there, give the body viscosity (damping.stiffness), or a law that resists crushing (neo_hookean, \
+        "{0}, with shorter increments as well: the mesh collapses there; strike or drive it more slowly, make it finer \
+         or stiffer there, give the body viscosity (damping.stiffness), or a law that resists collapse (neo_hookean, \
          hencky)"
     )]
     Collapsed(TrialFailure),
     /// The bodies could not be condensed on an interface.
-    #[error("the bodies cannot be condensed on the contacts: {0}; hold every body by a support or a spring")]
+    #[error("the bodies cannot be condensed on the contacts: {0}; constrain every body by a support or a spring")]
     Interface(LinearFailure),
     /// The differential equations of an interface could not be integrated.
     #[error("contact `{contact}` at ({x:.6}, {y:.6}): {why}")]
@@ -65,11 +63,12 @@ pub enum IncrementFailure {
     },
     /// A body is held by nothing.
     #[error(
-        "{0}; give it a support, a spring, or contact that is closed at the start, or `stabilize` the step (a stabilized one: by more)"
+        "{0}; give it a support, a spring, or contact that is closed at the start, or `stabilize` the step (if it is \
+         already: by more)"
     )]
     Floating(String),
     /// A trial state lost the contact that held a body.
-    #[error("the iterations lost contact: {0}")]
+    #[error("contact was lost during the iterations: {0}")]
     ContactLost(String),
 }
 
@@ -121,8 +120,8 @@ impl IncrementFailure {
 
 fn kind_of_trial(failure: &TrialFailure) -> &'static str {
     match failure {
-        TrialFailure::Inverted { .. } => "element inside out",
-        TrialFailure::Crushed { .. } => "element crushed",
+        TrialFailure::Inverted { .. } => "element inverted",
+        TrialFailure::Crushed { .. } => "element collapsed",
         TrialFailure::Material { .. } => "material law",
         TrialFailure::Friction { .. } => "friction law",
         TrialFailure::FluidPressure { .. } => "fluid pressure",
@@ -158,7 +157,7 @@ pub fn suspicion(model: &Model, step: &Step, work: &Workspace, cause: &Increment
             }
         });
         let owner = owner.unwrap_or_default();
-        format!("the forces are farthest from balance at node {tag}{owner}, ({}, {})", number(at.x), number(at.y))
+        format!("largest residual at node {tag}{owner}, ({}, {})", number(at.x), number(at.y))
     });
     let penalties = model.contacts.iter().filter_map(penalty);
     let told = place.into_iter().chain(penalties).chain(model.bodies.iter().filter_map(|body| locking(model, body)));

@@ -83,7 +83,7 @@ impl Keeper {
         if self.looked.elapsed() >= LOOK {
             self.looked = Instant::now();
             if !lock.is_there() {
-                let cause = "the folder, or the lock in it, was taken away while the run went on".into();
+                let cause = "the folder, or the lock in it, was removed during the run".into();
                 return Err(Error::Output { path: self.folder.clone(), cause });
             }
         }
@@ -107,7 +107,7 @@ impl Keeper {
         if let Err(error) = written
             && self.concern.is_none()
         {
-            let concern = format!("no checkpoint at t = {}: {error}; the run goes on", simulation.state().time);
+            let concern = format!("no checkpoint at t = {}: {error}; the run continues", simulation.state().time);
             (self.warn)(&concern);
             self.concern = Some(concern);
         }

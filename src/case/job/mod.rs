@@ -105,7 +105,7 @@ pub fn last(
     let Checkpoint { program, .. } = &checkpoint;
     if program != env!("CARGO_PKG_VERSION") {
         warn(&format!(
-            "the checkpoint is of version {program}: the last digits may differ from those of a run in one go"
+            "the checkpoint is of version {program}: the last digits may differ from those of an uninterrupted run"
         ));
     }
     Ok((open(checkpoint)?, damage))
@@ -150,7 +150,7 @@ impl Job {
             folder.make_room_after(result);
         }
         let report = work.simulation.map(|simulation| simulation.report()).unwrap_or_default();
-        work.warnings.extend(damage.take().map(|damage| format!("{damage}; the checkpoint before it was taken")));
+        work.warnings.extend(damage.take().map(|damage| format!("{damage}; the previous checkpoint was used")));
         let last =
             Summary { chatter: work.chatter, friction_course: work.courses, ..summary(ending, report, work.warnings) };
         let written = summary::write(&last, &folder.path);

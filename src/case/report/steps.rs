@@ -23,23 +23,22 @@ pub fn steps(case: &Case, model: &Model) -> Vec<String> {
         let mut told = step_lines(step);
         told.extend(input.velocity.iter().map(|(name, velocity)| {
             let [vx, vy] = velocity.map(number);
-            format!("{name} starts with the velocity ({vx}, {vy})")
+            format!("{name}: initial velocity ({vx}, {vy})")
         }));
         told.extend(input.damping.iter().map(|(name, Damping { mass, retardation })| {
-            format!("damping of {name} from here on: mass {}, stiffness {}", number(*mass), number(*retardation))
+            format!("damping of {name} from this step on: mass {}, stiffness {}", number(*mass), number(*retardation))
         }));
         told.extend(
             input.temperature.iter().map(|(name, given)| format!("temperature of {name}: {}", drive(&given.into()))),
         );
-        let freed = if step.scheme.is_dynamic() { "at once" } else { "its reaction fades over the step" };
-        told.extend(
-            supports.step(written_supports(input, on)).map(|(on, kind)| format!("freed {on}: {kind}, {freed}")),
-        );
+        let fades = if step.scheme.is_dynamic() { "at once" } else { "its reaction fades over the step" };
+        let released = supports.step(written_supports(input, on));
+        told.extend(released.map(|(on, kind)| format!("support {on}: {kind} released, {fades}")));
         told.extend(loads.step(input.loads.iter().filter_map(|load| written_load(load, on))).map(|(on, kind)| {
-            let ended = if ENDS_AT_ONCE.contains(&kind) { "at once" } else { "it fades over the step" };
-            format!("ended {on}: {kind}, {ended}")
+            let fades = if ENDS_AT_ONCE.contains(&kind) { "at once" } else { "it fades over the step" };
+            format!("load {on}: {kind} ended, {fades}")
         }));
-        told.extend(supports.lines("held").into_iter().chain(loads.lines("loaded")));
+        told.extend(supports.lines("support").into_iter().chain(loads.lines("load")));
         lines.extend(told.into_iter().map(|line| format!("  {line}")));
         lines.push(format!("  {} prescribed", count(step.supports.len(), "dof")));
     }
@@ -55,30 +54,36 @@ fn step_lines(step: &Step) -> Vec<String> {
     let [initial, min, max] = [increments.initial, increments.min, increments.max].map(number);
     let mut lines = vec![
         format!("time {} to {}, {scheme}", number(step.span.start), number(step.span.end)),
-        format!("increments start at {initial}, at least {min}, at most {max}"),
+        format!("dt: initial {initial}, min {min}, max {max}"),
     ];
     if !step.stabilization.is_empty() {
-        lines.push("stabilized: dashpots that fade away hold bodies until contact does".into());
+        lines.push("stabilized: fading dashpots constrain bodies until contact does".into());
     }
     lines.extend(step.until.as_ref().map(|until| {
         let Until { on, part, value, tolerance, .. } = until;
         let [value, tolerance] = [value, tolerance].map(|number_of| number(*number_of));
-        format!("ends when {} of {on} comes to {value}, met to {tolerance} of it", part.name())
+        format!("ends when {} of {on} reaches {value}, relative tolerance {tolerance}", part.name())
     }));
     let dynamic = step.scheme.is_dynamic();
     lines.extend(
         increments
             .error
             .filter(|_| !dynamic)
-            .map(|error| format!("each in error by at most {} in the slip of a contact point", number(error))),
+            .map(|error| format!("error per increment at most {} in the slip of any contact point", number(error))),
     );
     lines.extend(increments.error.filter(|_| dynamic).map(|error| {
         let located = number(EVENT_LOCATION * error);
-        format!("each in error by at most {} in a displacement, events of contact located to {located}", number(error))
+        format!(
+            "error per increment at most {} in any displacement, contact events located within {located}",
+            number(error)
+        )
     }));
     lines.extend(step.rupture.as_ref().map(|rupture| {
         let [rate, calm] = [rupture.slip_rate, rupture.calm].map(number);
-        format!("explicit while a contact slips faster than {rate}, on the mean of {calm} when it returns")
+        format!(
+            "explicit integration while a contact slips faster than {rate}; implicit again from the mean motion \
+                 over {calm}"
+        )
     }));
     lines
 }
@@ -118,10 +123,11 @@ impl InForce {
         ended.into_iter()
     }
 
-    fn lines(&self, verb: &str) -> Vec<String> {
-        let kept = |written: &Written| if written.kept { " (kept)" } else { "" };
+    fn lines(&self, what: &str) -> Vec<String> {
         let line = |((on, kind), written): (&(String, &str), &Written)| {
-            format!("{verb} {on}: {kind} {}{}", written.text, kept(written))
+            let equals = if written.text.starts_with(char::is_alphabetic) { "" } else { "= " };
+            let kept = if written.kept { " (kept)" } else { "" };
+            format!("{what} {on}: {kind} {equals}{}{kept}", written.text)
         };
         self.0.iter().map(line).collect()
     }
@@ -136,7 +142,7 @@ fn written_supports(step: &LoadStep, on: impl Fn(&Place) -> String) -> Vec<Entry
     let mut entries: Vec<Entry> = Vec::new();
     for support in &step.supports {
         let mut add = |kind, text| entries.push((on(&support.on), kind, text));
-        for (kind, given) in [("ux", &support.ux), ("uy", &support.uy), ("along its normal", &support.un)] {
+        for (kind, given) in [("ux", &support.ux), ("uy", &support.uy), ("un", &support.un)] {
             if let Some(given) = given {
                 add(kind, given.given().map(drive));
             }
@@ -155,7 +161,7 @@ fn written_supports(step: &LoadStep, on: impl Fn(&Place) -> String) -> Vec<Entry
 
 fn written_load(load: &Load, place: impl Fn(&Place) -> String) -> Option<Entry> {
     let spring = |SpringLoad { kx, ky, driver }: &SpringLoad| {
-        format!("kx {}, ky {}{}", number(*kx), number(*ky), driven("moved by", driver))
+        format!("kx {}, ky {}{}", number(*kx), number(*ky), driven("displaced by", driver))
     };
     let dashpot = |DashpotLoad { cx, cy, driver }: &DashpotLoad| {
         format!("cx {}, cy {}{}", number(*cx), number(*cy), driven("moving with", driver))
@@ -176,7 +182,7 @@ fn written_load(load: &Load, place: impl Fn(&Place) -> String) -> Option<Entry> 
 }
 
 fn driven(how: &str, driver: &Option<Components>) -> String {
-    driver.as_ref().map_or(String::new(), |driver| format!(", its far end {how} {}", components(driver)))
+    driver.as_ref().map_or(String::new(), |driver| format!(", far end {how} {}", components(driver)))
 }
 
 fn components(of: &Components) -> String {

@@ -15,7 +15,7 @@ pub fn blocks(input: &BlocksInput, place: &str) -> Checked<InlineMesh> {
     let block = |(b, input): (usize, &BlockInput)| block(input, &parameters, &at(&format!("blocks[{b}]")));
     let blocks = input.blocks.iter().enumerate().map(block).collect::<Checked<_>>()?;
     if let Some(name) = input.parameters.keys().find(|name| !parameters.words.borrow().contains(*name)) {
-        let message = "stands in no expression of the mesh, so it changes nothing: use it, or leave it out";
+        let message = "is not used in any expression of the mesh: use it, or leave it out";
         return Err(Complaint::new(at(&format!("parameters.{name}")), message));
     }
     let complain = |BlockError { place, message }| Complaint::new(at(&place), message);

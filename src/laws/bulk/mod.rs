@@ -108,13 +108,13 @@ impl CauchyStress {
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum MaterialFailure {
     /// The deformation has no volume left: J = det F ≤ 0, or not a number.
-    #[error("the material is turned inside out (J = {jacobian:.3e})")]
+    #[error("the material is inverted (det F = {jacobian:.3e})")]
     Inverted {
         /// J = det F [-]
         jacobian: f64,
     },
     /// The equations of the law were not solved, such as those of a return to its yield surface.
-    #[error("the material law did not converge: {rest:.3e} of the stress {stress:.3e} is left")]
+    #[error("the material law did not converge: residual {rest:.3e} of the stress {stress:.3e}")]
     NotConverged {
         /// what is left out of balance [F/L²]
         rest: f64,

@@ -146,8 +146,8 @@ impl ContactLaw {
         let law = Self::from(law);
         if let Some([value, least]) = offsets.beyond(&law.description) {
             let allowed = format!(
-                "it must be below {least}, the least friction coefficient that the law can come to, or sliding would yield work \
-                 instead of taking it: lower it, or raise the friction"
+                "it must be below {least}, the lowest friction coefficient of the law, or sliding would produce \
+                 energy: lower it, or raise the friction"
             );
             return Err(InvalidParameter { name: "dilatancy.rate", value, allowed: allowed.into() });
         }

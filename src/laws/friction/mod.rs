@@ -298,7 +298,10 @@ impl Sliding {
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum LawFailure {
     /// The increment itself is not a finite number.
-    #[error("friction was asked for a slip {slip}, pressure {pressure} and time {dt} that are not all finite")]
+    #[error(
+        "the friction law was evaluated for a slip {slip}, pressure {pressure} and time increment {dt} that are \
+             not all finite"
+    )]
     NotFinite {
         /// slip increment [L]
         slip: f64,
@@ -308,14 +311,15 @@ pub enum LawFailure {
         dt: f64,
     },
     /// The increment goes back in time.
-    #[error("friction was asked for an increment of negative time {dt}")]
+    #[error("the friction law was evaluated for a negative time increment {dt}")]
     NegativeTime {
         /// increment length [T]
         dt: f64,
     },
     /// The equation of plastic slip was not solved, or the sub-steps of the increment did not come to agree.
     #[error(
-        "friction did not converge within {evaluations} evaluations: {rest:.3e} of the trial traction {trial:.3e} is left"
+        "the friction law did not converge within {evaluations} evaluations: residual {rest:.3e} of the trial traction \
+         {trial:.3e}"
     )]
     NotConverged {
         /// evaluations of the equation of plastic slip
@@ -326,7 +330,10 @@ pub enum LawFailure {
         trial: f64,
     },
     /// The opening of a law that dilates grows faster with the pressure than the contact gives way.
-    #[error("the opening {opening:.6e} of the friction law and the pressure {pressure:.6e} did not come to agree")]
+    #[error(
+        "the opening {opening:.6e} of the friction law and the pressure {pressure:.6e} did not converge to a \
+             common solution"
+    )]
     Opening {
         /// d [L]
         opening: f64,
@@ -334,15 +341,15 @@ pub enum LawFailure {
         pressure: f64,
     },
     /// Parameters that vary in time have no good value at a time.
-    #[error("the parameters of the friction law are not finite, or out of their range, at t = {time}: look at `along`")]
+    #[error("the parameters of the friction law are not finite, or out of their range, at t = {time}: check `along`")]
     Undefined {
         /// t [T]
         time: f64,
     },
     /// Parameters that vary in time let the surfaces dilate more than they rub.
     #[error(
-        "the opening per slip {rate} (dilatancy.rate) is not below the least friction coefficient {least} that the law can come to \
-         at t = {time}, and sliding would yield work: lower dilatancy.rate, or see that `along` stays above it"
+        "the opening per slip {rate} (dilatancy.rate) is not below the lowest friction coefficient {least} of the law \
+         at t = {time}, and sliding would produce energy: lower dilatancy.rate, or keep `along` above it"
     )]
     Dilates {
         /// t [T]
@@ -359,7 +366,7 @@ pub enum LawFailure {
         traction: f64,
     },
     /// A registered law has failed; whoever registered it knows why.
-    #[error("a registered friction law gave no answer")]
+    #[error("a registered friction law returned no result")]
     Registered,
 }
 

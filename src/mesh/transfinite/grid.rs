@@ -136,9 +136,9 @@ impl Grid {
             }
             let [x, y]: [f64; 2] = (0.25 * corners.iter().sum::<Vector2<f64>>()).into();
             let cause = match wrong_turns(&self.sides.corners, turn) {
-                0 => "its arcs are too much for its sides: divide it",
-                1 => "it has a corner of a half turn or more: divide it there",
-                _ => "two of its sides cross or fall together: give its corners in turn, one way round",
+                0 => "its arcs distort it too much: divide it",
+                1 => "it has an interior angle of 180° or more: divide it there",
+                _ => "two of its sides cross or coincide: give its corners in order around the block",
             };
             return Err(format!("has elements that are folded or flat, near ({x}, {y}); {cause}"));
         }
@@ -186,7 +186,8 @@ impl Sides {
                 ));
             }
             if !(angle != 0.0 && angle.abs() < (1.0 - ROUND) * std::f64::consts::PI) {
-                let message = "is a half circle, or none: an arc goes the shorter way round, so divide the block";
+                let message = "spans a half circle, or no angle: an arc follows the shorter direction, so divide the \
+                               block";
                 return Err(format!("arcs[{k}] {message}"));
             }
             arcs[k] = Some((centre, angle));

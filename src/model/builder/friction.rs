@@ -233,8 +233,7 @@ pub fn check_profile(profile: &Profile, place: &str) -> Checked<()> {
 pub fn check_in_time(profile: &Profile, place: &str) -> Checked<()> {
     let parameter = place.rsplit('.').next().unwrap_or_default();
     if profile.depends_on_time() && OF_THE_START.contains(&parameter) {
-        let message =
-            format!("{parameter} is one number a point from the start on: the variables are x and y, and not t");
+        let message = format!("{parameter} is constant in time at each point: the variables are x and y, and not t");
         return Err(ModelError::new(place, message));
     }
     let (name, table) = match profile {
@@ -247,7 +246,7 @@ pub fn check_in_time(profile: &Profile, place: &str) -> Checked<()> {
         return Err(ModelError::new(format!("{place}.{name}"), message));
     }
     let Some(pair) = table.windows(2).find(|pair| pair[1][0] < pair[0][0]) else { return Ok(()) };
-    let message = format!("the coordinates of the table must ascend: {} follows {}", pair[1][0], pair[0][0]);
+    let message = format!("the coordinates of the table must increase: {} follows {}", pair[1][0], pair[0][0]);
     Err(ModelError::new(format!("{place}.{name}"), message))
 }
 

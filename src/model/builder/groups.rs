@@ -73,7 +73,7 @@ fn nearest(mesh: &Mesh, point: [f64; 2]) -> Result<usize, String> {
     match near <= sides.fold(round_off, f64::max) {
         true => Ok(node),
         false => Err(format!(
-            "no node is near ({x}, {y}): the nearest, {tag}, lies {} away, farther than the elements there are long",
+            "no node is near ({x}, {y}): the nearest, {tag}, lies {} away, farther than the size of the elements there",
             number(near)
         )),
     }

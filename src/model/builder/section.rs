@@ -45,15 +45,15 @@ pub fn material(given: Box<dyn Material>, f_bar: bool, section: Section, place: 
     match section {
         Section::PlaneStress { .. } if f_bar => refused(
             "element",
-            "f_bar has nothing to cure in plane stress, where the thickness gives way and elements do not lock for nu near \
-             1/2: leave it out",
+            "f_bar is not needed in plane stress, where the thickness is free to change and elements do not lock for \
+             nu near 1/2: leave it out",
         ),
         Section::PlaneStress { .. } => match given.plane_stress() {
             Some(law) => Ok(law),
-            None => refused("material", "does not know plane stress: take another law, or plane strain"),
+            None => refused("material", "does not support plane stress: take another law, or plane strain"),
         },
         Section::Axisymmetric if given.spatial().is_none() => {
-            refused("material", "does not know the hoop stretch of axisymmetric bodies: take another law")
+            refused("material", "does not support the hoop stretch of axisymmetric bodies: take another law")
         }
         Section::Axisymmetric | Section::PlaneStrain | Section::Graded { .. } => Ok(given),
     }

@@ -346,12 +346,12 @@ impl Series {
         let mut found = crc32fast::Hasher::new();
         for path in (0..chunks).map(|number| store.join(self.file(number))) {
             if !path.is_file() {
-                return Err(failed(&path, &"was there when the checkpoint was written, and is gone"));
+                return Err(failed(&path, &"existed when the checkpoint was written, and is missing"));
             }
             found.update(&fs::read(&path).map_err(|cause| failed(&path, &cause))?);
         }
-        let changed = "was changed since the checkpoint was written: its chunks have another checksum; put it back as it was, \
-                       or begin anew in another folder";
+        let changed = "was changed since the checkpoint was written: its chunks have another checksum; restore it, or \
+                       start a new run in another folder";
         if found.finalize() == crc { Ok(()) } else { Err(failed(&store.join(&self.is.name), &changed)) }
     }
 

@@ -75,7 +75,7 @@ impl<'a> Run<'a> {
         let read = std::fs::read_to_string(self.source.folder.join("summary.json"));
         let summary = read.ok().and_then(|text| serde_json::from_str(&text).ok());
         summary.filter(Value::is_object).unwrap_or_else(|| {
-            self.notes.push("summary.json is missing or cannot be understood: how the run ended is not known".into());
+            self.notes.push("summary.json is missing or cannot be read: the end status of the run is unknown".into());
             json!({})
         })
     }
@@ -93,7 +93,7 @@ impl<'a> Run<'a> {
             return Value::Null;
         }
         for (name, count) in table.not_numbers() {
-            self.notes.push(format!("{file}: {count} values of {name} are no numbers; they are left blank"));
+            self.notes.push(format!("{file}: {count} values of {name} are not numbers and are left blank"));
         }
         let shown = table.spread(self.fit(0.2, table.count()).min(ROWS));
         if shown.len() < all {

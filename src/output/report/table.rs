@@ -181,7 +181,7 @@ fn row(line: &str, columns: &mut [Column]) -> Result<(), String> {
     let mut cells = line.split(',');
     for column in columns {
         let cell = cells.next().ok_or_else(|| format!(" ends before {}", column.name))?;
-        column.read(cell).ok_or_else(|| format!(": {} is no number: {cell}", column.name))?;
+        column.read(cell).ok_or_else(|| format!(": {} is not a number: {cell}", column.name))?;
     }
     Ok(())
 }

@@ -215,8 +215,8 @@ impl QuasiDynamic {
         let at = slave.at(&self.model.configuration(&state.displacement));
         let why = if rates.pressure <= 0.0 {
             format!(
-                "the pressure has come to {:e}, and quasi_dynamic steps keep every point closed: press harder, or take static steps \
-                 with radiation_damping",
+                "the pressure has dropped to {:e}, and quasi_dynamic steps keep every point closed: raise the \
+                 compression, or take static steps with radiation_damping",
                 rates.pressure
             )
         } else if !rates.is_good() {
