@@ -416,7 +416,9 @@ fn accepted_attempts_are_not_among_those_given_up() {
     let mut lost = rows.last().unwrap().clone();
     let accepted = lost.clone();
     let number: u32 = lost[increment].parse().unwrap();
-    for (k, value) in [(verdict, "unsolved"), (reason, "the iterations lost contact: body `block` flies off")] {
+    for (k, value) in
+        [(verdict, "unsolved"), (reason, "contact was lost during the iterations: body `block` flies off")]
+    {
         lost[k] = value.into();
     }
     lost[increment] = (number + 1).to_string();
@@ -432,5 +434,5 @@ fn accepted_attempts_are_not_among_those_given_up() {
     let attempts = &page.run()["newton"]["attempts"];
     assert_eq!(attempts["total"], 1, "{attempts}");
     let told = attempts["given_up"][0]["why"].as_str().unwrap();
-    assert_eq!(told, "the iterations lost contact: body `block` flies off");
+    assert_eq!(told, "contact was lost during the iterations: body `block` flies off");
 }

@@ -343,7 +343,7 @@ fn what_is_no_small_sliding_is_told() {
         assert_eq!(told(&dragged(0.95 * LITTLE_SLIP * edge, lifted)), Vec::<String>::new());
         for way in [1.05, -1.05] {
             let far = told(&dragged(way * LITTLE_SLIP * edge, lifted));
-            assert!(far.len() == 1 && far[0].contains("10.5 % of the distance between nodes, and small"), "{far:?}");
+            assert!(far.len() == 1 && far[0].contains("10.5 % of the distance between nodes, but small"), "{far:?}");
         }
     }
     for (share, count) in [(0.95, 0), (1.05, 1)] {

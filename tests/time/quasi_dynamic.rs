@@ -341,7 +341,7 @@ fn what_it_cannot_do_is_refused() {
     let changes: [(Change, &str, &str); 12] = [
         (|c| c["contacts"]["fault"]["sliding"] = json!("finite"), "contacts.fault.sliding", "need small"),
         (|c| c["contacts"]["fault"]["radiation_damping"] = json!(false), "contacts.fault.radiation_damping", "missing"),
-        (|c| c["contacts"]["fault"]["method"] = json!("gauss_to_segment"), "contacts.fault", "meet in one point"),
+        (|c| c["contacts"]["fault"]["method"] = json!("gauss_to_segment"), "contacts.fault", "coincide: quasi"),
         (
             |c| c["contacts"]["fault"]["along"]["law"][0]["friction"] = json!({"law": "coulomb", "mu": 0.7}),
             "contacts.fault.friction",
