@@ -67,7 +67,7 @@ enum Command {
     },
     /// Print the JSON Schema of the case file or of the test of a law, or the quantities of results
     Schema {
-        /// Of which file
+        /// Schema to print
         #[arg(value_enum, default_value_t = Input::Case)]
         of: Input,
     },

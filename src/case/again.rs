@@ -87,7 +87,7 @@ impl Opened {
         Self { case, path: path.to_owned(), document, taken_over: 0, inputs, mesh: None, start, resumes: false }
     }
 
-    /// On a mesh at hand, for which what the case says of its mesh is a name.
+    /// Use a mesh in memory; the mesh that the case names is then only a label.
     #[must_use]
     pub fn on(self, mesh: Mesh) -> Self {
         Self { mesh: Some(mesh), inputs: self.inputs.into_iter().skip(1).collect(), ..self }

@@ -43,12 +43,12 @@ impl From<ModelError> for Complaint {
 }
 
 impl Complaint {
-    /// A complaint.
+    /// A complaint about the value at a place.
     pub fn new(place: impl Into<String>, message: impl ToString) -> Self {
         Self { place: place.into(), message: message.to_string() }
     }
 
-    /// With the file it is about.
+    /// The error with the file that it concerns.
     pub fn in_file(self, file: &Path) -> CaseError {
         CaseError { file: file.to_owned(), place: self.place, message: self.message }
     }

@@ -189,7 +189,7 @@ fn phase_of(input: &LawTestInput, place: &str, phase: &PhaseInput, before: Optio
     })
 }
 
-/// How a quantity varies that has `reached` a value, if that is known.
+/// Time function of a quantity in a phase, starting from the value `reached`, if that is known.
 fn course(place: &str, given: Option<&Drive>, reached: Option<f64>) -> Checked<Course> {
     let complain = |message: &str| Err(Complaint::new(place, message));
     let Some(given) = given else {

@@ -55,7 +55,7 @@ pub fn read_document<T: DeserializeOwned>(path: &Path) -> Result<(Value, T), Cas
     read_document_text(&text, path)
 }
 
-/// The same of what would be the text of a file.
+/// As [`read_document`], from the text instead of the file.
 ///
 /// # Errors
 /// As [`read`].

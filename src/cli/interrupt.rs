@@ -34,7 +34,7 @@ impl Interrupt {
         interrupt
     }
 
-    /// Whether it was.
+    /// Whether a signal has arrived.
     pub fn came(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }

@@ -22,16 +22,16 @@ use crate::output::summary::Summary;
 use crate::run::error::Error;
 use crate::run::observer::Observer;
 
-/// How a case is run.
+/// Options of `fecontact run`.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// folder of the results
     pub out: Option<PathBuf>,
     /// threads
     pub threads: Option<usize>,
-    /// whether nothing is told
+    /// whether nothing is printed
     pub quiet: bool,
-    /// whether it goes on from the last checkpoint
+    /// whether the run resumes from the last checkpoint
     pub resume: bool,
 }
 
@@ -73,11 +73,11 @@ fn company(voice: &Voice) -> Company<'static> {
     }
 }
 
-/// What is told at the start and at the end, and where.
+/// Prints what a user needs to know at the start and at the end of a run.
 struct Told(Voice);
 
 impl Told {
-    /// Before the first increment: warnings and choices, or from where a run goes on.
+    /// Before the first increment: warnings and choices, or the state from which the run resumes.
     pub fn start(Job { opened, model, saved, damage, .. }: &Job, voice: &Voice) -> Self {
         let saved = saved.as_ref().filter(|_| opened.resumes());
         if let Some(damage) = damage {
@@ -95,7 +95,7 @@ impl Told {
         Self(voice.clone())
     }
 
-    /// After the last one.
+    /// After the last increment.
     pub fn end(&self, Outcome { summary, supplied, .. }: &Outcome, job: &Job) {
         if !matches!(self.0, Voice::Silent) {
             conclude(summary, &job.model, &job.folder.path, *supplied);
@@ -125,14 +125,14 @@ fn conclude(summary: &Summary, model: &Model, folder: &Path, supplied: f64) {
     }
 }
 
-/// Why attempts were given up, the most frequent reason first.
+/// Rejected attempts by reason, the most frequent first.
 fn most_first(given_up: &BTreeMap<String, usize>) -> String {
     let mut reasons: Vec<_> = given_up.iter().collect();
     reasons.sort_by_key(|(_, count)| Reverse(**count));
     reasons.iter().map(|(reason, count)| format!("{count} × {reason}")).collect::<Vec<_>>().join(", ")
 }
 
-/// Where the energy of a dynamic run came from and went; `supplied` is the most that there was.
+/// Prints the energy balance of a dynamic run; `supplied` is the largest initial energy + external work.
 fn audit(energy: &Energy, supplied: f64) {
     let share = if supplied > 0.0 { 100.0 * energy.error() / supplied } else { 0.0 };
     let radiated = if energy.radiated > 0.0 { format!(", {:.6e} radiated", energy.radiated) } else { String::new() };

@@ -11,7 +11,7 @@ use crate::linear::memory::address_space;
 /// More threads than this are a slip of the keyboard.
 const MOST: usize = 1024;
 
-/// By this the number of threads may be given for all runs.
+/// Environment variable that sets the number of threads for all runs.
 const VARIABLE: &str = "RAYON_NUM_THREADS";
 
 /// The stack of a thread [MiB].
@@ -21,7 +21,7 @@ const STACK: usize = 2;
 /// its own data.
 const THREAD: usize = STACK + 64 + 1;
 
-/// A MiB.
+/// Bytes in a MiB.
 const MIB: usize = 1 << 20;
 
 /// Make so many threads; all cores unless the environment says otherwise.

@@ -8,7 +8,7 @@ pub trait Number: Clone + Default {
     /// Unknown number `k` of `n`.
     fn unknown(value: f64, k: usize, n: usize) -> Self;
 
-    /// The value.
+    /// The value without its variations.
     fn value(&self) -> f64;
 
     /// The derivatives with respect to the unknowns at hand; none of a constant.
@@ -187,7 +187,7 @@ impl<N: Number> DualVector<N> {
         self.y.accumulate(1.0, &factor.times(&other.y));
     }
 
-    /// Turned by +90°.
+    /// The vector rotated by +90°.
     pub fn turned(&self) -> Self {
         Self { x: self.y.scaled(-1.0), y: self.x.clone() }
     }

@@ -279,7 +279,7 @@ fn carried(pressure: f64, Presumption { carried, kept, .. }: Presumption) -> f64
     carried.unwrap_or(if pressure > 0.0 { pressure } else { kept })
 }
 
-/// Where a point is at the end of an increment.
+/// Kinematics of a contact point at the end of an increment.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PointPlace {
     /// g; 0 where nothing faces it [L]
@@ -292,8 +292,8 @@ pub struct PointPlace {
     pub fluid: f64,
 }
 
-/// Where a point is whose projection is known, in the committed configuration and that of the trial, and its kinematics if it
-/// is closed.
+/// Place of a point with known projection, in the committed configuration and that of the trial, and its kinematics if
+/// it is closed.
 pub fn place(
     pair: &ContactPair,
     slave: &SlavePoint,

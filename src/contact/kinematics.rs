@@ -61,7 +61,7 @@ pub struct Kinematics {
     dfoot: Vec<f64>,
 }
 
-/// Where a slave point meets the master.
+/// Closest-point projection of a slave point on the master, with its gap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Meeting {
     /// g [L]

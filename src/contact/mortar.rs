@@ -155,8 +155,8 @@ impl Mortar {
         edges.for_each(|(edge, cut)| cut.cut(edge, surface, index, x));
     }
 
-    /// Where a point meets the master, and its kinematics; `None` where none faces it. `old` are its weights in the committed
-    /// configuration.
+    /// Projection of a mortar point on the master and its kinematics; `None` without a projection. `old` are its
+    /// weights in the committed configuration.
     pub fn meet(
         &self,
         point: usize,
@@ -172,7 +172,7 @@ impl Mortar {
         }
     }
 
-    /// By numbers that carry their variations, or not.
+    /// [`Mortar::meet`] in numbers with or without variations.
     fn meet_by<N: Number>(
         &self,
         point: usize,
@@ -310,7 +310,7 @@ fn hat(n: usize, a: usize, xi: f64) -> (f64, f64) {
     }
 }
 
-/// A_j and W_ja.
+/// Tributary length A_j and mortar weights W_ja of a point.
 #[derive(Clone, Debug, Default)]
 struct Averages<N> {
     pub weights: Vec<N>,
@@ -435,8 +435,8 @@ struct Sums {
 }
 
 impl Mortar {
-    /// Where a point meets a rigid body, and its kinematics; `None` where that faces none of its surroundings. The
-    /// configurations are the committed one and that of the trial.
+    /// Projection of a mortar point on a rigid body and its kinematics; `None` where no Gauss point has a projection.
+    /// The configurations are the committed one and that of the trial.
     pub fn meet_rigid(
         &self,
         point: usize,
@@ -528,7 +528,7 @@ fn zeros(mut values: Vec<f64>, count: usize) -> Vec<f64> {
     values
 }
 
-/// Where one point of Gauss's rule meets the body.
+/// Projection of one Gauss point on the body.
 fn meet(slave: &SlavePoint, body: &Rigid, [before, x]: [&Configuration; 2], k: &mut Kinematics) -> Option<Projection> {
     let projection = body.project(slave, x)?;
     let from = body.project(slave, before).map(|was| was.foot);

@@ -36,7 +36,7 @@ pub(super) struct Overlap {
     pub ends: [Cut; 2],
 }
 
-/// Where a slave edge is cut.
+/// A coordinate at which a slave edge is cut into mortar segments.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cut {
     pub xi: f64,

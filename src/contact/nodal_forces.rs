@@ -76,14 +76,14 @@ pub struct ClosedPoints {
     rows: [Vec<f64>; 2],
 }
 
-/// Where a closed point is in the lists.
+/// Position of a closed point in the lists of nodes, rows and tangents.
 #[derive(Clone, Copy, Debug)]
 struct Place {
     tractions: Tractions,
     is_open: bool,
     /// Its first node, and how many there are
     nodes: [usize; 2],
-    /// Where its tangent begins
+    /// Start of its tangent
     tangent: usize,
 }
 
@@ -278,7 +278,7 @@ impl ContactPair {
         sum
     }
 
-    /// The closed points.
+    /// The closed points with their kinematics and tractions.
     fn acting(&self, states: &[ContactState], x: &Configuration) -> Vec<Acting> {
         let closed: Vec<usize> = (0..states.len()).filter(|&k| states[k].friction.pressure > 0.0).collect();
         if closed.is_empty() {
@@ -309,7 +309,7 @@ impl ContactPair {
         closed.into_iter().filter_map(acting).collect()
     }
 
-    /// Where the mean of the slave lies that a mortar point stands for: the slave's part of its weights.
+    /// Mean place on the slave of a mortar point: the slave's part of its weights.
     fn mean_place(&self, k: &Kinematics) -> Weights {
         let slaves = self.points.iter().flat_map(|point| &point.length).flat_map(|share| &share.at);
         let slaves: BTreeSet<usize> = slaves.map(|(node, _)| *node).collect();

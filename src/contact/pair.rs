@@ -101,12 +101,12 @@ pub struct InitialTraction {
     pub traction: f64,
 }
 
-/// Touch of a point within an increment.
+/// Contact closure of a point within an increment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arrival {
-    /// When it was foreseen, as a share of the increment; 0 if it was not
+    /// Predicted time of closure, as a fraction of the increment; 0 without a prediction
     pub at: f64,
-    /// Friction that is in doubt because the slip before touch is not known [F]
+    /// Friction force that is uncertain because the slip before closure is not known [F]
     pub doubt: f64,
 }
 
@@ -311,7 +311,7 @@ struct Resolved {
 }
 
 impl LawsInTime {
-    /// So many laws.
+    /// Laws that vary in time, `count` of them.
     pub fn new(
         count: usize,
         law: impl Fn(usize, [f64; 2]) -> Result<ContactLaw, LawFailure> + Send + Sync + 'static,
@@ -344,7 +344,7 @@ pub type PressureAt = dyn Fn(Vector2<f64>, f64) -> f64 + Send + Sync;
 pub struct Fluid(Box<PressureAt>);
 
 impl Fluid {
-    /// Of a pressure p_w ≥ 0 by reference position and time.
+    /// A fluid with the pressure p_w ≥ 0 as a function of reference position and time.
     pub fn new(pressure: impl Fn(Vector2<f64>, f64) -> f64 + Send + Sync + 'static) -> Self {
         Self(Box::new(pressure))
     }
@@ -361,7 +361,7 @@ impl fmt::Debug for Fluid {
     }
 }
 
-/// Where a fluid has no pressure that it could have.
+/// A fluid pressure that is negative or not finite, and its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BadPressure {
     /// Reference position of the slave point

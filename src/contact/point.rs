@@ -48,13 +48,12 @@ pub struct SlavePoint {
     pub touch: f64,
     /// Number of its friction law among those of the pair
     pub law: usize,
-    /// How deep the point lies in the master at the start of a shrink fit, which counts bit by bit as the first step goes on
-    /// [L]
+    /// Initial overlap of the point in a shrink fit, applied gradually over the first step [L]
     pub overlap: f64,
 }
 
 impl SlavePoint {
-    /// Current position.
+    /// Current position of the point.
     pub fn at(&self, x: &Configuration) -> Vector2<f64> {
         let [reference, displacement] = x.apart(&self.position, Vector2::zeros());
         reference + displacement
@@ -212,7 +211,7 @@ impl ContactState {
     }
 }
 
-/// When a pair is evaluated.
+/// Time, increment and step data at which a pair is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactIncrement {
     /// t at its end [T]
@@ -230,7 +229,7 @@ pub struct ContactIncrement {
 }
 
 impl ContactIncrement {
-    /// From when to when.
+    /// Start and end time of the increment.
     pub fn span(&self) -> [f64; 2] {
         [self.time - self.dt, self.time]
     }
@@ -293,12 +292,12 @@ pub struct Tractions {
 }
 
 impl Tractions {
-    /// Those of a state.
+    /// Tractions of a friction state.
     pub fn of(friction: &FrictionState) -> Self {
         Self { pressure: friction.pressure, traction: friction.traction }
     }
 
-    /// Both in proportion, so that the pressure is not above a limit.
+    /// Both scaled by one factor, so that the pressure does not exceed a limit.
     pub fn limited(self, most: f64) -> Self {
         let share = if self.pressure > most { most / self.pressure } else { 1.0 };
         Self { pressure: share * self.pressure, traction: share * self.traction }

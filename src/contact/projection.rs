@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use super::surface::{MasterPoint, Segment, SlavePoint, Surface};
 use crate::mesh::configuration::Configuration;
 
-/// Where a slave point meets the master.
+/// Closest-point projection of a slave point on a master.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Projection {
     /// The foot

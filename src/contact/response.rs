@@ -116,7 +116,7 @@ impl ContactPair {
         answer
     }
 
-    /// By search in the master's tree.
+    /// Evaluates all points, with a search in the master's tree.
     fn respond_by<P: Fn(usize) -> Presumption + Sync>(
         &self,
         question: &Question<P>,
@@ -247,7 +247,7 @@ fn answers(
     answers
 }
 
-/// Where a point is that meets the master so, its gap still being that of the surfaces.
+/// Kinematic state of a point with this projection, before its gap is corrected for overlap.
 fn averaged(
     pair: &ContactPair,
     slave: &SlavePoint,

@@ -61,7 +61,7 @@ pub struct Viewer<'a> {
 enum Own<'a> {
     /// The nodes of a point's edges
     Point(&'a SlavePoint),
-    /// Those of an edge
+    /// The nodes of an edge
     Edge(&'a [usize]),
 }
 

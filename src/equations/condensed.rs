@@ -88,7 +88,7 @@ pub struct CondensedEquations<'a> {
     start: Vec<f64>,
     /// ρ₀ [F]
     constant: Vec<f64>,
-    /// 1 − α_f
+    /// Weight 1 − α_f of the contact forces at the end of the increment.
     share: f64,
     /// Whether a dof has an equation of forces, not of its support or of a copy
     free: Vec<bool>,
@@ -101,7 +101,8 @@ pub struct CondensedEquations<'a> {
 }
 
 impl<'a> CondensedEquations<'a> {
-    /// From the displacement u₀, where ρ₀ is given; `bodies` without contact were just evaluated there.
+    /// Condensed equations about the displacement u₀, where ρ₀ is known; `bodies` without contact were just evaluated
+    /// there.
     pub fn new(
         (nodes, bodies): (&'a ContactNodes, &'a Condensed),
         trial: Trial,
@@ -181,7 +182,7 @@ impl<'a> CondensedEquations<'a> {
         }
     }
 
-    /// How far the worst contact is from equilibrium, measured by its own forces; bodies follow.
+    /// Largest residual of a contact relative to its own forces; the bodies are updated.
     fn measure(&self, assembler: &Assembler, system: &mut System) {
         let tolerance = assembler.model().newton.tolerance;
         system.imbalance = 0.0;
@@ -221,7 +222,7 @@ impl ContactNodes {
         Self::counted_by(model, &together, jumps)
     }
 
-    /// The same with both sides of all contacts, no node counted from another.
+    /// The nodes of both sides of all contacts, in absolute displacements (no jumps).
     pub fn of_both_sides(model: &Model) -> Self {
         let together: Vec<Vec<Vec<usize>>> = model.contacts.iter().map(|pair| nodes_of(model, pair)).collect();
         Self::counted_by(model, &together, Jumps::none(model))
@@ -322,12 +323,12 @@ impl ContactNodes {
     }
 }
 
-/// 1 − α_f
+/// Weight 1 − α_f of the contact forces at the end of the increment.
 fn contact_share(step: &Step) -> f64 {
     step.scheme.coefficients().map_or(1.0, |scheme| 1.0 - scheme.alpha_f)
 }
 
-/// Ascending, each once.
+/// Sorted, without duplicates.
 fn sorted(mut nodes: Vec<usize>) -> Vec<usize> {
     nodes.sort_unstable();
     nodes.dedup();
@@ -378,7 +379,8 @@ fn fixed(model: &Model, step: &Step) -> Vec<bool> {
 }
 
 impl Jumps {
-    /// Those of a model in all its steps; `together` are the nodes that contacts couple, each point of small sliding by itself.
+    /// The jumps of a model, valid in all its steps; `together` are the nodes that contacts couple, each point of small
+    /// sliding by itself.
     pub fn new(model: &Model, together: &[Vec<usize>]) -> Self {
         let mut uses = vec![0; model.mesh.nodes.len()];
         together.iter().flatten().for_each(|&node| uses[node] += 1);
@@ -398,7 +400,7 @@ impl Jumps {
         Self { jumps, numbers }
     }
 
-    /// None at all.
+    /// No jumps: all nodes in absolute displacements.
     pub fn none(model: &Model) -> Self {
         Self { jumps: Vec::new(), numbers: vec![None; model.mesh.nodes.len()] }
     }
@@ -459,7 +461,7 @@ impl Jumps {
         }
     }
 
-    /// Which nodes L A T couples if A has the pattern `plain`, all `kept` ones with each other.
+    /// Pattern of L A T for A with the pattern `plain`, all `kept` nodes coupled with each other.
     pub fn pattern(&self, plain: &Pattern, kept: &[usize]) -> Pattern {
         let with_feet = |node: usize| std::iter::once(node).chain(self.feet(node).iter().map(|&(foot, _)| foot));
         let groups = (0..plain.nodes()).flat_map(|column| {

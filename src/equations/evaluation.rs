@@ -106,8 +106,8 @@ pub struct Flows {
 }
 
 impl Flows {
-    /// From a state to what was found at the displacement `u` at the end of an increment, the reactions being among the
-    /// loads.
+    /// Energy flows from a state to the evaluation at the displacement `u` at the end of an increment, the reactions
+    /// being among the loads.
     pub fn between(model: &Model, step: &Step, (old, time): (&State, f64), u: &[f64], found: &Evaluation) -> Self {
         let (times, ends) = ([old.time, time], [&old.displacement, u]);
         let way = |dof: usize| u[dof] - old.displacement[dof];

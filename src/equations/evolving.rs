@@ -24,7 +24,7 @@ pub(super) fn evolves(model: &Model, body: usize) -> bool {
 }
 
 impl Evolving {
-    /// Those of the bodies, but for elements that are `constant`.
+    /// The evolving elements of the bodies, without those that are `constant`.
     pub fn new(model: &Model, constant: &[bool]) -> Self {
         let own = |(&body, constant): (&usize, &bool)| evolves(model, body) && !constant;
         let all: Vec<bool> = model.body_of_element.iter().zip(constant).map(own).collect();

@@ -61,7 +61,7 @@ pub(super) struct Inertia {
 }
 
 impl Inertia {
-    /// In a dynamic increment with the mass matrix M; a prescribed dof's acceleration is its support's.
+    /// Inertia in a dynamic increment with the mass matrix M; prescribed dofs have the acceleration of their supports.
     pub fn at(model: &Model, trial: Trial, u: &[f64], mass: &SparseMatrix) -> Option<Self> {
         let Trial { old, step, dt, .. } = trial;
         let scheme = step.scheme.coefficients()?;

@@ -48,7 +48,7 @@ pub struct SlipOperator {
     nodes: ContactNodes,
     points: Vec<Facing>,
     condensed: Condensed,
-    /// For every place among the nodes the number of its m; none for a slave on a rigid master
+    /// Index of m for every place among the nodes; none for a slave on a rigid master
     moving: Vec<Option<usize>>,
     middles: usize,
     /// S_mm
@@ -92,7 +92,8 @@ impl From<LinearFailure> for NoSlipOperator {
 }
 
 impl SlipOperator {
-    /// Of a model whose contacts are in small sliding, node facing node, under the supports and springs of a trial's step.
+    /// Slip operator of a model with small sliding and matching nodes, under the supports and springs of a trial's
+    /// step.
     ///
     /// # Errors
     /// [`NoSlipOperator`] where the bodies cannot be assembled, or are not held.
@@ -129,7 +130,7 @@ impl SlipOperator {
         Ok(jumps)
     }
 
-    /// Number of points.
+    /// Number of contact points.
     pub fn count(&self) -> usize {
         self.points.len()
     }
@@ -139,7 +140,7 @@ impl SlipOperator {
         &self.by_slip
     }
 
-    /// (3) and (5).
+    /// Condenses the bodies on the contact points, equations (3) and (5).
     fn condense(&mut self, lengths: &[f64]) -> Result<(), LinearFailure> {
         let (n, m) = (2 * self.points.len(), 2 * self.middles);
         let jumping: Vec<Vec<f64>> = (0..n).into_par_iter().map(|j| self.gather(&self.column_of_jump(j))).collect();

@@ -42,7 +42,7 @@ impl<'a> Trial<'a> {
         Self { time: self.old.time + theta * self.dt, dt: theta * self.dt, beyond, ..self }
     }
 
-    /// When what is prescribed and applied is asked for.
+    /// The moment at which supports and loads are evaluated.
     pub fn moment(&self) -> Moment {
         Moment { time: self.time, beyond: self.beyond }
     }

@@ -56,7 +56,7 @@ pub struct UnknownParameter {
 
 /// Parameters of a law that are numbers, by the names that cases give them.
 pub trait Numbers {
-    /// The names.
+    /// Names of the parameters.
     fn names(&self) -> Vec<String>;
 
     /// The parameter of a name, if it is one of them.

@@ -134,7 +134,7 @@ pub struct Eliminated {
 }
 
 impl Eliminated {
-    /// From S, column by column.
+    /// From the matrix S, stored by columns.
     ///
     /// # Errors
     /// [`LinearFailure`] where A_NN has no inverse.
@@ -231,7 +231,8 @@ pub struct HalvedLu {
 }
 
 impl HalvedLu {
-    /// With what is eliminated of the matrices to come, and whether they are worth their factorization as a whole.
+    /// A solver for the matrices to come, given what of them is `eliminated`; `whole`: whether they are worth a complete
+    /// factorization.
     pub fn with<'a>(&'a mut self, eliminated: Option<&'a Eliminated>, whole: bool) -> impl LinearSolver + 'a {
         Halving { eliminated, whole, own: self }
     }

@@ -4,10 +4,10 @@ use std::fs::read_to_string;
 
 use thiserror::Error;
 
-/// Of less than this the system is not even asked [bytes].
+/// Below this size the free memory is not checked [bytes].
 pub const LITTLE: usize = 1 << 24;
 
-/// What does not fit into memory.
+/// A need of memory above what is free.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error("{needed:.2} GiB of memory, and {available:.2} GiB are free")]
 pub struct NoRoom {

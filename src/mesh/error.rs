@@ -75,7 +75,7 @@ pub enum MeshError {
     /// Nodes with coordinates on their curve or surface.
     #[error("the nodes carry parametric coordinates; export with Mesh.SaveParametric = 0")]
     Parametric,
-    /// A third dimension.
+    /// The mesh is not plane.
     #[error(
         "node {node} has z = {z} where node {first} has z = {first_z}: not a plane mesh; \
          all nodes must share one z, the model lies in x and y"

@@ -82,7 +82,7 @@ impl Mesh {
         Configuration::new(&self.nodes, displacement).within(self.section)
     }
 
-    /// The reference configuration.
+    /// The reference configuration, without displacements.
     pub fn undeformed(&self) -> Configuration<'_> {
         Configuration::undeformed(&self.nodes).within(self.section)
     }

@@ -24,7 +24,7 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     spelled(text, |c| c != '\n' && steers(c))
 }
 
-/// The same in one line.
+/// The text in one line, without line breaks.
 pub fn in_line(text: &str) -> Cow<'_, str> {
     spelled(text, steers)
 }

@@ -82,7 +82,7 @@ impl Section {
     }
 }
 
-/// In a line, with what forces are counted by.
+/// One line: the section, and the unit thickness or turn that forces refer to.
 impl Display for Section {
     fn fmt(&self, f: &mut Formatter) -> Result {
         match self {

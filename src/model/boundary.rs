@@ -195,7 +195,7 @@ impl Drive {
         }
     }
 
-    /// The same with the other sign.
+    /// The profile with the opposite sign.
     #[must_use]
     pub fn reversed(&self) -> Self {
         match self {

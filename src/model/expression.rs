@@ -96,7 +96,7 @@ impl Expression {
         }
     }
 
-    /// The same with the other sign.
+    /// The expression with the opposite sign.
     #[must_use]
     pub fn negated(&self) -> Self {
         let operations = self.operations.iter().copied().chain([Operation::Negate]).collect();
@@ -143,7 +143,7 @@ impl FromStr for Expression {
     }
 }
 
-/// Its text.
+/// The text of the expression.
 impl AsRef<str> for Expression {
     fn as_ref(&self) -> &str {
         &self.text

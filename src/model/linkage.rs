@@ -45,7 +45,7 @@ impl Follower {
         self.led_by(i, |dof| values[dof])
     }
 
-    /// The same of values by their dofs.
+    /// Value of a following dof from those of its leaders.
     pub fn led_by(&self, i: usize, value: impl Fn(usize) -> f64) -> f64 {
         self.leaders.iter().map(|(node, g)| g[(i, 0)] * value(2 * node) + g[(i, 1)] * value(2 * node + 1)).sum()
     }
@@ -57,17 +57,17 @@ impl Follower {
 }
 
 impl Linkage {
-    /// Whether nothing follows.
+    /// Whether there are no followers.
     pub fn is_empty(&self) -> bool {
         self.followers.is_empty()
     }
 
-    /// Give leaders what their followers have, by Gᵀ, and leave these nothing.
+    /// Add the forces of followers to their leaders, by Gᵀ, and clear them.
     pub fn gather(&self, values: &mut [f64]) {
         self.move_by(values, |g| g);
     }
 
-    /// The same of magnitudes, which do not cancel.
+    /// [`Linkage::gather`] for magnitudes, which do not cancel.
     pub fn gather_magnitudes(&self, values: &mut [f64]) {
         self.move_by(values, f64::abs);
     }
@@ -141,8 +141,8 @@ pub fn rigid(nodes: &[usize], [a, b]: [usize; 2], place: impl Fn(usize) -> Vecto
 }
 
 impl Model {
-    /// Those of some nodes, ascending, whose reactions along x (0) or y (1) are theirs: that of a plate is with one of its nodes, and
-    /// is theirs if the whole plate is.
+    /// The given nodes (sorted) whose reactions along x (0) or y (1) count for them; the reaction of a plate counts
+    /// only if all of its nodes are given.
     pub fn held(&self, nodes: &[usize], component: usize) -> Vec<usize> {
         let linked = self.linkage.plates.iter().filter(|(_, components)| components[component]).map(|(plate, _)| plate);
         let plates: Vec<&Vec<usize>> = self.plates.iter().chain(linked).collect();

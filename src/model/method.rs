@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::contact::surface::{CORNER, in_order};
 use crate::mesh::{Group, Mesh};
 
-/// Where contact is evaluated.
+/// Contact method: where contact is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {

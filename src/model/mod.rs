@@ -37,7 +37,7 @@ use method::Chosen;
 use state::{Energy, State, StepStart};
 pub use step::{Increments, Rupture, Step};
 
-/// When Newton's method stops.
+/// Stopping criteria of Newton's method.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 #[schemars(rename = "Newton")]

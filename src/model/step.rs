@@ -21,7 +21,7 @@ use super::scheme::Scheme;
 use super::state::State;
 use super::support::{Direction, Motion, Prescribed};
 
-/// How increments are chosen.
+/// Size and error control of increments.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Increments {
     /// first Δt [T]
@@ -35,7 +35,8 @@ pub struct Increments {
 }
 
 impl Increments {
-    /// The same, but none longer than `longest`: a stabilized step has a last increment after its dashpots have faded.
+    /// These settings, with no increment longer than `longest`: a stabilized step has a last increment after its
+    /// dashpots have faded.
     pub fn at_most(self, longest: f64) -> Self {
         let Self { initial, min, max, error } = self;
         Self { initial: initial.min(longest), min: min.min(longest), max: max.min(longest), error }
@@ -74,7 +75,7 @@ pub struct Step {
 }
 
 impl Step {
-    /// The same at other times: all of it that begins with this step or one after it.
+    /// The step moved in time: everything that begins with this step or a later one.
     #[must_use]
     pub fn moved(mut self, to: &impl Fn(Span) -> Span) -> Self {
         fn amplitude(of: &mut Amplitude, to: &impl Fn(Span) -> Span) {
@@ -105,7 +106,7 @@ impl Step {
     }
 }
 
-/// When a static or implicit step turns to explicit increments, and back.
+/// Criteria for switching a static or implicit step to explicit increments and back.
 #[derive(Clone, Debug)]
 pub struct Rupture {
     /// Slip rate of a contact point above which it does [L/T]
@@ -144,7 +145,7 @@ pub enum Part {
     X,
     /// along y
     Y,
-    /// its size
+    /// magnitude
     Size,
 }
 
@@ -159,7 +160,7 @@ impl Part {
     }
 }
 
-/// How an increment lies to the end of its step.
+/// Status of an increment with respect to the reaction that ends its step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Course {
     /// The reaction has its value: the step ends
@@ -207,7 +208,7 @@ impl Until {
         shares.into_iter().filter(|share| *share > 0.0 && share.is_finite()).reduce(f64::min)
     }
 
-    /// How an increment of a step lies to the end.
+    /// Status of an increment with respect to the end of the step.
     pub fn course(&self, span: Span, [old, new]: [&State; 2]) -> Course {
         let clock = SHORTEST * (span.end - span.start) + 64.0 * f64::EPSILON * new.time.abs();
         let share = self.share([old, new]);

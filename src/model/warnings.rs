@@ -41,7 +41,7 @@ impl Model {
         of_model.chain(concerns).chain(self.contacts.iter().flat_map(of_contact)).collect()
     }
 
-    /// Where contacts are evaluated whose method was left open.
+    /// Methods chosen by the program, for contacts without a given method.
     pub fn choices(&self) -> Vec<String> {
         self.told_of_methods(|chosen| chosen.because.map(|because| format!("{}, {because}", chosen.method.name())))
     }
@@ -54,7 +54,7 @@ impl Model {
     }
 }
 
-/// Fields at times of a run that may be over before.
+/// Output times that a step ending early may shift.
 fn uncertain_times(model: &Model) -> Option<String> {
     let step = model.steps.iter().find(|step| step.until.is_some()).filter(|_| !model.times.is_empty())?;
     Some(format!(

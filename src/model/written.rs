@@ -11,18 +11,18 @@ pub trait Written: Sized {
     /// The forms there are, for messages
     const EXPECTING: &'static str;
 
-    /// From a number, if it may be one.
+    /// The value from a number, if numbers are allowed.
     fn number(_value: f64) -> Option<Self> {
         None
     }
 
-    /// From a text.
+    /// The value from a text.
     ///
     /// # Errors
     /// What cannot be read.
     fn text(text: &str) -> Result<Self, String>;
 
-    /// From an object.
+    /// The value from an object.
     ///
     /// # Errors
     /// The deserializer's.

@@ -11,29 +11,29 @@ use crate::model::state::State;
 use crate::model::{Model, Step};
 use serde::{Deserialize, Serialize};
 
-/// Share of the energy there was that is worth a warning.
+/// Energy error worth a warning, as a fraction of the energy supplied.
 const WORTH_TELLING: f64 = 0.01;
 
-/// Errors within this many times what round-off of the forces does on the way mean nothing.
+/// Errors within this multiple of the work of round-off in the forces are ignored.
 const ROUND_OFF: f64 = 100.0;
 
 /// The balance of energies so far.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Audit {
-    /// The most that there was to be stored or dissipated [F·L]
+    /// Largest initial energy + external work [F·L]
     pub supplied: f64,
     /// Error at the last row [F·L]
     error: f64,
     /// Its largest value, and when [F·L, T]
     worst: (f64, f64),
-    /// What every step added to it, and what may help
+    /// Contribution of every step, and its remedy
     steps: Vec<(String, f64, String)>,
-    /// What round-off of the forces may have worked [F·L]
+    /// Possible work of round-off in the forces [F·L]
     noise: f64,
 }
 
 impl Audit {
-    /// Take note of a row, from the state before it.
+    /// Record a row, from the state before it.
     pub fn record(&mut self, model: &Model, step: &Step, old: &State, new: &State) {
         let error = new.energy.error();
         self.supplied = self.supplied.max(new.energy.supplied());
@@ -50,7 +50,7 @@ impl Audit {
         self.noise += round_off(model, new) * ways.fold(0.0, f64::max);
     }
 
-    /// What is to be told at the end of a run, if anything is.
+    /// Warning at the end of a run, if the energies do not balance.
     pub fn concern(&self) -> Option<String> {
         let (worst, time) = self.worst;
         if worst.abs() <= (WORTH_TELLING * self.supplied).max(ROUND_OFF * self.noise) {
@@ -81,7 +81,7 @@ fn round_off(model: &Model, state: &State) -> f64 {
     f64::EPSILON * contacts.fold(model.stiffness(), f64::max) * reach * (model.mesh.nodes.len() as f64).sqrt()
 }
 
-/// What may bring the energies of a step into balance.
+/// Remedy for an energy error in a step.
 fn remedy(model: &Model, step: &Step) -> &'static str {
     let keeps_all = match step.scheme {
         Scheme::Static => return "take shorter increments (dt.max, dt.min)",

@@ -41,7 +41,7 @@ struct Share {
     lumped: f64,
 }
 
-/// How a body moves.
+/// Momentum, centre of mass and rotation of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
     /// P [M L/T]
@@ -55,7 +55,7 @@ pub struct Motion {
 }
 
 impl BodyMeans {
-    /// Of a body of a model.
+    /// Weights for the means over a body of a model.
     pub fn new(model: &Model, body: &Body) -> Self {
         let place = |node: usize| model.mesh.nodes[node];
         let origin = body.nodes.first().map_or_else(Vector2::zeros, |&node| place(node));
@@ -91,7 +91,7 @@ impl BodyMeans {
         Self { density, pairs, shares, volume, centre: origin + from_origin, inertia }
     }
 
-    /// How it moves in a state.
+    /// Motion of the body in a state.
     pub fn motion(&self, model: &Model, state: &State) -> Motion {
         let is_lumped = state.is_of_explicit();
         let (mut shift, mut momentum) = (Vector2::zeros(), Vector2::zeros());

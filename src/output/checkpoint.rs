@@ -20,9 +20,9 @@ use crate::mesh::{Group, Mesh};
 use crate::run::RunBytes;
 use crate::run::error::Error;
 
-/// The last checkpoint.
+/// File of the last checkpoint.
 pub const NEWEST: &str = "checkpoint.bin";
-/// The one before.
+/// File of the checkpoint before it.
 pub const PREVIOUS: &str = "checkpoint_prev.bin";
 
 const MAGIC: &[u8] = b"fecontact checkpoint\n";
@@ -58,7 +58,7 @@ pub struct MeshPrint {
 }
 
 impl MeshPrint {
-    /// Of a mesh.
+    /// Checksums of a mesh.
     pub fn of(mesh: &Mesh) -> Self {
         let [mut nodes, mut elements, mut groups] = [(); 3].map(|()| crc32fast::Hasher::new());
         mesh.nodes.iter().flat_map(|x| [x.x, x.y]).for_each(|x| nodes.update(&x.to_bits().to_le_bytes()));
@@ -98,7 +98,7 @@ impl MeshPrint {
 /// Why a checkpoint cannot be used.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Unusable {
-    /// There is none.
+    /// There is no checkpoint.
     #[error("there is none")]
     Missing,
     /// It cannot be read.

@@ -82,7 +82,7 @@ impl Table {
         }
     }
 
-    /// Add a cell.
+    /// Add a cell with a text.
     pub fn text(&mut self, text: &str) {
         self.row.extend_from_slice(text.as_bytes());
         self.row.push(b',');
@@ -104,7 +104,7 @@ impl Table {
         let _ = write!(self.row, "{value},");
     }
 
-    /// Write the row.
+    /// End and write the row.
     pub fn end_row(&mut self) -> Result<(), Error> {
         self.end_row_as(Row::Written)
     }
@@ -292,7 +292,7 @@ pub trait Rows: Sized {
     /// Name of the table without its ending, by which its memory is found as well
     const NAME: &'static str;
 
-    /// Those of a model, and the header above them.
+    /// The rows of a model, and their header.
     fn new(model: &Model) -> (Self, Vec<String>);
 
     /// Write the rows of an attempt, if it has any.

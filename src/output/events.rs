@@ -43,7 +43,7 @@ pub(super) struct SlipEvent {
     /// Time up to which it is known, and whether that is its end
     pub until: f64,
     pub over: bool,
-    /// Of the model when it began, and by `until`
+    /// Energies of the model at the onset, and at `until`
     pub energies: [Energies; 2],
     /// What each point did
     pub courses: Vec<Course>,
@@ -57,7 +57,7 @@ pub(super) struct Energies {
 }
 
 impl Energies {
-    /// By a state.
+    /// Energies of a state.
     pub fn of(state: &State) -> Self {
         let energy = &state.energy;
         let given = energy.external_work - energy.strain - energy.contact_elastic;
@@ -70,9 +70,9 @@ impl Energies {
 pub(super) struct Course {
     /// Plastic slip, traction and work before
     before: Mark,
-    /// When |q| was least
+    /// State at the smallest |q|
     least: Mark,
-    /// As last seen
+    /// State at the last row
     last: Mark,
     pub peak_rate: f64,
 }
@@ -86,7 +86,7 @@ pub(super) struct Mark {
 }
 
 impl Mark {
-    /// Of a contact point.
+    /// Slip, traction and work of a contact point.
     pub fn of(state: &ContactState) -> Self {
         let friction = &state.friction;
         Self { slip: friction.plastic_slip, traction: friction.traction, work: friction.dissipation }
@@ -150,7 +150,7 @@ pub(super) struct Measures {
 }
 
 impl Measures {
-    /// What it amounts to; nothing if no front has reached a point.
+    /// Measures of an event; `None` if no front has reached a point.
     pub fn of(event: &SlipEvent, interface: &Interface) -> Option<Self> {
         let reached: Vec<(&Point, &Course, f64)> = interface
             .points
@@ -211,7 +211,7 @@ pub(super) struct Point {
     pub length: f64,
     /// Whether it has friction: what slides freely has no fronts
     pub rubs: bool,
-    /// What it was left with by the last increment
+    /// State after the last increment
     pub mark: Mark,
     /// Slip rate of that increment [L/T], and what an arrival is told by (see [`Arrive`])
     pub rate: f64,
@@ -219,7 +219,7 @@ pub(super) struct Point {
     pub arrivals: Vec<Arrival>,
 }
 
-/// When a front passed a point.
+/// Arrival of a front at a point.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Arrival {
     /// [T]
@@ -366,7 +366,7 @@ impl Interface {
         }
     }
 
-    /// How often a point set out again within an event, a point and time.
+    /// Repeated onsets of slip within an event, per point and time.
     pub fn chatter(&self, time: f64) -> f64 {
         let again = |point: &Point| point.arrivals.windows(2).filter(|pair| pair[0].event == pair[1].event).count();
         let rubbing = self.points.iter().filter(|point| point.rubs).count();
@@ -430,12 +430,12 @@ pub struct WaveSpeeds {
 }
 
 impl WaveSpeeds {
-    /// Of the body behind the slave of a contact, if there is one.
+    /// Wave speeds of the body behind the slave of a contact, if there is one.
     pub fn behind(model: &Model, pair: &ContactPair) -> Option<Self> {
         Some(Self::of(&*model.bodies[pair.body?].material))
     }
 
-    /// Of a material; infinite without density.
+    /// Wave speeds of a material; infinite without density.
     ///
     /// ```text
     /// (2 − ξ²)² = 4 √(1 − ξ²) √(1 − ξ² c_s²/c_p²),   ξ = c_R/c_s

@@ -137,7 +137,7 @@ fn sync_folder(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Where a file is written before it takes its place.
+/// Temporary path of a file before it is renamed.
 pub fn aside(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(".new");
@@ -157,7 +157,7 @@ pub struct Lock {
     file: File,
 }
 
-/// Who holds a lock.
+/// Process that holds a lock.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Holder {
     process: u32,

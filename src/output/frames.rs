@@ -23,13 +23,13 @@ pub struct Shown {
 }
 
 impl Shown {
-    /// Of a state of a model.
+    /// What a frame shows of a state of a model.
     pub fn new(model: &Model, state: &State) -> Self {
         Self { state: state.clone(), contact_forces: contact_forces(model, state) }
     }
 }
 
-/// The bodies.
+/// Fills the grid of the bodies.
 pub fn solid_frame(model: &Model, Shown { state, contact_forces }: &Shown, grid: &mut Grid) {
     let stresses = nodal_stresses(model, state);
     // A body has one material, and a material serves one body: the two ids agree.

@@ -20,7 +20,7 @@ pub struct Borne {
     pub ratio: f64,
 }
 
-/// How the friction of a contact went, by the accepted increments.
+/// Friction history of a contact over the accepted increments, in a few numbers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FrictionCourse {
     /// when a point slipped first [T]
@@ -34,7 +34,7 @@ pub struct FrictionCourse {
 }
 
 impl FrictionCourse {
-    /// Take note of the forces [F] and of the share of the closed length that slips [-].
+    /// Record the forces [F] and the slipping fraction of the closed length [-].
     pub fn note(&mut self, time: f64, [normal, tangential]: [f64; 2], slipping: f64) {
         let ratio = if normal > 0.0 { tangential.abs() / normal } else { 0.0 };
         let borne = Borne { time, tangential_force: tangential, ratio };

@@ -64,7 +64,7 @@ impl Fronts {
         self.last = [last[1], (after.time, Energies::of(after))];
     }
 
-    /// How often a point set out again within an event of its contact, a point and time, by contact [1/T].
+    /// Repeated onsets of slip within an event, per point and time, by contact [1/T].
     pub fn chatter(&self) -> BTreeMap<String, f64> {
         let time = self.last[1].0 - self.start;
         self.interfaces.iter().map(|interface| (interface.name.clone(), interface.chatter(time))).collect()

@@ -23,7 +23,7 @@ use crate::model::{Model, WatchedSet};
 use crate::run::error::Error;
 use crate::run::observer::Attempt;
 
-/// Writes `history.csv`.
+/// Observer that writes `history.csv`.
 pub type History = Sheet<HistoryRows>;
 
 /// The rows of `history.csv`.
@@ -46,7 +46,7 @@ struct Memory {
     rotations: Vec<f64>,
     /// Frictional heat of each contact so far [F·L]
     heat: Vec<f64>,
-    /// How the friction of each contact went so far
+    /// Friction history of each contact so far
     courses: Vec<FrictionCourse>,
 }
 
@@ -151,7 +151,7 @@ impl Rows for HistoryRows {
 }
 
 impl History {
-    /// How the friction of the contacts went, in their order.
+    /// Friction histories of the contacts, in their order.
     pub fn courses(&self) -> &[FrictionCourse] {
         &self.rows.memory.courses
     }

@@ -72,7 +72,7 @@ impl Unit {
         }
     }
 
-    /// The same as CF has it: `N mm-2`.
+    /// The unit as the CF conventions write it: `N mm-2`.
     pub fn of_store(self, [force, length, time]: [&str; 3]) -> String {
         let parts = [force, length, time].into_iter().zip(self.powers).filter(|(_, power)| *power != 0);
         let mut parts: Vec<(&str, i8)> = parts.collect();
@@ -120,7 +120,7 @@ pub const ENERGIES: [Quantity; 7] = [
     q("energy_error", ENERGY, "initial energy + external work − stored − dissipated − radiated: 0 if all is resolved"),
 ];
 
-/// Of runs with radiation damping.
+/// Column of runs with radiation damping.
 pub const RADIATED: Quantity = q("radiated", ENERGY, "radiated by slip so far, ∫∫ η v² ds dt");
 
 /// Means and sums of a contact; means are taken over the closed length.
@@ -135,7 +135,7 @@ pub const CONTACT: [Quantity; 8] = [
     q("mean_elastic_slip", LENGTH, "mean of q/α_t"),
 ];
 
-/// Mean displacement of a watched set, and what its supports put on it.
+/// Mean displacement of a watched set, and its reactions.
 pub const WATCHED: [Quantity; 4] = [
     q("ux", LENGTH, "mean displacement of the nodes along x"),
     q("uy", LENGTH, "along y"),
@@ -150,7 +150,7 @@ pub const RESULTANT: [Quantity; 3] = [
     q("moment", ENERGY, "its moment about the middle of the undeformed slave (the mean of its points by length)"),
 ];
 
-/// How a body moves as a whole.
+/// Momentum, centre of mass and rotation of a body.
 pub const BODY: [Quantity; 6] = [
     q("momentum_x", MOMENTUM, "∫ ρ v_x dV"),
     q("momentum_y", MOMENTUM, "∫ ρ v_y dV"),
@@ -166,7 +166,7 @@ pub const EDGES: [Quantity; 2] = [
     q("edge_uy", LENGTH, "along y"),
 ];
 
-/// Of contacts in a fluid.
+/// Column of contacts with a fluid pressure.
 pub const FLUID_FORCE: Quantity = q("fluid_force", FORCE, "∫ p_w ds, of contacts in a fluid");
 
 /// Heat of a contact.
@@ -190,7 +190,7 @@ pub const PROBE: [Quantity; 11] = [
     q("stress_xy", STRESS, "the same, xy"),
 ];
 
-/// Of every probe of rings, behind its other columns.
+/// Column of every probe in axisymmetric bodies, after its other columns.
 pub const HOOP: Quantity = q("strain_zz", NONE, "hoop strain, of axisymmetric bodies");
 
 /// Points of a contact, as they lie before anything moves.
@@ -216,14 +216,14 @@ const STATE: Quantity =
     q("state", NONE, "0 open, 1 sticking (or closed without friction), 2 slipping, as the law says");
 const DISSIPATION: Quantity = q("dissipation", WORK_PER_AREA, "work of friction so far, per area");
 
-/// At the points of every contact, in frames: those since the increment before.
+/// At the points of every contact, in frames: rates since the increment before.
 pub const IN_FRAMES: [Quantity; 11] =
     [GAP, PRESSURE, TRACTION, SLIP, ELASTIC_SLIP, SLIP_RATE, RATIO, MU, STRUCTURE, STATE, DISSIPATION];
 
-/// At the points of every contact, in the store: those since the row before.
+/// At the points of every contact, in the store: rates since the row before.
 pub const IN_STORE: [Quantity; 9] = [SLIP, TOTAL_SLIP, SLIP_RATE, PRESSURE, TRACTION, GAP, RATIO, MU, STRUCTURE];
 
-/// At the points of some contacts, in both; what else a law remembers or lets observe has a name that it gives.
+/// At the points of some contacts, in both; other internal variables and observables have names given by their law.
 pub const OF_SOME: [Quantity; 4] = [
     q("theta", TIME, "θ: state of rate-and-state friction"),
     q("dilation", LENGTH, "opening by dilatancy"),
@@ -344,7 +344,7 @@ const SOLID: [Quantity; 10] = [
     q("material", NONE, "number of its material"),
 ];
 
-/// Of the frames of integration points; what materials remember stands behind, by their names.
+/// Arrays of the frames of integration points; internal variables of materials follow, by their names.
 const INTEGRATION_POINTS: [Quantity; 5] = [
     SOLID[0],
     q("stress", STRESS, "Cauchy stress xx, yy, zz, xy"),

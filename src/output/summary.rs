@@ -14,7 +14,7 @@ use crate::run::control::RunReport;
 use crate::run::error::Error;
 use crate::run::law::LawReport;
 
-/// Where results come from, and what their readers need to know of it.
+/// Origin of the results, and what their readers need to know of it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct About {
@@ -37,7 +37,7 @@ pub struct About {
     pub understood: Vec<(String, Vec<String>)>,
 }
 
-/// How it ended: the first lines of every `summary.json`.
+/// Status of the run: the first lines of every `summary.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Ending {
     /// "running", "completed", "stopped" or "interrupted"
@@ -51,12 +51,12 @@ pub struct Ending {
 }
 
 impl Ending {
-    /// Of a run or test that has not ended.
+    /// Status of a run or test that is active.
     pub fn running(files: &[String]) -> Self {
         Self { status: "running", reason: None, version: env!("CARGO_PKG_VERSION"), files: files.to_vec() }
     }
 
-    /// Of a run or test that stopped for a reason, or did not.
+    /// Status of a run or test that stopped for a reason, or completed.
     pub fn new(stopped: Option<&Error>, files: &[String]) -> Self {
         let status = match stopped {
             None => "completed",
@@ -66,7 +66,7 @@ impl Ending {
         Self { status, reason: stopped.map(ToString::to_string), ..Self::running(files) }
     }
 
-    /// Of one that ended in a defect of the program.
+    /// Status of a run or test that ended in a defect of the program.
     pub fn defect(what: &str, files: &[String]) -> Self {
         Self { status: "stopped", reason: Some(format!("a defect of the program: {what}")), ..Self::running(files) }
     }

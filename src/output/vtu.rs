@@ -146,7 +146,7 @@ struct Array<'a> {
     kind: &'a str,
     name: &'a str,
     components: usize,
-    /// How its blocks are packed
+    /// Packing of its blocks
     packed: fn(&[u8]) -> Vec<u8>,
 }
 
@@ -170,7 +170,7 @@ fn encode(bytes: &[u8], packed: fn(&[u8]) -> Vec<u8>, text: &mut String) {
     STANDARD.encode_string(blocks.concat(), text);
 }
 
-/// A block, compressed.
+/// A compressed block.
 fn compressed(block: &[u8]) -> Vec<u8> {
     compress_to_vec_zlib(block, LEVEL)
 }

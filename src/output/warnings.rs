@@ -24,7 +24,8 @@ use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};
 use crate::time::touching::DOUBT;
 
-/// How deep a node that the contact does not see must lie in a rigid master, as a share of the slave's longest edge.
+/// Smallest reported penetration of a rigid master by a node that the contact does not check, as a fraction of the
+/// slave's longest edge.
 const UNSEEN: f64 = 0.05;
 
 /// Collects warnings; each kind once a contact or step, where it is met first.
@@ -110,7 +111,7 @@ impl Observer for Warnings {
 }
 
 impl Warnings {
-    /// Points that have left what small sliding keeps, closed or not: an open one may miss what it would touch.
+    /// Points that have left the range of small sliding, closed or not: an open one may miss a contact.
     fn no_small_sliding(
         &mut self,
         number: usize,
@@ -131,9 +132,9 @@ impl Warnings {
         }
     }
 
-    /// The points of the slave do not see a master node between them. (Where gaps are not those of the surfaces there is
-    /// nothing to compare with: under initial tractions, and while a shrink fit is brought in. Explicit increments are too
-    /// many to look at.)
+    /// Master nodes that penetrate the slave between its points, which detect nothing there. (Where gaps are not those
+    /// of the surfaces there is nothing to compare with: under initial tractions, and while a shrink fit is brought in.
+    /// Explicit increments are too many to look at.)
     fn deep_master_node(&mut self, number: usize, pair: &ContactPair, state: &State, x: &Configuration) {
         if self.given.contains(&(number, Kind::DeepMasterNode)) {
             return;
@@ -152,7 +153,7 @@ impl Warnings {
         ));
     }
 
-    /// Whether a contact is still one of those that have never closed. (A surface that may meet itself need not.)
+    /// Track contacts that have never closed. (Self-contact need not close.)
     fn never_closed(&mut self, number: usize, pair: &ContactPair, states: &[ContactState]) {
         if self.closed.contains(&number) || pair.is_own() {
             return;
@@ -167,7 +168,7 @@ impl Warnings {
         *least = gaps.chain(*least).min_by(f64::total_cmp);
     }
 
-    /// The points of the slave are all that a rigid master holds back.
+    /// Nodes outside the slave that penetrate a rigid master, which acts only on slave points.
     fn deep_unseen(&mut self, number: usize, pair: &ContactPair, time: f64, x: &Configuration) {
         let Master::Rigid(rigid) = &pair.master else { return };
         if pair.unseen.is_empty() || self.given.contains(&(number, Kind::DeepUnseen)) {
@@ -190,7 +191,7 @@ impl Warnings {
         }
     }
 
-    /// A reaction that jumps past the value that ends its step never has it.
+    /// A reaction that jumped past the value that ends its step.
     fn passed(&mut self, attempt: &Attempt, state: &State) {
         let Step { name, until: Some(until), .. } = attempt.step else { return };
         if state.time < attempt.step.span.end && attempt.ends_step(state) && !until.is_met(state) {
@@ -204,7 +205,7 @@ impl Warnings {
         }
     }
 
-    /// A matrix that is singular or nearly so may still have given an answer.
+    /// Singular or nearly singular matrices that were solved nevertheless.
     fn lost_pivots(&mut self, attempt: &Attempt) {
         let solves = || attempt.iterations.iter().map(|iteration| iteration.newton);
         let pivots = solves().map(|solve| solve.perturbed_pivots).max().unwrap_or(0);
@@ -226,7 +227,7 @@ impl Warnings {
         }
     }
 
-    /// The shortest increment is accepted whatever its error.
+    /// Time errors of increments of the shortest length, which are accepted in any case.
     fn error_in_time(&mut self, attempt: &Attempt) {
         let Attempt { step, dt, old, .. } = attempt;
         let Some((error, allowed)) = attempt.local_error.zip(step.increments.error) else { return };
@@ -236,7 +237,7 @@ impl Warnings {
             self.list.push(format!("{start}, and its error {error:.3e} exceeds {allowed:.3e}; lower dt.min"));
         }
     }
-    /// The shortest increment is accepted whatever it does not know of touch.
+    /// Uncertain friction after closure in increments of the shortest length, which are accepted in any case.
     fn error_of_touch(&mut self, attempt: &Attempt) {
         let Attempt { step, dt, old, .. } = attempt;
         let Some(doubt) = attempt.doubt.filter(|doubt| *doubt > DOUBT) else { return };
@@ -260,14 +261,14 @@ const DEEP: f64 = 0.01;
 /// Day et al. (2005), J. Geophys. Res. 110, B12307.
 const PROCESS_ZONE: f64 = 9.0 * std::f64::consts::PI / 32.0;
 
-/// What a contact is warned of, once.
+/// Kinds of warnings about a contact, each given once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 enum Kind {
-    /// A point lies deep in the master
+    /// A slave point penetrates the master
     DeepPenetration,
-    /// A node of the master lies deep in the slave
+    /// A master node penetrates the slave
     DeepMasterNode,
-    /// A node that the contact does not see lies deep in a rigid master
+    /// A node outside the slave group penetrates a rigid master
     DeepUnseen,
     /// Edges are longer than the process zone of friction
     Unresolved,
@@ -283,7 +284,7 @@ enum Kind {
     YieldsWork,
 }
 
-/// What is to be said of a pressure past the bound of uniqueness.
+/// Warning about a pressure above the bound of uniqueness.
 pub fn several_answers(pressure: f64, limit: f64) -> String {
     format!(
         "the pressure {pressure:.6e} exceeds {limit:.6e}, above which the response is not unique: slip weakening may \
@@ -291,7 +292,7 @@ pub fn several_answers(pressure: f64, limit: f64) -> String {
     )
 }
 
-/// What is worth a warning at one closed point after an increment up to a time.
+/// Warnings about one closed point after an increment up to a time.
 fn concerns(
     pair: &ContactPair,
     point: &SlavePoint,
@@ -316,11 +317,11 @@ fn concerns(
     deep.into_iter().chain(several.map(|message| (Kind::SeveralAnswers, message))).chain(coarse).chain(yields)
 }
 
-/// Share of the work of friction that an increment may give back for round-off.
+/// Fraction of the friction work that round-off may return in an increment.
 const GIVEN_BACK: f64 = 1e-9;
 
-/// What is to be said of a point that slides and lifts its load with more work than friction takes: laws whose least coefficient is
-/// not known beforehand may come to it.
+/// Warning about a point whose dilatancy does more work than friction dissipates; possible with laws whose lowest
+/// coefficient is not known beforehand.
 fn yields_work([old, new]: [&FrictionState; 2]) -> Option<String> {
     let [slip, opened] = [new.plastic_increment.abs(), new.opening - old.opening];
     let (friction, gained) = (new.traction.abs(), old.dissipation - new.dissipation);
@@ -335,7 +336,7 @@ fn yields_work([old, new]: [&FrictionState; 2]) -> Option<String> {
     })
 }
 
-/// What is to be said of an edge that is longer than the process zone of a front that runs along it.
+/// Warning about an edge that is longer than the process zone of a front on it.
 fn unresolved(
     pair: &ContactPair,
     (point, law): (&SlavePoint, &Description),
@@ -353,7 +354,7 @@ fn unresolved(
     })
 }
 
-/// What is to be said of a point that has left what small sliding keeps.
+/// Warnings about a point that has left the range of small sliding.
 fn left(departure: Option<Departure>) -> impl Iterator<Item = (Kind, String)> {
     let Some(Departure { slid, share, turned, stretched }) = departure else {
         let message = "the surface has slid past the end of the rigid master, but small sliding keeps it in contact";

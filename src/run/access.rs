@@ -20,7 +20,7 @@ pub enum Unknown {
     /// No group of the mesh.
     #[error(transparent)]
     Group(#[from] UnknownGroup),
-    /// No contact.
+    /// There is no such contact.
     #[error("there is no contact `{name}`; there are {known}")]
     Contact {
         /// what was asked for
@@ -102,7 +102,7 @@ impl Simulation {
         Ok(pair::field_values(pair, states, (self.state().time, self.state().dt), field))
     }
 
-    /// Where the slave points of a contact are, in their order [L].
+    /// Positions of the slave points of a contact, in their order [L].
     ///
     /// # Errors
     /// [`Unknown::Contact`].

@@ -93,7 +93,7 @@ impl Simulation {
         Outcome::Stopped(Error::IncrementTooSmall { step, time, dt, min, cause, suspicion })
     }
 
-    /// Where explicit increments begin within an implicit step.
+    /// Start of explicit increments within an implicit step.
     fn rupture(&self) -> Phase {
         let calm = self.step.rupture.as_ref().map_or(f64::INFINITY, |rupture| rupture.calm);
         let interval = self.model.interval.unwrap_or(f64::INFINITY).min(calm / RESULTS);
@@ -174,12 +174,12 @@ impl Simulation {
     }
 }
 
-/// How an increment lies to the reaction that ends the step, if one does.
+/// Status of an increment with respect to the reaction that ends the step, if one does.
 fn course(step: &Step, states: [&State; 2]) -> Option<Course> {
     step.until.as_ref().map(|until| until.course(step.span, states))
 }
 
-/// How it goes on after an accepted increment.
+/// Next phase after an accepted increment.
 fn after(step: &Step, new: &State, course: Option<Course>, (next, touching): (f64, Touching)) -> Phase {
     let dt = match course {
         Some(Course::Met) => return Phase::Met,

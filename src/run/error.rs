@@ -35,7 +35,7 @@ pub enum Error {
         /// why
         cause: IncrementFailure,
     },
-    /// The reaction that was to end a step has not come to its value.
+    /// The reaction that ends a step did not reach its value.
     #[error(
         "step `{step}` ended at time {} before {part} of `{on}` reached {value}: it is {reached:.6e}; make the step \
          longer, or move farther (until)",
@@ -55,7 +55,7 @@ pub enum Error {
         /// what it is [F]
         reached: f64,
     },
-    /// A friction law driven alone could not answer.
+    /// A friction law failed in a law test.
     #[error("the law stopped after time {}: {cause}", told(*time))]
     Law {
         /// time reached
@@ -63,19 +63,19 @@ pub enum Error {
         /// what the law said
         cause: LawFailure,
     },
-    /// A run whose step its caller has changed is no run of its model alone.
+    /// A run whose step was changed by its caller does not follow from its model alone, and cannot be saved in a file.
     #[error("step `{step}` was changed by its caller: such a run can be saved in this process, but not in a file")]
     Led {
         /// step
         step: String,
     },
-    /// A run could not be written down.
+    /// A run could not be saved.
     #[error("the run could not be saved: {0}")]
     NotSaved(String),
     /// The user, or the system, asked for the end.
     #[error("interrupted")]
     Interrupted,
-    /// Whoever watches the run had it end.
+    /// An observer ended the run.
     #[error("{0}")]
     Ended(String),
     /// A result file could not be written.

@@ -343,7 +343,7 @@ pub struct PathPoint {
 }
 
 impl PathPoint {
-    /// From the numbers of a row; without pressure there is no coefficient.
+    /// A point of the path from the numbers of a row; the coefficient is 0 without pressure.
     pub fn new([time, slip, pressure, traction, mu]: [f64; 5]) -> Self {
         let coefficient = if pressure > 0.0 { traction.abs() / pressure } else { 0.0 };
         Self { time, slip, coefficient, mu }

@@ -40,7 +40,7 @@ pub fn watch(simulation: &mut Simulation, observers: &mut [&mut dyn Observer]) -
     watch_with(simulation, observers, &mut |_, _, _| Ok(()))
 }
 
-/// Where a run is when something is done between its attempts.
+/// Moment between the attempts of a run at which a callback is called.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Moment {
     /// Before an attempt, or after the last one
@@ -53,7 +53,7 @@ pub enum Moment {
 /// saved, or ended by an error.
 pub type Between<'a> = dyn FnMut(&Simulation, &mut [&mut dyn Observer], Moment) -> Result<(), Error> + 'a;
 
-/// As [`watch`], and do something between the attempts.
+/// As [`watch`], with a callback between the attempts.
 ///
 /// # Errors
 /// As [`run`], and those of what is done.
@@ -131,7 +131,7 @@ impl SavedRun {
         Ok(Self { simulation: simulation.save(), observers })
     }
 
-    /// For a file.
+    /// The saved run in bytes, for a file.
     ///
     /// # Errors
     /// As [`Saved::bytes`].
@@ -139,7 +139,7 @@ impl SavedRun {
         Ok(RunBytes { simulation: self.simulation.bytes()?, observers: self.observers })
     }
 
-    /// From a file.
+    /// A saved run from the bytes of a file.
     ///
     /// # Errors
     /// As [`Saved::from_bytes`].

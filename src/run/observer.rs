@@ -35,7 +35,7 @@ pub struct Attempt<'a> {
     pub accepted: Option<&'a State>,
     /// which row of the results it is, if it was accepted
     pub row: Row,
-    /// what became of it
+    /// its outcome
     pub verdict: Verdict,
     /// why no equilibrium was found, if none was
     pub cause: Option<&'a IncrementFailure>,
@@ -54,7 +54,7 @@ impl Attempt<'_> {
         state.time >= span.end || until.as_ref().is_some_and(met)
     }
 
-    /// Which row it is, where the last one was at a time [T].
+    /// Row of the results that it is, given the time of the last row [T].
     pub(super) fn row_after(&self, model: &Model, last: f64) -> Row {
         let Some(new) = self.accepted else { return Row::Held };
         let Some(interval) = model.interval else { return Row::Written };
@@ -77,10 +77,10 @@ fn regimes(model: &Model, state: &State) -> Vec<Regime> {
     pairs.flat_map(|(pair, states)| pair.points.iter().zip(states).map(|(p, state)| pair.regime(p, state))).collect()
 }
 
-/// Share of the interval that round-off may take away.
+/// Fraction of the interval that may be lost to round-off.
 const ROUND_OFF: f64 = 1e-9;
 
-/// What becomes of an increment.
+/// Role of an increment in the results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Row {
     /// It is a row
@@ -91,25 +91,25 @@ pub enum Row {
     Held,
 }
 
-/// What became of an attempt.
+/// Outcome of an attempt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// It led to a new state, or paused on its way there.
+    /// It was accepted, or paused before its end.
     Accepted,
     /// No equilibrium was found.
     Unsolved,
-    /// The reaction that ends the step passed its value.
+    /// The reaction that ends the step overshot its value.
     Passed,
     /// Its local error was too large.
     Error,
-    /// Points touched, and friction depends on when they did.
+    /// Contact closed within the increment, at a time that its friction depends on.
     Touch,
-    /// A contact began to slip fast, and what follows is explicit.
+    /// A contact began to slip fast; explicit increments follow.
     Rupture,
 }
 
 impl Verdict {
-    /// A word for tables.
+    /// One word, for tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Accepted => "accepted",
@@ -122,7 +122,7 @@ impl Verdict {
     }
 }
 
-/// Somebody who watches a run.
+/// Observer of a run.
 pub trait Observer {
     /// Called after every attempt.
     ///
@@ -130,12 +130,12 @@ pub trait Observer {
     /// [`Error::Output`] when a file cannot be written; it ends the run.
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error>;
 
-    /// The name by which what it remembers is found again.
+    /// The name under which its memory is saved.
     fn name(&self) -> &'static str {
         ""
     }
 
-    /// What it remembers, and how far it has written: for [`restore`](Self::restore). Nothing unless it says so.
+    /// Its memory and the extent of its output, for [`restore`](Self::restore); empty by default.
     ///
     /// # Errors
     /// As [`record`](Self::record).
@@ -143,7 +143,7 @@ pub trait Observer {
         Ok(Vec::new())
     }
 
-    /// Whether it can go on from what was saved: what it had written by then still stands. Nothing is changed.
+    /// Check, without changes, whether it can resume from the saved memory: its output up to then still exists.
     ///
     /// # Errors
     /// As [`record`](Self::record), with what is wrong.
@@ -151,7 +151,7 @@ pub trait Observer {
         Ok(())
     }
 
-    /// Go on from what was saved; what has been written since is taken back.
+    /// Resume from the saved memory; output written since is removed.
     ///
     /// # Errors
     /// As [`record`](Self::record).
@@ -159,7 +159,7 @@ pub trait Observer {
         Ok(())
     }
 
-    /// Called once after the last attempt: what is still under way comes to its end.
+    /// Called once after the last attempt, to complete pending output.
     ///
     /// # Errors
     /// As [`record`](Self::record).
@@ -168,13 +168,13 @@ pub trait Observer {
     }
 }
 
-/// Digits of an error or a doubt that is told.
+/// An error or uncertainty with the digits that are printed.
 fn rounded(value: f64) -> String {
     format!("{value:.2e}")
 }
 
 impl Attempt<'_> {
-    /// Why it led to no new state; `None` if it did, or paused on its way there.
+    /// Reason of the rejection; `None` if the attempt was accepted, or paused.
     pub fn reason(&self) -> Option<String> {
         let Self { step, verdict, cause, .. } = self;
         Some(match verdict {
@@ -196,7 +196,7 @@ impl Attempt<'_> {
         })
     }
 
-    /// Why no equilibrium was found, and how the contacts stood when the iterations ended without one.
+    /// Reason why no equilibrium was found, with the contact status when the iterations ended.
     fn unsolved(&self, cause: &IncrementFailure) -> String {
         let ended = matches!(
             cause,
@@ -216,7 +216,7 @@ impl Attempt<'_> {
         }
     }
 
-    /// What was wrong in time.
+    /// Reason of a rejection for its time error.
     fn inexact(&self) -> String {
         let allowed = self.step.increments.error.unwrap_or_default();
         match self.local_error {
@@ -231,7 +231,7 @@ impl Attempt<'_> {
 }
 
 impl Verdict {
-    /// Why a solved attempt was repeated, in a few words.
+    /// Kind of a rejection, in a few words that can be counted.
     pub fn kind(self) -> &'static str {
         match self {
             Self::Accepted => "accepted",

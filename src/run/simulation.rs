@@ -38,19 +38,19 @@ pub struct Simulation {
     pub(super) model: Arc<Model>,
     /// The step under way, as its caller may have changed it
     pub(super) step: Arc<Step>,
-    /// Whether he has
+    /// Whether the caller has changed the step
     pub(super) led: bool,
-    /// Whether he has stopped it
+    /// Whether the caller has stopped the run
     stopped: bool,
     pub(super) state: Arc<State>,
     pub(super) control: Control,
-    /// What explicit increments need besides the state, while there are any
+    /// Data of explicit increments besides the state, during such increments
     pub(super) explicit: Option<Explicit>,
-    /// Where explicit increments have come to since the last output, if they paused
+    /// Progress of explicit increments since the last output, if they paused
     pub(super) midway: Option<Midway>,
-    /// Whether explicit increments are to pause on their way to an output
+    /// Whether explicit increments must pause before the next output
     pub(super) pause: Pause,
-    /// What quasi-dynamic steps need besides the state, while there are any
+    /// Data of quasi-dynamic steps besides the state, during such steps
     pub(super) quasi_dynamic: Option<QuasiDynamic>,
     pub(super) work: Workspace,
     pub(super) report: RunReport,
@@ -304,7 +304,7 @@ impl Saved {
         &self.state
     }
 
-    /// How many steps of the model the run depends on so far: those that have begun.
+    /// Number of steps of the model that have begun, on which the run depends so far.
     pub fn begun(&self) -> usize {
         // What its caller has changed of a step holds in place of what the model says.
         self.control.step + usize::from(self.led || !matches!(self.control.phase, Phase::Begin | Phase::Complete))
@@ -366,7 +366,7 @@ impl Saved {
         Ok(Self { step, state: Arc::new(state), control, explicit, midway, report, led: is_led })
     }
 
-    /// The same place, from where another run begins: it counts its increments, and the energies that come and go, from here.
+    /// The state as the beginning of another run, with increments and energies counted from here.
     #[must_use]
     pub fn begin(mut self) -> Self {
         let mut state = State::clone(&self.state);

@@ -158,13 +158,13 @@ impl Point {
 pub struct ContactIteration {
     /// One list a contact pair, empty before the first linear solve of an increment
     points: Vec<Vec<Point>>,
-    /// The points as the last linear solve saw them
+    /// Contact points as linearized in the last solve
     linearized: Vec<PairResponse>,
-    /// As the next one does
+    /// Contact points as linearized in the next solve
     next: Vec<PairResponse>,
     /// u of the last linear solve [L]
     linearized_at: Vec<f64>,
-    /// On how many points each aid acted in the last linear solve
+    /// Number of points on which each convergence aid acted in the last linear solve
     pub acted: Acted,
 }
 
@@ -338,7 +338,7 @@ const ABATES: f64 = 0.5;
 /// Tractions below this share of the friction that a point slips with would hold it.
 const FAR_LOWER: f64 = 0.9;
 
-/// How a point has slipped at the linear solves of the increment.
+/// Slip history of a point over the linear solves of the increment.
 #[derive(Clone, Copy, Debug, Default)]
 struct Slipping {
     /// Plastic slip of the increment at the last solve [L]
@@ -371,9 +371,9 @@ impl Slipping {
 /// Segments of a point's feet at the linear solves of the increment.
 #[derive(Clone, Copy, Debug, Default)]
 struct Feet {
-    /// At the last two solves
+    /// Projected segments at the last two solves
     last: [Option<usize>; 2],
-    /// The two segments between which the foot went to and fro
+    /// The two segments between which the projection alternates
     astride: Option<[usize; 2]>,
 }
 

@@ -312,7 +312,7 @@ const MOST_PASSES: usize = 100;
 /// A pass that leaves more than this share of the penetration is slow: the next one is stiffer.
 const SLOW: f64 = 0.25;
 
-/// How much stiffer.
+/// Factor by which the penalty is raised.
 const STIFFER: f64 = 10.0;
 
 /// α_n is not raised to more than this many times the given one.

@@ -28,12 +28,12 @@ pub enum IncrementFailure {
     /// The state at the start of a dynamic step, or in an explicit increment, cannot be evaluated.
     #[error(transparent)]
     Start(TrialFailure),
-    /// The augmented Lagrangian did not bring the surfaces together.
+    /// The augmented Lagrangian did not reach the allowed penetration.
     #[error(
         "the penetration is still too large after {passes} augmentations: raise alpha_n, or allow more penetration"
     )]
     Penetration {
-        /// solutions with better and better multipliers
+        /// number of augmentations
         passes: usize,
     },
     /// The velocities of an explicit run are not finite any more.
@@ -61,13 +61,13 @@ pub enum IncrementFailure {
         /// what is wrong there
         why: String,
     },
-    /// A body is held by nothing.
+    /// A body is not constrained.
     #[error(
         "{0}; give it a support, a spring, or contact that is closed at the start, or `stabilize` the step (if it is \
          already: by more)"
     )]
     Floating(String),
-    /// A trial state lost the contact that held a body.
+    /// A trial state lost the contact that constrained a body.
     #[error("contact was lost during the iterations: {0}")]
     ContactLost(String),
 }
@@ -83,7 +83,7 @@ impl IncrementFailure {
         matches!(self, Self::Unbounded | Self::Start(Inverted { .. } | Crushed { .. } | Material { .. }))
     }
 
-    /// The same, after shorter increments have not helped.
+    /// The failure after shorter increments have not helped.
     pub fn after_all(self) -> Self {
         match self {
             Self::Start(failure) if Self::Start(failure.clone()).is_collapse() => Self::Collapsed(failure),
@@ -91,7 +91,7 @@ impl IncrementFailure {
         }
     }
 
-    /// What failed, in so few words that failures can be counted.
+    /// Kind of the failure, in a few words that can be counted.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Newton(NewtonFailure::Evaluation(failure)) | Self::Start(failure) | Self::Collapsed(failure) => {
@@ -135,7 +135,7 @@ const STIFF: f64 = 1e4;
 /// Poisson's ratio from which elements that are integrated in full lock.
 const LOCKS: f64 = 0.49;
 
-/// What to say of a failure besides its cause: nothing where the cause says it all.
+/// Likely causes of a failure besides its message: empty where the message says it all.
 pub fn suspicion(model: &Model, step: &Step, work: &Workspace, cause: &IncrementFailure) -> String {
     let unbalanced = match cause {
         IncrementFailure::Newton(NewtonFailure::Evaluation(_)) | IncrementFailure::ContactLost(_) => None,

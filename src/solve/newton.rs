@@ -35,7 +35,7 @@ use crate::linear::system::{Request, System};
 use crate::linear::{self, LinearFailure, LinearSolver, Solution, norm};
 use crate::model::told::count;
 
-/// When Newton's method stops, and what it may do on its way.
+/// Stopping criteria and options of Newton's method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// ‖r‖/‖f‖ of every part of a solution [-]
@@ -79,7 +79,7 @@ pub enum NewtonFailure<E> {
     /// Numbers beyond double precision, against which any residual would look small.
     #[error("the forces are too large for double precision; check the stiffnesses, loads and units")]
     Overflow,
-    /// The residual grows.
+    /// The residual diverges.
     #[error("Newton's method diverges (relative residual {residual:.1e} after {})", count(*iterations, "iteration"))]
     Diverged {
         /// last relative residual
@@ -158,10 +158,10 @@ pub fn solve<E>(
     (iterations, result.map(|()| u))
 }
 
-/// How the next correction is made.
+/// Plan of the next correction.
 #[derive(Clone, Copy)]
 struct Plan {
-    /// With a new tangent, not with the factors of an earlier one
+    /// Whether a new tangent is factorized, instead of using earlier factors
     factorized: bool,
     /// Searched for how far it leads downhill
     searched: bool,
@@ -237,7 +237,7 @@ impl Course {
         Ok(Some(self.plan(iterations.last(), size, residual)))
     }
 
-    /// How to correct an iterate that is no solution, from what the corrections until now have gained.
+    /// Plan of the next correction, from the reduction by the corrections so far.
     fn plan(&mut self, last: Option<&Iteration>, size: f64, residual: f64) -> Plan {
         let Settings { tolerance, old_tangents, downhill, .. } = self.settings;
         self.stalled = if size < self.least { 0 } else { self.stalled + 1 };
@@ -267,7 +267,7 @@ fn gain(size: f64, residual: f64, before: [f64; 2]) -> f64 {
     (size / before[0]).max(residual / before[1])
 }
 
-/// How many corrections take a residual from `size` to what is allowed if each leaves the share `left` of it.
+/// Number of corrections from a residual `size` to `allowed`, if each leaves the fraction `left` of it.
 fn corrections_left(size: f64, left: f64, allowed: f64) -> f64 {
     if left < 1.0 { (allowed / size).ln() / left.ln() } else { f64::INFINITY }
 }

@@ -113,7 +113,7 @@ pub fn launch(model: &Model, step: &Step, state: &mut State) {
     }
 }
 
-/// Whether nothing accelerates.
+/// Whether all accelerations are zero.
 fn rests(state: &State) -> bool {
     state.acceleration.iter().all(|a| *a == 0.0)
 }

@@ -14,10 +14,10 @@ use crate::run::observer::Observer;
 use crate::run::simulation::Pause;
 use crate::run::{Moment, RunBytes, SavedRun, Simulation};
 
-/// How often the folder is looked for.
+/// Interval at which the existence of the folder is checked.
 const LOOK: Duration = Duration::from_secs(1);
 
-/// When the next checkpoint is due; told to explicit increments, which pause for it.
+/// Time of the next checkpoint; explicit increments pause for it.
 #[derive(Clone)]
 struct Due {
     /// time between checkpoints; `None` for none
@@ -36,7 +36,7 @@ impl Due {
     }
 }
 
-/// Keeps checkpoints.
+/// Writes the checkpoints of a run.
 pub(super) struct Keeper {
     folder: PathBuf,
     due: Due,

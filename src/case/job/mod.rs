@@ -51,7 +51,7 @@ pub enum Refused {
 /// Why a job did not come to its end; what it has found is kept.
 #[derive(Debug)]
 pub enum Failed {
-    /// It stopped.
+    /// The run stopped with an error.
     Stopped(Error),
     /// The program itself is wrong.
     Defect(String),
@@ -125,7 +125,7 @@ impl Job {
         Ok(Self { opened, model, folder, saved, damage })
     }
 
-    /// Run it.
+    /// Run the job to its end, or until it stops.
     ///
     /// # Errors
     /// [`Refused::Run`] where it cannot go on from its checkpoint; nothing has changed then.
@@ -235,13 +235,13 @@ impl Work {
     }
 }
 
-/// Who is told a warning.
+/// Callback that receives a warning.
 pub type Warn = Arc<dyn Fn(&str) + Send + Sync>;
 
 /// Why a run is to end before its time, if it is.
 pub type Ends = Arc<dyn Fn() -> Option<Error> + Send + Sync>;
 
-/// Who watches a run.
+/// Callbacks and observers of a run.
 pub struct Company<'a> {
     /// is told warnings as they come, but for those of the model
     pub warn: Warn,

@@ -53,7 +53,7 @@ pub(super) fn files(case: &Case, model: &Model) -> Vec<&'static str> {
     files
 }
 
-/// Which frames a case asks for.
+/// The frames requested by a case.
 fn frames(case: &Case) -> Frames {
     Frames { every: case.output.every(), points: case.output.points }
 }
@@ -119,7 +119,7 @@ impl Outputs {
         Ok(outputs)
     }
 
-    /// How the friction of the contacts went, by their names; of those that bore any.
+    /// Friction histories of the contacts by name; only those that carried friction.
     pub fn courses(&self, model: &Model) -> BTreeMap<String, FrictionCourse> {
         let courses = self.history.iter().flat_map(History::courses);
         let named = model.contacts.iter().zip(courses);
@@ -127,7 +127,7 @@ impl Outputs {
         borne.map(|(pair, course)| (pair.name.clone(), course.clone())).collect()
     }
 
-    /// All of them.
+    /// All observers of the outputs.
     pub fn observers<'a, 'b: 'a>(&'b mut self) -> Vec<&'a mut (dyn Observer + 'a)> {
         fn watch<'a>(observer: &'a mut Option<impl Observer + 'a>) -> Option<&'a mut (dyn Observer + 'a)> {
             observer.as_mut().map(|observer| observer as &mut dyn Observer)
@@ -149,7 +149,7 @@ pub(super) struct Aloud {
 }
 
 impl Aloud {
-    /// With the warnings that have been told already.
+    /// A collector that has already reported the warnings in `list`.
     pub fn new(list: Vec<String>, warn: Warn) -> Self {
         let told = list.len();
         let mut warnings = Warnings::default();

@@ -180,7 +180,7 @@ fn master(input: &Contact) -> String {
     }
 }
 
-/// Where contact is evaluated, and why if that was left open.
+/// Method and contact points, with the reason if the program chose the method.
 fn evaluated(input: &Contact, chosen: Option<&Chosen>) -> String {
     let Some(Chosen { method, points, because, .. }) = chosen else {
         return format!("area of each point: {}", number(input.area.unwrap_or_default()));

@@ -29,7 +29,7 @@ pub fn report(case: &Case, model: &Model) -> String {
     text
 }
 
-/// The same by headings, without the warnings.
+/// The report as headings with their lines, without the warnings.
 pub fn understood(case: &Case, model: &Model) -> Vec<(String, Vec<String>)> {
     let sections = [
         ("units", case.units.iter().map(|(of, unit)| format!("{of} in {unit}")).collect()),
@@ -189,7 +189,7 @@ fn point_masses(case: &Case, model: &Model) -> Vec<String> {
     aligned(&model.point_masses.iter().map(row).collect::<Vec<_>>())
 }
 
-/// 2nd, 3rd, 11th
+/// Ordinal number: 2nd, 3rd, 11th.
 fn ordinal(number: usize) -> String {
     let ending = match (number % 10, number % 100) {
         (_, 11..=13) => "th",

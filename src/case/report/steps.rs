@@ -13,7 +13,7 @@ use crate::model::told::{count, number};
 use crate::model::{Damping, Model, Step};
 use crate::time::step_size::EVENT_LOCATION;
 
-/// Every step.
+/// Lines about every step: scheme, increments, supports and loads in force.
 pub fn steps(case: &Case, model: &Model) -> Vec<String> {
     let mut lines = Vec::new();
     let (mut supports, mut loads) = (InForce::new(), InForce::new());

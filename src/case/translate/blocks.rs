@@ -35,7 +35,7 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !(c.is_alphanumeric() || c == '_'))
 }
 
-/// Those that others depend on come first, whatever their order.
+/// Evaluates the parameters in order of dependence, whatever their order in the file.
 fn parameters<'p>(input: &'p BTreeMap<String, Amount>, place: &str) -> Checked<Parameters<'p>> {
     if let Some((name, why)) = input.keys().find_map(|name| Some((name, Expression::refused_name(name)?))) {
         return Err(Complaint::new(format!("{place}.{name}"), why));

@@ -53,7 +53,7 @@ impl Invariants {
         Ok(Self { jacobian, volume_strain, distortion, cofactor, deviation })
     }
 
-    /// ln J
+    /// ln J, without cancellation near J = 1.
     pub(super) fn ln_jacobian(&self) -> f64 {
         if self.volume_strain.abs() < 0.5 { self.volume_strain.ln_1p() } else { self.jacobian.ln() }
     }

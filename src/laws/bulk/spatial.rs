@@ -24,7 +24,7 @@ pub struct Stretched {
 }
 
 impl Stretched {
-    /// From the part in plane and what comes across it: P₃₃, ∂P/∂F₃₃ = (∂P₃₃/∂F)ᵀ, ∂P₃₃/∂F₃₃.
+    /// From the in-plane part and the out-of-plane part: P₃₃, ∂P/∂F₃₃ = (∂P₃₃/∂F)ᵀ, ∂P₃₃/∂F₃₃.
     pub(super) fn new(
         (stress, tangent): (Matrix2<f64>, nalgebra::Matrix4<f64>),
         (stress_33, coupling, stiffness): (f64, Vector4<f64>, f64),

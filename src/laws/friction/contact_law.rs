@@ -21,7 +21,7 @@ pub struct Dilatancy {
 }
 
 impl Dilatancy {
-    /// δ₁ and ∂δ₁/∂λ.
+    /// Dilation δ₁ after the slip λ, and ∂δ₁/∂λ.
     fn after(self, dilation: f64, slip: f64) -> [f64; 2] {
         let Some(limit) = self.limit else { return [dilation + self.rate * slip, self.rate] };
         let exponent = -slip * self.rate / limit;
@@ -30,7 +30,7 @@ impl Dilatancy {
     }
 }
 
-/// How the surfaces of a contact move apart, or wear, with plastic slip, whatever their law: not at all unless given.
+/// Dilatancy and wear of the surfaces of a contact, independent of its friction law; none by default.
 ///
 /// ```text
 /// λ = |Δu^p|                                         plastic slip of the increment, whichever way it goes

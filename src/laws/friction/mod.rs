@@ -203,12 +203,12 @@ pub trait FrictionLaw: Debug + Send + Sync {
         None
     }
 
-    /// How fast a point slips under a traction, if the law says so.
+    /// Slip rate under a given traction, for laws that define one.
     fn rates(&self) -> Option<&dyn RateLaw> {
         None
     }
 
-    /// How its answers vary with its parameters, if the law says so.
+    /// Derivatives with respect to the parameters, for laws that provide them.
     fn sensitivities(&self) -> Option<&dyn SensitiveLaw> {
         None
     }
@@ -411,7 +411,7 @@ pub trait RateLaw: Debug + Send + Sync {
         0.0
     }
 
-    /// Stick or slip.
+    /// Whether the point sticks or slips.
     fn regime(&self, x: f64, slip_rate: f64) -> Regime;
 }
 

@@ -100,7 +100,7 @@ struct Slid {
     mu: f64,
     /// |q| = c + μ p [F/L²]
     strength: f64,
-    /// How much of α_t is lost to slip
+    /// Factor α_t/(α_t − w p), w the weakening per slip, by which weakening amplifies slip; 1 at μ_d [-]
     softness: f64,
 }
 

@@ -156,7 +156,7 @@ fn solve_upper(l: MatRef<'_, f64>, x: &mut [f64], rows: usize) {
     solve_upper(l.submatrix(middle, middle, n - middle, n - middle), right, rows);
 }
 
-/// The same for a few columns, one by one.
+/// Substitution for a few columns, one by one.
 struct Substitution<'a> {
     l: MatRef<'a, f64>,
     x: &'a mut [f64],

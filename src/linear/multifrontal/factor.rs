@@ -326,14 +326,14 @@ impl<'a, P: Send> Job<'a, P> {
         Self { below: jobs.into_values().collect(), forests, chain: Vec::new() }
     }
 
-    /// Children before parents.
+    /// Visit the tree with children before parents.
     pub fn upwards(self, light: &(impl Fn(&Forest, P) + Sync), heavy: &(impl Fn(u32, P) + Sync)) {
         let Self { below, forests, chain } = self;
         Self::at_once(below, forests, &|job| job.upwards(light, heavy), light);
         chain.into_iter().for_each(|(front, part)| heavy(front, part));
     }
 
-    /// Parents before children.
+    /// Visit the tree with parents before children.
     pub fn downwards(self, light: &(impl Fn(&Forest, P) + Sync), heavy: &(impl Fn(u32, P) + Sync)) {
         let Self { below, forests, chain } = self;
         chain.into_iter().rev().for_each(|(front, part)| heavy(front, part));

@@ -162,7 +162,7 @@ fn area(polygon: &[Vector2<f64>]) -> f64 {
 /// Corners that a side goes between in the map: with growing s or t.
 const ENDS: [[usize; 2]; 4] = [[0, 1], [1, 2], [3, 2], [0, 3]];
 
-/// The four sides.
+/// The four sides of a block.
 struct Sides {
     corners: [Vector2<f64>; 4],
     /// centre of the circle of each, and the angle from its one end to the other
@@ -240,12 +240,12 @@ impl Sides {
         (at - foot).norm().min(beyond)
     }
 
-    /// How far a side leaves its chord; nothing where it is straight.
+    /// Offset of a curved side from its chord; zero where it is straight.
     fn bulge(&self, side: usize, s: Share) -> Vector2<f64> {
         self.on(side, s) - self.chord(side, s)
     }
 
-    /// The transfinite map.
+    /// Position by the transfinite map.
     fn place(&self, s: Share, t: Share) -> Vector2<f64> {
         let (below, above) = (self.on(0, s), self.on(2, s));
         let (left, right) = (self.bulge(3, t), self.bulge(1, t));
@@ -254,7 +254,7 @@ impl Sides {
     }
 }
 
-/// How the sizes of elements vary along a side: as a geometric series.
+/// Grading of the element sizes along a side, as a geometric series.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Grading {
     /// size of the last over that of the first

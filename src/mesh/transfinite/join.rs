@@ -151,7 +151,7 @@ impl Join<'_> {
         slot
     }
 
-    /// How near places of two blocks are the same.
+    /// Distance below which places of two blocks coincide.
     fn near(&self, a: usize, b: usize) -> f64 {
         let corners = [a, b].map(|block| [0, 1, 2, 3].map(|corner| self.grids[block].corner(corner)));
         let sides = corners.iter().flat_map(|c| (0..4).map(|k| (c[(k + 1) % 4] - c[k]).norm()));

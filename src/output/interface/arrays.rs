@@ -40,7 +40,7 @@ pub fn time(units: &BTreeMap<String, String>) -> Description {
     Description { name: "time".into(), number: Number::Double, dimensions: vec!["time".into()], attributes }
 }
 
-/// Where the points of a contact are before anything moves.
+/// Undeformed positions of the points of a contact.
 pub fn along(
     model: &Model,
     pair: &ContactPair,

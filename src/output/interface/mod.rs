@@ -48,7 +48,7 @@ pub struct InterfaceStore {
     last: (f64, Vec<Vec<f64>>),
 }
 
-/// Where the slip stands among the quantities of the store, ...
+/// Index of the slip among the quantities of the store, ...
 const SLIP: usize = 0;
 /// ... and its rate.
 const SLIP_RATE: usize = 2;

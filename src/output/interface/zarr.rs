@@ -154,7 +154,7 @@ impl Store {
         Ok(())
     }
 
-    /// The last flush.
+    /// Flush the last records.
     ///
     /// # Errors
     /// As [`flush`](Self::flush).
@@ -333,7 +333,7 @@ pub struct Series {
 }
 
 impl Series {
-    /// One without records.
+    /// An array without records.
     pub fn new(is: Description, width: Option<usize>) -> Self {
         Self { is, width, complete: crc32fast::Hasher::new(), chunk: Vec::new() }
     }

@@ -24,7 +24,7 @@ use table::Pack;
 /// Name of the page in a folder of results.
 pub const FILE: &str = "report.html";
 
-/// By this a page is known to be one of ours.
+/// Marker of pages written by this program.
 const OURS: &str = "<meta name=\"generator\" content=\"fecontact report\">";
 
 /// All packed numbers at most [bytes]; with the rest the page stays below 30 MB.

@@ -33,12 +33,12 @@ impl<'a> Run<'a> {
         Self { source, room, notes: Vec::new() }
     }
 
-    /// How many rows of so many numbers fit into a share of the room.
+    /// Number of rows of `numbers` values each that fit into a fraction of the room.
     fn fit(&self, share: f64, numbers: usize) -> usize {
         (share * self.room as f64 / (NUMBER * numbers.max(1) as f64)) as usize
     }
 
-    /// All of it.
+    /// Everything that the page shows of the run.
     pub fn show(mut self, pack: &mut Pack) -> Value {
         let summary = self.summary();
         let status = summary["status"].as_str().unwrap_or("unknown").to_owned();

@@ -26,7 +26,7 @@ pub struct Series {
     frames: Vec<(Frame, Grid)>,
 }
 
-/// A frame, packed.
+/// A frame, packed for the page.
 struct PackedFrame {
     time: f64,
     /// displacement of all [L]

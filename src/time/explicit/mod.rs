@@ -49,7 +49,7 @@ use stability::Stability;
 /// before it is turned inside out.
 const MOST_CHANGE: f64 = 0.1;
 
-/// How much shorter increments are after those before collapsed.
+/// Factor on the increments after a collapse.
 const CUT: f64 = 0.5;
 
 /// Increments are not made shorter than this share of the safe ones.
@@ -80,7 +80,7 @@ pub struct Explicit {
     stable: f64,
     /// Displacements at the end of the increment that is next
     displacement: Vec<f64>,
-    /// Where each support goes in it, and its velocity before
+    /// Motion of each support in the increment, and its velocity before
     places: Vec<([f64; 4], f64)>,
 }
 

@@ -47,7 +47,7 @@ struct Alike {
 }
 
 impl Plates {
-    /// Those of a model in a step, with the lumped mass of every node.
+    /// The plates of a model in a step, with the lumped mass of every node.
     pub fn new(model: &Model, step: &Step, mass: &[f64]) -> Self {
         let linkage = &model.linkage;
         let alike = linkage.plates.iter().filter(|(_, [x, y])| x != y).map(|(nodes, components)| Alike {

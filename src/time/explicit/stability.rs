@@ -63,7 +63,7 @@ pub(super) struct Stability {
     since: usize,
     /// Whether some elements were looked at again since
     relooked: bool,
-    /// How far nodes may move against each other until an element may have changed [L]
+    /// Relative motion of nodes below which an element counts as unchanged [L]
     margin: f64,
     /// Elements whose stiffness depends on a temperature
     heated: Vec<usize>,
@@ -159,7 +159,7 @@ impl Stability {
         largest
     }
 
-    /// How far the nodes of an element have moved against its first one since it was looked at [L].
+    /// Largest motion of an element's nodes relative to its first since its last check [L].
     fn change(&self, e: usize, u: &[f64]) -> f64 {
         let places = self.stride * e..self.stride * (e + 1);
         let (nodes, seen) = (&self.nodes[places.clone()], &self.seen[places]);
@@ -391,7 +391,7 @@ impl ExplicitMemory {
 }
 
 impl Explicit {
-    /// What it remembers.
+    /// Its memory, for a checkpoint.
     pub fn memory(&self) -> ExplicitMemory {
         let Stability { elements, seen, softness, segments, since, relooked, margin, .. } = self.stability.clone();
         let seen = seen.into_iter().map(Into::into).collect();

@@ -41,14 +41,14 @@ type Values = [f64; 4];
 /// d(q, ln θ) along two directions
 type Derivatives = [[f64; 2]; 2];
 
-/// What is extrapolated.
+/// Values and derivatives that are extrapolated.
 #[derive(Clone, Copy)]
 struct Entry {
     values: Values,
     derivatives: Derivatives,
 }
 
-/// Where a path is, and how that varies.
+/// State at an integration point along the path, with its variations.
 #[derive(Clone, Copy)]
 struct Station {
     state: FrictionState,
@@ -97,7 +97,7 @@ impl<'a> Ramp<'a> {
         .checked(self.law.coefficients.alpha_t)
     }
 
-    /// How the state at the end varies.
+    /// Variations of the state at the end of the path.
     ///
     /// # Errors
     /// As of the answer.
@@ -223,7 +223,7 @@ impl<'a> Ramp<'a> {
         Station { state: state.with_variables([theta]), variations }
     }
 
-    /// How much further the next extrapolation goes, in tolerances.
+    /// Change by the next extrapolation, in tolerances.
     fn error(&self, entry: &Entry, above: &Entry, factor: f64, [from, to]: [&Station; 2], step: u64) -> f64 {
         let law = &self.law.coefficients;
         let [traction, log_theta, _, work] = [0, 1, 2, 3].map(|i| factor * (entry.values[i] - above.values[i]).abs());

@@ -116,7 +116,7 @@ impl Relaxation<'_> {
         (log, dlog / critical_slip)
     }
 
-    /// What it comes to after Δλ.
+    /// Traction and state after the slip Δλ.
     pub(super) fn outcome(&self, slip: f64) -> Relaxed {
         let Coefficients { a, b, reference_rate, alpha_t, .. } = *self.law;
         let (log_state, dlog_state) = self.log_state_after(slip);
@@ -320,7 +320,7 @@ impl Relaxation<'_> {
 }
 
 impl Variation {
-    /// With the traction counted along the sign.
+    /// The variation with its traction multiplied by the sign of slip.
     pub(super) fn along(self, sign: f64) -> Self {
         Self { traction: sign * self.traction, ..self }
     }

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, LN_2, PI};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How R follows from plastic slip.
+/// Sliding curve: R as a function of plastic slip.
 ///
 /// ```text
 /// dR/dλ = U(R),   y = (R − R_e)/(1 − R_e),   λ = (1 − R_e)/r T(ζ)
@@ -119,7 +119,7 @@ impl SlidingCurve {
         if start.full { slip } else { self.approach.beyond(slip / self.length) }
     }
 
-    /// y
+    /// Normalized progress y of R.
     #[inline]
     pub(super) fn progress(&self, ratio: f64) -> f64 {
         (ratio - self.elastic_core) * self.per_range

@@ -13,7 +13,7 @@ use crate::laws::friction::{LEAST_SLOPE, LawFailure, STEEPEST};
 /// Derivatives along two directions of what an answer depends on.
 pub(super) type Derivative = [f64; 2];
 
-/// How what an answer depends on varies along the two directions.
+/// Derivatives of the inputs of an increment along the two directions.
 #[derive(Clone, Copy)]
 pub(super) struct Directions {
     /// of Δu
@@ -34,7 +34,7 @@ impl Directions {
         Self { slip: [1.0, 0.0], pressure: [0.0, 1.0], traction: [0.0; 2], mu: [0.0; 2], parameters: None };
 }
 
-/// How much each parameter of the law varies.
+/// Derivative of each parameter of the law along a direction.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Shift {
     pub alpha_t: f64,
@@ -60,7 +60,7 @@ pub(super) struct LoadPath<'a> {
     pub time: f64,
     /// Derivatives of the time
     pub dtime: Derivative,
-    /// How the parameters vary, if they do
+    /// Derivatives of the parameters, if they vary
     pub parameters: Option<[Shift; 2]>,
     /// Evaluations of the slip equation so far
     pub evaluations: usize,
@@ -101,7 +101,7 @@ impl LoadPath<'_> {
         Station { x: 0.0, traction, dtraction, mu, dmu, reach, plastic_slip, work, overlooked }
     }
 
-    /// One sub-step.
+    /// Integrate one sub-step.
     #[inline]
     pub(super) fn advance(&mut self, from: &Station, x: f64) -> Result<Station, LawFailure> {
         let share = x - from.x;
@@ -277,7 +277,7 @@ pub(super) fn mean_traction(
 /// ```
 pub(super) struct SlipEquation<'a> {
     pub law: &'a SuperSubloading,
-    /// Where plastic slip starts.
+    /// Point of the sliding curve at which plastic slip starts.
     pub start: Reach,
     /// |q_tr| [F/L²]
     pub trial: f64,

@@ -92,7 +92,7 @@ const NOISE: f64 = 2e-13;
 /// The difference of two stations over the error of the value extrapolated from them, where it converges slowly.
 const CAUTION: f64 = 4.0;
 
-/// In q, in μ p and in the work done
+/// Errors in q, in μ p and in the work
 type Differences = [f64; 3];
 
 /// A sub-step, and the same in two halves.
@@ -338,7 +338,7 @@ impl LoadPath<'_> {
     }
 }
 
-/// How much each parameter varies along a direction.
+/// Derivative of each parameter along a direction.
 fn shift(by: &Direction) -> Shift {
     let [mu_s, mu_k, kappa, xi, m, n] = ["mu_s", "mu_k", "kappa", "xi", "m", "n"].map(|name| by.of(name));
     let peak = PeakShift { mu_s, mu_k, kappa, xi, m, n };

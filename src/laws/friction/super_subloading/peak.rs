@@ -282,7 +282,7 @@ fn scaled(slope: f64, factor: f64) -> f64 {
     if factor == 0.0 { 0.0 } else { slope * factor }
 }
 
-/// How much each parameter of [`PeakEvolution`] varies.
+/// Derivative of each parameter of [`PeakEvolution`].
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PeakShift {
     pub mu_s: f64,
@@ -302,7 +302,7 @@ struct Exponents {
 }
 
 impl PeakEvolution {
-    /// How μ varies where [`clamp`](Self::clamp) has put it.
+    /// Derivative of μ where [`clamp`](Self::clamp) has limited it.
     pub(super) fn clamped_by(&self, mu: f64, dmu: f64, by: &PeakShift) -> f64 {
         if mu > self.mu_s {
             by.mu_s
@@ -416,7 +416,7 @@ pub struct Onset {
     pub half_healed: Option<f64>,
 }
 
-/// How friction rises in fast slip.
+/// Rise of friction to its peak in rapid slip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rise {
     /// largest q/p = R μ [-]
@@ -432,7 +432,7 @@ const PLACES: u32 = 1200;
 const THIRDS: usize = 100;
 
 impl Onset {
-    /// Of a law's curve of R and evolution of μ, from the μ that an interface begins with.
+    /// Peak for a law's sliding curve and evolution of μ, from the initial μ of an interface.
     pub(super) fn of(curve: &SlidingCurve, evolution: &PeakEvolution, initial_mu: f64) -> Self {
         let half = |x: f64| (evolution.mu_s > evolution.mu_k && x.is_finite()).then_some(x);
         Self {
@@ -500,7 +500,7 @@ impl PeakEvolution {
     }
 }
 
-/// How far x goes until a deviation d₀ that falls by dd/dx = −d^k is half of it.
+/// Distance in x over which a deviation d₀ that decays by dd/dx = −d^k is halved.
 fn half(deviation: f64, k: f64) -> f64 {
     if k == 1.0 { LN_2 } else { ((k - 1.0) * LN_2).exp_m1() / ((k - 1.0) * deviation.powf(k - 1.0)) }
 }

@@ -46,7 +46,7 @@ pub struct SolidElement {
     mean_weight: f64,
     /// ∂N_a/∂X at the centre, for F-bar [1/L]
     centre: Option<Vec<Vector2<f64>>>,
-    /// Of rings, which are evaluated in a file of their own
+    /// Hoop terms of axisymmetric elements
     hoop: Option<Hoop>,
 }
 
@@ -194,7 +194,7 @@ impl SolidElement {
     }
 }
 
-/// F of (1)
+/// Deformation gradient F by equation (1).
 fn deformation_gradient(gradients: &[Vector2<f64>], u: &[Vector2<f64>]) -> Matrix2<f64> {
     u.iter().zip(gradients).fold(Matrix2::identity(), |sum, (u, gradient)| sum + u * gradient.transpose())
 }
@@ -299,7 +299,7 @@ impl Centre<'_> {
     }
 }
 
-/// A_iJkL F_kL
+/// Contraction A_iJkL F_kL.
 fn contract(tangent: &Matrix4<f64>, f: &Matrix2<f64>) -> Matrix2<f64> {
     let stress =
         tangent.column(0) * f.m11 + tangent.column(1) * f.m21 + tangent.column(2) * f.m12 + tangent.column(3) * f.m22;
@@ -363,7 +363,7 @@ pub struct Memory<'a> {
     pub dt: f64,
     /// Committed
     pub old: &'a [f64],
-    /// Of the trial, written over
+    /// Values of the trial, overwritten
     pub new: &'a mut [f64],
 }
 
