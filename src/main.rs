@@ -50,7 +50,7 @@ enum Command {
         #[arg(long)]
         out: Option<PathBuf>,
     },
-    // Whoever still asks for it is told what to use instead.
+    // The command only says what to use instead.
     #[command(hide = true, disable_help_flag = true)]
     Plot {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]

@@ -21,7 +21,7 @@ use crate::model::state::State;
 use crate::output::checkpoint::{self, Checkpoint, MeshPrint};
 use crate::run::{Saved, SavedRun};
 
-/// What never changes how a run goes on.
+/// Keys that never affect how a run continues.
 const FREE: [&str; 5] = ["title", "units", "watch", "probes", "output"];
 
 /// Values that differ by less than this, relative, are the same.
@@ -253,7 +253,7 @@ fn unchanged(before: &Value, now: &Value, begun: usize) -> Checked<()> {
 /// Parameters of friction that only the start of a run depends on, or that what is stored depends on.
 const STARTING: [&str; 4] = ["alpha_t", "law", "structure", "theta"];
 
-/// Differences that are told at once.
+/// Differences listed in one message.
 const TOLD: usize = 5;
 
 /// A place where two cases differ.

@@ -5,7 +5,7 @@
 //!
 //! A JSON document whose lists are no objects: serde's derived types would take a list for their keys in order.
 //!
-//! serde's complaints in the words of somebody who writes a case.
+//! serde's errors in the terms of a case file.
 
 use std::fs::File;
 use std::io::{ErrorKind, Read};

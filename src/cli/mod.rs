@@ -81,7 +81,7 @@ pub fn law(path: &Path, out: Option<PathBuf>) -> Result<(), Failure> {
     folder.make_room_after(&result);
     let summary = LawSummary { ending: Ending::new(result.as_ref().err(), &folder.files), about, report };
     let written = summary::write(&summary, &folder.path);
-    // The first failure is the one to be told; where a table found no room a page finds none, either.
+    // Report the first failure; where a table found no room, a page finds none either.
     let wants_page = written.is_ok() && !matches!(result, Err(Error::Output { .. }));
     let page = wants_page.then(|| report::write(std::slice::from_ref(&folder.path), &folder.path.join(report::FILE)));
     result?;

@@ -1,6 +1,6 @@
 //! `fecontact run`: a case from its beginning, from the end of another, or from its last checkpoint.
 //!
-//! What stderr is told at the start and at the end of a run.
+//! The texts on stderr at the start and at the end of a run are here too.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -52,7 +52,7 @@ pub fn run(path: &Path, options: Options) -> Result<(), Failure> {
     let told = Told::start(&job, &voice);
     let outcome = job.run(company(&voice))?;
     told.end(&outcome, &job);
-    // The first failure is the one to be told.
+    // Report the first failure.
     let wants_page = job.opened.case.output.report && outcome.is_readable();
     let page = wants_page.then(|| report::write(std::slice::from_ref(&job.folder.path), &place.join(report::FILE)));
     let Outcome { ended, written, .. } = outcome;

@@ -17,7 +17,7 @@
 //!
 //! A fluid adds its pressure p_w to p in the forces and in nothing else, see `pair.rs`; it acts on open points too.
 //!
-//! With radiation damping, q + η Δu_t/Δt stands for q in static increments: without inertia slip could be as fast as it likes;
+//! With radiation damping, q + η Δu_t/Δt replaces q in static increments: without inertia the slip rate is unbounded;
 //! the bodies, were they unbounded, would take η v from the traction by the shear waves that slip sends into them.
 //!
 //! In an increment that starts open, at the gap g₀, only the slip after touch counts; all where nothing faced the point at
@@ -28,10 +28,11 @@
 //!                                                no p/α_n under the augmented Lagrangian, which leaves no penetration
 //! ```
 //!
-//! Nor do surfaces ride up on each other (dilate) in such an increment, where they meet: they begin with the next. From where they end
-//! alone it could not be told which of two states they are in: apart at a gap g > 0, never having touched, or riding at the same
-//! gap on what slip after touch has opened. Closed is what overlaps, g < d₀, as without dilatancy; what the opening would have done to
-//! the pressure is part of the doubt by which static increments end where points touch ([`ContactPair::arrival`]).
+//! Nor do surfaces ride up on each other (dilate) in such an increment, where they meet: they begin with the next. From
+//! where they end alone the two possible states could not be distinguished: apart at a gap g > 0, never having touched,
+//! or riding at the same gap on what slip after touch has opened. Closed is what overlaps, g < d₀, as without
+//! dilatancy; what the opening would have done to the pressure is part of the doubt by which static increments end
+//! where points touch ([`ContactPair::arrival`]).
 //!
 //! What is accepted depends on c by no more than the control of static increments allows: it repeats those in which friction
 //! would change with the share that counts. Without c a point that comes in with a high pressure would stick for its stiff
@@ -52,7 +53,7 @@ use super::projection::Projection;
 use crate::laws::friction::{Answer, ContactLaw, FrictionResponse, LawFailure, Sliding};
 use crate::mesh::configuration::Configuration;
 
-/// A point on the way through its law: first what the law is asked for, then what follows from its answer.
+/// Evaluation of a point's law: first its arguments, then what follows from its response.
 #[derive(Debug)]
 pub struct Loading<'a> {
     pair: &'a ContactPair,

@@ -9,8 +9,8 @@
 //! Δu_t = ∫ J dξ           δΔu_t = ∫ s·δx′ dξ + J δξ        along the surface from the old foot to the new one
 //! ```
 //!
-//! A point that nothing faced when the increment began has no old foot; it has slipped past what it faces now, Σ w_a x_a
-//! being x_s − x:
+//! A point without a projection at the start of the increment has no old projection; it has slipped past its present
+//! one, Σ w_a x_a being x_s − x:
 //!
 //! ```text
 //! Δu_t = s·Σ w_a Δx_a     δΔu_t = s·Σ (w_a δx_a + δw_a Δx_a) + n·Σ w_a Δx_a δθ        Δx_a: motion in the increment
@@ -41,7 +41,7 @@ pub struct Kinematics {
     pub tangent: Vector2<f64>,
     /// Δu_t since the old foot [L]
     pub slip: f64,
-    /// Current length the point stands for [L]
+    /// Current tributary length of the point [L]
     pub length: f64,
     /// Whether the variations are asked for; they are empty if not
     pub varied: bool,

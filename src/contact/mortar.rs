@@ -239,7 +239,7 @@ impl Mortar {
         let all = self.at[point].iter().flat_map(|&(e, a)| overlaps.0[e].overlaps.iter().map(move |o| (o, station[a])));
         let away = |o: &Overlap, at: f64| (at - at.clamp(o.ends[0].xi, o.ends[1].xi)).abs();
         let (nearest, at) = all.min_by(|a, b| away(a.0, a.1).total_cmp(&away(b.0, b.1)))?;
-        // Master and slave run along s alike.
+        // Master and slave have the same direction along s.
         let [start, end] = nearest.ends.map(|cut| cut.xi);
         let xi = ((at - start) / (end - start)).clamp(0.0, 1.0);
         Some(MasterPoint { segment: nearest.segment, xi })

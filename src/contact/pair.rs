@@ -9,10 +9,10 @@
 //! f_a = −w_a p_w n ℓ       beside that of p and q, wherever the master faces the point, closed or open
 //! ```
 //!
-//! p_w is given, by the reference position of a slave point and the time: the fluid does not flow. That friction knows the
-//! effective pressure p alone is the principle of effective stress (K. Terzaghi, Theoretical Soil Mechanics, 1943, §6).
-//! Where p_w exceeds what the bodies press with, the surfaces open and the fluid goes on pushing, which makes nothing jump
-//! there. Its work is that of a load.
+//! p_w is given, by the reference position of a slave point and the time: the fluid does not flow. That friction knows
+//! the effective pressure p alone is the principle of effective stress (K. Terzaghi, Theoretical Soil Mechanics, 1943,
+//! §6). Where p_w exceeds the contact pressure, the surfaces open and the fluid pressure continues to act, which makes
+//! nothing jump there. Its work is that of a load.
 //!
 //! # Fields
 //!
@@ -72,7 +72,7 @@ pub struct ContactPair {
     pub initial: Option<Vec<InitialTraction>>,
     /// The two sides the other way round, to see what the slave's points do not: how deep master nodes lie in the slave
     pub reverse: Option<Reverse>,
-    /// Nodes on the surface of the slave's bodies that no point stands for, where the master is rigid
+    /// Surface nodes of the slave's bodies that belong to no contact point, where the master is rigid
     pub unseen: Vec<SlavePoint>,
     /// G*: G/(1 − ν) of both sides, what slip that varies along the interface is resisted with; 0 where there are no bodies
     /// [F/L²]
@@ -298,7 +298,7 @@ type Answered = Result<Arc<ContactLaw>, LawFailure>;
 /// A law by its number, with its parameters at a time or, between two, with their mean.
 pub type LawAt = dyn Fn(usize, [f64; 2]) -> Result<ContactLaw, LawFailure> + Send + Sync;
 
-/// The laws of a contact whose parameters vary in time. Each is resolved once for an increment, whoever asks: the last is kept.
+/// The laws of a contact whose parameters vary in time. Each is resolved once per increment; the last is kept.
 pub struct LawsInTime {
     law: Box<LawAt>,
     last: Vec<Mutex<Option<Resolved>>>,

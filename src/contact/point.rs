@@ -23,7 +23,7 @@ use crate::mesh::shape;
 /// A linear combination of nodal positions, Σ w_a x_a.
 pub type Weights = Vec<(usize, f64)>;
 
-/// One edge's share of the length that a slave point stands for: `factor` × |Σ w_a x_a| × w of the section there.
+/// Contribution of one edge to the tributary length of a slave point: `factor` × |Σ w_a x_a| × w of the section there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LengthShare {
     /// Quadrature weight
@@ -69,7 +69,7 @@ impl SlavePoint {
         self.position.iter().map(|&(own, w)| x.between(node, own) * w).sum()
     }
 
-    /// Current length that the point stands for [L].
+    /// Current tributary length of the point [L].
     pub fn current_length(&self, x: &Configuration) -> f64 {
         let weighted = |share: &LengthShare| share.factor * x.combine(&share.tangent).norm() * x.weight(&share.at);
         self.area + self.length.iter().map(weighted).sum::<f64>()
@@ -140,7 +140,7 @@ pub fn lone_point(node: usize, area: f64) -> SlavePoint {
     SlavePoint { position: vec![(node, 1.0)], length: Vec::new(), area, touch: 0.0, law: 0, overlap: 0.0 }
 }
 
-/// The point of an edge at ξ, that stands for a share of the edge's length.
+/// The point of an edge at ξ, with its share of the edge's length as tributary length.
 pub fn edge_point(edge: &[usize], xi: f64, weight: f64) -> SlavePoint {
     let with = |values: Few<f64, 3>| -> Weights { edge.iter().copied().zip(values).collect() };
     let position = with(shape::edge_values(edge.len(), xi));
@@ -172,8 +172,8 @@ pub struct ContactState {
     pub friction: FrictionState,
     /// Foot on the master, open or closed; `None` where no part of the master faces the point
     pub foot: Option<MasterPoint>,
-    /// Length the point stands for: its own or, by mortar, the part of it that the master faces; once open, the last one
-    /// (that of now where a fluid acts) [L]
+    /// Tributary length of the point: its own or, by mortar, the part of it that the master faces; once open, the last
+    /// one (that of now where a fluid acts) [L]
     pub length: f64,
     /// g at the foot; a contact that starts closed counts it from where its points touch [L]
     pub gap: f64,
@@ -224,7 +224,7 @@ pub struct ContactIncrement {
     pub fading: f64,
     /// α_n under the augmented Lagrangian is this many times the one given
     pub stiffening: f64,
-    /// Whether the bodies give way under the pressures that come up within the increment
+    /// Whether the bodies deform under the pressures that arise within the increment
     pub settles: bool,
 }
 
@@ -279,10 +279,10 @@ pub enum Presume {
 
 /// Pressure and traction of a point, as one linear solve promised them to the next.
 ///
-/// A stiff penalty turns every error of a displacement into a pressure far too high, and that into a geometric stiffness
-/// p δn ℓ that leads the next iterate astray, or opens a point that should be closed. The promise p + δp of the linear
-/// solve is off by the square of the correction only: it makes the geometric stiffness, and says which points stay closed.
-/// The residual that a solution must meet knows no promises.
+/// A stiff penalty turns every error of a displacement into a pressure far too high, and that into a geometric
+/// stiffness p δn ℓ that leads the next iterate astray, or opens a point that should be closed. The promise p + δp of
+/// the linear solve is off by the square of the correction only: it makes the geometric stiffness, and says which
+/// points stay closed. The residual of a solution contains no predicted pressures.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tractions {
     /// p [F/L²]

@@ -58,7 +58,7 @@ pub struct SmallPoint {
     pub tangent: Vector2<f64>,
     /// g₀ between the surfaces [L]
     pub gap: f64,
-    /// ℓ: length the point stands for [L]
+    /// ℓ: tributary length of the point [L]
     pub length: f64,
     /// The foot
     pub foot: MasterPoint,

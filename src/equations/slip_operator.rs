@@ -1,11 +1,12 @@
-//! The bodies as an interface sees them: what jumps across it do to its tractions, all else being linear and without inertia.
+//! Response of the bodies to an interface: tractions by displacement jumps across it, everything else being linear and
+//! without inertia.
 //!
 //! Of two nodes that face each other, one on each side, the jump j is the motion of the slave's against the master's; the
 //! master's own motion, and that of all other nodes of S, is m. With A condensed on the nodes at contacts
 //! ([`super::condensed`]) and ρ the forces that loads leave out of balance,
 //!
 //! ```text
-//! S_mm m + S_mj j + ρ_m = 0                    contact pulls at both sides alike: none of it here                  (1)
+//! S_mm m + S_mj j + ρ_m = 0                    equal and opposite on both sides: no contact force here                  (1)
 //! S_jm m + S_jj j + ρ_j = ℓ y,                 y = (p, −τ) by the point's (n, s), its length ℓ                       (2)
 //! K j + ρ̂ = ℓ y,   K = S_jj − S_jm S_mm⁻¹ S_mj                                                                       (3)
 //! j = (0, s) − y/α                             s: slip; the contact's springs (α_n, α_t) are in series                 (4)
@@ -39,7 +40,7 @@ struct Facing {
     compliance: [f64; 2],
 }
 
-/// The interface's own view of linear bodies.
+/// Response of linear bodies to slip of an interface.
 pub struct SlipOperator {
     /// The bodies, assembled without contact
     pub bodies: Assembler,

@@ -22,7 +22,7 @@ pub struct Trial<'a> {
     pub beyond: Option<[f64; 2]>,
     /// α_n of contacts under the augmented Lagrangian is this many times the one given
     pub stiffening: f64,
-    /// Whether the bodies give way under the pressures that come up within the increment; central differences move first
+    /// Whether the bodies deform under the pressures that arise within the increment; central differences move first
     pub settles: bool,
 }
 

@@ -1,4 +1,4 @@
-//! How much memory there is, as far as the system tells, and whether something fits into it.
+//! Free memory, as far as the system reports it, and whether something fits into it.
 
 use std::fs::read_to_string;
 
@@ -17,8 +17,8 @@ pub struct NoRoom {
     pub available: f64,
 }
 
-/// Refuse what needs more bytes than are free, as far as the system tells: the process would be killed. Those that are `held`
-/// already are given back before.
+/// Refuse what needs more bytes than are free, as far as the system reports it: the process would be killed. Those that
+/// are `held` already are given back before.
 ///
 /// # Errors
 /// [`NoRoom`].

@@ -9,7 +9,7 @@ use super::SparseMatrix;
 pub enum Request {
     /// The residual at an iterate is enough.
     Residual,
-    /// The residual on the way to the next iterate, to see how far to go.
+    /// The residual between iterates, for a line search.
     Between,
     /// The tangent as well.
     Tangent,

@@ -340,7 +340,7 @@ const SHORT: f64 = 1e-8;
 /// Round-off of the positions as a share of a side beyond which the shape of the element is not known.
 const VAGUE: f64 = 1e-3;
 
-/// Refuse an element of a group, and tell by which nodes.
+/// Refuse an element of a group, naming its nodes.
 fn refuse(
     element: &Element,
     tag: u64,

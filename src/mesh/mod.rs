@@ -72,7 +72,7 @@ pub struct Mesh {
     pub element_tags: Vec<u64>,
     /// Named groups
     pub groups: BTreeMap<String, Group>,
-    /// What the plane stands for in space
+    /// The kind of plane section
     pub section: Section,
 }
 

@@ -7,7 +7,7 @@ use thiserror::Error;
 /// Names that agree in this share of their letters are near each other, a swap of neighbours counted once.
 const NEAR: f64 = 0.6;
 
-/// The known name that was probably meant: one that begins alike as far as the shorter goes, or differs by few letters.
+/// The known name that was probably meant: one that begins the same, or differs by few letters.
 pub fn nearest<'n>(name: &str, known: impl DoubleEndedIterator<Item = &'n str>) -> Option<&'n str> {
     let name = name.to_lowercase();
     let near = |other: &&str| {

@@ -1,4 +1,4 @@
-//! What the plane stands for in space.
+//! The kind of plane section that the model represents.
 //!
 //! ```text
 //! ∫ f dV = ∫ f w(X) dA,   ∫ f ds = ∫ f w(x) dl,   F = [F_plane, F₃₃]
@@ -22,16 +22,16 @@ use nalgebra::Vector2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What the plane stands for in space.
+/// The kind of plane section that the model represents.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Section {
-    /// A slice of thickness 1 of bodies that go on without end across the plane: forces, masses and energies per unit of
+    /// A slice of thickness 1 of bodies that are unbounded out of plane: forces, masses and energies per unit of
     /// thickness
     #[default]
     PlaneStrain,
-    /// A plate, free of stress across the plane: forces, masses and energies of its whole thickness. Pressures and tractions,
-    /// those of contact included, count the undeformed thickness
+    /// A plate, free of out-of-plane stress: forces, masses and energies of its whole thickness. Pressures and
+    /// tractions, those of contact included, count the undeformed thickness
     PlaneStress {
         /// Undeformed thickness, above 0 [L]
         thickness: f64,
@@ -71,7 +71,7 @@ impl Section {
         }
     }
 
-    /// Whether bodies are plates, which have no stress across the plane.
+    /// Whether bodies are plates, which have no out-of-plane stress.
     pub fn is_plate(&self) -> bool {
         matches!(self, Self::PlaneStress { .. })
     }

@@ -3,7 +3,7 @@
 /// Aids of the iterations of an increment, all on unless an experiment asks what one is good for. Where they lead does not
 /// depend on them, only how soon: a residual that is accepted knows none of them.
 ///
-/// What goes wrong without an aid, and where it comes from, is told in its file.
+/// The failure that an aid prevents, and its source, are described in its file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Aids {
     /// An increment starts as the last one went on: [`crate::solve::equilibrium`]

@@ -34,13 +34,13 @@ pub enum InitialStress {
         /// σ_xy; 0 unless given [F/L²]
         #[serde(default)]
         xy: Profile,
-        /// σ_zz: across the plane, of rings along the hoops. Needed but in plane stress, where it is 0 [F/L²]
+        /// σ_zz: out of plane, of rings along the hoops. Needed but in plane stress, where it is 0 [F/L²]
         zz: Option<Profile>,
     },
 }
 
 impl InitialStress {
-    /// σ_xx, σ_yy, σ_xy, σ_zz at a reference position of a body, which in a plate has none across the plane [F/L²].
+    /// σ_xx, σ_yy, σ_xy, σ_zz at a reference position of a body, which in a plate has none out of plane [F/L²].
     pub fn at(&self, position: Vector2<f64>, in_plate: bool) -> [f64; 4] {
         match self {
             Self::Geostatic { surface, weight, k0 } => {

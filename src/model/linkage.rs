@@ -1,8 +1,9 @@
-//! Nodes that follow others by fixed shares: plates of which one component is alike, and plates that move as a rigid body.
+//! Nodes whose displacements follow from others (master–slave constraints): plates with one equal component, and plates
+//! that move as a rigid body.
 //!
 //! ```text
 //! u_c = Σ G_k u_k                                           c follows the leaders k
-//! one component i alike     (u_c)_i = (u_1)_i
+//! one component i equal     (u_c)_i = (u_1)_i
 //! rigid                     x_c = x_A + α e + β J e,   e = x_B − x_A,   |e| = L            J: turned by 90°
 //! ```
 //!
@@ -119,7 +120,7 @@ impl Linkage {
     }
 }
 
-/// The followers of a plate of which one component is alike; its first node leads.
+/// The followers of a plate with one equal component; its first node is the master.
 pub fn alike(nodes: &[usize], component: usize) -> Vec<Follower> {
     let Some((&first, others)) = nodes.split_first() else { return Vec::new() };
     let components = [component == 0, component == 1];

@@ -33,7 +33,7 @@ impl Method {
     }
 }
 
-/// The method in force, and what to tell about it.
+/// The method in force, with the reason for it and a warning.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chosen {
     /// method
@@ -113,7 +113,7 @@ fn concern(method: Method, points: usize, slave: Looks, master: Option<Looks>) -
     }
 }
 
-/// What the edges of a group look like; a group of anything else is told elsewhere.
+/// What the edges of a group look like; other groups are refused elsewhere.
 fn looks(mesh: &Mesh, group: &str) -> Looks {
     let Ok(Group::Edges(edges)) = mesh.group(group) else { return Looks::Straight };
     if edges.iter().any(|edge| edge.nodes.len() > 2) {

@@ -78,7 +78,7 @@ pub struct Model {
     pub bodies: Vec<Body>,
     /// nodes of periodic sides and of loading plates
     pub ties: Ties,
-    /// nodes that follow others: plates that turn, or of which one component is alike
+    /// nodes constrained to others: plates that rotate, or with one equal component
     pub linkage: Linkage,
     /// nodes of each loading plate, ascending
     pub plates: Vec<Vec<usize>>,

@@ -132,7 +132,7 @@ fn four_fifths() -> f64 {
     0.8
 }
 
-/// Share of the longest stable increment that explicit steps take unless told otherwise [-]
+/// Default fraction of the longest stable increment that explicit steps take [-]
 pub fn nine_tenths() -> f64 {
     0.9
 }
@@ -291,7 +291,7 @@ pub fn start_acceleration([start, first, second, end]: [f64; 4], dt: f64) -> f64
     9.0 * (2.0 * start - 5.0 * first + 4.0 * second - end) / (dt * dt)
 }
 
-/// A time as a reader is told it: twelve digits, without the round-off of a sum of increments.
+/// A time as printed: twelve digits, without the round-off of a sum of increments.
 pub fn told(time: f64) -> f64 {
     format!("{time:.11e}").parse().unwrap_or(time)
 }

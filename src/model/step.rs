@@ -117,7 +117,7 @@ pub struct Rupture {
     pub explicit: Step,
 }
 
-/// Attempts at an increment after which it is halved: where the reaction jumps, its rate leads nowhere.
+/// Attempts at an increment after which it is halved: where the reaction jumps, extrapolation by its rate fails.
 const PATIENCE: usize = 6;
 
 /// Share of the step below which an increment in which the reaction passes its value is not cut again.

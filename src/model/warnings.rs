@@ -1,4 +1,4 @@
-//! What to know of a model before it is solved: how the surfaces of its contacts lie, and how well that is known.
+//! Warnings about a model before it is solved: initial gaps and overlaps of its contacts, and their accuracy.
 
 use nalgebra::Vector2;
 
@@ -167,7 +167,7 @@ fn coarse_positions(mesh: &Mesh) -> Option<String> {
     })
 }
 
-/// The gaps of a contact that does not start closed, as a reader is told of them, in a mesh that goes as far as [`farthest`].
+/// The gaps of a contact that does not start closed, as text, in a mesh that extends to [`farthest`].
 pub fn gaps(model: &Model, pair: &ContactPair, farthest: f64, shrink_fit: bool) -> String {
     let gaps = Gaps::of(model, pair, farthest);
     let fit = gaps.fit.map(|(overlap, at)| {
@@ -186,7 +186,7 @@ pub fn gaps(model: &Model, pair: &ContactPair, farthest: f64, shrink_fit: bool) 
 
 /// Initial gaps of a contact; what is round-off of the positions is no gap and no overlap.
 struct Gaps {
-    /// Whether what faces nothing never touches
+    /// Whether points without a projection never come into contact (small sliding)
     small: bool,
     points: usize,
     facing: usize,

@@ -8,7 +8,7 @@
 //! ```
 //! Integrals go by the consistent mass of the body's elements, with what is moved away from massless nodes, but P and L after
 //! explicit increments by the lumped masses, which are those that keep them; point masses are not of the body. A body without density has the centre of its volume. Of rings they go over the full turn: x components
-//! sum up radial parts, c_x is the mean radius, and L and θ tell of the section alone.
+//! sum up radial parts, c_x is the mean radius, and L and θ refer to the section only.
 
 use nalgebra::{DMatrix, DVector, Vector2};
 

@@ -258,7 +258,7 @@ impl Table {
         let half = written.iter().rev().take_while(|byte| **byte != b'\n').count() as u64;
         let length = self.file.metadata().map_or(0, |file| file.len());
         if half > 0 && length >= half {
-            // It is told that the file is not complete anyway.
+            // That the file is incomplete is reported anyway.
             let _ = self.file.set_len(length - half);
         }
         failed(&self.path, &cause)

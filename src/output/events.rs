@@ -1,8 +1,8 @@
 //! Events of slip: what each was, from its onset to its end.
 //!
-//! An event of a contact begins when a point of it slips faster than the threshold while no other does, and ends when none does.
-//! Its points are those that a front has reached in it. Their slip s, traction q and work ∫ |q| ds count from the increment
-//! before the event; means are weighted by the lengths that points stand for.
+//! An event of a contact begins when a point of it slips faster than the threshold while no other does, and ends when
+//! none does. Its points are those that a front has reached in it. Their slip s, traction q and work ∫ |q| ds count
+//! from the increment before the event; means are weighted by the tributary lengths of the points.
 //!
 //! ```text
 //! stress drop       q before − q after, positive where slip has unloaded
@@ -137,7 +137,7 @@ pub(super) struct Measures {
     pub onset: f64,
     pub position: f64,
     pub at: [f64; 2],
-    /// Length that its points stand for [L]
+    /// Tributary length of its points [L]
     pub length: f64,
     pub mean_slip: f64,
     pub largest_slip: f64,
@@ -207,13 +207,13 @@ pub(super) struct Point {
     /// Distance along the line [L]
     pub position: f64,
     pub at: [f64; 2],
-    /// Length that the point stands for [L]
+    /// Tributary length of the point [L]
     pub length: f64,
     /// Whether it has friction: what slides freely has no fronts
     pub rubs: bool,
     /// State after the last increment
     pub mark: Mark,
-    /// Slip rate of that increment [L/T], and what an arrival is told by (see [`Arrive`])
+    /// Slip rate of that increment [L/T], and the signal that defines an arrival (see [`Arrive`])
     pub rate: f64,
     pub signal: f64,
     pub arrivals: Vec<Arrival>,
@@ -240,7 +240,7 @@ pub(super) struct Interface {
     pub events: Vec<SlipEvent>,
 }
 
-/// What tells that a front arrives at a point.
+/// Criterion for the arrival of a front at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Arrive {
     /// The slip rate passes that of a front from below.
@@ -279,8 +279,8 @@ impl Event {
 }
 
 impl Passing<'_> {
-    /// The arrival of a front at a point in this increment, told by the signal at its end. Slip rates are those of the middles
-    /// of increments, other signals those of their ends.
+    /// The arrival of a front at a point in this increment, by the signal at its end. Slip rates are those of the
+    /// middles of increments, other signals those of their ends.
     fn arrival(&self, point: &Point, signal: f64, event: usize) -> Option<Arrival> {
         let (level, mean) = match self.arrive {
             Arrive::Rate => (self.threshold, true),
@@ -403,7 +403,7 @@ impl Interface {
         let nearest = |arrivals: &[Arrival], time: f64| {
             arrivals.iter().map(|a| a.time).min_by(|a, b| (a - time).abs().total_cmp(&(b - time).abs()))
         };
-        // A neighbour that only another front has passed tells nothing of this one.
+        // A neighbour passed only by another front gives no information about this one.
         let passed = |k: usize| {
             let point = self.points.get(k).filter(|point| point.line == own.line)?;
             let there = nearest(&point.arrivals, arrival)?;

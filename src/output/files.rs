@@ -45,7 +45,8 @@ pub fn remove(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Whether a file of its own has these words among its first: by them what we have written is told from a user's file of that name.
+/// Whether a file of its own has these words among its first: they distinguish our files from a user's file of that
+/// name.
 pub fn bears(path: &Path, words: &str) -> bool {
     let mut start = Vec::new();
     let read = |file: File| file.take(1024).read_to_end(&mut start);
@@ -147,7 +148,7 @@ pub fn aside(path: &Path) -> PathBuf {
 /// Name of the lock in the folder.
 pub const LOCK: &str = "fecontact.lock";
 
-/// Room that the lock keeps: given back when a disk is full, so that the end of a run can still be told [bytes].
+/// Room that the lock keeps: given back when a disk is full, so that the end of a run can still be recorded [bytes].
 const RESERVE: usize = 64 << 10;
 
 /// A folder is locked by this process until it is dropped.

@@ -4,16 +4,16 @@
 //! from below, in time linear between the middles of the two intervals. Its local speed is the distance of the two
 //! neighbours along the slave over the difference of their arrivals nearest in time (of one, where it passed no other).
 //!
-//! An event of a contact begins when a point of it passes the threshold while no other is above, and ends when none is. Its
-//! rupture length at an arrival is what the points that it has reached by then stand for, its energy released what
+//! An event of a contact begins when a point of it passes the threshold while no other is above, and ends when none is.
+//! Its rupture length at an arrival is the tributary length of the points reached by then, its energy released what
 //! loads and stored energies of the whole model gave since its first arrival:
 //!
 //! ```text
 //! Δ(external work − strain energy − elastic energy of contacts) = Δ(kinetic energy + dissipation)
 //! ```
 //!
-//! Arrivals may be told by R or μ instead, which pass a value at the points; an event is still one of slip, and an arrival
-//! outside of events is of event 0. A contact without friction has no fronts.
+//! Arrivals may be defined by R or μ instead, which pass a value at the points; an event is still one of slip, and an
+//! arrival outside of events is of event 0. A contact without friction has no fronts.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -34,7 +34,7 @@ pub struct Fronts {
     folder: PathBuf,
     /// Slip rate of a front [L/T]
     threshold: f64,
-    /// What tells of its arrivals
+    /// Quantity that defines its arrivals
     arrive: Arrive,
     interfaces: Vec<Interface>,
     /// Time at the start

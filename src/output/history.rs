@@ -50,7 +50,7 @@ struct Memory {
     courses: Vec<FrictionCourse>,
 }
 
-/// A watched set of edges: its name, and the share of its length that each node stands for.
+/// A watched set of edges: its name, and the tributary fraction of its length at each node.
 type EdgeMeans = (String, Vec<(usize, f64)>);
 
 impl Rows for HistoryRows {

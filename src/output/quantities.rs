@@ -2,8 +2,8 @@
 //! and in which unit; columns and arrays follow it in this order, readers of results know it by it, and `fecontact schema
 //! results` prints it.
 //!
-//! Of columns with a dot in their name the table says what stands behind it; `CONTACT`, `SET`, `BODY` and `PROBE` stand for
-//! names of the case.
+//! For columns with a dot in their name the table lists the part behind it; `CONTACT`, `SET`, `BODY` and `PROBE` stand
+//! for names of the case.
 
 use std::collections::BTreeMap;
 

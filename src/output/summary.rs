@@ -33,7 +33,7 @@ pub struct About {
     pub wave_speeds: [f64; 3],
     /// slip rate that makes a front, if the case asks for fronts [L/T]
     pub front_slip_rate: Option<f64>,
-    /// the case as `check` tells it: headings with their lines
+    /// the case as `check` prints it: headings with their lines
     pub understood: Vec<(String, Vec<String>)>,
 }
 
@@ -114,7 +114,7 @@ pub struct Summary {
     pub chatter: Option<BTreeMap<String, f64>>,
     /// how the friction of each contact went; none of those that bore none
     pub friction_course: BTreeMap<String, FrictionCourse>,
-    /// largest resident memory of the process, where the system tells [MiB]
+    /// largest resident memory of the process, where the system reports it [MiB]
     pub peak_memory_mib: Option<f64>,
     /// warnings
     pub warnings: Vec<String>,

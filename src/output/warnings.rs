@@ -1,7 +1,7 @@
 //! Things a user should know about a result: deep penetration, pressure past the law's uniqueness bound, errors in time
-//! larger than allowed, fronts that the mesh does not resolve, contacts that never close, and energy that came from nowhere or is lost.
+//! larger than allowed, fronts that the mesh does not resolve, contacts that never close, and energy errors.
 //!
-//! What is worth a warning at one point of a contact.
+//! Warnings about single points of a contact are here too.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -98,7 +98,7 @@ impl Keeper {
         }
     }
 
-    /// Write a checkpoint. A run that cannot keep one goes on all the same, and says so.
+    /// Write a checkpoint. If that fails, the run continues with a warning.
     fn keep(&mut self, simulation: &Simulation, observers: &mut [&mut dyn Observer]) -> Result<(), Error> {
         let saved = SavedRun::new(simulation, observers)?;
         let (begun, complete) = (saved.simulation().begun(), saved.simulation().is_complete());

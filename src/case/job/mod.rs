@@ -91,8 +91,8 @@ impl Outcome {
     }
 }
 
-/// A case with the last checkpoint of the folder of its results, and what was wrong with a newer one; `warn` is told where
-/// another version has written it.
+/// A case with the last checkpoint of the folder of its results, and what was wrong with a newer one; `warn` reports
+/// where another version has written it.
 ///
 /// # Errors
 /// [`Refused`].
@@ -203,7 +203,8 @@ impl Work {
     ) -> Result<(), Error> {
         let resumes = opened.resumes();
         let mut keeper = Keeper::new(opened, model, &folder.path, warn.clone(), ends);
-        // The summary tells whose the files are, and so it comes first; that of a run taken up is true until it goes on.
+        // The summary identifies the files, so it comes first; that of a resumed run stays valid until the run
+        // continues.
         if !resumes {
             summary::write(first, &folder.path)?;
         }
@@ -243,7 +244,7 @@ pub type Ends = Arc<dyn Fn() -> Option<Error> + Send + Sync>;
 
 /// Callbacks and observers of a run.
 pub struct Company<'a> {
-    /// is told warnings as they come, but for those of the model
+    /// receives warnings when they arise, except those of the model
     pub warn: Warn,
     /// is asked between two increments, and within explicit ones
     pub ends: Ends,

@@ -1,6 +1,6 @@
 //! The observers of a run, and the files they write.
 //!
-//! Warnings that are told as they come, each once.
+//! Warnings, reported once each when they arise.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -140,11 +140,11 @@ impl Outputs {
     }
 }
 
-/// The warnings of a run, and who tells them.
+/// The warnings of a run, and the callback that reports them.
 pub(super) struct Aloud {
     pub warnings: Warnings,
     warn: Warn,
-    /// how many have been told
+    /// number already reported
     told: usize,
 }
 
@@ -180,7 +180,7 @@ impl Observer for Aloud {
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
         self.warnings.restore(memory)?;
-        // Those were told when they came.
+        // Those were reported when they arose.
         self.told = self.warnings.list.len();
         Ok(())
     }

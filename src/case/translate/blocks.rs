@@ -67,7 +67,8 @@ fn parameters<'p>(input: &'p BTreeMap<String, Amount>, place: &str) -> Checked<P
             ready.extend((*left == 0).then_some(other));
         }
     }
-    // What is left depends on what was refused, or on itself. It is told what is wrong once all that can be known is.
+    // What is left depends on what was refused, or on itself. It is reported once everything that can be evaluated has
+    // been.
     let left = || input.keys().map(String::as_str).find(|name| !known.numbers.contains_key(name));
     match refused.pop_first().or_else(left) {
         Some(name) => known.value(&input[name], &format!("{place}.{name}")).map(|_| known),
@@ -91,7 +92,7 @@ impl Parameters<'_> {
         };
         let own = words(text).filter_map(|word| self.numbers.get_key_value(word));
         let value = constant(&own.map(|(name, number)| (*name, *number)).collect());
-        // Who is told what is wrong is told of all the names there are.
+        // The message lists all known names.
         value.or_else(|_| constant(&self.numbers)).map_err(|message| Complaint::new(place, message))
     }
 

@@ -10,8 +10,8 @@
 //! All have the same two constants, λ and G, and the same response to small strains. [`Viscoelastic`] has a neo-Hookean body
 //! beside a Maxwell arm that relaxes.
 //!
-//! Laws are written in plane strain, F₃₃ = 1. One that also knows what a stretch across the plane does is [`Spatial`], and
-//! can be that of a ring; [`PlaneStress`] is such a law in a plate, and [`Imposed`] one in a body with an initial stress or a
+//! Laws are written in plane strain, F₃₃ = 1. One that also covers an out-of-plane stretch is [`Spatial`], and can be
+//! that of a ring; [`PlaneStress`] is such a law in a plate, and [`Imposed`] one in a body with an initial stress or a
 //! temperature.
 //!
 //! A law may remember some numbers of its own at every quadrature point. They are handled like the state of friction: the
@@ -174,12 +174,12 @@ pub trait Material: Debug + Send + Sync {
         self.respond(&straining, &mut old.clone())
     }
 
-    /// The law in a plate, which has no stress across the plane; none unless it is known.
+    /// The law in a plate, which has no out-of-plane stress; none unless it is known.
     fn plane_stress(&self) -> Option<Box<dyn Material>> {
         None
     }
 
-    /// The law with a stretch across the plane, as rings have it; none unless it is known.
+    /// The law with an out-of-plane stretch, as rings have it; none unless it is known.
     fn spatial(&self) -> Option<&dyn Spatial> {
         None
     }

@@ -181,7 +181,7 @@ impl ContactLaw {
         self.offsets.moved(old, sliding.pressure, answer?, self.description.stiffness)
     }
 
-    /// The value of an observable in a state, or what stands for it where the law does not know it: NaN if it is a further one.
+    /// The value of an observable in a state, or its default where the law does not define it: NaN for a further one.
     pub fn observe(&self, name: &str, state: &FrictionState) -> f64 {
         match name {
             "dilation" if self.description.opening.contains(&name) => state.opening + state.wear,

@@ -1,7 +1,7 @@
 //! The friction-law contract: what an interface point remembers, and how a law answers one increment.
 //!
-//! A law is a pure function of (committed state, increment). It sees scalars in the frame that turns with the
-//! interface, never nodes or meshes, so the same law serves a finite-element interface, a point mass or a test.
+//! A law is a pure function of (committed state, increment). Its arguments are scalars in the frame that rotates with
+//! the interface, never nodes or meshes, so the same law serves a finite-element interface, a point mass or a test.
 //!
 //! Signs: `q` resists positive slip of the slave along +s; pressure is positive in compression.
 //!
@@ -63,7 +63,8 @@ pub struct FrictionResponse {
     pub dtraction_dpressure: f64,
     /// ∂d/∂Δu_t [-]
     pub dopening_dslip: f64,
-    /// ∂d/∂p, below 1/α_n: an opening that grew faster with the pressure than the contact gives way would have no end [L³/F]
+    /// ∂d/∂p, below 1/α_n: an opening that grew faster with the pressure than the contact compliance would be unbounded
+    /// [L³/F]
     pub dopening_dpressure: f64,
     /// Evaluations of the scalar equation of plastic slip that this answer took; 0 where it has a closed form
     pub evaluations: usize,
@@ -114,7 +115,7 @@ pub type Answer = Result<FrictionResponse, LawFailure>;
 /// p = p̄ − α_n (g − d)                                                d: how far the law holds the surfaces apart (dilatancy)
 /// W₁ − W₀ = ∫ q dλ − ∫ p dd ≥ 0                                     dissipation [F/L]; q²/(2 α_t) is stored
 /// ```
-/// Units: q, p [F/L²], Δu_t, d [L], α_t [F/L³], Δt [T]. A law is asked for the pressure it answers to, so that it never sees
+/// Units: q, p [F/L²], Δu_t, d [L], α_t [F/L³], Δt [T]. A law is called with the pressure that it responds to, so that it never receives
 /// penalty or multiplier; the contact finds the pressure that goes with the opening.
 ///
 /// Where Δt = 0 the law answers to slip and pressure that come up at once, and q stays as it was if neither does: a step begins with
@@ -240,7 +241,7 @@ pub struct Description {
     pub takes_means: bool,
     /// Largest |q|/p that a point which has not slipped yet may start with; none for a law that lets an excess slip off [-]
     pub starting_coefficient: Option<f64>,
-    /// Least |q|/p that a point can come to that goes on sliding, at any rate and state; none where there is no such bound, or the
+    /// Lowest |q|/p of a point in continued sliding, at any rate and state; none where there is no such bound, or the
     /// law does not say [-]
     pub least_coefficient: Option<f64>,
     /// −d(q/p)/dδ at its largest: how much friction fast slip takes over its way δ, 0 where it takes none [1/L]
@@ -329,7 +330,7 @@ pub enum LawFailure {
         /// |q_tr|: traction without plastic slip [F/L²]
         trial: f64,
     },
-    /// The opening of a law that dilates grows faster with the pressure than the contact gives way.
+    /// The opening of a dilating law grows faster with the pressure than the contact compliance.
     #[error(
         "the opening {opening:.6e} of the friction law and the pressure {pressure:.6e} did not converge to a \
              common solution"
@@ -365,7 +366,7 @@ pub enum LawFailure {
         /// q: traction [F/L²]
         traction: f64,
     },
-    /// A registered law has failed; whoever registered it knows why.
+    /// A registered law has failed, for a reason of its own.
     #[error("a registered friction law returned no result")]
     Registered,
 }

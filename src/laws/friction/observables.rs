@@ -95,7 +95,7 @@ pub fn further<'a>(laws: impl IntoIterator<Item = &'a Description>) -> Vec<&'sta
     names
 }
 
-/// The value of an observable, or what stands for it where the law does not know it: NaN if it is a further one.
+/// The value of an observable, or its default where the law does not define it: NaN for a further one.
 pub fn value(law: &dyn FrictionLaw, name: &str, state: &FrictionState) -> f64 {
     let absent = || ALWAYS.iter().find(|(always, _)| *always == name).map_or(f64::NAN, |(_, absent)| *absent);
     law.observe(name, state).unwrap_or_else(absent)

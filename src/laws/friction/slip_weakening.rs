@@ -181,8 +181,8 @@ impl SlipWeakening {
 }
 
 /// How much of the mean of (A + B λ)/(C + D λ) over a stretch of λ is its value at the end, the rest being its value at
-/// the beginning, if the denominator gains the share `z` of itself on the way; a half if it gains nothing, or if slip would
-/// have to cease on the way.
+/// the beginning, if the denominator gains the share `z` of itself along the stretch; a half if it gains nothing, or if
+/// slip would have to cease within it.
 ///
 /// ```text
 /// (1 + z)/z (1 − ln(1 + z)/z)

@@ -22,7 +22,7 @@ pub struct FrictionState {
     pub opening: f64,
     /// w: what of the surfaces has worn away, which `opening` counts [L]
     pub wear: f64,
-    /// Open, stick or slip, as the law sees its last increment
+    /// Open, stick or slip by the law's last increment
     pub regime: Regime,
     /// What else the law remembers, by the names of its [`variables`](super::Description::variables); the rest is 0
     pub variables: [f64; MOST_VARIABLES],

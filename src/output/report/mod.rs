@@ -1,8 +1,8 @@
 //! One page to look at results in a browser, without a network and without another program.
 //!
-//! The numbers of the folders are packed into the page ([`table`]), and unpacked and drawn there by what stands in `page/`.
-//! Where there are too many, some are left out; the page says which. Faults in a folder are told on the page and hide no more
-//! than they must.
+//! The numbers of the folders are packed into the page ([`table`]), and unpacked and drawn there by what stands in
+//! `page/`. Where there are too many, some are left out; the page says which. Faults in a folder are reported on the
+//! page and hide no more than they must.
 
 mod newton;
 mod run;

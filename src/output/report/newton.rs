@@ -1,4 +1,4 @@
-//! Convergence as `newton.csv` tells it: solves and residuals by increment, and the attempts that were given up.
+//! Convergence from `newton.csv`: solves and residuals by increment, and the rejected attempts.
 
 use std::cmp::Reverse;
 use std::ops::Range;

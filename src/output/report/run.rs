@@ -1,4 +1,4 @@
-//! What the page knows of one folder of results.
+//! Data of the page from one folder of results.
 
 use serde_json::{Value, json};
 

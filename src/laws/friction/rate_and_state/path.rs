@@ -244,7 +244,8 @@ impl<'a> Ramp<'a> {
 }
 
 impl Ramp<'_> {
-    /// Slip at the beginning of a sub-step that unloads so much that none of its rows sees it: V decays by |q|/(a p).
+    /// Slip at the beginning of a sub-step that unloads so much that none of its rows resolves it: V decays by |q|/(a
+    /// p).
     fn overlooked(&self, from: &FrictionState, to: &FrictionState, step: u64) -> f64 {
         if from.pressure <= 0.0 || to.pressure <= 0.0 {
             return 0.0;

@@ -193,7 +193,7 @@ impl SuperSubloading {
     }
 }
 
-/// Whether R can only fall on the way to the trial traction.
+/// Whether R can only decrease towards the trial traction.
 fn falls(old: &FrictionState, trial: f64, pressure: f64) -> bool {
     let ratio_falls = trial.abs() * old.pressure <= old.traction.abs() * pressure * (1.0 + ROUND_OFF);
     trial * old.traction.signum() >= 0.0 && ratio_falls && old.pressure > 0.0

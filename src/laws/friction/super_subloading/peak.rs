@@ -425,7 +425,7 @@ pub struct Rise {
     pub slip: Option<f64>,
 }
 
-/// Coordinates of the curve between which R goes from 0 to 1 as far as double precision sees.
+/// Coordinates of the curve between which R goes from 0 to 1 in double precision.
 const ENDS: [f64; 2] = [-20.0, 40.0];
 /// Places at which a peak is looked for, and thirds taken off to meet it.
 const PLACES: u32 = 1200;

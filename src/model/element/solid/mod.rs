@@ -20,8 +20,8 @@ use ring::Hoop;
 /// K_ai,bk = ∫ N_a,J A_iJkL N_b,L dV,   A = ∂P/∂F         tangent ∂f_ai/∂u_bk               (3)
 /// ```
 ///
-/// F-bar (Q4 only) lets every point have the volume change of the centre, so that nearly incompressible materials
-/// do not lock. The law sees F̄, and its Cauchy stress acts on the true geometry:
+/// F-bar (Q4 only) lets every point have the volume change of the centre, so that nearly incompressible materials do
+/// not lock. The law is evaluated at F̄, and its Cauchy stress acts on the true geometry:
 ///
 /// ```text
 /// F̄ = r F,   r = √(J₀/J),   J₀ = det F₀ at the centre                                      (4)

@@ -43,7 +43,7 @@ struct Centre<'a> {
     inverse_transpose: Vector5<f64>,
 }
 
-/// F as the law sees it at a point.
+/// Deformation gradient F at a point, as given to the law.
 struct Seen {
     deformation: Vector5<f64>,
     /// r of (8)
