@@ -266,7 +266,7 @@ test("charts turn logarithmic and back, and curves that are no functions are zoo
     return { min, max, distr };
   }, [title, axis]);
   await page.evaluate(() => charts.forEach((chart) => chart.draw()));
-  const [turned, path] = ["External work", "Friction path"];
+  const [turned, path] = ["Energy balance", "Friction path"];
   await chart(turned).getByText("log", { exact: true }).click();
   assert.equal((await scale(turned, "y")).distr, 3);
   await chart(turned).getByText("log", { exact: true }).click();
@@ -298,7 +298,7 @@ test("a law driven alone is shown", async () => {
   assert.match(await page.locator("#law").innerText(), /super subloading: .*mu_s = 0\.6/);
   const { holds } = JSON.parse(readFileSync(join(PAGES, "hold_slide_hold", "summary.json"), "utf8"));
   const ageing = await page.evaluate(() => {
-    const chart = charts.find((one) => one.title.startsWith("Peak after")).draw();
+    const chart = charts.find((one) => one.title.startsWith("Peak friction")).draw();
     return { y: chart.series[0].y, distr: chart.plot.scales.x.distr };
   });
   assert.deepEqual(ageing, { y: holds.map((hold) => hold.peak.coefficient), distr: 3 });

@@ -375,7 +375,7 @@ fn a_pressure_past_the_uniqueness_limit_is_told() {
     test["initial"]["pressure"] = json!(100.5);
     let done = Done::of(&test);
     for text in [&done.message, done.summary["warnings"][0].as_str().unwrap()] {
-        assert!(text.contains("the pressure 1.005000e2 at t = 0 passes 1.000000e2"), "{text}");
+        assert!(text.contains("the pressure 1.005000e2 at t = 0 exceeds 1.000000e2"), "{text}");
     }
     assert_eq!(done.summary["warnings"].as_array().unwrap().len(), 1);
 }

@@ -219,7 +219,8 @@ fn faults_of_a_folder_are_told_and_hide_no_more_than_they_must() {
     fs::write(out.join("history.csv"), lines.join("\n") + "\n").unwrap();
     fs::write(out.join("newton.csv"), "").unwrap();
     let page = Page::of(&out);
-    for told in ["solid/00002.vtu is missing", "solid/00003.vtu", "no numbers", "only the rows before it", "newton.csv"]
+    for told in
+        ["solid/00002.vtu is missing", "solid/00003.vtu", "not numbers", "only the rows before it", "newton.csv"]
     {
         assert!(page.notes().contains(told), "{told}: {}", page.notes());
     }

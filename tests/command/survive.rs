@@ -755,7 +755,7 @@ fn the_seed_of_a_checkpoint_has_the_format_of_now() {
 /// Results that were changed behind the program's back cannot be gone on with.
 #[test]
 fn results_that_are_missing_are_told() {
-    for (name, reason) in [("newton.csv", "No such file"), ("solid/00001.vtu", "is gone")] {
+    for (name, reason) in [("newton.csv", "No such file"), ("solid/00001.vtu", "is missing")] {
         let folder = interrupted(&dragged(json!("static"), 2000));
         fs::remove_file(folder.path().join("out").join(name)).expect("it was there");
         let told = told(&run(folder.path(), "out", &["--resume"]), 2);
@@ -1073,7 +1073,7 @@ fn factors_that_do_not_fit_are_told_with_their_size() {
     let first = first.expect("some limit is too low");
     let told = told(&first, 1);
     assert!(
-        told.contains("the factors of 51842 equations take 0.") && told.contains(" GiB of memory are free"),
+        told.contains("the factors of 51842 equations need 0.") && told.contains(" GiB of memory are free"),
         "{told}"
     );
     let summary = summary(&folder.path().join("out"));

@@ -390,7 +390,7 @@ fn rigid_bodies_are_left_where_their_normal_turns() {
     assert_eq!(told(&case(plane, 7.0)), Vec::<String>::new());
     let circle = |by: f64| told(&case(json!({"circle": {"centre": [0, -5], "radius": 5}}), by));
     assert_eq!(circle(0.95 * LITTLE_TURN * 5.0), Vec::<String>::new());
-    assert!(circle(1.1 * LITTLE_TURN * 5.0).iter().any(|told| told.contains("turned by")));
+    assert!(circle(1.1 * LITTLE_TURN * 5.0).iter().any(|told| told.contains("rotated by")));
     let line = |by: f64| told(&case(json!({"polyline": {"points": [[-1, 0], [1, 0]]}}), by));
     assert_eq!(line(0.5), Vec::<String>::new());
     assert!(line(1.5).iter().any(|told| told.contains("past the end")), "{:?}", line(1.5));

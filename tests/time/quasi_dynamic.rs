@@ -353,11 +353,11 @@ fn what_it_cannot_do_is_refused() {
             "leave it out",
         ),
         (|c| c["bodies"]["lower"]["material"]["model"] = json!("neo_hookean"), "steps[0].scheme", "`lower`"),
-        (|c| c["steps"][0]["supports"][1]["ux"] = json!("0.001*t^2"), "steps[0].supports", "evenly"),
+        (|c| c["steps"][0]["supports"][1]["ux"] = json!("0.001*t^2"), "steps[0].supports", "linearly"),
         (
             |c| c["steps"][0]["supports"][1]["ux"] = json!({"table": [[0, 0], [0.5, 1], [1, 1]]}),
             "steps[0].supports",
-            "evenly",
+            "linearly",
         ),
         (|c| c["steps"][0]["supports"][0]["on"] = json!("lower"), "steps[0].supports", "no node of a contact"),
         (
