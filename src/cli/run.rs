@@ -12,7 +12,7 @@ use super::interrupt::Interrupt;
 use super::place::default_folder;
 use super::progress::{Progress, Voice};
 use super::threads::use_threads;
-use crate::case::job::{Company, Job, Outcome, last};
+use crate::case::job::{Callbacks, Job, Outcome, last};
 use crate::case::{Opened, Written};
 use crate::model::Model;
 use crate::model::scheme::told;
@@ -50,7 +50,7 @@ pub fn run(path: &Path, options: Options) -> Result<(), Failure> {
     };
     let mut job = Job::open(opened, damage, &place)?;
     let told = Told::start(&job, &voice);
-    let outcome = job.run(company(&voice))?;
+    let outcome = job.run(callbacks(&voice))?;
     told.end(&outcome, &job);
     // Report the first failure.
     let wants_page = job.opened.case.output.report && outcome.is_readable();
@@ -62,11 +62,11 @@ pub fn run(path: &Path, options: Options) -> Result<(), Failure> {
 }
 
 /// Warnings and progress on stderr; signals end the run.
-fn company(voice: &Voice) -> Company<'static> {
+fn callbacks(voice: &Voice) -> Callbacks<'static> {
     let (speaker, interrupt) = (voice.clone(), Interrupt::watch());
     let progress =
         (!matches!(voice, Voice::Silent)).then(|| Box::new(Progress::new(voice.clone())) as Box<dyn Observer>);
-    Company {
+    Callbacks {
         warn: Arc::new(move |warning| speaker.warn(warning)),
         ends: Arc::new(move || interrupt.came().then_some(Error::Interrupted)),
         progress,

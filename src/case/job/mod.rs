@@ -1,7 +1,7 @@
 //! A case run into a folder of results: from its beginning, from the end of another, or from its last checkpoint.
 //!
 //! [`Job::open`] reads, checks and locks the folder; [`Job::run`] solves and leaves results behind however it ends. Who asked for
-//! it hears warnings, shows progress and may end it ([`Company`]).
+//! it hears warnings, shows progress and may end it ([`Callbacks`]).
 //!
 //! Who watches a run.
 
@@ -129,14 +129,14 @@ impl Job {
     ///
     /// # Errors
     /// [`Refused::Run`] where it cannot go on from its checkpoint; nothing has changed then.
-    pub fn run(&mut self, company: Company) -> Result<Outcome, Refused> {
+    pub fn run(&mut self, callbacks: Callbacks) -> Result<Outcome, Refused> {
         let about = self.about();
         let Self { opened, model, folder, saved, damage } = self;
         let summary = |ending, report, warnings| Summary::new(ending, about.clone(), model, report, warnings);
         let first = summary(Ending::running(&folder.files), RunReport::default(), model.warnings());
         let mut work =
             Work { simulation: None, warnings: Vec::new(), chatter: None, courses: BTreeMap::new(), supplied: 0.0 };
-        let result = defect::catch(|| work.go(opened, model, folder, saved.take(), &first, company));
+        let result = defect::catch(|| work.go(opened, model, folder, saved.take(), &first, callbacks));
         let result = match (result, opened.resumes(), &work.simulation) {
             (Ok(Err(error)), true, None) => return Err(error.into()),
             (result, ..) => result,
@@ -199,7 +199,7 @@ impl Work {
         folder: &Folder,
         saved: Option<SavedRun>,
         first: &Summary,
-        Company { warn, ends, mut progress }: Company,
+        Callbacks { warn, ends, mut progress }: Callbacks,
     ) -> Result<(), Error> {
         let resumes = opened.resumes();
         let mut keeper = Keeper::new(opened, model, &folder.path, warn.clone(), ends);
@@ -243,7 +243,7 @@ pub type Warn = Arc<dyn Fn(&str) + Send + Sync>;
 pub type Ends = Arc<dyn Fn() -> Option<Error> + Send + Sync>;
 
 /// Callbacks and observers of a run.
-pub struct Company<'a> {
+pub struct Callbacks<'a> {
     /// receives warnings when they arise, except those of the model
     pub warn: Warn,
     /// is asked between two increments, and within explicit ones
