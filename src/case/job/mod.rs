@@ -29,7 +29,7 @@ use crate::run::error::Error;
 use crate::run::observer::Observer;
 use crate::run::{SavedRun, Simulation, watch_with};
 use keeper::Keeper;
-use outputs::{Aloud, Outputs, files};
+use outputs::{Outputs, WarningReporter, files};
 
 /// Why a job cannot begin; nothing was written.
 #[derive(Debug, Error)]
@@ -208,8 +208,8 @@ impl Work {
         if !resumes {
             summary::write(first, &folder.path)?;
         }
-        let aloud = Aloud::new(model.warnings(), warn);
-        let mut outputs = Outputs::open(&folder.path, model, &opened.case, saved.as_ref(), aloud)?;
+        let reporter = WarningReporter::new(model.warnings(), warn);
+        let mut outputs = Outputs::open(&folder.path, model, &opened.case, saved.as_ref(), reporter)?;
         let mut observers = outputs.observers();
         if let Some(progress) = &mut progress {
             observers.push(&mut **progress);
@@ -229,8 +229,8 @@ impl Work {
         drop(observers);
         self.courses = outputs.courses(model);
         self.chatter = outputs.fronts.as_ref().map(Fronts::chatter);
-        self.supplied = outputs.aloud.warnings.audit.supplied;
-        self.warnings = std::mem::take(&mut outputs.aloud.warnings.list);
+        self.supplied = outputs.reporter.warnings.audit.supplied;
+        self.warnings = std::mem::take(&mut outputs.reporter.warnings.list);
         self.warnings.extend(keeper.concern);
         result
     }

@@ -62,7 +62,7 @@ fn frames(case: &Case) -> Frames {
 pub(super) struct Outputs {
     history: Option<History>,
     newton_log: Option<NewtonLog>,
-    pub aloud: Aloud,
+    pub reporter: WarningReporter,
     interface: Option<InterfaceStore>,
     probes: Option<Probes>,
     fields: Option<Fields>,
@@ -76,7 +76,7 @@ impl Outputs {
         model: &Arc<Model>,
         case: &Case,
         saved: Option<&SavedRun>,
-        aloud: Aloud,
+        reporter: WarningReporter,
     ) -> Result<Self, Error> {
         let start = saved.map_or_else(|| model.initial_state(), |saved| saved.simulation().state().clone());
         let goes_on = |name: &str| saved.is_some_and(|saved| saved.remembers(name));
@@ -86,7 +86,7 @@ impl Outputs {
         let mut outputs = Self {
             history: goes_on("history").then(|| History::reopen(folder, model)).transpose()?,
             newton_log: goes_on("newton").then(|| NewtonLog::reopen(folder, model)).transpose()?,
-            aloud,
+            reporter,
             interface: (goes_on("interface") && has_contacts).then(store),
             probes: goes_on("probes").then(|| Probes::reopen(folder, model)).transpose()?,
             fields: (goes_on("fields") && has_fields).then(series).transpose()?,
@@ -132,23 +132,30 @@ impl Outputs {
         fn watch<'a>(observer: &'a mut Option<impl Observer + 'a>) -> Option<&'a mut (dyn Observer + 'a)> {
             observer.as_mut().map(|observer| observer as &mut dyn Observer)
         }
-        let Self { history, newton_log, aloud, interface, probes, fields, fronts } = self;
-        let aloud: Option<&mut dyn Observer> = Some(aloud);
-        let all =
-            [watch(history), watch(newton_log), aloud, watch(interface), watch(probes), watch(fields), watch(fronts)];
+        let Self { history, newton_log, reporter, interface, probes, fields, fronts } = self;
+        let reporter: Option<&mut dyn Observer> = Some(reporter);
+        let all = [
+            watch(history),
+            watch(newton_log),
+            reporter,
+            watch(interface),
+            watch(probes),
+            watch(fields),
+            watch(fronts),
+        ];
         all.into_iter().flatten().collect()
     }
 }
 
 /// The warnings of a run, and the callback that reports them.
-pub(super) struct Aloud {
+pub(super) struct WarningReporter {
     pub warnings: Warnings,
     warn: Warn,
     /// number already reported
     told: usize,
 }
 
-impl Aloud {
+impl WarningReporter {
     /// A collector that has already reported the warnings in `list`.
     pub fn new(list: Vec<String>, warn: Warn) -> Self {
         let told = list.len();
@@ -163,7 +170,7 @@ impl Aloud {
     }
 }
 
-impl Observer for Aloud {
+impl Observer for WarningReporter {
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let recorded = self.warnings.record(model, attempt);
         self.tell();
