@@ -49,9 +49,9 @@ pub fn run(path: &Path, options: Options) -> Result<(), Failure> {
         false => (Opened::begin(Written::read(path)?)?, None),
     };
     let mut job = Job::open(opened, damage, &place)?;
-    let told = Told::start(&job, &voice);
+    let messages = Messages::start(&job, &voice);
     let outcome = job.run(callbacks(&voice))?;
-    told.end(&outcome, &job);
+    messages.end(&outcome, &job);
     // Report the first failure.
     let wants_page = job.opened.case.output.report && outcome.is_readable();
     let page = wants_page.then(|| report::write(std::slice::from_ref(&job.folder.path), &place.join(report::FILE)));
@@ -74,9 +74,9 @@ fn callbacks(voice: &Voice) -> Callbacks<'static> {
 }
 
 /// Prints what a user needs to know at the start and at the end of a run.
-struct Told(Voice);
+struct Messages(Voice);
 
-impl Told {
+impl Messages {
     /// Before the first increment: warnings and choices, or the state from which the run resumes.
     pub fn start(Job { opened, model, saved, damage, .. }: &Job, voice: &Voice) -> Self {
         let saved = saved.as_ref().filter(|_| opened.resumes());
