@@ -7,7 +7,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use crate::equations::ContactCounts;
 use crate::mesh::names::in_line;
 use crate::model::Model;
-use crate::model::told::count;
+use crate::model::text::count;
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer, Verdict};
 use crate::solve::failure::IncrementFailure;

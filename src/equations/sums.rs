@@ -10,7 +10,7 @@ use crate::linear::system::Contribution;
 use crate::linear::{BlockPosition, SparseMatrix};
 use crate::model::Model;
 use crate::model::scheme::told;
-use crate::model::told::number;
+use crate::model::text::number;
 
 /// Forces on the nodes and, where they are asked for, their magnitudes and their tangent.
 pub(super) struct Sums<'a> {

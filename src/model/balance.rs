@@ -10,7 +10,7 @@ use nalgebra::Vector2;
 
 use super::boundary::Loads;
 use super::element::{Memory, follower_pressure};
-use super::told::number;
+use super::text::number;
 use super::{Body, Model, Step};
 
 /// Share of the forces on a body out of balance that is worth a word. Stresses and weights are written with a few digits.

@@ -14,7 +14,7 @@ pub mod scheme;
 pub mod state;
 pub mod step;
 pub mod support;
-pub mod told;
+pub mod text;
 pub mod warnings;
 pub(crate) mod written;
 

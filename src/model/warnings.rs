@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use super::balance;
-use super::told::{count, number};
+use super::text::{count, number};
 use crate::contact::master::{Master, Rigid};
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::told::number;
+use crate::model::text::number;
 
 /// Shares that are the same but for round-off.
 const ROUND_OFF: f64 = 1e-9;

@@ -11,7 +11,7 @@ use crate::laws::friction::Regime;
 use crate::model::scheme::Scheme;
 use crate::model::state::State;
 use crate::model::step::{Course, Until};
-use crate::model::told::{count, number};
+use crate::model::text::{count, number};
 use crate::model::{Model, Step};
 use crate::run::error::Error;
 use crate::solve::IterationRecord;

@@ -13,7 +13,7 @@ use crate::contact::master::Master;
 use crate::contact::pair::ContactPair;
 use crate::equations::sums::TrialFailure;
 use crate::linear::LinearFailure;
-use crate::model::told::number;
+use crate::model::text::number;
 use crate::model::{Body, Model, Step};
 
 /// Why one increment failed; a smaller one may succeed.

@@ -33,7 +33,7 @@ use thiserror::Error;
 
 use crate::linear::system::{Request, System};
 use crate::linear::{self, LinearFailure, LinearSolver, Solution, norm};
-use crate::model::told::count;
+use crate::model::text::count;
 
 /// Stopping criteria and options of Newton's method.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -15,7 +15,7 @@ use crate::model::Model;
 use crate::model::boundary::Profile;
 use crate::model::builder::{Contact, InitialTractions, MasterSide};
 use crate::model::method::{Chosen, Method};
-use crate::model::told::{count, number};
+use crate::model::text::{count, number};
 use crate::model::warnings::{farthest, gaps};
 use crate::output::warnings::several_answers;
 

@@ -13,7 +13,7 @@ use crate::mesh::Group;
 use crate::mesh::shape::ElementKind;
 use crate::model::builder::Plate;
 use crate::model::imposed::{InitialStress, Thermal};
-use crate::model::told::{count, number};
+use crate::model::text::{count, number};
 use crate::model::{Damping, Model, PointMass};
 
 /// A readable account of a checked case.

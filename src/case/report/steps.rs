@@ -9,7 +9,7 @@ use crate::case::file::Case;
 use crate::model::boundary::Drive;
 use crate::model::builder::{Action, Components, DashpotLoad, Load, LoadStep, Place, SpringLoad};
 use crate::model::step::Until;
-use crate::model::told::{count, number};
+use crate::model::text::{count, number};
 use crate::model::{Damping, Model, Step};
 use crate::time::step_size::EVENT_LOCATION;
 

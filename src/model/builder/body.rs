@@ -16,7 +16,7 @@ use crate::mesh::{Group, Mesh};
 use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::element::{SolidElement, consistent_mass};
 use crate::model::imposed::{InitialStress, Temperature, Thermal};
-use crate::model::told::number;
+use crate::model::text::number;
 use crate::model::{Body, Damping, Model, PointMass};
 
 /// A body as it is given.

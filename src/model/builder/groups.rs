@@ -13,7 +13,7 @@ use super::Builder;
 use super::error::{Checked, ModelError};
 use crate::mesh::{Edge, Group, Mesh};
 use crate::model::imposed::{InitialStress, Thermal};
-use crate::model::told::number;
+use crate::model::text::number;
 use crate::model::written::written;
 use crate::model::{Model, WatchedSet};
 

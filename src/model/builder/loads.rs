@@ -16,7 +16,7 @@ use super::supports::frees_nothing;
 use crate::model::Model;
 use crate::model::boundary::{Amplitude, Dashpot, DeadLoad, Drive, FollowerPressure, Loads, PlateMoment, Span, Spring};
 use crate::model::scheme::Scheme;
-use crate::model::told::number;
+use crate::model::text::number;
 
 /// The most changes of a load within its steps of which the last depends on the first, from place to place.
 const MOST_REMEMBERED: usize = 1000;

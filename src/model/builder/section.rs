@@ -9,7 +9,7 @@ use crate::mesh::section::Section;
 use crate::model::Model;
 use crate::model::boundary::{Drive, Span};
 use crate::model::support::{Motion, Prescribed};
-use crate::model::told::number;
+use crate::model::text::number;
 
 /// Share of the model's size within which a node counts as one on the axis.
 const ON_AXIS: f64 = 1e-12;

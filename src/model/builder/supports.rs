@@ -37,7 +37,7 @@ use crate::mesh::Edge;
 use crate::model::Model;
 use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::support::{Direction, Inclined, Motion, Prescribed};
-use crate::model::told::number;
+use crate::model::text::number;
 
 /// Take over the supports of the step before, and replace those given again.
 pub fn supports(in_force: &mut InForce, given: &[Support], place: &str, span: Span, model: &Model) -> Checked<()> {
