@@ -15,7 +15,7 @@ use super::threads::use_threads;
 use crate::case::job::{Callbacks, Job, Outcome, last};
 use crate::case::{Opened, Written};
 use crate::model::Model;
-use crate::model::scheme::told;
+use crate::model::scheme::time_text;
 use crate::model::state::Energy;
 use crate::output::report;
 use crate::output::summary::Summary;
@@ -85,7 +85,7 @@ impl Messages {
         }
         match saved.map(|saved| saved.simulation().state()) {
             Some(state) => {
-                voice.say(&format!("resuming at t = {} after {} increments", told(state.time), state.increment));
+                voice.say(&format!("resuming at t = {} after {} increments", time_text(state.time), state.increment));
             }
             None => {
                 model.warnings().iter().for_each(|warning| voice.warn(warning));

@@ -9,7 +9,7 @@ use crate::laws::friction::LawFailure;
 use crate::linear::system::Contribution;
 use crate::linear::{BlockPosition, SparseMatrix};
 use crate::model::Model;
-use crate::model::scheme::told;
+use crate::model::scheme::time_text;
 use crate::model::text::number;
 
 /// Forces on the nodes and, where they are asked for, their magnitudes and their tangent.
@@ -144,7 +144,7 @@ pub enum TrialFailure {
     /// A fluid pulls, or has no finite pressure.
     #[error(
         "contact `{contact}`: its fluid_pressure is {pressure} at ({}, {}) and time {}: it must be a finite number, zero or positive",
-        at[0], at[1], told(*time)
+        at[0], at[1], time_text(*time)
     )]
     FluidPressure {
         /// contact pair
@@ -157,7 +157,7 @@ pub enum TrialFailure {
         time: f64,
     },
     /// A support or load expression has no finite value.
-    #[error("a support or load at node {node} is not a finite number at time {}: check its expression", told(*time))]
+    #[error("a support or load at node {node} is not a finite number at time {}: check its expression", time_text(*time))]
     Undefined {
         /// its tag in the mesh file
         node: u64,

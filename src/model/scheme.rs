@@ -292,6 +292,6 @@ pub fn start_acceleration([start, first, second, end]: [f64; 4], dt: f64) -> f64
 }
 
 /// A time as printed: twelve digits, without the round-off of a sum of increments.
-pub fn told(time: f64) -> f64 {
+pub fn time_text(time: f64) -> f64 {
     format!("{time:.11e}").parse().unwrap_or(time)
 }

@@ -6,7 +6,7 @@
 //!
 //! The error is measured by the most that there was to be stored or dissipated: initial energy and external work.
 
-use crate::model::scheme::{Scheme, told};
+use crate::model::scheme::{Scheme, time_text};
 use crate::model::state::State;
 use crate::model::{Model, Step};
 use serde::{Deserialize, Serialize};
@@ -63,7 +63,7 @@ impl Audit {
         Some(format!(
             "energy balance violated by t = {}: spurious {fate} of {:.3e}, {percent:.3} % of the {:.3e} supplied \
              (initial energy + external work), mostly in step `{name}`: {remedy}",
-            told(time),
+            time_text(time),
             worst.abs(),
             self.supplied
         ))

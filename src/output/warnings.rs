@@ -16,7 +16,7 @@ use crate::contact::small_sliding::{Departure, LITTLE_SLIP, LITTLE_TURN, SmallSl
 use crate::contact::surface::SlavePoint;
 use crate::laws::friction::{Description, FrictionState, Regime};
 use crate::mesh::configuration::Configuration;
-use crate::model::scheme::{Scheme, told};
+use crate::model::scheme::{Scheme, time_text};
 use crate::model::state::State;
 use crate::model::step::Until;
 use crate::model::{Model, Step};
@@ -76,8 +76,13 @@ impl Observer for Warnings {
                 for (kind, message) in concerns(pair, point, state.time, old, contact, &x) {
                     if self.given.insert((number, kind)) {
                         let at = point.at(&x);
-                        let place =
-                            format!("contact `{}` at ({:.6}, {:.6}), t = {}", pair.name, at.x, at.y, told(state.time));
+                        let place = format!(
+                            "contact `{}` at ({:.6}, {:.6}), t = {}",
+                            pair.name,
+                            at.x,
+                            at.y,
+                            time_text(state.time)
+                        );
                         self.list.push(format!("{place}: {message}"));
                     }
                 }
@@ -125,7 +130,8 @@ impl Warnings {
             for (kind, message) in left(point.departure(slave, &pair.master, x)) {
                 if self.given.insert((number, kind)) {
                     let at = slave.at(x);
-                    let place = format!("contact `{}` at ({:.6}, {:.6}), t = {}", pair.name, at.x, at.y, told(time));
+                    let place =
+                        format!("contact `{}` at ({:.6}, {:.6}), t = {}", pair.name, at.x, at.y, time_text(time));
                     self.list.push(format!("{place}: {message}; take finite sliding"));
                 }
             }
@@ -142,7 +148,7 @@ impl Warnings {
         let deepest = pair.deepest_master_node(&state.contacts[number], x);
         let Some((at, depth, share)) = deepest.filter(|(.., share)| *share > DEEP) else { return };
         self.given.insert((number, Kind::DeepMasterNode));
-        let time = told(state.time);
+        let time = time_text(state.time);
         self.list.push(format!(
             "contact `{}` at ({:.6}, {:.6}), t = {time}: a master node penetrates the slave by {depth:.3e}, {:.1} % of \
              its edge; refine both sides there, make the finer one the slave, or raise alpha_n",
@@ -186,7 +192,7 @@ impl Warnings {
                 pair.name,
                 at.x,
                 at.y,
-                told(time)
+                time_text(time)
             ));
         }
     }
@@ -199,7 +205,7 @@ impl Warnings {
             let Until { part, on, value, .. } = until;
             self.list.push(format!(
                 "step `{name}`, t = {}: {} of `{on}` jumps from {before:.6e} to {after:.6e}, past {value}, where the step ends",
-                told(state.time),
+                time_text(state.time),
                 part.name()
             ));
         }
@@ -211,7 +217,7 @@ impl Warnings {
         let pivots = solves().map(|solve| solve.perturbed_pivots).max().unwrap_or(0);
         let fallback = solves().any(|solve| solve.fallback);
         if (pivots > 0 || fallback) && self.perturbed.insert(attempt.step.name.clone()) {
-            let start = format!("step `{}`, t = {}", attempt.step.name, told(attempt.old.time + attempt.dt));
+            let start = format!("step `{}`, t = {}", attempt.step.name, time_text(attempt.old.time + attempt.dt));
             let found = match (pivots, fallback) {
                 (0, _) => {
                     "the factorization of the tangent was not accurate enough, and a slower solver was used".into()
@@ -232,8 +238,11 @@ impl Warnings {
         let Attempt { step, dt, old, .. } = attempt;
         let Some((error, allowed)) = attempt.local_error.zip(step.increments.error) else { return };
         if error > allowed && self.inexact.insert(step.name.clone()) {
-            let start =
-                format!("step `{}`, t = {}: the increment {dt:.3e} is the shortest allowed", step.name, told(old.time));
+            let start = format!(
+                "step `{}`, t = {}: the increment {dt:.3e} is the shortest allowed",
+                step.name,
+                time_text(old.time)
+            );
             self.list.push(format!("{start}, and its error {error:.3e} exceeds {allowed:.3e}; lower dt.min"));
         }
     }
@@ -242,8 +251,11 @@ impl Warnings {
         let Attempt { step, dt, old, .. } = attempt;
         let Some(doubt) = attempt.doubt.filter(|doubt| *doubt > DOUBT) else { return };
         if self.doubtful.insert(step.name.clone()) {
-            let start =
-                format!("step `{}`, t = {}: the increment {dt:.3e} is the shortest allowed", step.name, told(old.time));
+            let start = format!(
+                "step `{}`, t = {}: the increment {dt:.3e} is the shortest allowed",
+                step.name,
+                time_text(old.time)
+            );
             let percent = 100.0 * doubt;
             let found = format!(
                 "contact closed within it, so that the friction force is uncertain by {percent:.1} % of the \

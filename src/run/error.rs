@@ -3,14 +3,14 @@
 use thiserror::Error;
 
 use crate::laws::friction::LawFailure;
-use crate::model::scheme::told;
+use crate::model::scheme::time_text;
 use crate::solve::failure::IncrementFailure;
 
 /// Why a run stopped.
 #[derive(Debug, Error)]
 pub enum Error {
     /// An increment cannot be made small enough.
-    #[error("step `{step}` stopped at time {}: {cause} (increment {dt:.3e}, smallest allowed {min:.3e}){suspicion}", told(*time))]
+    #[error("step `{step}` stopped at time {}: {cause} (increment {dt:.3e}, smallest allowed {min:.3e}){suspicion}", time_text(*time))]
     IncrementTooSmall {
         /// step
         step: String,
@@ -26,7 +26,7 @@ pub enum Error {
         suspicion: String,
     },
     /// No smaller increment can help.
-    #[error("step `{step}` stopped at time {}: {cause}", told(*time))]
+    #[error("step `{step}` stopped at time {}: {cause}", time_text(*time))]
     Unsolvable {
         /// step
         step: String,
@@ -39,7 +39,7 @@ pub enum Error {
     #[error(
         "step `{step}` ended at time {} before {part} of `{on}` reached {value}: it is {reached:.6e}; make the step \
          longer, or move farther (until)",
-        told(*time)
+        time_text(*time)
     )]
     NotReached {
         /// step
@@ -56,7 +56,7 @@ pub enum Error {
         reached: f64,
     },
     /// A friction law failed in a law test.
-    #[error("the law stopped after time {}: {cause}", told(*time))]
+    #[error("the law stopped after time {}: {cause}", time_text(*time))]
     Law {
         /// time reached
         time: f64,
