@@ -151,13 +151,13 @@ impl SuperSubloading {
             return Ok(self.elastic(old, trial, pressure, start.peak.mu));
         }
         let (end, evaluations) = equation.solve(start)?;
-        let strength = trial.signum() * end.reach.ratio * end.peak.mu;
+        let strength = trial.signum() * end.curve_point.ratio * end.peak.mu;
         // Plastic slip starts from the old pressure, or from that where the traction passes 0.
         let passed = if reversed { old.traction / (old.traction - trial) } else { 0.0 };
         let start_pressure = old.pressure + passed * (pressure - old.pressure);
         let strengths = [old_mu * start_pressure, end.peak.mu * pressure];
         let tractions = [if reversed { 0.0 } else { old.traction.abs() }, strength.abs() * pressure];
-        let mean = mean_traction(&self.curve, [&equation.start, &end.reach], strengths, tractions);
+        let mean = mean_traction(&self.curve, [&equation.start, &end.curve_point], strengths, tractions);
         let softness = self.alpha_t / end.slope.max(LEAST_SLOPE * self.alpha_t);
         Ok(FrictionResponse {
             state: ruled(

@@ -229,7 +229,7 @@ impl LoadPath<'_> {
             dtraction,
             mu,
             dmu,
-            reach: self.law.curve.start(traction / (mu * pressure)),
+            curve_point: self.law.curve.start(traction / (mu * pressure)),
             plastic_slip: beyond(fine.plastic_slip, coarse.plastic_slip).max(from.plastic_slip),
             work: (energy - 0.5 * traction * traction / self.law.alpha_t).max(from.work),
             overlooked: 0.0,
@@ -299,8 +299,8 @@ impl LoadPath<'_> {
 
     /// What makes the rate of plastic slip at a station.
     fn ends(&self, at: &Station) -> Ends {
-        let (pressure, ratio) = (self.pressure(at.x), at.reach.ratio);
-        let approach = pressure * at.reach.rate * at.mu;
+        let (pressure, ratio) = (self.pressure(at.x), at.curve_point.ratio);
+        let approach = pressure * at.curve_point.rate * at.mu;
         let weakening = pressure * ratio * self.law.evolution.weakening(at.mu);
         let recovery = ratio * pressure * self.law.evolution.recovery(at.mu) * self.time;
         let pressing = ratio * at.mu * (self.pressures[1] - self.pressures[0]);

@@ -13,7 +13,7 @@ use std::f64::consts::LN_2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::approach::{Reach, SlidingCurve};
+use super::approach::{CurvePoint, SlidingCurve};
 use crate::laws::friction::root::{Argument, bracketed_root};
 
 /// How the evolution of an increment is integrated.
@@ -449,9 +449,9 @@ impl Rise {
     /// max R(λ) μ(λ), with R along its curve from R_e and μ falling from `mu`.
     fn of(curve: &SlidingCurve, evolution: &PeakEvolution, mu: f64) -> Self {
         let start = curve.start(0.0);
-        let at = |place: f64| -> (Reach, f64) {
-            let reach = curve.at(place, &start);
-            (reach, reach.ratio * evolution.slid(mu, reach.slip))
+        let at = |place: f64| -> (CurvePoint, f64) {
+            let curve_point = curve.at(place, &start);
+            (curve_point, curve_point.ratio * evolution.slid(mu, curve_point.slip))
         };
         let width = (ENDS[1] - ENDS[0]) / f64::from(PLACES);
         let places = (0..=PLACES).map(|k| ENDS[0] + f64::from(k) * width);
@@ -461,11 +461,11 @@ impl Rise {
             let third = (high - low) / 3.0;
             if at(low + third).1 < at(high - third).1 { low += third } else { high -= third }
         }
-        let (reach, peak) = at(0.5 * (low + high));
+        let (curve_point, peak) = at(0.5 * (low + high));
         // Without weakening, or under one that is over long before R is near 1, friction only rises.
         let limit = if evolution.kappa > 0.0 { evolution.mu_k } else { mu };
         match peak > limit * (1.0 + f64::EPSILON) {
-            true => Self { peak, slip: Some(reach.slip) },
+            true => Self { peak, slip: Some(curve_point.slip) },
             false => Self { peak: limit, slip: None },
         }
     }
