@@ -68,7 +68,7 @@ pub(super) struct LoadPath<'a> {
 
 /// A point of the path.
 #[derive(Clone, Copy)]
-pub(super) struct Station {
+pub(super) struct PathState {
     pub x: f64,
     /// q ≥ 0 [F/L²]
     pub traction: f64,
@@ -95,15 +95,15 @@ impl LoadPath<'_> {
         (traction, dtraction): (f64, Derivative),
         (mu, dmu): (f64, Derivative),
         ratio: f64,
-    ) -> Station {
+    ) -> PathState {
         let curve_point = self.law.curve.start(ratio);
         let (plastic_slip, work, overlooked) = (0.0, 0.0, 0.0);
-        Station { x: 0.0, traction, dtraction, mu, dmu, curve_point, plastic_slip, work, overlooked }
+        PathState { x: 0.0, traction, dtraction, mu, dmu, curve_point, plastic_slip, work, overlooked }
     }
 
     /// Integrate one sub-step.
     #[inline]
-    pub(super) fn advance(&mut self, from: &Station, x: f64) -> Result<Station, LawFailure> {
+    pub(super) fn advance(&mut self, from: &PathState, x: f64) -> Result<PathState, LawFailure> {
         let share = x - from.x;
         let equation = SlipEquation {
             law: self.law,
@@ -126,7 +126,7 @@ impl LoadPath<'_> {
 
     /// A sub-step without plastic slip.
     #[inline]
-    fn stick(&self, from: &Station, x: f64, trial: f64) -> Station {
+    fn stick(&self, from: &PathState, x: f64, trial: f64) -> PathState {
         let share = x - from.x;
         let pressure = self.pressure(x);
         // Only weakening that has taken the traction from under an unloading can leave it to reverse: it waits at 0.
@@ -136,7 +136,7 @@ impl LoadPath<'_> {
         let by_old = if old_rate > 0.0 { by_time / old_rate } else { 1.0 };
         let curve_point = self.law.curve.start(traction / (mu * pressure));
         let rate = self.rate(traction, mu, pressure, &curve_point);
-        Station {
+        PathState {
             x,
             traction,
             dtraction: if trial > 0.0 { [0, 1].map(|i| self.dtrial(from, share, i)) } else { [0.0; 2] },
@@ -165,7 +165,7 @@ impl LoadPath<'_> {
     /// ```
     /// Parameters that vary add their own part to α_t Δλ, δμ and δR.
     #[inline]
-    fn slide(&self, from: &Station, x: f64, point: &Point) -> Station {
+    fn slide(&self, from: &PathState, x: f64, point: &Point) -> PathState {
         let share = x - from.x;
         let (start_pressure, pressure) = (self.pressure(from.x), self.pressure(x));
         let (curve_point, peak, slip) = (point.curve_point, point.peak, point.slip);
@@ -202,7 +202,7 @@ impl LoadPath<'_> {
         let work =
             mean_traction(&self.law.curve, [&from.curve_point, &curve_point], strengths, [from.traction, traction])
                 * slip;
-        Station {
+        PathState {
             x,
             traction,
             dtraction: [dq_dslip, dq_dpressure],
@@ -217,13 +217,13 @@ impl LoadPath<'_> {
 
     /// Derivatives of the trial traction.
     #[inline]
-    fn dtrial(&self, from: &Station, share: f64, i: usize) -> f64 {
+    fn dtrial(&self, from: &PathState, share: f64, i: usize) -> f64 {
         let by_stiffness = self.parameters.map_or(0.0, |shifts| shifts[i].alpha_t * self.slip * share);
         from.dtraction[i] + self.law.alpha_t * self.dslip[i] * share + by_stiffness
     }
 
     /// What parameters that vary add to α_t Δλ, μ and R after a given plastic slip from a given start.
-    fn own(&self, from: &Station, x: f64, point: &Point, by: &Shift) -> [f64; 3] {
+    fn own(&self, from: &PathState, x: f64, point: &Point, by: &Shift) -> [f64; 3] {
         let time = self.time * (x - from.x);
         [
             by.alpha_t * point.slip,
