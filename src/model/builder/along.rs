@@ -133,7 +133,7 @@ pub fn friction(given: &Friction, along: &Along, structure: Option<&Profile>, pl
         let name = format!("along.law[{k}]");
         let varying = profiles(along, &format!("{name}.along"));
         let other = with_varying(law.clone(), varying, place, &format!("{name}.friction"))?;
-        friction = friction.but_where(&name, positive.clone(), other);
+        friction = friction.in_region(&name, positive.clone(), other);
     }
     Ok(friction)
 }

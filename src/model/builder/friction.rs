@@ -64,7 +64,7 @@ impl Friction {
     /// With other friction at the points where a profile is positive at the start; of several the first holds. Messages name
     /// profile and friction by `name`, such as `along.law[0]`.
     #[must_use]
-    pub fn but_where(mut self, name: &str, profile: Profile, friction: impl Into<Self>) -> Self {
+    pub fn in_region(mut self, name: &str, profile: Profile, friction: impl Into<Self>) -> Self {
         let friction = Self { name: format!("{name}.friction"), ..friction.into() };
         self.elsewhere.push((format!("{name}.where"), profile, friction));
         self
