@@ -105,7 +105,7 @@ fn refused(builder: Builder, words: &str) {
 #[test]
 fn a_body_is_held_by_periodic_sides_and_plates() {
     let periodic = |model: Builder| model.periodic("body0_right", "body1_left");
-    let plate = |moves: Plate| move |model: Builder| model.plate_that("near", moves);
+    let plate = |moves: Plate| move |model: Builder| model.plate_moving("near", moves);
     let held = || LoadStep::new("pull", 1.0).fix("body0_left");
     let aside = || held().support(Support::on("body1_right").uy(0.0));
     for (what, builder) in [

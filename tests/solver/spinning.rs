@@ -30,7 +30,7 @@ fn block(angle: f64) -> Builder {
 }
 
 fn rigid() -> Builder {
-    block(0.0).plate_that("block", Plate::Rigid)
+    block(0.0).plate_moving("block", Plate::Rigid)
 }
 
 /// The block 2 × 1 as a rigid body: m, and J about its middle. Explicit masses lie at the nodes.
@@ -192,7 +192,7 @@ fn a_rigid_side_keeps_momentum() {
             .dt(0.005)
             .load(Load::total_force("block_top", [expression("0.6"), expression("-0.3")]))
             .load(Load::moment("block_top", expression("3")));
-        let run = run_through(block(0.0).plate_that("block_top", Plate::Rigid).step(step));
+        let run = run_through(block(0.0).plate_moving("block_top", Plate::Rigid).step(step));
         let what = format!("{scheme:?}");
         // Wilson's equilibrium lies beyond the increment.
         let allowed = if scheme == WILSON { 1e-3 } else { 1e-9 };
@@ -220,7 +220,7 @@ fn struck(scheme: Scheme, dt: f64, angle: f64) -> Finished {
         .load(Load::total_force("block_top", force.map(|f| expression(&format!("{f:.17}")))))
         .load(Load::moment("block_top", expression("3")));
     let damping = Damping { mass: 0.3, retardation: 0.01 };
-    run_through(block(angle).damping("block", damping).plate_that("block_top", Plate::Rigid).step(step))
+    run_through(block(angle).damping("block", damping).plate_moving("block_top", Plate::Rigid).step(step))
 }
 
 /// Explicit and implicit increments agree up to where masses lie, and what is turned moves as what is not.
@@ -259,7 +259,7 @@ fn a_rigid_side_moves_alike_in_all_schemes_and_directions() {
 fn a_plate_alike_in_one_component_moves_explicitly() {
     let damping = Damping { mass: 0.3, retardation: 0.01 };
     let plain = || block(0.0).damping("block", damping);
-    let plate = || plain().plate_that("block_top", Plate::UyAlike);
+    let plate = || plain().plate_moving("block_top", Plate::UyAlike);
     let step = || LoadStep::new("move", 0.5).scheme(EXPLICIT).dt(0.01);
     let lead = || {
         step()
@@ -274,7 +274,7 @@ fn a_plate_alike_in_one_component_moves_explicitly() {
     close("R", led.reaction("block_top", a)[1], plain.reaction("block_top", b)[1], 1e-9);
     close("energy", a.energy.damping_dissipation, b.energy.damping_dissipation, 1e-12);
     let force = Load::total_force("block_top", [expression("0"), expression("-0.8")]);
-    let free = block(0.0).plate_that("block_top", Plate::UyAlike).step(step().load(force));
+    let free = block(0.0).plate_moving("block_top", Plate::UyAlike).step(step().load(force));
     let free = run_through(free);
     let state = free.last();
     close("momentum", momentum(&free, state)[1], -0.8 * state.time, 1e-10);
@@ -293,7 +293,7 @@ fn a_plate_swings_with_all_of_its_mass() {
             .dt(dt)
             .load(Load::spring(Place::Node(17), [0.0, k]))
             .load(Load::total_force("block_top", [expression("0"), expression("-1")]));
-        let run = run_through(block(0.0).plate_that("block", Plate::UyAlike).step(start));
+        let run = run_through(block(0.0).plate_moving("block", Plate::UyAlike).step(start));
         let omega = (k / 4.0f64).sqrt();
         let state = run.last();
         let expected = -1.0 / k * (1.0 - (omega * state.time).cos());
@@ -309,7 +309,8 @@ fn the_tangent_knows_what_turns_in_motion() {
             let step = step.load(Load::moment("block_top", 3.0)).load(Load::spring(Place::Node(17), [4.0, 5.0]));
             let hinge = Support::on(Place::Node(15)).ux(0.0);
             let step = if held { step.support(hinge) } else { step };
-            let model = Arc::new(block(0.0).plate_that("block_top", Plate::Rigid).step(step).build().expect("a model"));
+            let model =
+                Arc::new(block(0.0).plate_moving("block_top", Plate::Rigid).step(step).build().expect("a model"));
             let (state, u) = (moving(&model), arbitrary_displacement(&model, 1e-2));
             let error = tangent_error(&model, Trial::new(&state, &model.steps[0], 0.5, 0.1), &u, 1e-6);
             assert!(error < 1e-7, "{scheme:?}, held: {held}: {error:.1e}");
@@ -325,7 +326,7 @@ fn rigid_plates_are_launched() {
         let free = Support::on("block_bottom").ux(fecontact::model::builder::Change::End);
         let free = free.uy(fecontact::model::builder::Change::End);
         let fly = LoadStep::new("fly", 0.5).scheme(scheme).dt(0.01).launch("block", [0.3, -0.2]).support(free);
-        let run = run_through(block(0.0).plate_that("block_top", Plate::Rigid).step(rest).step(fly));
+        let run = run_through(block(0.0).plate_moving("block_top", Plate::Rigid).step(rest).step(fly));
         let state = run.last();
         for (dof, u) in state.displacement.iter().enumerate() {
             close(&format!("{scheme:?}"), *u, 0.5 * [0.3, -0.2][dof % 2], 1e-10);

@@ -42,7 +42,7 @@ fn a_plate_may_be_alike_in_one_component() {
     let force = -4.0;
     for soft in [false, true] {
         let step = || LoadStep::new("load", 1.0).dt(0.5).fix("block_bottom");
-        let plate = || block(soft).plate_that("block_top", Plate::UyAlike);
+        let plate = || block(soft).plate_moving("block_top", Plate::UyAlike);
         let pressed = run_through(plate().step(step().load(Load::total_force("block_top", [0.0, force]))));
         let u = |run: &Finished, dof: usize| run.last().displacement[dof];
         (15..20).for_each(|node| close("level", u(&pressed, 2 * node + 1), u(&pressed, 31), 1e-15));
@@ -62,7 +62,7 @@ fn a_plate_may_be_alike_in_one_component() {
 fn a_plate_alike_in_one_component_moves_in_implicit_schemes() {
     for scheme in [TRAPEZOIDAL, Scheme::Hht { alpha: -0.1 }, Scheme::Wilson { theta: 1.4 }] {
         let step = || LoadStep::new("move", 0.5).scheme(scheme).dt(0.02);
-        let plate = || block(true).plate_that("block_top", Plate::UyAlike);
+        let plate = || block(true).plate_moving("block_top", Plate::UyAlike);
         let force = [expression("0"), expression("-0.8")];
         let run = run_through(plate().step(step().load(Load::total_force("block_top", force))));
         for state in &run.states {
@@ -100,7 +100,7 @@ fn a_rigid_lever_turns_against_a_spring() {
         .support(Support::on(Place::Node(0)).ux(0.0).uy(0.0))
         .load(Load::spring(Place::Node(19), [k, k]))
         .load(Load::moment("block", 0.96 * k * square));
-    let run = run_through(block(true).plate_that("block", Plate::Rigid).step(step));
+    let run = run_through(block(true).plate_moving("block", Plate::Rigid).step(step));
     for state in &run.states {
         let angle = (0.96 * state.time).asin();
         for (node, at) in run.model.mesh.nodes.iter().enumerate() {
@@ -126,7 +126,7 @@ fn a_rigid_side_is_turned_by_its_moment() {
     let applied = 20.0;
     let step = || LoadStep::new("turn", 1.0).dt(0.125).fix("block_bottom");
     let hinged = step().support(Support::on(Place::Node(15)).ux(0.0).uy(0.0)).load(Load::moment("block_top", applied));
-    let turned = run_through(block(true).plate_that("block_top", Plate::Rigid).step(hinged));
+    let turned = run_through(block(true).plate_moving("block_top", Plate::Rigid).step(hinged));
     let state = turned.last();
     let x = turned.model.configuration(&state.displacement);
     let e = x.at(19) - x.at(15);
@@ -143,7 +143,7 @@ fn a_rigid_side_is_turned_by_its_moment() {
     close("moments", moment(&turned, "block_bottom", state, [0.0, 1.0]), -applied, 1e-8);
     // Free of the hinge, the side goes where the same moment leaves no force.
     let free = run_through(
-        block(true).plate_that("block_top", Plate::Rigid).step(step().load(Load::moment("block_top", applied))),
+        block(true).plate_moving("block_top", Plate::Rigid).step(step().load(Load::moment("block_top", applied))),
     );
     let bottom = free.reaction("block_bottom", free.last());
     (0..2).for_each(|i| close("no force", bottom[i], 0.0, 1e-9));
@@ -158,7 +158,7 @@ fn a_force_on_a_rigid_side_has_its_lever() {
         .fix("block_bottom")
         .load(Load::force(Place::Node(18), [0.3, -1.5]))
         .load(Load::total_force("block_top", [0.5, 0.0]));
-    let run = run_through(block(true).plate_that("block_top", Plate::Rigid).step(step));
+    let run = run_through(block(true).plate_moving("block_top", Plate::Rigid).step(step));
     let state = run.last();
     let x = run.model.configuration(&state.displacement);
     let (at, middle) = (x.at(18), x.at(17));
@@ -180,7 +180,7 @@ fn the_tangent_knows_plates_that_turn() {
             Plate::Rigid => step.load(Load::moment("block_top", 3.0)).load(Load::spring(Place::Node(17), [4.0, 5.0])),
             _ => step.load(Load::dashpot(Place::Node(15), [0.4, 0.6])).load(Load::pressure("block_top", 2.0)),
         };
-        let model = block(true).plate_that("block_top", moves).step(step);
+        let model = block(true).plate_moving("block_top", moves).step(step);
         let model = Arc::new(model.build().expect("a model"));
         let (state, u) = (moving(&model), arbitrary_displacement(&model, 1e-2));
         let error = tangent_error(&model, Trial::new(&state, &model.steps[0], 0.5, 0.1), &u, 1e-6);
@@ -196,7 +196,8 @@ fn reactions_of_a_plate_alike_in_one_component_count_by_component() {
         .fix("block_bottom")
         .support(Support::on("block_left").ux(0.01))
         .support(Support::on("block_top").uy(-0.02));
-    let model = block(false).plate_that("block_top", Plate::UyAlike).watch("block_top").watch("block_left").step(step);
+    let model =
+        block(false).plate_moving("block_top", Plate::UyAlike).watch("block_top").watch("block_left").step(step);
     let run = run_through(model);
     let state = run.last();
     let sum = |set: usize, i: usize| -> f64 {
@@ -241,14 +242,17 @@ fn plates_that_turn_can_be_resumed_on_any_number_of_threads() {
 #[test]
 fn what_these_plates_cannot_do_is_refused() {
     let step = || LoadStep::new("load", 1.0).dt(0.5).fix("block_bottom");
-    let rigid = || block(false).plate_that("block_top", Plate::Rigid);
-    let level = || block(false).plate_that("block_top", Plate::UyAlike);
+    let rigid = || block(false).plate_moving("block_top", Plate::Rigid);
+    let level = || block(false).plate_moving("block_top", Plate::UyAlike);
     for (model, words) in [
         (
             rigid().step(step().support(Support::on("block_top").ux(0.0))),
             "plates[0]: rotates, but supports constrain more than one of its nodes, 15 and 16",
         ),
-        (rigid().plate_that("block_left", Plate::UxAlike).step(step()), "plates[1]: node 15 is tied to others already"),
+        (
+            rigid().plate_moving("block_left", Plate::UxAlike).step(step()),
+            "plates[1]: node 15 is tied to others already",
+        ),
         (level().plate("block_right").step(step()), "plates[0]: node 19 is tied to others already"),
         (
             level().step(step().load(Load::moment("block_top", 1.0))),

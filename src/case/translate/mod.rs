@@ -29,7 +29,7 @@ pub fn model(case: &Case, mesh: Mesh) -> Checked<Builder> {
     }
     builder = case.periodic.iter().fold(builder, |builder, [side, other]| builder.periodic(side, other));
     for (group, moves) in case.plates.iter().map(LoadingPlateInput::parts) {
-        builder = builder.plate_that(group, moves);
+        builder = builder.plate_moving(group, moves);
     }
     for (name, contact) in &case.contacts {
         builder = builder.contact(Contact { name: name.clone(), ..contact.clone() });

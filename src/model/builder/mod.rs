@@ -176,7 +176,7 @@ impl Builder {
     }
 
     /// A loading plate that moves in another way than as one.
-    pub fn plate_that(mut self, group: impl Into<String>, moves: Plate) -> Self {
+    pub fn plate_moving(mut self, group: impl Into<String>, moves: Plate) -> Self {
         self.plates.push((group.into(), moves));
         self
     }
