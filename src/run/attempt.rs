@@ -16,7 +16,7 @@ use crate::model::state::State;
 use crate::model::step::{Course, Until};
 use crate::solve::IterationRecord;
 use crate::solve::failure::{IncrementFailure, suspicion};
-use crate::time::beginning::{begin, go_on, led};
+use crate::time::beginning::{after_change, begin, go_on};
 use crate::time::explicit::Explicit;
 use crate::time::increment::advance;
 use crate::time::quasi_dynamic::{Gone, QuasiDynamic};
@@ -210,7 +210,7 @@ impl Simulation {
             Phase::QuasiDynamic { .. } if self.quasi_dynamic.is_none() => self.begin_quasi_dynamic(false),
             Phase::Explicit(_) | Phase::Rupture { .. } if self.explicit.is_none() => self.begin_explicit(false),
             Phase::Begin | Phase::Resume { .. } => self.begin_implicit(),
-            Phase::Implicit { .. } if self.led => self.take_note(),
+            Phase::Implicit { .. } if self.step_changed => self.take_note(),
             _ => Ok(()),
         };
         begun.map_err(|cause| self.unsolvable(cause))
@@ -218,7 +218,7 @@ impl Simulation {
 
     /// Go on under the loads that whoever leads the run has changed.
     fn take_note(&mut self) -> Result<(), IncrementFailure> {
-        let state = led(&self.model, &self.step, &self.state, &mut self.work)?;
+        let state = after_change(&self.model, &self.step, &self.state, &mut self.work)?;
         self.state = state.map_or_else(|| self.state.clone(), Arc::new);
         Ok(())
     }
@@ -336,7 +336,7 @@ impl Simulation {
         if ends && !matches!(self.control.phase, Phase::Missed) {
             self.explicit = None;
             self.quasi_dynamic = None;
-            self.led = false;
+            self.step_changed = false;
             self.control.step += 1;
             self.control.phase = Phase::Complete;
             if let Some(step) = self.control.step_of(&self.model) {

@@ -65,7 +65,7 @@ pub enum Error {
     },
     /// A run whose step was changed by its caller does not follow from its model alone, and cannot be saved in a file.
     #[error("step `{step}` was changed by its caller: such a run can be saved in this process, but not in a file")]
-    Led {
+    StepChanged {
         /// step
         step: String,
     },

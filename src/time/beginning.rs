@@ -66,7 +66,12 @@ fn moves_anew(step: &Step, state: &mut State, work: &mut Workspace) {
 ///
 /// # Errors
 /// As [`begin`].
-pub fn led(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> Result<Option<State>, IncrementFailure> {
+pub fn after_change(
+    model: &Model,
+    step: &Step,
+    old: &State,
+    work: &mut Workspace,
+) -> Result<Option<State>, IncrementFailure> {
     if !step.scheme.is_dynamic() {
         return Ok(None);
     }
