@@ -168,8 +168,8 @@ fn followed<'a>(
         model.linkage.followers.iter().flat_map(|follower| follower.dofs().map(move |(i, dof)| (follower, i, dof)));
     dofs.filter_map(move |(follower, i, dof)| {
         target(model.linkage.leading(dof))?;
-        let base = follower.led_by(i, |dof| target(dof).unwrap_or(u[dof]));
-        Some((dof, base, move |values: &[f64]| follower.led(i, values)))
+        let base = follower.value_by(i, |dof| target(dof).unwrap_or(u[dof]));
+        Some((dof, base, move |values: &[f64]| follower.value(i, values)))
     })
 }
 

@@ -91,7 +91,7 @@ pub(super) fn couple(model: &Model, plate: [usize; 2], u: &[f64], moment: f64) -
 
 /// Largest error of the constraints: followers against their leaders, rigid plates against their length [L].
 pub(super) fn missed(model: &Model, u: &[f64]) -> f64 {
-    let led = |(follower, (i, dof)): (&Follower, (usize, usize))| (u[dof] - follower.led(i, u)).abs();
+    let led = |(follower, (i, dof)): (&Follower, (usize, usize))| (u[dof] - follower.value(i, u)).abs();
     let followers = model.linkage.followers.iter().flat_map(|follower| follower.dofs().map(move |dof| (follower, dof)));
     let plates = model.linkage.rigid.iter().map(|plate| stretch(model, *plate, u).abs());
     followers.map(led).chain(plates).fold(0.0, f64::max)
@@ -139,7 +139,7 @@ pub fn gather_residual(model: &Model, residual: &mut [f64]) {
 pub(super) fn prescribe(model: &Model, weight: f64, trial: Trial, u: &[f64], tangent: bool, system: &mut System) {
     for follower in &model.linkage.followers {
         for (i, dof) in follower.dofs() {
-            system.residual[dof] = weight * (u[dof] - follower.led(i, u));
+            system.residual[dof] = weight * (u[dof] - follower.value(i, u));
         }
     }
     for &[a, b] in &model.linkage.rigid {
@@ -347,7 +347,7 @@ impl Turning {
 pub(super) fn spread_turning(model: &Model, rate: f64, u: &[f64], values: &mut [f64]) {
     for follower in model.linkage.turning() {
         for (i, dof) in follower.dofs() {
-            values[dof] = follower.led(i, values) + rate * (u[dof] - follower.led(i, u));
+            values[dof] = follower.value(i, values) + rate * (u[dof] - follower.value(i, u));
         }
     }
 }

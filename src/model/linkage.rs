@@ -42,12 +42,12 @@ pub struct Linkage {
 
 impl Follower {
     /// Its component i as its leaders have it.
-    pub fn led(&self, i: usize, values: &[f64]) -> f64 {
-        self.led_by(i, |dof| values[dof])
+    pub fn value(&self, i: usize, values: &[f64]) -> f64 {
+        self.value_by(i, |dof| values[dof])
     }
 
     /// Value of a following dof from those of its leaders.
-    pub fn led_by(&self, i: usize, value: impl Fn(usize) -> f64) -> f64 {
+    pub fn value_by(&self, i: usize, value: impl Fn(usize) -> f64) -> f64 {
         self.leaders.iter().map(|(node, g)| g[(i, 0)] * value(2 * node) + g[(i, 1)] * value(2 * node + 1)).sum()
     }
 
@@ -93,7 +93,7 @@ impl Linkage {
     pub fn spread(&self, values: &mut [f64]) {
         for follower in &self.followers {
             for (i, dof) in follower.dofs() {
-                values[dof] = follower.led(i, values);
+                values[dof] = follower.value(i, values);
             }
         }
     }
