@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::bodies::{BodyMeans, Motion};
 use super::csv;
 use super::csv::{Rows, Sheet, Table};
-use super::friction_course::FrictionCourse;
+use super::friction_history::FrictionHistory;
 use super::quantities::{
     BODY, CONTACT, EDGES, ENERGIES, FLUID_FORCE, HEAT, INCREMENT, Quantity, RADIATED, RESULTANT, WATCHED, names,
 };
@@ -47,7 +47,7 @@ struct Memory {
     /// Frictional heat of each contact so far [F·L]
     heat: Vec<f64>,
     /// Friction history of each contact so far
-    courses: Vec<FrictionCourse>,
+    courses: Vec<FrictionHistory>,
 }
 
 /// A watched set of edges: its name, and the tributary fraction of its length at each node.
@@ -85,7 +85,7 @@ impl Rows for HistoryRows {
             memory: Memory {
                 rotations: Vec::new(),
                 heat: vec![0.0; model.contacts.len()],
-                courses: vec![FrictionCourse::default(); model.contacts.len()],
+                courses: vec![FrictionHistory::default(); model.contacts.len()],
             },
         };
         (rows, header)
@@ -152,7 +152,7 @@ impl Rows for HistoryRows {
 
 impl History {
     /// Friction histories of the contacts, in their order.
-    pub fn courses(&self) -> &[FrictionCourse] {
+    pub fn courses(&self) -> &[FrictionHistory] {
         &self.rows.memory.courses
     }
 }

@@ -9,7 +9,7 @@ pub mod fields;
 pub mod files;
 pub mod folder;
 mod frames;
-pub mod friction_course;
+pub mod friction_history;
 pub mod fronts;
 pub mod history;
 pub mod interface;

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::csv::failed;
 use super::files;
-use super::friction_course::FrictionCourse;
+use super::friction_history::FrictionHistory;
 use crate::laws::friction::FrictionParameters;
 use crate::model::Model;
 use crate::run::control::RunReport;
@@ -113,7 +113,7 @@ pub struct Summary {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub chatter: Option<BTreeMap<String, f64>>,
     /// how the friction of each contact went; none of those that bore none
-    pub friction_course: BTreeMap<String, FrictionCourse>,
+    pub friction_course: BTreeMap<String, FrictionHistory>,
     /// largest resident memory of the process, where the system reports it [MiB]
     pub peak_memory_mib: Option<f64>,
     /// warnings

@@ -21,7 +21,7 @@ use crate::model::Model;
 use crate::output::checkpoint::{self, Checkpoint};
 use crate::output::events;
 use crate::output::folder::Folder;
-use crate::output::friction_course::FrictionCourse;
+use crate::output::friction_history::FrictionHistory;
 use crate::output::fronts::Fronts;
 use crate::output::summary::{self, About, Ending, Summary};
 use crate::run::control::RunReport;
@@ -185,7 +185,7 @@ struct Work {
     warnings: Vec<String>,
     /// restarts of slip, if the case asks for fronts
     chatter: Option<BTreeMap<String, f64>>,
-    courses: BTreeMap<String, FrictionCourse>,
+    courses: BTreeMap<String, FrictionHistory>,
     /// the most energy that there was [F·L]
     supplied: f64,
 }

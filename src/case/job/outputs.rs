@@ -11,7 +11,7 @@ use crate::case::file::{ArrivalInput, Case};
 use crate::model::Model;
 use crate::output::fields::{Fields, Frames};
 use crate::output::folder::INTERFACE;
-use crate::output::friction_course::FrictionCourse;
+use crate::output::friction_history::FrictionHistory;
 use crate::output::fronts::{Arrive, Fronts};
 use crate::output::history::History;
 use crate::output::interface::InterfaceStore;
@@ -120,7 +120,7 @@ impl Outputs {
     }
 
     /// Friction histories of the contacts by name; only those that carried friction.
-    pub fn courses(&self, model: &Model) -> BTreeMap<String, FrictionCourse> {
+    pub fn courses(&self, model: &Model) -> BTreeMap<String, FrictionHistory> {
         let courses = self.history.iter().flat_map(History::courses);
         let named = model.contacts.iter().zip(courses);
         let borne = named.filter(|(_, course)| course.is_friction());

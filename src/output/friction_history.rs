@@ -22,7 +22,7 @@ pub struct Borne {
 
 /// Friction history of a contact over the accepted increments, in a few numbers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct FrictionCourse {
+pub struct FrictionHistory {
     /// when a point slipped first [T]
     pub first_slip: Option<f64>,
     /// when all that was closed slipped at once for the first time [T]
@@ -33,7 +33,7 @@ pub struct FrictionCourse {
     pub last: Option<Borne>,
 }
 
-impl FrictionCourse {
+impl FrictionHistory {
     /// Record the forces [F] and the slipping fraction of the closed length [-].
     pub fn note(&mut self, time: f64, [normal, tangential]: [f64; 2], slipping: f64) {
         let ratio = if normal > 0.0 { tangential.abs() / normal } else { 0.0 };
@@ -58,7 +58,7 @@ impl FrictionCourse {
     }
 }
 
-impl fmt::Display for FrictionCourse {
+impl fmt::Display for FrictionHistory {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match (self.first_slip, self.full_slip) {
             (None, _) => write!(f, "sticks")?,
