@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub use super::expression::Expression;
 use super::written::written;
 
-/// How a quantity varies.
+/// Prescribed quantity as a function of time and place.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(remote = "Self", rename_all = "snake_case")]
 #[schemars(!remote)]
@@ -40,8 +40,8 @@ written!(
     text: Expression
 );
 
-/// How warm a body is. A table by x or y, of the reference position, is reached at the end of the step, linearly from the
-/// temperature at its start: linear between, constant outside, the same coordinate twice is a jump.
+/// Temperature of a body. A table by x or y, of the reference position, is reached at the end of the step, linearly
+/// from the temperature at its start: linear between, constant outside, the same coordinate twice is a jump.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(remote = "Self", rename_all = "snake_case")]
 #[schemars(rename = "Temperature")]
@@ -90,8 +90,8 @@ impl From<&BodyTemperature> for Drive {
     }
 }
 
-/// How a quantity varies along a surface, by reference position. A table is linear between its pairs, constant outside; the same
-/// coordinate twice is a jump, and the second value holds there and beyond.
+/// Quantity that varies along a surface, by reference position. A table is linear between its pairs, constant outside;
+/// the same coordinate twice is a jump, and the second value holds there and beyond.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(remote = "Self", rename_all = "snake_case")]
 #[schemars(!remote)]
@@ -100,7 +100,7 @@ pub enum Profile {
     X(Vec<[f64; 2]>),
     /// Pairs of y and value, y ascending
     Y(Vec<[f64; 2]>),
-    /// The same everywhere
+    /// Uniform value
     #[serde(skip)]
     #[schemars(!skip, untagged)]
     Constant(f64),

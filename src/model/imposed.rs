@@ -8,9 +8,9 @@ use super::boundary::{Amplitude, Moment, Profile};
 use super::{Model, Step};
 use crate::laws::bulk::{CauchyStress, TEMPERATURE};
 
-/// Stress of a body before anything has moved. Displacements and strains count from there, stresses are whole. The run tells how far
-/// it is out of balance with what acts at the start of the first step; loads that are there from the start are expressions,
-/// such as "-9.81" for a gravity, for a number grows from zero over the step
+/// Initial stress of a body. Displacements and strains are measured from the initial state, stresses are total. The run
+/// tells how far it is out of balance with what acts at the start of the first step; loads that are there from the
+/// start are expressions, such as "-9.81" for a gravity, for a number grows from zero over the step
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum InitialStress {

@@ -29,14 +29,14 @@ pub struct BlocksInput {
 pub struct BlockInput {
     /// Name of the body that its elements belong to
     pub body: String,
-    /// The four corners [x, y] in turn, either way round [L]
+    /// The four corners [x, y] in order around the block, clockwise or counterclockwise [L]
     pub corners: [[Amount; 2]; 4],
     /// For each side null where it is straight, or the centre [x, y] of the circle through its two corners: it is the shorter arc
     #[serde(default)]
     pub arcs: [Option<[Amount; 2]>; 4],
     /// Number of elements along side 0, from corner 0 to corner 1, and along side 1, from corner 1 to corner 2
     pub elements: [Amount; 2],
-    /// How their sizes vary along side 0 and along side 1, as a geometric series; even unless given
+    /// Grading of their sizes along side 0 and along side 1, as a geometric series; default: uniform
     #[serde(default)]
     pub grading: [GradingInput; 2],
     /// Kind of the elements
@@ -57,13 +57,13 @@ pub enum Amount {
     Expression(String),
 }
 
-/// How the sizes of elements vary along a side.
+/// Grading of the element sizes along a side.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum GradingInput {
     /// Size of the last element over that of the first
     Ratio(f64),
-    /// The same as an expression in the parameters
+    /// Size of the last element over that of the first, as an expression in the parameters
     Expression(String),
     /// Finer or coarser in the middle
     Middle(MiddleInput),
@@ -97,7 +97,7 @@ impl<'de> Deserialize<'de> for GradingInput {
     }
 }
 
-/// Sizes that are alike at both ends.
+/// Equal sizes at both ends, with another in the middle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MiddleInput {
@@ -115,7 +115,7 @@ pub enum MeshInPlace {
     Blocks(BlocksInput),
 }
 
-/// All keys of either.
+/// All keys of both forms.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct MeshKeys {

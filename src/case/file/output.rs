@@ -3,12 +3,12 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What is written.
+/// Output of a run.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputInput {
-    /// Fields are written with every n-th row of the history, and at the end of each step; with every row unless given, or
-    /// with none where `times` are
+    /// Fields are written with every n-th row of the history, and at the end of each step; default: with every row, or
+    /// with none where `times` are given
     pub every: Option<usize>,
     /// Whether fields are written at all
     pub fields: bool,
@@ -21,8 +21,8 @@ pub struct OutputInput {
     pub times: Vec<f64>,
     /// Whether stresses at the integration points are written with the fields (points.pvd)
     pub points: bool,
-    /// Minutes of wall time between checkpoints (checkpoint.bin), from which `run --resume` goes on to the same bits after
-    /// whatever has ended the run; the last one is written at the end. 5 unless given; null or 0 for none
+    /// Minutes of wall time between checkpoints (checkpoint.bin), from which `run --resume` continues with bitwise
+    /// identical results, however the run ended; the last one is written at the end. Default 5; null or 0 for none
     pub checkpoint: Option<f64>,
     /// The fronts that run along contacts with friction (fronts.csv), and the events of slip that they make (events.csv)
     pub fronts: Option<FrontsInput>,
@@ -31,18 +31,18 @@ pub struct OutputInput {
     pub report: bool,
 }
 
-/// What counts as a front.
+/// Definition of fronts.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FrontsInput {
     /// Slip rate whose passage from below is the arrival of a front; an event of slip lasts while a point of the contact
     /// slips faster [L/T]
     pub slip_rate: f64,
-    /// What tells of arrivals instead of the slip rate
+    /// Criterion for arrivals instead of the slip rate
     pub arrival: Option<ArrivalInput>,
 }
 
-/// What tells that a front arrives at a point.
+/// Criterion for the arrival of a front at a point.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 pub enum ArrivalInput {
     /// R passes this value from below [-]
@@ -53,7 +53,7 @@ pub enum ArrivalInput {
 }
 
 impl OutputInput {
-    /// Fields are written with every n-th row, if with any but those at times asked for.
+    /// Interval n of rows with fields; `None` for fields at requested times only.
     pub fn every(&self) -> Option<usize> {
         self.every.or(self.times.is_empty().then_some(1))
     }

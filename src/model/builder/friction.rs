@@ -61,8 +61,8 @@ impl Friction {
         self.parameters.as_ref()
     }
 
-    /// With other friction at the points where a profile is positive at the start; of several the first holds. Messages name
-    /// profile and friction by `name`, such as `along.law[0]`.
+    /// With other friction in the region where a profile is positive at the start; of several the first holds. Messages
+    /// name profile and friction by `name`, such as `along.law[0]`.
     #[must_use]
     pub fn in_region(mut self, name: &str, profile: Profile, friction: impl Into<Self>) -> Self {
         let friction = Self { name: format!("{name}.friction"), ..friction.into() };
@@ -263,7 +263,7 @@ struct InTime {
     law: Arc<LawAt>,
     /// α_t of a law that has none of its own [F/L³]
     alpha_t: f64,
-    /// How its surfaces move apart with slip
+    /// Dilatancy and wear of its surfaces
     offsets: Offsets,
 }
 

@@ -15,7 +15,7 @@ use crate::mesh::ties::Ties;
 use crate::model::Model;
 use crate::model::linkage::{Follower, Linkage, alike, rigid};
 
-/// How the nodes of a loading plate move.
+/// Motion of the nodes of a loading plate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[schemars(rename = "PlateMotion")]
@@ -27,7 +27,8 @@ pub enum Plate {
     UxAlike,
     /// Alike in y, each as it will in x
     UyAlike,
-    /// As a rigid body, which turns under forces, springs and a `moment`; supports hold at most one of its nodes
+    /// As a rigid body that rotates under forces, springs and a `moment`; supports may constrain at most one of its
+    /// nodes
     Rigid,
 }
 
