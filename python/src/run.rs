@@ -104,7 +104,7 @@ fn open(case: &Case, out: &Path, resume: bool, report: bool, warn: &dyn Fn(&str)
     };
     opened.case.output.report = report;
     if let Some(damage) = &damage {
-        warn(&format!("{damage}; the checkpoint before it is taken"));
+        warn(&format!("{damage}; the previous checkpoint is used"));
     }
     Job::open(opened, damage, out)
 }

@@ -29,11 +29,11 @@ pub struct LawTestInput {
     /// State at the start
     #[serde(default)]
     pub initial: StartInput,
-    /// Longest step [T]; a hundredth of each phase, or the rows of the table, unless given
+    /// Longest step [T]; default: a hundredth of each phase, or the rows of the table
     pub dt: Option<f64>,
     /// Phases, one after the other; either this or a table
     pub path: Option<Vec<PhaseInput>>,
-    /// Rows [time, slip, pressure], times ascending, straight lines between; either this or a path
+    /// Rows [time, slip, pressure] with increasing times, linear between; either this or a path
     pub table: Option<Vec<[f64; 3]>>,
 }
 
@@ -44,7 +44,7 @@ pub struct StartInput {
     /// q: traction, within ±μ p [F/L²]
     #[serde(default)]
     pub traction: f64,
-    /// p: pressure [F/L²]; the path's own at its start unless given
+    /// p: pressure [F/L²]; default: that of the path at its start
     pub pressure: Option<f64>,
 }
 
@@ -54,12 +54,12 @@ pub struct StartInput {
 pub struct PhaseInput {
     /// Length of the phase [T]
     pub duration: f64,
-    /// Total slip [L]: a number (reached at the end), an expression in the time t, {"rate": v} or {"table": [[t, v], …]};
-    /// it rests unless given
+    /// Total slip [L]: a number (reached at the end), an expression in the time t, {"rate": v} or {"table": [[t, v],
+    /// …]}; constant by default
     pub slip: Option<Drive>,
-    /// Pressure [F/L²], in the same forms; at or below 0 the surfaces are apart; it stays as it is unless given
+    /// Pressure [F/L²], in the same forms; at or below 0 the surfaces are open; constant by default
     pub pressure: Option<Drive>,
-    /// Longest step in this phase [T]; that of the test unless given
+    /// Longest step in this phase [T]; default: that of the test
     pub dt: Option<f64>,
 }
 

@@ -36,9 +36,9 @@ pub enum Section {
         /// Undeformed thickness, above 0 [L]
         thickness: f64,
     },
-    /// Rings about the axis x = 0: x is the radius and y the axis. Forces, masses and energies are per full turn, pressures
-    /// and tractions per area, and zz is the hoop direction. No node may have x < 0, and nodes on the axis keep ux = 0 without
-    /// being told. A contact's length is the area of its full turn
+    /// Axisymmetric bodies about the axis x = 0: x is the radius and y the axis. Forces, masses and energies are per
+    /// full turn, pressures and tractions per area, and zz is the hoop direction. No node may have x < 0, and nodes on
+    /// the axis keep ux = 0 automatically. A contact's length is the area of its full turn
     Axisymmetric,
     /// A depth w = `depth` + `slope`·x, F₃₃ = 1. No body has it: it is there for verification, since an integral that forgets
     /// w or ∂w/∂x shows against it

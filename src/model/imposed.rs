@@ -9,8 +9,8 @@ use super::{Model, Step};
 use crate::laws::bulk::{CauchyStress, TEMPERATURE};
 
 /// Initial stress of a body. Displacements and strains are measured from the initial state, stresses are total. The run
-/// tells how far it is out of balance with what acts at the start of the first step; loads that are there from the
-/// start are expressions, such as "-9.81" for a gravity, for a number grows from zero over the step
+/// reports its imbalance with the loads at the start of the first step; loads that act from the start are expressions,
+/// such as "-9.81" for a gravity, because a number grows from zero over the step
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum InitialStress {
@@ -34,7 +34,7 @@ pub enum InitialStress {
         /// σ_xy; 0 unless given [F/L²]
         #[serde(default)]
         xy: Profile,
-        /// σ_zz: out of plane, of rings along the hoops. Needed but in plane stress, where it is 0 [F/L²]
+        /// σ_zz: out of plane, the hoop stress in axisymmetry. Required except in plane stress, where it is 0 [F/L²]
         zz: Option<Profile>,
     },
 }

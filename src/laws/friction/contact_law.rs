@@ -7,16 +7,16 @@ use serde::{Deserialize, Serialize};
 use super::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, Sliding, observables};
 use crate::laws::parameter::{InvalidParameter, require_positive};
 
-/// Dilatancy of a contact, with any friction law: asperities ride up on each other as the surfaces slip, until the interface has its
-/// largest opening.
+/// Dilatancy of a contact, with any friction law: asperities override each other as the surfaces slip, until the
+/// interface has its largest opening.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Dilatancy {
-    /// tan ψ: opening per plastic slip at the start, whichever way it goes; below the least coefficient that friction can come to
-    /// (mu, mu_k, mu_d), for the work that lifts the load is friction's [-]
+    /// tan ψ: initial opening per plastic slip, in either direction of slip; below the lowest friction coefficient of
+    /// the law (mu, mu_k, mu_d), because friction supplies the work of dilatancy [-]
     pub rate: f64,
-    /// d_max: opening that much slip leads to, dδ = tan ψ (1 − δ/d_max) × plastic slip; no limit unless given. The opening δ stands
-    /// in tables and frames as `dilation` [L]
+    /// d_max: opening after long slip, dδ = tan ψ (1 − δ/d_max) × plastic slip; no limit by default. The opening δ is
+    /// `dilation` in tables and frames [L]
     pub limit: Option<f64>,
 }
 

@@ -23,7 +23,7 @@ pub enum FrictionParameters {
     Frictionless {},
     /// Elastic until |q| = μ p, then sliding at constant μ
     Coulomb(CoulombParameters),
-    /// Time-dependent super/subloading-surface friction: slip weakens the interface, rest heals it
+    /// Time-dependent super/subloading-surface friction: slip weakens the interface, stationary contact heals it
     SuperSubloading(SuperSubloadingParameters),
     /// Friction that falls linearly with slip from static to dynamic, and does not heal
     SlipWeakening(SlipWeakeningParameters),

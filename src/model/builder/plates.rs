@@ -23,9 +23,9 @@ pub enum Plate {
     /// Alike, without turning: what the name of the group alone says
     #[default]
     AsOne,
-    /// Alike in x, each as it will in y: a greased plate
+    /// Equal ux, free uy: a frictionless platen
     UxAlike,
-    /// Alike in y, each as it will in x
+    /// Equal uy, free ux
     UyAlike,
     /// As a rigid body that rotates under forces, springs and a `moment`; supports may constrain at most one of its
     /// nodes

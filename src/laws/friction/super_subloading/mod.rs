@@ -16,7 +16,7 @@ use increment::{Directions, ROUND_OFF, SlipEquation, mean_traction};
 use peak::PeakEvolution;
 pub use peak::{Integration, Onset, Rise};
 
-/// Super/subloading friction: slip weakens the interface, rest heals it.
+/// Super/subloading friction: slip weakens the interface, stationary contact heals it.
 ///
 /// ```text
 /// q̇ = α_t (v − λ sgn q)                               slip = elastic + plastic     (1)
