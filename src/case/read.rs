@@ -96,7 +96,7 @@ fn document(text: &str) -> Result<Value, Complaint> {
     Ok(document)
 }
 
-/// What the JSON parser says, in plain words.
+/// Message of the JSON parser in plain words.
 fn not_json(error: &serde_json::Error) -> String {
     let (line, column) = (error.line(), error.column());
     let cause = error.to_string();

@@ -26,7 +26,7 @@ use crate::output::{quantities, report};
 use crate::run::error::Error;
 use crate::run::law::{Hold, LawReport, PathPoint};
 
-/// What a schema describes.
+/// Input that a schema describes.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum Input {
     /// the case file of `fecontact run`

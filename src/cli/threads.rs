@@ -17,8 +17,8 @@ const VARIABLE: &str = "RAYON_NUM_THREADS";
 /// The stack of a thread [MiB].
 const STACK: usize = 2;
 
-/// What a thread takes of the address space [MiB]: its stack, the 64 MiB that glibc reserves for what a thread allocates, and
-/// its own data.
+/// Address space of a thread [MiB]: its stack, the 64 MiB that glibc reserves for what a thread allocates, and its own
+/// data.
 const THREAD: usize = STACK + 64 + 1;
 
 /// Bytes in a MiB.

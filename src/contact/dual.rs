@@ -1,6 +1,6 @@
 //! Numbers that carry their derivatives: what is computed with them brings its exact variation along.
 
-/// What averages are computed with: numbers where values are enough, or numbers that carry their variations.
+/// Numbers used to compute averages: plain values, or values with their variations.
 pub trait Number: Clone + Default {
     /// A number that does not vary.
     fn constant(value: f64) -> Self;

@@ -78,7 +78,7 @@ pub struct Loading<'a> {
 }
 
 impl<'a> Loading<'a> {
-    /// What the law is asked for at a point in its place, which has these kinematics if it is closed.
+    /// Arguments of the law at a point in its place, with these kinematics if it is closed.
     ///
     /// # Errors
     /// [`LawFailure`] of a law that does not say where its surfaces part.

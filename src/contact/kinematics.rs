@@ -154,7 +154,7 @@ impl Kinematics {
         Self { varied, ..Self::default() }
     }
 
-    /// Nothing yet but the normal.
+    /// Start with the normal; everything else is empty.
     pub fn begin(&mut self, normal: Vector2<f64>) {
         (self.normal, self.tangent) = (normal, tangent_of(normal));
         (self.slip, self.length) = (0.0, 0.0);

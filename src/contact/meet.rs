@@ -96,7 +96,7 @@ impl ContactPair {
         self.points.iter().zip(self.meetings(x, false)).enumerate().map(state).collect()
     }
 
-    /// What the initial tractions, and a fluid at the start, put on the nodes in the configuration `x` [F].
+    /// Nodal forces of the initial tractions, and of a fluid at the start, in the configuration `x` [F].
     pub fn initial_forces(&self, x: &Configuration) -> Vec<(usize, Vector2<f64>)> {
         let points = self.points.iter().zip(self.initial.iter().flatten());
         let met = self.meetings(x, false).into_iter().zip(points);

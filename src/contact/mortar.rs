@@ -318,7 +318,7 @@ struct Averages<N> {
 }
 
 impl<N: Number> Averages<N> {
-    /// Nothing summed up yet for so many nodes.
+    /// Clear the sums, for `nodes` nodes.
     pub fn clear(&mut self, nodes: usize) {
         self.weights.clear();
         self.weights.resize(nodes, N::default());
@@ -376,7 +376,7 @@ pub struct Room {
     turns: [Vec<f64>; 2],
 }
 
-/// What an average is taken over, and its parts.
+/// Frame of an average, with its weights.
 #[derive(Clone, Debug, Default)]
 struct Averaging<N> {
     frame: Frame<N>,

@@ -157,7 +157,7 @@ impl ContactPair {
         Ok(Cow::Owned(laws.collect::<Result<_, _>>()?))
     }
 
-    /// What the law of a point shows by a name of a state at a time; NaN where its parameters have no good values then.
+    /// Observable of a point's law by name, for a state at a time; NaN where its parameters are invalid then.
     pub fn observed(&self, slave: &SlavePoint, name: &str, (state, time): (&FrictionState, f64)) -> f64 {
         self.ask_law(slave, [time, time], |law| law.observe(name, state)).unwrap_or(f64::NAN)
     }
@@ -254,8 +254,8 @@ impl ContactPair {
         Ok((doubt > 0.0).then_some(Arrival { at, doubt }))
     }
 
-    /// What is left of the pressure of a point that closed within one iterate once the bodies have taken their share of its
-    /// penetration: p/(1 + α_n c).
+    /// Pressure that remains at a point that closed within one iterate once the bodies have deformed under it: p/(1 +
+    /// α_n c).
     pub fn shared(&self, pressure: f64, stiffening: f64) -> f64 {
         pressure / (1.0 + self.normal_stiffness(stiffening) * self.compliance)
     }

@@ -244,7 +244,7 @@ pub struct PointIncrement {
     pub presumption: Presumption,
 }
 
-/// What one linear solve takes over for a point from those before; an accepted state presumes nothing.
+/// Data of a point that a linear solve takes over from earlier ones; empty in an accepted state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Presumption {
     /// Presumption about its state
@@ -262,7 +262,7 @@ pub struct Presumption {
     pub astride: Option<[usize; 2]>,
 }
 
-/// What the next linear solve presumes about a point, for the sake of convergence; an accepted state presumes nothing.
+/// Assumption of the next linear solve about a point, for convergence; an accepted state assumes nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Presume {
     /// The laws answer as they are

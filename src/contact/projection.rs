@@ -18,7 +18,7 @@ pub struct Projection {
     pub bound: Bound,
 }
 
-/// What a foot moves with.
+/// Dependence of a projection on the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {
     /// It slides on a segment

@@ -149,7 +149,7 @@ impl<'a> CondensedEquations<'a> {
         self.measure(assembler, system);
     }
 
-    /// What a closed point adds to the equations of its jump, if it has one: contact acts on that node alone.
+    /// Contribution of a closed point to the equations of its jump, if it has one: contact acts on that node only.
     fn of_jump<'b>(&self, closed: Closed<'b>, rates: &'b mut Vec<f64>) -> Closed<'b> {
         let Some(k) = closed.nodes.iter().position(|node| self.nodes.jumps.has(*node)) else { return closed };
         let own = 2 * k..2 * k + 2;
@@ -414,8 +414,8 @@ impl Jumps {
         self.numbers[node].map_or(&[], |number| &self.jumps[number as usize].feet)
     }
 
-    /// What contact adds to the equation of a node's jump along the normal while it is closed, in the equations that are not
-    /// `fixed`.
+    /// Contribution of contact to the equation of a node's normal jump while it is closed, in the equations that are
+    /// not `fixed`.
     pub fn steady(&self, node: usize, fixed: &[bool]) -> Option<Steady> {
         let Steady { direction, stiffness } = self.jumps[self.numbers[node]? as usize].steady;
         let share: f64 = (0..2).filter(|i| !fixed[2 * node + i]).map(|i| direction[i].powi(2)).sum();

@@ -76,7 +76,7 @@ impl Evolving {
     }
 }
 
-/// What one element adds, with its stored energy and what it dissipates.
+/// Contribution of one element, with its stored energy and dissipation.
 fn evolve(
     model: &Model,
     e: usize,

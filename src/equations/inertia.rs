@@ -42,7 +42,7 @@ pub(super) fn elements(model: &Model, layout: &Layout, share: impl Fn(usize) -> 
     total
 }
 
-/// What inertia says at a trial displacement.
+/// Inertia at a trial displacement.
 pub(super) struct Inertia {
     /// v [L/T]
     pub velocity: Vec<f64>,

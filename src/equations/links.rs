@@ -40,7 +40,7 @@ fn arms(model: &Model, [a, b]: [usize; 2], u: &[f64]) -> [Vector2<f64>; 2] {
     [model.mesh.nodes[b] - model.mesh.nodes[a], relative([a, b], u)]
 }
 
-/// What B has against A.
+/// Motion of B relative to A.
 pub fn relative([a, b]: [usize; 2], values: &[f64]) -> Vector2<f64> {
     Vector2::new(values[2 * b] - values[2 * a], values[2 * b + 1] - values[2 * a + 1])
 }

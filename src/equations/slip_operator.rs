@@ -63,7 +63,7 @@ pub struct SlipOperator {
     by_slip: Vec<f64>,
 }
 
-/// What forces out of balance do where nothing slips.
+/// Effect of out-of-balance forces without slip.
 pub struct Shift {
     /// y: all p, then all −τ [F/L²]
     pub tractions: Vec<f64>,
@@ -219,7 +219,7 @@ impl SlipOperator {
         sums
     }
 
-    /// What forces out of balance do where nothing slips; `residual` is A u − b of all equations.
+    /// Effect of out-of-balance forces without slip; `residual` is A u − b of all equations.
     pub fn shift(&mut self, residual: &[f64]) -> Shift {
         let forwarded = self.condensed.forward(residual);
         let mut middles = self.gather(&forwarded.right);

@@ -75,7 +75,7 @@ pub(super) fn add_blocks(matrix: &mut SparseMatrix, blocks: &[BlockPosition], lo
     }
 }
 
-/// What a tangent depends on while a step lasts; each includes those before it.
+/// Dependence of a tangent during a step; each level includes those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Dependence {
     /// Nothing: it is the same matrix throughout

@@ -47,7 +47,8 @@ impl<'a> Trial<'a> {
         Moment { time: self.time, beyond: self.beyond }
     }
 
-    /// What is left of the dashpots that stabilize at the end of the increment, 1 to 0; exactly 0 at the end of the step.
+    /// Remaining fraction of the stabilizing dashpots at the end of the increment, 1 to 0; exactly 0 at the end of the
+    /// step.
     pub fn stabilization_left(&self) -> f64 {
         1.0 - self.step.span.share(self.time)
     }

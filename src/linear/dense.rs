@@ -108,7 +108,7 @@ impl LinearSolver for DenseLu {
     }
 }
 
-/// What stays of the equations of a node.
+/// Constant part of the equations of a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steady {
     /// n, a unit vector

@@ -51,7 +51,7 @@ pub fn available_memory() -> Option<usize> {
     Some(control_groups().chain(address_space()).fold(machine, usize::min))
 }
 
-/// What the limit of the address space leaves (ulimit -v), if there is one [bytes].
+/// Room left by the limit of the address space (ulimit -v), if there is one [bytes].
 pub fn address_space() -> Option<usize> {
     let limits = read_to_string("/proc/self/limits").ok()?;
     let limit = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
@@ -61,7 +61,8 @@ pub fn address_space() -> Option<usize> {
     Some(limit.saturating_sub(1024 * used.trim().trim_end_matches("kB").trim().parse::<usize>().ok()?))
 }
 
-/// What every control group around this process leaves: its limit less what is used, caches that can be dropped not counted.
+/// Room left by every control group of this process: its limit less what is used, caches that can be dropped not
+/// counted.
 fn control_groups() -> impl Iterator<Item = usize> {
     const FIRST: (&str, [&str; 2]) = ("/sys/fs/cgroup/memory", ["memory.limit_in_bytes", "memory.usage_in_bytes"]);
     const SECOND: (&str, [&str; 2]) = ("/sys/fs/cgroup", ["memory.max", "memory.current"]);

@@ -19,7 +19,7 @@ pub enum MeshError {
         cause: Box<MeshError>,
     },
 
-    /// Nothing is at this path.
+    /// There is no file at this path.
     #[error("there is no such mesh file; check the path")]
     NoFile,
     /// The path leads to a folder or a device.

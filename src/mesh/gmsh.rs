@@ -211,7 +211,7 @@ fn bad_name(line: &str) -> MeshError {
     }
 }
 
-/// What stands where the parser gave up without a word.
+/// Text at the place where the parser failed without a message.
 fn unexpected(bytes: &[u8], offset: usize, encoding: Encoding) -> String {
     if encoding != Encoding::Ascii {
         return "the numbers there do not match the format".into();

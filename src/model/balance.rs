@@ -34,13 +34,13 @@ impl Forces {
     }
 }
 
-/// What is out of balance on a body: the resultant, and the share of the forces at work.
+/// Imbalance of a body: the resultant, and the fraction of the acting forces.
 struct Imbalance {
     resultant: Vector2<f64>,
     share: f64,
 }
 
-/// What is to be said of each body whose initial stress is out of balance.
+/// Warnings about bodies whose initial stress is out of balance.
 pub(super) fn concerns(model: &Model) -> Vec<String> {
     let stressed = || model.bodies.iter().filter(|body| body.initial_stress.is_some());
     let Some(step) = model.steps.first().filter(|_| stressed().next().is_some()) else { return Vec::new() };
@@ -127,7 +127,7 @@ fn add_loads(model: &Model, loads: &Loads, time: f64, forces: &mut Forces) {
     }
 }
 
-/// What of the forces on the free dofs of a body is out of balance.
+/// Imbalance of the forces on the free dofs of a body.
 fn imbalance(model: &Model, step: &Step, forces: &Forces, body: &Body) -> Imbalance {
     let (mut resultant, mut square, mut all) = (Vector2::zeros(), 0.0, 0.0);
     let mut nodes: Vec<usize> = body.nodes.iter().map(|&node| model.ties.original(node)).collect();

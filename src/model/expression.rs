@@ -29,7 +29,7 @@ pub struct Expression {
     operations: Arc<[Operation]>,
 }
 
-/// What is done with the values on top of the stack.
+/// Operation on the values on top of the stack.
 #[derive(Clone, Copy, Debug)]
 enum Operation {
     Number(f64),
@@ -75,7 +75,7 @@ impl Expression {
         if value.is_finite() { Ok(value) } else { Err(format!("\"{text}\" is {value}: must be finite")) }
     }
 
-    /// What prevents a variable from having this name.
+    /// Reason why a variable cannot have this name, if any.
     pub fn refused_name(name: &str) -> Option<&'static str> {
         refused_name(name)
     }
@@ -232,7 +232,7 @@ struct Reader<'t> {
     operations: Vec<Operation>,
 }
 
-/// What cannot be read, and at which place.
+/// Result of parsing: the error has the place and a message.
 type Read<T> = Result<T, (usize, String)>;
 
 impl<'t> Reader<'t> {
@@ -431,7 +431,7 @@ fn unknown(name: &str, variables: &[&str]) -> String {
     )
 }
 
-/// What cannot be read, with the text around it and a mark below the place.
+/// Error message with the surrounding text and a mark below the place.
 fn marked(text: &str, at: usize, what: &str) -> String {
     let before: Vec<char> = text[..at].chars().rev().take(AROUND + 1).collect();
     let after: Vec<char> = text[at..].chars().take(AROUND + 1).collect();

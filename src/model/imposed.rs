@@ -77,7 +77,7 @@ pub struct Temperature {
 }
 
 impl Model {
-    /// What the materials remember at the start, in bodies with an initial stress or without.
+    /// Initial internal variables of the materials, with or without an initial stress.
     pub fn initial_memory(&self) -> Vec<f64> {
         let mut memory = vec![0.0; self.memories.total()];
         for (e, own) in self.memories.each_mut(&mut memory).enumerate() {

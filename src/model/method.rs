@@ -46,7 +46,7 @@ pub struct Chosen {
     pub concern: Option<&'static str>,
 }
 
-/// What a surface looks like.
+/// Shape of a surface: straight, curved or quadratic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Looks {
     Straight,
@@ -94,7 +94,7 @@ pub fn choose(
     chosen(Method::GaussToSegment, "chosen because mortar takes no smooth master", concern)
 }
 
-/// What is known to suffer under a method that was asked for.
+/// Known weakness of the requested method for these surfaces, if any.
 fn concern(method: Method, points: usize, slave: Looks, master: Option<Looks>) -> Option<&'static str> {
     let straight = slave == Looks::Straight && master.is_none_or(|master| master == Looks::Straight);
     match (method, master) {
@@ -113,7 +113,7 @@ fn concern(method: Method, points: usize, slave: Looks, master: Option<Looks>) -
     }
 }
 
-/// What the edges of a group look like; other groups are refused elsewhere.
+/// Shape of the edges of a group; other groups are refused elsewhere.
 fn looks(mesh: &Mesh, group: &str) -> Looks {
     let Ok(Group::Edges(edges)) = mesh.group(group) else { return Looks::Straight };
     if edges.iter().any(|edge| edge.nodes.len() > 2) {

@@ -217,7 +217,7 @@ impl Model {
     }
 }
 
-/// What two times may differ by and be the same [T].
+/// Difference below which two times are the same [T].
 fn near(time: f64) -> f64 {
     16.0 * f64::EPSILON * time
 }

@@ -74,7 +74,7 @@ pub struct LastIncrement {
     pub ends_in_touch: bool,
 }
 
-/// What supports remember from the start of a step.
+/// Data of supports from the start of a step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepStart {
     /// u at the start of the step [L]
@@ -107,7 +107,7 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// What was there to be stored and dissipated: energy at the start and work from outside.
+    /// Energy supplied: initial energy and external work.
     pub fn supplied(&self) -> f64 {
         self.initial.abs().max((self.initial + self.external_work).abs())
     }

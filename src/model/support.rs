@@ -99,7 +99,7 @@ pub enum Motion {
     },
 }
 
-/// What one support along d says of a motion: share × ū(t), counted from d·u₀ at the start of the step where the drive says so.
+/// Constraint of one support along d: share × ū(t), counted from d·u₀ at the start of the step where the drive says so.
 #[derive(Clone, Debug)]
 pub struct Inclined {
     /// share of ū: 1 for the displacement along d itself

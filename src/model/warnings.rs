@@ -19,7 +19,7 @@ const OF_POSITIONS: f64 = 8.0 * f64::EPSILON;
 const OF_EDGE: f64 = 1e-12;
 
 impl Model {
-    /// What a user should know before anything is solved.
+    /// Warnings before anything is solved.
     pub fn warnings(&self) -> Vec<String> {
         let farthest = farthest(&self.mesh);
         let of_contact = |pair: &ContactPair| {
@@ -82,7 +82,7 @@ fn faces_away(model: &Model, pair: &ContactPair) -> Option<String> {
     })
 }
 
-/// What is wrong with velocities that a static first step takes no notice of.
+/// Warning about initial velocities that a static first step ignores.
 fn lost_velocity(model: &Model) -> Option<String> {
     let first = model.steps.first().filter(|step| !step.scheme.is_dynamic())?;
     let moving = model.initial_velocity.iter().any(|v| *v != 0.0);
@@ -120,7 +120,7 @@ fn many_increments(model: &Model) -> Option<String> {
     }
 }
 
-/// What is wrong with a radiation damping that acts in no step.
+/// Warning about a radiation damping without effect in any step.
 fn idle_radiation(model: &Model) -> Option<String> {
     let pair = model.contacts.iter().find(|pair| pair.radiation > 0.0)?;
     model.steps.iter().all(|step| step.scheme.is_dynamic()).then(|| {

@@ -6,7 +6,7 @@ use std::marker::PhantomData;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, Unexpected, Visitor};
 
-/// What is written as a text, or an object, and some of it as a number. [`written!`] writes the implementation.
+/// Input given as a text or an object, in some cases as a number. [`written!`] writes the implementation.
 pub trait Written: Sized {
     /// The forms there are, for messages
     const EXPECTING: &'static str;

@@ -16,7 +16,7 @@ use crate::model::element::{consistent_mass, lumped_mass, redistributed};
 use crate::model::state::State;
 use crate::model::{Body, Model};
 
-/// What of a body does not change as it moves.
+/// Constants of a body for its means.
 #[derive(Clone, Debug)]
 pub struct BodyMeans {
     density: f64,
@@ -29,7 +29,7 @@ pub struct BodyMeans {
     inertia: f64,
 }
 
-/// What of a body goes with one of its nodes.
+/// Contribution of one node to the means of a body.
 #[derive(Clone, Debug)]
 struct Share {
     node: usize,

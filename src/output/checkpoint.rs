@@ -26,7 +26,7 @@ pub const NEWEST: &str = "checkpoint.bin";
 pub const PREVIOUS: &str = "checkpoint_prev.bin";
 
 const MAGIC: &[u8] = b"fecontact checkpoint\n";
-/// What stands in the file; another number for every change of it.
+/// Version of the file's content; every change of it gets a new number.
 pub const VERSION: u32 = 8;
 const HEAD: usize = MAGIC.len() + 16;
 
@@ -81,7 +81,7 @@ impl MeshPrint {
         }
     }
 
-    /// What differs in another mesh, if anything does.
+    /// First difference from another mesh, if there is one.
     pub fn difference(&self, other: &Self) -> Option<String> {
         let parts = [
             ("nodes", self.nodes, other.nodes, "are at other positions"),

@@ -24,7 +24,7 @@ const BLINK: Duration = Duration::from_millis(50);
 /// Rows of so many bytes do so at once.
 const MANY: usize = 1 << 16;
 
-/// What stands in a table, so many bytes and their checksum, and the row that is held.
+/// Extent of a written table: number of bytes, their checksum, and the row that is held.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Standing {
     length: u64,
@@ -130,7 +130,7 @@ impl Table {
         if self.flushed.elapsed() < BLINK { Ok(()) } else { self.flush() }
     }
 
-    /// What stands in the file; it is on the disk.
+    /// Extent of the file, after it is flushed to the disk.
     pub fn standing(&mut self) -> Result<Standing, Error> {
         self.flush()?;
         self.file.sync_data().map_err(|cause| failed(&self.path, &cause))?;
@@ -282,12 +282,12 @@ pub fn remembered(memory: &impl Serialize) -> Result<Vec<u8>, Error> {
     postcard::to_allocvec(memory).map_err(|cause| failed(Path::new("memory of an observer"), &cause))
 }
 
-/// What the bytes say.
+/// The memory decoded from its bytes.
 pub fn recalled<M: DeserializeOwned>(bytes: &[u8]) -> Result<M, Error> {
     postcard::from_bytes(bytes).map_err(|cause| failed(Path::new("memory of an observer"), &cause))
 }
 
-/// What stands in a table that a run writes, and is remembered from row to row.
+/// Rows of a table that a run writes, and their memory from row to row.
 pub trait Rows: Sized {
     /// Name of the table without its ending, by which its memory is found as well
     const NAME: &'static str;
@@ -301,7 +301,7 @@ pub trait Rows: Sized {
     /// [`Error::Output`] when the file cannot take them.
     fn write(&mut self, table: &mut Table, model: &Model, attempt: &Attempt) -> Result<(), Error>;
 
-    /// What is remembered. Nothing unless it says so.
+    /// The memory in bytes; empty by default.
     ///
     /// # Errors
     /// [`Error::Output`] where it cannot be made bytes.

@@ -49,7 +49,7 @@ pub(super) struct SlipEvent {
     pub courses: Vec<Course>,
 }
 
-/// What loads and stored energies have given, and what friction took, since the start of the run [F·L].
+/// Energy released by loads and stored energies, and dissipated by friction, since the start of the run [F·L].
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Energies {
     pub given: f64,
@@ -65,7 +65,7 @@ impl Energies {
     }
 }
 
-/// What a point did in an event.
+/// Record of a point in an event.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Course {
     /// Plastic slip, traction and work before
@@ -131,7 +131,7 @@ impl Course {
     }
 }
 
-/// What an event amounts to.
+/// Measures of an event.
 pub(super) struct Measures {
     /// Time and place of the first arrival
     pub onset: f64,
@@ -300,7 +300,7 @@ impl Passing<'_> {
         Some(Arrival { time, event, given: self.given_at(time) })
     }
 
-    /// What loads and stored energies had given at a time, linear over each increment [F·L].
+    /// Energy released by a time, linear over each increment [F·L].
     fn given_at(&self, time: f64) -> f64 {
         let [(t0, e0), (t1, e1)] = self.last;
         let (t2, e2) = (self.after.time, Energies::of(self.after));
@@ -374,7 +374,7 @@ impl Interface {
         if restarts == 0 { 0.0 } else { restarts as f64 / (rubbing as f64 * time) }
     }
 
-    /// What each event had reached by when.
+    /// Extent of each event over time.
     pub fn reached(&self) -> Vec<Event> {
         let mut events = vec![Event::default(); self.events.len()];
         for point in &self.points {

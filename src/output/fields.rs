@@ -129,7 +129,7 @@ impl Fields {
     }
 }
 
-/// What the writer does; what is whole is listed also where it fails.
+/// Loop of the writer; complete frames are listed even if it fails.
 fn written(model: &Model, mut collections: Vec<Collection>, tasks: Receiver<Task>) -> Result<(), Error> {
     let done = followed(model, &mut collections, tasks);
     done.and(listed(&mut collections))

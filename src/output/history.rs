@@ -39,7 +39,7 @@ pub struct HistoryRows {
     memory: Memory,
 }
 
-/// What is remembered from row to row.
+/// Memory from row to row.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Memory {
     /// Rotation of each body, turns counted; none before the first increment [rad]

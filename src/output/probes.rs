@@ -47,7 +47,7 @@ impl Rows for ProbeRows {
     }
 }
 
-/// What a probe reads.
+/// Values at a probe.
 ///
 /// ```text
 /// u = Σ N_a u_a,  v likewise                    by the shape functions of the element

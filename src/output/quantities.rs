@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
-/// What is recorded: a column of a table, or an array.
+/// A recorded quantity: a column of a table, or an array.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantity {
     /// its name
@@ -20,7 +20,7 @@ pub struct Quantity {
     pub meaning: &'static str,
 }
 
-/// What a quantity is measured in.
+/// Unit of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unit {
     /// the name under which a case may label it, as it labels `length`, `force` and `time`
@@ -175,7 +175,7 @@ pub const HEAT: [Quantity; 2] = [
     q("frictional_power", POWER, "its mean rate over the last increment"),
 ];
 
-/// What every probe reads.
+/// Columns of every probe.
 pub const PROBE: [Quantity; 11] = [
     q("ux", LENGTH, "displacement along x"),
     q("uy", LENGTH, "along y"),
@@ -231,7 +231,7 @@ pub const OF_SOME: [Quantity; 4] = [
     q("fluid_pressure", STRESS, "p_w: pressure of the fluid, in addition to the contact pressure"),
 ];
 
-/// What quantities of the store were called by the versions before, and are called now.
+/// Names of quantities of the store in earlier versions, and present names.
 pub const FORMER: [(&str, &str); 3] = [("p", "pressure"), ("q", "traction"), ("p_w", "fluid_pressure")];
 
 /// A quantity of the store; `None` for one that only a law knows.
@@ -408,7 +408,7 @@ pub const ALL: [(&str, &[Group]); 10] = [
     ("law.csv", &[("", &LAW), ("", &[OF_SOME[0]])]),
 ];
 
-/// What a quantity is called where it is drawn.
+/// Name of a quantity in charts.
 pub fn spoken(name: &str) -> String {
     match name {
         "mu" => "μ".into(),
@@ -439,7 +439,7 @@ pub fn schema() -> Value {
     ALL.iter().map(|(file, groups)| (file.to_string(), groups.iter().flat_map(of_group).collect::<Value>())).collect()
 }
 
-/// What a page needs of them: labels of units by their names, and of every quantity its label and what it is called.
+/// Data for a page: labels of units by their names, and label and name of every quantity.
 pub fn labels(units: &BTreeMap<String, String>) -> Value {
     let (mut of_units, mut quantities) = (Map::new(), Map::new());
     // newton.csv counts slipping points under the name of a length.

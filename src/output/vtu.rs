@@ -54,7 +54,7 @@ pub struct Grid {
     values: [String; 2],
 }
 
-/// What stays the same from frame to frame.
+/// Part that is the same in all frames.
 #[derive(Debug)]
 struct Mesh {
     points: usize,
@@ -141,7 +141,7 @@ impl Mesh {
     }
 }
 
-/// What an array is: its type in VTK, its name and the components of each of its values.
+/// Description of an array: its VTK type, its name and the number of components.
 struct Array<'a> {
     kind: &'a str,
     name: &'a str,

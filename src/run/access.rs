@@ -36,7 +36,7 @@ pub enum Unknown {
         /// what there is
         known: String,
     },
-    /// Nothing is prescribed there.
+    /// There is no support of that kind.
     #[error("`{group}` has no support along {axis} in step `{step}` that could be driven")]
     Support {
         /// the group
@@ -112,8 +112,8 @@ impl Simulation {
         Ok(pair.points.iter().map(|point| point.at(&x)).collect())
     }
 
-    /// What the master of a contact puts on its slave, as `force_x` and `force_y` of the history: pressure, friction and what
-    /// slip radiates, without the pressure of a fluid [F].
+    /// Force of a contact on its slave, as `force_x` and `force_y` of the history: pressure, friction and radiation
+    /// damping, without fluid pressure [F].
     ///
     /// # Errors
     /// [`Unknown::Contact`].

@@ -75,7 +75,7 @@ impl Simulation {
         Candidate { number, dt, iterations, accepted, local_error, doubt, increments, outcome, coupling, explicit }
     }
 
-    /// What becomes of an increment that could not be solved.
+    /// Outcome of an increment that could not be solved.
     fn unsolved(&self, cause: IncrementFailure, dt: f64, number: usize, mut touching: Touching) -> Outcome {
         let Step { name, increments, rupture, .. } = &*self.step;
         if !cause.is_retryable() {

@@ -204,7 +204,7 @@ pub struct Candidate {
     pub(super) explicit: Option<Explicit>,
 }
 
-/// What became of an attempt.
+/// Outcome of an attempt.
 pub(super) enum Outcome {
     /// A new state, and how it goes on
     Accepted(Phase),
@@ -247,7 +247,7 @@ impl Candidate {
         }
     }
 
-    /// What became of it.
+    /// Verdict on the attempt.
     pub fn verdict(&self) -> Verdict {
         match &self.outcome {
             Outcome::Accepted(_) | Outcome::Paused(_) => Verdict::Accepted,

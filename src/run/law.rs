@@ -391,7 +391,7 @@ impl Peaks {
     }
 }
 
-/// What a test of a law amounts to.
+/// Results of a law test.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct LawReport {
     /// steps answered

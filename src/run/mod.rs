@@ -49,8 +49,8 @@ pub enum Moment {
     Stops,
 }
 
-/// What is done before every attempt, after the last one, and where one stops the run: there the run and its observers can be
-/// saved, or ended by an error.
+/// Callback before every attempt, after the last one, and where one stops the run: it can save the run and its
+/// observers, or end the run by an error.
 pub type Between<'a> = dyn FnMut(&Simulation, &mut [&mut dyn Observer], Moment) -> Result<(), Error> + 'a;
 
 /// As [`watch`], with a callback between the attempts.
@@ -103,7 +103,7 @@ fn attempts(
     }
 }
 
-/// What each observer remembers, by its name.
+/// Memory of each observer, by its name.
 type Memories = Vec<(String, Vec<u8>)>;
 
 /// A run and its observers as they were.

@@ -139,7 +139,7 @@ impl Simulation {
         self.report.wall_s.output += seconds;
     }
 
-    /// What observers are told of a candidate.
+    /// The attempt that observers receive for a candidate.
     pub fn told<'a>(&'a self, candidate: &'a Candidate) -> Attempt<'a> {
         let mut told = Attempt {
             step: self.step_now(),
@@ -295,7 +295,7 @@ pub struct Saved {
     pub(super) step_changed: bool,
 }
 
-/// What goes to a file.
+/// Content of a saved run in a file.
 type Written = (State, Control, Option<ExplicitMemory>, Option<Midway>, RunReport);
 
 impl Saved {

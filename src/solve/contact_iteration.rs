@@ -104,7 +104,7 @@ use crate::model::Model;
 use crate::model::aids::Aids;
 use crate::model::state::State;
 
-/// What the linear solves of an increment so far say about one contact point.
+/// Data of one contact point from the linear solves of an increment so far.
 #[derive(Clone, Debug, Default)]
 struct Point {
     slipping: Slipping,
@@ -231,8 +231,8 @@ impl ContactIteration {
         assembler.interfaces(trial, u, presumed, request, &mut self.next)
     }
 
-    /// What the next linear solve presumes about each point, from its last two iterates, but for sticking. `states` are
-    /// those of the residual at `u`.
+    /// Assumptions of the next linear solve about each point, from its last two iterates, except for sticking. `states`
+    /// are those of the residual at `u`.
     fn presume(&mut self, model: &Model, states: &[Vec<ContactState>], trial: Trial, u: &[f64]) {
         let (first, aids) = (self.points.is_empty(), model.aids);
         self.points.resize_with(model.contacts.len(), Vec::new);
@@ -296,7 +296,7 @@ impl ContactIteration {
 /// Most growth of a pressure from the committed state to the start value that is believed.
 const MOST_GROWTH: f64 = 2.0;
 
-/// What the start value promises a point that it closes.
+/// Predicted traction of a point that the start value closes.
 fn promised_at_start(state: &ContactState, old: &ContactState, limit: bool) -> Tractions {
     let tractions = Tractions::of(&state.friction);
     if limit { tractions.limited(MOST_GROWTH * old.friction.pressure) } else { tractions }
@@ -310,7 +310,7 @@ fn promise_acts(presumption: &Presumption, closed: &Closed) -> bool {
 /// The penalty may have drawn a point that was closed back by this many p/α_n.
 const MOST_PULL: f64 = 10.0;
 
-/// What the committed state promises a point that is open by the start value.
+/// Predicted traction, from the committed state, of a point that is open by the start value.
 fn kept_at_start(pair: &ContactPair, state: &ContactState, old: &ContactState) -> Tractions {
     let reach = old.friction.pressure * (pair.compliance + MOST_PULL / pair.alpha_n);
     if state.clearance() <= reach { Tractions::of(&old.friction) } else { Tractions::default() }

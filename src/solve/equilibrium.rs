@@ -56,7 +56,7 @@ pub fn equilibrium(
     (watch.records, result)
 }
 
-/// What Newton's method found on all equations.
+/// Solution by Newton's method on all equations.
 fn on_all(
     model: &Model,
     trial: Trial,
@@ -84,7 +84,7 @@ fn on_all(
 /// Rounds on the nodes at contacts before an increment is left to all equations.
 const MOST_ROUNDS: usize = 3;
 
-/// What Newton's method found on the nodes at contacts, if that way is worth it and the bodies can follow.
+/// Solution by Newton's method condensed on the contact nodes, if that pays and the bodies allow it.
 fn on_contacts(
     model: &Model,
     trial: Trial,
@@ -167,7 +167,7 @@ fn assemble_all(trial: Trial, u: &[f64], work: &mut Workspace) -> Option<()> {
     iteration.evaluate_all(assembler, trial, u, Request::Tangent, system).ok()
 }
 
-/// What is seen while an increment is solved.
+/// Monitor of the solution of an increment.
 struct Watch {
     /// Whether it is a new increment, and whether its start value goes on with the last one
     begins: bool,
@@ -255,7 +255,7 @@ fn is_unaided(trial: Trial) -> bool {
     old.last_increment.is_none() || (!step.stabilization.is_empty() && trial.stabilization_left() == 0.0)
 }
 
-/// What was seen after a correction: contacts, their flips, the share of stabilization in the forces, and what acted.
+/// Record after a correction: contact counts, status changes, fraction of stabilizing forces, and aids that acted.
 type Seen = (ContactCounts, usize, f64, Acted);
 
 fn look(assembler: &Assembler, flips: &mut Flips, forces: f64, acted: Acted) -> Seen {

@@ -182,7 +182,7 @@ impl Plan {
     }
 }
 
-/// What the iterations have shown so far.
+/// History of the iterations so far.
 struct Course {
     settings: Settings,
     /// ‖r‖ of the first iterates, the largest

@@ -41,7 +41,7 @@ pub fn heat(step: &Step, found: &Evaluation, state: &mut State) {
     }
 }
 
-/// What motion and contacts store at the end of an increment; at the start of a run the audit begins with it.
+/// Kinetic and contact energy at the end of an increment; at the start of a run the energy balance begins with it.
 pub fn take_stock(model: &Model, kinetic: f64, state: &mut State) {
     state.energy.kinetic = kinetic;
     state.energy.contact_elastic = interfaces::stored(model, &state.contacts);

@@ -67,7 +67,7 @@ const ROUND_OFF: f64 = 1e-6;
 /// by less, and the times at its ends are rounded.
 const SHORTEST: f64 = 1.0 + 10.0 * ROUND_OFF;
 
-/// What becomes of a solved increment.
+/// Decision about a solved increment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Judgement {
     /// Whether it is accepted or repeated

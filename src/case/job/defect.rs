@@ -4,7 +4,7 @@ use std::backtrace::{Backtrace, BacktraceStatus};
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
 use std::sync::Mutex;
 
-/// What panicked last, and where.
+/// Message and place of the last panic.
 static LAST: Mutex<Option<String>> = Mutex::new(None);
 
 /// Note panics instead of printing them.

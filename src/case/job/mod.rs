@@ -43,7 +43,7 @@ pub enum Refused {
     /// There is nothing to go on from.
     #[error("{}: --resume: {}", .0.display(), .1)]
     Checkpoint(PathBuf, checkpoint::Unusable),
-    /// What is there cannot be gone on with.
+    /// The run cannot resume from the results in the folder.
     #[error(transparent)]
     Run(#[from] Error),
 }
@@ -71,7 +71,7 @@ pub struct Job {
     pub damage: Option<String>,
 }
 
-/// What became of a job.
+/// Outcome of a job.
 pub struct Outcome {
     /// as in `summary.json`
     pub summary: Summary,
@@ -158,7 +158,7 @@ impl Job {
         Ok(Outcome { summary: last, supplied: work.supplied, ended, written })
     }
 
-    /// What readers of the results need to know of the case.
+    /// Data about the case for readers of the results.
     fn about(&self) -> About {
         let Opened { case, path, .. } = &self.opened;
         About {
@@ -178,7 +178,7 @@ impl Job {
     }
 }
 
-/// What is left of a run however it ends.
+/// Results of a run that are kept however it ends.
 struct Work {
     /// `None` until it has begun
     simulation: Option<Simulation>,

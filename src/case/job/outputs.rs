@@ -23,7 +23,7 @@ use crate::run::SavedRun;
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};
 
-/// What a run writes beside `summary.json`; folders of frames end in `/`.
+/// Files that a run writes besides `summary.json`; folders of frames end in `/`.
 pub(super) fn files(case: &Case, model: &Model) -> Vec<&'static str> {
     let mut files = vec!["history.csv", "newton.csv"];
     if case.output.fields {

@@ -121,7 +121,7 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
     lines
 }
 
-/// What a law with a peak means in the numbers of a test: a range where its parameters vary along the interface.
+/// Peak, residual and healing of a law in the numbers of a test: ranges where its parameters vary along the interface.
 fn onset(pair: &ContactPair) -> Option<String> {
     let laws: Vec<Onset> = pair.laws.iter().filter_map(|law| law.law.onset()).collect();
     if laws.is_empty() {

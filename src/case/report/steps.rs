@@ -88,7 +88,7 @@ fn step_lines(step: &Step) -> Vec<String> {
     lines
 }
 
-/// What is in force in a step, by place and kind, as it was last written; `null` ends it.
+/// Supports or loads in force in a step, by place and kind, as last written; `null` ends an entry.
 struct InForce(BTreeMap<(String, &'static str), Written>);
 
 struct Written {

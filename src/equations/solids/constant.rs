@@ -140,7 +140,7 @@ impl Constant {
         });
     }
 
-    /// What all elements store, or which is the first whose strain is not finite.
+    /// Stored energy of all elements, or the first one whose strain is not finite.
     pub fn stored(&self, model: &Model, u: &[f64]) -> Result<f64, TrialFailure> {
         let energy: f64 = self.energies.iter().sum();
         if !energy.is_finite() {
@@ -371,7 +371,7 @@ fn curve(model: &Model) -> impl Fn(usize) -> u64 {
     }
 }
 
-/// What the blocks are asked for.
+/// Evaluation of the blocks.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Pass<'a> {
     /// Forces at displacements, and the sums of their magnitudes if wanted

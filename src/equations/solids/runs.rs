@@ -136,7 +136,7 @@ impl Runs {
         }
     }
 
-    /// What all elements store, or which is the first that is turned inside out.
+    /// Stored energy of all elements, or the first one that is inverted.
     pub fn stored(&self, model: &Model) -> Result<f64, TrialFailure> {
         let mut energy = 0.0;
         for e in self.runs.iter().filter(|run| !run.evolves).flat_map(|run| run.elements.clone()) {
@@ -238,7 +238,7 @@ impl Places {
         Self { starts, places }
     }
 
-    /// What is at the places of a node.
+    /// Forces at the places of a node.
     fn at<'a>(&'a self, node: usize, forces: &'a [Vector2<f64>]) -> impl Iterator<Item = Vector2<f64>> + 'a {
         let own =
             if self.starts.is_empty() { 0..0 } else { self.starts[node] as usize..self.starts[node + 1] as usize };

@@ -50,7 +50,7 @@ pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
 pub use spatial::{PlaneStress, Spatial, Stretched};
 pub use viscoelastic::{Viscoelastic, ViscoelasticConstants};
 
-/// What a law answers at the end of an increment; it writes its new variables itself.
+/// Response of a law at the end of an increment; it writes its new variables itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MaterialResponse {
     /// P: first Piola–Kirchhoff stress, in plane part [F/L²]
@@ -65,7 +65,8 @@ pub struct MaterialResponse {
     pub dissipation: f64,
 }
 
-/// What a law is asked for at one quadrature point: where an increment ends, and what the law remembers from its start.
+/// Input of a law at one quadrature point: deformation at the end of the increment, and internal variables at its
+/// start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Straining<'a> {
     /// F at the end, in plane [-]

@@ -105,7 +105,7 @@ impl FrictionResponse {
     }
 }
 
-/// What a law says of one point.
+/// Response of a law at one point.
 pub type Answer = Result<FrictionResponse, LawFailure>;
 
 /// A friction law, integrated over one increment. Pure: the same `old` and `sliding` give the same answer.
@@ -168,7 +168,7 @@ pub type Answer = Result<FrictionResponse, LawFailure>;
 /// # Ok::<(), LawFailure>(())
 /// ```
 pub trait FrictionLaw: Debug + Send + Sync {
-    /// What the law says of itself, whatever a point does.
+    /// Description of the law, independent of the state of a point.
     fn description(&self) -> Description;
 
     /// State of a point that has not slipped, closed from the start under these tractions, or open where they are 0.
@@ -214,13 +214,13 @@ pub trait FrictionLaw: Debug + Send + Sync {
         None
     }
 
-    /// What its parameters mean for the peak of friction, its fall and its healing, if the law says so.
+    /// Peak, weakening and healing by its parameters, for laws that provide them.
     fn onset(&self) -> Option<Onset> {
         None
     }
 }
 
-/// What a friction law says of itself, whatever a point does. What a law does not say is left as in
+/// Description of a friction law, independent of the state of a point. Fields that do not apply stay as in
 /// [`default`](Self::default): no stiffness, no variables, no bounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Description {
@@ -371,7 +371,7 @@ pub enum LawFailure {
     Registered,
 }
 
-/// What acts on a point of an interface that radiates.
+/// Tractions at a point of an interface with radiation damping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Loading {
     /// τ = q + η V: what friction and radiation damping carry together [F/L²]

@@ -10,7 +10,7 @@ pub const ALWAYS: [(&str, f64); 3] = [("R", 0.0), ("mu", 0.0), ("structure", 1.0
 /// Parts of an opening that outputs show.
 const OF_OPENING: [&str; 2] = ["dilation", "wear"];
 
-/// What else outputs say of a contact point by name: nothing that a law names may be taken for it.
+/// Names of other outputs at contact points, which laws may not use.
 const TAKEN: [&str; 28] = [
     "time",
     "contact",

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// Most variables that a law may have of its own.
 pub const MOST_VARIABLES: usize = 4;
 
-/// What friction remembers at one contact point between increments.
+/// Internal state of friction at one contact point between increments.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FrictionState {
     /// q: traction that resists the slip of the slave along +s [F/L²]

@@ -17,7 +17,7 @@ use super::scale::Scaling;
 use super::solve;
 use super::symbolic::Symbolic;
 
-/// What condensations on the same nodes share: the order of elimination and the structure of the factors.
+/// Common data of condensations on the same nodes: the order of elimination and the structure of the factors.
 pub struct Condensation {
     symbolic: Arc<Symbolic>,
     scaling: Scaling,

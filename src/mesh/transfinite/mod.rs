@@ -111,7 +111,7 @@ pub struct Blocks {
     pub apart: Vec<String>,
 }
 
-/// What is wrong with a block, and what to do.
+/// Error of a block, with a remedy.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{place}: {message}")]
 pub struct BlockError {

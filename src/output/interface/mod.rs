@@ -104,7 +104,7 @@ impl InterfaceStore {
         }
     }
 
-    /// What a state says; the slip rates are those of its increment yet.
+    /// Record of a state; its slip rates are still those of its increment.
     fn record_of(&self, model: &Model, state: &State) -> Record {
         let mut record = vec![vec![state.time]];
         for ((pair, states), names) in model.contacts.iter().zip(&state.contacts).zip(&self.names) {

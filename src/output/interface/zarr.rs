@@ -306,7 +306,7 @@ pub const ATTRIBUTES: &str = ".zattrs";
 /// See [`GROUP`].
 pub const METADATA: &str = ".zmetadata";
 
-/// What an array is, besides its numbers.
+/// Description of an array without its values.
 #[derive(Clone, Debug)]
 pub struct Description {
     /// its name

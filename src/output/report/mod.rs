@@ -30,7 +30,7 @@ const OURS: &str = "<meta name=\"generator\" content=\"fecontact report\">";
 /// All packed numbers at most [bytes]; with the rest the page stays below 30 MB.
 const ROOM: usize = 28_000_000;
 
-/// What draws the page, in the order in which it is run.
+/// Scripts of the page, in the order of execution.
 const SCRIPTS: [&str; 18] = [
     include_str!("page/uplot/uPlot.iife.min.js"),
     include_str!("page/dom.js"),

@@ -13,7 +13,7 @@ use crate::output::interface::read::{StoredContact, contacts};
 /// Rows of a table at most.
 const ROWS: usize = 40_000;
 
-/// What a packed number takes, as a rough guess [bytes].
+/// Rough size of a packed number [bytes].
 const NUMBER: f64 = 3.0;
 
 /// Rows of newton.csv beyond which only its increments are shown.

@@ -96,13 +96,13 @@ impl Series {
         Some(series).filter(|series| !series.frames.is_empty())
     }
 
-    /// What points and cells take, as a rough guess [bytes].
+    /// Rough size of points and cells [bytes].
     fn mesh(&self) -> usize {
         let count = |(_, grid): &(Frame, Grid)| 9 * grid.points.len() + 3 * grid.connectivity.len();
         self.frames.first().map_or(0, count)
     }
 
-    /// What a frame takes at most [bytes].
+    /// Upper bound of the size of a frame [bytes].
     fn estimate(&self) -> usize {
         let size = self.size();
         self.frames.iter().map(|frame| self.packed(frame, size).size()).max().unwrap_or(0).max(1)
@@ -169,7 +169,7 @@ impl Series {
 /// Frames of one kind at most.
 const MOST: usize = 2000;
 
-/// What moves a point.
+/// Array that moves the points.
 const DISPLACEMENT: &str = "displacement";
 
 fn displacement(grid: &Grid) -> Option<&Array> {

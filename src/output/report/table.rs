@@ -127,7 +127,7 @@ impl Columns {
         })
     }
 
-    /// What the values of a column of words stand for; nothing for a column of numbers.
+    /// Words behind the values of a column of words; `None` for a column of numbers.
     pub fn words(&self, name: &str) -> Option<&[String]> {
         self.find(name)?.words.as_deref()
     }

@@ -58,7 +58,7 @@ const MOST_CAREFUL: f64 = 0.125;
 /// Share of a step's end within which an output falls on it.
 const ROUND_OFF: f64 = 1e-9;
 
-/// What explicit increments of one step need besides the state.
+/// Data of the explicit increments of one step besides the state.
 #[derive(Clone)]
 pub struct Explicit {
     model: Arc<Model>,

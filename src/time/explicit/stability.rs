@@ -44,7 +44,7 @@ const LOOK_AGAIN: usize = 200;
 /// Elements that are compared sooner than another thread wakes up.
 const FEW: usize = 2048;
 
-/// What bounds the increment, as last looked at.
+/// Bounds of the increment, as last evaluated.
 #[derive(Clone)]
 pub(super) struct Stability {
     pub(super) model: Arc<Model>,
@@ -364,7 +364,7 @@ fn alike(model: &Model) -> Vec<usize> {
     (0..model.solids.len()).map(first).collect()
 }
 
-/// What explicit increments remember.
+/// Memory of explicit increments.
 #[derive(Serialize, Deserialize)]
 pub struct ExplicitMemory {
     care: f64,

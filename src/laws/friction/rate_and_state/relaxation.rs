@@ -18,7 +18,7 @@ pub enum StateEvolution {
     Slip,
 }
 
-/// What friction follows from.
+/// Coefficients of the friction law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Coefficients {
     pub f_0: f64,
@@ -71,7 +71,7 @@ pub(super) struct Relaxation<'a> {
     pub log_state: f64,
 }
 
-/// What an increment comes to if it slips by Δλ.
+/// Result of an increment with the slip Δλ.
 #[derive(Clone, Copy)]
 pub(super) struct Relaxed {
     /// Δλ [L]

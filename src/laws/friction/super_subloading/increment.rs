@@ -222,7 +222,7 @@ impl LoadPath<'_> {
         from.dtraction[i] + self.law.alpha_t * self.dslip[i] * share + by_stiffness
     }
 
-    /// What parameters that vary add to α_t Δλ, μ and R after a given plastic slip from a given start.
+    /// Contribution of varying parameters to α_t Δλ, μ and R after a given plastic slip from a given start.
     fn own(&self, from: &PathState, x: f64, point: &Point, by: &Shift) -> [f64; 3] {
         let time = self.time * (x - from.x);
         [

@@ -249,7 +249,7 @@ const SHARE: f64 = 0.01;
 /// Most that the rate of plastic slip changes by within a step taken alone, relative: bounds from its ends need it steady.
 const STEADY: f64 = 0.25;
 
-/// What makes the rate of plastic slip at one end of a step.
+/// Quantities that determine the rate of plastic slip at one end of a step.
 struct Ends {
     /// p U μ, what R's approach adds to D = α_t + p (U μ − R κ (μ/μ_k − 1)) [F/L³]
     approach: f64,
@@ -297,7 +297,7 @@ impl LoadPath<'_> {
         q_error <= SHARE * strength && self.mean_error(from, to, &start, &end) <= strength
     }
 
-    /// What makes the rate of plastic slip at a station.
+    /// Quantities that determine the rate of plastic slip in a state.
     fn ends(&self, at: &PathState) -> Ends {
         let (pressure, ratio) = (self.pressure(at.x), at.curve_point.ratio);
         let approach = pressure * at.curve_point.rate * at.mu;

@@ -237,7 +237,7 @@ impl PeakEvolution {
     }
 }
 
-/// What is left of a deviation after Z relaxation times.
+/// Remaining deviation after Z relaxation times.
 struct Decay {
     /// e^(−Z)
     left: f64,
@@ -401,7 +401,8 @@ fn logarithmic(power: f64, x: f64) -> f64 {
     if x > 0.0 { power * x.ln() } else { 0.0 }
 }
 
-/// What the parameters of a law mean for the coefficient q/p, with slip so fast that nothing heals meanwhile.
+/// Peak, residual and characteristic slips of q/p by the parameters of a law, for slip so fast that nothing heals
+/// meanwhile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Onset {
     /// from long rest, μ = μ_s

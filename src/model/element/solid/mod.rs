@@ -356,7 +356,8 @@ fn rate_gradient(gradients: &[Vector2<f64>], v: &[Vector2<f64>]) -> Matrix2<f64>
     v.iter().zip(gradients).fold(Matrix2::zeros(), |sum, (v, gradient)| sum + v * gradient.transpose())
 }
 
-/// What an element's material remembers over an increment: its variables at the first quadrature point, then at the second, …
+/// Internal variables of an element's material over an increment: its variables at the first quadrature point, then at
+/// the second, …
 #[derive(Debug)]
 pub struct Memory<'a> {
     /// Δt [T]

@@ -20,7 +20,7 @@ use crate::laws::bulk::{
 };
 use crate::mesh::few::Few;
 
-/// What the hoops of an element need.
+/// Data of an element for the hoop stretch.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Hoop {
     /// N_a/R of all nodes at the first quadrature point, then at the second, … [1/L]
