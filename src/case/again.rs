@@ -43,7 +43,7 @@ pub struct Opened {
     mesh: Option<Mesh>,
     /// from where it begins, unless at the beginning
     start: Option<Checkpoint>,
-    /// whether it goes on with the run of that checkpoint
+    /// whether it resumes the run of that checkpoint
     resumes: bool,
 }
 
@@ -66,7 +66,7 @@ impl Opened {
         Ok(opened)
     }
 
-    /// Open a case whose run goes on from a checkpoint.
+    /// Open a case whose run resumes from a checkpoint.
     ///
     /// # Errors
     /// [`CaseError`], also where the case has changed since, and how.
@@ -93,7 +93,7 @@ impl Opened {
         Self { mesh: Some(mesh), inputs: self.inputs.into_iter().skip(1).collect(), ..self }
     }
 
-    /// Build the model, and the run to begin from or to go on with; `None` to begin at the beginning.
+    /// Build the model, and the run to begin from or to resume; `None` to begin at the beginning.
     ///
     /// # Errors
     /// [`CaseError`] as [`super::build`], and where the run is not one of this model.
@@ -114,8 +114,8 @@ impl Opened {
         Ok((model, Some(saved.begin())))
     }
 
-    /// A run that was saved in this process, to go on with this case on its model. It was one of the case `before`, its steps
-    /// behind those of the case that it begins with, on a mesh.
+    /// A run that was saved in this process, to resume with this case on its model. It was one of the case `before`,
+    /// its steps behind those of the case that it begins with, on a mesh.
     ///
     /// # Errors
     /// [`CaseError`] as [`Self::resume`] and [`Self::build`].
@@ -159,7 +159,7 @@ impl Opened {
         Ok(())
     }
 
-    /// Whether it goes on with a run.
+    /// Whether it resumes a run.
     pub fn resumes(&self) -> bool {
         self.resumes
     }

@@ -274,8 +274,8 @@ const MOST_ANSWERS: usize = 60;
 /// Share of the pressure up to which they do.
 const AGREE: f64 = 1e-14;
 
-/// The pressure under which friction answers: that of a point which is only kept closed is the one it is kept by, from
-/// where its answer goes on in a straight line.
+/// The pressure under which friction answers: that of a point which is only kept closed is the one it is kept by,
+/// beyond which its response is extrapolated linearly.
 fn carried(pressure: f64, Presumption { carried, kept, .. }: Presumption) -> f64 {
     carried.unwrap_or(if pressure > 0.0 { pressure } else { kept })
 }

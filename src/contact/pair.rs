@@ -61,7 +61,7 @@ pub struct ContactPair {
     pub penetration: Option<f64>,
     /// η: radiation damping in static steps, 0 for none [F T/L³]
     pub radiation: f64,
-    /// What pushes the surfaces apart beside their own pressure
+    /// Fluid that acts on the surfaces in addition to the contact pressure
     pub fluid: Option<Fluid>,
     /// The friction laws, each with the parameters of some of the points, as they are at the start of the run. What holds at all
     /// times is asked of these: α_t, the names of what they remember and show, and whether they rub and dilate
@@ -210,8 +210,8 @@ impl ContactPair {
         [damping * slip, damping]
     }
 
-    /// d/p: how far a pressure brings the surfaces after touch. It pushes the bodies in by c p where they settle, and the plain
-    /// penalty gives way by p/α_n [L³/F].
+    /// d/p: approach of the surfaces per pressure after closure: the bodies deform by c p where they settle, and the
+    /// penalty by p/α_n [L³/F].
     pub fn compliance_after_touch(&self, settles: bool) -> f64 {
         let bodies = if settles { self.compliance } else { 0.0 };
         if self.penetration.is_some() { bodies } else { bodies + 1.0 / self.alpha_n }

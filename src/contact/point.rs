@@ -160,8 +160,8 @@ pub fn edge_point(edge: &[usize], xi: f64, weight: f64) -> SlavePoint {
 pub struct MasterPoint {
     /// Segment number; of a rigid body the number of its line
     pub segment: usize,
-    /// 0 … 1 along the segment; on a rigid body the way along s (of line number `segment`) from where the point's
-    /// reference position has its foot [-] or [L]
+    /// 0 … 1 along the segment; on a rigid body the arc length along s (of line number `segment`) from where the
+    /// point's reference position has its foot [-] or [L]
     pub xi: f64,
 }
 
@@ -254,11 +254,11 @@ pub struct Presumption {
     /// Pressure of a point that is closed whatever its gap, and under which friction answers unless its own is positive;
     /// none if it is 0
     pub kept: f64,
-    /// Pressure under which friction answers, and from where its answer goes on in a straight line, at a point that has just
-    /// closed: a stiff penalty presses a point far too hard that goes too deep in one iterate, and would make it stick
-    /// where it is to slip.
+    /// Pressure under which friction answers, and beyond which its response is extrapolated linearly, at a point that
+    /// has just closed: a stiff penalty presses a point far too hard that goes too deep in one iterate, and would make
+    /// it stick where it is to slip.
     pub carried: Option<f64>,
-    /// Two segments between which its foot goes to and fro
+    /// Two segments between which its projection alternates
     pub astride: Option<[usize; 2]>,
 }
 

@@ -27,7 +27,7 @@ pub enum Bound {
     Node(usize),
     /// It follows a motion δx of the point on a rigid body
     Rigid {
-        /// way of the foot along s: `advance` s·δx [-]
+        /// motion of the foot along s: `advance` s·δx [-]
         advance: f64,
         /// δθ = `turn` s·δx [1/L]
         turn: f64,

@@ -277,7 +277,7 @@ impl SlipOperator {
     }
 }
 
-/// The points of a pair, nodes facing nodes: whoever builds the model has seen to that.
+/// The points of a pair with matching nodes, as checked when the model is built.
 fn facing(model: &Model, pair: &ContactPair, nodes: &ContactNodes) -> Vec<Facing> {
     let inverse = |alpha: f64| if alpha > 0.0 { 1.0 / alpha } else { 0.0 };
     let place = |node: usize| nodes.place(model.ties.original(node)).expect("nodes at contacts are kept");

@@ -176,7 +176,7 @@ impl TrialFailure {
         }
     }
 
-    /// An element of which only a share of its size is left.
+    /// An element compressed to a small fraction of its size.
     pub fn crushed(model: &Model, e: usize, share: f64) -> Self {
         let (element, body, at) = named(model, e);
         Self::Crushed { element, body, at, share }

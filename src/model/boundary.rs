@@ -209,8 +209,8 @@ impl Drive {
         }
     }
 
-    /// Value at a reference position and run time, `start` being the value at the start of the step. Beyond an increment it
-    /// goes on in a straight line through the increment's start and end, wherever it bends or the step ends.
+    /// Value at a reference position and run time, `start` being the value at the start of the step. Beyond an
+    /// increment it is extrapolated linearly through the increment's start and end, wherever it bends or the step ends.
     pub fn value(&self, position: Vector2<f64>, at: impl Into<Moment>, span: Span, start: f64) -> f64 {
         let Moment { time, beyond } = at.into();
         // A rate is its own straight line.

@@ -55,8 +55,8 @@ impl InitialStress {
     }
 }
 
-/// Thermal expansion of a body, whose `temperature` the steps give. With F = (1 + α (T − T₀)) F_e the material sees F_e; a `linear`
-/// one sees the strain less α (T − T₀).
+/// Thermal expansion of a body, whose `temperature` the steps give. With F = (1 + α (T − T₀)) F_e the material is
+/// evaluated at F_e; a `linear` one at the strain less α (T − T₀).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Thermal {

@@ -70,7 +70,7 @@ pub struct LastIncrement {
     pub dt: f64,
     /// Δu [L]
     pub displacement: Vec<f64>,
-    /// Whether it ends where a contact touches: the next one does not go on like it
+    /// Whether it ends at contact closure: the next one does not extrapolate it
     pub ends_in_touch: bool,
 }
 

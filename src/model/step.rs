@@ -54,7 +54,7 @@ pub struct Step {
     pub scheme: Scheme,
     /// increments
     pub increments: Increments,
-    /// when and how the step goes on explicitly, if it may
+    /// criteria of the automatic switch to explicit integration, if any
     pub rupture: Option<Box<Rupture>>,
     /// prescribed directions, ascending by their dofs
     pub supports: Vec<Prescribed>,
@@ -113,7 +113,7 @@ pub struct Rupture {
     pub slip_rate: f64,
     /// Time over whose mean no point may slip that fast when it turns back: that of a shear wave across the model [T]
     pub calm: f64,
-    /// The step as it goes on explicitly
+    /// The step during explicit integration
     pub explicit: Step,
 }
 

@@ -137,7 +137,7 @@ impl Table {
         Ok(Standing { length: self.length, crc: self.crc.clone().finalize(), held: self.held.clone() })
     }
 
-    /// Whether the file can be gone on with: what stood in it does so still, and no column of it would be lost. Nothing is
+    /// Whether the file can be continued: its content is unchanged, and no column of it would be lost. Nothing is
     /// changed.
     pub fn check(&self, stood: &Standing) -> Result<(), Error> {
         self.can_go_on_from(stood).map_err(|cause| failed(&self.path, &cause))
@@ -318,7 +318,7 @@ pub trait Rows: Sized {
     }
 }
 
-/// Writes the table of some rows while a run goes on.
+/// Writes the table of some rows while a run continues.
 #[derive(Debug)]
 pub struct Sheet<R> {
     table: Table,

@@ -19,7 +19,7 @@ use crate::model::state::State;
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer, Row};
 
-/// Writes frames of the solids and of the interfaces, in the background while the run goes on.
+/// Writes frames of the solids and of the interfaces, in the background while the run continues.
 #[derive(Debug)]
 pub struct Fields {
     folder: PathBuf,

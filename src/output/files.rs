@@ -24,7 +24,7 @@ pub fn create(path: &Path) -> io::Result<File> {
     File::options().read(true).write(true).create_new(true).open(path)
 }
 
-/// A file that is there already, to be gone on with.
+/// A file that is there already, to be continued.
 ///
 /// # Errors
 /// As [`create`].

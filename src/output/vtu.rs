@@ -29,7 +29,7 @@ use crate::mesh::shape::ElementKind;
 /// Bytes of a block before compression: many, since every block begins with tables of its own.
 const BLOCK: usize = 1 << 18;
 
-/// Level of zlib: the quickest, since frames are written while the run goes on.
+/// Level of zlib: the quickest, since frames are written while the run continues.
 const LEVEL: u8 = 1;
 
 /// Share of the words of a block that must say nothing new for its compression to be worth the time.

@@ -132,8 +132,8 @@ impl Simulation {
         Ok((&contacts[k], &self.state().contacts[k]))
     }
 
-    /// Lead the supports of a group from where they are to a displacement at a time, evenly, and hold them there: what the
-    /// piston of a testing machine is told between two increments.
+    /// Drive the supports of a group linearly from their present position to a displacement at a time, and hold them
+    /// there, as the piston of a testing machine is controlled between two increments.
     ///
     /// # Errors
     /// [`Unknown::Group`], and [`Unknown::Support`] where a node is not supported in this direction.

@@ -216,7 +216,7 @@ impl Simulation {
         begun.map_err(|cause| self.unsolvable(cause))
     }
 
-    /// Go on under the loads that whoever leads the run has changed.
+    /// Continue under the loads that the caller has changed.
     fn take_note(&mut self) -> Result<(), IncrementFailure> {
         let state = after_change(&self.model, &self.step, &self.state, &mut self.work)?;
         self.state = state.map_or_else(|| self.state.clone(), Arc::new);

@@ -136,7 +136,7 @@ pub(super) enum Phase {
 }
 
 impl Phase {
-    /// The step as it goes on in this phase: explicitly while a contact slips fast.
+    /// The step in this phase: explicit while a contact slips fast.
     pub(super) fn of<'a>(&self, step: &'a Step) -> &'a Step {
         match (self, &step.rupture) {
             (Self::Rupture { .. }, Some(rupture)) => &rupture.explicit,

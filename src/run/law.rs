@@ -16,7 +16,7 @@ use crate::laws::friction::{FrictionLaw, FrictionResponse, FrictionState, Slidin
 use crate::model::boundary::{Drive, Span};
 use crate::run::error::Error;
 
-/// A test of a law: where it starts and where it is led.
+/// A law test: initial state and prescribed path.
 #[derive(Debug)]
 pub struct LawTest {
     /// the law
@@ -374,7 +374,7 @@ pub struct Peaks {
 }
 
 impl Peaks {
-    /// Take note of the next row.
+    /// Record the next row.
     pub fn note(&mut self, now: PathPoint) {
         let higher = |than: &PathPoint| now.coefficient > than.coefficient;
         let Some(last) = self.last.replace(now) else { return };
@@ -408,7 +408,7 @@ pub struct LawReport {
 }
 
 impl LawReport {
-    /// Take note of the next row.
+    /// Record the next row.
     pub fn note(&mut self, row: &LawRow) {
         let FrictionResponse { state, evaluations, .. } = row.response;
         let FrictionState { pressure, traction, dissipation, .. } = state;

@@ -41,8 +41,8 @@ pub struct Attempt<'a> {
     pub cause: Option<&'a IncrementFailure>,
     /// estimated local error of a displacement, in steps under error control [L]
     pub local_error: Option<f64>,
-    /// share of a contact's force that is in doubt because points touched at an unknown moment of the increment, in static
-    /// steps [-]
+    /// fraction of a contact's force that is uncertain because contact closed at an unknown time within the increment,
+    /// in static steps [-]
     pub doubt: Option<f64>,
 }
 

@@ -262,7 +262,7 @@ impl Simulation {
         Error::Unsolvable { step: self.step.name.clone(), time: self.state.time, cause }
     }
 
-    /// The step as it goes on at present: explicitly while a contact slips fast.
+    /// The present step: explicit while a contact slips fast.
     pub(super) fn step_now(&self) -> &Step {
         self.control.phase.of(&self.step)
     }

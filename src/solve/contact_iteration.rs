@@ -218,7 +218,7 @@ impl ContactIteration {
         Ok(())
     }
 
-    /// The points as the next linear solve sees them.
+    /// The points as linearized in the next solve.
     fn respond(
         &mut self,
         assembler: &mut Assembler,
@@ -276,7 +276,7 @@ impl ContactIteration {
         any
     }
 
-    /// Keep the points as the next linear solve sees them, and count those on which an aid acts.
+    /// Keep the points as linearized in the next solve, and count those on which an aid acts.
     fn take_over(&mut self, model: &Model, u: &[f64], old: &State, aids: Aids) {
         std::mem::swap(&mut self.linearized, &mut self.next);
         self.linearized_at.clear();
@@ -378,7 +378,7 @@ struct Feet {
 }
 
 impl Feet {
-    /// Take note of the segment on which the next linear solve starts.
+    /// Record the segment on which the next linear solve starts.
     fn note(&mut self, state: &ContactState) {
         let segment = state.foot.map(|foot| foot.segment);
         let [last, before] = self.last;
@@ -435,7 +435,7 @@ pub struct Acted {
     pub valley: usize,
     /// it is one on the nodes at contacts alone
     pub condense: usize,
-    /// the correction was searched for how far it leads downhill
+    /// the correction was shortened by a line search
     pub downhill: usize,
     /// the augmented Lagrangian is stiffened
     pub stiffening: usize,

@@ -159,7 +159,7 @@ fn round(
     Some(Ok(()))
 }
 
-/// The tangent of all equations, as the first linear solve of an increment sees it.
+/// The tangent of all equations, at the first linear solve of an increment.
 fn assemble_all(trial: Trial, u: &[f64], work: &mut Workspace) -> Option<()> {
     let Workspace { assembler, iteration, system, .. } = work;
     iteration.start_increment();

@@ -63,7 +63,7 @@ pub struct Iteration {
     pub perturbed_pivots: usize,
     /// Whether the fronts of K were not exact enough, and another solver took over
     pub fallback: bool,
-    /// Whether the correction was searched for how far it leads downhill
+    /// Whether a line search was made along the correction
     pub searched: bool,
 }
 
@@ -163,7 +163,7 @@ pub fn solve<E>(
 struct Plan {
     /// Whether a new tangent is factorized, instead of using earlier factors
     factorized: bool,
-    /// Searched for how far it leads downhill
+    /// With a line search
     searched: bool,
 }
 
@@ -278,9 +278,9 @@ const LEVEL: f64 = 0.1;
 /// Most evaluations of a search along a correction.
 const LONGEST_SEARCH: usize = 12;
 
-/// How far a correction leads downhill, as a share of it: to where `slope` is near 0, or all of it if that is not beyond. It
-/// is not a number where the equations cannot be evaluated. By regula falsi (Illinois), halving where that fails: forces
-/// that stick in a narrow range make the slope steep there.
+/// Line search: step length along a correction, as a fraction of it: to where `slope` is near 0, or all of it if that
+/// is not beyond. It is not a number where the equations cannot be evaluated. By regula falsi (Illinois), halving where
+/// that fails: forces that stick in a narrow range make the slope steep there.
 fn downhill(start: f64, mut slope: impl FnMut(f64) -> f64) -> f64 {
     let level = |s: f64| s.abs() <= LEVEL * start.abs();
     let end = slope(1.0);

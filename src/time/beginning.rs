@@ -61,7 +61,7 @@ fn moves_anew(step: &Step, state: &mut State, work: &mut Workspace) {
     state.energy.kinetic = kinetic;
 }
 
-/// New accelerations within a step if whoever leads the run has changed its loads or dampers, or freed a support; none if they go
+/// New accelerations within a step if the caller has changed its loads or dampers, or freed a support; none if they go
 /// on.
 ///
 /// # Errors

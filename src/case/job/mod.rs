@@ -40,7 +40,7 @@ pub enum Refused {
     /// Results cannot go there.
     #[error("{}: --out: {}", .0.display(), .1)]
     Folder(PathBuf, String),
-    /// There is nothing to go on from.
+    /// There is nothing to resume from.
     #[error("{}: --resume: {}", .0.display(), .1)]
     Checkpoint(PathBuf, checkpoint::Unusable),
     /// The run cannot resume from the results in the folder.
@@ -191,7 +191,7 @@ struct Work {
 }
 
 impl Work {
-    /// Begin or go on, to the end.
+    /// Begin or resume, and run to the end.
     fn go(
         &mut self,
         opened: &Opened,

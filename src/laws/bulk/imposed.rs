@@ -61,7 +61,7 @@ impl Imposed {
         Self { law: law.into(), flat, stressed, expansion, names }
     }
 
-    /// F and F₃₃ as the law under it sees them, at a thermal strain.
+    /// F and F₃₃ of the underlying law, without the thermal strain.
     fn elastic<'a>(&self, straining: &Straining<'a>, strain: f64) -> Straining<'a> {
         let Straining { deformation, stretch, dt, old } = *straining;
         let old = &old[..self.law.variables().len()];

@@ -46,7 +46,7 @@ pub use stability::ExplicitMemory;
 use stability::Stability;
 
 /// Share of its size that no element changes by more than in an increment: what strikes it is stopped by its stiffness
-/// before it is turned inside out.
+/// before it inverts.
 const MOST_CHANGE: f64 = 0.1;
 
 /// Factor on the increments after a collapse.
@@ -65,7 +65,7 @@ pub struct Explicit {
     step: Arc<Step>,
     /// Mass of every node, that of copies with the nodes they move with and with the copies as well [M]
     mass: Vec<f64>,
-    /// Plates of which one component is alike, and rigid ones
+    /// Plates with one equal component, and rigid ones
     plates: Plates,
     /// Dashpots, absorbing sides and damping by the masses, one entry a node
     dampers: Vec<NodeDamper>,

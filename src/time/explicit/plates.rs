@@ -1,4 +1,4 @@
-//! Plates of which one component is alike, and rigid ones, in explicit increments.
+//! Plates with one equal component, and rigid ones, in explicit increments.
 //!
 //! ```text
 //! Σ m_c a = −Σ f_c                              alike in one component; m_c: lumped masses
@@ -34,10 +34,10 @@ pub(super) struct Plates {
     members: Vec<bool>,
 }
 
-/// A plate of which one component is alike.
+/// A plate with one equal component.
 #[derive(Clone)]
 struct Alike {
-    /// Its nodes, the first of which leads
+    /// Its nodes, the first of which is the master
     nodes: Vec<usize>,
     component: usize,
     /// Σ m [M]
@@ -82,7 +82,7 @@ impl Plates {
         self.rigid.iter_mut().for_each(|plate| plate.begin(dt, state));
     }
 
-    /// The rest of (8) at the displacement `u` under the gathered forces, where supports accelerate as told.
+    /// The rest of (8) at the displacement `u` under the gathered forces, where supports accelerate as prescribed.
     pub fn accelerate(
         &mut self,
         (model, dt): (&Model, f64),
@@ -288,7 +288,7 @@ impl Rigid {
         [perpendicular(e) * spin, perpendicular(e) * angular - e * (spin * spin)]
     }
 
-    /// The rest of (8) at the displacement `u` under the gathered forces, where supports accelerate as told.
+    /// The rest of (8) at the displacement `u` under the gathered forces, where supports accelerate as prescribed.
     pub fn accelerate(&mut self, dt: f64, (u, force): (&[f64], &[f64]), supported: &impl Fn(usize) -> f64) {
         let [a, b] = self.leaders;
         let e = self.arm + relative(self.leaders, u);
@@ -316,7 +316,8 @@ impl Rigid {
         self.rates = [self.rates[0] + found * (0.5 * dt), self.rates[1] + found];
     }
 
-    /// a_R and θ̈ from forces and moment, with what resists them besides the masses; where A is held, they are as told.
+    /// a_R and θ̈ from forces and moment, with what resists them besides the masses; where A is supported, they are
+    /// prescribed.
     fn solve(
         &self,
         e: Vector2<f64>,

@@ -95,7 +95,7 @@ impl Stability {
         Ok(stability)
     }
 
-    /// Take note of an increment in which no two nodes move by more than `way` against each other.
+    /// Record an increment in which no two nodes move by more than `way` against each other.
     pub(super) fn moved(&mut self, way: f64) {
         self.margin -= way;
         self.since += 1;
@@ -258,7 +258,7 @@ fn longest(square: f64, viscous: f64) -> f64 {
     4.0 / (viscous + (viscous * viscous + 4.0 * square).sqrt())
 }
 
-/// Share of its size to which an element may be crushed: increments would become shorter without end.
+/// Fraction of its size to which an element may be compressed: increments would become shorter without end.
 const CRUSHED: f64 = 1e-3;
 
 /// One element, as last looked at.

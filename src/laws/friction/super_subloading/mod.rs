@@ -304,7 +304,7 @@ pub struct SuperSubloadingParameters {
     /// How an increment is integrated
     #[serde(default)]
     pub integration: Integration,
-    /// Error allowed to the controlled integration, as a share of μ_s p, from 1e-12 to 0.1; 1e-6 by default [-]
+    /// Error tolerance of the controlled integration, as a fraction of μ_s p, from 1e-12 to 0.1; 1e-6 by default [-]
     #[serde(default)]
     pub tolerance: Option<f64>,
 }
