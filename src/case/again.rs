@@ -150,8 +150,7 @@ impl Opened {
             if let Some(mu) = pair.points.iter().zip(states).map(mu).find(|mu| !varies && !allowed.contains(mu)) {
                 let place = format!("contacts.{}.friction", pair.name);
                 let message = format!(
-                    "a point carries over mu = {mu}, outside the range from mu_k = {lowest} to mu_s \
-                                       = {highest}"
+                    "a point carries over mu = {mu}, outside the range from mu_k = {lowest} to mu_s = {highest}"
                 );
                 return Err(Complaint::new(place, message));
             }

@@ -255,10 +255,8 @@ fn check_dt(place: &str, dt: f64, span: Span) -> Checked<()> {
     check_positive(place, dt)?;
     let steps = (span.end - span.start) / dt;
     if steps > MOST_STEPS {
-        let message = format!(
-            "is {dt:e}: that makes {steps:.1e} steps in a phase, and at most {MOST_STEPS:e} are \
-                               allowed"
-        );
+        let message =
+            format!("is {dt:e}: that makes {steps:.1e} steps in a phase, and at most {MOST_STEPS:e} are allowed");
         return Err(Complaint::new(place, message));
     }
     let least = SHORTEST_STEP * span.end.abs().max(span.start.abs());

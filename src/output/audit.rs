@@ -109,8 +109,7 @@ fn remedy(model: &Model, step: &Step) -> &'static str {
              (dt.error), or make the contact `massless`"
         }
         (false, false) => {
-            "the scheme damps frequencies that the increments do not resolve: take shorter increments \
-                           (dt.error)"
+            "the scheme damps frequencies that the increments do not resolve: take shorter increments (dt.error)"
         }
     }
 }

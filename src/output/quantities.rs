@@ -253,18 +253,8 @@ pub const FRONTS: [Quantity; 14] = [
     q("speed_over_c_s", NONE, "speed over that of shear waves"),
     q("speed_over_c_p", NONE, "speed over that of pressure waves"),
     q("event", NONE, "number of the event in `events.csv`; 0 outside of events, as may be with `arrival`"),
-    q(
-        "rupture_length",
-        LENGTH,
-        "summed tributary length of the points ruptured by the event up to this arrival, each \
-                                 counted once",
-    ),
-    q(
-        "energy_released",
-        ENERGY,
-        "energy released by the model since the first arrival: Δ(external work − stored \
-                                  energies)",
-    ),
+    q("rupture_length", LENGTH, "tributary length of the points ruptured up to this arrival, each counted once"),
+    q("energy_released", ENERGY, "energy released since the first arrival: Δ(external work − stored energies)"),
 ];
 
 /// Columns of `events.csv`: a row an event of a contact.
@@ -366,15 +356,7 @@ pub const ALL: [(&str, &[Group]); 10] = [
             ("CONTACT", &CONTACT),
             ("SET", &WATCHED),
             ("", &[RADIATED]),
-            (
-                "CONTACT",
-                &[q(
-                    "mean_…",
-                    NONE,
-                    "means of the internal variables of laws, of `dilation` and `wear`, by \
-                                             their names",
-                )],
-            ),
+            ("CONTACT", &[q("mean_…", NONE, "means of internal variables, `dilation` and `wear`")]),
             ("CONTACT", &RESULTANT),
             ("BODY", &BODY),
             ("SET", &EDGES),
@@ -399,11 +381,7 @@ pub const ALL: [(&str, &[Group]); 10] = [
     ("events.csv", &[("", &EVENTS)]),
     (
         "newton.csv",
-        &[
-            ("", &NEWTON),
-            ("", &[q("aid_…", NONE, "contact points on which each convergence aid acted")]),
-            ("", &VERDICT),
-        ],
+        &[("", &NEWTON), ("", &[q("aid_…", NONE, "points on which each convergence aid acted")]), ("", &VERDICT)],
     ),
     ("law.csv", &[("", &LAW), ("", &[OF_SOME[0]])]),
 ];

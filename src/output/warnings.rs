@@ -223,13 +223,9 @@ impl Warnings {
                     "the factorization of the tangent was not accurate enough, and a slower solver was used".into()
                 }
                 (pivots, false) => format!("{pivots} pivots of the tangent were nearly zero and were replaced"),
-                (pivots, true) => format!(
-                    "{pivots} pivots of the tangent were nearly zero, and a slower solver was \
-                                           used"
-                ),
+                (pivots, true) => format!("{pivots} pivots of the tangent were nearly zero; a slower solver was used"),
             };
-            self.list
-                .push(format!("{start}: {found}; the equations are solved, but a body may be almost unconstrained"));
+            self.list.push(format!("{start}: {found}; the equations are solved, but a body may be barely constrained"));
         }
     }
 
@@ -257,10 +253,8 @@ impl Warnings {
                 time_text(old.time)
             );
             let percent = 100.0 * doubt;
-            let found = format!(
-                "contact closed within it, so that the friction force is uncertain by {percent:.1} % of the \
-                         contact force"
-            );
+            let found =
+                format!("contact closed within it: friction force uncertain by {percent:.1} % of the contact force");
             self.list.push(format!("{start}, and {found}; lower dt.min"));
         }
     }

@@ -185,8 +185,8 @@ impl Attempt<'_> {
             Verdict::Touch => {
                 let share = 100.0 * self.doubt.unwrap_or_default();
                 format!(
-                    "solved, but contact closed within the increment; friction force uncertain by {share:.2} % of \
-                         the contact force"
+                    "solved, but contact closed within the increment; friction force uncertain by {share:.2} % of the \
+                     contact force"
                 )
             }
             Verdict::Rupture => {
@@ -207,8 +207,7 @@ impl Attempt<'_> {
         match last.flips {
             _ if closed == 0 && last.contacts.open > 0 => {
                 format!(
-                    "{cause}; all contact points had opened during the iterations, and nothing constrained the \
-                         bodies"
+                    "{cause}; all contact points had opened during the iterations, and nothing constrained the bodies"
                 )
             }
             0 => cause.to_string(),

@@ -1014,10 +1014,7 @@ fn check_tells_how_far_small_sliding_goes() {
         .collect();
     let [told, _] = outcome("check", &[small, ("/mesh/nodes", json!(moved.clone()))]);
     assert!(
-        told.contains(
-            "of the slave without a projection on the master, and never come into contact in small \
-                           sliding"
-        ),
+        told.contains("of the slave without a projection on the master, and never come into contact in small sliding"),
         "{told}"
     );
     let [told, _] = outcome("check", &[("/mesh/nodes", json!(moved))]);

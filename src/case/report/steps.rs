@@ -81,8 +81,8 @@ fn step_lines(step: &Step) -> Vec<String> {
     lines.extend(step.rupture.as_ref().map(|rupture| {
         let [rate, calm] = [rupture.slip_rate, rupture.calm].map(number);
         format!(
-            "explicit integration while a contact slips faster than {rate}; implicit again from the mean motion \
-                 over {calm}"
+            "explicit integration while a contact slips faster than {rate}; implicit again from the mean motion over \
+             {calm}"
         )
     }));
     lines

@@ -300,8 +300,8 @@ impl Sliding {
 pub enum LawFailure {
     /// The increment itself is not a finite number.
     #[error(
-        "the friction law was evaluated for a slip {slip}, pressure {pressure} and time increment {dt} that are \
-             not all finite"
+        "the friction law was evaluated for a slip {slip}, pressure {pressure} and time increment {dt} that are not \
+         all finite"
     )]
     NotFinite {
         /// slip increment [L]
@@ -332,8 +332,8 @@ pub enum LawFailure {
     },
     /// The opening of a dilating law grows faster with the pressure than the contact compliance.
     #[error(
-        "the opening {opening:.6e} of the friction law and the pressure {pressure:.6e} did not converge to a \
-             common solution"
+        "the opening {opening:.6e} of the friction law and the pressure {pressure:.6e} did not converge to a common \
+         solution"
     )]
     Opening {
         /// d [L]

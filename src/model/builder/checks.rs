@@ -58,8 +58,7 @@ pub fn check_rows(model: &Model) -> Checked<()> {
         true => Ok(()),
         false => {
             let message = format!(
-                "is {interval:e}: that makes {rows:.1e} rows of results, and at most {MOST_INCREMENTS:e} are \
-                         allowed"
+                "is {interval:e}: that makes {rows:.1e} rows of results, at most {MOST_INCREMENTS:e} are allowed"
             );
             Err(ModelError::new("output.interval", message))
         }
@@ -160,17 +159,13 @@ fn check_contact(pair: &ContactPair) -> Checked<()> {
     if pair.fluid.is_some() {
         return refused(
             ".fluid_pressure",
-            "is not for quasi_dynamic steps, which take no change of pressure into account: take static steps with \
+            "is not for quasi_dynamic steps, which ignore changes of pressure: take static steps with \
              radiation_damping",
         );
     }
     if let Some(name) = pair.laws.iter().find_map(|law| law.description.opening.first()) {
         let key = if *name == "wear" { ".wear" } else { ".dilatancy" };
-        return refused(
-            key,
-            "is not for quasi_dynamic steps, which take no change of pressure into account: leave it \
-                             out",
-        );
+        return refused(key, "is not for quasi_dynamic steps, which ignore changes of pressure: leave it out");
     }
     if pair.laws.iter().any(|law| law.law.rates().is_none()) {
         let message = "has no slip rate that follows from traction and state, as quasi_dynamic steps need it: take \
@@ -206,10 +201,7 @@ fn check_nodes(model: &Model) -> Checked<()> {
             };
             for node in std::iter::once(own).chain(master).map(|node| model.ties.original(node)) {
                 if !seen.insert(node) {
-                    return refused(format!(
-                        "node {} is opposite two others: quasi_dynamic steps need pairs",
-                        tags(&[node])
-                    ));
+                    return refused(format!("node {} has two partners: quasi_dynamic steps need pairs", tags(&[node])));
                 }
             }
         }
