@@ -358,7 +358,7 @@ fn what_is_no_small_sliding_is_told() {
         case["steps"][0]["supports"] = json!([{"on": "lower", "rotation": turn}, {"on": "upper", "rotation": turn}]);
         let turned = told(&case);
         assert_eq!(turned.len(), count, "{turned:?}");
-        assert!(turned.iter().all(|told| told.contains("turned by 0.021 rad")), "{turned:?}");
+        assert!(turned.iter().all(|told| told.contains("rotated by 0.021 rad")), "{turned:?}");
     }
     for (share, count) in [(0.95, 0), (1.05, 1), (-1.05, 1)] {
         let mut case = dragged(0.0, 0.0);
