@@ -311,7 +311,7 @@ pub const NEWTON: [Quantity; 15] = [
     q("factorized", NONE, "1 where the matrix was factorized anew"),
     q("stabilization", NONE, "fraction of the stabilizing forces"),
     q("flips", NONE, "points that changed between open, stick and slip"),
-    q("pass", NONE, "augmentation of the augmented Lagrangian"),
+    q("pass", NONE, "number of the augmentation (augmented Lagrangian)"),
 ];
 
 /// ... which are these.
@@ -356,7 +356,7 @@ pub const ALL: [(&str, &[Group]); 10] = [
             ("CONTACT", &CONTACT),
             ("SET", &WATCHED),
             ("", &[RADIATED]),
-            ("CONTACT", &[q("mean_…", NONE, "means of internal variables, `dilation` and `wear`")]),
+            ("CONTACT", &[q("mean_…", NONE, "means of internal variables, `dilation` and `wear`, by their names")]),
             ("CONTACT", &RESULTANT),
             ("BODY", &BODY),
             ("SET", &EDGES),
