@@ -27,22 +27,22 @@ enum Command {
         /// Threads [default: all cores]
         #[arg(long)]
         threads: Option<usize>,
-        /// No progress
+        /// Print errors only
         #[arg(long)]
         quiet: bool,
-        /// Go on from the last checkpoint in the folder, to the same bits as if the run had never stopped
+        /// Resume from the last checkpoint in the folder; results are bitwise identical to those of an uninterrupted run
         #[arg(long)]
         resume: bool,
     },
-    /// Read a case and its mesh, check everything, print what was understood; solve nothing
+    /// Check a case and its mesh, and print the case as interpreted; solve nothing
     Check {
         /// The case file (JSON)
         case: PathBuf,
-        /// Print the case with every default filled in instead, which runs to the same bits; paths in it count from the case file
+        /// Print the case with every default filled in instead: it gives bitwise identical results; its paths are relative to the case file
         #[arg(long)]
         resolved: bool,
     },
-    /// Drive a friction law alone along a path of slip, pressure and time
+    /// Drive a friction law on its own along a path of slip, pressure and time
     Law {
         /// The test (JSON)
         test: PathBuf,
@@ -50,24 +50,24 @@ enum Command {
         #[arg(long)]
         out: Option<PathBuf>,
     },
-    // Whoever still asks for it is told what to use instead.
+    // The command only says what to use instead.
     #[command(hide = true, disable_help_flag = true)]
     Plot {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         anything: Vec<OsString>,
     },
-    /// Write one page (HTML) to look at results in a browser; several folders are overlaid
+    /// Write one HTML page of results for a browser; several folders are overlaid
     Report {
-        /// Folders of results, finished or still growing
+        /// Folders of results, of finished or active runs
         #[arg(required = true)]
         folders: Vec<PathBuf>,
         /// The page [default: report.html in the folder of the results, out/report.html for several]
         #[arg(long)]
         out: Option<PathBuf>,
     },
-    /// Print the JSON Schema of the case file or of the test of a law, or the quantities of results
+    /// Print the JSON Schema of the case file or of a law test, or the quantities of results
     Schema {
-        /// Of which file
+        /// Schema to print
         #[arg(value_enum, default_value_t = Input::Case)]
         of: Input,
     },

@@ -66,7 +66,7 @@ def figure(test):
         at["loop"].set(xlabel="pressure p" + labels["stress"], ylabel="traction q" + labels["stress"])
     if "ageing" in at:
         at["ageing"].semilogx([hold["duration"] for hold in holds], [hold["peak"]["coefficient"] for hold in holds], "o", ms=4)
-        at["ageing"].set(xlabel="time at rest before" + labels["time"], ylabel="peak |q|/p")
+        at["ageing"].set(xlabel="hold duration" + labels["time"], ylabel="peak |q|/p")
     drawn.suptitle(summary["title"], fontsize=10)
     drawn.savefig(test.with_suffix(".svg"), metadata={"Date": None})
 

@@ -116,7 +116,7 @@ def _ended(task: Task, halted: Callable[[], bool]) -> Record:
             return task.write({**_record("completed", task), "resumed": True})
         begun = _begun(task, record)
         if begun["deaths"] >= DEATHS:
-            reason = f"its worker died {DEATHS} times on the way: out of memory? (memory=, fewer workers)"
+            reason = f"its worker died {DEATHS} times during the run: out of memory? (memory=, fewer workers)"
             return task.write(_record("lost", None, reason))
         task.write(begun)
         started = time.monotonic()

@@ -62,7 +62,7 @@ class Case:
         self._mesh: Mesh | None = None
         if isinstance(source, (str, os.PathLike)):
             if keys:
-                raise TypeError(f"a case file says all: {', '.join(keys)} cannot be given beside it")
+                raise TypeError(f"a case file is complete: {', '.join(keys)} cannot be given in addition")
             self._path = os.fspath(source)
             self._native = _native.Case.read(self._path)
             self._document: dict[str, Any] = json.loads(self._native.document())
@@ -98,7 +98,7 @@ class Case:
         return str(self._document.get("title", ""))
 
     def check(self) -> str:
-        """Read the mesh, check everything, and tell what was understood; solves nothing.
+        """Check the case and its mesh, and return the case as interpreted; solves nothing.
 
         Raises:
             CaseError: file, place and value of what is wrong.

@@ -34,7 +34,7 @@ class Result:
 
     @classmethod
     def open(cls, folder: str | os.PathLike[str]) -> Result:
-        """The results in a folder, finished or still growing.
+        """The results in a folder, of a finished or active run.
 
         Raises:
             FileNotFoundError: there is no ``summary.json``.
@@ -91,8 +91,8 @@ class Result:
 
     @cached_property
     def newton(self) -> pd.DataFrame:
-        """A row a linear solve: residual, correction, numbers of points open, sticking, slipping; what became of the attempt (``verdict``),
-        and why it was given up (``reason``). One that was given up before its first solve has a row whose ``iteration`` is 0."""
+        """A row a linear solve: residual, correction, numbers of points open, sticking, slipping; the outcome of the attempt (``verdict``)
+        and the reason of its rejection (``reason``). One rejected before its first solve has a row whose ``iteration`` is 0."""
         return self._table("newton.csv")
 
     @cached_property

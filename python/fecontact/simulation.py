@@ -65,12 +65,12 @@ class Increment:
 
     @property
     def reaction(self) -> Array:
-        """What the supports put on the nodes, shape (nodes, 2) [F]; a view."""
+        """Forces of the supports on the nodes, shape (nodes, 2) [F]; a view."""
         return self._native.field("reaction")
 
     @property
     def external(self) -> Array:
-        """What loads and supports put on the nodes, shape (nodes, 2) [F]; a view."""
+        """Forces of loads and supports on the nodes, shape (nodes, 2) [F]; a view."""
         return self._native.field("external")
 
     def __repr__(self) -> str:
@@ -266,7 +266,7 @@ class Simulation:
     def resume(
         cls, case: Case | Mapping[str, Any] | str | os.PathLike[str], saved: _native.Saved, threads: int | None = None
     ) -> Simulation:
-        """Go on from what :meth:`save` gave, to the same bits as if the run had never stopped.
+        """Resume from what :meth:`save` returned, bitwise identical to an uninterrupted run.
 
         Args:
             case: the case that it was saved of. Its title, units, what is watched and what is written may be others, and so may

@@ -211,7 +211,7 @@ fn answers(course: &LawPath, k: usize, parameters: &Value, ask: Ask) -> Result<A
     let stopped = |error: Error| Refusal::Stopped(format!("{set}{error}"));
     ended.map_err(stopped)?;
     if answers.rows.len() != course.time.len() {
-        return Err(Refusal::Stopped(format!("{set}the law was not asked at all times")));
+        return Err(Refusal::Stopped(format!("{set}the law was not evaluated at all times")));
     }
     if let Some(law) = law.sensitivities().filter(|_| !by.is_empty()) {
         answers

@@ -37,7 +37,7 @@ pub fn register_law(name: &str, call: Bound<PyAny>, variables: Vec<(String, f64)
     let call = call.unbind();
     let bad = |message: String| Err(PyValueError::new_err(format!("law `{name}`: {message}")));
     if variables.len() > MOST_VARIABLES {
-        return bad(format!("has {} variables: {MOST_VARIABLES} are the most", variables.len()));
+        return bad(format!("has {} variables: at most {MOST_VARIABLES} are allowed", variables.len()));
     }
     if let Some((variable, value)) = variables.iter().find(|(_, value)| !value.is_finite()) {
         return bad(format!("variable `{variable}` is {value} at first touch: must be a finite number"));

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use fecontact::case::job::{Company, Failed, Job, Outcome, Refused, last};
+use fecontact::case::job::{Callbacks, Failed, Job, Outcome, Refused, last};
 use fecontact::equations::ContactCounts;
 use fecontact::model::Model;
 use fecontact::output::report as page;
@@ -70,7 +70,7 @@ pub fn run<'py>(
     };
     let (ends, raised, progress) = (pool.raised.ends(), pool.raised.clone(), Progress(news.clone()));
     let outcome = pool.long(py, tell, move || {
-        let outcome = job.run(Company { warn, ends, progress: Some(Box::new(progress)) })?;
+        let outcome = job.run(Callbacks { warn, ends, progress: Some(Box::new(progress)) })?;
         let page = page_of.filter(|_| outcome.is_readable());
         let page = page.map(|out| {
             page::write(std::slice::from_ref(&out), &out.join(page::FILE)).map_err(|error| error.to_string())
@@ -104,7 +104,7 @@ fn open(case: &Case, out: &Path, resume: bool, report: bool, warn: &dyn Fn(&str)
     };
     opened.case.output.report = report;
     if let Some(damage) = &damage {
-        warn(&format!("{damage}; the checkpoint before it is taken"));
+        warn(&format!("{damage}; the previous checkpoint is used"));
     }
     Job::open(opened, damage, out)
 }

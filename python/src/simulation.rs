@@ -179,7 +179,7 @@ impl Simulation {
         self.with(|under_way| {
             let now = under_way.run.state().time;
             if !(by > now && by.is_finite()) {
-                return Err(complaint(py, "lead", "by", format!("is {by}: must be a time to come, and now is {now}")));
+                return Err(complaint(py, "lead", "by", format!("is {by}: must be after the current time, {now}")));
             }
             if !to.is_finite() {
                 let place = ["ux", "uy"][axis.min(1)];

@@ -101,9 +101,9 @@ def test_steady_sliding_is_where_a_long_drive_ends(friction: dict[str, Any]) -> 
         (lambda: fc.law("coulomb", mu=[0.3, -1.0], alpha_t=1.0).drive([0, 1], 0.0, 1.0), '"mu" is -1'),
         (lambda: fc.law("coulomb", mu=[0.3, 1.0], alpha_t=[1.0, 2.0, 3.0]), r"mu \(2,\), alpha_t \(3,\)"),
         (lambda: fc.law(PAPER).drive([0, 1, 2], [0.0, 1.0], 1.0), r"slip: has the shape \(2,\): must be \(3,\), as time has"),
-        (lambda: fc.law(PAPER).drive([0, 1, 1], 0.0, 1.0), "times must ascend"),
+        (lambda: fc.law(PAPER).drive([0, 1, 1], 0.0, 1.0), "times must increase"),
         (lambda: fc.law(PAPER).drive([0, 1, np.nan], 0.0, 1.0), r"time\[2\]: is nan"),
-        (lambda: fc.law(PAPER).drive([0, 1], 0.0, 1.0, traction=9.0), "traction: is 9, beyond the strength"),
+        (lambda: fc.law(PAPER).drive([0, 1], 0.0, 1.0, traction=9.0), "traction: is 9, above the initial strength"),
         (lambda: fc.law("prescribed", slip_rate=1.0, alpha_t=1.0).steady(1.0), "has no steady sliding"),
         (lambda: fc.law(PAPER).drive([0, 1], 0.0, 1.0, traction=np.nan), "law: traction: is nan: must be a finite number"),
         (lambda: fc.law(PAPER).ride([0, 1], 0.0, 1.0, stiffness=1, mass=1, force=np.inf), "law: force: is inf: must be a finite number"),
@@ -233,7 +233,7 @@ def test_laws_that_nobody_has_registered(program: Path, document: dict[str, Any]
     (tmp_path / "case.json").write_text(json.dumps(document))
     told = command(program, "check", tmp_path / "case.json")
     assert told.returncode == 2 and "no law `nobodys` is registered in this program; none is" in told.stderr
-    with pytest.raises(ValueError, match="has 5 variables: 4 are the most"):
+    with pytest.raises(ValueError, match="has 5 variables: at most 4 are allowed"):
         fc.friction_law("five", variables=dict.fromkeys("abcde", 0.0))(coulomb)
     with pytest.raises(TypeError, match="law `three`: must be a function"):
         fc.friction_law("three")(3)  # type: ignore[arg-type]
@@ -244,8 +244,8 @@ def test_laws_that_nobody_has_registered(program: Path, document: dict[str, Any]
     [
         *(([name], f"a variable cannot be named `{name}`") for name in ("q", "p", "slip", "time", "pressure", "dilation", "gap", "Slip")),
         *(([name], "must begin with a letter") for name in ("", " ", "a,b", "a.b", "../a", "<b>", "a\x1b[31m", "a\n", "1a", "a" * 65)),
-        (["a", "A"], "`a` and `A` are told apart by capitals at most"),
-        (["r"], "`R` and `r` are told apart by capitals at most"),
+        (["a", "A"], "`a` and `A` differ at most in capitals"),
+        (["r"], "`R` and `r` differ at most in capitals"),
     ],
 )
 def test_names_of_variables_are_checked(names: list[str], message: str) -> None:

@@ -103,7 +103,7 @@ def test_a_mesh_at_hand_that_has_changed_is_refused(document: dict[str, Any]) ->
     simulation = fc.Simulation(case)
     next(simulation)
     moved = case.replace({"mesh": fc.Mesh(1.5 * nodes, **parts)})
-    with pytest.raises(fc.CaseError, match="mesh: its nodes lie elsewhere, so the run cannot go on from its checkpoint"):
+    with pytest.raises(fc.CaseError, match="mesh: its nodes are at other positions; the run cannot be resumed from its checkpoint"):
         fc.Simulation.resume(moved, simulation.save())
 
 
@@ -142,7 +142,7 @@ def test_a_run_that_was_stopped_goes_on_from_what_was_saved(document: dict[str, 
     assert [increment.time for increment in again] == result.history["time"].tolist()[4:]
     # Its checkpoint is one of the middle of a run, with which nothing can begin.
     simulation.write(tmp_path)
-    with pytest.raises(fc.CaseError, match="has not come to its end"):
+    with pytest.raises(fc.CaseError, match="the run is not complete"):
         fc.Case({**document, "begin_with": str(tmp_path)}).check()
 
 
@@ -230,7 +230,7 @@ def test_many_changes_cost_no_memory_and_no_time() -> None:
         ({"on": "ball", "forse": {"y": 1}}, "did you mean `force`"),
         ({"on": "ball"}, "must give exactly one of"),
         ({"on": "ball", "force": {"y": float("nan")}}, "load: force.y: is nan"),
-        ({"on": "ball", "force": {"y": 1}, "by": -1.0}, "by: is -1: must be a time from now on"),
+        ({"on": "ball", "force": {"y": 1}, "by": -1.0}, "by: is -1: must not be before the current time"),
     ],
 )
 def test_bad_loads(given: dict[str, Any], message: str) -> None:

@@ -22,7 +22,7 @@ use crate::model::state::State;
 use crate::output::checkpoint::{self, Checkpoint, MeshPrint};
 use crate::run::{Saved, SavedRun};
 
-/// What never changes how a run goes on.
+/// Keys that never affect how a run continues.
 const FREE: [&str; 5] = ["title", "units", "watch", "probes", "output"];
 
 /// Values that differ by less than this, relative, are the same.
@@ -44,7 +44,7 @@ pub struct Opened {
     mesh: Option<Mesh>,
     /// from where it begins, unless at the beginning
     start: Option<Checkpoint>,
-    /// whether it goes on with the run of that checkpoint
+    /// whether it resumes the run of that checkpoint
     resumes: bool,
 }
 
@@ -67,7 +67,7 @@ impl Opened {
         Ok(opened)
     }
 
-    /// Open a case whose run goes on from a checkpoint.
+    /// Open a case whose run resumes from a checkpoint.
     ///
     /// # Errors
     /// [`CaseError`], also where the case has changed since, and how.
@@ -88,13 +88,13 @@ impl Opened {
         Self { case, path: path.to_owned(), document, taken_over: 0, inputs, mesh: None, start, resumes: false }
     }
 
-    /// On a mesh at hand, for which what the case says of its mesh is a name.
+    /// Use a mesh in memory; the mesh that the case names is then only a label.
     #[must_use]
     pub fn on(self, mesh: Mesh) -> Self {
         Self { mesh: Some(mesh), inputs: self.inputs.into_iter().skip(1).collect(), ..self }
     }
 
-    /// Build the model, and the run to begin from or to go on with; `None` to begin at the beginning.
+    /// Build the model, and the run to begin from or to resume; `None` to begin at the beginning.
     ///
     /// # Errors
     /// [`CaseError`] as [`super::build`], and where the run is not one of this model.
@@ -115,8 +115,8 @@ impl Opened {
         Ok((model, Some(saved.begin())))
     }
 
-    /// A run that was saved in this process, to go on with this case on its model. It was one of the case `before`, its steps
-    /// behind those of the case that it begins with, on a mesh.
+    /// A run that was saved in this process, to resume with this case on its model. It was one of the case `before`,
+    /// its steps behind those of the case that it begins with, on a mesh.
     ///
     /// # Errors
     /// [`CaseError`] as [`Self::resume`] and [`Self::build`].
@@ -134,7 +134,7 @@ impl Opened {
     }
 
     fn not_of(&self, place: &str, message: String) -> CaseError {
-        ModelError::new(place, format!("{message}, so the run cannot go on from its checkpoint")).in_file(&self.path)
+        ModelError::new(place, format!("{message}; the run cannot be resumed from its checkpoint")).in_file(&self.path)
     }
 
     /// A structure that the other case has left must be one of the law as it is now.
@@ -153,14 +153,16 @@ impl Opened {
             let varies = of_law || !input.along.law.is_empty();
             if let Some(mu) = pair.points.iter().zip(states).map(mu).find(|mu| !varies && !allowed.contains(mu)) {
                 let place = format!("contacts.{}.friction", pair.name);
-                let message = format!("a point comes with mu = {mu}, outside mu_k = {lowest} to mu_s = {highest}");
+                let message = format!(
+                    "a point carries over mu = {mu}, outside the range from mu_k = {lowest} to mu_s = {highest}"
+                );
                 return Err(ModelError::new(place, message));
             }
         }
         Ok(())
     }
 
-    /// Whether it goes on with a run.
+    /// Whether it resumes a run.
     pub fn resumes(&self) -> bool {
         self.resumes
     }
@@ -219,7 +221,7 @@ fn begun(document: &mut Value, source: &Path) -> Checked<(PathBuf, Checkpoint)> 
     };
     if !checkpoint.complete {
         let message =
-            format!("{}: has not come to its end: go on with it first (fecontact run --resume)", source.display());
+            format!("{}: the run is not complete: resume it first (fecontact run --resume)", source.display());
         return Err(complain(message));
     }
     let before = document_of(&checkpoint)?;
@@ -231,7 +233,7 @@ fn begun(document: &mut Value, source: &Path) -> Checked<(PathBuf, Checkpoint)> 
         }
     }
     differences.retain(|difference| !difference.is_variant());
-    told(differences, "this case is not one that can begin there")?;
+    told(differences, "this case cannot begin with the end of that run")?;
     join(document, steps(&before));
     Ok((file, checkpoint))
 }
@@ -254,7 +256,7 @@ fn unchanged(before: &Value, now: &Value, begun: usize) -> Checked<()> {
 /// Parameters of friction that only the start of a run depends on, or that what is stored depends on.
 const STARTING: [&str; 4] = ["alpha_t", "law", "structure", "theta"];
 
-/// Differences that are told at once.
+/// Differences listed in one message.
 const TOLD: usize = 5;
 
 /// A place where two cases differ.

@@ -24,7 +24,7 @@ fn within(place: &str) -> String {
 }
 
 impl ModelError {
-    /// With the file it is about.
+    /// The error with the file that it concerns.
     pub fn in_file(self, file: &Path) -> CaseError {
         CaseError { file: file.to_owned(), place: self.place, message: self.message }
     }

@@ -30,11 +30,11 @@ pub struct LawTestInput {
     /// State at the start
     #[serde(default)]
     pub initial: StartInput,
-    /// Longest step [T]; a hundredth of each phase, or the rows of the table, unless given
+    /// Longest step [T]; default: a hundredth of each phase, or the rows of the table
     pub dt: Option<f64>,
     /// Phases, one after the other; either this or a table
     pub path: Option<Vec<PhaseInput>>,
-    /// Rows [time, slip, pressure], times ascending, straight lines between; either this or a path
+    /// Rows [time, slip, pressure] with increasing times, linear between; either this or a path
     pub table: Option<Vec<[f64; 3]>>,
 }
 
@@ -45,7 +45,7 @@ pub struct StartInput {
     /// q: traction, within ±μ p [F/L²]
     #[serde(default)]
     pub traction: f64,
-    /// p: pressure [F/L²]; the path's own at its start unless given
+    /// p: pressure [F/L²]; default: that of the path at its start
     pub pressure: Option<f64>,
 }
 
@@ -55,12 +55,12 @@ pub struct StartInput {
 pub struct PhaseInput {
     /// Length of the phase [T]
     pub duration: f64,
-    /// Total slip [L]: a number (reached at the end), an expression in the time t, {"rate": v} or {"table": [[t, v], …]};
-    /// it rests unless given
+    /// Total slip [L]: a number (reached at the end), an expression in the time t, {"rate": v} or {"table": [[t, v],
+    /// …]}; constant by default
     pub slip: Option<Drive>,
-    /// Pressure [F/L²], in the same forms; at or below 0 the surfaces are apart; it stays as it is unless given
+    /// Pressure [F/L²], in the same forms; at or below 0 the surfaces are open; constant by default
     pub pressure: Option<Drive>,
-    /// Longest step in this phase [T]; that of the test unless given
+    /// Longest step in this phase [T]; default: that of the test
     pub dt: Option<f64>,
 }
 
@@ -144,7 +144,7 @@ fn start(input: &LawTestInput, law: &dyn FrictionLaw, pressure: f64) -> Checked<
     let strength = law.description().starting_limit(pressure);
     if traction.abs() > strength * (1.0 + SAME) {
         let message = format!(
-            "is {traction}, beyond the strength mu p = {} · {pressure} = {strength} at the start: lower it, or raise the \
+            "is {traction}, above the initial strength mu p = {} · {pressure} = {strength}: lower it, or raise the \
              pressure or the structure",
             observables::value(law, "mu", &at_rest)
         );
@@ -191,7 +191,7 @@ fn phase_of(input: &LawTestInput, place: &str, phase: &PhaseInput, before: Optio
     })
 }
 
-/// How a quantity varies that has `reached` a value, if that is known.
+/// Time function of a quantity in a phase, starting from the value `reached`, if that is known.
 fn course(place: &str, given: Option<&Drive>, reached: Option<f64>) -> Checked<PathDrive> {
     let complain = |message: &str| Err(ModelError::new(place, message));
     let Some(given) = given else {
@@ -217,7 +217,7 @@ fn check_continuous(place: &str, course: &PathDrive, reached: f64, span: Span) -
     let first = course.value(span.start, span);
     // What is not finite is complained of later.
     if (first - reached).abs() > SAME * first.abs().max(reached.abs()).max(f64::MIN_POSITIVE) {
-        let message = format!("jumps from {reached} to {first} at the time {}: begin where it was", span.start);
+        let message = format!("jumps from {reached} to {first} at t = {}: start from the value reached", span.start);
         return Err(ModelError::new(place, message));
     }
     Ok(())
@@ -228,7 +228,7 @@ fn table_of(input: &LawTestInput, table: &[[f64; 3]]) -> Checked<Phase> {
         return Err(ModelError::new("table", "must have two rows [time, slip, pressure] or more"));
     };
     if let Some(pair) = table.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
-        let message = format!("the times must ascend: {} follows {}", pair[1][0], pair[0][0]);
+        let message = format!("the times must increase: {} follows {}", pair[1][0], pair[0][0]);
         return Err(ModelError::new("table", message));
     }
     let span = Span { start: *start, end: *end };
@@ -250,7 +250,8 @@ fn check_dt(place: &str, dt: f64, span: Span) -> Checked<()> {
     check_positive(place, dt, "")?;
     let steps = (span.end - span.start) / dt;
     if steps > MOST_STEPS {
-        let message = format!("is {dt:e}: that makes {steps:.1e} steps of a phase, and {MOST_STEPS:e} are the most");
+        let message =
+            format!("is {dt:e}: that makes {steps:.1e} steps in a phase, and at most {MOST_STEPS:e} are allowed");
         return Err(ModelError::new(place, message));
     }
     let least = SHORTEST_STEP * span.end.abs().max(span.start.abs());

@@ -24,7 +24,7 @@ impl LoadChanges {
     fn of(case: &Case, simulation: &Simulation, before: Option<&Self>) -> Checked<Self> {
         let model = simulation.model();
         if simulation.has_ended_early() {
-            let message = "cannot be given after a step that `until` has ended before its time: give it in the steps";
+            let message = "cannot be set after a step that `until` ended early: set it in the steps";
             return Err(ModelError::new("load", message));
         }
         let step = simulation.step_number();
@@ -60,7 +60,7 @@ fn changed(
 ) -> Checked<()> {
     let now = simulation.state().time;
     if !(by >= now && by.is_finite()) {
-        return Err(ModelError::new("by", format!("is {by}: must be a time from now on, and now is {now}")));
+        return Err(ModelError::new("by", format!("is {by}: must not be before the current time, {now}")));
     }
     let load: Load = read::input(document)?;
     let mut changed = LoadChanges::of(case, simulation, loading.as_ref())?;

@@ -54,7 +54,7 @@ pub fn build(case: &Case, path: &Path) -> Result<Model, CaseError> {
     build_on(case, mesh, path)
 }
 
-/// As [`build`], on a mesh at hand.
+/// As [`build`], on a mesh in memory.
 ///
 /// # Errors
 /// As [`build`].

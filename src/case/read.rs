@@ -5,7 +5,7 @@
 //!
 //! A JSON document whose lists are no objects: serde's derived types would take a list for their keys in order.
 //!
-//! serde's complaints in the words of somebody who writes a case.
+//! serde's errors in the terms of a case file.
 
 use std::fs::File;
 use std::io::{ErrorKind, Read};
@@ -55,7 +55,7 @@ pub fn read_document<T: DeserializeOwned>(path: &Path) -> Result<(Value, T), Cas
     read_document_text(&text, path)
 }
 
-/// The same of what would be the text of a file.
+/// As [`read_document`], from the text instead of the file.
 ///
 /// # Errors
 /// As [`read`].
@@ -92,11 +92,11 @@ fn document(text: &str) -> Result<Value, ModelError> {
     let mut json = serde_json::Deserializer::from_str(text);
     let Document(document) = serde_path_to_error::deserialize(&mut json)
         .map_err(|error| ModelError::new(place(error.path(), None), not_json(error.inner())))?;
-    json.end().map_err(|error| ModelError::new("", format!("goes on after the end of its JSON object: {error}")))?;
+    json.end().map_err(|error| ModelError::new("", format!("has text after the end of its JSON object: {error}")))?;
     Ok(document)
 }
 
-/// What the JSON parser says, in plain words.
+/// Message of the JSON parser in plain words.
 fn not_json(error: &serde_json::Error) -> String {
     let (line, column) = (error.line(), error.column());
     let cause = error.to_string();
@@ -106,11 +106,11 @@ fn not_json(error: &serde_json::Error) -> String {
             format!("the file ends too early, at line {line}: a brace, bracket or quotation mark is not closed")
         }
         (_, "number out of range") => {
-            format!("the number at line {line}, column {column} is too large for a computer to hold")
+            format!("the number at line {line}, column {column} is too large for double precision")
         }
         (_, "expected value" | "expected ident") => format!(
-            "no JSON value stands at line {line}, column {column}: give a number, \"text\", true, false, null, […] or \
-             {{…}} (JSON has no NaN and no infinity)"
+            "there is no JSON value at line {line}, column {column}: give a number, \"text\", true, false, null, […] \
+             or {{…}} (JSON has no NaN and no infinity)"
         ),
         (Category::Syntax, _) => format!("this is not JSON: {cause} at line {line}, column {column}"),
         _ => format!("{cause} (line {line}, column {column})"),
@@ -171,7 +171,7 @@ impl<'de> Visitor<'de> for DocumentVisitor {
         let mut object = Map::new();
         while let Some((key, Document(value))) = entries.next_entry::<String, Document>()? {
             if object.contains_key(&key) {
-                return Err(A::Error::custom(format!("the key `{key}` stands here twice: keep one, or rename one")));
+                return Err(A::Error::custom(format!("the key `{key}` appears here twice: keep one, or rename one")));
             }
             object.insert(key, value);
         }
@@ -366,7 +366,7 @@ fn unknown(message: &str) -> String {
     let known: Vec<&str> = quoted.collect();
     let name_shown = clipped(name);
     if known.is_empty() {
-        return format!("`{name_shown}` is not known here: leave it out, nothing more may stand in this object");
+        return format!("`{name_shown}` is not known here: leave it out, this object takes no further keys");
     }
     let meant =
         nearest(name, known.iter().copied()).map_or_else(String::new, |near| format!("; did you mean `{near}`?"));

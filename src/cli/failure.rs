@@ -17,7 +17,7 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// The exit code, and what stderr is told.
+    /// The exit code, and the text for stderr.
     pub fn told(&self) -> (u8, String) {
         match self {
             Self::Stopped(message) => (1, format!("stopped: {message}")),

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
-    /// Watch for signals that ask for the end, but for those that whoever started the program has it ignore (nohup).
+    /// Watch for signals that ask for the end, except those ignored by the caller (nohup).
     #[cfg(unix)]
     pub fn watch() -> Self {
         use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
@@ -34,7 +34,7 @@ impl Interrupt {
         interrupt
     }
 
-    /// Whether it was.
+    /// Whether a signal has arrived.
     pub fn came(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }

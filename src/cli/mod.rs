@@ -26,7 +26,7 @@ use crate::output::{quantities, report};
 use crate::run::error::Error;
 use crate::run::law::{Hold, LawReport, PathPoint};
 
-/// What a schema describes.
+/// Input that a schema describes.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub enum Input {
     /// the case file of `fecontact run`
@@ -78,7 +78,7 @@ pub fn law(path: &Path, out: Option<PathBuf>) -> Result<(), Failure> {
     folder.make_room_after(&result);
     let summary = LawSummary { ending: Ending::new(result.as_ref().err(), &folder.files), about, report };
     let written = summary::write(&summary, &folder.path);
-    // The first failure is the one to be told; where a table found no room a page finds none, either.
+    // Report the first failure; where a table found no room, a page finds none either.
     let wants_page = written.is_ok() && !matches!(result, Err(Error::Output { .. }));
     let page = wants_page.then(|| report::write(std::slice::from_ref(&folder.path), &folder.path.join(report::FILE)));
     result?;
@@ -91,7 +91,7 @@ pub fn law(path: &Path, out: Option<PathBuf>) -> Result<(), Failure> {
 /// The last lines of a test on stderr.
 fn conclude_law(report: &LawReport, folder: &Path) {
     let LawReport { steps, most_evaluations, peaks, dissipation, warnings } = report;
-    say!("{steps} steps, at most {most_evaluations} evaluations of the law's equation in one");
+    say!("{steps} steps, at most {most_evaluations} evaluations of the law's equation per step");
     if let Some(PathPoint { time, slip, coefficient, mu }) = peaks.peak {
         say!("peak |q|/p = {coefficient:.6} at t = {time:.6}, slip = {slip:.6}, where mu was {mu:.6}");
     }

@@ -7,15 +7,15 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use crate::equations::ContactCounts;
 use crate::mesh::names::in_line;
 use crate::model::Model;
-use crate::model::told::count;
+use crate::model::text::count;
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer, Verdict};
 use crate::solve::failure::IncrementFailure;
 
-/// Where progress and warnings go.
+/// Destination of progress and warnings.
 #[derive(Clone, Debug)]
 pub enum Voice {
-    /// Nowhere
+    /// Nothing is printed
     Silent,
     /// Lines on stderr
     Lines,
@@ -40,7 +40,7 @@ impl Voice {
         }
     }
 
-    /// Tell a line.
+    /// Print a line.
     pub fn say(&self, line: &str) {
         match self {
             Self::Silent => {}
@@ -49,13 +49,13 @@ impl Voice {
         }
     }
 
-    /// Tell a warning.
+    /// Print a warning.
     pub fn warn(&self, warning: &str) {
         self.say(&format!("warning: {warning}"));
     }
 }
 
-/// Shows progress.
+/// Observer that prints the progress of a run.
 #[derive(Debug)]
 pub struct Progress {
     voice: Voice,
@@ -119,7 +119,7 @@ impl Observer for Progress {
                 say!("{}", message(model, attempt, false));
                 self.lines += 1;
                 if self.lines == LINES {
-                    say!("… from here on not every increment has a line");
+                    say!("… from here on only some increments are printed");
                 }
                 self.next = if self.lines < LINES { now } else { now + PAUSE };
             }
@@ -128,7 +128,7 @@ impl Observer for Progress {
     }
 }
 
-/// How long the rest takes if it goes on as it has gone until now.
+/// Estimated remaining time, extrapolated from the time spent.
 fn left(spent: Duration, done: f64, rest: f64) -> String {
     if spent < TOO_EARLY || done <= 0.0 {
         return String::new();
@@ -158,9 +158,9 @@ fn message(model: &Model, attempt: &Attempt, terse: bool) -> String {
     }
 }
 
-/// That an attempt was given up, and why; in a `terse` line what it failed by.
+/// Text about a rejected attempt with its reason; in a `terse` line only the kind of failure.
 fn given_up(attempt: &Attempt, terse: bool) -> String {
-    let what = if attempt.verdict == Verdict::Unsolved { "given up" } else { "repeated" };
+    let what = if attempt.verdict == Verdict::Unsolved { "rejected" } else { "repeated" };
     let when = match attempt.iterations.len() {
         0 => "before a solve".into(),
         solves => format!("after {}", count(solves, "iteration")),

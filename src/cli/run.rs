@@ -1,6 +1,6 @@
 //! `fecontact run`: a case from its beginning, from the end of another, or from its last checkpoint.
 //!
-//! What stderr is told at the start and at the end of a run.
+//! The texts on stderr at the start and at the end of a run are here too.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -12,26 +12,26 @@ use super::interrupt::Interrupt;
 use super::place::default_folder;
 use super::progress::{Progress, Voice};
 use super::threads::use_threads;
-use crate::case::job::{Company, Job, Outcome, last};
+use crate::case::job::{Callbacks, Job, Outcome, last};
 use crate::case::{Opened, Written};
 use crate::model::Model;
-use crate::model::scheme::told;
+use crate::model::scheme::time_text;
 use crate::model::state::Energy;
 use crate::output::report;
 use crate::output::summary::Summary;
 use crate::run::error::Error;
 use crate::run::observer::Observer;
 
-/// How a case is run.
+/// Options of `fecontact run`.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// folder of the results
     pub out: Option<PathBuf>,
     /// threads
     pub threads: Option<usize>,
-    /// whether nothing is told
+    /// whether nothing is printed
     pub quiet: bool,
-    /// whether it goes on from the last checkpoint
+    /// whether the run resumes from the last checkpoint
     pub resume: bool,
 }
 
@@ -49,10 +49,10 @@ pub fn run(path: &Path, options: Options) -> Result<(), Failure> {
         false => (Opened::begin(Written::read(path)?)?, None),
     };
     let mut job = Job::open(opened, damage, &place)?;
-    let told = Told::start(&job, &voice);
-    let outcome = job.run(company(&voice))?;
-    told.end(&outcome, &job);
-    // The first failure is the one to be told.
+    let messages = Messages::start(&job, &voice);
+    let outcome = job.run(callbacks(&voice))?;
+    messages.end(&outcome, &job);
+    // Report the first failure.
     let wants_page = job.opened.case.output.report && outcome.is_readable();
     let page = wants_page.then(|| report::write(std::slice::from_ref(&job.folder.path), &place.join(report::FILE)));
     let Outcome { ended, written, .. } = outcome;
@@ -62,30 +62,30 @@ pub fn run(path: &Path, options: Options) -> Result<(), Failure> {
 }
 
 /// Warnings and progress on stderr; signals end the run.
-fn company(voice: &Voice) -> Company<'static> {
+fn callbacks(voice: &Voice) -> Callbacks<'static> {
     let (speaker, interrupt) = (voice.clone(), Interrupt::watch());
     let progress =
         (!matches!(voice, Voice::Silent)).then(|| Box::new(Progress::new(voice.clone())) as Box<dyn Observer>);
-    Company {
+    Callbacks {
         warn: Arc::new(move |warning| speaker.warn(warning)),
         ends: Arc::new(move || interrupt.came().then_some(Error::Interrupted)),
         progress,
     }
 }
 
-/// What is told at the start and at the end, and where.
-struct Told(Voice);
+/// Prints what a user needs to know at the start and at the end of a run.
+struct Messages(Voice);
 
-impl Told {
-    /// Before the first increment: warnings and choices, or from where a run goes on.
+impl Messages {
+    /// Before the first increment: warnings and choices, or the state from which the run resumes.
     pub fn start(Job { opened, model, saved, damage, .. }: &Job, voice: &Voice) -> Self {
         let saved = saved.as_ref().filter(|_| opened.resumes());
         if let Some(damage) = damage {
-            voice.warn(&format!("{damage}; the checkpoint before it is taken"));
+            voice.warn(&format!("{damage}; the previous checkpoint is used"));
         }
         match saved.map(|saved| saved.simulation().state()) {
             Some(state) => {
-                voice.say(&format!("going on from t = {} after {} increments", told(state.time), state.increment));
+                voice.say(&format!("resuming at t = {} after {} increments", time_text(state.time), state.increment));
             }
             None => {
                 model.warnings().iter().for_each(|warning| voice.warn(warning));
@@ -95,7 +95,7 @@ impl Told {
         Self(voice.clone())
     }
 
-    /// After the last one.
+    /// After the last increment.
     pub fn end(&self, Outcome { summary, supplied, .. }: &Outcome, job: &Job) {
         if !matches!(self.0, Voice::Silent) {
             conclude(summary, &job.model, &job.folder.path, *supplied);
@@ -116,27 +116,27 @@ fn conclude(summary: &Summary, model: &Model, folder: &Path, supplied: f64) {
         report.wall_s.total,
         folder.display()
     );
-    summary.friction_course.iter().for_each(|(name, course)| say!("contact `{name}` {course}"));
+    summary.friction_course.iter().for_each(|(name, course)| say!("contact `{name}`: {course}"));
     if !report.given_up.is_empty() {
-        say!("given up: {}; `reason` in newton.csv tells of each", most_first(&report.given_up));
+        say!("rejected attempts: {} (see column `reason` of newton.csv)", most_first(&report.given_up));
     }
     if model.steps.iter().any(|step| step.scheme.is_dynamic() || step.rupture.is_some()) {
         audit(&report.energy, supplied);
     }
 }
 
-/// Why attempts were given up, the most frequent reason first.
+/// Rejected attempts by reason, the most frequent first.
 fn most_first(given_up: &BTreeMap<String, usize>) -> String {
     let mut reasons: Vec<_> = given_up.iter().collect();
     reasons.sort_by_key(|(_, count)| Reverse(**count));
     reasons.iter().map(|(reason, count)| format!("{count} × {reason}")).collect::<Vec<_>>().join(", ")
 }
 
-/// Where the energy of a dynamic run came from and went; `supplied` is the most that there was.
+/// Prints the energy balance of a dynamic run; `supplied` is the largest initial energy + external work.
 fn audit(energy: &Energy, supplied: f64) {
     let share = if supplied > 0.0 { 100.0 * energy.error() / supplied } else { 0.0 };
     let radiated = if energy.radiated > 0.0 { format!(", {:.6e} radiated", energy.radiated) } else { String::new() };
-    say!("energy: {:.6e} at the start, {:.6e} from outside", energy.initial, energy.external_work);
+    say!("energy: {:.6e} initial, {:.6e} external work", energy.initial, energy.external_work);
     say!(
         "        {:.6e} kinetic, {:.6e} strain, {:.6e} in contacts",
         energy.kinetic,
@@ -144,7 +144,7 @@ fn audit(energy: &Energy, supplied: f64) {
         energy.contact_elastic
     );
     say!(
-        "        {:.6e} taken by friction, {:.6e} by damping{radiated}, {:.1e} ({share:.4} %) unaccounted for",
+        "        {:.6e} dissipated by friction, {:.6e} by damping{radiated}, {:.1e} ({share:.4} %) unaccounted for",
         energy.friction_dissipation,
         energy.damping_dissipation,
         energy.error()

@@ -1,5 +1,4 @@
-//! What is told on stderr and printed to stdout. Whoever closes his end of them, or has a full disk behind them, does not end
-//! a run with it.
+//! Output to stderr and stdout. A closed pipe or a full disk behind them does not end a run with it.
 
 use std::fmt::Arguments;
 use std::io::{ErrorKind, Write};
@@ -14,11 +13,11 @@ macro_rules! say {
 
 /// Tell stderr a line, if it listens.
 pub fn say(text: Arguments) {
-    // There is nobody left to tell.
+    // There is no one left to report to.
     let _ = writeln!(std::io::stderr(), "{}", printable(&text.to_string()));
 }
 
-/// Print to stdout what was asked for; whoever does not read to the end has what he wants.
+/// Print the requested text to stdout; a reader may stop early.
 ///
 /// # Errors
 /// [`Failure::Stopped`] when it cannot be written.

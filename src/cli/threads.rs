@@ -11,17 +11,17 @@ use crate::linear::memory::address_space;
 /// More threads than this are a slip of the keyboard.
 const MOST: usize = 1024;
 
-/// By this the number of threads may be given for all runs.
+/// Environment variable that sets the number of threads for all runs.
 const VARIABLE: &str = "RAYON_NUM_THREADS";
 
 /// The stack of a thread [MiB].
 const STACK: usize = 2;
 
-/// What a thread takes of the address space [MiB]: its stack, the 64 MiB that glibc reserves for what a thread allocates, and
-/// its own data.
+/// Address space of a thread [MiB]: its stack, the 64 MiB that glibc reserves for what a thread allocates, and its own
+/// data.
 const THREAD: usize = STACK + 64 + 1;
 
-/// A MiB.
+/// Bytes in a MiB.
 const MIB: usize = 1 << 20;
 
 /// Make so many threads; all cores unless the environment says otherwise.
@@ -53,7 +53,7 @@ fn as_usual() -> Result<(), Failure> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from).min(MOST);
     let fitting = address_space().map_or(cores, |left| cores.min(left / (THREAD * MIB)));
     let waiting = (1..fitting).map_while(|_| started().ok()).collect();
-    set_to_work(waiting).map_err(|cause| Failure::BadInput(format!("the threads cannot be set to work: {cause}")))
+    set_to_work(waiting).map_err(|cause| Failure::BadInput(format!("the threads cannot be started: {cause}")))
 }
 
 /// Refuse more threads than the limit of the address space leaves room for: one that is made, and finds no memory when its turn
@@ -78,7 +78,7 @@ fn started() -> io::Result<Sender<ThreadBuilder>> {
 
 /// Make this thread and those that wait the ones of all parallel work.
 fn set_to_work(mut waiting: Vec<Sender<ThreadBuilder>>) -> Result<(), String> {
-    let lost = || io::Error::other("a thread is gone");
+    let lost = || io::Error::other("a thread has ended unexpectedly");
     let pool = ThreadPoolBuilder::new().num_threads(waiting.len() + 1).use_current_thread();
     let pool = pool.spawn_handler(|thread| waiting.pop().and_then(|one| one.send(thread).ok()).ok_or_else(lost));
     pool.build_global().map_err(|error| error.to_string())

@@ -48,7 +48,7 @@ impl Box2 {
         0.5 * (self.low + self.high)
     }
 
-    /// Half its diagonal.
+    /// Half the diagonal of the box.
     pub fn radius(&self) -> f64 {
         0.5 * (self.high - self.low).norm()
     }

@@ -1,6 +1,6 @@
 //! Numbers that carry their derivatives: what is computed with them brings its exact variation along.
 
-/// What averages are computed with: numbers where values are enough, or numbers that carry their variations.
+/// Numbers used to compute averages: plain values, or values with their variations.
 pub trait Number: Clone + Default {
     /// A number that does not vary.
     fn constant(value: f64) -> Self;
@@ -8,7 +8,7 @@ pub trait Number: Clone + Default {
     /// Unknown number `k` of `n`.
     fn unknown(value: f64, k: usize, n: usize) -> Self;
 
-    /// The value.
+    /// The value without its variations.
     fn value(&self) -> f64;
 
     /// The derivatives with respect to the unknowns at hand; none of a constant.
@@ -187,7 +187,7 @@ impl<N: Number> DualVector<N> {
         self.y.accumulate(1.0, &factor.times(&other.y));
     }
 
-    /// Turned by +90°.
+    /// The vector rotated by +90°.
     pub fn turned(&self) -> Self {
         Self { x: self.y.scaled(-1.0), y: self.x.clone() }
     }

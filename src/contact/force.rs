@@ -17,7 +17,7 @@
 //!
 //! A fluid adds its pressure p_w to p in the forces and in nothing else, see `pair.rs`; it acts on open points too.
 //!
-//! With radiation damping, q + η Δu_t/Δt stands for q in static increments: without inertia slip could be as fast as it likes;
+//! With radiation damping, q + η Δu_t/Δt replaces q in static increments: without inertia the slip rate is unbounded;
 //! the bodies, were they unbounded, would take η v from the traction by the shear waves that slip sends into them.
 //!
 //! In an increment that starts open, at the gap g₀, only the slip after touch counts; all where nothing faced the point at
@@ -28,10 +28,11 @@
 //!                                                no p/α_n under the augmented Lagrangian, which leaves no penetration
 //! ```
 //!
-//! Nor do surfaces ride up on each other (dilate) in such an increment, where they meet: they begin with the next. From where they end
-//! alone it could not be told which of two states they are in: apart at a gap g > 0, never having touched, or riding at the same
-//! gap on what slip after touch has opened. Closed is what overlaps, g < d₀, as without dilatancy; what the opening would have done to
-//! the pressure is part of the doubt by which static increments end where points touch ([`ContactPair::arrival`]).
+//! Nor do surfaces ride up on each other (dilate) in such an increment, where they meet: they begin with the next. From
+//! where they end alone the two possible states could not be distinguished: apart at a gap g > 0, never having touched,
+//! or riding at the same gap on what slip after touch has opened. Closed is what overlaps, g < d₀, as without
+//! dilatancy; what the opening would have done to the pressure is part of the doubt by which static increments end
+//! where points touch ([`ContactPair::arrival`]).
 //!
 //! What is accepted depends on c by no more than the control of static increments allows: it repeats those in which friction
 //! would change with the share that counts. Without c a point that comes in with a high pressure would stick for its stiff
@@ -52,7 +53,7 @@ use super::projection::Projection;
 use crate::laws::friction::{Answer, ContactLaw, FrictionResponse, LawFailure, Sliding};
 use crate::mesh::configuration::Configuration;
 
-/// A point on the way through its law: first what the law is asked for, then what follows from its answer.
+/// Evaluation of a point's law: first its arguments, then what follows from its response.
 #[derive(Debug)]
 pub struct PointEvaluation<'a> {
     pair: &'a ContactPair,
@@ -77,7 +78,7 @@ pub struct PointEvaluation<'a> {
 }
 
 impl<'a> PointEvaluation<'a> {
-    /// What the law is asked for at a point in its place, which has these kinematics if it is closed.
+    /// Arguments of the law at a point in its place, with these kinematics if it is closed.
     ///
     /// # Errors
     /// [`LawFailure`] of a law that does not say where its surfaces part.
@@ -273,13 +274,13 @@ const MOST_ANSWERS: usize = 60;
 /// Share of the pressure up to which they do.
 const AGREE: f64 = 1e-14;
 
-/// The pressure under which friction answers: that of a point which is only kept closed is the one it is kept by, from
-/// where its answer goes on in a straight line.
+/// The pressure under which friction answers: that of a point which is only kept closed is the one it is kept by,
+/// beyond which its response is extrapolated linearly.
 fn carried(pressure: f64, Presumption { carried, kept, .. }: Presumption) -> f64 {
     carried.unwrap_or(if pressure > 0.0 { pressure } else { kept })
 }
 
-/// Where a point is at the end of an increment.
+/// Kinematics of a contact point at the end of an increment.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PointPlace {
     /// g; 0 where nothing faces it [L]
@@ -292,8 +293,8 @@ pub struct PointPlace {
     pub fluid: f64,
 }
 
-/// Where a point is whose projection is known, in the committed configuration and that of the trial, and its kinematics if it
-/// is closed.
+/// Place of a point with known projection, in the committed configuration and that of the trial, and its kinematics if
+/// it is closed.
 pub fn place(
     pair: &ContactPair,
     slave: &SlavePoint,

@@ -9,8 +9,8 @@
 //! Δu_t = ∫ J dξ           δΔu_t = ∫ s·δx′ dξ + J δξ        along the surface from the old foot to the new one
 //! ```
 //!
-//! A point that nothing faced when the increment began has no old foot; it has slipped past what it faces now, Σ w_a x_a
-//! being x_s − x:
+//! A point without a projection at the start of the increment has no old projection; it has slipped past its present
+//! one, Σ w_a x_a being x_s − x:
 //!
 //! ```text
 //! Δu_t = s·Σ w_a Δx_a     δΔu_t = s·Σ (w_a δx_a + δw_a Δx_a) + n·Σ w_a Δx_a δθ        Δx_a: motion in the increment
@@ -41,7 +41,7 @@ pub struct Kinematics {
     pub tangent: Vector2<f64>,
     /// Δu_t since the old foot [L]
     pub slip: f64,
-    /// Current length the point stands for [L]
+    /// Current tributary length of the point [L]
     pub length: f64,
     /// Whether the variations are asked for; they are empty if not
     pub varied: bool,
@@ -61,7 +61,7 @@ pub struct Kinematics {
     dfoot: Vec<f64>,
 }
 
-/// Where a slave point meets the master.
+/// Closest-point projection of a slave point on the master, with its gap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Meeting {
     /// g [L]
@@ -154,7 +154,7 @@ impl Kinematics {
         Self { varied, ..Self::default() }
     }
 
-    /// Nothing yet but the normal.
+    /// Start with the normal; everything else is empty.
     pub fn begin(&mut self, normal: Vector2<f64>) {
         (self.normal, self.tangent) = (normal, tangent_of(normal));
         (self.slip, self.length) = (0.0, 0.0);

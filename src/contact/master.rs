@@ -11,7 +11,7 @@ use super::projection::{Bound, FACING, Projection, normal_of, tangent_of};
 use super::surface::{Segment, Surface};
 use crate::mesh::configuration::Configuration;
 
-/// The master side.
+/// The master side of a contact: mesh edges or a rigid body.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Master {
     /// A surface of the mesh
@@ -30,7 +30,7 @@ impl Master {
     }
 }
 
-/// A rigid body.
+/// A rigid master body at rest, given by a formula.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Rigid {
     /// A half-space

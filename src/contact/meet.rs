@@ -16,7 +16,7 @@ use super::small_sliding::{SmallPoint, SmallSliding};
 use super::surface::{SlavePoint, Weights};
 use crate::mesh::configuration::Configuration;
 
-/// Where a point meets the master and its kinematics, if that faces it.
+/// Projection of a point on the master and its kinematics; `None` without a projection.
 pub(super) type Met = Option<(Meeting, Kinematics)>;
 
 impl ContactPair {
@@ -96,7 +96,7 @@ impl ContactPair {
         self.points.iter().zip(self.meetings(x, false)).enumerate().map(state).collect()
     }
 
-    /// What the initial tractions, and a fluid at the start, put on the nodes in the configuration `x` [F].
+    /// Nodal forces of the initial tractions, and of a fluid at the start, in the configuration `x` [F].
     pub fn initial_forces(&self, x: &Configuration) -> Vec<(usize, Vector2<f64>)> {
         let points = self.points.iter().zip(self.initial.iter().flatten());
         let met = self.meetings(x, false).into_iter().zip(points);
@@ -107,7 +107,7 @@ impl ContactPair {
         met.flat_map(forces).collect()
     }
 
-    /// From now on every point keeps meeting what it meets in the configuration `x` (small sliding).
+    /// Switch to small sliding: every point keeps its projection in the configuration `x`.
     pub fn slide_little(&mut self, x: &Configuration) {
         let met = self.meetings(x, false).into_iter().zip(&self.points);
         let point =
@@ -116,7 +116,8 @@ impl ContactPair {
         self.small = Some(SmallSliding { points: points.collect() });
     }
 
-    /// Where every point meets the master, if that faces it, the gap being that of the surfaces; its kinematics `varied` or not.
+    /// Projection of every point on the master, where it has one, with the gap of the surfaces; kinematics with
+    /// variations if `varied`.
     pub(super) fn meetings(&self, x: &Configuration, varied: bool) -> Vec<Met> {
         let index = Index::new(&self.master, x);
         let overlaps = match (&self.mortar, &self.master) {

@@ -155,8 +155,8 @@ impl Mortar {
         edges.for_each(|(edge, cut)| cut.cut(edge, surface, index, x));
     }
 
-    /// Where a point meets the master, and its kinematics; `None` where none faces it. `old` are its weights in the committed
-    /// configuration.
+    /// Projection of a mortar point on the master and its kinematics; `None` without a projection. `old` are its
+    /// weights in the committed configuration.
     pub fn meet(
         &self,
         point: usize,
@@ -172,7 +172,7 @@ impl Mortar {
         }
     }
 
-    /// By numbers that carry their variations, or not.
+    /// [`Mortar::meet`] in numbers with or without variations.
     fn meet_by<N: Number>(
         &self,
         point: usize,
@@ -239,7 +239,7 @@ impl Mortar {
         let all = self.at[point].iter().flat_map(|&(e, a)| overlaps.0[e].overlaps.iter().map(move |o| (o, station[a])));
         let away = |o: &Overlap, at: f64| (at - at.clamp(o.ends[0].xi, o.ends[1].xi)).abs();
         let (nearest, at) = all.min_by(|a, b| away(a.0, a.1).total_cmp(&away(b.0, b.1)))?;
-        // Master and slave run along s alike.
+        // Master and slave have the same direction along s.
         let [start, end] = nearest.ends.map(|cut| cut.xi);
         let xi = ((at - start) / (end - start)).clamp(0.0, 1.0);
         Some(MasterPoint { segment: nearest.segment, xi })
@@ -310,7 +310,7 @@ fn hat(n: usize, a: usize, xi: f64) -> (f64, f64) {
     }
 }
 
-/// A_j and W_ja.
+/// Tributary length A_j and mortar weights W_ja of a point.
 #[derive(Clone, Debug, Default)]
 struct Averages<N> {
     pub weights: Vec<N>,
@@ -318,7 +318,7 @@ struct Averages<N> {
 }
 
 impl<N: Number> Averages<N> {
-    /// Nothing summed up yet for so many nodes.
+    /// Clear the sums, for `nodes` nodes.
     pub fn clear(&mut self, nodes: usize) {
         self.weights.clear();
         self.weights.resize(nodes, N::default());
@@ -376,7 +376,7 @@ pub struct Room {
     turns: [Vec<f64>; 2],
 }
 
-/// What an average is taken over, and its parts.
+/// Frame of an average, with its weights.
 #[derive(Clone, Debug, Default)]
 struct Averaging<N> {
     frame: Frame<N>,
@@ -435,8 +435,8 @@ struct Sums {
 }
 
 impl Mortar {
-    /// Where a point meets a rigid body, and its kinematics; `None` where that faces none of its surroundings. The
-    /// configurations are the committed one and that of the trial.
+    /// Projection of a mortar point on a rigid body and its kinematics; `None` where no Gauss point has a projection.
+    /// The configurations are the committed one and that of the trial.
     pub fn meet_rigid(
         &self,
         point: usize,
@@ -528,7 +528,7 @@ fn zeros(mut values: Vec<f64>, count: usize) -> Vec<f64> {
     values
 }
 
-/// Where one point of Gauss's rule meets the body.
+/// Projection of one Gauss point on the body.
 fn meet(slave: &SlavePoint, body: &Rigid, [before, x]: [&Configuration; 2], k: &mut Kinematics) -> Option<Projection> {
     let projection = body.project(slave, x)?;
     let from = body.project(slave, before).map(|was| was.foot);

@@ -26,7 +26,8 @@ const REACH: f64 = 10.0;
 /// A slave edge and a master segment face each other when the cosine between their outward normals is below this.
 const EDGE_ON: f64 = -0.01;
 
-/// A segment both of whose ends project farther beyond an end of a straight edge than this faces none of it [half an edge]
+/// A segment both of whose ends project farther beyond an end of a straight edge than this does not overlap it [half an
+/// edge]
 const BESIDE: f64 = 1e-3;
 
 /// A part of a slave edge that one master segment faces.
@@ -36,7 +37,7 @@ pub(super) struct Overlap {
     pub ends: [Cut; 2],
 }
 
-/// Where a slave edge is cut.
+/// A coordinate at which a slave edge is cut into mortar segments.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cut {
     pub xi: f64,

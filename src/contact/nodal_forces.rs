@@ -41,7 +41,7 @@ pub struct Closed<'a> {
     pub is_open: bool,
 }
 
-/// What acts at a point beside pressure and friction.
+/// Actions at a point in addition to pressure and friction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Beside {
     /// What slip radiates, η v and its derivative by slip
@@ -61,7 +61,7 @@ impl Closed<'_> {
     }
 }
 
-/// What points one after the other add, all in the same few lists, which are used again in the next evaluation.
+/// Contributions of the points in sequence, in a few common lists that the next evaluation reuses.
 #[derive(Clone, Debug, Default)]
 pub struct ClosedPoints {
     points: Vec<Option<Place>>,
@@ -76,14 +76,14 @@ pub struct ClosedPoints {
     rows: [Vec<f64>; 2],
 }
 
-/// Where a closed point is in the lists.
+/// Position of a closed point in the lists of nodes, rows and tangents.
 #[derive(Clone, Copy, Debug)]
 struct Place {
     tractions: Tractions,
     is_open: bool,
     /// Its first node, and how many there are
     nodes: [usize; 2],
-    /// Where its tangent begins
+    /// Start of its tangent
     tangent: usize,
 }
 
@@ -96,7 +96,7 @@ impl ClosedPoints {
         [force, tangent, dpressure, dtraction, fluid].into_iter().for_each(Vec::clear);
     }
 
-    /// What a point added, if it is closed.
+    /// Contribution of a point, if it is closed.
     pub fn get(&self, point: usize) -> Option<Closed<'_>> {
         let Place { tractions, is_open, nodes: [first, count], tangent } = (*self.points.get(point)?)?;
         let dofs = 2 * first..2 * (first + count);
@@ -214,7 +214,7 @@ fn turned(k: &Kinematics, Tractions { pressure: p, traction: q }: Tractions) -> 
     k.normal * p - k.tangent * q
 }
 
-/// What a traction puts on the nodes: w_a (p n − q s) ℓ [F].
+/// Nodal forces of a traction: w_a (p n − q s) ℓ [F].
 pub fn nodal_forces(k: &Kinematics, p: f64, q: f64) -> Vec<(usize, Vector2<f64>)> {
     let force = turned(k, Tractions { pressure: p, traction: q }) * k.length;
     k.nodes.iter().zip(&k.relative).map(|(&node, &w)| (node, force * w)).collect()
@@ -255,7 +255,7 @@ impl ContactPair {
         first + sum / length
     }
 
-    /// What accepted tractions put on the nodes of both sides in the configuration `x` where they were accepted [F].
+    /// Nodal forces of accepted tractions on both sides, in the configuration `x` where they were accepted [F].
     pub fn forces_on_nodes(&self, states: &[ContactState], x: &Configuration) -> Vec<(usize, Vector2<f64>)> {
         let acting = self.acting(states, x);
         let forces = acting.iter().flat_map(|acting| {
@@ -265,7 +265,7 @@ impl ContactPair {
         forces.collect()
     }
 
-    /// What they put on the slave, the moment about a point.
+    /// Resultant force on the slave, with its moment about a point.
     pub fn resultant(&self, states: &[ContactState], x: &Configuration, about: Vector2<f64>) -> Resultant {
         let mut sum = Resultant::default();
         for Acting { point, place, kinematics: k } in self.acting(states, x) {
@@ -278,7 +278,7 @@ impl ContactPair {
         sum
     }
 
-    /// The closed points.
+    /// The closed points with their kinematics and tractions.
     fn acting(&self, states: &[ContactState], x: &Configuration) -> Vec<Acting> {
         let closed: Vec<usize> = (0..states.len()).filter(|&k| states[k].friction.pressure > 0.0).collect();
         if closed.is_empty() {
@@ -309,7 +309,7 @@ impl ContactPair {
         closed.into_iter().filter_map(acting).collect()
     }
 
-    /// Where the mean of the slave lies that a mortar point stands for: the slave's part of its weights.
+    /// Mean place on the slave of a mortar point: the slave's part of its weights.
     fn mean_place(&self, k: &Kinematics) -> Weights {
         let slaves = self.points.iter().flat_map(|point| &point.length).flat_map(|share| &share.at);
         let slaves: BTreeSet<usize> = slaves.map(|(node, _)| *node).collect();

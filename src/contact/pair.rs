@@ -9,10 +9,10 @@
 //! f_a = −w_a p_w n ℓ       beside that of p and q, wherever the master faces the point, closed or open
 //! ```
 //!
-//! p_w is given, by the reference position of a slave point and the time: the fluid does not flow. That friction knows the
-//! effective pressure p alone is the principle of effective stress (K. Terzaghi, Theoretical Soil Mechanics, 1943, §6).
-//! Where p_w exceeds what the bodies press with, the surfaces open and the fluid goes on pushing, which makes nothing jump
-//! there. Its work is that of a load.
+//! p_w is given, by the reference position of a slave point and the time: the fluid does not flow. That friction knows
+//! the effective pressure p alone is the principle of effective stress (K. Terzaghi, Theoretical Soil Mechanics, 1943,
+//! §6). Where p_w exceeds the contact pressure, the surfaces open and the fluid pressure continues to act, which makes
+//! nothing jump there. Its work is that of a load.
 //!
 //! # Fields
 //!
@@ -61,7 +61,7 @@ pub struct ContactPair {
     pub penetration: Option<f64>,
     /// η: radiation damping in static steps, 0 for none [F T/L³]
     pub radiation: f64,
-    /// What pushes the surfaces apart beside their own pressure
+    /// Fluid that acts on the surfaces in addition to the contact pressure
     pub fluid: Option<Fluid>,
     /// The friction laws, each with the parameters of some of the points, as they are at the start of the run. What holds at all
     /// times is asked of these: α_t, the names of what they remember and show, and whether they rub and dilate
@@ -72,7 +72,7 @@ pub struct ContactPair {
     pub initial: Option<Vec<InitialTraction>>,
     /// The two sides the other way round, to see what the slave's points do not: how deep master nodes lie in the slave
     pub reverse: Option<Reverse>,
-    /// Nodes on the surface of the slave's bodies that no point stands for, where the master is rigid
+    /// Surface nodes of the slave's bodies that belong to no contact point, where the master is rigid
     pub unseen: Vec<SlavePoint>,
     /// G*: G/(1 − ν) of both sides, what slip that varies along the interface is resisted with; 0 where there are no bodies
     /// [F/L²]
@@ -101,12 +101,12 @@ pub struct InitialTraction {
     pub traction: f64,
 }
 
-/// Touch of a point within an increment.
+/// Contact closure of a point within an increment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arrival {
-    /// When it was foreseen, as a share of the increment; 0 if it was not
+    /// Predicted time of closure, as a fraction of the increment; 0 without a prediction
     pub at: f64,
-    /// Friction that is in doubt because the slip before touch is not known [F]
+    /// Friction force that is uncertain because the slip before closure is not known [F]
     pub doubt: f64,
 }
 
@@ -167,7 +167,7 @@ impl ContactPair {
         Ok(Cow::Owned(laws.collect::<Result<_, _>>()?))
     }
 
-    /// What the law of a point shows by a name of a state at a time; NaN where its parameters have no good values then.
+    /// Observable of a point's law by name, for a state at a time; NaN where its parameters are invalid then.
     pub fn observed(&self, slave: &SlavePoint, name: &str, state: &FrictionState, time: f64) -> f64 {
         self.ask_law(slave, [time, time], |law| law.observe(name, state)).unwrap_or(f64::NAN)
     }
@@ -220,8 +220,8 @@ impl ContactPair {
         [damping * slip, damping]
     }
 
-    /// d/p: how far a pressure brings the surfaces after touch. It pushes the bodies in by c p where they settle, and the plain
-    /// penalty gives way by p/α_n [L³/F].
+    /// d/p: approach of the surfaces per pressure after closure: the bodies deform by c p where they settle, and the
+    /// penalty by p/α_n [L³/F].
     pub fn compliance_after_touch(&self, settles: bool) -> f64 {
         let bodies = if settles { self.compliance } else { 0.0 };
         if self.penetration.is_some() { bodies } else { bodies + 1.0 / self.alpha_n }
@@ -264,8 +264,8 @@ impl ContactPair {
         Ok((doubt > 0.0).then_some(Arrival { at, doubt }))
     }
 
-    /// What is left of the pressure of a point that closed within one iterate once the bodies have taken their share of its
-    /// penetration: p/(1 + α_n c).
+    /// Pressure that remains at a point that closed within one iterate once the bodies have deformed under it: p/(1 +
+    /// α_n c).
     pub fn shared(&self, pressure: f64, stiffening: f64) -> f64 {
         pressure / (1.0 + self.normal_stiffness(stiffening) * self.compliance)
     }
@@ -308,7 +308,7 @@ type Answered = Result<Arc<ContactLaw>, LawFailure>;
 /// A law by its number, with its parameters at a time or, between two, with their mean.
 pub type LawAt = dyn Fn(usize, [f64; 2]) -> Result<ContactLaw, LawFailure> + Send + Sync;
 
-/// The laws of a contact whose parameters vary in time. Each is resolved once for an increment, whoever asks: the last is kept.
+/// The laws of a contact whose parameters vary in time. Each is resolved once per increment; the last is kept.
 pub struct LawsInTime {
     law: Box<LawAt>,
     last: Vec<Mutex<Option<Resolved>>>,
@@ -321,7 +321,7 @@ struct Resolved {
 }
 
 impl LawsInTime {
-    /// So many laws.
+    /// Laws that vary in time, `count` of them.
     pub fn new(
         count: usize,
         law: impl Fn(usize, [f64; 2]) -> Result<ContactLaw, LawFailure> + Send + Sync + 'static,
@@ -354,7 +354,7 @@ pub type PressureAt = dyn Fn(Vector2<f64>, f64) -> f64 + Send + Sync;
 pub struct Fluid(Box<PressureAt>);
 
 impl Fluid {
-    /// Of a pressure p_w ≥ 0 by reference position and time.
+    /// A fluid with the pressure p_w ≥ 0 as a function of reference position and time.
     pub fn new(pressure: impl Fn(Vector2<f64>, f64) -> f64 + Send + Sync + 'static) -> Self {
         Self(Box::new(pressure))
     }
@@ -371,7 +371,7 @@ impl fmt::Debug for Fluid {
     }
 }
 
-/// Where a fluid has no pressure that it could have.
+/// A fluid pressure that is negative or not finite, and its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BadPressure {
     /// Reference position of the slave point

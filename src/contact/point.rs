@@ -23,7 +23,7 @@ use crate::mesh::shape;
 /// A linear combination of nodal positions, Σ w_a x_a.
 pub type Weights = Vec<(usize, f64)>;
 
-/// One edge's share of the length that a slave point stands for: `factor` × |Σ w_a x_a| × w of the section there.
+/// Contribution of one edge to the tributary length of a slave point: `factor` × |Σ w_a x_a| × w of the section there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LengthShare {
     /// Quadrature weight
@@ -48,13 +48,12 @@ pub struct SlavePoint {
     pub touch: f64,
     /// Number of its friction law among those of the pair
     pub law: usize,
-    /// How deep the point lies in the master at the start of a shrink fit, which counts bit by bit as the first step goes on
-    /// [L]
+    /// Initial overlap of the point in a shrink fit, applied gradually over the first step [L]
     pub overlap: f64,
 }
 
 impl SlavePoint {
-    /// Current position.
+    /// Current position of the point.
     pub fn at(&self, x: &Configuration) -> Vector2<f64> {
         let [reference, displacement] = x.apart(&self.position, Vector2::zeros());
         reference + displacement
@@ -70,7 +69,7 @@ impl SlavePoint {
         self.position.iter().map(|&(own, w)| x.between(node, own) * w).sum()
     }
 
-    /// Current length that the point stands for [L].
+    /// Current tributary length of the point [L].
     pub fn current_length(&self, x: &Configuration) -> f64 {
         let weighted = |share: &LengthShare| share.factor * x.combine(&share.tangent).norm() * x.weight(&share.at);
         self.area + self.length.iter().map(weighted).sum::<f64>()
@@ -141,7 +140,7 @@ pub fn lone_point(node: usize, area: f64) -> SlavePoint {
     SlavePoint { position: vec![(node, 1.0)], length: Vec::new(), area, touch: 0.0, law: 0, overlap: 0.0 }
 }
 
-/// The point of an edge at ξ, that stands for a share of the edge's length.
+/// The point of an edge at ξ, with its share of the edge's length as tributary length.
 pub fn edge_point(edge: &[usize], xi: f64, weight: f64) -> SlavePoint {
     let with = |values: Few<f64, 3>| -> Weights { edge.iter().copied().zip(values).collect() };
     let position = with(shape::edge_values(edge.len(), xi));
@@ -161,8 +160,8 @@ pub fn edge_point(edge: &[usize], xi: f64, weight: f64) -> SlavePoint {
 pub struct MasterPoint {
     /// Segment number; of a rigid body the number of its line
     pub segment: usize,
-    /// 0 … 1 along the segment; on a rigid body the way along s (of line number `segment`) from where the point's
-    /// reference position has its foot [-] or [L]
+    /// 0 … 1 along the segment; on a rigid body the arc length along s (of line number `segment`) from where the
+    /// point's reference position has its foot [-] or [L]
     pub xi: f64,
 }
 
@@ -173,8 +172,8 @@ pub struct ContactState {
     pub friction: FrictionState,
     /// Foot on the master, open or closed; `None` where no part of the master faces the point
     pub foot: Option<MasterPoint>,
-    /// Length the point stands for: its own or, by mortar, the part of it that the master faces; once open, the last one
-    /// (that of now where a fluid acts) [L]
+    /// Tributary length of the point: its own or, by mortar, the part of it that the master faces; once open, the last
+    /// one (that of now where a fluid acts) [L]
     pub length: f64,
     /// g at the foot; a contact that starts closed counts it from where its points touch [L]
     pub gap: f64,
@@ -212,7 +211,7 @@ impl ContactState {
     }
 }
 
-/// When a pair is evaluated.
+/// Time, increment and step data at which a pair is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactIncrement {
     /// t at its end [T]
@@ -225,12 +224,12 @@ pub struct ContactIncrement {
     pub fading: f64,
     /// α_n under the augmented Lagrangian is this many times the one given
     pub stiffening: f64,
-    /// Whether the bodies give way under the pressures that come up within the increment
+    /// Whether the bodies deform under the pressures that arise within the increment
     pub settles: bool,
 }
 
 impl ContactIncrement {
-    /// From when to when.
+    /// Start and end time of the increment.
     pub fn span(&self) -> [f64; 2] {
         [self.time - self.dt, self.time]
     }
@@ -245,7 +244,7 @@ pub struct PointIncrement {
     pub presumption: Presumption,
 }
 
-/// What one linear solve takes over for a point from those before; an accepted state presumes nothing.
+/// Data of a point that a linear solve takes over from earlier ones; empty in an accepted state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Presumption {
     /// Presumption about its state
@@ -255,15 +254,15 @@ pub struct Presumption {
     /// Pressure of a point that is closed whatever its gap, and under which friction answers unless its own is positive;
     /// none if it is 0
     pub kept: f64,
-    /// Pressure under which friction answers, and from where its answer goes on in a straight line, at a point that has just
-    /// closed: a stiff penalty presses a point far too hard that goes too deep in one iterate, and would make it stick
-    /// where it is to slip.
+    /// Pressure under which friction answers, and beyond which its response is extrapolated linearly, at a point that
+    /// has just closed: a stiff penalty presses a point far too hard that goes too deep in one iterate, and would make
+    /// it stick where it is to slip.
     pub carried: Option<f64>,
-    /// Two segments between which its foot goes to and fro
+    /// Two segments between which its projection alternates
     pub astride: Option<[usize; 2]>,
 }
 
-/// What the next linear solve presumes about a point, for the sake of convergence; an accepted state presumes nothing.
+/// Assumption of the next linear solve about a point, for convergence; an accepted state assumes nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Presume {
     /// The laws answer as they are
@@ -280,10 +279,10 @@ pub enum Presume {
 
 /// Pressure and traction of a point, as one linear solve promised them to the next.
 ///
-/// A stiff penalty turns every error of a displacement into a pressure far too high, and that into a geometric stiffness
-/// p δn ℓ that leads the next iterate astray, or opens a point that should be closed. The promise p + δp of the linear
-/// solve is off by the square of the correction only: it makes the geometric stiffness, and says which points stay closed.
-/// The residual that a solution must meet knows no promises.
+/// A stiff penalty turns every error of a displacement into a pressure far too high, and that into a geometric
+/// stiffness p δn ℓ that leads the next iterate astray, or opens a point that should be closed. The promise p + δp of
+/// the linear solve is off by the square of the correction only: it makes the geometric stiffness, and says which
+/// points stay closed. The residual of a solution contains no predicted pressures.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tractions {
     /// p [F/L²]
@@ -293,12 +292,12 @@ pub struct Tractions {
 }
 
 impl Tractions {
-    /// Those of a state.
+    /// Tractions of a friction state.
     pub fn of(friction: &FrictionState) -> Self {
         Self { pressure: friction.pressure, traction: friction.traction }
     }
 
-    /// Both in proportion, so that the pressure is not above a limit.
+    /// Both scaled by one factor, so that the pressure does not exceed a limit.
     pub fn limited(self, most: f64) -> Self {
         let share = if self.pressure > most { most / self.pressure } else { 1.0 };
         Self { pressure: share * self.pressure, traction: share * self.traction }

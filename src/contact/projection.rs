@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use super::surface::{MasterPoint, Segment, SlavePoint, Surface};
 use crate::mesh::configuration::Configuration;
 
-/// Where a slave point meets the master.
+/// Closest-point projection of a slave point on a master.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Projection {
     /// The foot
@@ -18,7 +18,7 @@ pub struct Projection {
     pub bound: Bound,
 }
 
-/// What a foot moves with.
+/// Dependence of a projection on the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {
     /// It slides on a segment
@@ -27,7 +27,7 @@ pub enum Bound {
     Node(usize),
     /// It follows a motion δx of the point on a rigid body
     Rigid {
-        /// way of the foot along s: `advance` s·δx [-]
+        /// motion of the foot along s: `advance` s·δx [-]
         advance: f64,
         /// δθ = `turn` s·δx [1/L]
         turn: f64,

@@ -34,7 +34,7 @@ pub struct PairResponse {
     kept: Kept,
 }
 
-/// What need not be found anew while it stays as it is.
+/// Search data that are reused while they stay valid.
 #[derive(Clone, Debug, Default)]
 struct Kept {
     /// Trees of the master
@@ -56,12 +56,12 @@ struct Chunk {
 }
 
 impl PairResponse {
-    /// What a point adds to the equations, if it is closed.
+    /// Contribution of a point to the equations, if it is closed.
     pub fn closed(&self, point: usize) -> Option<Closed<'_>> {
         self.acting(point).filter(|closed| !closed.is_open)
     }
 
-    /// What a point adds to the equations, if it is closed or in a fluid.
+    /// Contribution of a point to the equations, if it is closed or in a fluid.
     pub fn acting(&self, point: usize) -> Option<Closed<'_>> {
         self.parts.get(point / PART)?.closed.get(point % PART)
     }
@@ -75,7 +75,7 @@ impl PairResponse {
 /// Kinematics of a point to be filled in, and memory for averages.
 type At<'a> = (&'a mut Kinematics, &'a mut Room);
 
-/// What one evaluation asks of every point.
+/// Input of one evaluation for every point.
 struct Question<'a, P> {
     pair: &'a ContactPair,
     /// The laws that hold in the increment
@@ -116,7 +116,7 @@ impl ContactPair {
         answer
     }
 
-    /// By search in the master's tree.
+    /// Evaluates all points, with a search in the master's tree.
     fn respond_by<P: Fn(usize) -> Presumption + Sync>(
         &self,
         question: &Question<P>,
@@ -227,7 +227,7 @@ impl Chunk {
     }
 }
 
-/// What the laws of consecutive points say.
+/// Responses of the laws of consecutive points.
 fn answers(
     laws: &[Arc<ContactLaw>],
     points: &[SlavePoint],
@@ -247,7 +247,7 @@ fn answers(
     answers
 }
 
-/// Where a point is that meets the master so, its gap still being that of the surfaces.
+/// Kinematic state of a point with this projection, before its gap is corrected for overlap.
 fn averaged(
     pair: &ContactPair,
     slave: &SlavePoint,

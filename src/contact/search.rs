@@ -27,12 +27,12 @@ pub enum Index<'a> {
 #[derive(Clone, Debug, Default)]
 pub struct Trees {
     boxes: Boxes,
-    /// Of a surface that touches itself
+    /// Search tree for self-contact
     branches: Branches,
 }
 
 impl Trees {
-    /// See to it that they serve in the configuration `x` of an increment that began in another.
+    /// Update the trees for the configuration `x` of an increment that began in `before`.
     fn update(&mut self, surface: &Surface, [before, x]: [&Configuration; 2]) {
         self.boxes.update(surface, x);
         if surface.own_depth.is_some() {

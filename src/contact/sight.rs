@@ -57,11 +57,11 @@ pub struct Viewer<'a> {
     own: Own<'a>,
 }
 
-/// What a viewer does not meet.
+/// Parts that a line of sight ignores.
 enum Own<'a> {
     /// The nodes of a point's edges
     Point(&'a SlavePoint),
-    /// Those of an edge
+    /// The nodes of an edge
     Edge(&'a [usize]),
 }
 

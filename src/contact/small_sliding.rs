@@ -58,15 +58,15 @@ pub struct SmallPoint {
     pub tangent: Vector2<f64>,
     /// g₀ between the surfaces [L]
     pub gap: f64,
-    /// ℓ: length the point stands for [L]
+    /// ℓ: tributary length of the point [L]
     pub length: f64,
     /// The foot
     pub foot: MasterPoint,
-    /// What it is to stay with
+    /// The part of the master that it stays with
     against: Against,
 }
 
-/// What a point is to stay with.
+/// The part of the master that a point stays with.
 #[derive(Clone, Debug, PartialEq)]
 enum Against {
     /// A segment with these ends, where nodes of either side are no nearer to each other than `spacing` [L]
@@ -75,12 +75,12 @@ enum Against {
     Rigid { normal: Vector2<f64> },
 }
 
-/// How far a point has left what small sliding keeps.
+/// Deviation of a point from the geometry that small sliding keeps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Departure {
     /// Way slid since the reference configuration [L]
     pub slid: f64,
-    /// The same as a share of the distance between nodes, where it is shorter; 0 on a rigid body [-]
+    /// Slip as a fraction of the distance between nodes, where it is shorter; 0 on a rigid body [-]
     pub share: f64,
     /// Angle by which its edges and the master's have turned, or the normal of a rigid body at its foot [rad]
     pub turned: f64,
@@ -98,7 +98,7 @@ const ROUND_OFF: f64 = 1e-9;
 pub const LITTLE_TURN: f64 = 0.02;
 
 impl SmallPoint {
-    /// The operator of a point that meets the master so in the reference configuration `x`.
+    /// The operator of a point with this projection in the reference configuration `x`.
     pub fn new(met: Meeting, k: &Kinematics, slave: &SlavePoint, master: &Master, x: &Configuration) -> Self {
         let Meeting { gap, foot } = met;
         let Kinematics { normal, tangent, length, .. } = *k;
@@ -135,7 +135,7 @@ impl SmallPoint {
         part.next().is_none().then_some((slave, master))
     }
 
-    /// How far the point has left what is kept; `None` where it has gone past the end of a rigid body.
+    /// Deviation of the point from the initial geometry; `None` where it has gone past the end of a rigid body.
     pub fn departure(&self, slave: &SlavePoint, master: &Master, x: &Configuration) -> Option<Departure> {
         let slid = self.tangent.dot(&self.displacement(x)).abs();
         let stretched = edges(slave).map(|[a, b]| x.stretch(a, b).abs()).fold(0.0, f64::max);
@@ -178,7 +178,7 @@ impl SmallPoint {
         self.relative(|node| x.displacement(node))
     }
 
-    /// Where the point meets the master, its slip counted from the configuration `before`.
+    /// Projection of the point on the master, with the slip since the configuration `before`.
     pub fn meet(&self, before: &Configuration, x: &Configuration, k: &mut Kinematics) -> Meeting {
         k.begin(self.normal);
         k.nodes.extend_from_slice(&self.nodes);

@@ -154,7 +154,7 @@ pub struct Path<'a> {
 }
 
 impl<'a> Path<'a> {
-    /// The segments on the way: (segment, from ξ, to ξ).
+    /// The segments along the path: (segment, from ξ, to ξ).
     pub fn parts(self) -> impl Iterator<Item = (usize, f64, f64)> + use<'a> {
         let Self { surface, from, to, ahead } = self;
         let (start, end) = if ahead { (0.0, 1.0) } else { (1.0, 0.0) };

@@ -53,7 +53,7 @@ pub struct Assembler {
 /// Terms that the displacements alone decide, whatever the scheme.
 const OF_PLACE: [Term; 3] = [Term::Solids, Term::Interfaces, Term::Loads];
 
-/// With those that the velocities decide, which in implicit schemes follow from the displacements.
+/// These and the terms that depend on velocities, which in implicit schemes follow from the displacements.
 const OF_PLACE_AND_MOTION: [Term; 6] =
     [Term::Solids, Term::Interfaces, Term::Loads, Term::Dampers, Term::Stabilization, Term::Damping];
 
@@ -87,7 +87,7 @@ impl Assembler {
         &self.model
     }
 
-    /// Which nodes are coupled at present.
+    /// The present coupling of nodes.
     pub fn coupling(&self) -> Arc<Coupling> {
         self.layout.coupling.clone()
     }

@@ -80,7 +80,7 @@ pub struct CondensedEquations<'a> {
     start: Vec<f64>,
     /// ρ₀ [F]
     constant: Vec<f64>,
-    /// 1 − α_f
+    /// Weight 1 − α_f of the contact forces at the end of the increment.
     share: f64,
     /// Whether a dof has an equation of forces, not of its support or of a copy
     free: Vec<bool>,
@@ -93,7 +93,8 @@ pub struct CondensedEquations<'a> {
 }
 
 impl<'a> CondensedEquations<'a> {
-    /// From the displacement u₀, where ρ₀ is given; `bodies` without contact were just evaluated there.
+    /// Condensed equations about the displacement u₀, where ρ₀ is known; `bodies` without contact were just evaluated
+    /// there.
     pub fn new(
         nodes: &'a ContactNodes,
         bodies: &'a Condensed,
@@ -142,7 +143,7 @@ impl<'a> CondensedEquations<'a> {
         self.measure(assembler, system);
     }
 
-    /// What a closed point adds to the equations of its jump, if it has one: contact acts on that node alone.
+    /// Contribution of a closed point to the equations of its jump, if it has one: contact acts on that node only.
     fn of_jump<'b>(&self, closed: Closed<'b>, rates: &'b mut Vec<f64>) -> Closed<'b> {
         let Some(k) = closed.nodes.iter().position(|node| self.nodes.jumps.has(*node)) else { return closed };
         let own = 2 * k..2 * k + 2;
@@ -175,7 +176,7 @@ impl<'a> CondensedEquations<'a> {
         }
     }
 
-    /// How far the worst contact is from equilibrium, measured by its own forces; bodies follow.
+    /// Largest residual of a contact relative to its own forces; the bodies are updated.
     fn measure(&self, assembler: &Assembler, system: &mut System) {
         let tolerance = assembler.model().newton.tolerance;
         system.imbalance = 0.0;
@@ -215,7 +216,7 @@ impl ContactNodes {
         Self::counted_by(model, &together, jumps)
     }
 
-    /// The same with both sides of all contacts, no node counted from another.
+    /// The nodes of both sides of all contacts, in absolute displacements (no jumps).
     pub fn of_both_sides(model: &Model) -> Self {
         let together: Vec<Vec<Vec<usize>>> = model.contacts.iter().map(|pair| nodes_of(model, pair)).collect();
         Self::counted_by(model, &together, Jumps::none(model))
@@ -311,12 +312,12 @@ impl ContactNodes {
     }
 }
 
-/// 1 − α_f
+/// Weight 1 − α_f of the contact forces at the end of the increment.
 fn contact_share(step: &Step) -> f64 {
     step.scheme.coefficients().map_or(1.0, |scheme| 1.0 - scheme.alpha_f)
 }
 
-/// Ascending, each once.
+/// Sorted, without duplicates.
 fn sorted(mut nodes: Vec<usize>) -> Vec<usize> {
     nodes.sort_unstable();
     nodes.dedup();
@@ -350,7 +351,8 @@ struct Jumps {
 }
 
 impl Jumps {
-    /// Those of a model in all its steps; `together` are the nodes that contacts couple, each point of small sliding by itself.
+    /// The jumps of a model, valid in all its steps; `together` are the nodes that contacts couple, each point of small
+    /// sliding by itself.
     pub fn new(model: &Model, together: &[Vec<usize>]) -> Self {
         let mut uses = vec![0; model.mesh.nodes.len()];
         together.iter().flatten().for_each(|&node| uses[node] += 1);
@@ -370,7 +372,7 @@ impl Jumps {
         Self { jumps, numbers }
     }
 
-    /// None at all.
+    /// No jumps: all nodes in absolute displacements.
     pub fn none(model: &Model) -> Self {
         Self { jumps: Vec::new(), numbers: vec![None; model.mesh.nodes.len()] }
     }
@@ -384,8 +386,8 @@ impl Jumps {
         self.numbers[node].map_or(&[], |number| &self.jumps[number as usize].feet)
     }
 
-    /// What contact adds to the equation of a node's jump along the normal while it is closed, in the equations that are not
-    /// `fixed`.
+    /// Contribution of contact to the equation of a node's normal jump while it is closed, in the equations that are
+    /// not `fixed`.
     pub fn steady(&self, node: usize, fixed: &[bool]) -> Option<Steady> {
         let Steady { direction, stiffness } = self.jumps[self.numbers[node]? as usize].steady;
         let share: f64 = (0..2).filter(|i| !fixed[2 * node + i]).map(|i| direction[i].powi(2)).sum();
@@ -431,7 +433,7 @@ impl Jumps {
         }
     }
 
-    /// Which nodes L A T couples if A has the pattern `plain`, all `kept` ones with each other.
+    /// Pattern of L A T for A with the pattern `plain`, all `kept` nodes coupled with each other.
     pub fn pattern(&self, plain: &Pattern, kept: &[usize]) -> Pattern {
         let with_feet = |node: usize| std::iter::once(node).chain(self.feet(node).iter().map(|&(foot, _)| foot));
         let groups = (0..plain.nodes()).flat_map(|column| {

@@ -37,7 +37,7 @@ const RATES: f64 = 0.25;
 /// away is lost, and must not pass for imprecise.
 const LOST: f64 = 10.0;
 
-/// What must be in equilibrium by itself.
+/// Part of the model whose equilibrium is checked separately.
 #[derive(Clone, Debug)]
 struct BalancedSet {
     nodes: Vec<usize>,
@@ -197,7 +197,7 @@ impl ConvergenceCriterion {
         nodes.iter().map(|&node| square(u, node).min(farthest * farthest)).collect()
     }
 
-    /// What the contacts that were noted last add to ρ², at nodes that have gone these [`ways`](Self::ways) [F²].
+    /// Contribution of the contacts noted last to ρ², at nodes that have gone these [`ways`](Self::ways) [F²].
     pub(super) fn contact_round_off(&self, nodes: &[usize], ways: &[f64]) -> f64 {
         let of = |(&node, way): (&usize, &f64)| {
             let [apart, slid] = self.contact_stiffness[node];

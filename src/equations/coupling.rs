@@ -45,7 +45,7 @@ pub(super) struct Layout {
     pub pattern: Arc<Pattern>,
     /// Position of the block of every node pair of every element, in the current pattern
     blocks: Vec<BlockPosition>,
-    /// Where each element's blocks start
+    /// Start of each element's blocks
     starts: Vec<usize>,
     /// Nodes of the closed points of contacts that were last given room, each list led by its length
     contacts: Vec<usize>,

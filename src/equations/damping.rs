@@ -37,7 +37,7 @@ use crate::mesh::configuration::vector;
 use crate::model::boundary::Absorber;
 use crate::model::{Model, Step};
 
-/// Of a linear material the viscous stress knows the velocity alone. Statics know none.
+/// Dependence of the damping forces: for linear materials on the velocity alone; none in static steps.
 pub(super) fn damping_dependence(model: &Model, step: &Step) -> Dependence {
     if step.scheme.coefficients().is_none() {
         return Dependence::Nothing;
@@ -109,7 +109,7 @@ pub(super) fn add_damping(
     }
 }
 
-/// C ∂v/∂u.
+/// Dependence of the dashpot tangent C ∂v/∂u.
 pub(super) fn damper_dependence(step: &Step) -> Dependence {
     let any = !(step.loads.dashpots.is_empty() && step.loads.absorbers.is_empty());
     if any { Dependence::StepSize } else { Dependence::Nothing }

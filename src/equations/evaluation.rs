@@ -20,7 +20,7 @@ use crate::model::state::State;
 use crate::model::support::Direction;
 use crate::model::{Model, Step};
 
-/// What was found at the last evaluated displacement, for the accepted state.
+/// Results at the last evaluated displacement, for the accepted state.
 #[derive(Clone, Debug, Default)]
 pub struct Evaluation {
     /// F [F]
@@ -92,7 +92,7 @@ pub struct Seconds {
 /// Degrees of freedom whose work one thread sums up.
 const CHUNK: usize = 8192;
 
-/// What flows in an increment [F·L].
+/// Energy flows in an increment [F·L].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Flows {
     /// work of what acts from outside
@@ -108,8 +108,8 @@ pub struct Flows {
 }
 
 impl Flows {
-    /// From a state to what was found at the displacement `u` at the end of an increment, the reactions being among the
-    /// loads.
+    /// Energy flows from a state to the evaluation at the displacement `u` at the end of an increment, the reactions
+    /// being among the loads.
     pub fn between(model: &Model, step: &Step, old: &State, time: f64, u: &[f64], found: &Evaluation) -> Self {
         let (times, ends) = ([old.time, time], [&old.displacement, u]);
         let way = |dof: usize| u[dof] - old.displacement[dof];
@@ -126,7 +126,7 @@ impl Flows {
     }
 }
 
-/// What forces out of balance at the start of a static increment, left by motion before it, would have set in motion.
+/// Work of out-of-balance forces at the start of a static increment, left by earlier motion.
 fn relaxed(model: &Model, step: &Step, old: &State, u: &[f64]) -> f64 {
     if step.scheme.is_dynamic() {
         return 0.0;

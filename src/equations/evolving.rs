@@ -23,7 +23,7 @@ pub(super) fn evolves(model: &Model, body: usize) -> bool {
 }
 
 impl Evolving {
-    /// Those of the bodies, but for elements that are `constant`.
+    /// The evolving elements of the bodies, without those that are `constant`.
     pub fn new(model: &Model, constant: &[bool]) -> Self {
         let own = |(&body, constant): (&usize, &bool)| evolves(model, body) && !constant;
         let all: Vec<bool> = model.body_of_element.iter().zip(constant).map(own).collect();
@@ -78,13 +78,13 @@ impl Evolving {
 pub struct Evolved {
     /// ∫ W dV at its end
     pub stored: f64,
-    /// What they dissipated
+    /// Dissipation
     pub dissipated: f64,
     /// Work of their temperatures
     pub heating: f64,
 }
 
-/// What one element adds, with its stored energy and what it dissipates.
+/// Contribution of one element, with its stored energy and dissipation.
 fn evolve(
     model: &Model,
     e: usize,

@@ -42,7 +42,7 @@ pub(super) fn elements(model: &Model, layout: &Layout, share: impl Fn(usize) -> 
     total
 }
 
-/// What inertia says at a trial displacement.
+/// Inertia at a trial displacement.
 pub(super) struct Inertia {
     /// v [L/T]
     pub velocity: Vec<f64>,
@@ -61,7 +61,7 @@ pub(super) struct Inertia {
 }
 
 impl Inertia {
-    /// In a dynamic increment with the mass matrix M; a prescribed dof's acceleration is its support's.
+    /// Inertia in a dynamic increment with the mass matrix M; prescribed dofs have the acceleration of their supports.
     pub fn at(model: &Model, trial: Trial, u: &[f64], mass: &SparseMatrix) -> Option<Self> {
         let Trial { old, step, dt, .. } = trial;
         let scheme = step.scheme.coefficients()?;
@@ -163,8 +163,8 @@ fn followed<'a>(
         model.linkage.followers.iter().flat_map(|follower| follower.dofs().map(move |(i, dof)| (follower, i, dof)));
     dofs.filter_map(move |(follower, i, dof)| {
         target(model.linkage.leading(dof))?;
-        let base = follower.led_by(i, |dof| target(dof).unwrap_or(u[dof]));
-        Some((dof, base, move |values: &[f64]| follower.led(i, values)))
+        let base = follower.value_by(i, |dof| target(dof).unwrap_or(u[dof]));
+        Some((dof, base, move |values: &[f64]| follower.value(i, values)))
     })
 }
 

@@ -41,17 +41,17 @@ fn arms(model: &Model, [a, b]: [usize; 2], u: &[f64]) -> [Vector2<f64>; 2] {
     [model.mesh.nodes[b] - model.mesh.nodes[a], relative([a, b], u)]
 }
 
-/// What B has against A.
+/// Motion of B relative to A.
 pub fn relative([a, b]: [usize; 2], values: &[f64]) -> Vector2<f64> {
     Vector2::new(values[2 * b] - values[2 * a], values[2 * b + 1] - values[2 * a + 1])
 }
 
-/// J e
+/// J e: the vector rotated by +90°.
 pub fn perpendicular(e: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-e.y, e.x)
 }
 
-/// Weighted with α_f.
+/// Average of the values before and after, weighted with α_f.
 fn blended(scheme: Coefficients, [before, after]: [Vector2<f64>; 2]) -> Vector2<f64> {
     before * scheme.alpha_f + after * (1.0 - scheme.alpha_f)
 }
@@ -65,7 +65,7 @@ pub fn give([a, b]: [usize; 2], reference: Matrix2<f64>, along: Vector2<f64>, va
     }
 }
 
-/// e and L.
+/// Direction e and length L of a rigid plate.
 fn arm(model: &Model, plate: [usize; 2], u: &[f64]) -> (Vector2<f64>, f64) {
     let [before, way] = arms(model, plate, u);
     (before + way, before.norm())
@@ -90,9 +90,9 @@ pub(super) fn couple(model: &Model, plate: [usize; 2], u: &[f64], moment: f64) -
     (turned * (moment / square), both)
 }
 
-/// How far followers are from where their leaders are, and rigid plates from their length, at most [L].
+/// Largest error of the constraints: followers against their leaders, rigid plates against their length [L].
 pub(super) fn missed(model: &Model, u: &[f64]) -> f64 {
-    let led = |(follower, (i, dof)): (&Follower, (usize, usize))| (u[dof] - follower.led(i, u)).abs();
+    let led = |(follower, (i, dof)): (&Follower, (usize, usize))| (u[dof] - follower.value(i, u)).abs();
     let followers = model.linkage.followers.iter().flat_map(|follower| follower.dofs().map(move |dof| (follower, dof)));
     let plates = model.linkage.rigid.iter().map(|plate| stretch(model, *plate, u).abs());
     followers.map(led).chain(plates).fold(0.0, f64::max)
@@ -140,7 +140,7 @@ pub fn gather_residual(model: &Model, residual: &mut [f64]) {
 pub(super) fn prescribe(model: &Model, weight: f64, trial: Trial, u: &[f64], tangent: bool, system: &mut System) {
     for follower in &model.linkage.followers {
         for (i, dof) in follower.dofs() {
-            system.residual[dof] = weight * (u[dof] - follower.led(i, u));
+            system.residual[dof] = weight * (u[dof] - follower.value(i, u));
         }
     }
     for &[a, b] in &model.linkage.rigid {
@@ -261,20 +261,20 @@ impl Turning {
         self.give(perpendicular(self.e[1]) * self.spin[1] + self.excess.0 * rate, values);
     }
 
-    /// The same of accelerations.
+    /// Applies the constraint to accelerations, with the centripetal term.
     pub fn accelerations(&self, rate: f64, values: &mut [f64]) {
         let centripetal = self.e[1] * self.spin[1].powi(2);
         self.give(perpendicular(self.e[1]) * self.angular[1] - centripetal + self.excess.0 * rate, values);
     }
 
-    /// The same of weighted accelerations.
+    /// Applies the constraint to the weighted accelerations of the scheme.
     pub fn weighted(&self, scheme: Coefficients, rate: f64, values: &mut [f64]) {
         let angular = blend(scheme.alpha_m, self.angular[0], self.angular[1]);
         let arm = blended(scheme, self.e);
         self.give(perpendicular(arm) * angular - arm * self.square(scheme) + self.excess.0 * rate, values);
     }
 
-    /// (ω²)_f
+    /// Weighted square of the angular velocity, (ω²)_f.
     fn square(&self, scheme: Coefficients) -> f64 {
         blend(scheme.alpha_f, self.spin[0].powi(2), self.spin[1].powi(2))
     }
@@ -348,7 +348,7 @@ impl Turning {
 pub(super) fn spread_turning(model: &Model, rate: f64, u: &[f64], values: &mut [f64]) {
     for follower in model.linkage.turning() {
         for (i, dof) in follower.dofs() {
-            values[dof] = follower.led(i, values) + rate * (u[dof] - follower.led(i, u));
+            values[dof] = follower.value(i, values) + rate * (u[dof] - follower.value(i, u));
         }
     }
 }

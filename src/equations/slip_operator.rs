@@ -1,11 +1,12 @@
-//! The bodies as an interface sees them: what jumps across it do to its tractions, all else being linear and without inertia.
+//! Response of the bodies to an interface: tractions by displacement jumps across it, everything else being linear and
+//! without inertia.
 //!
 //! Of two nodes that face each other, one on each side, the jump j is the motion of the slave's against the master's; the
 //! master's own motion, and that of all other nodes of S, is m. With A condensed on the nodes at contacts
 //! ([`super::condensed`]) and ρ the forces that loads leave out of balance,
 //!
 //! ```text
-//! S_mm m + S_mj j + ρ_m = 0                    contact pulls at both sides alike: none of it here                  (1)
+//! S_mm m + S_mj j + ρ_m = 0                    equal and opposite on both sides: no contact force here                  (1)
 //! S_jm m + S_jj j + ρ_j = ℓ y,                 y = (p, −τ) by the point's (n, s), its length ℓ                       (2)
 //! K j + ρ̂ = ℓ y,   K = S_jj − S_jm S_mm⁻¹ S_mj                                                                       (3)
 //! j = (0, s) − y/α                             s: slip; the contact's springs (α_n, α_t) are in series                 (4)
@@ -39,7 +40,7 @@ struct Facing {
     compliance: [f64; 2],
 }
 
-/// The interface's own view of linear bodies.
+/// Response of linear bodies to slip of an interface.
 pub struct SlipOperator {
     /// The bodies, assembled without contact
     pub bodies: Assembler,
@@ -48,7 +49,7 @@ pub struct SlipOperator {
     nodes: ContactNodes,
     points: Vec<Facing>,
     condensed: Condensed,
-    /// For every place among the nodes the number of its m; none for a slave on a rigid master
+    /// Index of m for every place among the nodes; none for a slave on a rigid master
     moving: Vec<Option<usize>>,
     middles: usize,
     /// S_mm
@@ -62,7 +63,7 @@ pub struct SlipOperator {
     by_slip: Vec<f64>,
 }
 
-/// What forces out of balance do where nothing slips.
+/// Effect of out-of-balance forces without slip.
 pub struct Shift {
     /// y: all p, then all −τ [F/L²]
     pub tractions: Vec<f64>,
@@ -92,7 +93,8 @@ impl From<LinearFailure> for NoSlipOperator {
 }
 
 impl SlipOperator {
-    /// Of a model whose contacts are in small sliding, node facing node, under the supports and springs of a trial's step.
+    /// Slip operator of a model with small sliding and matching nodes, under the supports and springs of a trial's
+    /// step.
     ///
     /// # Errors
     /// [`NoSlipOperator`] where the bodies cannot be assembled, or are not held.
@@ -103,7 +105,7 @@ impl SlipOperator {
         let mut system = bodies.system();
         let mut condensation = Condensation::new(system.tangent.pattern.clone(), &nodes.nodes)?;
         bodies.assemble(trial, &vec![0.0; model.dofs()], &[], Request::Tangent, &mut system)?;
-        let held = || LinearFailure::Singular("something is held by contact alone, or by nothing".into());
+        let held = || LinearFailure::Singular("a body is constrained only by contact, or not at all".into());
         let condensed = condensation.condense(&system.tangent).ok_or_else(held)?;
         let points: Vec<Facing> = model.contacts.iter().flat_map(|pair| facing(model, pair, &nodes)).collect();
         let mut moving: Vec<Option<usize>> = vec![None; nodes.nodes.len()];
@@ -129,7 +131,7 @@ impl SlipOperator {
         Ok(jumps)
     }
 
-    /// Number of points.
+    /// Number of contact points.
     pub fn count(&self) -> usize {
         self.points.len()
     }
@@ -139,7 +141,7 @@ impl SlipOperator {
         &self.by_slip
     }
 
-    /// (3) and (5).
+    /// Condenses the bodies on the contact points, equations (3) and (5).
     fn condense(&mut self, lengths: &[f64]) -> Result<(), LinearFailure> {
         let (n, m) = (2 * self.points.len(), 2 * self.middles);
         let jumping: Vec<Vec<f64>> = (0..n).into_par_iter().map(|j| self.gather(&self.column_of_jump(j))).collect();
@@ -217,7 +219,7 @@ impl SlipOperator {
         sums
     }
 
-    /// What forces out of balance do where nothing slips; `residual` is A u − b of all equations.
+    /// Effect of out-of-balance forces without slip; `residual` is A u − b of all equations.
     pub fn shift(&mut self, residual: &[f64]) -> Shift {
         let forwarded = self.condensed.forward(residual);
         let mut middles = self.gather(&forwarded.right);
@@ -275,7 +277,7 @@ impl SlipOperator {
     }
 }
 
-/// The points of a pair, nodes facing nodes: whoever builds the model has seen to that.
+/// The points of a pair with matching nodes, as checked when the model is built.
 fn facing(model: &Model, pair: &ContactPair, nodes: &ContactNodes) -> Vec<Facing> {
     let inverse = |alpha: f64| if alpha > 0.0 { 1.0 / alpha } else { 0.0 };
     let place = |node: usize| nodes.place(model.ties.original(node)).expect("nodes at contacts are kept");

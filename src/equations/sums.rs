@@ -9,8 +9,8 @@ use crate::laws::friction::LawFailure;
 use crate::linear::system::Contribution;
 use crate::linear::{BlockPosition, SparseMatrix};
 use crate::model::Model;
-use crate::model::scheme::told;
-use crate::model::told::number;
+use crate::model::scheme::time_text;
+use crate::model::text::number;
 
 /// Forces on the nodes and, where they are asked for, their magnitudes and their tangent.
 pub(super) struct Sums<'a> {
@@ -75,7 +75,7 @@ pub(super) fn add_blocks(matrix: &mut SparseMatrix, blocks: &[BlockPosition], lo
     }
 }
 
-/// What a tangent depends on while a step lasts; each includes those before it.
+/// Dependence of a tangent during a step; each level includes those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Dependence {
     /// Nothing: it is the same matrix throughout
@@ -94,7 +94,7 @@ pub enum Dependence {
 pub enum TrialFailure {
     /// An element has no volume left.
     #[error(
-        "element {element} of body `{body}` is turned inside out (J = {jacobian:.3e}) at ({}, {})", number(at[0]), number(at[1])
+        "element {element} of body `{body}` is inverted (det F = {jacobian:.3e}) at ({}, {})", number(at[0]), number(at[1])
     )]
     Inverted {
         /// its tag in the mesh file
@@ -108,7 +108,7 @@ pub enum TrialFailure {
     },
     /// An element has hardly any volume left.
     #[error(
-        "element {element} of body `{body}` is crushed to {share:.1e} of its size at ({}, {})", number(at[0]), number(at[1])
+        "element {element} of body `{body}` is compressed to {share:.1e} of its size at ({}, {})", number(at[0]), number(at[1])
     )]
     Crushed {
         /// its tag in the mesh file
@@ -145,7 +145,7 @@ pub enum TrialFailure {
     /// A fluid pulls, or has no finite pressure.
     #[error(
         "contact `{contact}`: its fluid_pressure is {pressure} at ({}, {}) and time {}: it must be a finite number, zero or positive",
-        at[0], at[1], told(*time)
+        at[0], at[1], time_text(*time)
     )]
     FluidPressure {
         /// contact pair
@@ -158,7 +158,7 @@ pub enum TrialFailure {
         time: f64,
     },
     /// A support or load expression has no finite value.
-    #[error("a support or load at node {node} is not a finite number at time {}: check its expression", told(*time))]
+    #[error("a support or load at node {node} is not a finite number at time {}: check its expression", time_text(*time))]
     Undefined {
         /// its tag in the mesh file
         node: u64,
@@ -177,7 +177,7 @@ impl TrialFailure {
         }
     }
 
-    /// An element of which only a share of its size is left.
+    /// An element compressed to a small fraction of its size.
     pub(crate) fn crushed(model: &Model, e: usize, share: f64) -> Self {
         let (element, body, at) = named(model, e);
         Self::Crushed { element, body, at, share }

@@ -28,7 +28,7 @@ impl Term {
     pub const ALL: [Self; 7] =
         [Self::Solids, Self::Interfaces, Self::Loads, Self::Dampers, Self::Stabilization, Self::Damping, Self::Inertia];
 
-    /// What its tangent depends on in a step of a model.
+    /// Dependence of its tangent in a step of a model.
     pub fn dependence(self, model: &Model, step: &Step) -> Dependence {
         match self {
             Self::Solids => solids::dependence(model),

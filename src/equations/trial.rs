@@ -22,7 +22,7 @@ pub struct Trial<'a> {
     pub beyond: Option<[f64; 2]>,
     /// α_n of contacts under the augmented Lagrangian is this many times the one given
     pub stiffening: f64,
-    /// Whether the bodies give way under the pressures that come up within the increment; central differences move first
+    /// Whether the bodies deform under the pressures that arise within the increment; central differences move first
     pub settles: bool,
 }
 
@@ -42,12 +42,13 @@ impl<'a> Trial<'a> {
         Self { time: self.old.time + theta * self.dt, dt: theta * self.dt, beyond, ..self }
     }
 
-    /// When what is prescribed and applied is asked for.
+    /// The moment at which supports and loads are evaluated.
     pub fn moment(&self) -> Moment {
         Moment { time: self.time, beyond: self.beyond }
     }
 
-    /// What is left of the dashpots that stabilize at the end of the increment, 1 to 0; exactly 0 at the end of the step.
+    /// Remaining fraction of the stabilizing dashpots at the end of the increment, 1 to 0; exactly 0 at the end of the
+    /// step.
     pub fn stabilization_left(&self) -> f64 {
         1.0 - self.step.span.share(self.time)
     }

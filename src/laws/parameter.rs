@@ -47,7 +47,7 @@ pub fn require_not_negative(name: &'static str, value: f64) -> Result<(), Invali
 
 /// A name that no parameter of a law has.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("`{name}` is no parameter of this law; known are `{}`", known.join("`, `"))]
+#[error("`{name}` is not a parameter of this law; known are `{}`", known.join("`, `"))]
 #[non_exhaustive]
 pub struct UnknownParameter {
     /// the name
@@ -58,7 +58,7 @@ pub struct UnknownParameter {
 
 /// Parameters of a law that are numbers, by the names that cases give them.
 pub trait Numbers {
-    /// The names.
+    /// Names of the parameters.
     fn names(&self) -> Vec<String>;
 
     /// The parameter of a name, if it is one of them.

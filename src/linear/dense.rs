@@ -55,7 +55,7 @@ impl DenseLu {
         factor::lu_in_place(lu, rows, places, Par::Seq, MemStack::new(room), Default::default());
         let vanished = |k: &usize| factors[k * *size + k] == 0.0;
         match (0..*size).find(vanished) {
-            Some(k) => Err(LinearFailure::Singular(format!("pivot {k} of {size} vanished"))),
+            Some(k) => Err(LinearFailure::Singular(format!("pivot {k} of {size} is zero"))),
             None => Ok(()),
         }
     }
@@ -106,7 +106,7 @@ impl LinearSolver for DenseLu {
     }
 }
 
-/// What stays of the equations of a node.
+/// Constant part of the equations of a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steady {
     /// n, a unit vector
@@ -132,7 +132,7 @@ pub struct Eliminated {
 }
 
 impl Eliminated {
-    /// From S, column by column.
+    /// From the matrix S, stored by columns.
     ///
     /// # Errors
     /// [`LinearFailure`] where A_NN has no inverse.
@@ -229,7 +229,8 @@ pub struct HalvedLu {
 }
 
 impl HalvedLu {
-    /// With what is eliminated of the matrices to come, and whether they are worth their factorization as a whole.
+    /// A solver for the matrices to come, given what of them is `eliminated`; `whole`: whether they are worth a complete
+    /// factorization.
     pub fn with<'a>(&'a mut self, eliminated: Option<&'a Eliminated>, whole: bool) -> impl LinearSolver + 'a {
         Halving { eliminated, whole, own: self }
     }

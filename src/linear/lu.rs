@@ -17,7 +17,7 @@ pub struct SparseLu {
     factors: NumericLu<usize, f64>,
 }
 
-/// What depends on the pattern alone.
+/// Data that depend only on the pattern.
 struct Order {
     pattern: Arc<Pattern>,
     columns: Vec<usize>,

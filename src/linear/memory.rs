@@ -1,13 +1,13 @@
-//! How much memory there is, as far as the system tells, and whether something fits into it.
+//! Free memory, as far as the system reports it, and whether something fits into it.
 
 use std::fs::read_to_string;
 
 use thiserror::Error;
 
-/// Of less than this the system is not even asked [bytes].
+/// Below this size the free memory is not checked [bytes].
 pub const LITTLE: usize = 1 << 24;
 
-/// What does not fit into memory.
+/// A need of memory above what is free.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error("{needed:.2} GiB of memory, and {available:.2} GiB are free")]
 pub struct NoRoom {
@@ -17,8 +17,8 @@ pub struct NoRoom {
     pub available: f64,
 }
 
-/// Refuse what needs more bytes than are free, as far as the system tells: the process would be killed. Those that are `held`
-/// already are given back before.
+/// Refuse what needs more bytes than are free, as far as the system reports it: the process would be killed. Those that
+/// are `held` already are given back before.
 ///
 /// # Errors
 /// [`NoRoom`].
@@ -51,7 +51,7 @@ pub fn available_memory() -> Option<usize> {
     Some(control_groups().chain(address_space()).fold(machine, usize::min))
 }
 
-/// What the limit of the address space leaves (ulimit -v), if there is one [bytes].
+/// Room left by the limit of the address space (ulimit -v), if there is one [bytes].
 pub fn address_space() -> Option<usize> {
     let limits = read_to_string("/proc/self/limits").ok()?;
     let limit = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
@@ -61,7 +61,8 @@ pub fn address_space() -> Option<usize> {
     Some(limit.saturating_sub(1024 * used.trim().trim_end_matches("kB").trim().parse::<usize>().ok()?))
 }
 
-/// What every control group around this process leaves: its limit less what is used, caches that can be dropped not counted.
+/// Room left by every control group of this process: its limit less what is used, caches that can be dropped not
+/// counted.
 fn control_groups() -> impl Iterator<Item = usize> {
     const FIRST: (&str, [&str; 2]) = ("/sys/fs/cgroup/memory", ["memory.limit_in_bytes", "memory.usage_in_bytes"]);
     const SECOND: (&str, [&str; 2]) = ("/sys/fs/cgroup", ["memory.max", "memory.current"]);

@@ -26,8 +26,8 @@ pub enum LinearFailure {
     Varies,
     /// The factors do not fit into memory.
     #[error(
-        "the factors of {size} equations take {needed:.2} GiB, and {available:.2} GiB of memory are free: use a coarser \
-         mesh, or a machine with more memory"
+        "the factors of {size} equations need {needed:.2} GiB, and {available:.2} GiB of memory are free: use a \
+         coarser mesh, or a machine with more memory"
     )]
     TooLarge {
         /// number of equations
@@ -118,10 +118,10 @@ pub fn solve(solver: &mut dyn LinearSolver, matrix: &SparseMatrix, b: &[f64]) ->
         }
     }
     if !solution.x.iter().all(|v| v.is_finite()) {
-        return Err(LinearFailure::Singular("the solution is not finite: a pivot vanished".into()));
+        return Err(LinearFailure::Singular("the solution is not finite: a pivot is zero".into()));
     }
     if solution.perturbed_pivots > 0 && solution.residual > HOPELESS {
-        return Err(LinearFailure::Singular(format!("{} pivots vanished", solution.perturbed_pivots)));
+        return Err(LinearFailure::Singular(format!("{} pivots are zero", solution.perturbed_pivots)));
     }
     Ok(solution)
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-/// Which nodes are coupled. Row and column nodes are the same set: the pattern is symmetric, the values are not.
+/// Sparsity pattern by nodes. Row and column nodes are the same set: the pattern is symmetric, the values are not.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pattern {
     /// Start of each column node's list in `rows`; length nodes + 1
@@ -11,7 +11,7 @@ pub struct Pattern {
     rows: Vec<usize>,
 }
 
-/// Where the 2×2 block of a (row node, column node) pair lies in the values.
+/// Position of the 2×2 block of a (row node, column node) pair in the values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BlockPosition {
     first: u32,
@@ -153,7 +153,7 @@ impl SparseMatrix {
         }
     }
 
-    /// The diagonal.
+    /// The diagonal of the matrix.
     pub fn diagonal(&self) -> Vec<f64> {
         (0..self.size())
             .map(|dof| {
@@ -225,7 +225,7 @@ impl SparseMatrix {
         }
     }
 
-    /// A x.
+    /// The product A x.
     pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
         let [y] = self.multiply_all([x]);
         y

@@ -4,12 +4,12 @@ use nalgebra::{DMatrix, DVector};
 
 use super::SparseMatrix;
 
-/// What is asked of the equations at a trial displacement.
+/// Request to the equations at a trial displacement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Request {
     /// The residual at an iterate is enough.
     Residual,
-    /// The residual on the way to the next iterate, to see how far to go.
+    /// The residual between iterates, for a line search.
     Between,
     /// The tangent as well.
     Tangent,
@@ -29,7 +29,7 @@ pub struct System {
     pub imbalance: f64,
 }
 
-/// What one contact point or point element adds: forces and tangent of its nodes, two dofs a node.
+/// Contribution of one contact point or point element: forces and tangent of its nodes, two dofs per node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contribution {
     /// The nodes, in the order of the entries
@@ -41,7 +41,7 @@ pub struct Contribution {
 }
 
 impl Contribution {
-    /// Nothing yet, on the given nodes.
+    /// A contribution of zero on the given nodes.
     pub fn zero(nodes: Vec<usize>) -> Self {
         let n = 2 * nodes.len();
         Self { nodes, force: DVector::zeros(n), tangent: DMatrix::zeros(n, n) }

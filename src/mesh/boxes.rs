@@ -28,7 +28,7 @@ impl Box2 {
         Self { low: self.low.add_scalar(-margin), high: self.high.add_scalar(margin) }
     }
 
-    /// Its sides.
+    /// Lengths of the sides of the box.
     pub fn size(&self) -> Vector2<f64> {
         self.high - self.low
     }
@@ -96,7 +96,7 @@ fn divide(boxes: &mut [(Box2, usize)], part: usize, around: &mut [Option<Box2>])
 mod tests {
     use super::*;
 
-    /// The same as going through all, for boxes strewn about by a congruence.
+    /// The tree finds the same boxes as a search through all of them, for pseudo-random boxes.
     #[test]
     fn none_is_missed() {
         let boxes: Vec<Box2> = (0..200u32)

@@ -128,7 +128,7 @@ fn check_area(
     }
 }
 
-/// det ∂x/∂(ξ, η)
+/// Jacobian determinant det ∂x/∂(ξ, η).
 fn jacobian(gradient: &[[f64; 2]], positions: &[Vector2<f64>]) -> f64 {
     let along = |axis: usize| gradient.iter().zip(positions).map(|(d, x)| x * d[axis]).sum::<Vector2<f64>>();
     along(0).perp(&along(1))
@@ -303,7 +303,7 @@ pub(super) struct RawCell {
     pub nodes: Vec<u64>,
 }
 
-/// From the tag of a node to its number.
+/// Map from node tags to node numbers.
 struct NodeNumbers(HashMap<u64, usize>);
 
 impl NodeNumbers {
@@ -340,7 +340,7 @@ const SHORT: f64 = 1e-8;
 /// Round-off of the positions as a share of a side beyond which the shape of the element is not known.
 const VAGUE: f64 = 1e-3;
 
-/// Refuse an element of a group, and tell by which nodes.
+/// Refuse an element of a group, naming its nodes.
 fn refuse(
     element: &Element,
     tag: u64,

@@ -27,7 +27,7 @@ impl<'a> Configuration<'a> {
         Self { reference, displacement: None, section: Section::PlaneStrain }
     }
 
-    /// The same in another section.
+    /// The configuration in another section.
     pub fn within(self, section: Section) -> Self {
         Self { section, ..self }
     }
@@ -84,7 +84,7 @@ impl<'a> Configuration<'a> {
         self.between(from, to).norm() / (self.reference[to] - self.reference[from]).norm() - 1.0
     }
 
-    /// How far a node has moved since another configuration.
+    /// Displacement of a node since another configuration.
     pub fn since(&self, before: &Self, node: usize) -> Vector2<f64> {
         self.displacement(node) - before.displacement(node)
     }

@@ -20,7 +20,7 @@ pub enum MeshError {
         cause: Box<MeshError>,
     },
 
-    /// Nothing is at this path.
+    /// There is no file at this path.
     #[error("there is no such mesh file; check the path")]
     NoFile,
     /// The path leads to a folder or a device.
@@ -76,7 +76,7 @@ pub enum MeshError {
     /// Nodes with coordinates on their curve or surface.
     #[error("the nodes carry parametric coordinates; export with Mesh.SaveParametric = 0")]
     Parametric,
-    /// A third dimension.
+    /// The mesh is not plane.
     #[error(
         "node {node} has z = {z} where node {first} has z = {first_z}: not a plane mesh; \
          all nodes must share one z, the model lies in x and y"
@@ -260,8 +260,8 @@ pub enum MeshError {
     },
     /// A line between two bodies that are glued together.
     #[error(
-        "line {line} of `{group}` lies between `{first}` and `{second}`, which share its nodes and so cannot slide \
-         or part; contact needs separate nodes on the two sides: draw the curve once for each body (in gmsh without \
+        "line {line} of `{group}` lies between `{first}` and `{second}`, which share its nodes and so cannot slide or \
+         separate; contact needs separate nodes on the two sides: draw the curve once for each body (in gmsh without \
          Coherence or fragments)"
     )]
     EdgeShared {
@@ -296,4 +296,4 @@ pub enum MeshError {
 }
 
 const EXPORT: &str =
-    "export it anew with `gmsh -2 -format msh41 file.geo`, or Mesh.MshFileVersion = 4.1 in the .geo file";
+    "export it again with `gmsh -2 -format msh41 file.geo`, or Mesh.MshFileVersion = 4.1 in the .geo file";

@@ -72,7 +72,7 @@ fn parse(mut bytes: Vec<u8>) -> Result<RawMesh, MeshError> {
     assemble(file, &names, node_count, element_count)
 }
 
-/// How the numbers are written.
+/// Encoding of the numbers in the file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Encoding {
     Ascii,
@@ -80,7 +80,8 @@ enum Encoding {
     BigEndian,
 }
 
-/// From the first two lines, `$MeshFormat` and `4.1 (0 ASCII | 1 binary) 8`; in a binary file an integer 1 follows.
+/// Encoding by the first two lines, `$MeshFormat` and `4.1 (0 ASCII | 1 binary) 8`; in a binary file an integer 1
+/// follows.
 fn encoding(bytes: &[u8]) -> Result<Encoding, MeshError> {
     let mut lines = bytes.splitn(3, |&b| b == b'\n');
     if lines.next().map(<[u8]>::trim_ascii) != Some(b"$MeshFormat") {
@@ -100,7 +101,7 @@ fn encoding(bytes: &[u8]) -> Result<Encoding, MeshError> {
     }
 }
 
-/// Where the content of a section lies, if the file has it.
+/// Range of the content of a section, if the file has it.
 fn section(bytes: &[u8], name: &'static str) -> Result<Option<Range<usize>>, MeshError> {
     let after_line = |from: usize, wanted: &str| {
         let mut end = from;
@@ -210,10 +211,10 @@ fn bad_name(line: &str) -> MeshError {
     }
 }
 
-/// What stands where the parser gave up without a word.
+/// Text at the place where the parser failed without a message.
 fn unexpected(bytes: &[u8], offset: usize, encoding: Encoding) -> String {
     if encoding != Encoding::Ascii {
-        return "the numbers there are not those that the format has at this place".into();
+        return "the numbers there do not match the format".into();
     }
     let begin = bytes[..offset.min(bytes.len())].iter().rposition(|&b| b == b'\n').map_or(0, |end| end + 1);
     let line = bytes[begin..].split(|&b| b == b'\n').next().unwrap_or_default();

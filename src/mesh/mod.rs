@@ -90,7 +90,7 @@ pub struct Mesh {
     pub element_tags: Vec<u64>,
     /// Named groups
     pub groups: BTreeMap<String, Group>,
-    /// What the plane stands for in space
+    /// The kind of plane section
     pub section: Section,
 }
 
@@ -101,7 +101,7 @@ impl Mesh {
         Configuration::new(&self.nodes, displacement).within(self.section)
     }
 
-    /// The reference configuration.
+    /// The reference configuration, without displacements.
     #[doc(hidden)]
     pub fn undeformed(&self) -> Configuration<'_> {
         Configuration::undeformed(&self.nodes).within(self.section)

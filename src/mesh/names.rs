@@ -7,7 +7,7 @@ use thiserror::Error;
 /// Names that agree in this share of their letters are near each other, a swap of neighbours counted once.
 const NEAR: f64 = 0.6;
 
-/// The known name that was probably meant: one that begins alike as far as the shorter goes, or differs by few letters.
+/// The known name that was probably meant: one that begins the same, or differs by few letters.
 pub fn nearest<'n>(name: &str, known: impl DoubleEndedIterator<Item = &'n str>) -> Option<&'n str> {
     let name = name.to_lowercase();
     let near = |other: &&str| {
@@ -24,7 +24,7 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     spelled(text, |c| c != '\n' && steers(c))
 }
 
-/// The same in one line.
+/// The text in one line, without line breaks.
 pub fn in_line(text: &str) -> Cow<'_, str> {
     spelled(text, steers)
 }

@@ -1,4 +1,4 @@
-//! What the plane stands for in space.
+//! The kind of plane section that the model represents.
 //!
 //! ```text
 //! ∫ f dV = ∫ f w(X) dA,   ∫ f ds = ∫ f w(x) dl,   F = [F_plane, F₃₃]
@@ -22,24 +22,24 @@ use nalgebra::Vector2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What the plane stands for in space.
+/// The kind of plane section that the model represents.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum Section {
-    /// A slice of thickness 1 of bodies that go on without end across the plane: forces, masses and energies per unit of
+    /// A slice of thickness 1 of bodies that are unbounded out of plane: forces, masses and energies per unit of
     /// thickness
     #[default]
     PlaneStrain,
-    /// A plate, free of stress across the plane: forces, masses and energies of its whole thickness. Pressures and tractions,
-    /// those of contact included, count the undeformed thickness
+    /// A plate, free of out-of-plane stress: forces, masses and energies of its whole thickness. Pressures and
+    /// tractions, those of contact included, count the undeformed thickness
     PlaneStress {
         /// Undeformed thickness, above 0 [L]
         thickness: f64,
     },
-    /// Rings about the axis x = 0: x is the radius and y the axis. Forces, masses and energies are per full turn, pressures
-    /// and tractions per area, and zz is the hoop direction. No node may have x < 0, and nodes on the axis keep ux = 0 without
-    /// being told. A contact's length is the area of its full turn
+    /// Axisymmetric bodies about the axis x = 0: x is the radius and y the axis. Forces, masses and energies are per
+    /// full turn, pressures and tractions per area, and zz is the hoop direction. No node may have x < 0, and nodes on
+    /// the axis keep ux = 0 automatically. A contact's length is the area of its full turn
     Axisymmetric,
     /// A depth w = `depth` + `slope`·x, F₃₃ = 1. No body has it: it is there for verification, since an integral that forgets
     /// w or ∂w/∂x shows against it
@@ -72,7 +72,7 @@ impl Section {
         }
     }
 
-    /// Whether bodies are plates, which have no stress across the plane.
+    /// Whether bodies are plates, which have no out-of-plane stress.
     pub fn is_plate(&self) -> bool {
         matches!(self, Self::PlaneStress { .. })
     }
@@ -83,7 +83,7 @@ impl Section {
     }
 }
 
-/// In a line, with what forces are counted by.
+/// One line: the section, and the unit thickness or turn that forces refer to.
 impl Display for Section {
     fn fmt(&self, f: &mut Formatter) -> Result {
         match self {

@@ -177,7 +177,7 @@ fn lagrange3(node: f64, x: f64) -> (f64, f64) {
     if node == 0.0 { (1.0 - x * x, -2.0 * x) } else { (0.5 * x * (x + node), x + 0.5 * node) }
 }
 
-/// Symmetric triangle rule: each (a, weight) stands for the three points with barycentric coordinates (a, a, 1 − 2a).
+/// Symmetric triangle rule: each (a, weight) represents the three points with barycentric coordinates (a, a, 1 − 2a).
 fn triangle_rule(orbits: &[(f64, f64)]) -> Vec<QuadraturePoint> {
     orbits
         .iter()

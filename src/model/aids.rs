@@ -1,30 +1,30 @@
-//! Switches of what makes iterations converge.
+//! Switches of the convergence aids.
 
-/// Aids of the iterations of an increment, all on unless an experiment asks what one is good for. Where they lead does not
-/// depend on them, only how soon: a residual that is accepted knows none of them.
+/// Convergence aids of the iterations of an increment, all on by default; experiments switch one off to measure its
+/// effect. They change the number of iterations, not the solution: no accepted residual contains them.
 ///
-/// What goes wrong without an aid, and where it comes from, is told in its file.
+/// The failure that an aid prevents, and its source, are described in its file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Aids {
-    /// An increment starts as the last one went on: [`crate::solve::equilibrium`]
+    /// The start value extrapolates the last increment: [`crate::solve::equilibrium`]
     pub start: bool,
-    /// Promised tractions turn and stretch with the surface: [`crate::solve::contact_iteration`]
+    /// Tractions predicted by the linear solve rotate and stretch with the surface: [`crate::solve::contact_iteration`]
     pub promise: bool,
-    /// At the start of an increment they are limited: [`crate::solve::contact_iteration`]
+    /// At the start of an increment the predicted tractions are limited: [`crate::solve::contact_iteration`]
     pub limit: bool,
-    /// Points with a promised pressure are closed: [`crate::solve::contact_iteration`]
+    /// Points with a predicted pressure are closed: [`crate::solve::contact_iteration`]
     pub keep: bool,
-    /// At the start of an increment, points that were closed are: [`crate::solve::contact_iteration`]
+    /// At the start of an increment, points that were closed are closed: [`crate::solve::contact_iteration`]
     pub pull: bool,
-    /// Friction answers to a carried pressure: [`crate::solve::contact_iteration`]
+    /// Friction responds to a carried pressure: [`crate::solve::contact_iteration`]
     pub carried: bool,
-    /// A point that touches is closed and sticks: [`crate::solve::contact_iteration`]
+    /// A point that just closes is taken as closed and sticking: [`crate::solve::contact_iteration`]
     pub touch: bool,
-    /// A point that slips to and fro sticks: [`crate::solve::contact_iteration`]
+    /// A point whose slip alternates in direction sticks: [`crate::solve::contact_iteration`]
     pub stick: bool,
     /// It does so again if it slips for its own error: [`crate::solve::contact_iteration`]
     pub stick_again: bool,
-    /// A foot that goes to and fro between two segments lies between them: [`crate::solve::contact_iteration`]
+    /// A projection that alternates between two segments is put between them: [`crate::solve::contact_iteration`]
     pub valley: bool,
     /// Increments of linear bodies are solved on the nodes at contacts: [`crate::solve::interface`]
     pub condense: bool,

@@ -10,7 +10,7 @@ use nalgebra::Vector2;
 
 use super::boundary::Loads;
 use super::element::{Memory, follower_pressure};
-use super::told::number;
+use super::text::number;
 use super::{Body, Model, Step};
 use crate::mesh::configuration::vector;
 
@@ -35,13 +35,13 @@ impl Forces {
     }
 }
 
-/// What is out of balance on a body: the resultant, and the share of the forces at work.
+/// Imbalance of a body: the resultant, and the fraction of the acting forces.
 struct Imbalance {
     resultant: Vector2<f64>,
     share: f64,
 }
 
-/// What is to be said of each body whose initial stress is out of balance.
+/// Warnings about bodies whose initial stress is out of balance.
 pub(super) fn concerns(model: &Model) -> Vec<String> {
     let stressed = || model.bodies.iter().filter(|body| body.initial_stress.is_some());
     let Some(step) = model.steps.first().filter(|_| stressed().next().is_some()) else { return Vec::new() };
@@ -59,8 +59,8 @@ fn told(body: &Body, found: &Imbalance, later: &Imbalance, step: &Step) -> Strin
     let [x, y, percent] = [rounded(found.resultant.x), rounded(found.resultant.y), 100.0 * found.share].map(number);
     let cure = match later.share <= OUT_OF_BALANCE {
         true => format!(
-            "it would be balanced at the end of the step `{}`, whose loads grow from zero: give them as expressions, such as \
-             \"-9.81\" for a gravity, which act from the start",
+            "it would be in equilibrium at the end of the step `{}`, whose loads grow from zero: give them as \
+             expressions, such as \"-9.81\" for a gravity, which act from the start",
             step.name
         ),
         false => "check initial_stress against gravity and the density, loads on free sides, and what contacts carry at the start \
@@ -68,8 +68,8 @@ fn told(body: &Body, found: &Imbalance, later: &Imbalance, step: &Step) -> Strin
             .into(),
     };
     format!(
-        "body `{}` is not at rest under its initial stress: {percent} % of the forces at work are out of balance, with the \
-         resultant ({x}, {y}); {cure}",
+        "body `{}` is not in equilibrium under its initial stress: the imbalance is {percent} % of the acting forces, \
+         with the resultant ({x}, {y}); {cure}",
         body.name
     )
 }
@@ -128,7 +128,7 @@ fn add_loads(model: &Model, loads: &Loads, time: f64, forces: &mut Forces) {
     }
 }
 
-/// What of the forces on the free dofs of a body is out of balance.
+/// Imbalance of the forces on the free dofs of a body.
 fn imbalance(model: &Model, step: &Step, forces: &Forces, body: &Body) -> Imbalance {
     let (mut resultant, mut square, mut all) = (Vector2::zeros(), 0.0, 0.0);
     for node in model.ties.originals(body.nodes.iter().copied()) {

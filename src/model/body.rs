@@ -80,12 +80,12 @@ impl Damping {
 #[derive(Clone, Debug)]
 #[doc(hidden)]
 pub struct Memories {
-    /// Where each part starts, and where the last one ends
+    /// Start of each part, and end of the last one
     starts: Vec<usize>,
 }
 
 impl Memories {
-    /// Of all elements, with the body of each.
+    /// The memory layout of all elements, given the body of each.
     pub fn new(solids: &[SolidElement], bodies: &[Body], body_of_element: &[usize]) -> Self {
         let mut starts = vec![0];
         let mut end = 0;

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub use super::expression::Expression;
 use super::written::written;
 
-/// How a quantity varies.
+/// Prescribed quantity as a function of time and place.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(remote = "Self", rename_all = "snake_case")]
 #[schemars(!remote)]
@@ -41,8 +41,8 @@ written!(
     text: Expression
 );
 
-/// How warm a body is. A table by x or y, of the reference position, is reached at the end of the step, linearly from the
-/// temperature at its start: linear between, constant outside, the same coordinate twice is a jump.
+/// Temperature of a body. A table by x or y, of the reference position, is reached at the end of the step, linearly
+/// from the temperature at its start: linear between, constant outside, the same coordinate twice is a jump.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(remote = "Self", rename_all = "snake_case")]
 #[schemars(rename = "Temperature")]
@@ -92,8 +92,8 @@ impl From<&BodyTemperature> for Drive {
     }
 }
 
-/// How a quantity varies along a surface, by reference position. A table is linear between its pairs, constant outside; the same
-/// coordinate twice is a jump, and the second value holds there and beyond.
+/// Quantity that varies along a surface, by reference position. A table is linear between its pairs, constant outside;
+/// the same coordinate twice is a jump, and the second value holds there and beyond.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(remote = "Self", rename_all = "snake_case")]
 #[schemars(!remote)]
@@ -103,7 +103,7 @@ pub enum Profile {
     X(Vec<[f64; 2]>),
     /// Pairs of y and value, y ascending
     Y(Vec<[f64; 2]>),
-    /// The same everywhere
+    /// Uniform value
     #[serde(skip)]
     #[schemars(!skip, untagged)]
     Constant(f64),
@@ -184,7 +184,7 @@ impl Drive {
             _ => return Ok(()),
         };
         match table.windows(2).find(|pair| pair[1][0] < pair[0][0] || pair[1][0] == pair[0][0] && !may_jump) {
-            Some(pair) => Err(format!("the {kind} of the table must ascend: {} follows {}", pair[1][0], pair[0][0])),
+            Some(pair) => Err(format!("the {kind} of the table must increase: {} follows {}", pair[1][0], pair[0][0])),
             None => Ok(()),
         }
     }
@@ -198,7 +198,7 @@ impl Drive {
         }
     }
 
-    /// The same with the other sign.
+    /// The profile with the opposite sign.
     #[must_use]
     pub fn reversed(&self) -> Self {
         match self {
@@ -212,8 +212,8 @@ impl Drive {
         }
     }
 
-    /// Value at a reference position and run time, `start` being the value at the start of the step. Beyond an increment it
-    /// goes on in a straight line through the increment's start and end, wherever it bends or the step ends.
+    /// Value at a reference position and run time, `start` being the value at the start of the step. Beyond an
+    /// increment it is extrapolated linearly through the increment's start and end, wherever it bends or the step ends.
     pub fn value(&self, position: Vector2<f64>, at: impl Into<Moment>, span: Span, start: f64) -> f64 {
         let Moment { time, beyond } = at.into();
         // A rate is its own straight line.

@@ -29,7 +29,7 @@ pub struct Expression {
     operations: Arc<[Operation]>,
 }
 
-/// What is done with the values on top of the stack.
+/// Operation on the values on top of the stack.
 #[derive(Clone, Copy, Debug)]
 enum Operation {
     Number(f64),
@@ -75,7 +75,7 @@ impl Expression {
         if value.is_finite() { Ok(value) } else { Err(format!("\"{text}\" is {value}: must be finite")) }
     }
 
-    /// What prevents a variable from having this name.
+    /// Reason why a variable cannot have this name, if any.
     pub fn refused_name(name: &str) -> Option<&'static str> {
         refused_name(name)
     }
@@ -96,7 +96,7 @@ impl Expression {
         }
     }
 
-    /// The same with the other sign.
+    /// The expression with the opposite sign.
     #[must_use]
     pub fn negated(&self) -> Self {
         let operations = self.operations.iter().copied().chain([Operation::Negate]).collect();
@@ -143,7 +143,7 @@ impl FromStr for Expression {
     }
 }
 
-/// Its text.
+/// The text of the expression.
 impl AsRef<str> for Expression {
     fn as_ref(&self) -> &str {
         &self.text
@@ -232,7 +232,7 @@ struct Reader<'t> {
     operations: Vec<Operation>,
 }
 
-/// What cannot be read, and at which place.
+/// Result of parsing: the error has the place and a message.
 type Read<T> = Result<T, (usize, String)>;
 
 impl<'t> Reader<'t> {
@@ -316,7 +316,7 @@ impl<'t> Reader<'t> {
             if digits == 0 { 0 } else { 1 + power.len() - unsigned.len() + digits }
         });
         let number = &rest[..mantissa + exponent];
-        let value = number.parse().map_err(|_| (self.at, format!("`{number}` is no number")))?;
+        let value = number.parse().map_err(|_| (self.at, format!("`{number}` is not a number")))?;
         self.at += number.len();
         self.operations.push(Operation::Number(value));
         match self.text[self.at..].chars().next() {
@@ -395,7 +395,7 @@ impl<'t> Reader<'t> {
             ',' => "a comma stands between the values of a function only; decimals have a point".into(),
             '(' => "an operator is missing before the bracket".into(),
             c if c.is_alphanumeric() || c == '_' || c == '.' => "an operator is missing here".into(),
-            c => format!("`{c}` is no operator: there are + - * / ^ and brackets"),
+            c => format!("`{c}` is not an operator: there are + - * / ^ and brackets"),
         }
     }
 }
@@ -405,7 +405,7 @@ fn refused_name(name: &str) -> Option<&'static str> {
     let mut letters = name.chars();
     let first = letters.next().is_some_and(|c| c.is_alphabetic() || c == '_');
     if !first || !letters.all(|c| c.is_alphanumeric() || c == '_') {
-        return Some("is no name: a name has letters, digits and _, and begins with a letter");
+        return Some("is not a name: a name has letters, digits and _, and begins with a letter");
     }
     if CONSTANTS.iter().any(|(known, _)| *known == name) {
         return Some("is a constant: choose another name");
@@ -431,7 +431,7 @@ fn unknown(name: &str, variables: &[&str]) -> String {
     )
 }
 
-/// What cannot be read, with the text around it and a mark below the place.
+/// Error message with the surrounding text and a mark below the place.
 fn marked(text: &str, at: usize, what: &str) -> String {
     let before: Vec<char> = text[..at].chars().rev().take(AROUND + 1).collect();
     let after: Vec<char> = text[at..].chars().take(AROUND + 1).collect();

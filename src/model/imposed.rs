@@ -8,9 +8,9 @@ use super::boundary::{Amplitude, Moment, Profile};
 use super::{Model, Step};
 use crate::laws::bulk::{CauchyStress, TEMPERATURE};
 
-/// Stress of a body before anything has moved. Displacements and strains count from there, stresses are whole. The run tells how far
-/// it is out of balance with what acts at the start of the first step; loads that are there from the start are expressions,
-/// such as "-9.81" for a gravity, for a number grows from zero over the step
+/// Initial stress of a body. Displacements and strains are measured from the initial state, stresses are total. The run
+/// reports its imbalance with the loads at the start of the first step; loads that act from the start are expressions,
+/// such as "-9.81" for a gravity, because a number grows from zero over the step
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 #[non_exhaustive]
@@ -35,13 +35,13 @@ pub enum InitialStress {
         /// σ_xy; 0 unless given [F/L²]
         #[serde(default)]
         xy: Profile,
-        /// σ_zz: across the plane, of rings along the hoops. Needed but in plane stress, where it is 0 [F/L²]
+        /// σ_zz: out of plane, the hoop stress in axisymmetry. Required except in plane stress, where it is 0 [F/L²]
         zz: Option<Profile>,
     },
 }
 
 impl InitialStress {
-    /// σ_xx, σ_yy, σ_xy, σ_zz at a reference position of a body, which in a plate has none across the plane [F/L²].
+    /// σ_xx, σ_yy, σ_xy, σ_zz at a reference position of a body, which in a plate has none out of plane [F/L²].
     pub fn at(&self, position: Vector2<f64>, in_plate: bool) -> [f64; 4] {
         match self {
             Self::Geostatic { surface, weight, k0 } => {
@@ -56,8 +56,8 @@ impl InitialStress {
     }
 }
 
-/// Thermal expansion of a body, whose `temperature` the steps give. With F = (1 + α (T − T₀)) F_e the material sees F_e; a `linear`
-/// one sees the strain less α (T − T₀).
+/// Thermal expansion of a body, whose `temperature` the steps give. With F = (1 + α (T − T₀)) F_e the material is
+/// evaluated at F_e; a `linear` one at the strain less α (T − T₀).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
@@ -93,7 +93,7 @@ pub struct Temperature {
 
 #[doc(hidden)]
 impl Model {
-    /// What the materials remember at the start, in bodies with an initial stress or without.
+    /// Initial internal variables of the materials, with or without an initial stress.
     pub fn initial_memory(&self) -> Vec<f64> {
         let mut memory = vec![0.0; self.memories.total()];
         for (e, own) in self.memories.each_mut(&mut memory).enumerate() {

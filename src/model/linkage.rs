@@ -1,8 +1,9 @@
-//! Nodes that follow others by fixed shares: plates of which one component is alike, and plates that move as a rigid body.
+//! Nodes whose displacements follow from others (master–slave constraints): plates with one equal component, and plates
+//! that move as a rigid body.
 //!
 //! ```text
 //! u_c = Σ G_k u_k                                           c follows the leaders k
-//! one component i alike     (u_c)_i = (u_1)_i
+//! one component i equal     (u_c)_i = (u_1)_i
 //! rigid                     x_c = x_A + α e + β J e,   e = x_B − x_A,   |e| = L            J: turned by 90°
 //! ```
 //!
@@ -41,12 +42,12 @@ pub struct Linkage {
 
 impl Follower {
     /// Its component i as its leaders have it.
-    pub fn led(&self, i: usize, values: &[f64]) -> f64 {
-        self.led_by(i, |dof| values[dof])
+    pub fn value(&self, i: usize, values: &[f64]) -> f64 {
+        self.value_by(i, |dof| values[dof])
     }
 
-    /// The same of values by their dofs.
-    pub fn led_by(&self, i: usize, value: impl Fn(usize) -> f64) -> f64 {
+    /// Value of a following dof from those of its leaders.
+    pub fn value_by(&self, i: usize, value: impl Fn(usize) -> f64) -> f64 {
         self.leaders.iter().map(|(node, g)| g[(i, 0)] * value(2 * node) + g[(i, 1)] * value(2 * node + 1)).sum()
     }
 
@@ -57,17 +58,17 @@ impl Follower {
 }
 
 impl Linkage {
-    /// Whether nothing follows.
+    /// Whether there are no followers.
     pub fn is_empty(&self) -> bool {
         self.followers.is_empty()
     }
 
-    /// Give leaders what their followers have, by Gᵀ, and leave these nothing.
+    /// Add the forces of followers to their leaders, by Gᵀ, and clear them.
     pub fn gather(&self, values: &mut [f64]) {
         self.move_by(values, |g| g);
     }
 
-    /// The same of magnitudes, which do not cancel.
+    /// [`Linkage::gather`] for magnitudes, which do not cancel.
     pub fn gather_magnitudes(&self, values: &mut [f64]) {
         self.move_by(values, f64::abs);
     }
@@ -92,7 +93,7 @@ impl Linkage {
     pub fn spread(&self, values: &mut [f64]) {
         for follower in &self.followers {
             for (i, dof) in follower.dofs() {
-                values[dof] = follower.led(i, values);
+                values[dof] = follower.value(i, values);
             }
         }
     }
@@ -119,7 +120,7 @@ impl Linkage {
     }
 }
 
-/// The followers of a plate of which one component is alike; its first node leads.
+/// The followers of a plate with one equal component; its first node is the master.
 pub fn alike(nodes: &[usize], component: usize) -> Vec<Follower> {
     let Some((&first, others)) = nodes.split_first() else { return Vec::new() };
     let components = [component == 0, component == 1];
@@ -142,8 +143,8 @@ pub fn rigid(nodes: &[usize], [a, b]: [usize; 2], place: impl Fn(usize) -> Vecto
 
 #[doc(hidden)]
 impl Model {
-    /// Those of some nodes, ascending, whose reactions along x (0) or y (1) are theirs: that of a plate is with one of its nodes, and
-    /// is theirs if the whole plate is.
+    /// The given nodes (sorted) whose reactions along x (0) or y (1) count for them; the reaction of a plate counts
+    /// only if all of its nodes are given.
     pub fn held(&self, nodes: &[usize], component: usize) -> Vec<usize> {
         let linked = self.linkage.plates.iter().filter(|(_, components)| components[component]).map(|(plate, _)| plate);
         let plates: Vec<&Vec<usize>> = self.plates.iter().chain(linked).collect();

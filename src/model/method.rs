@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::contact::surface::{CORNER, in_order};
 use crate::mesh::{Group, Mesh};
 
-/// Where contact is evaluated.
+/// Contact method: where contact is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -34,7 +34,7 @@ impl Method {
     }
 }
 
-/// The method in force, and what to tell about it.
+/// The method in force, with the reason for it and a warning.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chosen {
     /// method
@@ -47,7 +47,7 @@ pub struct Chosen {
     pub concern: Option<&'static str>,
 }
 
-/// What a surface looks like.
+/// Shape of a surface: straight, curved or quadratic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Looks {
     Straight,
@@ -95,7 +95,7 @@ pub fn choose(
     chosen(Method::GaussToSegment, "chosen because mortar takes no smooth master", concern)
 }
 
-/// What is known to suffer under a method that was asked for.
+/// Known weakness of the requested method for these surfaces, if any.
 fn concern(method: Method, points: usize, slave: Looks, master: Option<Looks>) -> Option<&'static str> {
     let straight = slave == Looks::Straight && master.is_none_or(|master| master == Looks::Straight);
     match (method, master) {
@@ -114,7 +114,7 @@ fn concern(method: Method, points: usize, slave: Looks, master: Option<Looks>) -
     }
 }
 
-/// What the edges of a group look like; a group of anything else is told elsewhere.
+/// Shape of the edges of a group; other groups are refused elsewhere.
 fn looks(mesh: &Mesh, group: &str) -> Looks {
     let Ok(Group::Edges(edges)) = mesh.group(group) else { return Looks::Straight };
     if edges.iter().any(|edge| edge.nodes.len() > 2) {

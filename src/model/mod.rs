@@ -18,7 +18,7 @@ cfg_if::cfg_if! {
         pub mod state;
         pub mod step;
         pub mod support;
-        pub mod told;
+        pub mod text;
         pub mod warnings;
     } else {
         pub(crate) mod aids;
@@ -30,7 +30,7 @@ cfg_if::cfg_if! {
         pub(crate) mod state;
         pub(crate) mod step;
         pub(crate) mod support;
-        pub(crate) mod told;
+        pub(crate) mod text;
         pub(crate) mod warnings;
     }
 }
@@ -58,7 +58,7 @@ use state::StepStart;
 pub use state::{Energy, State};
 pub use step::{ForceComponent, Increments, Rupture, Step};
 
-/// When Newton's method stops.
+/// Stopping criteria of Newton's method.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 #[schemars(rename = "Newton")]
@@ -118,7 +118,7 @@ pub struct Model {
     /// nodes of periodic sides and of loading plates
     #[doc(hidden)]
     pub ties: Ties,
-    /// nodes that follow others: plates that turn, or of which one component is alike
+    /// nodes constrained to others: plates that rotate, or with one equal component
     #[doc(hidden)]
     pub linkage: Linkage,
     /// nodes of each loading plate, ascending
@@ -287,7 +287,7 @@ impl Model {
     }
 }
 
-/// What two times may differ by and be the same [T].
+/// Difference below which two times are the same [T].
 fn near(time: f64) -> f64 {
     16.0 * f64::EPSILON * time
 }

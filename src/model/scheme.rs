@@ -72,10 +72,10 @@ use crate::laws::parameter::{InvalidParameter, require};
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum Scheme {
-    /// Equilibrium without inertia; time only drives loads and the ageing of friction.
+    /// Equilibrium without inertia; time only controls loads and the ageing of friction.
     #[default]
     Static,
-    /// Newmark; β = 1/4, γ = 1/2 (the trapezoidal rule) unless given.
+    /// Newmark; default β = 1/4, γ = 1/2 (the trapezoidal rule).
     Newmark {
         /// β > 0 [-]
         #[serde(default = "quarter")]
@@ -84,38 +84,39 @@ pub enum Scheme {
         #[serde(default = "half")]
         gamma: f64,
     },
-    /// Hilber–Hughes–Taylor: second order, damps what the steps do not resolve.
+    /// Hilber–Hughes–Taylor: second order, with damping of frequencies that the increments do not resolve.
     Hht {
         /// −1/3 ≤ α ≤ 0; the nearer to −1/3, the more damping [-]
         alpha: f64,
     },
-    /// Generalized-α: second order, and of all such schemes the one that damps least what the steps resolve.
+    /// Generalized-α: second order, with the least damping of resolved frequencies among such schemes.
     GeneralizedAlpha {
-        /// 0 ≤ ρ∞ ≤ 1: what is left after an increment of a motion far too fast for it; 0.8 unless given, 1 does not damp [-]
+        /// 0 ≤ ρ∞ ≤ 1: spectral radius at infinite frequency; default 0.8, 1 does not damp [-]
         #[serde(default = "four_fifths")]
         rho_infinity: f64,
     },
-    /// Central differences: no equations to solve, but increments no longer than the fastest vibration of a single element
-    /// or contact point allows.
+    /// Central differences: no equations to solve, but increments are limited by the highest frequency of a single
+    /// element or contact point.
     Explicit {
-        /// 0 < safety ≤ 1: increment as a share of the longest that is stable; 0.9 unless given [-]
+        /// 0 < safety ≤ 1: increment as a fraction of the longest stable one; default 0.9 [-]
         #[serde(default = "nine_tenths")]
         safety: f64,
     },
-    /// Without inertia, bodies linear and contacts in small sliding with radiation damping: slip and state of the interface are
-    /// integrated explicitly, in steps that their error decides. For friction whose slip rate follows from traction and
-    /// state (rate_and_state, prescribed), nodes facing nodes, loads and supports that go evenly within the step
+    /// Quasi-dynamic: no inertia, linear bodies and contacts in small sliding with radiation damping; slip and state of
+    /// the interface are integrated explicitly with error control. For friction laws that define a slip rate by
+    /// traction and state (rate_and_state, prescribed), matching nodes, and loads and supports that vary linearly
+    /// within the step
     QuasiDynamic {
-        /// Error of one step in the coefficient of friction, 0 < tolerance < 0.1; 1e-5 unless given [-]
+        /// Error of one step in the friction coefficient, 0 < tolerance < 0.1; default 1e-5 [-]
         #[serde(default = "hundred_thousandth")]
         tolerance: f64,
-        /// Steps from one result to the next, at least 1; 10 unless given
+        /// Steps per row of results, at least 1; default 10
         #[serde(default = "ten")]
         every: usize,
     },
     /// Wilson-θ: linear acceleration, equilibrium at t + θ Δt.
     Wilson {
-        /// 1.37 ≤ θ ≤ 2; 1.4 unless given [-]
+        /// 1.37 ≤ θ ≤ 2; default 1.4 [-]
         #[serde(default = "seven_fifths")]
         theta: f64,
     },
@@ -133,7 +134,7 @@ fn four_fifths() -> f64 {
     0.8
 }
 
-/// Share of the longest stable increment that explicit steps take unless told otherwise [-]
+/// Default fraction of the longest stable increment that explicit steps take [-]
 pub fn nine_tenths() -> f64 {
     0.9
 }
@@ -150,7 +151,7 @@ fn seven_fifths() -> f64 {
     1.4
 }
 
-/// The numbers of a dynamic scheme in the equations above.
+/// Coefficients of a dynamic scheme in the equations above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients {
     /// Weight of the old inertia force
@@ -170,7 +171,7 @@ impl Scheme {
         !matches!(self, Self::Static | Self::QuasiDynamic { .. })
     }
 
-    /// The numbers of the scheme; `None` for statics and central differences.
+    /// Coefficients of the scheme; `None` for statics and central differences.
     pub fn coefficients(self) -> Option<Coefficients> {
         match self {
             Self::Static | Self::Explicit { .. } | Self::QuasiDynamic { .. } => None,
@@ -191,7 +192,7 @@ impl Scheme {
         }
     }
 
-    /// Share of the longest stable increment that central differences take.
+    /// Fraction of the longest stable increment used by central differences.
     pub fn safety(self) -> f64 {
         match self {
             Self::Explicit { safety } => safety,
@@ -293,7 +294,7 @@ pub fn start_acceleration([start, first, second, end]: [f64; 4], dt: f64) -> f64
     9.0 * (2.0 * start - 5.0 * first + 4.0 * second - end) / (dt * dt)
 }
 
-/// A time as a reader is told it: twelve digits, without the round-off of a sum of increments.
-pub fn told(time: f64) -> f64 {
+/// A time as printed: twelve digits, without the round-off of a sum of increments.
+pub fn time_text(time: f64) -> f64 {
     format!("{time:.11e}").parse().unwrap_or(time)
 }

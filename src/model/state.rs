@@ -80,11 +80,11 @@ pub struct LastIncrement {
     pub dt: f64,
     /// Δu [L]
     pub displacement: Vec<f64>,
-    /// Whether it ends where a contact touches: the next one does not go on like it
+    /// Whether it ends at contact closure: the next one does not extrapolate it
     pub ends_in_touch: bool,
 }
 
-/// What supports remember from the start of a step.
+/// Data of supports from the start of a step.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[doc(hidden)]
 pub struct StepStart {
@@ -119,7 +119,7 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// What was there to be stored and dissipated: energy at the start and work from outside.
+    /// Energy supplied: initial energy and external work.
     pub fn supplied(&self) -> f64 {
         self.initial.abs().max((self.initial + self.external_work).abs())
     }

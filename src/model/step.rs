@@ -21,7 +21,7 @@ use super::scheme::Scheme;
 use super::state::State;
 use super::support::{Direction, Motion, Prescribed};
 
-/// How increments are chosen.
+/// Size and error control of increments.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Increments {
@@ -36,7 +36,8 @@ pub struct Increments {
 }
 
 impl Increments {
-    /// The same, but none longer than `longest`: a stabilized step has a last increment after its dashpots have faded.
+    /// These settings, with no increment longer than `longest`: a stabilized step has a last increment after its
+    /// dashpots have faded.
     #[doc(hidden)]
     pub fn at_most(self, longest: f64) -> Self {
         let Self { initial, min, max, error } = self;
@@ -56,7 +57,7 @@ pub struct Step {
     pub scheme: Scheme,
     /// increments
     pub increments: Increments,
-    /// when and how the step goes on explicitly, if it may
+    /// criteria of the automatic switch to explicit integration, if any
     #[doc(hidden)]
     pub rupture: Option<Box<Rupture>>,
     /// prescribed directions, ascending by their dofs
@@ -86,7 +87,7 @@ pub struct Step {
 
 #[doc(hidden)]
 impl Step {
-    /// The same at other times: all of it that begins with this step or one after it.
+    /// The step moved in time: everything that begins with this step or a later one.
     #[must_use]
     pub fn moved(mut self, to: &impl Fn(Span) -> Span) -> Self {
         fn amplitude(of: &mut Amplitude, to: &impl Fn(Span) -> Span) {
@@ -117,7 +118,7 @@ impl Step {
     }
 }
 
-/// When a static or implicit step turns to explicit increments, and back.
+/// Criteria for switching a static or implicit step to explicit increments and back.
 #[derive(Clone, Debug)]
 #[doc(hidden)]
 pub struct Rupture {
@@ -125,11 +126,11 @@ pub struct Rupture {
     pub slip_rate: f64,
     /// Time over whose mean no point may slip that fast when it turns back: that of a shear wave across the model [T]
     pub calm: f64,
-    /// The step as it goes on explicitly
+    /// The step during explicit integration
     pub explicit: Step,
 }
 
-/// Attempts at an increment after which it is halved: where the reaction jumps, its rate leads nowhere.
+/// Attempts at an increment after which it is halved: where the reaction jumps, extrapolation by its rate fails.
 const PATIENCE: usize = 6;
 
 /// Share of the step below which an increment in which the reaction passes its value is not cut again.
@@ -157,7 +158,7 @@ pub enum ForceComponent {
     X,
     /// along y
     Y,
-    /// its size
+    /// magnitude
     Magnitude,
 }
 
@@ -172,7 +173,7 @@ impl ForceComponent {
     }
 }
 
-/// How an increment lies to the end of its step.
+/// Status of an increment with respect to the reaction that ends its step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum UntilStatus {
     /// The reaction has its value: the step ends
@@ -220,7 +221,7 @@ impl Until {
         shares.into_iter().filter(|share| *share > 0.0 && share.is_finite()).reduce(f64::min)
     }
 
-    /// How an increment of a step lies to the end.
+    /// Status of an increment with respect to the end of the step.
     pub fn course(&self, span: Span, [old, new]: [&State; 2]) -> UntilStatus {
         let clock = SHORTEST * (span.end - span.start) + 64.0 * f64::EPSILON * new.time.abs();
         let share = self.share([old, new]);

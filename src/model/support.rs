@@ -27,12 +27,12 @@ impl Direction {
         Self { dof: 2 * node + usize::from(d.x.abs() < d.y.abs()), inclined: Some(d) }
     }
 
-    /// Its node.
+    /// Node of the support.
     pub fn node(&self) -> usize {
         self.dof / 2
     }
 
-    /// Its unit vector.
+    /// Unit vector of the support's direction.
     pub fn vector(&self) -> Vector2<f64> {
         self.inclined.unwrap_or_else(|| Vector2::ith(self.dof % 2, 1.0))
     }
@@ -99,7 +99,7 @@ pub enum Motion {
     },
 }
 
-/// What one support along d says of a motion: share × ū(t), counted from d·u₀ at the start of the step where the drive says so.
+/// Constraint of one support along d: share × ū(t), counted from d·u₀ at the start of the step where the drive says so.
 #[derive(Clone, Debug)]
 pub struct Inclined {
     /// share of ū: 1 for the displacement along d itself

@@ -1,9 +1,9 @@
-//! What to know of a model before it is solved: how the surfaces of its contacts lie, and how well that is known.
+//! Warnings about a model before it is solved: initial gaps and overlaps of its contacts, and their accuracy.
 
 use nalgebra::Vector2;
 
 use super::balance;
-use super::told::{count, number};
+use super::text::{count, number};
 use crate::contact::master::{Master, Rigid};
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
@@ -19,7 +19,7 @@ const OF_POSITIONS: f64 = 8.0 * f64::EPSILON;
 const OF_EDGE: f64 = 1e-12;
 
 impl Model {
-    /// What a user should know before anything is solved.
+    /// Warnings before anything is solved.
     pub fn warnings(&self) -> Vec<String> {
         let farthest = farthest(&self.mesh);
         let of_contact = |pair: &ContactPair| {
@@ -41,7 +41,7 @@ impl Model {
         of_model.chain(concerns).chain(self.contacts.iter().flat_map(of_contact)).collect()
     }
 
-    /// Where contacts are evaluated whose method was left open.
+    /// Methods chosen by the program, for contacts without a given method.
     #[doc(hidden)]
     pub fn choices(&self) -> Vec<String> {
         self.told_of_methods(|chosen| chosen.because.map(|because| format!("{}, {because}", chosen.method.name())))
@@ -55,11 +55,11 @@ impl Model {
     }
 }
 
-/// Fields at times of a run that may be over before.
+/// Output times that a step ending early may shift.
 fn uncertain_times(model: &Model) -> Option<String> {
     let step = model.steps.iter().find(|step| step.until.is_some()).filter(|_| !model.times.is_empty())?;
     Some(format!(
-        "step `{}` may end before its time (until), and all that follows then comes earlier: output.times after its start may \
+        "step `{}` may end early (until), and all that follows then comes earlier: output.times after its start may \
          lie in other steps, or after the end of the run, and are not written then",
         step.name
     ))
@@ -83,13 +83,13 @@ fn faces_away(model: &Model, pair: &ContactPair) -> Option<String> {
     })
 }
 
-/// What is wrong with velocities that a static first step takes no notice of.
+/// Warning about initial velocities that a static first step ignores.
 fn lost_velocity(model: &Model) -> Option<String> {
     let first = model.steps.first().filter(|step| !step.scheme.is_dynamic())?;
     let moving = model.initial_velocity.iter().any(|v| *v != 0.0);
     moving.then(|| {
         format!(
-            "the initial velocities are lost: the first step, `{}`, is static; give it a dynamic scheme",
+            "the initial velocities have no effect: the first step, `{}`, is static; give it a dynamic scheme",
             first.name
         )
     })
@@ -110,7 +110,7 @@ fn many_increments(model: &Model) -> Option<String> {
         steps.map(|step| (step.span.end - step.span.start) / longest(step)).sum()
     };
     let (implicit, explicit) = (of_steps(false), of_steps(true));
-    let told = |count: f64, why: &str| format!("this takes at least {count:.1e} increments{why}");
+    let told = |count: f64, why: &str| format!("the run takes at least {count:.1e} increments{why}");
     match (implicit > MANY[0], explicit > MANY[1]) {
         (true, _) => Some(told(implicit, ", each a row of history.csv: lengthen dt (initial, max) unless it is meant")),
         (_, true) => Some(told(
@@ -121,12 +121,12 @@ fn many_increments(model: &Model) -> Option<String> {
     }
 }
 
-/// What is wrong with a radiation damping that acts in no step.
+/// Warning about a radiation damping without effect in any step.
 fn idle_radiation(model: &Model) -> Option<String> {
     let pair = model.contacts.iter().find(|pair| pair.radiation > 0.0)?;
     model.steps.iter().all(|step| step.scheme.is_dynamic()).then(|| {
         format!(
-            "the radiation damping of contact `{}` acts in no step: all have inertia, which radiates by itself",
+            "the radiation damping of contact `{}` has no effect: all steps have inertia, which radiates by itself",
             pair.name
         )
     })
@@ -156,15 +156,15 @@ fn coarse_positions(mesh: &Mesh) -> Option<String> {
     let known = f64::EPSILON * farthest;
     (known > KNOWN * shortest).then(|| {
         format!(
-            "nodes lie up to {} from the origin, and down to {} from each other: their positions have {known:.0e} of round-off, \
-             and so have initial gaps and overlaps; move the model to the origin before its mesh is written",
+            "nodes lie up to {} from the origin, and down to {} from each other: the round-off of their positions, and \
+             of initial gaps and overlaps, is {known:.0e}; move the model to the origin before its mesh is written",
             number(farthest),
             number(shortest)
         )
     })
 }
 
-/// The gaps of a contact that does not start closed, as a reader is told of them, in a mesh that goes as far as [`farthest`].
+/// The gaps of a contact that does not start closed, as text, in a mesh that extends to [`farthest`].
 pub fn gaps(model: &Model, pair: &ContactPair, farthest: f64, shrink_fit: bool) -> String {
     let gaps = Gaps::of(model, pair, farthest);
     let fit = gaps.fit.map(|(overlap, at)| {
@@ -183,7 +183,7 @@ pub fn gaps(model: &Model, pair: &ContactPair, farthest: f64, shrink_fit: bool) 
 
 /// Initial gaps of a contact; what is round-off of the positions is no gap and no overlap.
 struct Gaps {
-    /// Whether what faces nothing never touches
+    /// Whether points without a projection never come into contact (small sliding)
     small: bool,
     points: usize,
     facing: usize,
@@ -236,18 +236,19 @@ impl Gaps {
     fn warnings(&self) -> Vec<String> {
         let Self { points, facing, low: (low, at), .. } = *self;
         if facing == 0 {
-            let none = "no point of the slave faces the master; check which groups are named, and where they lie";
+            let none = "no point of the slave has a projection on the master; check the groups named and their \
+                        positions";
             return vec![none.into()];
         }
         let mut warnings = Vec::new();
         if facing < points {
-            let never = if self.small { ", and never touch it in small sliding" } else { "" };
-            warnings.push(format!("{} of the slave face no part of the master{never}", self.beside()));
+            let never = if self.small { ", and never come into contact in small sliding" } else { "" };
+            warnings.push(format!("{} of the slave without a projection on the master{never}", self.beside()));
         }
         if low < 0.0 {
             warnings.push(format!(
-                "surfaces overlap by up to {} at the start, at ({}, {}), and press from the first increment on; move them \
-                 apart, or bring the overlap in over the first step (shrink_fit)",
+                "surfaces overlap by up to {} at the start, at ({}, {}), and are in contact from the first increment \
+                 on; move them apart, or bring the overlap in over the first step (shrink_fit)",
                 number(-low),
                 number(at.x),
                 number(at.y)
@@ -259,7 +260,7 @@ impl Gaps {
     fn told(&self) -> String {
         let Self { facing, low: (low, _), high, .. } = *self;
         match facing {
-            0 => format!("initial gap: {}, and none faces the master", self.beside()),
+            0 => format!("initial gap: {}, none with a projection on the master", self.beside()),
             _ if low == high => format!("initial gap {} everywhere", number(low)),
             _ => format!("initial gap from {} to {}", number(low), number(high)),
         }

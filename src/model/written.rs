@@ -6,23 +6,23 @@ use std::marker::PhantomData;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, Error, MapAccess, Unexpected, Visitor};
 
-/// What is written as a text, or an object, and some of it as a number. [`written!`] writes the implementation.
+/// Input given as a text or an object, in some cases as a number. [`written!`] writes the implementation.
 pub trait Written: Sized {
     /// The forms there are, for messages
     const EXPECTING: &'static str;
 
-    /// From a number, if it may be one.
+    /// The value from a number, if numbers are allowed.
     fn number(_value: f64) -> Option<Self> {
         None
     }
 
-    /// From a text.
+    /// The value from a text.
     ///
     /// # Errors
     /// What cannot be read.
     fn text(text: &str) -> Result<Self, String>;
 
-    /// From an object.
+    /// The value from an object.
     ///
     /// # Errors
     /// The deserializer's.

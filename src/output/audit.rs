@@ -6,34 +6,34 @@
 //!
 //! The error is measured by the most that there was to be stored or dissipated: initial energy and external work.
 
-use crate::model::scheme::{Scheme, told};
+use crate::model::scheme::{Scheme, time_text};
 use crate::model::state::State;
 use crate::model::{Model, Step};
 use serde::{Deserialize, Serialize};
 
-/// Share of the energy there was that is worth a warning.
+/// Energy error worth a warning, as a fraction of the energy supplied.
 const WORTH_TELLING: f64 = 0.01;
 
-/// Errors within this many times what round-off of the forces does on the way mean nothing.
+/// Errors within this multiple of the work of round-off in the forces are ignored.
 const ROUND_OFF: f64 = 100.0;
 
 /// The balance of energies so far.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Audit {
-    /// The most that there was to be stored or dissipated [F·L]
+    /// Largest initial energy + external work [F·L]
     pub supplied: f64,
     /// Error at the last row [F·L]
     error: f64,
     /// Its largest value, and when [F·L, T]
     worst: (f64, f64),
-    /// What every step added to it, and what may help
+    /// Contribution of every step, and its remedy
     steps: Vec<(String, f64, String)>,
-    /// What round-off of the forces may have worked [F·L]
+    /// Possible work of round-off in the forces [F·L]
     noise: f64,
 }
 
 impl Audit {
-    /// Take note of a row, from the state before it.
+    /// Record a row, from the state before it.
     pub fn record(&mut self, model: &Model, step: &Step, old: &State, new: &State) {
         let error = new.energy.error();
         self.supplied = self.supplied.max(new.energy.supplied());
@@ -50,7 +50,7 @@ impl Audit {
         self.noise += round_off(model, new) * ways.fold(0.0, f64::max);
     }
 
-    /// What is to be told at the end of a run, if anything is.
+    /// Warning at the end of a run, if the energies do not balance.
     pub fn concern(&self) -> Option<String> {
         let (worst, time) = self.worst;
         if worst.abs() <= (WORTH_TELLING * self.supplied).max(ROUND_OFF * self.noise) {
@@ -59,11 +59,11 @@ impl Audit {
         let largest = self.steps.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
         let (name, _, remedy) = largest?;
         let percent = 100.0 * worst.abs() / self.supplied;
-        let fate = if worst < 0.0 { "came from nowhere" } else { "is lost" };
+        let fate = if worst < 0.0 { "gain" } else { "loss" };
         Some(format!(
-            "the energies do not balance: by t = {}, {:.3e} {fate}, {percent:.3} % of all there was ({:.3e} at the start and \
-             from outside), most of it in step `{name}`: {remedy}",
-            told(time),
+            "energy balance violated by t = {}: spurious {fate} of {:.3e}, {percent:.3} % of the {:.3e} supplied \
+             (initial energy + external work), mostly in step `{name}`: {remedy}",
+            time_text(time),
             worst.abs(),
             self.supplied
         ))
@@ -81,11 +81,11 @@ fn round_off(model: &Model, state: &State) -> f64 {
     f64::EPSILON * contacts.fold(model.stiffness(), f64::max) * reach * (model.mesh.nodes.len() as f64).sqrt()
 }
 
-/// What may bring the energies of a step into balance.
+/// Remedy for an energy error in a step.
 fn remedy(model: &Model, step: &Step) -> &'static str {
     let keeps_all = match step.scheme {
         Scheme::Static => return "take shorter increments (dt.max, dt.min)",
-        Scheme::QuasiDynamic { .. } => return "take fewer steps from one result to the next (quasi_dynamic.every)",
+        Scheme::QuasiDynamic { .. } => return "take fewer steps per row of results (quasi_dynamic.every)",
         Scheme::Explicit { .. } => {
             return "lower the safety of the explicit scheme, or give the bodies viscosity (damping.stiffness)";
         }
@@ -97,16 +97,19 @@ fn remedy(model: &Model, step: &Step) -> &'static str {
     let rings = !model.contacts.is_empty() && !model.massless.contains(&true);
     match (keeps_all, rings) {
         (true, true) => {
-            "an impact sets nodes ringing that increments do not resolve: make the contact `massless`, take a scheme that \
-             damps (hht), or shorter increments (dt.error)"
+            "impact excites oscillations that the increments do not resolve: make the contact `massless`, take a \
+             scheme that damps (hht), or shorter increments (dt.error)"
         }
         (true, false) => {
-            "take a scheme that damps what increments do not resolve (hht), or shorter increments (dt.error)"
+            "take a scheme that damps frequencies that the increments do not resolve (hht), or shorter increments \
+             (dt.error)"
         }
         (false, true) => {
-            "what increments do not resolve is damped, or rings where bodies strike: take shorter increments (dt.error), or \
-             make the contact `massless`"
+            "frequencies that the increments do not resolve are damped, or excited by impact: take shorter increments \
+             (dt.error), or make the contact `massless`"
         }
-        (false, false) => "what increments do not resolve is damped by the scheme: take shorter increments (dt.error)",
+        (false, false) => {
+            "the scheme damps frequencies that the increments do not resolve: take shorter increments (dt.error)"
+        }
     }
 }

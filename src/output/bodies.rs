@@ -8,7 +8,7 @@
 //! ```
 //! Integrals go by the consistent mass of the body's elements, with what is moved away from massless nodes, but P and L after
 //! explicit increments by the lumped masses, which are those that keep them; point masses are not of the body. A body without density has the centre of its volume. Of rings they go over the full turn: x components
-//! sum up radial parts, c_x is the mean radius, and L and θ tell of the section alone.
+//! sum up radial parts, c_x is the mean radius, and L and θ refer to the section only.
 
 use nalgebra::Vector2;
 
@@ -16,7 +16,7 @@ use crate::mesh::configuration::vector;
 use crate::model::state::State;
 use crate::model::{Body, Model};
 
-/// What of a body does not change as it moves.
+/// Constants of a body for its means.
 #[derive(Clone, Debug)]
 pub struct BodyMeans {
     density: f64,
@@ -29,7 +29,7 @@ pub struct BodyMeans {
     inertia: f64,
 }
 
-/// What of a body goes with one of its nodes.
+/// Contribution of one node to the means of a body.
 #[derive(Clone, Debug)]
 struct Share {
     node: usize,
@@ -41,7 +41,7 @@ struct Share {
     lumped: f64,
 }
 
-/// How a body moves.
+/// Momentum, centre of mass and rotation of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
     /// P [M L/T]
@@ -55,7 +55,7 @@ pub struct Motion {
 }
 
 impl BodyMeans {
-    /// Of a body of a model.
+    /// Weights for the means over a body of a model.
     pub fn new(model: &Model, body: &Body) -> Self {
         let place = |node: usize| model.mesh.nodes[node];
         let origin = body.nodes.first().map_or_else(Vector2::zeros, |&node| place(node));
@@ -91,7 +91,7 @@ impl BodyMeans {
         Self { density, pairs, shares, volume, centre: origin + from_origin, inertia }
     }
 
-    /// How it moves in a state.
+    /// Motion of the body in a state.
     pub fn motion(&self, model: &Model, state: &State) -> Motion {
         let is_lumped = state.is_of_explicit();
         let (mut shift, mut momentum) = (Vector2::zeros(), Vector2::zeros());

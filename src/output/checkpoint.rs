@@ -20,13 +20,13 @@ use crate::mesh::{Group, Mesh};
 use crate::run::RunBytes;
 use crate::run::error::Error;
 
-/// The last checkpoint.
+/// File of the last checkpoint.
 pub const NEWEST: &str = "checkpoint.bin";
-/// The one before.
+/// File of the checkpoint before it.
 pub const PREVIOUS: &str = "checkpoint_prev.bin";
 
 const MAGIC: &[u8] = b"fecontact checkpoint\n";
-/// What stands in the file; another number for every change of it.
+/// Version of the file's content; every change of it gets a new number.
 pub const VERSION: u32 = 8;
 const HEAD: usize = MAGIC.len() + 16;
 
@@ -58,7 +58,7 @@ pub struct MeshPrint {
 }
 
 impl MeshPrint {
-    /// Of a mesh.
+    /// Checksums of a mesh.
     pub fn of(mesh: &Mesh) -> Self {
         let [mut nodes, mut elements, mut groups] = [(); 3].map(|()| crc32fast::Hasher::new());
         mesh.nodes.iter().flat_map(|x| [x.x, x.y]).for_each(|x| nodes.update(&x.to_bits().to_le_bytes()));
@@ -81,10 +81,10 @@ impl MeshPrint {
         }
     }
 
-    /// What differs in another mesh, if anything does.
+    /// First difference from another mesh, if there is one.
     pub fn difference(&self, other: &Self) -> Option<String> {
         let parts = [
-            ("nodes", self.nodes, other.nodes, "lie elsewhere"),
+            ("nodes", self.nodes, other.nodes, "are at other positions"),
             ("elements", self.elements, other.elements, "have other nodes"),
             ("groups", self.groups, other.groups, "have other names or members"),
         ];
@@ -98,7 +98,7 @@ impl MeshPrint {
 /// Why a checkpoint cannot be used.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum Unusable {
-    /// There is none.
+    /// There is no checkpoint.
     #[error("there is none")]
     Missing,
     /// It cannot be read.

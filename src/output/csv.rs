@@ -24,7 +24,7 @@ const BLINK: Duration = Duration::from_millis(50);
 /// Rows of so many bytes do so at once.
 const MANY: usize = 1 << 16;
 
-/// What stands in a table, so many bytes and their checksum, and the row that is held.
+/// Extent of a written table: number of bytes, their checksum, and the row that is held.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Standing {
     length: u64,
@@ -82,7 +82,7 @@ impl Table {
         }
     }
 
-    /// Add a cell.
+    /// Add a cell with a text.
     pub fn text(&mut self, text: &str) {
         self.row.extend_from_slice(text.as_bytes());
         self.row.push(b',');
@@ -104,7 +104,7 @@ impl Table {
         let _ = write!(self.row, "{value},");
     }
 
-    /// Write the row.
+    /// End and write the row.
     pub fn end_row(&mut self) -> Result<(), Error> {
         self.end_row_as(Row::Written)
     }
@@ -130,14 +130,14 @@ impl Table {
         if self.flushed.elapsed() < BLINK { Ok(()) } else { self.flush() }
     }
 
-    /// What stands in the file; it is on the disk.
+    /// Extent of the file, after it is flushed to the disk.
     pub fn standing(&mut self) -> Result<Standing, Error> {
         self.flush()?;
         self.file.sync_data().map_err(|cause| failed(&self.path, &cause))?;
         Ok(Standing { length: self.length, crc: self.crc.clone().finalize(), held: self.held.clone() })
     }
 
-    /// Whether the file can be gone on with: what stood in it does so still, and no column of it would be lost. Nothing is
+    /// Whether the file can be continued: its content is unchanged, and no column of it would be lost. Nothing is
     /// changed.
     pub fn check(&self, stood: &Standing) -> Result<(), Error> {
         self.can_go_on_from(stood).map_err(|cause| failed(&self.path, &cause))
@@ -146,7 +146,7 @@ impl Table {
     fn can_go_on_from(&self, &Standing { length, crc, .. }: &Standing) -> io::Result<()> {
         let changed = |what: String| {
             Err(io::Error::other(format!(
-                "was changed since the checkpoint was written: {what}; put it back as it was, or begin anew in another folder"
+                "was changed since the checkpoint was written: {what}; restore it, or start a new run in another folder"
             )))
         };
         let is = self.file.metadata()?.len();
@@ -160,7 +160,7 @@ impl Table {
         match had.iter().find(|name| !self.header.contains(name)) {
             None => Ok(()),
             Some(gone) => Err(io::Error::other(format!(
-                "has the column `{gone}`, which would be lost: ask for it in the case as before"
+                "has the column `{gone}`, which would be lost: request it in the case as before"
             ))),
         }
     }
@@ -258,7 +258,7 @@ impl Table {
         let half = written.iter().rev().take_while(|byte| **byte != b'\n').count() as u64;
         let length = self.file.metadata().map_or(0, |file| file.len());
         if half > 0 && length >= half {
-            // It is told that the file is not complete anyway.
+            // That the file is incomplete is reported anyway.
             let _ = self.file.set_len(length - half);
         }
         failed(&self.path, &cause)
@@ -282,17 +282,17 @@ pub fn remembered(memory: &impl Serialize) -> Result<Vec<u8>, Error> {
     postcard::to_allocvec(memory).map_err(|cause| failed(Path::new("memory of an observer"), &cause))
 }
 
-/// What the bytes say.
+/// The memory decoded from its bytes.
 pub fn recalled<M: DeserializeOwned>(bytes: &[u8]) -> Result<M, Error> {
     postcard::from_bytes(bytes).map_err(|cause| failed(Path::new("memory of an observer"), &cause))
 }
 
-/// What stands in a table that a run writes, and is remembered from row to row.
+/// Rows of a table that a run writes, and their memory from row to row.
 pub trait Rows: Sized {
     /// Name of the table without its ending, by which its memory is found as well
     const NAME: &'static str;
 
-    /// Those of a model, and the header above them.
+    /// The rows of a model, and their header.
     fn new(model: &Model) -> (Self, Vec<String>);
 
     /// Write the rows of an attempt, if it has any.
@@ -301,7 +301,7 @@ pub trait Rows: Sized {
     /// [`Error::Output`] when the file cannot take them.
     fn write(&mut self, table: &mut Table, model: &Model, attempt: &Attempt) -> Result<(), Error>;
 
-    /// What is remembered. Nothing unless it says so.
+    /// The memory in bytes; empty by default.
     ///
     /// # Errors
     /// [`Error::Output`] where it cannot be made bytes.
@@ -318,7 +318,7 @@ pub trait Rows: Sized {
     }
 }
 
-/// Writes the table of some rows while a run goes on.
+/// Writes the table of some rows while a run continues.
 #[derive(Debug)]
 pub struct Sheet<R> {
     table: Table,

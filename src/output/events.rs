@@ -1,8 +1,8 @@
 //! Events of slip: what each was, from its onset to its end.
 //!
-//! An event of a contact begins when a point of it slips faster than the threshold while no other does, and ends when none does.
-//! Its points are those that a front has reached in it. Their slip s, traction q and work ∫ |q| ds count from the increment
-//! before the event; means are weighted by the lengths that points stand for.
+//! An event of a contact begins when a point of it slips faster than the threshold while no other does, and ends when
+//! none does. Its points are those that a front has reached in it. Their slip s, traction q and work ∫ |q| ds count
+//! from the increment before the event; means are weighted by the tributary lengths of the points.
 //!
 //! ```text
 //! stress drop       q before − q after, positive where slip has unloaded
@@ -44,13 +44,13 @@ pub(super) struct SlipEvent {
     /// Time up to which it is known, and whether that is its end
     pub until: f64,
     pub over: bool,
-    /// Of the model when it began, and by `until`
+    /// Energies of the model at the onset, and at `until`
     pub energies: [Energies; 2],
     /// What each point did
     pub courses: Vec<PointRecord>,
 }
 
-/// What loads and stored energies have given, and what friction took, since the start of the run [F·L].
+/// Energy released by loads and stored energies, and dissipated by friction, since the start of the run [F·L].
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Energies {
     pub given: f64,
@@ -58,7 +58,7 @@ pub(super) struct Energies {
 }
 
 impl Energies {
-    /// By a state.
+    /// Energies of a state.
     pub fn of(state: &State) -> Self {
         let energy = &state.energy;
         let given = energy.external_work - energy.strain - energy.contact_elastic;
@@ -66,14 +66,14 @@ impl Energies {
     }
 }
 
-/// What a point did in an event.
+/// Record of a point in an event.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct PointRecord {
     /// Plastic slip, traction and work before
     before: Mark,
-    /// When |q| was least
+    /// State at the smallest |q|
     least: Mark,
-    /// As last seen
+    /// State at the last row
     last: Mark,
     pub peak_rate: f64,
 }
@@ -87,7 +87,7 @@ pub(super) struct Mark {
 }
 
 impl Mark {
-    /// Of a contact point.
+    /// Slip, traction and work of a contact point.
     pub fn of(state: &ContactState) -> Self {
         let friction = &state.friction;
         Self { slip: friction.plastic_slip, traction: friction.traction, work: friction.dissipation }
@@ -132,13 +132,13 @@ impl PointRecord {
     }
 }
 
-/// What an event amounts to.
+/// Measures of an event.
 pub(super) struct Measures {
     /// Time and place of the first arrival
     pub onset: f64,
     pub position: f64,
     pub at: [f64; 2],
-    /// Length that its points stand for [L]
+    /// Tributary length of its points [L]
     pub length: f64,
     pub mean_slip: f64,
     pub largest_slip: f64,
@@ -151,7 +151,7 @@ pub(super) struct Measures {
 }
 
 impl Measures {
-    /// What it amounts to; nothing if no front has reached a point.
+    /// Measures of an event; `None` if no front has reached a point.
     pub fn of(event: &SlipEvent, interface: &ContactPoints) -> Option<Self> {
         let reached: Vec<(&Point, &PointRecord, f64)> = interface
             .points
@@ -209,19 +209,19 @@ pub(super) struct Point {
     /// Distance along the line [L]
     pub position: f64,
     pub at: [f64; 2],
-    /// Length that the point stands for [L]
+    /// Tributary length of the point [L]
     pub length: f64,
     /// Whether it has friction: what slides freely has no fronts
     pub rubs: bool,
-    /// What it was left with by the last increment
+    /// State after the last increment
     pub mark: Mark,
-    /// Slip rate of that increment [L/T], and what an arrival is told by (see [`FrontsInput`])
+    /// Slip rate of that increment [L/T], and the signal that defines an arrival (see [`Arrive`])
     pub rate: f64,
     pub signal: f64,
     pub arrivals: Vec<Arrival>,
 }
 
-/// When a front passed a point.
+/// Arrival of a front at a point.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Arrival {
     /// [T]
@@ -242,18 +242,18 @@ pub(super) struct ContactPoints {
     pub events: Vec<SlipEvent>,
 }
 
-/// What counts as a front.
+/// Definition of fronts.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FrontsInput {
     /// Slip rate whose passage from below is the arrival of a front; an event of slip lasts while a point of the contact
     /// slips faster [L/T]
     pub slip_rate: f64,
-    /// What tells of arrivals instead of the slip rate
+    /// Criterion for arrivals instead of the slip rate
     pub arrival: Option<ArrivalInput>,
 }
 
-/// What tells that a front arrives at a point.
+/// Criterion for the arrival of a front at a point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub enum ArrivalInput {
     /// R passes this value from below [-]
@@ -266,7 +266,7 @@ pub enum ArrivalInput {
 /// An increment as fronts see it.
 #[derive(Clone, Copy)]
 pub(super) struct Passing<'a> {
-    pub told_by: FrontsInput,
+    pub criterion: FrontsInput,
     /// Time and energies of the model at the ends of the last two increments
     pub last: [(f64, Energies); 2],
     /// State at the end of this one
@@ -289,11 +289,11 @@ impl Event {
 }
 
 impl Passing<'_> {
-    /// The arrival of a front at a point in this increment, told by the signal at its end. Slip rates are those of the middles
-    /// of increments, other signals those of their ends.
+    /// The arrival of a front at a point in this increment, by the signal at its end. Slip rates are those of the
+    /// middles of increments, other signals those of their ends.
     fn arrival(&self, point: &Point, signal: f64, event: usize) -> Option<Arrival> {
-        let (level, mean) = match self.told_by.arrival {
-            None => (self.told_by.slip_rate, true),
+        let (level, mean) = match self.criterion.arrival {
+            None => (self.criterion.slip_rate, true),
             Some(ArrivalInput::R(level)) => (level, false),
             Some(ArrivalInput::Mu(level)) => (-level, false),
         };
@@ -310,7 +310,7 @@ impl Passing<'_> {
         Some(Arrival { time, event, given: self.given_at(time) })
     }
 
-    /// What loads and stored energies had given at a time, linear over each increment [F·L].
+    /// Energy released by a time, linear over each increment [F·L].
     fn given_at(&self, time: f64) -> f64 {
         let [(t0, e0), (t1, e1)] = self.last;
         let (t2, e2) = (self.after.time, Energies::of(self.after));
@@ -345,12 +345,13 @@ impl ContactPoints {
 
     /// The contact after an increment.
     pub fn pass(&mut self, pair: &ContactPair, passing: &Passing, states: &[ContactState]) {
-        let Passing { told_by, after, last: [_, before] } = *passing;
+        let Passing { criterion, after, last: [_, before] } = *passing;
         let dt = after.time - before.0;
         let marks: Vec<Mark> = states.iter().map(Mark::of).collect();
         let rate = |(point, mark): (&Point, &Mark)| (mark.slip - point.mark.slip) / dt;
         let rates: Vec<f64> = self.points.iter().zip(&marks).map(rate).collect();
-        let slipping = self.points.iter().zip(&rates).any(|(point, rate)| point.rubs && rate.abs() > told_by.slip_rate);
+        let slipping =
+            self.points.iter().zip(&rates).any(|(point, rate)| point.rubs && rate.abs() > criterion.slip_rate);
         let goes_on = self.events.last().is_some_and(|event| !event.over);
         if slipping && !goes_on {
             self.events.push(SlipEvent::begin(
@@ -367,7 +368,7 @@ impl ContactPoints {
         let points = self.points.iter_mut().zip(marks.iter().zip(&rates)).zip(pair.points.iter().zip(states));
         for ((point, (mark, rate)), (slave, state)) in points {
             let observed = |name| pair.observed(slave, name, &state.friction, after.time);
-            let signal = match told_by.arrival {
+            let signal = match criterion.arrival {
                 None => rate.abs(),
                 Some(ArrivalInput::R(_)) => observed("R"),
                 Some(ArrivalInput::Mu(_)) => -observed("mu"),
@@ -377,7 +378,7 @@ impl ContactPoints {
         }
     }
 
-    /// How often a point set out again within an event, a point and time.
+    /// Repeated onsets of slip within an event, per point and time.
     pub fn chatter(&self, time: f64) -> f64 {
         let again = |point: &Point| point.arrivals.windows(2).filter(|pair| pair[0].event == pair[1].event).count();
         let rubbing = self.points.iter().filter(|point| point.rubs).count();
@@ -385,7 +386,7 @@ impl ContactPoints {
         if restarts == 0 { 0.0 } else { restarts as f64 / (rubbing as f64 * time) }
     }
 
-    /// What each event had reached by when.
+    /// Extent of each event over time.
     pub fn reached(&self) -> Vec<Event> {
         let mut events = vec![Event::default(); self.events.len()];
         for point in &self.points {
@@ -414,7 +415,7 @@ impl ContactPoints {
         let nearest = |arrivals: &[Arrival], time: f64| {
             arrivals.iter().map(|a| a.time).min_by(|a, b| (a - time).abs().total_cmp(&(b - time).abs()))
         };
-        // A neighbour that only another front has passed tells nothing of this one.
+        // A neighbour passed only by another front gives no information about this one.
         let passed = |k: usize| {
             let point = self.points.get(k).filter(|point| point.line == own.line)?;
             let there = nearest(&point.arrivals, arrival)?;
@@ -441,12 +442,12 @@ pub struct WaveSpeeds {
 }
 
 impl WaveSpeeds {
-    /// Of the body behind the slave of a contact, if there is one.
+    /// Wave speeds of the body behind the slave of a contact, if there is one.
     pub fn behind(model: &Model, pair: &ContactPair) -> Option<Self> {
         Some(Self::of(&*model.bodies[pair.body?].material))
     }
 
-    /// Of a material; infinite without density.
+    /// Wave speeds of a material; infinite without density.
     ///
     /// ```text
     /// (2 − ξ²)² = 4 √(1 − ξ²) √(1 − ξ² c_s²/c_p²),   ξ = c_R/c_s

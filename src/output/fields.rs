@@ -19,7 +19,7 @@ use crate::model::state::State;
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer, Row};
 
-/// Writes frames of the solids and of the interfaces, in the background while the run goes on.
+/// Writes frames of the solids and of the interfaces, in the background while the run continues.
 #[derive(Debug)]
 pub struct Fields {
     folder: PathBuf,
@@ -27,7 +27,7 @@ pub struct Fields {
     /// Names of the series
     names: Vec<&'static str>,
     frames_of: Frames,
-    /// How many rows there are so far
+    /// Number of rows so far
     rows: usize,
     /// Times of the frames so far [T]
     times: Vec<f64>,
@@ -37,7 +37,7 @@ pub struct Fields {
     writer: Option<JoinHandle<Result<(), Error>>>,
 }
 
-/// Which frames are written, and of what.
+/// Selection of the frames to write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frames {
     /// Frames with every n-th row of the history; `None` for those at times that the model names alone
@@ -46,13 +46,13 @@ pub struct Frames {
     pub points: bool,
 }
 
-/// What the writer of frames is asked for.
+/// Task for the thread that writes frames.
 enum Task {
     /// Write this state
     Show(Box<Shown>),
-    /// Take back all frames but those of these times
+    /// Remove all frames except those at these times
     Keep(Vec<f64>),
-    /// Say when all is written
+    /// Reply when everything is written
     Tell(SyncSender<()>),
 }
 
@@ -68,7 +68,7 @@ struct Collection {
     folder: PathBuf,
     name: &'static str,
     times: Vec<f64>,
-    /// How many of them are listed, and since when
+    /// Number of frames listed in the index, and the time of that listing
     listed: (usize, Option<Instant>),
     grid: Grid,
 }
@@ -129,7 +129,7 @@ impl Fields {
     }
 }
 
-/// What the writer does; what is whole is listed also where it fails.
+/// Loop of the writer; complete frames are listed even if it fails.
 fn written(model: &Model, mut collections: Vec<Collection>, tasks: Receiver<Task>) -> Result<(), Error> {
     let done = followed(model, &mut collections, tasks);
     done.and(listed(&mut collections))
@@ -185,7 +185,7 @@ impl Observer for Fields {
             self.names.iter().flat_map(|name| (0..times.len()).map(|number| self.folder.join(file(name, number))));
         match frames.into_iter().find(|path| !path.is_file()) {
             None => Ok(()),
-            Some(path) => Err(failed(&path, &"was there when the checkpoint was written, and is gone")),
+            Some(path) => Err(failed(&path, &"existed when the checkpoint was written, and is missing")),
         }
     }
 
@@ -205,7 +205,7 @@ impl Observer for Fields {
     }
 }
 
-/// Where a frame of a series lies in the folder of results.
+/// Path of a frame of a series in the folder of results.
 fn file(series: &str, number: usize) -> String {
     format!("{series}/{number:05}.vtu")
 }
@@ -285,7 +285,7 @@ struct Room {
 }
 
 impl Room {
-    /// Of a model's frames in a folder.
+    /// Disk space needed by a model's frames in a folder.
     pub fn of(folder: &Path, model: &Model) -> Self {
         let points: usize = model.contacts.iter().map(|pair| pair.points.len()).sum();
         Self { folder: folder.join("solid"), bytes: PER_NODE * (model.mesh.nodes.len() + points) }

@@ -24,7 +24,7 @@ pub fn create(path: &Path) -> io::Result<File> {
     File::options().read(true).write(true).create_new(true).open(path)
 }
 
-/// A file that is there already, to be gone on with.
+/// A file that is there already, to be continued.
 ///
 /// # Errors
 /// As [`create`].
@@ -45,7 +45,8 @@ pub fn remove(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Whether a file of its own has these words among its first: by them what we have written is told from a user's file of that name.
+/// Whether a file of its own has these words among its first: they distinguish our files from a user's file of that
+/// name.
 pub fn bears(path: &Path, words: &str) -> bool {
     let mut start = Vec::new();
     let read = |file: File| file.take(1024).read_to_end(&mut start);
@@ -137,7 +138,7 @@ fn sync_folder(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Where a file is written before it takes its place.
+/// Temporary path of a file before it is renamed.
 pub fn aside(path: &Path) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(".new");
@@ -147,7 +148,7 @@ pub fn aside(path: &Path) -> PathBuf {
 /// Name of the lock in the folder.
 pub const LOCK: &str = "fecontact.lock";
 
-/// Room that the lock keeps: given back when a disk is full, so that the end of a run can still be told [bytes].
+/// Room that the lock keeps: given back when a disk is full, so that the end of a run can still be recorded [bytes].
 const RESERVE: usize = 64 << 10;
 
 /// A folder is locked by this process until it is dropped.
@@ -157,7 +158,7 @@ pub struct Lock {
     file: File,
 }
 
-/// Who holds a lock.
+/// Process that holds a lock.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Holder {
     process: u32,

@@ -11,7 +11,7 @@ use super::files::Lock;
 use super::{checkpoint, files, report, store};
 use crate::run::error::Error;
 
-/// What commands write; a folder ends in `/` and holds numbered frames.
+/// Files that commands write; a folder ends in `/` and holds numbered frames.
 const KNOWN: [&str; 17] = [
     "history.csv",
     "newton.csv",
@@ -52,7 +52,7 @@ const OUR_FIGURE: &str = "data-drawn-by=\"fecontact\"";
 /// The store of the interfaces, a folder of its own kind.
 pub const INTERFACE: &str = "interface.zarr/";
 
-/// What every folder of results has.
+/// File that every folder of results has.
 pub const SUMMARY: &str = "summary.json";
 
 /// A folder that this process alone writes into.
@@ -77,7 +77,10 @@ impl Folder {
             (what.to_owned(), format!("results cannot be written here: {cause}"))
         };
         if let Some(input) = inputs.iter().find(|input| is_written(input, path, outputs)) {
-            return Err((input.clone(), "is read by this run, which would write over it: choose another --out".into()));
+            return Err((
+                input.clone(),
+                "is an input of this run, which would overwrite it: choose another --out".into(),
+            ));
         }
         let made = !path.exists();
         std::fs::create_dir_all(path).map_err(|cause| cannot(path, &cause))?;
@@ -122,7 +125,7 @@ fn is_written(input: &Path, folder: &Path, outputs: &[&str]) -> bool {
     })
 }
 
-/// What the runs before have written, as their summary says; nothing where there is none.
+/// Files written by earlier runs, according to their summary; empty without one.
 fn earlier(folder: &Path) -> Result<Vec<String>, (PathBuf, String)> {
     let path = folder.join(SUMMARY);
     if path.symlink_metadata().is_err() {
@@ -139,7 +142,7 @@ fn earlier(folder: &Path) -> Result<Vec<String>, (PathBuf, String)> {
     Ok(names.filter(|name| KNOWN.contains(name)).map(String::from).collect())
 }
 
-/// Nothing but earlier results may be where results go.
+/// Refuse paths of results at which something other than earlier results exists.
 fn in_the_way(folder: &Path, outputs: &[&str], earlier: &[String]) -> Result<(), (PathBuf, String)> {
     let strange =
         |path: PathBuf| Err((path, "is in the way: no earlier run wrote it; move it, or choose another --out".into()));

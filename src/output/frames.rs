@@ -12,8 +12,8 @@ use crate::mesh::configuration::Configuration;
 use crate::model::Model;
 use crate::model::state::State;
 
-/// What is shown: a state, and what is found from it before the frame is written. Contacts are searched by all threads, which
-/// may be waiting for the writer of frames.
+/// Content of a frame: a state, and what is computed from it before the frame is written. Contacts are searched by all
+/// threads, which may be waiting for the writer of frames.
 #[derive(Debug)]
 pub struct Shown {
     /// the state
@@ -23,13 +23,13 @@ pub struct Shown {
 }
 
 impl Shown {
-    /// Of a state of a model.
+    /// Content of the frame of a state.
     pub fn new(model: &Model, state: &State) -> Self {
         Self { state: state.clone(), contact_forces: contact_forces(model, state) }
     }
 }
 
-/// The bodies.
+/// Fills the grid of the bodies.
 pub fn solid_frame(model: &Model, Shown { state, contact_forces }: &Shown, grid: &mut Grid) {
     let stresses = nodal_stresses(model, state);
     // A body has one material, and a material serves one body: the two ids agree.
@@ -48,7 +48,7 @@ pub fn solid_frame(model: &Model, Shown { state, contact_forces }: &Shown, grid:
     grid.at_cells("material", body());
 }
 
-/// What contacts put on every node [F].
+/// Nodal contact forces [F].
 fn contact_forces(model: &Model, state: &State) -> Vec<f64> {
     let (mut forces, x) = (vec![0.0; model.dofs()], model.configuration(&state.displacement));
     for (pair, states) in model.contacts.iter().zip(&state.contacts) {

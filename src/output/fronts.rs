@@ -4,16 +4,16 @@
 //! from below, in time linear between the middles of the two intervals. Its local speed is the distance of the two
 //! neighbours along the slave over the difference of their arrivals nearest in time (of one, where it passed no other).
 //!
-//! An event of a contact begins when a point of it passes the threshold while no other is above, and ends when none is. Its
-//! rupture length at an arrival is what the points that it has reached by then stand for, its energy released what
+//! An event of a contact begins when a point of it passes the threshold while no other is above, and ends when none is.
+//! Its rupture length at an arrival is the tributary length of the points reached by then, its energy released what
 //! loads and stored energies of the whole model gave since its first arrival:
 //!
 //! ```text
 //! Δ(external work − strain energy − elastic energy of contacts) = Δ(kinetic energy + dissipation)
 //! ```
 //!
-//! Arrivals may be told by R or μ instead, which pass a value at the points; an event is still one of slip, and an arrival
-//! outside of events is of event 0. A contact without friction has no fronts.
+//! Arrivals may be defined by R or μ instead, which pass a value at the points; an event is still one of slip, and an
+//! arrival outside of events is of event 0. A contact without friction has no fronts.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -32,7 +32,7 @@ use crate::run::observer::{Attempt, Observer};
 #[derive(Debug)]
 pub struct Fronts {
     folder: PathBuf,
-    told_by: FrontsInput,
+    criterion: FrontsInput,
     interfaces: Vec<ContactPoints>,
     /// Time at the start
     start: f64,
@@ -42,7 +42,7 @@ pub struct Fronts {
 
 impl Fronts {
     /// Watch for fronts; `start` is the state before the first increment.
-    pub fn new(folder: &Path, model: &Model, start: &State, told_by: FrontsInput) -> Self {
+    pub fn new(folder: &Path, model: &Model, start: &State, criterion: FrontsInput) -> Self {
         let mut interfaces: Vec<ContactPoints> =
             model.contacts.iter().map(|pair| ContactPoints::new(model, pair)).collect();
         // What had slipped before is no event of this run.
@@ -50,19 +50,19 @@ impl Fronts {
             interfaces.iter_mut().zip(&start.contacts).flat_map(|(of, states)| of.points.iter_mut().zip(states));
         points.for_each(|(point, state)| point.mark = Mark::of(state));
         let last = [(start.time, Energies::of(start)); 2];
-        Self { folder: folder.into(), told_by, interfaces, start: start.time, last }
+        Self { folder: folder.into(), criterion, interfaces, start: start.time, last }
     }
 
     fn increment(&mut self, model: &Model, after: &State) {
-        let Self { told_by, last, .. } = *self;
-        let passing = Passing { told_by, last, after };
+        let Self { criterion, last, .. } = *self;
+        let passing = Passing { criterion, last, after };
         for ((interface, pair), states) in self.interfaces.iter_mut().zip(&model.contacts).zip(&after.contacts) {
             interface.pass(pair, &passing, states);
         }
         self.last = [last[1], (after.time, Energies::of(after))];
     }
 
-    /// How often a point set out again within an event of its contact, a point and time, by contact [1/T].
+    /// Repeated onsets of slip within an event, per point and time, by contact [1/T].
     pub fn chatter(&self) -> BTreeMap<String, f64> {
         let time = self.last[1].0 - self.start;
         self.interfaces.iter().map(|interface| (interface.name.clone(), interface.chatter(time))).collect()

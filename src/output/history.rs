@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::bodies::{BodyMeans, Motion};
 use super::csv;
 use super::csv::{Rows, Sheet, Table};
-use super::friction_course::FrictionCourse;
+use super::friction_history::FrictionHistory;
 use super::quantities::{
     BODY, CONTACT, EDGES, ENERGIES, FLUID_FORCE, HEAT, INCREMENT, Quantity, RADIATED, RESULTANT, WATCHED, names,
 };
@@ -23,7 +23,7 @@ use crate::model::{Model, WatchedSet};
 use crate::run::error::Error;
 use crate::run::observer::Attempt;
 
-/// Writes `history.csv`.
+/// Observer that writes `history.csv`.
 pub type History = Sheet<HistoryRows>;
 
 /// The rows of `history.csv`.
@@ -39,18 +39,18 @@ pub struct HistoryRows {
     memory: Memory,
 }
 
-/// What is remembered from row to row.
+/// Memory from row to row.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Memory {
     /// Rotation of each body, turns counted; none before the first increment [rad]
     rotations: Vec<f64>,
     /// Frictional heat of each contact so far [F·L]
     heat: Vec<f64>,
-    /// How the friction of each contact went so far
-    courses: Vec<FrictionCourse>,
+    /// Friction history of each contact so far
+    courses: Vec<FrictionHistory>,
 }
 
-/// A watched set of edges: its name, and the share of its length that each node stands for.
+/// A watched set of edges: its name, and the tributary fraction of its length at each node.
 type EdgeMeans = (String, Vec<(usize, f64)>);
 
 impl Rows for HistoryRows {
@@ -85,7 +85,7 @@ impl Rows for HistoryRows {
             memory: Memory {
                 rotations: Vec::new(),
                 heat: vec![0.0; model.contacts.len()],
-                courses: vec![FrictionCourse::default(); model.contacts.len()],
+                courses: vec![FrictionHistory::default(); model.contacts.len()],
             },
         };
         (rows, header)
@@ -151,8 +151,8 @@ impl Rows for HistoryRows {
 }
 
 impl History {
-    /// How the friction of the contacts went, in their order.
-    pub fn courses(&self) -> &[FrictionCourse] {
+    /// Friction histories of the contacts, in their order.
+    pub fn courses(&self) -> &[FrictionHistory] {
         &self.rows.memory.courses
     }
 }

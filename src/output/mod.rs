@@ -14,7 +14,7 @@ cfg_if::cfg_if! {
         pub mod fields;
         pub mod files;
         pub mod folder;
-        pub mod friction_course;
+        pub mod friction_history;
         pub mod fronts;
         pub mod history;
         pub mod store;
@@ -34,7 +34,7 @@ cfg_if::cfg_if! {
         pub(crate) mod fields;
         pub(crate) mod files;
         pub(crate) mod folder;
-        pub(crate) mod friction_course;
+        pub(crate) mod friction_history;
         pub(crate) mod fronts;
         pub(crate) mod history;
         pub(crate) mod store;

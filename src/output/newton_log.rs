@@ -11,7 +11,7 @@ use crate::run::observer::{Attempt, Verdict};
 use crate::solve::IterationRecord;
 use crate::solve::contact_iteration::Acted;
 
-/// Writes `newton.csv`.
+/// Observer that writes `newton.csv`.
 pub type NewtonLog = Sheet<NewtonRows>;
 
 /// The rows of `newton.csv`.

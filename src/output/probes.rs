@@ -17,7 +17,7 @@ fn readings(model: &Model) -> impl Iterator<Item = String> {
     names(&PROBE).chain(model.mesh.section.is_axisymmetric().then(|| HOOP.name.into()))
 }
 
-/// Writes `probes.csv`.
+/// Observer that writes `probes.csv`.
 pub type Probes = Sheet<ProbeRows>;
 
 /// The rows of `probes.csv`.
@@ -47,7 +47,7 @@ impl Rows for ProbeRows {
     }
 }
 
-/// What a probe reads.
+/// Values at a probe.
 ///
 /// ```text
 /// u = Σ N_a u_a,  v likewise                    by the shape functions of the element
@@ -69,7 +69,7 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// Of a probe in a state. Where the material has no answer stress and strain are no numbers; it always has in an
+    /// Reading of a probe in a state. Stress and strain are NaN where the material law fails, which it does not in an
     /// accepted state.
     pub fn of(probe: &Probe, model: &Model, state: &State) -> Self {
         let (element, solid) = (&model.mesh.elements[probe.element], &model.solids[probe.element]);

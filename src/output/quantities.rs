@@ -2,14 +2,14 @@
 //! and in which unit; columns and arrays follow it in this order, readers of results know it by it, and `fecontact schema
 //! results` prints it.
 //!
-//! Of columns with a dot in their name the table says what stands behind it; `CONTACT`, `SET`, `BODY` and `PROBE` stand for
-//! names of the case.
+//! For columns with a dot in their name the table lists the part behind it; `CONTACT`, `SET`, `BODY` and `PROBE` stand
+//! for names of the case.
 
 use std::collections::BTreeMap;
 
 use serde_json::{Map, Value, json};
 
-/// What is recorded: a column of a table, or an array.
+/// A recorded quantity: a column of a table, or an array.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantity {
     /// its name
@@ -20,7 +20,7 @@ pub struct Quantity {
     pub meaning: &'static str,
 }
 
-/// What a quantity is measured in.
+/// Unit of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unit {
     /// the name under which a case may label it, as it labels `length`, `force` and `time`
@@ -72,7 +72,7 @@ impl Unit {
         }
     }
 
-    /// The same as CF has it: `N mm-2`.
+    /// The unit as the CF conventions write it: `N mm-2`.
     pub fn of_store(self, [force, length, time]: [&str; 3]) -> String {
         let parts = [force, length, time].into_iter().zip(self.powers).filter(|(_, power)| *power != 0);
         let mut parts: Vec<(&str, i8)> = parts.collect();
@@ -120,22 +120,22 @@ pub const ENERGIES: [Quantity; 7] = [
     q("energy_error", ENERGY, "initial energy + external work − stored − dissipated − radiated: 0 if all is resolved"),
 ];
 
-/// Of runs with radiation damping.
+/// Column of runs with radiation damping.
 pub const RADIATED: Quantity = q("radiated", ENERGY, "radiated by slip so far, ∫∫ η v² ds dt");
 
 /// Means and sums of a contact; means are taken over the closed length.
 pub const CONTACT: [Quantity; 8] = [
     q("normal_force", FORCE, "N = ∫ p ds"),
-    q("tangential_force", FORCE, "Q = ∫ q ds, with what slip radiates ∫ (q + η v) ds"),
+    q("tangential_force", FORCE, "Q = ∫ q ds, with radiation damping ∫ (q + η v) ds"),
     q("contact_length", LENGTH, "closed length"),
-    q("slip_fraction", NONE, "slipping share of the closed length"),
+    q("slip_fraction", NONE, "slipping fraction of the closed length"),
     q("mean_slip", LENGTH, "mean of the plastic slip"),
     q("max_penetration", LENGTH, "deepest penetration of a closed point"),
     q("max_elastic_slip", LENGTH, "largest |q|/α_t"),
     q("mean_elastic_slip", LENGTH, "mean of q/α_t"),
 ];
 
-/// Mean displacement of a watched set, and what its supports put on it.
+/// Mean displacement of a watched set, and its reactions.
 pub const WATCHED: [Quantity; 4] = [
     q("ux", LENGTH, "mean displacement of the nodes along x"),
     q("uy", LENGTH, "along y"),
@@ -145,37 +145,37 @@ pub const WATCHED: [Quantity; 4] = [
 
 /// Resultant of a contact on its slave.
 pub const RESULTANT: [Quantity; 3] = [
-    q("force_x", FORCE, "pressure, friction and what slip radiates on the slave, without a fluid"),
+    q("force_x", FORCE, "forces of pressure, friction and radiation damping on the slave, without a fluid"),
     q("force_y", FORCE, "along y"),
     q("moment", ENERGY, "its moment about the middle of the undeformed slave (the mean of its points by length)"),
 ];
 
-/// How a body moves as a whole.
+/// Momentum, centre of mass and rotation of a body.
 pub const BODY: [Quantity; 6] = [
     q("momentum_x", MOMENTUM, "∫ ρ v_x dV"),
     q("momentum_y", MOMENTUM, "∫ ρ v_y dV"),
     q("angular_momentum", SPIN, "about the centre of mass"),
     q("centre_x", LENGTH, "centre of mass"),
     q("centre_y", LENGTH, "along y"),
-    q("rotation", ANGLE, "of the rigid body nearest to it, turns counted [rad]"),
+    q("rotation", ANGLE, "mean rotation: that of the nearest rigid motion, full turns counted [rad]"),
 ];
 
 /// Means by length of a watched set of edges.
 pub const EDGES: [Quantity; 2] = [
-    q("edge_ux", LENGTH, "mean displacement by length of a set of edges along x, ∫ u_x ds/∫ ds"),
+    q("edge_ux", LENGTH, "length-weighted mean displacement of a set of edges along x, ∫ u_x ds/∫ ds"),
     q("edge_uy", LENGTH, "along y"),
 ];
 
-/// Of contacts in a fluid.
+/// Column of contacts with a fluid pressure.
 pub const FLUID_FORCE: Quantity = q("fluid_force", FORCE, "∫ p_w ds, of contacts in a fluid");
 
 /// Heat of a contact.
 pub const HEAT: [Quantity; 2] = [
-    q("frictional_heat", ENERGY, "∫∫ q v^p ds dt so far, less work of dilatancy, with that of wear"),
+    q("frictional_heat", ENERGY, "∫∫ q v^p ds dt so far, less work of dilatancy, plus that of wear"),
     q("frictional_power", POWER, "its mean rate over the last increment"),
 ];
 
-/// What every probe reads.
+/// Columns of every probe.
 pub const PROBE: [Quantity; 11] = [
     q("ux", LENGTH, "displacement along x"),
     q("uy", LENGTH, "along y"),
@@ -190,15 +190,15 @@ pub const PROBE: [Quantity; 11] = [
     q("stress_xy", STRESS, "the same, xy"),
 ];
 
-/// Of every probe of rings, behind its other columns.
-pub const HOOP: Quantity = q("strain_zz", NONE, "strain of the hoops, of rings");
+/// Column of every probe in axisymmetric bodies, after its other columns.
+pub const HOOP: Quantity = q("strain_zz", NONE, "hoop strain, of axisymmetric bodies");
 
 /// Points of a contact, as they lie before anything moves.
 pub const PLACE: [Quantity; 4] = [
-    q("position", LENGTH, "way along the slave, undeformed, from the start of the unbroken line"),
+    q("position", LENGTH, "arc length along the undeformed slave, from the start of its connected line"),
     q("x", LENGTH, "x of the points, undeformed"),
     q("y", LENGTH, "y of the points, undeformed"),
-    q("line", NONE, "number of the unbroken line of the slave"),
+    q("line", NONE, "number of the connected line of the slave"),
 ];
 
 const GAP: Quantity = q("gap", LENGTH, "g: gap of the surfaces, positive when open");
@@ -216,22 +216,22 @@ const STATE: Quantity =
     q("state", NONE, "0 open, 1 sticking (or closed without friction), 2 slipping, as the law says");
 const DISSIPATION: Quantity = q("dissipation", WORK_PER_AREA, "work of friction so far, per area");
 
-/// At the points of every contact, in frames: those since the increment before.
+/// At the points of every contact, in frames: rates since the increment before.
 pub const IN_FRAMES: [Quantity; 11] =
     [GAP, PRESSURE, TRACTION, SLIP, ELASTIC_SLIP, SLIP_RATE, RATIO, MU, STRUCTURE, STATE, DISSIPATION];
 
-/// At the points of every contact, in the store: those since the row before.
+/// At the points of every contact, in the store: rates since the row before.
 pub const IN_STORE: [Quantity; 9] = [SLIP, TOTAL_SLIP, SLIP_RATE, PRESSURE, TRACTION, GAP, RATIO, MU, STRUCTURE];
 
-/// At the points of some contacts, in both; what else a law remembers or lets observe has a name that it gives.
+/// At the points of some contacts, in both; other internal variables and observables have names given by their law.
 pub const OF_SOME: [Quantity; 4] = [
     q("theta", TIME, "θ: state of rate-and-state friction"),
     q("dilation", LENGTH, "opening by dilatancy"),
     q("wear", LENGTH, "depth of wear"),
-    q("fluid_pressure", STRESS, "p_w: pressure of the fluid, beside the contact pressure"),
+    q("fluid_pressure", STRESS, "p_w: pressure of the fluid, in addition to the contact pressure"),
 ];
 
-/// What quantities of the store were called by the versions before, and are called now.
+/// Names of quantities of the store in earlier versions, and present names.
 pub const FORMER: [(&str, &str); 3] = [("p", "pressure"), ("q", "traction"), ("p_w", "fluid_pressure")];
 
 /// A quantity of the store; `None` for one that only a law knows.
@@ -243,18 +243,18 @@ pub fn in_store(name: &str) -> Option<Quantity> {
 pub const FRONTS: [Quantity; 14] = [
     q("contact", NONE, "the contact"),
     q("point", NONE, "number of the point, from 0, as in `interface.zarr`"),
-    q("position", LENGTH, "way along the undeformed slave, from the start of its unbroken line"),
+    q("position", LENGTH, "arc length along the undeformed slave, from the start of its connected line"),
     q("x", LENGTH, "x of the point, undeformed"),
     q("y", LENGTH, "y of the point, undeformed"),
     q("passage", NONE, "number of this arrival at this point, from 1, over all events of the run"),
-    q("arrival", TIME, "when the front passed"),
+    q("arrival", TIME, "time of arrival of the front"),
     q("speed", VELOCITY, "distance of the two neighbours over the difference of their arrivals (below)"),
     q("speed_over_c_R", NONE, "speed over that of Rayleigh waves in the body behind the slave; 0 without a density"),
     q("speed_over_c_s", NONE, "speed over that of shear waves"),
     q("speed_over_c_p", NONE, "speed over that of pressure waves"),
     q("event", NONE, "number of the event in `events.csv`; 0 outside of events, as may be with `arrival`"),
-    q("rupture_length", LENGTH, "what the points stand for that the event has reached up to this arrival, each once"),
-    q("energy_released", ENERGY, "by the model since the first arrival: Δ(external work − stored energies)"),
+    q("rupture_length", LENGTH, "tributary length of the points ruptured up to this arrival, each counted once"),
+    q("energy_released", ENERGY, "energy released since the first arrival: Δ(external work − stored energies)"),
 ];
 
 /// Columns of `events.csv`: a row an event of a contact.
@@ -267,14 +267,14 @@ pub const EVENTS: [Quantity; 18] = [
     q("y", LENGTH, "its y, undeformed"),
     q("duration", TIME, "from the onset to the row in which no point slips faster any more"),
     q("over", NONE, "1; 0 where the run has ended before the event"),
-    q("length", LENGTH, "what its points stand for"),
+    q("length", LENGTH, "summed tributary length of its points"),
     q("mean_slip", LENGTH, "mean plastic slip, with its sign"),
     q("largest_slip", LENGTH, "largest plastic slip"),
     q("peak_slip_rate", VELOCITY, "largest mean slip rate of a point between two rows"),
-    q("stress_drop", STRESS, "mean of q before − q after, positive where slip has unloaded"),
-    q("fracture_energy", WORK_PER_AREA, "mean of ∫ (q − q_min) ds up to where q is least"),
-    q("energy_released", ENERGY, "by the model from the row before the event to its end, elsewhere as well"),
-    q("energy_radiated", ENERGY, "released less the dissipation by friction"),
+    q("stress_drop", STRESS, "mean stress drop, q before − q after, positive where slip has unloaded"),
+    q("fracture_energy", WORK_PER_AREA, "mean of ∫ (q − q_min) dδ over the slip δ up to where q is least"),
+    q("energy_released", ENERGY, "energy released by the whole model from the row before the event to its end"),
+    q("energy_radiated", ENERGY, "released energy less the dissipation by friction"),
     q("front_speed", VELOCITY, "slope of distance over arrivals by least squares, both directions together"),
     q("front_speed_over_c_R", NONE, "over the Rayleigh wave speed of the body behind the slave"),
 ];
@@ -300,7 +300,7 @@ pub const NEWTON: [Quantity; 15] = [
     q("step", NONE, "name of the step"),
     q("increment", NONE, "number of the increment, from 1"),
     q("attempt", NONE, "number of the attempt at it, from 1"),
-    q("iteration", NONE, "number of the linear solve; 0 in the row of an attempt that was given up before its first"),
+    q("iteration", NONE, "number of the linear solve; 0 in the row of an attempt rejected before its first"),
     q("time", TIME, "t at the end of the increment"),
     q("residual", NONE, "out-of-balance forces, relative"),
     q("correction", NONE, "change of the displacements, relative"),
@@ -309,15 +309,15 @@ pub const NEWTON: [Quantity; 15] = [
     q("slip", NONE, "slipping ones"),
     q("linear_residual", NONE, "relative residual of the linear solve"),
     q("factorized", NONE, "1 where the matrix was factorized anew"),
-    q("stabilization", NONE, "share of the stabilizing forces"),
+    q("stabilization", NONE, "fraction of the stabilizing forces"),
     q("flips", NONE, "points that changed between open, stick and slip"),
-    q("pass", NONE, "pass of the augmented Lagrangian"),
+    q("pass", NONE, "number of the augmentation (augmented Lagrangian)"),
 ];
 
 /// ... which are these.
 pub const VERDICT: [Quantity; 2] = [
-    q("verdict", NONE, "what became of the attempt (below)"),
-    q("reason", NONE, "why, in words; empty where accepted, commas as semicolons"),
+    q("verdict", NONE, "outcome of the attempt (below)"),
+    q("reason", NONE, "why it was rejected; empty where accepted, commas as semicolons"),
 ];
 
 /// Arrays of the frames of bodies.
@@ -325,8 +325,8 @@ const SOLID: [Quantity; 10] = [
     q("displacement", LENGTH, "u of the nodes"),
     q("velocity", VELOCITY, "v"),
     q("acceleration", ACCELERATION, "a"),
-    q("reaction", FORCE, "what supports put on the nodes"),
-    q("contact_force", FORCE, "what contacts put on the nodes"),
+    q("reaction", FORCE, "forces of the supports on the nodes"),
+    q("contact_force", FORCE, "forces of the contacts on the nodes"),
     q("stress", STRESS, "Cauchy stress xx, yy, zz, xy, averaged over the elements at a node"),
     q("von_mises", STRESS, "von Mises stress"),
     q("pressure", STRESS, "−tr σ/3"),
@@ -334,7 +334,7 @@ const SOLID: [Quantity; 10] = [
     q("material", NONE, "number of its material"),
 ];
 
-/// Of the frames of integration points; what materials remember stands behind, by their names.
+/// Arrays of the frames of integration points; internal variables of materials follow, by their names.
 const INTEGRATION_POINTS: [Quantity; 5] = [
     SOLID[0],
     q("stress", STRESS, "Cauchy stress xx, yy, zz, xy"),
@@ -356,7 +356,7 @@ pub const ALL: [(&str, &[Group]); 10] = [
             ("CONTACT", &CONTACT),
             ("SET", &WATCHED),
             ("", &[RADIATED]),
-            ("CONTACT", &[q("mean_…", NONE, "means of what laws remember, of `dilation` and `wear`, by their names")]),
+            ("CONTACT", &[q("mean_…", NONE, "means of internal variables, `dilation` and `wear`, by their names")]),
             ("CONTACT", &RESULTANT),
             ("BODY", &BODY),
             ("SET", &EDGES),
@@ -381,12 +381,12 @@ pub const ALL: [(&str, &[Group]); 10] = [
     ("events.csv", &[("", &EVENTS)]),
     (
         "newton.csv",
-        &[("", &NEWTON), ("", &[q("aid_…", NONE, "contact points on which each aid acted")]), ("", &VERDICT)],
+        &[("", &NEWTON), ("", &[q("aid_…", NONE, "points on which each convergence aid acted")]), ("", &VERDICT)],
     ),
     ("law.csv", &[("", &LAW), ("", &[OF_SOME[0]])]),
 ];
 
-/// What a quantity is called where it is drawn.
+/// Name of a quantity in charts.
 pub fn spoken(name: &str) -> String {
     match name {
         "mu" => "μ".into(),
@@ -417,7 +417,7 @@ pub fn schema() -> Value {
     ALL.iter().map(|(file, groups)| (file.to_string(), groups.iter().flat_map(of_group).collect::<Value>())).collect()
 }
 
-/// What a page needs of them: labels of units by their names, and of every quantity its label and what it is called.
+/// Data for a page: labels of units by their names, and label and name of every quantity.
 pub fn labels(units: &BTreeMap<String, String>) -> Value {
     let (mut of_units, mut quantities) = (Map::new(), Map::new());
     // newton.csv counts slipping points under the name of a length.

@@ -7,14 +7,14 @@ use serde::{Deserialize, Serialize};
 
 use super::csv::failed;
 use super::files;
-use super::friction_course::FrictionCourse;
+use super::friction_history::FrictionHistory;
 use crate::laws::friction::FrictionParameters;
 use crate::model::Model;
 use crate::run::control::RunReport;
 use crate::run::error::Error;
 use crate::run::law::LawReport;
 
-/// Where results come from, and what their readers need to know of it.
+/// Origin of the results, and what their readers need to know of it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct About {
@@ -33,11 +33,11 @@ pub struct About {
     pub wave_speeds: [f64; 3],
     /// slip rate that makes a front, if the case asks for fronts [L/T]
     pub front_slip_rate: Option<f64>,
-    /// the case as `check` tells it: headings with their lines
+    /// the case as `check` prints it: headings with their lines
     pub understood: Vec<(String, Vec<String>)>,
 }
 
-/// How it ended: the first lines of every `summary.json`.
+/// Status of the run: the first lines of every `summary.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Ending {
     /// "running", "completed", "stopped" or "interrupted"
@@ -51,12 +51,12 @@ pub struct Ending {
 }
 
 impl Ending {
-    /// Of a run or test that has not ended.
+    /// Status of a run or test that is active.
     pub fn running(files: &[String]) -> Self {
         Self { status: "running", reason: None, version: env!("CARGO_PKG_VERSION"), files: files.to_vec() }
     }
 
-    /// Of a run or test that stopped for a reason, or did not.
+    /// Status of a run or test that stopped for a reason, or completed.
     pub fn new(stopped: Option<&Error>, files: &[String]) -> Self {
         let status = match stopped {
             None => "completed",
@@ -66,7 +66,7 @@ impl Ending {
         Self { status, reason: stopped.map(ToString::to_string), ..Self::running(files) }
     }
 
-    /// Of one that ended in a defect of the program.
+    /// Status of a run or test that ended in a defect of the program.
     pub fn defect(what: &str, files: &[String]) -> Self {
         Self { status: "stopped", reason: Some(format!("a defect of the program: {what}")), ..Self::running(files) }
     }
@@ -113,8 +113,8 @@ pub struct Summary {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub chatter: Option<BTreeMap<String, f64>>,
     /// how the friction of each contact went; none of those that bore none
-    pub friction_course: BTreeMap<String, FrictionCourse>,
-    /// largest resident memory of the process, where the system tells [MiB]
+    pub friction_course: BTreeMap<String, FrictionHistory>,
+    /// largest resident memory of the process, where the system reports it [MiB]
     pub peak_memory_mib: Option<f64>,
     /// warnings
     pub warnings: Vec<String>,

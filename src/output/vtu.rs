@@ -29,7 +29,7 @@ use crate::mesh::shape::ElementKind;
 /// Bytes of a block before compression: many, since every block begins with tables of its own.
 const BLOCK: usize = 1 << 18;
 
-/// Level of zlib: the quickest, since frames are written while the run goes on.
+/// Level of zlib: the quickest, since frames are written while the run continues.
 const LEVEL: u8 = 1;
 
 /// Share of the words of a block that must say nothing new for its compression to be worth the time.
@@ -54,7 +54,7 @@ pub struct Grid {
     values: [String; 2],
 }
 
-/// What stays the same from frame to frame.
+/// Part that is the same in all frames.
 #[derive(Debug)]
 struct Mesh {
     points: usize,
@@ -141,12 +141,12 @@ impl Mesh {
     }
 }
 
-/// What an array is: its type in VTK, its name and the components of each of its values.
+/// Description of an array: its VTK type, its name and the number of components.
 struct Array<'a> {
     kind: &'a str,
     name: &'a str,
     components: usize,
-    /// How its blocks are packed
+    /// Packing of its blocks
     packed: fn(&[u8]) -> Vec<u8>,
 }
 
@@ -170,7 +170,7 @@ fn encode(bytes: &[u8], packed: fn(&[u8]) -> Vec<u8>, text: &mut String) {
     STANDARD.encode_string(blocks.concat(), text);
 }
 
-/// A block, compressed.
+/// A compressed block.
 fn compressed(block: &[u8]) -> Vec<u8> {
     compress_to_vec_zlib(block, LEVEL)
 }

@@ -1,7 +1,7 @@
 //! Things a user should know about a result: deep penetration, pressure past the law's uniqueness bound, errors in time
-//! larger than allowed, fronts that the mesh does not resolve, contacts that never close, and energy that came from nowhere or is lost.
+//! larger than allowed, fronts that the mesh does not resolve, contacts that never close, and energy errors.
 //!
-//! What is worth a warning at one point of a contact.
+//! Warnings about single points of a contact are here too.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use crate::contact::small_sliding::{Departure, LITTLE_SLIP, LITTLE_TURN, SmallSl
 use crate::contact::surface::SlavePoint;
 use crate::laws::friction::{Description, FrictionState, Regime};
 use crate::mesh::configuration::Configuration;
-use crate::model::scheme::{Scheme, told};
+use crate::model::scheme::{Scheme, time_text};
 use crate::model::state::State;
 use crate::model::step::Until;
 use crate::model::{Model, Step};
@@ -26,7 +26,8 @@ use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer};
 use crate::time::touching::DOUBT;
 
-/// How deep a node that the contact does not see must lie in a rigid master, as a share of the slave's longest edge.
+/// Smallest reported penetration of a rigid master by a node that the contact does not check, as a fraction of the
+/// slave's longest edge.
 const UNSEEN: f64 = 0.05;
 
 /// Collects warnings; each kind once a contact or step, where it is met first.
@@ -47,14 +48,14 @@ pub struct Warnings {
     closed: BTreeSet<usize>,
     /// The balance of energies so far
     pub audit: Audit,
-    /// Who is told of them as they come, and of how many that is done
+    /// Callback that receives them when they arise, and how many it has received
     #[serde(skip)]
     warn: Option<Warn>,
     #[serde(skip)]
-    told: usize,
+    reported: usize,
 }
 
-/// Who is told a warning.
+/// Callback that receives a warning.
 pub type Warn = Arc<dyn Fn(&str) + Send + Sync>;
 
 impl Observer for Warnings {
@@ -68,8 +69,8 @@ impl Observer for Warnings {
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
         *self = Self { warn: self.warn.take(), ..csv::recalled(memory)? };
-        // Those were told when they came.
-        self.told = self.list.len();
+        // Those were reported when they arose.
+        self.reported = self.list.len();
         Ok(())
     }
 
@@ -103,35 +104,35 @@ impl Observer for Warnings {
                 self.deep_master_node(number, pair, state, &x);
             }
         }
-        self.tell();
+        self.report();
         Ok(())
     }
 
     fn finish(&mut self) -> Result<(), Error> {
         for (name, gap) in self.open.values() {
-            let near = gap.map_or("no part of its surfaces has faced the other".into(), |gap| {
-                format!("its surfaces came no nearer than {gap:.3e}")
+            let near = gap.map_or("no slave point had a projection on the master".into(), |gap| {
+                format!("its smallest gap was {gap:.3e}")
             });
             self.list.push(format!("contact `{name}` has never closed: {near}"));
         }
         self.list.extend(self.audit.concern());
-        self.tell();
+        self.report();
         Ok(())
     }
 }
 
 impl Warnings {
-    /// After those of a model, which have been told already: `warn` is told all others as they come.
-    pub fn aloud(list: Vec<String>, warn: Warn) -> Self {
-        Self { told: list.len(), list, warn: Some(warn), ..Self::default() }
+    /// After those of a model, which have been reported already: all others are reported to `warn` when they arise.
+    pub fn reporting(list: Vec<String>, warn: Warn) -> Self {
+        Self { reported: list.len(), list, warn: Some(warn), ..Self::default() }
     }
 
-    fn tell(&mut self) {
-        self.warn.iter().for_each(|warn| self.list[self.told..].iter().for_each(|warning| warn(warning)));
-        self.told = self.list.len();
+    fn report(&mut self) {
+        self.warn.iter().for_each(|warn| self.list[self.reported..].iter().for_each(|warning| warn(warning)));
+        self.reported = self.list.len();
     }
 
-    /// Points that have left what small sliding keeps, closed or not: an open one may miss what it would touch.
+    /// Points that have left the range of small sliding, closed or not: an open one may miss a contact.
     fn no_small_sliding(
         &mut self,
         number: usize,
@@ -150,9 +151,9 @@ impl Warnings {
         }
     }
 
-    /// The points of the slave do not see a master node between them. (Where gaps are not those of the surfaces there is
-    /// nothing to compare with: under initial tractions, and while a shrink fit is brought in. Explicit increments are too
-    /// many to look at.)
+    /// Master nodes that penetrate the slave between its points, which detect nothing there. (Where gaps are not those
+    /// of the surfaces there is nothing to compare with: under initial tractions, and while a shrink fit is brought in.
+    /// Explicit increments are too many to look at.)
     fn deep_master_node(&mut self, number: usize, pair: &ContactPair, state: &State, x: &Configuration) {
         if self.given.contains(&(number, Kind::DeepMasterNode)) {
             return;
@@ -161,14 +162,14 @@ impl Warnings {
         let Some((at, depth, share)) = deepest.filter(|(.., share)| *share > DEEP) else { return };
         self.given.insert((number, Kind::DeepMasterNode));
         self.list.push(format!(
-            "{}: a node of the master lies {depth:.3e} deep in the slave, {:.1} % of its edge; refine both sides there, make the \
+            "{}: a master node penetrates the slave by {depth:.3e}, {:.1} % of its edge; refine both sides there, make the \
              finer one the slave, or raise alpha_n",
             place(pair, at, state.time),
             100.0 * share
         ));
     }
 
-    /// Whether a contact is still one of those that have never closed. (A surface that may meet itself need not.)
+    /// Track contacts that have never closed. (Self-contact need not close.)
     fn never_closed(&mut self, number: usize, pair: &ContactPair, states: &[ContactState]) {
         if self.closed.contains(&number) || pair.is_own() {
             return;
@@ -183,7 +184,7 @@ impl Warnings {
         *least = gaps.chain(*least).min_by(f64::total_cmp);
     }
 
-    /// The points of the slave are all that a rigid master holds back.
+    /// Nodes outside the slave that penetrate a rigid master, which acts only on slave points.
     fn deep_unseen(&mut self, number: usize, pair: &ContactPair, time: f64, x: &Configuration) {
         let Master::Rigid(rigid) = &pair.master else { return };
         if pair.unseen.is_empty() || self.given.contains(&(number, Kind::DeepUnseen)) {
@@ -195,14 +196,14 @@ impl Warnings {
         if depth > UNSEEN * longest {
             self.given.insert((number, Kind::DeepUnseen));
             self.list.push(format!(
-                "{}: a node that is not on the slave lies {depth:.3e} deep in the rigid master, which holds the slave alone back; \
-                 put the sides that come down on it into the group of the slave",
+                "{}: a node outside the slave group penetrates the rigid master by {depth:.3e}; the master acts only on slave \
+                 nodes: add the touching sides to the slave group",
                 place(pair, node.at(x), time)
             ));
         }
     }
 
-    /// A reaction that jumps past the value that ends its step never has it.
+    /// A reaction that jumped past the value that ends its step.
     fn passed(&mut self, attempt: &Attempt, state: &State) {
         let Step { name, until: Some(until), .. } = attempt.step else { return };
         if state.time < attempt.step.span.end && attempt.ends_step(state) && !until.is_met(state) {
@@ -210,29 +211,31 @@ impl Warnings {
             let Until { part, on, value, .. } = until;
             self.list.push(format!(
                 "step `{name}`, t = {}: {} of `{on}` jumps from {before:.6e} to {after:.6e}, past {value}, where the step ends",
-                told(state.time),
+                time_text(state.time),
                 part.name()
             ));
         }
     }
 
-    /// A matrix that is singular or nearly so may still have given an answer.
+    /// Singular or nearly singular matrices that were solved nevertheless.
     fn lost_pivots(&mut self, attempt: &Attempt) {
         let solves = || attempt.iterations.iter().map(|iteration| iteration.newton);
         let pivots = solves().map(|solve| solve.perturbed_pivots).max().unwrap_or(0);
         let fallback = solves().any(|solve| solve.fallback);
         if (pivots > 0 || fallback) && self.perturbed.insert(attempt.step.name.clone()) {
-            let start = format!("step `{}`, t = {}", attempt.step.name, told(attempt.old.time + attempt.dt));
+            let start = format!("step `{}`, t = {}", attempt.step.name, time_text(attempt.old.time + attempt.dt));
             let found = match (pivots, fallback) {
-                (0, _) => "the fronts of the tangent were not exact enough, and a slower solver took over".into(),
-                (pivots, false) => format!("{pivots} pivots of the tangent vanished and were replaced"),
-                (pivots, true) => format!("{pivots} pivots of the tangent vanished, and a slower solver took over"),
+                (0, _) => {
+                    "the factorization of the tangent was not accurate enough, and a slower solver was used".into()
+                }
+                (pivots, false) => format!("{pivots} pivots of the tangent were nearly zero and were replaced"),
+                (pivots, true) => format!("{pivots} pivots of the tangent were nearly zero; a slower solver was used"),
             };
-            self.list.push(format!("{start}: {found}; the equations are solved, but something may be barely held"));
+            self.list.push(format!("{start}: {found}; the equations are solved, but a body may be barely constrained"));
         }
     }
 
-    /// The shortest increment is accepted whatever its error.
+    /// Time errors of increments of the shortest length, which are accepted in any case.
     fn error_in_time(&mut self, attempt: &Attempt) {
         let step = attempt.step;
         let Some((error, allowed)) = attempt.local_error.zip(step.increments.error) else { return };
@@ -242,13 +245,13 @@ impl Warnings {
         }
     }
 
-    /// The shortest increment is accepted whatever it does not know of touch.
+    /// Uncertain friction after closure in increments of the shortest length, which are accepted in any case.
     fn error_of_touch(&mut self, attempt: &Attempt) {
         let Some(doubt) = attempt.doubt.filter(|doubt| *doubt > DOUBT) else { return };
         if self.doubtful.insert(attempt.step.name.clone()) {
             let percent = 100.0 * doubt;
             let found =
-                format!("when points touched in it leaves friction of {percent:.1} % of a contact's force in doubt");
+                format!("contact closed within it: friction force uncertain by {percent:.1} % of the contact force");
             self.list.push(shortest(attempt, &found));
         }
     }
@@ -256,12 +259,13 @@ impl Warnings {
 
 /// Where and when something is found.
 fn place(pair: &ContactPair, at: Vector2<f64>, time: f64) -> String {
-    format!("contact `{}` at ({:.6}, {:.6}), t = {}", pair.name, at.x, at.y, told(time))
+    format!("contact `{}` at ({:.6}, {:.6}), t = {}", pair.name, at.x, at.y, time_text(time))
 }
 
 /// What is found of an increment that could not be made shorter.
 fn shortest(Attempt { step, dt, old, .. }: &Attempt, found: &str) -> String {
-    let start = format!("step `{}`, t = {}: the increment {dt:.3e} is the shortest allowed", step.name, told(old.time));
+    let start =
+        format!("step `{}`, t = {}: the increment {dt:.3e} is the shortest allowed", step.name, time_text(old.time));
     format!("{start}, and {found}; lower dt.min")
 }
 
@@ -272,14 +276,14 @@ const DEEP: f64 = 0.01;
 /// Day et al. (2005), J. Geophys. Res. 110, B12307.
 const PROCESS_ZONE: f64 = 9.0 * std::f64::consts::PI / 32.0;
 
-/// What a contact is warned of, once.
+/// Kinds of warnings about a contact, each given once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 enum Kind {
-    /// A point lies deep in the master
+    /// A slave point penetrates the master
     DeepPenetration,
-    /// A node of the master lies deep in the slave
+    /// A master node penetrates the slave
     DeepMasterNode,
-    /// A node that the contact does not see lies deep in a rigid master
+    /// A node outside the slave group penetrates a rigid master
     DeepUnseen,
     /// Edges are longer than the process zone of friction
     Unresolved,
@@ -295,15 +299,15 @@ enum Kind {
     YieldsWork,
 }
 
-/// What is to be said of a pressure past the bound of uniqueness.
+/// Warning about a pressure above the bound of uniqueness.
 pub fn several_answers(pressure: f64, limit: f64) -> String {
     format!(
-        "the pressure {pressure:.6e} passes {limit:.6e}, above which weakening may outrun the contact stiffness and the \
-         answer snaps; raise alpha_t"
+        "the pressure {pressure:.6e} exceeds {limit:.6e}, above which the response is not unique: slip weakening may \
+         exceed the contact stiffness, and the traction jumps; raise alpha_t"
     )
 }
 
-/// What is worth a warning at one closed point after an increment up to a time.
+/// Warnings about one closed point after an increment up to a time.
 fn concerns(
     pair: &ContactPair,
     point: &SlavePoint,
@@ -328,26 +332,26 @@ fn concerns(
     deep.into_iter().chain(several.map(|message| (Kind::SeveralAnswers, message))).chain(coarse).chain(yields)
 }
 
-/// Share of the work of friction that an increment may give back for round-off.
+/// Fraction of the friction work that round-off may return in an increment.
 const GIVEN_BACK: f64 = 1e-9;
 
-/// What is to be said of a point that slides and lifts its load with more work than friction takes: laws whose least coefficient is
-/// not known beforehand may come to it.
+/// Warning about a point whose dilatancy does more work than friction dissipates; possible with laws whose lowest
+/// coefficient is not known beforehand.
 fn yields_work([old, new]: [&FrictionState; 2]) -> Option<String> {
     let [slip, opened] = [new.plastic_increment.abs(), new.opening - old.opening];
     let (friction, gained) = (new.traction.abs(), old.dissipation - new.dissipation);
     let yields = new.regime == Regime::Slip && opened > 0.0 && gained > GIVEN_BACK * friction * slip;
     yields.then(|| {
         format!(
-            "sliding yields work instead of taking it: friction has come down to |q|/p = {:.4}, and the surfaces open by {:.4} per \
-             slip (dilatancy.rate); lower that, or raise the friction",
+            "sliding produces energy: friction has dropped to |q|/p = {:.4}, and the surfaces open by {:.4} per slip \
+             (dilatancy.rate); lower that, or raise the friction",
             friction / new.pressure,
             opened / slip
         )
     })
 }
 
-/// What is to be said of an edge that is longer than the process zone of a front that runs along it.
+/// Warning about an edge that is longer than the process zone of a front on it.
 fn unresolved(
     pair: &ContactPair,
     point: &SlavePoint,
@@ -360,38 +364,38 @@ fn unresolved(
     let zone = PROCESS_ZONE * pair.modulus / weakening;
     (edge > zone).then(|| {
         format!(
-            "the edge of {edge:.3e} is longer than the process zone of its friction, 0.88 G/((1 − ν) p |dμ/dδ|) = {zone:.3e}: when and \
-             how fast slip spreads follows the mesh; take edges of a third of it"
+            "the edge of {edge:.3e} is longer than the process zone of its friction, 0.88 G/((1 − ν) p |dμ/dδ|) = \
+             {zone:.3e}: onset and speed of slip fronts depend on the mesh; take edges of a third of it"
         )
     })
 }
 
-/// What is to be said of a point that has left what small sliding keeps.
+/// Warnings about a point that has left the range of small sliding.
 fn left(departure: Option<Departure>) -> impl Iterator<Item = (Kind, String)> {
     let Some(Departure { slid, share, turned, stretched }) = departure else {
-        let message = "the surface has slid past the end of the rigid master, and small sliding holds it there";
+        let message = "the surface has slid past the end of the rigid master, but small sliding keeps it in contact";
         return [Some((Kind::SlidFar, message.into())), None, None].into_iter().flatten();
     };
     let far = (share > LITTLE_SLIP).then(|| {
         let message = format!(
-            "the surfaces have slid by {slid:.3e} since the start, {:.1} % of the distance between nodes, and small sliding keeps what faced \
-             what: tractions that vary from node to node are off by about as much",
+            "the surfaces have slid by {slid:.3e} since the start, {:.1} % of the distance between nodes, but small \
+             sliding keeps the initial projections: tractions that vary from node to node are wrong by about as much",
             100.0 * share
         );
         (Kind::SlidFar, message)
     });
     let turned = (turned > LITTLE_TURN).then(|| {
         let message = format!(
-            "a surface has turned by {turned:.3} rad since the start, and small sliding keeps its direction: tractions are \
-             off by about {:.1} % of the pressure",
+            "a surface has rotated by {turned:.3} rad since the start, but small sliding keeps its direction: \
+             tractions are wrong by about {:.1} % of the pressure",
             100.0 * turned
         );
         (Kind::TurnedFar, message)
     });
     let stretched = (stretched > LITTLE_TURN).then(|| {
         let message = format!(
-            "an edge of the slave has become {:.1} % longer or shorter since the start, and small sliding keeps its length: \
-             tractions are off by as much",
+            "an edge of the slave has become {:.1} % longer or shorter since the start, but small sliding keeps its \
+             length: tractions are wrong by as much",
             100.0 * stretched
         );
         (Kind::StretchedFar, message)

@@ -22,7 +22,7 @@ pub enum Unknown {
     /// No group of the mesh.
     #[error(transparent)]
     Group(#[from] UnknownGroup),
-    /// No contact.
+    /// There is no such contact.
     #[error("there is no contact `{name}`; there are {known}")]
     Contact {
         /// what was asked for
@@ -38,8 +38,8 @@ pub enum Unknown {
         /// what there is
         known: String,
     },
-    /// Nothing is prescribed there.
-    #[error("`{group}` has no support along {axis} in step `{step}` that could be led")]
+    /// There is no support of that kind.
+    #[error("`{group}` has no support along {axis} in step `{step}` that could be driven")]
     Support {
         /// the group
         group: String,
@@ -104,7 +104,7 @@ impl Simulation {
         Ok(pair::field_values(pair, states, self.state().time, self.state().dt, field))
     }
 
-    /// Where the slave points of a contact are, in their order [L].
+    /// Positions of the slave points of a contact, in their order [L].
     ///
     /// # Errors
     /// [`Unknown::Contact`].
@@ -114,8 +114,8 @@ impl Simulation {
         Ok(pair.points.iter().map(|point| point.at(&x)).collect())
     }
 
-    /// What the master of a contact puts on its slave, as `force_x` and `force_y` of the history: pressure, friction and what
-    /// slip radiates, without the pressure of a fluid [F].
+    /// Force of a contact on its slave, as `force_x` and `force_y` of the history: pressure, friction and radiation
+    /// damping, without fluid pressure [F].
     ///
     /// # Errors
     /// [`Unknown::Contact`].
@@ -134,8 +134,8 @@ impl Simulation {
         Ok((&contacts[k], &self.state().contacts[k]))
     }
 
-    /// Lead the supports of a group from where they are to a displacement at a time, evenly, and hold them there: what the
-    /// piston of a testing machine is told between two increments.
+    /// Drive the supports of a group linearly from their present position to a displacement at a time, and hold them
+    /// there, as the piston of a testing machine is controlled between two increments.
     ///
     /// # Errors
     /// [`Unknown::Group`], and [`Unknown::Support`] where a node is not supported in this direction.

@@ -16,7 +16,7 @@ use crate::model::state::State;
 use crate::model::step::{Until, UntilStatus};
 use crate::solve::IterationRecord;
 use crate::solve::failure::{IncrementFailure, suspicion};
-use crate::time::beginning::{begin, go_on, led};
+use crate::time::beginning::{after_change, begin, go_on};
 use crate::time::explicit::Explicit;
 use crate::time::increment::advance;
 use crate::time::quasi_dynamic::{Gone, QuasiDynamic};
@@ -75,7 +75,7 @@ impl Simulation {
         Candidate { number, dt, iterations, accepted, local_error, doubt, increments, outcome, coupling, explicit }
     }
 
-    /// What becomes of an increment that could not be solved.
+    /// Outcome of an increment that could not be solved.
     fn unsolved(&self, cause: IncrementFailure, dt: f64, number: usize, mut touching: Touching) -> Outcome {
         let Step { name, increments, rupture, .. } = &*self.step;
         if !cause.is_retryable() {
@@ -93,7 +93,7 @@ impl Simulation {
         Outcome::Stopped(Error::IncrementTooSmall { step, time, dt, min, cause, suspicion })
     }
 
-    /// Where explicit increments begin within an implicit step.
+    /// Start of explicit increments within an implicit step.
     fn rupture(&self) -> Phase {
         let calm = self.step.rupture.as_ref().map_or(f64::INFINITY, |rupture| rupture.calm);
         let interval = self.model.interval.unwrap_or(f64::INFINITY).min(calm / RESULTS);
@@ -167,12 +167,12 @@ impl Simulation {
     }
 }
 
-/// How an increment lies to the reaction that ends the step, if one does.
+/// Status of an increment with respect to the reaction that ends the step, if one does.
 fn course(step: &Step, states: [&State; 2]) -> Option<UntilStatus> {
     step.until.as_ref().map(|until| until.course(step.span, states))
 }
 
-/// How it goes on after an accepted increment.
+/// Next phase after an accepted increment.
 fn after(step: &Step, new: &State, course: Option<UntilStatus>, next: f64, touching: Touching) -> Phase {
     let dt = match course {
         Some(UntilStatus::Met) => return Phase::Met,
@@ -203,15 +203,15 @@ impl Simulation {
             Phase::QuasiDynamic { .. } if self.quasi_dynamic.is_none() => self.begin_quasi_dynamic(false),
             Phase::Explicit(_) | Phase::Rupture { .. } if self.explicit.is_none() => self.begin_explicit(false),
             Phase::Begin | Phase::Resume { .. } => self.begin_implicit(),
-            Phase::Implicit { .. } if self.led => self.take_note(),
+            Phase::Implicit { .. } if self.step_changed => self.take_note(),
             _ => Ok(()),
         };
         begun.map_err(|cause| self.unsolvable(cause))
     }
 
-    /// Go on under the loads that whoever leads the run has changed.
+    /// Continue under the loads that the caller has changed.
     fn take_note(&mut self) -> Result<(), IncrementFailure> {
-        let state = led(&self.model, &self.step, &self.state, &mut self.work)?;
+        let state = after_change(&self.model, &self.step, &self.state, &mut self.work)?;
         self.state = state.map_or_else(|| self.state.clone(), Arc::new);
         Ok(())
     }
@@ -329,7 +329,7 @@ impl Simulation {
         if ends && !matches!(self.control.phase, Phase::Missed) {
             self.explicit = None;
             self.quasi_dynamic = None;
-            self.led = false;
+            self.step_changed = false;
             self.control.step += 1;
             self.control.phase = Phase::Complete;
             if let Some(step) = self.control.step_of(&self.model) {

@@ -28,7 +28,7 @@ pub(super) const RESULTS: f64 = 100.0;
 /// Share of the time between two outputs within which an output falls on the end of a step.
 const NEAR_END: f64 = 1e-6;
 
-/// Where a run is: with the state, all that decides the next increment.
+/// Control state of a run: together with the state it determines the next increment.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Control {
     /// number of the step
@@ -109,12 +109,12 @@ pub(super) enum Phase {
     },
     /// Explicit increments to the next time of output
     Explicit(Outputs),
-    /// The same within an implicit step, while a contact slips fast
+    /// Explicit increments within an implicit step, while a contact slips fast
     Rupture {
         outputs: Outputs,
         /// the state since which slip is watched
         before: Arc<State>,
-        /// fastest slip in the time of calm before that [L/T]
+        /// fastest slip in the calm time before that [L/T]
         pace: f64,
     },
     /// Quasi-dynamic steps, some at a time
@@ -129,14 +129,14 @@ pub(super) enum Phase {
     },
     /// After the last step
     Complete,
-    /// With the reaction that ends the step
+    /// The reaction that ends the step has its value
     Met,
-    /// At the end of a step whose reaction has not come to its value
+    /// The step has ended before its reaction reached the value
     Missed,
 }
 
 impl Phase {
-    /// The step as it goes on in this phase: explicitly while a contact slips fast.
+    /// The step in this phase: explicit while a contact slips fast.
     pub(super) fn of<'a>(&self, step: &'a Step) -> &'a Step {
         match (self, &step.rupture) {
             (Self::Rupture { .. }, Some(rupture)) => &rupture.explicit,
@@ -205,7 +205,7 @@ pub struct Candidate {
     pub(super) explicit: Option<Explicit>,
 }
 
-/// What became of an attempt.
+/// Outcome of an attempt.
 pub(super) enum Outcome {
     /// A new state, and how it goes on
     Accepted(Phase),
@@ -249,7 +249,7 @@ impl Candidate {
         }
     }
 
-    /// What became of it.
+    /// Verdict on the attempt.
     pub fn verdict(&self) -> Verdict {
         match &self.outcome {
             Outcome::Accepted(_) | Outcome::Paused(_) => Verdict::Accepted,
@@ -277,17 +277,17 @@ impl Candidate {
         self.accepted.as_deref()
     }
 
-    /// The same, to be kept.
+    /// The accepted state, shared so that it can be kept.
     pub fn shared_state(&self) -> Option<Arc<State>> {
         self.accepted.clone()
     }
 
-    /// Its length [T].
+    /// Length of the increment [T].
     pub fn dt(&self) -> f64 {
         self.dt
     }
 
-    /// Its linear solves.
+    /// Linear solves of the increment.
     pub fn iterations(&self) -> &[IterationRecord] {
         &self.iterations
     }

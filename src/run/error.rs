@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use crate::laws::friction::LawFailure;
-use crate::model::scheme::told;
+use crate::model::scheme::time_text;
 
 pub use crate::equations::sums::TrialFailure;
 pub use crate::linear::LinearFailure;
@@ -15,7 +15,7 @@ pub use crate::solve::newton::NewtonFailure;
 #[non_exhaustive]
 pub enum Error {
     /// An increment cannot be made small enough.
-    #[error("step `{step}` stopped at time {}: {cause} (increment {dt:.3e}, smallest allowed {min:.3e}){suspicion}", told(*time))]
+    #[error("step `{step}` stopped at time {}: {cause} (increment {dt:.3e}, smallest allowed {min:.3e}){suspicion}", time_text(*time))]
     IncrementTooSmall {
         /// step
         step: String,
@@ -31,7 +31,7 @@ pub enum Error {
         suspicion: String,
     },
     /// No smaller increment can help.
-    #[error("step `{step}` stopped at time {}: {cause}", told(*time))]
+    #[error("step `{step}` stopped at time {}: {cause}", time_text(*time))]
     Unsolvable {
         /// step
         step: String,
@@ -40,11 +40,11 @@ pub enum Error {
         /// why
         cause: IncrementFailure,
     },
-    /// The reaction that was to end a step has not come to its value.
+    /// The reaction that ends a step did not reach its value.
     #[error(
-        "step `{step}` came to its end at time {} before {part} of `{on}` reached {value}: it is {reached:.6e}; give the step \
+        "step `{step}` ended at time {} before {part} of `{on}` reached {value}: it is {reached:.6e}; make the step \
          longer, or move farther (until)",
-        told(*time)
+        time_text(*time)
     )]
     NotReached {
         /// step
@@ -60,27 +60,27 @@ pub enum Error {
         /// what it is [F]
         reached: f64,
     },
-    /// A friction law driven alone could not answer.
-    #[error("the law stopped after time {}: {cause}", told(*time))]
+    /// A friction law failed in a law test.
+    #[error("the law stopped after time {}: {cause}", time_text(*time))]
     Law {
         /// time reached
         time: f64,
         /// what the law said
         cause: LawFailure,
     },
-    /// A run whose step its caller has changed is no run of its model alone.
+    /// A run whose step was changed by its caller does not follow from its model alone, and cannot be saved in a file.
     #[error("step `{step}` was changed by its caller: such a run can be saved in this process, but not in a file")]
-    Led {
+    StepChanged {
         /// step
         step: String,
     },
-    /// A run could not be written down.
+    /// A run could not be saved.
     #[error("the run could not be saved: {0}")]
     NotSaved(String),
     /// The user, or the system, asked for the end.
     #[error("interrupted")]
     Interrupted,
-    /// Whoever watches the run had it end.
+    /// An observer ended the run.
     #[error("{0}")]
     Ended(String),
     /// A result file could not be written.

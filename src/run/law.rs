@@ -37,7 +37,7 @@ use crate::laws::friction::{FrictionLaw, FrictionResponse, FrictionState, Slidin
 use crate::model::boundary::{Drive, Span};
 use crate::run::error::Error;
 
-/// A test of a law: where it starts and where it is led.
+/// A law test: initial state and prescribed path.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct LawTest {
@@ -98,8 +98,8 @@ impl LawTest {
             self.law.description().uniqueness_limit().filter(|limit| report.warnings.is_empty() && pressure > *limit)
         {
             report.warnings.push(format!(
-                "the pressure {pressure:.6e} at t = {time} passes {limit:.6e}, above which weakening may outrun the \
-                 contact stiffness and the answer snaps; raise alpha_t"
+                "the pressure {pressure:.6e} at t = {time} exceeds {limit:.6e}, above which the response is not \
+                 unique: slip weakening may exceed the contact stiffness, and the traction jumps; raise alpha_t"
             ));
         }
     }
@@ -382,7 +382,7 @@ pub struct PathPoint {
 }
 
 impl PathPoint {
-    /// From the numbers of a row; without pressure there is no coefficient.
+    /// A point of the path from the numbers of a row; the coefficient is 0 without pressure.
     pub fn new([time, slip, pressure, traction, mu]: [f64; 5]) -> Self {
         let coefficient = if pressure > 0.0 { traction.abs() / pressure } else { 0.0 };
         Self { time, slip, coefficient, mu }
@@ -415,7 +415,7 @@ pub struct Peaks {
 }
 
 impl Peaks {
-    /// Take note of the next row.
+    /// Record the next row.
     #[doc(hidden)]
     pub fn note(&mut self, now: PathPoint) {
         let higher = |than: &PathPoint| now.coefficient > than.coefficient;
@@ -433,7 +433,7 @@ impl Peaks {
     }
 }
 
-/// What a test of a law amounts to.
+/// Results of a law test.
 #[derive(Clone, Debug, Default, Serialize)]
 #[non_exhaustive]
 pub struct LawReport {
@@ -451,7 +451,7 @@ pub struct LawReport {
 }
 
 impl LawReport {
-    /// Take note of the next row.
+    /// Record the next row.
     #[doc(hidden)]
     pub fn note(&mut self, row: &LawRow) {
         let FrictionResponse { state, evaluations, .. } = row.response;

@@ -51,7 +51,7 @@ pub fn watch(simulation: &mut Simulation, observers: &mut [&mut dyn Observer]) -
     watch_with(simulation, observers, &mut |_, _, _| Ok(()))
 }
 
-/// Where a run is when something is done between its attempts.
+/// Moment between the attempts of a run at which a callback is called.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Moment {
@@ -61,11 +61,11 @@ pub enum Moment {
     Stops,
 }
 
-/// What is done before every attempt, after the last one, and where one stops the run: there the run and its observers can be
-/// saved, or ended by an error.
+/// Callback before every attempt, after the last one, and where one stops the run: it can save the run and its
+/// observers, or end the run by an error.
 pub type Between<'a> = dyn FnMut(&Simulation, &mut [&mut dyn Observer], Moment) -> Result<(), Error> + 'a;
 
-/// As [`watch`], and do something between the attempts.
+/// As [`watch`], with a callback between the attempts.
 ///
 /// # Errors
 /// As [`run`], and those of what is done.
@@ -115,7 +115,7 @@ fn attempts(
     }
 }
 
-/// What each observer remembers, by its name.
+/// Memory of each observer, by its name.
 type Memories = Vec<(String, Vec<u8>)>;
 
 /// A run and its observers as they were.
@@ -144,7 +144,7 @@ impl SavedRun {
         Ok(Self { simulation: simulation.save(), observers })
     }
 
-    /// For a file.
+    /// The saved run in bytes, for a file.
     ///
     /// # Errors
     /// As [`Saved::bytes`].
@@ -152,7 +152,7 @@ impl SavedRun {
         Ok(RunBytes { simulation: self.simulation.bytes()?, observers: self.observers })
     }
 
-    /// From a file.
+    /// A saved run from the bytes of a file.
     ///
     /// # Errors
     /// [`NotResumable`].

@@ -44,7 +44,7 @@ use crate::laws::friction::Regime;
 use crate::model::scheme::Scheme;
 use crate::model::state::State;
 use crate::model::step::{Until, UntilStatus};
-use crate::model::told::{count, number};
+use crate::model::text::{count, number};
 use crate::model::{Model, Step};
 use crate::run::error::Error;
 use crate::solve::IterationRecord;
@@ -69,14 +69,14 @@ pub struct Attempt<'a> {
     pub accepted: Option<&'a State>,
     /// which row of the results it is, if it was accepted
     pub row: Row,
-    /// what became of it
+    /// its outcome
     pub verdict: Verdict,
     /// why no equilibrium was found, if none was
     pub cause: Option<&'a IncrementFailure>,
     /// estimated local error of a displacement, in steps under error control [L]
     pub local_error: Option<f64>,
-    /// share of a contact's force that is in doubt because points touched at an unknown moment of the increment, in static
-    /// steps [-]
+    /// fraction of a contact's force that is uncertain because contact closed at an unknown time within the increment,
+    /// in static steps [-]
     pub doubt: Option<f64>,
 }
 
@@ -88,7 +88,7 @@ impl Attempt<'_> {
         state.time >= span.end || until.as_ref().is_some_and(met)
     }
 
-    /// Which row it is, where the last one was at a time [T].
+    /// Row of the results that it is, given the time of the last row [T].
     pub(super) fn row_after(&self, model: &Model, last: f64) -> Row {
         let Some(new) = self.accepted else { return Row::Held };
         let Some(interval) = model.interval else { return Row::Written };
@@ -111,10 +111,10 @@ fn regimes(model: &Model, state: &State) -> Vec<Regime> {
     pairs.flat_map(|(pair, states)| pair.points.iter().zip(states).map(|(p, state)| pair.regime(p, state))).collect()
 }
 
-/// Share of the interval that round-off may take away.
+/// Fraction of the interval that may be lost to round-off.
 const ROUND_OFF: f64 = 1e-9;
 
-/// What becomes of an increment.
+/// Role of an increment in the results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Row {
@@ -126,26 +126,26 @@ pub enum Row {
     Held,
 }
 
-/// What became of an attempt.
+/// Outcome of an attempt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Verdict {
-    /// It led to a new state, or paused on its way there.
+    /// It was accepted, or paused before its end.
     Accepted,
     /// No equilibrium was found.
     Unsolved,
-    /// The reaction that ends the step passed its value.
+    /// The reaction that ends the step overshot its value.
     Passed,
     /// Its local error was too large.
     Error,
-    /// Points touched, and friction depends on when they did.
+    /// Contact closed within the increment, at a time that its friction depends on.
     Touch,
-    /// A contact began to slip fast, and what follows is explicit.
+    /// A contact began to slip fast; explicit increments follow.
     Rupture,
 }
 
 impl Verdict {
-    /// A word for tables.
+    /// One word, for tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Accepted => "accepted",
@@ -158,7 +158,7 @@ impl Verdict {
     }
 }
 
-/// Somebody who watches a run.
+/// Observer of a run.
 pub trait Observer {
     /// Called after every attempt.
     ///
@@ -166,12 +166,12 @@ pub trait Observer {
     /// [`Error::Output`] when a file cannot be written; it ends the run.
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error>;
 
-    /// The name by which what it remembers is found again.
+    /// The name under which its memory is saved.
     fn name(&self) -> &'static str {
         ""
     }
 
-    /// What it remembers, and how far it has written: for [`restore`](Self::restore). Nothing unless it says so.
+    /// Its memory and the extent of its output, for [`restore`](Self::restore); empty by default.
     ///
     /// # Errors
     /// As [`record`](Self::record).
@@ -179,7 +179,7 @@ pub trait Observer {
         Ok(Vec::new())
     }
 
-    /// Whether it can go on from what was saved: what it had written by then still stands. Nothing is changed.
+    /// Check, without changes, whether it can resume from the saved memory: its output up to then still exists.
     ///
     /// # Errors
     /// As [`record`](Self::record), with what is wrong.
@@ -187,7 +187,7 @@ pub trait Observer {
         Ok(())
     }
 
-    /// Go on from what was saved; what has been written since is taken back.
+    /// Resume from the saved memory; output written since is removed.
     ///
     /// # Errors
     /// As [`record`](Self::record).
@@ -195,7 +195,7 @@ pub trait Observer {
         Ok(())
     }
 
-    /// Called once after the last attempt: what is still under way comes to its end.
+    /// Called once after the last attempt, to complete pending output.
     ///
     /// # Errors
     /// As [`record`](Self::record).
@@ -204,23 +204,26 @@ pub trait Observer {
     }
 }
 
-/// Digits of an error or a doubt that is told.
+/// An error or uncertainty with the digits that are printed.
 fn rounded(value: f64) -> String {
     format!("{value:.2e}")
 }
 
 impl Attempt<'_> {
-    /// Why it led to no new state; `None` if it did, or paused on its way there.
+    /// Reason of the rejection; `None` if the attempt was accepted, or paused.
     pub fn reason(&self) -> Option<String> {
         let Self { step, verdict, cause, .. } = self;
         Some(match verdict {
             Verdict::Accepted => return None,
             Verdict::Unsolved => cause.map_or_else(|| "not solved".into(), |cause| self.unsolved(cause)),
-            Verdict::Passed => "solved, but the reaction that ends the step passed its value".into(),
+            Verdict::Passed => "solved, but the reaction overshot the value that ends the step".into(),
             Verdict::Error => self.inexact(),
             Verdict::Touch => {
                 let share = 100.0 * self.doubt.unwrap_or_default();
-                format!("solved, but points touched on the way: {share:.2} % of a contact's force depends on when")
+                format!(
+                    "solved, but contact closed within the increment; friction force uncertain by {share:.2} % of the \
+                     contact force"
+                )
             }
             Verdict::Rupture => {
                 let rate = step.rupture.as_ref().map_or(0.0, |rupture| rupture.slip_rate);
@@ -229,7 +232,7 @@ impl Attempt<'_> {
         })
     }
 
-    /// Why no equilibrium was found, and how the contacts stood when the iterations ended without one.
+    /// Reason why no equilibrium was found, with the contact status when the iterations ended.
     fn unsolved(&self, cause: &IncrementFailure) -> String {
         let ended = matches!(
             cause,
@@ -239,34 +242,38 @@ impl Attempt<'_> {
         let closed = last.contacts.stick + last.contacts.slip;
         match last.flips {
             _ if closed == 0 && last.contacts.open > 0 => {
-                format!("{cause}; all contact points had opened on the way, and nothing held the bodies")
+                format!(
+                    "{cause}; all contact points had opened during the iterations, and nothing constrained the bodies"
+                )
             }
             0 => cause.to_string(),
-            flips => format!("{cause}; {} still changed between open, stick and slip", count(flips, "contact point")),
+            flips => format!("{cause}; {} still changing between open, stick and slip", count(flips, "contact point")),
         }
     }
 
-    /// What was wrong in time.
+    /// Reason of a rejection for its time error.
     fn inexact(&self) -> String {
         let allowed = self.step.increments.error.unwrap_or_default();
         match self.local_error {
             Some(error) if error > allowed => {
                 format!("solved, but the local error {} is above dt.error = {}", rounded(error), number(allowed))
             }
-            _ => "solved, but a contact began to slip, stopped or turned round, at a moment that dt.error wants to be met".into(),
+            _ => "solved, but a contact began to slip, stopped or reversed at a time that dt.error requires to be \
+                  located"
+                .into(),
         }
     }
 }
 
 impl Verdict {
-    /// Why a solved attempt was repeated, in a few words.
+    /// Kind of a rejection, in a few words that can be counted.
     pub fn kind(self) -> &'static str {
         match self {
             Self::Accepted => "accepted",
             Self::Unsolved => "not solved",
-            Self::Passed => "reaction passed",
-            Self::Error => "error in time",
-            Self::Touch => "points touched",
+            Self::Passed => "reaction overshot",
+            Self::Error => "time error",
+            Self::Touch => "contact closure",
             Self::Rupture => "rupture",
         }
     }

@@ -38,19 +38,19 @@ pub struct Simulation {
     pub(super) model: Arc<Model>,
     /// The step under way, as its caller may have changed it
     pub(super) step: Arc<Step>,
-    /// Whether he has
-    pub(super) led: bool,
-    /// Whether he has stopped it
+    /// Whether the caller has changed the step
+    pub(super) step_changed: bool,
+    /// Whether the caller has stopped the run
     stopped: bool,
     pub(super) state: Arc<State>,
     pub(super) control: Control,
-    /// What explicit increments need besides the state, while there are any
+    /// Data of explicit increments besides the state, during such increments
     pub(super) explicit: Option<Explicit>,
-    /// Where explicit increments have come to since the last output, if they paused
+    /// Progress of explicit increments since the last output, if they paused
     pub(super) midway: Option<Midway>,
-    /// Whether explicit increments are to pause on their way to an output
+    /// Whether explicit increments must pause before the next output
     pub(super) pause: Pause,
-    /// What quasi-dynamic steps need besides the state, while there are any
+    /// Data of quasi-dynamic steps besides the state, during such steps
     pub(super) quasi_dynamic: Option<QuasiDynamic>,
     pub(super) work: Workspace,
     pub(super) report: RunReport,
@@ -69,7 +69,7 @@ impl Simulation {
         let coupling = work.assembler.coupling();
         Self {
             step: Arc::new(model.steps.first().cloned().unwrap_or_default()),
-            led: false,
+            step_changed: false,
             stopped: false,
             control: Control { step: 0, phase, coupling, ended: Vec::new(), moving: None, last_row: state.time },
             state: Arc::new(state),
@@ -94,15 +94,15 @@ impl Simulation {
             explicit: self.explicit.clone(),
             midway: self.midway.clone(),
             report: self.report(),
-            led: self.led,
+            step_changed: self.step_changed,
         }
     }
 
     /// A run as it was, of the same model; of another one that it may go on with, what [`Saved::on`] gives.
     pub fn resume(model: impl Into<Arc<Model>>, saved: Saved) -> Self {
-        let Saved { step, state, control, explicit, midway, report, led } = saved;
+        let Saved { step, state, control, explicit, midway, report, step_changed } = saved;
         let earlier = report.wall_s;
-        Self { step, led, state, control, explicit, midway, report, earlier, ..Self::new(model) }
+        Self { step, step_changed, state, control, explicit, midway, report, earlier, ..Self::new(model) }
     }
 
     /// The model.
@@ -140,7 +140,7 @@ impl Simulation {
         self.report.wall_s.output += seconds;
     }
 
-    /// What observers are told of a candidate.
+    /// The attempt that observers receive for a candidate.
     pub fn told<'a>(&'a self, candidate: &'a Candidate) -> Attempt<'a> {
         let mut told = Attempt {
             step: self.step_now(),
@@ -248,7 +248,7 @@ impl Simulation {
     /// Change loads, supports and bounds of increments of the step under way: what changes is so from the next increment to the
     /// end of the step; the next one has its own.
     pub fn change(&mut self, change: impl Fn(&mut Step)) {
-        self.led = true;
+        self.step_changed = true;
         let step = Arc::make_mut(&mut self.step);
         change(step);
         if let Some(rupture) = &mut step.rupture {
@@ -263,7 +263,7 @@ impl Simulation {
         Error::Unsolvable { step: self.step.name.clone(), time: self.state.time, cause }
     }
 
-    /// The step as it goes on at present: explicitly while a contact slips fast.
+    /// The present step: explicit while a contact slips fast.
     pub(super) fn step_now(&self) -> &Step {
         self.control.phase.of(&self.step)
     }
@@ -294,10 +294,10 @@ pub struct Saved {
     pub(super) midway: Option<Midway>,
     pub(super) report: RunReport,
     /// Whether its caller has changed the step under way
-    pub(super) led: bool,
+    pub(super) step_changed: bool,
 }
 
-/// Why a saved run cannot go on.
+/// Why a saved run cannot be resumed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NotResumable {
@@ -309,7 +309,7 @@ pub enum NotResumable {
     OtherModel,
 }
 
-/// What goes to a file.
+/// Content of a saved run in a file.
 type Written = (State, Control, Option<ExplicitMemory>, Option<Midway>, RunReport);
 
 impl Saved {
@@ -318,10 +318,11 @@ impl Saved {
         &self.state
     }
 
-    /// How many steps of the model the run depends on so far: those that have begun.
+    /// Number of steps of the model that have begun, on which the run depends so far.
     pub fn begun(&self) -> usize {
         // What its caller has changed of a step holds in place of what the model says.
-        self.control.step + usize::from(self.led || !matches!(self.control.phase, Phase::Begin | Phase::Complete))
+        self.control.step
+            + usize::from(self.step_changed || !matches!(self.control.phase, Phase::Begin | Phase::Complete))
     }
 
     /// Whether its last step is over.
@@ -332,11 +333,11 @@ impl Saved {
     /// The bytes of a run for a file.
     ///
     /// # Errors
-    /// [`Error::Led`] where its caller has changed the step under way, which no file holds.
+    /// [`Error::StepChanged`] where its caller has changed the step under way, which no file holds.
     pub fn bytes(&self) -> Result<Vec<u8>, Error> {
-        let Self { step, state, control, explicit, midway, report, led } = self;
-        if *led {
-            return Err(Error::Led { step: step.name.clone() });
+        let Self { step, state, control, explicit, midway, report, step_changed } = self;
+        if *step_changed {
+            return Err(Error::StepChanged { step: step.name.clone() });
         }
         let memory = explicit.as_ref().map(Explicit::memory);
         let run = (&**state, control, memory, midway, report);
@@ -358,13 +359,17 @@ impl Saved {
     /// # Errors
     /// [`NotResumable::OtherModel`].
     pub fn on(self, model: &Arc<Model>) -> Result<Self, NotResumable> {
-        let Self { step, state, control, explicit, midway, report, led } = self;
+        let Self { step, state, control, explicit, midway, report, step_changed } = self;
         let memory = explicit.as_ref().map(Explicit::memory);
-        Self::fitted((Arc::unwrap_or_clone(state), control, memory, midway, report), led.then_some(step), model)
+        Self::fitted(
+            (Arc::unwrap_or_clone(state), control, memory, midway, report),
+            step_changed.then_some(step),
+            model,
+        )
     }
 
     /// A run of a model, with the step under way if its caller has changed it.
-    fn fitted(run: Written, led: Option<Arc<Step>>, model: &Arc<Model>) -> Result<Self, NotResumable> {
+    fn fitted(run: Written, step_changed: Option<Arc<Step>>, model: &Arc<Model>) -> Result<Self, NotResumable> {
         let (state, mut control, memory, midway, report) = run;
         let fits = |memory: &ExplicitMemory| memory.fits(model);
         let on_its_way = midway.as_ref().is_none_or(|midway| is_of(&midway.state, model) && memory.is_some());
@@ -374,14 +379,15 @@ impl Saved {
         if matches!(control.phase, Phase::Complete) && control.step < model.steps.len() {
             control.phase = Phase::Begin;
         }
-        let is_led = led.is_some();
-        let step = led.unwrap_or_else(|| Arc::new(control.step_of(model).unwrap_or_default()));
+        let is_changed = step_changed.is_some();
+        let step = step_changed.unwrap_or_else(|| Arc::new(control.step_of(model).unwrap_or_default()));
         let under_way = control.phase.of(&step);
         let explicit = memory.map(|memory| Explicit::again(model, &Arc::new(under_way.clone()), memory));
-        Ok(Self { step, state: Arc::new(state), control, explicit, midway, report, led: is_led })
+        Ok(Self { step, state: Arc::new(state), control, explicit, midway, report, step_changed: is_changed })
     }
 
-    /// The same place, from where another run begins: it counts its increments, and the energies that come and go, from here.
+    /// The state as the beginning of another run, with increments and energies counted from here.
+    #[must_use]
     pub fn begin(mut self) -> Self {
         let mut state = State::clone(&self.state);
         let Energy { kinetic, strain, contact_elastic, .. } = state.energy;

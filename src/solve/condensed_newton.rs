@@ -28,7 +28,7 @@ use crate::model::{Damping, Model, Step};
 /// Most bytes that condensed matrices of all lengths of increments take.
 pub const MOST_MEMORY: usize = 2 << 30;
 
-/// How much faster the operations of a dense LU are than those of an elimination front by front.
+/// Speed of the operations of a dense LU relative to those of a multifrontal elimination.
 const DENSE: f64 = 3.0;
 
 /// The bodies of a model condensed on the nodes at its contacts.
@@ -40,7 +40,7 @@ pub struct CondensedNewton {
     /// The equations without contact
     bodies: Assembler,
     system: System,
-    /// The same with all contact nodes coupled
+    /// The pattern with all contact nodes coupled
     pattern: Arc<Pattern>,
     condensation: Condensation,
     /// What the condensed matrices follow from but for the length of increments

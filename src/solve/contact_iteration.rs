@@ -104,7 +104,7 @@ use crate::model::Model;
 use crate::model::aids::Aids;
 use crate::model::state::State;
 
-/// What the linear solves of an increment so far say about one contact point.
+/// Data of one contact point from the linear solves of an increment so far.
 #[derive(Clone, Debug, Default)]
 struct Point {
     slipping: Slipping,
@@ -158,13 +158,13 @@ impl Point {
 pub struct ContactIteration {
     /// One list a contact pair, empty before the first linear solve of an increment
     points: Vec<Vec<Point>>,
-    /// The points as the last linear solve saw them
+    /// Contact points as linearized in the last solve
     linearized: Vec<PairResponse>,
-    /// As the next one does
+    /// Contact points as linearized in the next solve
     next: Vec<PairResponse>,
     /// u of the last linear solve [L]
     linearized_at: Vec<f64>,
-    /// On how many points each aid acted in the last linear solve
+    /// Number of points on which each convergence aid acted in the last linear solve
     pub acted: Acted,
 }
 
@@ -218,7 +218,7 @@ impl ContactIteration {
         Ok(())
     }
 
-    /// The points as the next linear solve sees them.
+    /// The points as linearized in the next solve.
     fn respond(
         &mut self,
         assembler: &mut Assembler,
@@ -231,8 +231,8 @@ impl ContactIteration {
         assembler.interfaces(trial, u, presumed, request, &mut self.next)
     }
 
-    /// What the next linear solve presumes about each point, from its last two iterates, but for sticking. `states` are
-    /// those of the residual at `u`.
+    /// Assumptions of the next linear solve about each point, from its last two iterates, except for sticking. `states`
+    /// are those of the residual at `u`.
     fn presume(&mut self, model: &Model, states: &[Vec<ContactState>], trial: Trial, u: &[f64]) {
         let (first, aids) = (self.points.is_empty(), model.aids);
         self.points.resize_with(model.contacts.len(), Vec::new);
@@ -276,7 +276,7 @@ impl ContactIteration {
         any
     }
 
-    /// Keep the points as the next linear solve sees them, and count those on which an aid acts.
+    /// Keep the points as linearized in the next solve, and count those on which an aid acts.
     fn take_over(&mut self, model: &Model, u: &[f64], old: &State, aids: Aids) {
         std::mem::swap(&mut self.linearized, &mut self.next);
         self.linearized_at.clear();
@@ -296,7 +296,7 @@ impl ContactIteration {
 /// Most growth of a pressure from the committed state to the start value that is believed.
 const MOST_GROWTH: f64 = 2.0;
 
-/// What the start value promises a point that it closes.
+/// Predicted traction of a point that the start value closes.
 fn promised_at_start(state: &ContactState, old: &ContactState, limit: bool) -> Tractions {
     let tractions = Tractions::of(&state.friction);
     if limit { tractions.limited(MOST_GROWTH * old.friction.pressure) } else { tractions }
@@ -310,7 +310,7 @@ fn promise_acts(presumption: &Presumption, closed: &Closed) -> bool {
 /// The penalty may have drawn a point that was closed back by this many p/α_n.
 const MOST_PULL: f64 = 10.0;
 
-/// What the committed state promises a point that is open by the start value.
+/// Predicted traction, from the committed state, of a point that is open by the start value.
 fn kept_at_start(pair: &ContactPair, state: &ContactState, old: &ContactState) -> Tractions {
     let reach = old.friction.pressure * (pair.compliance + MOST_PULL / pair.alpha_n);
     if state.clearance() <= reach { Tractions::of(&old.friction) } else { Tractions::default() }
@@ -338,7 +338,7 @@ const ABATES: f64 = 0.5;
 /// Tractions below this share of the friction that a point slips with would hold it.
 const FAR_LOWER: f64 = 0.9;
 
-/// How a point has slipped at the linear solves of the increment.
+/// Slip history of a point over the linear solves of the increment.
 #[derive(Clone, Copy, Debug, Default)]
 struct Slipping {
     /// Plastic slip of the increment at the last solve [L]
@@ -371,14 +371,14 @@ impl Slipping {
 /// Segments of a point's feet at the linear solves of the increment.
 #[derive(Clone, Copy, Debug, Default)]
 struct Feet {
-    /// At the last two solves
+    /// Projected segments at the last two solves
     last: [Option<usize>; 2],
-    /// The two segments between which the foot went to and fro
+    /// The two segments between which the projection alternates
     astride: Option<[usize; 2]>,
 }
 
 impl Feet {
-    /// Take note of the segment on which the next linear solve starts.
+    /// Record the segment on which the next linear solve starts.
     fn note(&mut self, state: &ContactState) {
         let segment = state.foot.map(|foot| foot.segment);
         let [last, before] = self.last;
@@ -435,7 +435,7 @@ pub struct Acted {
     pub valley: usize,
     /// it is one on the nodes at contacts alone
     pub condense: usize,
-    /// the correction was searched for how far it leads downhill
+    /// the correction was shortened by a line search
     pub downhill: usize,
     /// the augmented Lagrangian is stiffened
     pub stiffening: usize,

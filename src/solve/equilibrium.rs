@@ -56,7 +56,7 @@ pub fn equilibrium(
     (watch.records, result)
 }
 
-/// What Newton's method found on all equations.
+/// Solution by Newton's method on all equations.
 fn on_all(
     model: &Model,
     trial: Trial,
@@ -84,7 +84,7 @@ fn on_all(
 /// Rounds on the nodes at contacts before an increment is left to all equations.
 const MOST_ROUNDS: usize = 3;
 
-/// What Newton's method found on the nodes at contacts, if that way is worth it and the bodies can follow.
+/// Solution by Newton's method condensed on the contact nodes, if that pays and the bodies allow it.
 fn on_contacts(
     model: &Model,
     trial: Trial,
@@ -159,7 +159,7 @@ fn round(
     Some(Ok(()))
 }
 
-/// The tangent of all equations, as the first linear solve of an increment sees it.
+/// The tangent of all equations, at the first linear solve of an increment.
 fn assemble_all(trial: Trial, u: &[f64], work: &mut Workspace) -> Option<()> {
     let Workspace { assembler, iteration, system, .. } = work;
     iteration.start_increment();
@@ -167,7 +167,7 @@ fn assemble_all(trial: Trial, u: &[f64], work: &mut Workspace) -> Option<()> {
     iteration.evaluate_all(assembler, trial, u, Request::Tangent, system).ok()
 }
 
-/// What is seen while an increment is solved.
+/// Monitor of the solution of an increment.
 struct Watch {
     /// Whether it is a new increment, and whether its start value goes on with the last one
     begins: bool,
@@ -300,7 +300,7 @@ const MOST_PASSES: usize = 100;
 /// A pass that leaves more than this share of the penetration is slow: the next one is stiffer.
 const SLOW: f64 = 0.25;
 
-/// How much stiffer.
+/// Factor by which the penalty is raised.
 const STIFFER: f64 = 10.0;
 
 /// α_n is not raised to more than this many times the given one.

@@ -13,7 +13,7 @@ use crate::contact::pair::ContactPair;
 use crate::equations::sums::TrialFailure;
 use crate::equations::supports::free;
 use crate::linear::LinearFailure;
-use crate::model::told::number;
+use crate::model::text::number;
 use crate::model::{Body, Model, Step};
 
 /// Why one increment failed; a smaller one may succeed.
@@ -29,28 +29,26 @@ pub enum IncrementFailure {
     /// The state at the start of a dynamic step, or in an explicit increment, cannot be evaluated.
     #[error(transparent)]
     Start(TrialFailure),
-    /// The augmented Lagrangian did not bring the surfaces together.
+    /// The augmented Lagrangian did not reach the allowed penetration.
     #[error(
-        "the penetration is still too large after {passes} passes of the augmented Lagrangian: raise alpha_n, or allow more"
+        "the penetration is still too large after {passes} augmentations: raise alpha_n, or allow more penetration"
     )]
     Penetration {
-        /// solutions with better and better multipliers
+        /// number of augmentations
         passes: usize,
     },
     /// The velocities of an explicit run are not finite any more.
-    #[error(
-        "the motion grows beyond all bounds: lower the safety of the explicit scheme, or look at loads and supports"
-    )]
+    #[error("the motion grows without bound: lower the safety of the explicit scheme, or check loads and supports")]
     Unbounded,
     /// An element collapsed in explicit increments of any length.
     #[error(
-        "{0}, in shorter increments as well: the mesh is crushed there; let it be struck or driven more slowly, make it \
-         finer or stiffer there, give the body viscosity (damping.stiffness), or a law that resists crushing (neo_hookean, \
+        "{0}, with shorter increments as well: the mesh collapses there; strike or drive it more slowly, make it finer \
+         or stiffer there, give the body viscosity (damping.stiffness), or a law that resists collapse (neo_hookean, \
          hencky)"
     )]
     Collapsed(TrialFailure),
     /// The bodies could not be condensed on an interface.
-    #[error("the bodies cannot be condensed on the contacts: {0}; hold every body by a support or a spring")]
+    #[error("the bodies cannot be condensed on the contacts: {0}; constrain every body by a support or a spring")]
     Interface(LinearFailure),
     /// The differential equations of an interface could not be integrated.
     #[error("contact `{contact}` at ({x:.6}, {y:.6}): {why}")]
@@ -64,13 +62,14 @@ pub enum IncrementFailure {
         /// what is wrong there
         why: String,
     },
-    /// A body is held by nothing.
+    /// A body is not constrained.
     #[error(
-        "{0}; give it a support, a spring, or contact that is closed at the start, or `stabilize` the step (a stabilized one: by more)"
+        "{0}; give it a support, a spring, or contact that is closed at the start, or `stabilize` the step (if it is \
+         already: by more)"
     )]
     Floating(String),
-    /// A trial state lost the contact that held a body.
-    #[error("the iterations lost contact: {0}")]
+    /// A trial state lost the contact that constrained a body.
+    #[error("contact was lost during the iterations: {0}")]
     ContactLost(String),
 }
 
@@ -86,7 +85,7 @@ impl IncrementFailure {
         matches!(self, Self::Unbounded | Self::Start(Inverted { .. } | Crushed { .. } | Material { .. }))
     }
 
-    /// The same, after shorter increments have not helped.
+    /// The failure after shorter increments have not helped.
     #[doc(hidden)]
     pub fn after_all(self) -> Self {
         match self {
@@ -95,7 +94,7 @@ impl IncrementFailure {
         }
     }
 
-    /// What failed, in so few words that failures can be counted.
+    /// Kind of the failure, in a few words that can be counted.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Newton(NewtonFailure::Evaluation(failure)) | Self::Start(failure) | Self::Collapsed(failure) => {
@@ -125,8 +124,8 @@ impl IncrementFailure {
 
 fn kind_of_trial(failure: &TrialFailure) -> &'static str {
     match failure {
-        TrialFailure::Inverted { .. } => "element inside out",
-        TrialFailure::Crushed { .. } => "element crushed",
+        TrialFailure::Inverted { .. } => "element inverted",
+        TrialFailure::Crushed { .. } => "element collapsed",
         TrialFailure::Material { .. } => "material law",
         TrialFailure::Friction { .. } => "friction law",
         TrialFailure::FluidPressure { .. } => "fluid pressure",
@@ -140,7 +139,7 @@ const STIFF: f64 = 1e4;
 /// Poisson's ratio from which elements that are integrated in full lock.
 const LOCKS: f64 = 0.49;
 
-/// What to say of a failure besides its cause: nothing where the cause says it all.
+/// Likely causes of a failure besides its message: empty where the message says it all.
 pub fn suspicion(model: &Model, step: &Step, work: &Workspace, cause: &IncrementFailure) -> String {
     let unbalanced = match cause {
         IncrementFailure::Newton(NewtonFailure::Evaluation(_)) | IncrementFailure::ContactLost(_) => None,
@@ -162,7 +161,7 @@ pub fn suspicion(model: &Model, step: &Step, work: &Workspace, cause: &Increment
             }
         });
         let owner = owner.unwrap_or_default();
-        format!("the forces are farthest from balance at node {tag}{owner}, ({}, {})", number(at.x), number(at.y))
+        format!("largest residual at node {tag}{owner}, ({}, {})", number(at.x), number(at.y))
     });
     let penalties = model.contacts.iter().filter_map(penalty);
     let told = place.into_iter().chain(penalties).chain(model.bodies.iter().filter_map(|body| locking(model, body)));

@@ -20,7 +20,7 @@ use condensed_newton::CondensedNewton;
 use contact_iteration::{Acted, ContactIteration};
 use newton::Iteration;
 
-/// What is kept from one increment to the next to save work; it does not change any answer.
+/// Data kept from one increment to the next to save work; they do not change any result.
 pub struct Workspace {
     /// assembles the equations
     pub assembler: Assembler,

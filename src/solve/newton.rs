@@ -33,9 +33,9 @@ use thiserror::Error;
 
 use crate::linear::system::{Request, System};
 use crate::linear::{self, LinearFailure, LinearSolver, Solution, norm};
-use crate::model::told::count;
+use crate::model::text::count;
 
-/// When Newton's method stops, and what it may do on its way.
+/// Stopping criteria and options of Newton's method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// ‖r‖/‖f‖ of every part of a solution [-]
@@ -64,7 +64,7 @@ pub struct Iteration {
     pub perturbed_pivots: usize,
     /// Whether the fronts of K were not exact enough, and another solver took over
     pub fallback: bool,
-    /// Whether the correction was searched for how far it leads downhill
+    /// Whether a line search was made along the correction
     pub searched: bool,
 }
 
@@ -81,7 +81,7 @@ pub enum NewtonFailure<E> {
     /// Numbers beyond double precision, against which any residual would look small.
     #[error("the forces are too large for double precision; check the stiffnesses, loads and units")]
     Overflow,
-    /// The residual grows.
+    /// The residual diverges.
     #[error("Newton's method diverges (relative residual {residual:.1e} after {})", count(*iterations, "iteration"))]
     Diverged {
         /// last relative residual
@@ -160,12 +160,12 @@ pub fn solve<E>(
     (iterations, result.map(|()| u))
 }
 
-/// How the next correction is made.
+/// Plan of the next correction.
 #[derive(Clone, Copy)]
 struct Plan {
-    /// With a new tangent, not with the factors of an earlier one
+    /// Whether a new tangent is factorized, instead of using earlier factors
     factorized: bool,
-    /// Searched for how far it leads downhill
+    /// With a line search
     searched: bool,
 }
 
@@ -184,7 +184,7 @@ impl Plan {
     }
 }
 
-/// What the iterations have shown so far.
+/// History of the iterations so far.
 struct Convergence {
     settings: Settings,
     /// ‖r‖ of the first iterates, the largest
@@ -239,7 +239,7 @@ impl Convergence {
         Ok(Some(self.plan(iterations.last(), size, residual)))
     }
 
-    /// How to correct an iterate that is no solution, from what the corrections until now have gained.
+    /// Plan of the next correction, from the reduction by the corrections so far.
     fn plan(&mut self, last: Option<&Iteration>, size: f64, residual: f64) -> Plan {
         let Settings { tolerance, old_tangents, downhill, .. } = self.settings;
         self.stalled = if size < self.least { 0 } else { self.stalled + 1 };
@@ -269,7 +269,7 @@ fn gain(size: f64, residual: f64, before: [f64; 2]) -> f64 {
     (size / before[0]).max(residual / before[1])
 }
 
-/// How many corrections take a residual from `size` to what is allowed if each leaves the share `left` of it.
+/// Number of corrections from a residual `size` to `allowed`, if each leaves the fraction `left` of it.
 fn corrections_left(size: f64, left: f64, allowed: f64) -> f64 {
     if left < 1.0 { (allowed / size).ln() / left.ln() } else { f64::INFINITY }
 }
@@ -280,9 +280,9 @@ const LEVEL: f64 = 0.1;
 /// Most evaluations of a search along a correction.
 const LONGEST_SEARCH: usize = 12;
 
-/// How far a correction leads downhill, as a share of it: to where `slope` is near 0, or all of it if that is not beyond. It
-/// is not a number where the equations cannot be evaluated. By regula falsi (Illinois), halving where that fails: forces
-/// that stick in a narrow range make the slope steep there.
+/// Line search: step length along a correction, as a fraction of it: to where `slope` is near 0, or all of it if that
+/// is not beyond. It is not a number where the equations cannot be evaluated. By regula falsi (Illinois), halving where
+/// that fails: forces that stick in a narrow range make the slope steep there.
 fn downhill(start: f64, mut slope: impl FnMut(f64) -> f64) -> f64 {
     let level = |s: f64| s.abs() <= LEVEL * start.abs();
     let end = slope(1.0);

@@ -31,8 +31,8 @@ pub fn accept(model: &Model, step: &Step, time: f64, u: &mut Vec<f64>, found: &m
     state.increment += 1;
 }
 
-/// Where temperatures jump as motion begins under a step, with what was `found` there: what the bodies remember and store from then
-/// on, and the work of the jump.
+/// Temperature jump at the start of a dynamic step, evaluated in `found`: new internal variables and stored energy of
+/// the bodies, and the work of the jump.
 pub fn heat(step: &Step, found: &Evaluation, state: &mut State) {
     if !step.temperatures.is_empty() {
         state.memory.clone_from(&found.memory);
@@ -41,7 +41,7 @@ pub fn heat(step: &Step, found: &Evaluation, state: &mut State) {
     }
 }
 
-/// What motion and contacts store at the end of an increment; at the start of a run the audit begins with it.
+/// Kinetic and contact energy at the end of an increment; at the start of a run the energy balance begins with it.
 pub fn take_stock(model: &Model, kinetic: f64, state: &mut State) {
     state.energy.kinetic = kinetic;
     state.energy.contact_elastic = contacts::stored(model, &state.contacts);

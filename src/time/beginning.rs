@@ -54,19 +54,24 @@ pub fn begin(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> R
     Ok(state)
 }
 
-/// What velocities that are given, or masses that are lumped no longer, change of the kinetic energy counts as work from outside.
+/// Changes of the kinetic energy by prescribed velocities, or by the end of mass lumping, count as external work.
 fn moves_anew(step: &Step, state: &mut State, work: &mut Workspace) {
     let kinetic = kinetic(step, state, work);
     state.energy.external_work += kinetic - state.energy.kinetic;
     state.energy.kinetic = kinetic;
 }
 
-/// New accelerations within a step if whoever leads the run has changed its loads or dampers, or freed a support; none if they go
+/// New accelerations within a step if the caller has changed its loads or dampers, or freed a support; none if they go
 /// on.
 ///
 /// # Errors
 /// As [`begin`].
-pub fn led(model: &Model, step: &Step, old: &State, work: &mut Workspace) -> Result<Option<State>, IncrementFailure> {
+pub fn after_change(
+    model: &Model,
+    step: &Step,
+    old: &State,
+    work: &mut Workspace,
+) -> Result<Option<State>, IncrementFailure> {
     if !step.scheme.is_dynamic() {
         return Ok(None);
     }
@@ -113,7 +118,7 @@ pub fn launch(model: &Model, step: &Step, state: &mut State) {
     }
 }
 
-/// Whether nothing accelerates.
+/// Whether all accelerations are zero.
 fn rests(state: &State) -> bool {
     state.acceleration.iter().all(|a| *a == 0.0)
 }
@@ -242,7 +247,7 @@ fn start_dynamics(
     Ok(())
 }
 
-/// What was found `now` at the nodes that begin anew; the others stay to the bit.
+/// Take over the values of `now` at the nodes that begin anew; the others stay bitwise the same.
 fn take_over(model: &Model, anew: &[bool], now: State, state: &mut State) {
     for dof in (0..model.dofs()).filter(|dof| anew[dof / 2]) {
         state.force[dof] = now.force[dof];

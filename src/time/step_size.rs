@@ -67,7 +67,7 @@ const ROUND_OFF: f64 = 1e-6;
 /// by less, and the times at its ends are rounded.
 const SHORTEST: f64 = 1.0 + 10.0 * ROUND_OFF;
 
-/// What becomes of a solved increment.
+/// Decision about a solved increment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Judgement {
     /// Whether it is accepted or repeated
@@ -79,8 +79,8 @@ pub struct Judgement {
 }
 
 impl Judgement {
-    /// The same after an increment that is shorter than it was wanted only because it ends at a time of output: that is no
-    /// reason for the next one to be.
+    /// Step control after an increment that was shortened only to end at an output time: the next one is not shortened
+    /// for it.
     pub fn after_output(self, attempt: usize, [dt, wanted]: [f64; 2]) -> Self {
         let shortened = attempt == 1 && self.accepted && dt < wanted && self.next >= dt;
         Self { next: if shortened { self.next.max(wanted) } else { self.next }, ..self }
@@ -217,7 +217,7 @@ fn slip(state: &ContactState) -> f64 {
     if state.regime() == Regime::Slip { state.friction.plastic_increment } else { 0.0 }
 }
 
-/// Which way a contact slips at the end of an increment: ±1 along ±s, 0 if it does not, or has just come to rest.
+/// Direction of slip of a contact at the end of an increment: ±1 along ±s, 0 if it does not slip, or has just stopped.
 struct Directions {
     points: Vec<f64>,
     contact: f64,

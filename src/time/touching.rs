@@ -26,7 +26,7 @@ const AIM: f64 = 0.5;
 /// Halvings of an increment that find where to end it: as many as it takes for round-off.
 const HALVINGS: usize = 50;
 
-/// What the attempts at an increment of a static step have shown about points that touch in it.
+/// Knowledge about contact closure from the attempts at an increment of a static step.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Touching {
     /// End and length of the increment that is made in parts [T]

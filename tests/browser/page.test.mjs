@@ -266,7 +266,7 @@ test("charts turn logarithmic and back, and curves that are no functions are zoo
     return { min, max, distr };
   }, [title, axis]);
   await page.evaluate(() => charts.forEach((chart) => chart.draw()));
-  const [turned, path] = ["External work", "Friction path"];
+  const [turned, path] = ["Energy balance", "Friction path"];
   await chart(turned).getByText("log", { exact: true }).click();
   assert.equal((await scale(turned, "y")).distr, 3);
   await chart(turned).getByText("log", { exact: true }).click();
@@ -291,14 +291,14 @@ test("charts turn logarithmic and back, and curves that are no functions are zoo
 test("a law driven alone is shown", async () => {
   const page = await open(of("hold_slide_hold"));
   const titles = () => page.locator("#law figcaption > span:first-child").allInnerTexts();
-  for (const title of ["Traction over slip", "Friction coefficient over time", "Slip over time", "State over time", "Peak after a hold over its length"]) {
+  for (const title of ["Traction over slip", "Friction coefficient over time", "Slip over time", "State over time", "Peak friction after a hold"]) {
     assert.ok((await titles()).includes(title), title);
   }
   assert.ok(!(await titles()).includes("Pressure over time"));
   assert.match(await page.locator("#law").innerText(), /super subloading: .*mu_s = 0\.6/);
   const { holds } = JSON.parse(readFileSync(join(PAGES, "hold_slide_hold", "summary.json"), "utf8"));
   const ageing = await page.evaluate(() => {
-    const chart = charts.find((one) => one.title.startsWith("Peak after")).draw();
+    const chart = charts.find((one) => one.title.startsWith("Peak friction")).draw();
     return { y: chart.series[0].y, distr: chart.plot.scales.x.distr };
   });
   assert.deepEqual(ageing, { y: holds.map((hold) => hold.peak.coefficient), distr: 3 });
@@ -326,7 +326,7 @@ test("two runs are overlaid, and told apart", async () => {
 
 const faults = {
   missing_frame: /solid\/00007\.vtu is missing/,
-  not_a_number: /1 values? of \S+ are no numbers/,
+  not_a_number: /1 values? of \S+ are not numbers/,
   one_row: null,
   killed: /newton\.csv: line \d+/,
   no_frames: null,
@@ -338,7 +338,7 @@ for (const [name, told] of Object.entries(faults)) {
     assert.ok(await page.locator("#histories figure.chart").count() > 3);
     await page.evaluate(() => charts.forEach((chart) => chart.draw()));
     if (name === "missing_frame") assert.equal(await page.evaluate(() => bodiesView.solid.frames.length), 59);
-    if (name === "killed") assert.match(await text(page, ".badge"), /ended without a word/);
+    if (name === "killed") assert.match(await text(page, ".badge"), /ended without a status/);
     if (name === "no_frames") assert.equal(await page.locator("#bodies").isVisible(), false);
     await close(page, name);
   });

@@ -540,7 +540,7 @@ fn bad_places_of_probes_are_named() {
         (json!({"from": [0.5, 0.3], "to": [1.0, 0.3], "number": 1}), "probes.gauge.number: is 1: a line has 2 to"),
         (
             json!({"from": [0.5, 0.3], "to": [0.5, 0.3], "number": 3}),
-            "probes.gauge.to: is (0.5, 0.3), where the line begins",
+            "probes.gauge.to: is (0.5, 0.3), the start of the line",
         ),
         (json!({"from": [0.5, 0.3], "number": 3}), "give `at` for a point, or `from`, `to` and `number`"),
         (json!({"on": [0.5, 0.3]}), "probes.gauge"),

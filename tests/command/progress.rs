@@ -53,7 +53,7 @@ fn a_terminal_shows_one_line_that_is_kept_up_to_date() {
     let warned = text.find("% of the slave's edge").expect("a warning");
     assert!(warned < text.rfind(" dt ").expect("a state"), "{text}");
     let last: Vec<&str> = text.trim_end().lines().rev().take(2).collect();
-    assert!(last[1].ends_with("results in out") && last[0].starts_with("contact `base` slips from t = "), "{text}");
+    assert!(last[1].ends_with("results in out") && last[0].starts_with("contact `base`: "), "{text}");
 }
 
 /// A terminal on which nothing can be written over has lines.

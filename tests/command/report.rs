@@ -219,7 +219,8 @@ fn faults_of_a_folder_are_told_and_hide_no_more_than_they_must() {
     fs::write(out.join("history.csv"), lines.join("\n") + "\n").unwrap();
     fs::write(out.join("newton.csv"), "").unwrap();
     let page = Page::of(&out);
-    for told in ["solid/00002.vtu is missing", "solid/00003.vtu", "no numbers", "only the rows before it", "newton.csv"]
+    for told in
+        ["solid/00002.vtu is missing", "solid/00003.vtu", "not numbers", "only the rows before it", "newton.csv"]
     {
         assert!(page.notes().contains(told), "{told}: {}", page.notes());
     }
@@ -416,7 +417,9 @@ fn accepted_attempts_are_not_among_those_given_up() {
     let mut lost = rows.last().unwrap().clone();
     let accepted = lost.clone();
     let number: u32 = lost[increment].parse().unwrap();
-    for (k, value) in [(verdict, "unsolved"), (reason, "the iterations lost contact: body `block` flies off")] {
+    for (k, value) in
+        [(verdict, "unsolved"), (reason, "contact was lost during the iterations: body `block` flies off")]
+    {
         lost[k] = value.into();
     }
     lost[increment] = (number + 1).to_string();
@@ -432,5 +435,5 @@ fn accepted_attempts_are_not_among_those_given_up() {
     let attempts = &page.run()["newton"]["attempts"];
     assert_eq!(attempts["total"], 1, "{attempts}");
     let told = attempts["given_up"][0]["why"].as_str().unwrap();
-    assert_eq!(told, "the iterations lost contact: body `block` flies off");
+    assert_eq!(told, "contact was lost during the iterations: body `block` flies off");
 }

@@ -488,7 +488,7 @@ fn a_full_disk_is_told_and_what_was_written_stays_readable() {
     let output = shell(folder.path(), "ulimit -f 70; PROGRAM run case.json --out small");
     assert!(self::told(&output, 0).matches("no checkpoint at t = ").count() == 1, "{output:?}");
     let warnings = summary(&folder.path().join("small"))["warnings"].to_string();
-    assert!(warnings.contains("checkpoint.bin") && warnings.contains("the run goes on"), "{warnings}");
+    assert!(warnings.contains("checkpoint.bin") && warnings.contains("the run continues"), "{warnings}");
     assert!(!folder.path().join("small/checkpoint.bin.new").exists());
 }
 
@@ -575,7 +575,7 @@ fn an_output_that_is_an_input_is_refused() {
         fs::write(&path, &case).expect("a file");
         let output = Command::new(PROGRAM).current_dir(folder.path()).args(["run", name, "--out", "."]).output();
         let told = told(&output.expect("it runs"), 2);
-        assert!(told.contains("is read by this run"), "{told}");
+        assert!(told.contains("is an input of this run"), "{told}");
         assert_eq!(fs::read_to_string(&path).expect("it is there"), case);
         fs::remove_file(&path).expect("it goes");
     }
@@ -740,7 +740,7 @@ fn a_damaged_checkpoint_is_told() {
     fs::write(&newest, flipped).expect("a file");
     done(&run(folder.path(), "out", &["--resume"]));
     let warnings = summary(&out)["warnings"].to_string();
-    assert!(warnings.contains("its checksum is wrong; the checkpoint before it was taken"), "{warnings}");
+    assert!(warnings.contains("its checksum is wrong; the previous checkpoint was used"), "{warnings}");
     done(&run(folder.path(), "straight", &[]));
     assert!(results(&folder.path().join("straight")) == results(&out));
 }
@@ -755,7 +755,7 @@ fn the_seed_of_a_checkpoint_has_the_format_of_now() {
 /// Results that were changed behind the program's back cannot be gone on with.
 #[test]
 fn results_that_are_missing_are_told() {
-    for (name, reason) in [("newton.csv", "No such file"), ("solid/00001.vtu", "is gone")] {
+    for (name, reason) in [("newton.csv", "No such file"), ("solid/00001.vtu", "is missing")] {
         let folder = interrupted(&dragged(json!("static"), 2000));
         fs::remove_file(folder.path().join("out").join(name)).expect("it was there");
         let told = told(&run(folder.path(), "out", &["--resume"]), 2);
@@ -822,7 +822,7 @@ fn results_that_were_altered_are_not_gone_on_with() {
     }
     let frame = "solid/00001.vtu";
     fs::remove_file(out.join(frame)).expect("it was there");
-    refused(frame, "and is gone");
+    refused(frame, "and is missing");
     fs::write(out.join(frame), &before[Path::new(frame)]).expect("a file");
     let mut other = case.clone();
     other["probes"] = json!({"other": {"at": [0.9, 0.3]}});
@@ -912,7 +912,7 @@ fn a_case_begins_where_another_has_ended() {
     assert!(slide(&drags) > 1.1 * usual, "friction is higher");
     for (pointer, value, expected) in [
         ("/bodies/block/material/E", json!(200), "`bodies.block.material.E` is 200, and was 100"),
-        ("/contacts/base/friction/mu_s", json!(0.35), "a point comes with mu = 0.38"),
+        ("/contacts/base/friction/mu_s", json!(0.35), "a point carries over mu = 0.38"),
         ("/steps/0/dt/initial", json!(-1), "steps[0].dt.initial"),
         ("/begin_with", json!("nowhere"), "begin_with: "),
     ] {
@@ -926,7 +926,7 @@ fn a_case_begins_where_another_has_ended() {
     let unfinished = interrupted(&dragged(json!("static"), 2000));
     drags["begin_with"] = json!(unfinished.path().join("out"));
     written(folder.path(), &drags);
-    assert!(told(&run(folder.path(), "none", &[]), 2).contains("has not come to its end"));
+    assert!(told(&run(folder.path(), "none", &[]), 2).contains("the run is not complete"));
 }
 
 /// The number of threads is checked wherever it comes from, and threads that cannot be had are told.
@@ -1073,7 +1073,7 @@ fn factors_that_do_not_fit_are_told_with_their_size() {
     let first = first.expect("some limit is too low");
     let told = told(&first, 1);
     assert!(
-        told.contains("the factors of 51842 equations take 0.") && told.contains(" GiB of memory are free"),
+        told.contains("the factors of 51842 equations need 0.") && told.contains(" GiB of memory are free"),
         "{told}"
     );
     let summary = summary(&folder.path().join("out"));

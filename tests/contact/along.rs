@@ -256,7 +256,7 @@ fn friction_that_falls_below_the_dilatancy_stops_the_run() {
     let told = loop {
         match run.next_increment() {
             Ok(Some(_)) => {}
-            Ok(None) => panic!("it goes on where sliding yields work"),
+            Ok(None) => panic!("it goes on where sliding produces energy"),
             Err(error) => break error.to_string(),
         }
     };

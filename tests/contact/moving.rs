@@ -239,7 +239,7 @@ fn sliding_that_yields_work_is_told() {
             ],
         }));
         run(&Arc::new(model), &mut [&mut warnings]).1.expect("it runs");
-        warnings.list.into_iter().filter(|warning| warning.contains("yields work")).collect::<Vec<_>>()
+        warnings.list.into_iter().filter(|warning| warning.contains("produces energy")).collect::<Vec<_>>()
     };
     // Steadily 0.3 − 0.04 ln 300 = 0.07.
     assert_eq!(told(0.05), Vec::<String>::new());

@@ -343,7 +343,7 @@ fn what_is_no_small_sliding_is_told() {
         assert_eq!(told(&dragged(0.95 * LITTLE_SLIP * edge, lifted)), Vec::<String>::new());
         for way in [1.05, -1.05] {
             let far = told(&dragged(way * LITTLE_SLIP * edge, lifted));
-            assert!(far.len() == 1 && far[0].contains("10.5 % of the distance between nodes, and small"), "{far:?}");
+            assert!(far.len() == 1 && far[0].contains("10.5 % of the distance between nodes, but small"), "{far:?}");
         }
     }
     for (share, count) in [(0.95, 0), (1.05, 1)] {
@@ -358,7 +358,7 @@ fn what_is_no_small_sliding_is_told() {
         case["steps"][0]["supports"] = json!([{"on": "lower", "rotation": turn}, {"on": "upper", "rotation": turn}]);
         let turned = told(&case);
         assert_eq!(turned.len(), count, "{turned:?}");
-        assert!(turned.iter().all(|told| told.contains("turned by 0.021 rad")), "{turned:?}");
+        assert!(turned.iter().all(|told| told.contains("rotated by 0.021 rad")), "{turned:?}");
     }
     for (share, count) in [(0.95, 0), (1.05, 1), (-1.05, 1)] {
         let mut case = dragged(0.0, 0.0);
@@ -390,7 +390,7 @@ fn rigid_bodies_are_left_where_their_normal_turns() {
     assert_eq!(told(&case(plane, 7.0)), Vec::<String>::new());
     let circle = |by: f64| told(&case(json!({"circle": {"centre": [0, -5], "radius": 5}}), by));
     assert_eq!(circle(0.95 * LITTLE_TURN * 5.0), Vec::<String>::new());
-    assert!(circle(1.1 * LITTLE_TURN * 5.0).iter().any(|told| told.contains("turned by")));
+    assert!(circle(1.1 * LITTLE_TURN * 5.0).iter().any(|told| told.contains("rotated by")));
     let line = |by: f64| told(&case(json!({"polyline": {"points": [[-1, 0], [1, 0]]}}), by));
     assert_eq!(line(0.5), Vec::<String>::new());
     assert!(line(1.5).iter().any(|told| told.contains("past the end")), "{:?}", line(1.5));

@@ -214,10 +214,10 @@ fn master_nodes_deep_in_the_slave_are_told() {
     };
     let coarse = told([32, 40]);
     println!("{coarse:?}");
-    assert!(coarse.len() == 1 && coarse[0].contains("a node of the master lies"), "{coarse:?}");
+    assert!(coarse.len() == 1 && coarse[0].contains("a master node penetrates the slave"), "{coarse:?}");
     let words: Vec<&str> = coarse[0].split_whitespace().collect();
     let after = |word: &str| words[words.iter().position(|w| *w == word).expect("a word") + 1];
-    let depth: f64 = after("lies").parse().expect("a number");
+    let depth: f64 = after("by").trim_end_matches(',').parse().expect("a number");
     let turn = |edges: f64| std::f64::consts::TAU / edges;
     let expected = turn(32.0).powi(2) / 12.0 + turn(40.0).powi(2) / 24.0;
     close("depth", depth, expected, 0.15 * expected);

@@ -34,7 +34,7 @@ fn a_contact_that_never_closes_is_told() {
     let plane = json!({"plane": {"point": [0, -0.5], "normal": [0, 1]}});
     let told = warnings(&moved(&plane, [0.0, -0.3]));
     assert_eq!(told.len(), 1, "{told:?}");
-    assert!(told[0].contains("contact `base` has never closed: its surfaces came no nearer than 2.000e-1"), "{told:?}");
+    assert!(told[0].contains("contact `base` has never closed: its smallest gap was 2.000e-1"), "{told:?}");
     assert_eq!(warnings(&moved(&plane, [0.0, -0.502])), Vec::<String>::new(), "it closes");
 }
 
@@ -42,12 +42,12 @@ fn a_contact_that_never_closes_is_told() {
 #[test]
 fn a_side_that_enters_a_rigid_master_unseen_is_told() {
     let circle = |x: f64| json!({"circle": {"centre": [x, 1.0], "radius": 1.0}});
-    let seen = |told: &[String]| told.iter().filter(|warning| warning.contains("not on the slave")).count();
+    let seen = |told: &[String]| told.iter().filter(|warning| warning.contains("outside the slave group")).count();
     let told = warnings(&moved(&circle(5.5), [0.8, 0.0]));
     assert_eq!(seen(&told), 1, "{told:?}");
     assert!(
         told.iter()
-            .any(|warning| warning.contains("at (4.560000, 1.000000), t = 0.7") && warning.contains("6.000e-2 deep")),
+            .any(|warning| warning.contains("at (4.560000, 1.000000), t = 0.7") && warning.contains("by 6.000e-2;")),
         "{told:?}"
     );
     assert_eq!(seen(&warnings(&moved(&circle(5.5), [0.4, 0.0]))), 0, "0.1 apart");

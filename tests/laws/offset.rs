@@ -97,7 +97,7 @@ fn dilatancy_stays_below_the_least_friction() {
         let offset = |rate: f64| moving(text, Some(Dilatancy::new(rate)), None);
         assert!(offset(0.99 * least).is_ok(), "{text}");
         for rate in [least, 1.1 * least] {
-            let error = offset(rate).expect_err("sliding would yield work");
+            let error = offset(rate).expect_err("sliding would produce energy");
             assert_eq!((error.name, error.value), ("dilatancy.rate", rate));
             assert!(error.allowed.contains(&least.to_string()), "{text}: {error}");
         }

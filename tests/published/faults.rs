@@ -288,7 +288,8 @@ fn what_arrivals_hang_on() {
         rows.push(format!("| {damping} | {points} | {} |", columns.join(" | ")));
         differences.push(difference);
     }
-    let head = "| viscosity, h/c_p | points an edge | 7.5 km, 100 m | 50 m | difference | 14.5 km, 100 m | 50 m | difference |";
+    let head = "| viscosity, h/c_p | points per edge | 7.5 km, 100 m | 50 m | difference | 14.5 km, 100 m | 50 m | \
+                difference |";
     println!("{head}\n|---|---|---|---|---|---|---|---|\n{}", rows.join("\n"));
     let [viscous, less, none, .., chosen] = differences[..] else { unreachable!("five rows") };
     assert!(viscous[0] > 1.0 && less[0] < 0.5 * viscous[0] && none[0].abs() < 0.3, "{differences:?}");

@@ -281,7 +281,7 @@ fn what_varies_along_a_fault_is_checked() {
     let fault = "/contacts/fault";
     let table = |rows: Value| json!({"x": rows});
     refused(&format!("{fault}/along"), "mu_s", table(json!([])), "contacts.fault.along.mu_s.x: the table is empty");
-    refused(&format!("{fault}/along"), "mu_s", table(json!([[1, 0.7], [0, 0.7]])), "must ascend: 0 follows 1");
+    refused(&format!("{fault}/along"), "mu_s", table(json!([[1, 0.7], [0, 0.7]])), "must increase: 0 follows 1");
     refused(&format!("{fault}/initial"), "traction", json!("70 + t"), "the time t has no meaning");
     refused(&format!("{fault}/along"), "mu_s", json!("sqrt(x)"), "is not a finite number at");
     refused(&format!("{fault}/along"), "mu_s", json!("0.6 + x/100000"), "not less than \"mu_d\"");

@@ -382,18 +382,18 @@ fn names_that_a_law_gives_are_checked() {
     };
     assert_eq!(told(named(&["mu", "T", "ψ_1", "weakening_slip"])), "");
     for (law, words) in [
-        (named(&["q"]), "a variable cannot be named `q`: results have something else of that name"),
+        (named(&["q"]), "a variable cannot be named `q`: the results already use that name"),
         (named(&["dilation"]), "a variable cannot be named `dilation`"),
         (named(&["slip_Rate"]), "a variable cannot be named `slip_Rate`"),
         (
             named(&["../a"]),
-            "the name \"../a\" of a variable must begin with a letter, and have letters, digits and _ alone",
+            "the name \"../a\" of a variable must begin with a letter and contain only letters, digits and _",
         ),
         (named(&[""]), "the name \"\" of a variable must begin"),
         (named(&["a\u{1b}[31m"]), "the name \"a\\u{1b}[31m\" of a variable must begin"),
-        (named(&["a", "b", "a"]), "`a` and `a` are told apart by capitals at most"),
-        (named(&["MU"]), "`mu` and `MU` are told apart by capitals at most"),
-        (named(&["a", "b", "c", "d", "e"]), "has 5 variables: 4 are the most"),
+        (named(&["a", "b", "a"]), "`a` and `a` differ at most in capitals"),
+        (named(&["MU"]), "`mu` and `MU` differ at most in capitals"),
+        (named(&["a", "b", "c", "d", "e"]), "has 5 variables: at most 4 are allowed"),
         (
             Named { variables: &[], offsets: &["rise"] },
             "an opening has no part `rise`: outputs show `dilation` and `wear`",
@@ -496,7 +496,7 @@ fn what_is_wrong_is_named() {
         ),
         (
             small().step(step().load(Load::total_force("block_top", [expression("t"), expression("x*t")]))),
-            "steps[1].loads[0].total_force.y: is the force on the whole group, which does not vary from place to place",
+            "steps[1].loads[0].total_force.y: is the force on the whole group, which does not vary in space",
         ),
         (
             small().step(step().load(Load::dead_pressure("block", 1.0))),
@@ -516,12 +516,12 @@ fn what_is_wrong_is_named() {
         ),
         (
             small().step(step().load(Load::pressure("block_top", Drive::Table(vec![[1.0, 0.0], [0.0, 1.0]])))),
-            "steps[1].loads[0].pressure: the times of the table must ascend",
+            "steps[1].loads[0].pressure: the times of the table must increase",
         ),
         (small().step(step().dt(-1.0)), "steps[1].dt.initial: is -1: must be positive"),
         (small().step(LoadStep::new("next", f64::NAN)), "steps[1].duration: is NaN: must be positive"),
         (small().step(step().scheme(Scheme::Hht { alpha: 1.0 })), "steps[1].scheme: \"alpha\" is 1"),
-        (small().step(step().stabilize(2.0)), "steps[1].stabilize: is 2: must be a share of the stiffness"),
+        (small().step(step().stabilize(2.0)), "steps[1].stabilize: is 2: must be a fraction of the stiffness"),
         (
             small().step(step().scheme(Scheme::Newmark { beta: 0.25, gamma: 0.5 })),
             "bodies.block.material.density: is 0, but the dynamic step `next`",

@@ -417,7 +417,7 @@ fn ground_out_of_balance_is_told() {
     });
     assert_eq!(ramped.len(), 2);
     assert!(
-        ramped[0].contains("body `lower` is not at rest") && ramped[0].contains("loads grow from zero"),
+        ramped[0].contains("body `lower` is not in equilibrium") && ramped[0].contains("loads grow from zero"),
         "{ramped:?}"
     );
     // Each body weighs 2 × 1.5 × 9.81 = 29.43; without gravity the upper one is pushed up by that, and so is the lower one but for
@@ -490,10 +490,10 @@ fn what_cannot_be_imposed_is_refused() {
         (components(json!({"xx": 1, "yy": 1})), "components.zz: is missing"),
         (components(json!({"xx": "1/(x-1)", "yy": 1, "zz": 0})), "components.xx: is not a finite number at (1, "),
         (components(json!({"xx": "t", "yy": 1, "zz": 0})), "the time t has no meaning here"),
-        (plate_across, "components.zz: is 1: a plate has no stress across its plane"),
+        (plate_across, "components.zz: is 1: plane stress has no out-of-plane stress"),
         (
             with("/bodies/lower", "initial_stress", json!({"components": {"xx": 1, "yy": 1, "zz": 0}})),
-            "the stress pulls there",
+            "the stress is tensile there",
         ),
         (with("/bodies/lower", "initial_stress", Value::Null), "on one body, and that with an initial_stress"),
         (with("/contacts/joint/initial", "pressure", json!(1)), "has no meaning together with of_bodies"),
@@ -501,13 +501,13 @@ fn what_cannot_be_imposed_is_refused() {
         (with("/contacts/joint", "initial", json!({"traction": 1})), "initial.pressure: is missing"),
         (with("/steps/0", "temperature", json!({"lower": 1})), "give bodies.lower.thermal"),
         (with("/steps/0", "temperature", json!({"middle": 1})), "there is no body `middle`"),
-        (with("/steps/0", "temperature", json!({"upper": -1e3})), "at which the body has shrunk to nothing"),
+        (with("/steps/0", "temperature", json!({"upper": -1e3})), "at which the body has no volume left"),
         (with("/steps/0", "temperature", json!({"upper": "1/(t - 0.5)"})), "check temperature and expansion"),
         (
             with("/steps/0", "temperature", json!({"upper": {"y": [[1, 20], [0, 30]]}})),
-            "steps[0].temperature.upper: the coordinates of the table must ascend: 0 follows 1",
+            "steps[0].temperature.upper: the coordinates of the table must increase: 0 follows 1",
         ),
-        (too_much, "no body bears so much at rest; check the units"),
+        (too_much, "too much for a body at rest; check the units"),
         (quasi, "initial_stress: is not for quasi_dynamic steps"),
     ] {
         let parsed = serde_json::from_value(case.clone()).expect("well formed");

@@ -76,7 +76,7 @@ fn bodies_that_share_nodes_are_refused_if_all_are_free() {
     refused(json!([]), "`body0` with `body1` can move freely along x: there is no support at all");
     refused(
         json!([{"on": "left", "ux": 0}]),
-        "`body0` with `body1` can move freely along y: the supports do not hold it",
+        "`body0` with `body1` can move freely along y: the supports do not constrain it",
     );
     // One support of each body: the pair is held along x and y, and turns about where the lines of the two meet.
     let one = json!([{"on": {"node": 1}, "ux": 0}, {"on": {"node": 5}, "uy": 0}]);
@@ -120,7 +120,7 @@ fn a_body_is_held_by_periodic_sides_and_plates() {
         }
     }
     // A plate that is alike along x leaves the body behind it free along y, and one along y leaves it free along x.
-    refused(apart(plate(Plate::UxAlike), held()), "`body1` can move freely along y: the supports do not hold it");
+    refused(apart(plate(Plate::UxAlike), held()), "`body1` can move freely along y: the supports do not constrain it");
     refused(apart(plate(Plate::UyAlike), held()), "`body1` can move freely along x");
     // Periodic sides stay parallel, but turn with their bodies: about a node, by one angle.
     let pinned = LoadStep::new("pull", 1.0).fix(Place::Near([0.0, 0.0]));
@@ -144,7 +144,7 @@ fn hinged(step: LoadStep) -> Builder {
 fn a_corner_that_is_shared_is_a_hinge() {
     let step = || LoadStep::new("push", 1.0);
     refused(hinged(step()), "`body1` can move freely");
-    refused(hinged(step()), "in rotation: the supports do not hold it");
+    refused(hinged(step()), "in rotation: the supports do not constrain it");
     // A support whose line goes through the hinge does not hold.
     refused(hinged(step().support(Support::on(Place::Near([2.0, 1.0])).ux(0.0))), "`body1` can move freely");
     let foot = Support::on(Place::Near([2.0, 1.0])).uy(0.0);

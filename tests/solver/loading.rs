@@ -342,15 +342,15 @@ fn what_inclined_supports_cannot_say_is_refused() {
         ),
         (
             step().support(corner().along([1.0, 1.0], 0.1).ux(0.0).uy(0.1)),
-            "steps[0].supports: node 0 is held along three directions that do not agree",
+            "steps[0].supports: node 0 is constrained along three directions with contradictory values",
         ),
         (
             step().support(corner().along([1.0, 0.1], 0.0).ux(0.0)),
-            "steps[0].supports: node 0 is held along two directions that differ by 5.71",
+            "steps[0].supports: node 0 is constrained along two directions that differ by 5.71",
         ),
         (
             step().support(corner().rotation([0.0, 0.0], 0.1)).support(corner().along([1.0, 1.0], 0.0)),
-            "steps[0].supports: node 0 is turned by a rotation and held along another direction",
+            "steps[0].supports: node 0 is prescribed by a rotation and constrained along another direction",
         ),
         (
             step().support(corner().along([1.0, 1.0], Change::End)),
@@ -468,7 +468,7 @@ fn a_reaction_that_is_not_reached_stops_the_run() {
         .skip(15)
         .fold([0.0; 2], |[x, y], r| [x + r[0], y + r[1]]);
     let told = result.expect_err("it is not reached").to_string();
-    let words = format!("step `drag` came to its end at time 2 before fx of `block_top` reached 1000: it is {x:.6e};");
+    let words = format!("step `drag` ended at time 2 before fx of `block_top` reached 1000: it is {x:.6e};");
     assert!(told.starts_with(&words), "`{words}` is not in `{told}`");
     close("slides", x, 0.3 * -y, 1e-2);
     let value = 0.9 * x;
@@ -515,11 +515,11 @@ fn what_a_step_cannot_end_by_is_refused() {
             step().until("block_right", ForceComponent::Magnitude, f64::NAN),
             "steps[0].until.force: is NaN: must be zero or positive",
         ),
-        (on_top().scheme(Scheme::Explicit { safety: 0.9 }), "steps[0].until: ends static and implicit steps alone"),
-        (on_top().stabilize(1e-3), "steps[0].until: ends the step before its time, and what fades over the step"),
+        (on_top().scheme(Scheme::Explicit { safety: 0.9 }), "steps[0].until: ends static and implicit steps only"),
+        (on_top().stabilize(1e-3), "steps[0].until: may end the step early, and what fades over the step"),
         (
             on_top().load(Load::total_force("block_top", [1.0, 0.0])),
-            "steps[0].until: ends the step before its time, and a load, driver or rotation given as a number",
+            "steps[0].until: may end the step early, before a load, driver or rotation given as a number",
         ),
         (
             step().damping("blok", Damping::default()),
@@ -562,8 +562,8 @@ fn what_warms_by_the_time_of_the_run_may_end_a_step() {
     for given in [BodyTemperature::Constant(0.4), BodyTemperature::X(vec![[0.0, 0.2], [2.0, 0.4]])] {
         let warm = held().temperature("block", given).until("block_top", ForceComponent::Y, -2.0);
         let told = told(block().step(warm));
-        let words = "steps[0].until: ends the step before its time, and the temperature of `block`, given as a number or by place, \
-                     would not be there yet: give it in the step before, or as a rate";
+        let words = "steps[0].until: may end the step early, before the temperature of `block`, given as a number or \
+                     by place, is fully applied: give it in the step before, or as a rate";
         assert!(told.starts_with(words), "{told}");
     }
 }
@@ -583,8 +583,7 @@ fn a_shrink_fit_is_not_cut_short() {
     };
     let fit = || LoadStep::new("fit", 1.0);
     let told = told(model(fit().until("block_top", ForceComponent::Y, -1.0)));
-    let words =
-        "steps[0].until: ends the step before its time, and the overlap of `fit`, brought in over the first step";
+    let words = "steps[0].until: may end the step early, before the overlap of `fit`, brought in over the first step";
     assert!(told.starts_with(words), "{told}");
     let run = run_through(model(fit()));
     close("pressed", run.reaction("block_top", run.last())[1], -2.5, 2.5e-6);

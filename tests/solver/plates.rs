@@ -226,7 +226,7 @@ fn what_a_plate_cannot_do_is_refused() {
         (block(0.0).plate("lid").step(step()), "plates[1]: the mesh has no group `lid`"),
         (
             block(0.0).step(step().support(top().rotation([0.0, 0.0], 0.1))),
-            "steps[0].supports[1].rotation: node 15 is one of a plate, which does not turn: give ux and uy",
+            "steps[0].supports[1].rotation: node 15 is one of a plate, which does not rotate: give ux and uy",
         ),
         (
             block(0.0).step(step().support(top().uy(expression("-0.01*x")))),
@@ -234,7 +234,7 @@ fn what_a_plate_cannot_do_is_refused() {
         ),
         (
             block(1.0).step(step().launch("block", [1.0, 0.0])),
-            "steps[0].velocity: is for dynamic and explicit steps: a static one knows no velocities",
+            "steps[0].velocity: is for dynamic and explicit steps: a static one has no velocities",
         ),
         (
             block(1.0).step(step().scheme(TRAPEZOIDAL).launch("blok", [1.0, 0.0])),

@@ -285,8 +285,8 @@ fn what_a_section_cannot_be_is_refused() {
         ),
         (with("/steps/0/supports", json!([])), "can move freely along y"),
         (spun, "along which they cannot move as a whole"),
-        (f_bar, "f_bar has nothing to cure in plane stress"),
-        (periodic, "lie alike along y alone"),
+        (f_bar, "f_bar is not needed in plane stress"),
+        (periodic, "periodic along y only"),
     ] {
         let parsed = serde_json::from_value(case.clone()).expect("well formed");
         let error = case::build(&parsed, std::path::Path::new("test.json")).expect_err(expected).to_string();

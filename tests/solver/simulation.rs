@@ -567,7 +567,7 @@ fn loads_are_led_between_increments() {
     lead(&mut run, json!({"on": "ball", "force": {"y": 1}}), now).expect("a load");
     close("u", next(&mut run), 0.1, 1e-12);
     let past = lead(&mut run, json!({"on": "ball", "force": {"y": 1}}), 0.5).expect_err("that was before");
-    assert_eq!(past, "case: by: is 0.5: must be a time from now on, and now is 3");
+    assert_eq!(past, "case: by: is 0.5: must not be before the current time, 3");
     let unknown = lead(&mut run, json!({"on": "bal", "force": {"y": 1}}), 4.0).expect_err("there is no such group");
     assert!(unknown.starts_with("case: load.on: the mesh has no group `bal`"), "{unknown}");
     close("u", next(&mut run), 0.1, 1e-12);

@@ -247,20 +247,20 @@ fn what_these_plates_cannot_do_is_refused() {
     for (model, words) in [
         (
             rigid().step(step().support(Support::on("block_top").ux(0.0))),
-            "plates[0]: turns, but supports hold more than one of its nodes, 15 and 16",
+            "plates[0]: rotates, but supports constrain more than one of its nodes, 15 and 16",
         ),
         (
             rigid().plate_moving("block_left", Plate::UxAlike).step(step()),
-            "plates[1]: node 15 moves with others already",
+            "plates[1]: node 15 is tied to others already",
         ),
-        (level().plate("block_right").step(step()), "plates[0]: node 19 moves with others already"),
+        (level().plate("block_right").step(step()), "plates[0]: node 19 is tied to others already"),
         (
             level().step(step().load(Load::moment("block_top", 1.0))),
-            "steps[0].loads[0].on: block_top is no plate that turns, on which a moment acts",
+            "steps[0].loads[0].on: a moment acts on a plate that rotates, and block_top is none",
         ),
         (
             level().step(step().support(Support::on("block_top").along([1.0, 1.0], 0.0))),
-            "steps[0].supports[1]: node 15 is one of a plate that moves alike: give ux and uy",
+            "steps[0].supports[1]: node 15 belongs to a plate with tied displacements: give ux and uy",
         ),
         (
             level().step(step().support(Support::on("block_top").uy(Drive::Rate(f64::NAN)))),

@@ -699,7 +699,7 @@ fn friction_left_in_doubt_by_touch_is_told() {
         let model = Arc::new(model);
         let (report, result) = run(&model, &mut [&mut warnings]);
         assert!(result.is_ok() && (report.rejected == 0) == (min == 1.0));
-        warnings.list.into_iter().filter(|warning| warning.contains("in doubt")).collect()
+        warnings.list.into_iter().filter(|warning| warning.contains("uncertain by")).collect()
     };
     let single = told(1.0);
     assert!(single.len() == 1 && single[0].contains("step `in`") && single[0].contains("lower dt.min"), "{single:?}");

@@ -341,7 +341,7 @@ fn what_it_cannot_do_is_refused() {
     let changes: [(Change, &str, &str); 12] = [
         (|c| c["contacts"]["fault"]["sliding"] = json!("finite"), "contacts.fault.sliding", "need small"),
         (|c| c["contacts"]["fault"]["radiation_damping"] = json!(false), "contacts.fault.radiation_damping", "missing"),
-        (|c| c["contacts"]["fault"]["method"] = json!("gauss_to_segment"), "contacts.fault", "meet in one point"),
+        (|c| c["contacts"]["fault"]["method"] = json!("gauss_to_segment"), "contacts.fault", "coincide: quasi"),
         (
             |c| c["contacts"]["fault"]["along"]["law"][0]["friction"] = json!({"law": "coulomb", "mu": 0.7}),
             "contacts.fault.friction",
@@ -353,11 +353,11 @@ fn what_it_cannot_do_is_refused() {
             "leave it out",
         ),
         (|c| c["bodies"]["lower"]["material"]["model"] = json!("neo_hookean"), "steps[0].scheme", "`lower`"),
-        (|c| c["steps"][0]["supports"][1]["ux"] = json!("0.001*t^2"), "steps[0].supports", "evenly"),
+        (|c| c["steps"][0]["supports"][1]["ux"] = json!("0.001*t^2"), "steps[0].supports", "linearly"),
         (
             |c| c["steps"][0]["supports"][1]["ux"] = json!({"table": [[0, 0], [0.5, 1], [1, 1]]}),
             "steps[0].supports",
-            "evenly",
+            "linearly",
         ),
         (|c| c["steps"][0]["supports"][0]["on"] = json!("lower"), "steps[0].supports", "no node of a contact"),
         (

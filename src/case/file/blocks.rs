@@ -33,14 +33,14 @@ pub struct BlocksInput {
 pub struct BlockInput {
     /// Name of the body that its elements belong to
     pub body: String,
-    /// The four corners [x, y] in turn, either way round [L]
+    /// The four corners [x, y] in order around the block, clockwise or counterclockwise [L]
     pub corners: [[Amount; 2]; 4],
     /// For each side null where it is straight, or the centre [x, y] of the circle through its two corners: it is the shorter arc
     #[serde(default)]
     pub arcs: [Option<[Amount; 2]>; 4],
     /// Number of elements along side 0, from corner 0 to corner 1, and along side 1, from corner 1 to corner 2
     pub elements: [Amount; 2],
-    /// How their sizes vary along side 0 and along side 1, as a geometric series; even unless given
+    /// Grading of their sizes along side 0 and along side 1, as a geometric series; default: uniform
     #[serde(default)]
     pub grading: [GradingInput; 2],
     /// Kind of the elements
@@ -61,13 +61,13 @@ pub enum Amount {
     Expression(String),
 }
 
-/// How the sizes of elements vary along a side.
+/// Grading of the element sizes along a side.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum GradingInput {
     /// Size of the last element over that of the first
     Ratio(f64),
-    /// The same as an expression in the parameters
+    /// Size of the last element over that of the first, as an expression in the parameters
     Expression(String),
     /// Finer or coarser in the middle
     Middle(MiddleInput),
@@ -87,7 +87,7 @@ written!(
     object: MiddleInput => Self::Middle
 );
 
-/// Sizes that are alike at both ends.
+/// Equal sizes at both ends, with another in the middle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MiddleInput {
@@ -95,7 +95,7 @@ pub struct MiddleInput {
     pub middle: Amount,
 }
 
-/// A mesh that stands in the case: all keys of blocks, and of nodes.
+/// A mesh that stands in the case, node by node or as blocks: all keys of both forms.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MeshKeys {
@@ -147,7 +147,7 @@ pub fn blocks(input: &BlocksInput, place: &str) -> Checked<InlineMesh> {
     let block = |(b, input): (usize, &BlockInput)| block(input, &parameters, &at(&format!("blocks[{b}]")));
     let blocks = input.blocks.iter().enumerate().map(block).collect::<Checked<_>>()?;
     if let Some(name) = input.parameters.keys().find(|name| !parameters.words.borrow().contains(*name)) {
-        let message = "stands in no expression of the mesh, so it changes nothing: use it, or leave it out";
+        let message = "is not used in any expression of the mesh: use it, or leave it out";
         return Err(ModelError::new(at(&format!("parameters.{name}")), message));
     }
     let complain = |BlockError { place, message }| ModelError::new(at(&place), message);
@@ -167,7 +167,7 @@ fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|c: char| !(c.is_alphanumeric() || c == '_'))
 }
 
-/// Those that others depend on come first, whatever their order.
+/// Evaluates the parameters in order of dependence, whatever their order in the file.
 fn parameters<'p>(input: &'p BTreeMap<String, Amount>, place: &str) -> Checked<Parameters<'p>> {
     if let Some((name, why)) = input.keys().find_map(|name| Some((name, Expression::refused_name(name)?))) {
         return Err(ModelError::new(format!("{place}.{name}"), why));
@@ -199,7 +199,8 @@ fn parameters<'p>(input: &'p BTreeMap<String, Amount>, place: &str) -> Checked<P
             ready.extend((*left == 0).then_some(other));
         }
     }
-    // What is left depends on what was refused, or on itself. It is told what is wrong once all that can be known is.
+    // What is left depends on what was refused, or on itself. It is reported once everything that can be evaluated has
+    // been.
     let left = || input.keys().map(String::as_str).find(|name| !known.numbers.contains_key(name));
     match refused.pop_first().or_else(left) {
         Some(name) => known.value(&input[name], &format!("{place}.{name}")).map(|_| known),
@@ -223,7 +224,7 @@ impl Parameters<'_> {
         };
         let own = words(text).filter_map(|word| self.numbers.get_key_value(word));
         let value = constant(&own.map(|(name, number)| (*name, *number)).collect());
-        // Who is told what is wrong is told of all the names there are.
+        // The message lists all known names.
         value.or_else(|_| constant(&self.numbers)).map_err(|message| ModelError::new(place, message))
     }
 

@@ -23,7 +23,7 @@ pub use output::OutputInput;
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Case {
-    /// What the case shows, in a line
+    /// Title of the case, in one line
     #[serde(default)]
     pub title: String,
     /// Labels of the units used, for readers; any consistent set will do
@@ -32,7 +32,7 @@ pub struct Case {
     /// Path of a gmsh MSH 4.1 file relative to the case file, or a mesh given in place: as blocks that are divided into elements, or
     /// node by node
     pub mesh: MeshSource,
-    /// What the plane stands for in space: "plane_strain", a plate {"plane_stress": {"thickness": …}}, or "axisymmetric"
+    /// Kind of plane section: "plane_strain", a plate {"plane_stress": {"thickness": …}}, or "axisymmetric"
     #[serde(default)]
     pub section: Section,
     /// Bodies by the name of their mesh group
@@ -41,39 +41,40 @@ pub struct Case {
     /// Point masses by the name of a mesh group: a mass at each of its nodes
     #[serde(default)]
     pub point_masses: BTreeMap<String, PointMassInput>,
-    /// Periodic sides: pairs of groups whose nodes lie alike. What leaves by one side comes in by the other: each node
-    /// moves as its partner does, and what acts on one acts on both
+    /// Periodic sides: pairs of groups with matching nodes. Each node has the displacement of its partner, and forces
+    /// on one act on both
     #[serde(default)]
     pub periodic: Vec<[String; 2]>,
-    /// Loading plates: groups whose nodes all move alike, as if glued to a rigid plate that does not turn. A support, force, spring
-    /// or dashpot on one of its nodes acts on the whole plate once, a `total_force` on its group as well. Its reaction counts in the
-    /// watched groups that all of the plate belongs to. In axisymmetry a plate keeps its radius, ux = 0. Other plates say how they
-    /// `moves`: only one component alike, or as a rigid body that turns
+    /// Loading plates: groups whose nodes all have the same displacement, as if bonded to a rigid platen that does not
+    /// rotate. A support, force, spring or dashpot on one of its nodes acts once on the whole plate, as does a
+    /// `total_force` on its group. Its reaction counts in the watched groups that contain the whole plate. In
+    /// axisymmetry a plate keeps its radius, ux = 0. Other plates are given by `moves`: only one component equal, or a
+    /// rigid body that can rotate
     #[serde(default)]
     pub plates: Vec<LoadingPlateInput>,
     /// Contacts by a name of your choice
     #[serde(default)]
     pub contacts: BTreeMap<String, Contact>,
-    /// Initial velocity [x, y] of whole bodies; supported nodes keep to their supports
+    /// Initial velocity [x, y] of whole bodies; supported nodes follow their supports
     #[serde(default)]
     pub initial_velocity: BTreeMap<String, [f64; 2]>,
     /// Steps, one after the other
     pub steps: Vec<LoadStep>,
-    /// Folder of results, or checkpoint, of a case that has come to its end, relative to this file: this case begins there.
-    /// Mesh, bodies and contacts must be the same but for the parameters of friction and damping. The steps follow on those
-    /// of that case: supports, loads and time go on from there; energies are counted anew
+    /// Folder of results, or checkpoint, of a completed case, relative to this file: this case begins with its final
+    /// state. Mesh, bodies and contacts must be the same except for the parameters of friction and damping. The steps
+    /// follow those of that case: supports, loads and time continue; energies start from zero
     pub begin_with: Option<String>,
-    /// Groups whose mean displacement and reaction go to the history
+    /// Groups whose mean displacement and reaction are written to the history
     #[serde(default)]
     pub watch: Vec<String>,
     /// Gauges by a name of your choice: displacement, velocity, strain and stress at points of the bodies, at every row of
     /// the history (probes.csv)
     #[serde(default)]
     pub probes: BTreeMap<String, Gauge>,
-    /// When Newton's method stops
+    /// Stopping criteria of Newton's method
     #[serde(default)]
     pub newton: NewtonSettings,
-    /// What is written
+    /// Output
     #[serde(default)]
     pub output: OutputInput,
 }

@@ -5,12 +5,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::output::fronts::FrontsInput;
 
-/// What is written.
+/// Output of a run.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputInput {
-    /// Fields are written with every n-th row of the history, and at the end of each step; with every row unless given, or
-    /// with none where `times` are
+    /// Fields are written with every n-th row of the history, and at the end of each step; default: with every row, or
+    /// with none where `times` are given
     pub every: Option<usize>,
     /// Whether fields are written at all
     pub fields: bool,
@@ -23,8 +23,8 @@ pub struct OutputInput {
     pub times: Vec<f64>,
     /// Whether stresses at the integration points are written with the fields (points.pvd)
     pub points: bool,
-    /// Minutes of wall time between checkpoints (checkpoint.bin), from which `run --resume` goes on to the same bits after
-    /// whatever has ended the run; the last one is written at the end. 5 unless given; null or 0 for none
+    /// Minutes of wall time between checkpoints (checkpoint.bin), from which `run --resume` continues with bitwise
+    /// identical results, however the run ended; the last one is written at the end. Default 5; null or 0 for none
     pub checkpoint: Option<f64>,
     /// The fronts that run along contacts with friction (fronts.csv), and the events of slip that they make (events.csv)
     pub fronts: Option<FrontsInput>,
@@ -34,7 +34,7 @@ pub struct OutputInput {
 }
 
 impl OutputInput {
-    /// Fields are written with every n-th row, if with any but those at times asked for.
+    /// Interval n of rows with fields; `None` for fields at requested times only.
     pub fn every(&self) -> Option<usize> {
         self.every.or(self.times.is_empty().then_some(1))
     }

@@ -1,10 +1,10 @@
-//! A panic is a defect of the program: it is told as one, with what to send, and nothing else is lost by it.
+//! A panic is a defect of the program: it is reported as one, with what to send, and the results are kept.
 
 use std::backtrace::{Backtrace, BacktraceStatus};
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
 use std::sync::Mutex;
 
-/// What panicked last, and where.
+/// Message and place of the last panic.
 static LAST: Mutex<Option<String>> = Mutex::new(None);
 
 /// Note panics instead of printing them.
@@ -40,7 +40,7 @@ fn message(payload: &(dyn std::any::Any + Send)) -> &str {
     text.or_else(|| payload.downcast_ref::<String>().map(String::as_str)).unwrap_or("it does not say why")
 }
 
-/// What the user is told.
+/// Text for the user.
 pub fn told(what: &str) -> String {
     format!(
         "defect: {what}\nThis is a defect of fecontact {}, not of your input. Please report it with this text, the command, the \

@@ -14,10 +14,10 @@ use crate::run::observer::Observer;
 use crate::run::simulation::Pause;
 use crate::run::{Moment, RunBytes, SavedRun, Simulation};
 
-/// How often the folder is looked for.
+/// Interval at which the existence of the folder is checked.
 const LOOK: Duration = Duration::from_secs(1);
 
-/// When the next checkpoint is due; told to explicit increments, which pause for it.
+/// Time of the next checkpoint; explicit increments pause for it.
 #[derive(Clone)]
 struct Due {
     /// time between checkpoints; `None` for none
@@ -36,7 +36,7 @@ impl Due {
     }
 }
 
-/// Keeps checkpoints.
+/// Writes the checkpoints of a run.
 pub(super) struct Keeper {
     folder: PathBuf,
     due: Due,
@@ -84,7 +84,7 @@ impl Keeper {
         if self.looked.elapsed() >= LOOK {
             self.looked = Instant::now();
             if !lock.is_there() {
-                let cause = "the folder, or the lock in it, was taken away while the run went on".into();
+                let cause = "the folder, or the lock in it, was removed during the run".into();
                 return Err(Error::Output { path: self.folder.clone(), cause });
             }
         }
@@ -99,7 +99,7 @@ impl Keeper {
         }
     }
 
-    /// Write a checkpoint. A run that cannot keep one goes on all the same, and says so.
+    /// Write a checkpoint. If that fails, the run continues with a warning.
     fn keep(&mut self, simulation: &Simulation, observers: &mut [&mut dyn Observer]) -> Result<(), Error> {
         let saved = SavedRun::new(simulation, observers)?;
         let (begun, complete) = (saved.simulation().begun(), saved.simulation().is_complete());
@@ -108,7 +108,7 @@ impl Keeper {
         if let Err(error) = written
             && self.concern.is_none()
         {
-            let concern = format!("no checkpoint at t = {}: {error}; the run goes on", simulation.state().time);
+            let concern = format!("no checkpoint at t = {}: {error}; the run continues", simulation.state().time);
             (self.warn)(&concern);
             self.concern = Some(concern);
         }

@@ -1,7 +1,7 @@
 //! A case run into a folder of results: from its beginning, from the end of another, or from its last checkpoint.
 //!
 //! [`Job::open`] reads, checks and locks the folder; [`Job::run`] solves and leaves results behind however it ends. Who asked for
-//! it hears warnings, shows progress and may end it ([`Company`]).
+//! it hears warnings, shows progress and may end it ([`Callbacks`]).
 //!
 //! Who watches a run.
 
@@ -21,7 +21,7 @@ use crate::model::Model;
 use crate::output::checkpoint::{self, Checkpoint};
 use crate::output::events;
 use crate::output::folder::Folder;
-use crate::output::friction_course::FrictionCourse;
+use crate::output::friction_history::FrictionHistory;
 use crate::output::fronts::Fronts;
 use crate::output::summary::{self, About, Ending, Summary};
 pub use crate::output::warnings::Warn;
@@ -42,10 +42,10 @@ pub enum Refused {
     /// Results cannot go there.
     #[error("{}: --out: {}", .0.display(), .1)]
     Folder(PathBuf, String),
-    /// There is nothing to go on from.
+    /// There is nothing to resume from.
     #[error("{}: --resume: {}", .0.display(), .1)]
     Checkpoint(PathBuf, checkpoint::Unusable),
-    /// What is there cannot be gone on with.
+    /// The run cannot resume from the results in the folder.
     #[error(transparent)]
     Run(#[from] Error),
 }
@@ -53,7 +53,7 @@ pub enum Refused {
 /// Why a job did not come to its end; what it has found is kept.
 #[derive(Debug)]
 pub enum Failed {
-    /// It stopped.
+    /// The run stopped with an error.
     Stopped(Error),
     /// The program itself is wrong.
     Defect(String),
@@ -73,7 +73,7 @@ pub struct Job {
     pub damage: Option<String>,
 }
 
-/// What became of a job.
+/// Outcome of a job.
 pub struct Outcome {
     /// as in `summary.json`
     pub summary: Summary,
@@ -93,8 +93,8 @@ impl Outcome {
     }
 }
 
-/// A case with the last checkpoint of the folder of its results, and what was wrong with a newer one; `warn` is told where
-/// another version has written it.
+/// A case with the last checkpoint of the folder of its results, and what was wrong with a newer one; `warn` reports
+/// where another version has written it.
 ///
 /// # Errors
 /// [`Refused`].
@@ -107,7 +107,7 @@ pub fn last(
     let Checkpoint { program, .. } = &checkpoint;
     if program != env!("CARGO_PKG_VERSION") {
         warn(&format!(
-            "the checkpoint is of version {program}: the last digits may differ from those of a run in one go"
+            "the checkpoint is of version {program}: the last digits may differ from those of an uninterrupted run"
         ));
     }
     Ok((open(checkpoint)?, damage))
@@ -127,18 +127,18 @@ impl Job {
         Ok(Self { opened, model, folder, saved, damage })
     }
 
-    /// Run it.
+    /// Run the job to its end, or until it stops.
     ///
     /// # Errors
     /// [`Refused::Run`] where it cannot go on from its checkpoint; nothing has changed then.
-    pub fn run(&mut self, company: Company) -> Result<Outcome, Refused> {
+    pub fn run(&mut self, callbacks: Callbacks) -> Result<Outcome, Refused> {
         let about = self.about();
         let Self { opened, model, folder, saved, damage } = self;
         let summary = |ending, report, warnings| Summary::new(ending, about.clone(), model, report, warnings);
         let first = summary(Ending::running(&folder.files), RunReport::default(), model.warnings());
         let mut work =
             Work { simulation: None, warnings: Vec::new(), chatter: None, courses: BTreeMap::new(), supplied: 0.0 };
-        let result = defect::catch(|| work.go(opened, model, folder, saved.take(), &first, company));
+        let result = defect::catch(|| work.go(opened, model, folder, saved.take(), &first, callbacks));
         let result = match (result, opened.resumes(), &work.simulation) {
             (Ok(Err(error)), true, None) => return Err(error.into()),
             (result, ..) => result,
@@ -152,7 +152,7 @@ impl Job {
             folder.make_room_after(result);
         }
         let report = work.simulation.map(|simulation| simulation.report()).unwrap_or_default();
-        work.warnings.extend(damage.take().map(|damage| format!("{damage}; the checkpoint before it was taken")));
+        work.warnings.extend(damage.take().map(|damage| format!("{damage}; the previous checkpoint was used")));
         let last =
             Summary { chatter: work.chatter, friction_course: work.courses, ..summary(ending, report, work.warnings) };
         let written = summary::write(&last, &folder.path);
@@ -160,7 +160,7 @@ impl Job {
         Ok(Outcome { summary: last, supplied: work.supplied, ended, written })
     }
 
-    /// What readers of the results need to know of the case.
+    /// Data about the case for readers of the results.
     fn about(&self) -> About {
         let Opened { case, path, .. } = &self.opened;
         About {
@@ -180,20 +180,20 @@ impl Job {
     }
 }
 
-/// What is left of a run however it ends.
+/// Results of a run that are kept however it ends.
 struct Work {
     /// `None` until it has begun
     simulation: Option<Simulation>,
     warnings: Vec<String>,
     /// restarts of slip, if the case asks for fronts
     chatter: Option<BTreeMap<String, f64>>,
-    courses: BTreeMap<String, FrictionCourse>,
+    courses: BTreeMap<String, FrictionHistory>,
     /// the most energy that there was [F·L]
     supplied: f64,
 }
 
 impl Work {
-    /// Begin or go on, to the end.
+    /// Begin or resume, and run to the end.
     fn go(
         &mut self,
         opened: &Opened,
@@ -201,15 +201,16 @@ impl Work {
         folder: &Folder,
         saved: Option<SavedRun>,
         first: &Summary,
-        Company { warn, ends, mut progress }: Company,
+        Callbacks { warn, ends, mut progress }: Callbacks,
     ) -> Result<(), Error> {
         let resumes = opened.resumes();
         let mut keeper = Keeper::new(opened, model, &folder.path, warn.clone(), ends);
-        // The summary tells whose the files are, and so it comes first; that of a run taken up is true until it goes on.
+        // The summary identifies the files, so it comes first; that of a resumed run stays valid until the run
+        // continues.
         if !resumes {
             summary::write(first, &folder.path)?;
         }
-        let warnings = Warnings::aloud(model.warnings(), warn);
+        let warnings = Warnings::reporting(model.warnings(), warn);
         let mut outputs = Outputs::open(&folder.path, model, &opened.case, saved.as_ref(), warnings)?;
         let mut observers = outputs.observers();
         if let Some(progress) = &mut progress {
@@ -240,9 +241,9 @@ impl Work {
 /// Why a run is to end before its time, if it is.
 pub type Ends = Arc<dyn Fn() -> Option<Error> + Send + Sync>;
 
-/// Who watches a run.
-pub struct Company<'a> {
-    /// is told warnings as they come, but for those of the model
+/// Callbacks and observers of a run.
+pub struct Callbacks<'a> {
+    /// receives warnings when they arise, except those of the model
     pub warn: Warn,
     /// is asked between two increments, and within explicit ones
     pub ends: Ends,

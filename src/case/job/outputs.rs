@@ -1,4 +1,6 @@
 //! The observers of a run, and the files they write.
+//!
+//! Warnings, reported once each when they arise.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -8,7 +10,7 @@ use crate::case::file::Case;
 use crate::model::Model;
 use crate::output::fields::{Fields, Frames};
 use crate::output::folder::INTERFACE;
-use crate::output::friction_course::FrictionCourse;
+use crate::output::friction_history::FrictionHistory;
 use crate::output::fronts::Fronts;
 use crate::output::history::History;
 use crate::output::newton_log::NewtonLog;
@@ -20,7 +22,7 @@ use crate::run::SavedRun;
 use crate::run::error::Error;
 use crate::run::observer::Observer;
 
-/// What a run writes beside `summary.json`; folders of frames end in `/`.
+/// Files that a run writes besides `summary.json`; folders of frames end in `/`.
 pub(super) fn files(case: &Case, model: &Model) -> Vec<&'static str> {
     let mut files = vec!["history.csv", "newton.csv"];
     if case.output.fields {
@@ -50,7 +52,7 @@ pub(super) fn files(case: &Case, model: &Model) -> Vec<&'static str> {
     files
 }
 
-/// Which frames a case asks for.
+/// The frames requested by a case.
 fn frames(case: &Case) -> Frames {
     Frames { every: case.output.every(), points: case.output.points }
 }
@@ -87,7 +89,7 @@ impl Outputs {
             interface: (goes_on("interface") && has_contacts).then(store),
             probes: goes_on("probes").then(|| Probes::reopen(folder, model)).transpose()?,
             fields: (goes_on("fields") && has_fields).then(series).transpose()?,
-            fronts: case.output.fronts.map(|told_by| Fronts::new(folder, model, &start, told_by)),
+            fronts: case.output.fronts.map(|criterion| Fronts::new(folder, model, &start, criterion)),
         };
         // What goes on is as it was, or nothing changes.
         saved.map_or(Ok(()), |saved| saved.check(&outputs.observers()))?;
@@ -109,15 +111,15 @@ impl Outputs {
         Ok(outputs)
     }
 
-    /// How the friction of the contacts went, by their names; of those that bore any.
-    pub fn courses(&self, model: &Model) -> BTreeMap<String, FrictionCourse> {
+    /// Friction histories of the contacts by name; only those that carried friction.
+    pub fn courses(&self, model: &Model) -> BTreeMap<String, FrictionHistory> {
         let courses = self.history.iter().flat_map(History::courses);
         let named = model.contacts.iter().zip(courses);
         let borne = named.filter(|(_, course)| course.is_friction());
         borne.map(|(pair, course)| (pair.name.clone(), course.clone())).collect()
     }
 
-    /// All of them.
+    /// All observers of the outputs.
     pub fn observers<'a, 'b: 'a>(&'b mut self) -> Vec<&'a mut (dyn Observer + 'a)> {
         fn watch<'a>(observer: &'a mut Option<impl Observer + 'a>) -> Option<&'a mut (dyn Observer + 'a)> {
             observer.as_mut().map(|observer| observer as &mut dyn Observer)

@@ -15,7 +15,7 @@ use crate::model::Model;
 use crate::model::boundary::Profile;
 use crate::model::builder::{Contact, InitialTractions, MasterSide};
 use crate::model::method::{Chosen, Method};
-use crate::model::told::{count, number};
+use crate::model::text::{count, number};
 use crate::model::warnings::{farthest, gaps};
 use crate::output::warnings::several_answers;
 
@@ -45,10 +45,10 @@ fn initial_tractions(initial: &InitialTractions, pair: &ContactPair) -> String {
     let (structure, mu) = (range(observed("structure")), range(observed("mu")));
     let balanced = match (initial.balanced, initial.of_bodies) {
         (true, _) => ", balanced by an initial stress of the bodies",
-        (false, true) => ", with which the initial stress of the slave's body ends",
+        (false, true) => ", from the initial stress of the slave's body",
         (false, false) => "",
     };
-    format!("starts closed with the pressure {p} and the traction {q}{balanced}; mu {mu}, structure {structure}")
+    format!("starts closed: pressure {p}, traction {q}{balanced}; mu {mu}, structure {structure}")
 }
 
 /// An initial pressure under which the answer may snap; a run meets it in its first increment.
@@ -75,7 +75,7 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
     let input = &case.contacts[&pair.name];
     let alpha_n = match input.normal.alpha_n {
         Some(_) => "given",
-        None => "10 (λ + 2G)/h: of the softer side, over the depth of the slave's elements",
+        None => "10 (λ + 2G)/h of the softer body, h the depth of the slave's elements",
     };
     let mut lines = vec![
         format!("slave {} against master {}", input.slave, master(input)),
@@ -85,7 +85,8 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
     if let Some(small) = &pair.small {
         let slips = small.little_slip().map(|slip| format!("slips up to {} and ", number(slip))).unwrap_or_default();
         lines.push(format!(
-            "small sliding: every point keeps its foot, normal and length of the start; for {slips}turns up to {LITTLE_TURN} rad"
+            "small sliding: every point keeps its initial projection, normal and length; valid for {slips}rotations up \
+             to {LITTLE_TURN} rad"
         ));
     }
     if input.massless {
@@ -99,28 +100,28 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
     lines.push(format!("friction {}", parameters(&input.friction, "law", &["alpha_t"])));
     let vary = |along: &BTreeMap<String, Profile>| -> Option<String> {
         let names: Vec<&str> = along.keys().map(String::as_str).collect();
-        (!names.is_empty()).then(|| format!("along it vary {}", names.join(", ")))
+        (!names.is_empty()).then(|| format!("varies along the interface: {}", names.join(", ")))
     };
     lines.extend(vary(&input.along.parameters));
     for choice in &input.along.law {
-        lines.push(format!("on a part of it {}", parameters(&choice.friction, "law", &["alpha_t"])));
+        lines.push(format!("on part of the interface: {}", parameters(&choice.friction, "law", &["alpha_t"])));
         lines.extend(vary(&choice.along));
     }
     lines.extend(onset(pair));
     if pair.radiation > 0.0 {
-        lines.push(format!("slip radiates with η = {} in static steps", number(pair.radiation)));
+        lines.push(format!("radiation damping η = {} in static steps", number(pair.radiation)));
     }
     lines.extend(moving(input, model, pair));
     if let Some(limit) = pair.laws.iter().filter_map(|law| law.description.uniqueness_limit()).reduce(f64::min) {
         let limit = number(limit);
         lines.push(format!(
-            "one answer while the pressure stays below {limit}; above, slip may weaken faster than alpha_t"
+            "unique response for p < {limit}; above, slip weakening may exceed the contact stiffness alpha_t"
         ));
     }
     lines
 }
 
-/// What a law with a peak means in the numbers of a test: a range where its parameters vary along the interface.
+/// Peak, residual and healing of a law in the numbers of a test: ranges where its parameters vary along the interface.
 fn onset(pair: &ContactPair) -> Option<String> {
     let laws: Vec<Onset> = pair.laws.iter().filter_map(|law| law.law.onset()).collect();
     if laws.is_empty() {
@@ -132,19 +133,19 @@ fn onset(pair: &ContactPair) -> Option<String> {
     };
     let of = |of: fn(&Onset) -> f64| range(laws.iter().map(of).map(three_digits));
     let rises = match over(|law| law.rested.slip) {
-        Some(slip) => format!("peaks at {} after a plastic slip of {slip}", of(|law| law.rested.peak)),
-        None => format!("rises to {} without a peak", of(|law| law.rested.peak)),
+        Some(slip) => format!("peak q/p {} at a plastic slip of {slip}", of(|law| law.rested.peak)),
+        None => format!("q/p rises to {} without a peak", of(|law| law.rested.peak)),
     };
     let fresh = match laws.iter().all(|law| law.fresh == law.rested) {
         true => String::new(),
-        false => format!(" (at the start of the run {})", of(|law| law.fresh.peak)),
+        false => format!(" ({} at the start of the run)", of(|law| law.fresh.peak)),
     };
-    let falls = over(|law| law.half_lost).map_or("does not weaken with slip".into(), |slip| {
-        format!("falls to {}, half of the way from mu_s within {slip} of slip", of(|law| law.residual))
+    let falls = over(|law| law.half_lost).map_or("no weakening with slip".into(), |slip| {
+        format!("residual q/p {}, half of the weakening from mu_s within {slip} of slip", of(|law| law.residual))
     });
     let heals = over(|law| law.half_healed);
-    let heals = heals.map_or("rest does not heal it".into(), |time| format!("rest brings half back in {time}"));
-    Some(format!("in fast slip after long rest q/p {rises}{fresh}, {falls}; {heals}"))
+    let heals = heals.map_or("no healing".into(), |time| format!("half recovers in {time}"));
+    Some(format!("rapid slip after a long hold: {rises}{fresh}, {falls}; {heals}"))
 }
 
 /// Dilatancy, wear, and what fluid is between the surfaces.
@@ -152,13 +153,13 @@ fn moving(input: &Contact, model: &Model, pair: &ContactPair) -> Vec<String> {
     let mut lines = Vec::new();
     if let Some(Dilatancy { rate, limit }) = input.dilatancy {
         let limit = limit.map_or("without limit".into(), |limit| format!("up to {}", number(limit)));
-        lines.push(format!("dilates with plastic slip by {}, {limit}", number(rate)));
+        lines.push(format!("dilatancy: {} per plastic slip, {limit}", number(rate)));
     }
-    lines.extend(input.wear.map(|wear| format!("wears by {} × pressure × plastic slip", number(wear))));
+    lines.extend(input.wear.map(|wear| format!("wear: {} × pressure × plastic slip", number(wear))));
     if pair.fluid.is_some() {
         let x = model.mesh.undeformed();
         let pressures = pair.points.iter().map(|point| pair.fluid_pressure(point, &x, 0.0));
-        lines.push(format!("a fluid pushes the surfaces apart, with the pressure {} at the start", range(pressures)));
+        lines.push(format!("fluid pressure in the interface: {} at the start", range(pressures)));
     }
     lines
 }
@@ -179,13 +180,13 @@ fn master(input: &Contact) -> String {
     }
 }
 
-/// Where contact is evaluated, and why if that was left open.
+/// Method and contact points, with the reason if the program chose the method.
 fn evaluated(input: &Contact, chosen: Option<&Chosen>) -> String {
     let Some(Chosen { method, points, because, .. }) = chosen else {
-        return format!("each point stands for the area {}", number(input.area.unwrap_or_default()));
+        return format!("area of each point: {}", number(input.area.unwrap_or_default()));
     };
     let how = match method {
-        Method::GaussToSegment => format!("{points} points an edge"),
+        Method::GaussToSegment => format!("{points} points per edge"),
         Method::NodeToSegment => "a point at each node".into(),
         Method::Mortar => "averaged around each node".into(),
     };

@@ -13,7 +13,7 @@ use crate::mesh::Group;
 use crate::mesh::shape::ElementKind;
 use crate::model::builder::{BodyInput, Formulation, LoadingPlateInput, Plate};
 use crate::model::imposed::{InitialStress, Thermal};
-use crate::model::told::{count, number};
+use crate::model::text::{count, number};
 use crate::model::{Damping, Model, PointMass};
 use crate::output::fronts::ArrivalInput;
 
@@ -30,7 +30,7 @@ pub fn report(case: &Case, model: &Model) -> String {
     text
 }
 
-/// The same by headings, without the warnings.
+/// The report as headings with their lines, without the warnings.
 pub fn understood(case: &Case, model: &Model) -> Vec<(String, Vec<String>)> {
     let sections = [
         ("units", case.units.iter().map(|(of, unit)| format!("{of} in {unit}")).collect()),
@@ -138,7 +138,7 @@ fn bodies(case: &Case) -> Vec<String> {
     };
     let mut lines = aligned(&case.bodies.iter().map(row).collect::<Vec<_>>());
     for (name, [vx, vy]) in &case.initial_velocity {
-        lines.push(format!("{name} starts with the velocity ({}, {})", number(*vx), number(*vy)));
+        lines.push(format!("{name}: initial velocity ({}, {})", number(*vx), number(*vy)));
     }
     lines
 }
@@ -153,7 +153,7 @@ fn imposed(input: &BodyInput) -> String {
         None => String::new(),
     };
     let thermal = input.thermal.map_or_else(String::new, |Thermal { expansion, reference }| {
-        format!(", thermal expansion {} from the temperature {} on", number(expansion), number(reference))
+        format!(", thermal expansion {}, reference temperature {}", number(expansion), number(reference))
     });
     stress + &thermal
 }
@@ -170,10 +170,10 @@ fn plates(case: &Case, model: &Model) -> Vec<String> {
     let told = |(name, moves): (&str, Plate)| {
         let nodes = model.mesh.group(name).map_or(0, |group| model.mesh.nodes_of(group).len());
         let moves = match moves {
-            Plate::AsOne => "that move as one",
-            Plate::UxAlike => "alike in ux",
-            Plate::UyAlike => "alike in uy",
-            Plate::Rigid => "of a rigid plate, which turns",
+            Plate::AsOne => "that translate together",
+            Plate::UxAlike => "with equal ux",
+            Plate::UyAlike => "with equal uy",
+            Plate::Rigid => "of a rigid platen that can rotate",
         };
         format!("{name}: {} {moves}", count(nodes, "node"))
     };
@@ -183,14 +183,14 @@ fn plates(case: &Case, model: &Model) -> Vec<String> {
 fn point_masses(case: &Case, model: &Model) -> Vec<String> {
     let row = |point: &PointMass| {
         let velocity = case.point_masses[&point.name].velocity;
-        let start = velocity.map(|[vx, vy]| format!(", starts with the velocity ({}, {})", number(vx), number(vy)));
+        let start = velocity.map(|[vx, vy]| format!(", initial velocity ({}, {})", number(vx), number(vy)));
         let mass = format!("mass {} at {}", number(point.mass), count(point.nodes.len(), "node"));
         [point.name.clone(), mass + &start.unwrap_or_default()]
     };
     aligned(&model.point_masses.iter().map(row).collect::<Vec<_>>())
 }
 
-/// 2nd, 3rd, 11th
+/// Ordinal number: 2nd, 3rd, 11th.
 fn ordinal(number: usize) -> String {
     let ending = match (number % 10, number % 100) {
         (_, 11..=13) => "th",
@@ -210,14 +210,14 @@ fn newton(case: &Case) -> String {
 fn output(case: &Case, model: &Model) -> Vec<String> {
     let fields = match (case.output.fields, case.output.every()) {
         (false, _) => "no fields".into(),
-        (true, None) => "fields at the times asked for, and at the end of each step".into(),
+        (true, None) => "fields at the requested times, and at the end of each step".into(),
         (true, Some(1)) => "fields with every row of the history".into(),
         (true, Some(every)) => {
             format!("fields with every {} row of the history, and at the end of each step", ordinal(every))
         }
     };
-    let watched = if case.watch.is_empty() { "no group".into() } else { case.watch.join(", ") };
-    let mut lines = vec![format!("history watches {watched}"), fields];
+    let watched = if case.watch.is_empty() { "none".into() } else { case.watch.join(", ") };
+    let mut lines = vec![format!("watched groups: {watched}"), fields];
     if let Some(interval) = case.output.interval {
         let step = number(interval);
         lines.push(format!("rows at least {step} apart, and at events; explicit steps write at multiples of {step}"));
@@ -234,12 +234,12 @@ fn output(case: &Case, model: &Model) -> Vec<String> {
     if let Some(fronts) = case.output.fronts {
         let rate = number(fronts.slip_rate);
         lines.push(match fronts.arrival {
-            None => format!("fronts at the slip rate {rate}"),
+            None => format!("fronts where the slip rate passes {rate}"),
             Some(ArrivalInput::R(value)) => {
-                format!("fronts where R passes {}, events at the slip rate {rate}", number(value))
+                format!("fronts where R passes {}, events where the slip rate passes {rate}", number(value))
             }
             Some(ArrivalInput::Mu(value)) => {
-                format!("fronts where mu passes {}, events at the slip rate {rate}", number(value))
+                format!("fronts where mu passes {}, events where the slip rate passes {rate}", number(value))
             }
         });
     }

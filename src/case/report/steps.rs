@@ -9,43 +9,36 @@ use crate::case::file::Case;
 use crate::model::boundary::Drive;
 use crate::model::builder::{Action, Components, DashpotLoad, Load, LoadStep, Place, SpringLoad};
 use crate::model::step::Until;
-use crate::model::told::{count, number};
+use crate::model::text::{count, number};
 use crate::model::{Damping, Model, Step};
 use crate::time::step_size::EVENT_LOCATION;
 
-/// Every step.
+/// Lines about every step: scheme, increments, supports and loads in force.
 pub fn steps(case: &Case, model: &Model) -> Vec<String> {
     let mut lines = Vec::new();
-    // The text of each, and the number of the step that gave it last.
-    let mut in_force: BTreeMap<Key, (String, usize)> = BTreeMap::new();
-    for (k, (step, input)) in model.steps.iter().zip(&case.steps).enumerate() {
+    let (mut supports, mut loads) = (InForce::new(), InForce::new());
+    let on = |place: &Place| on(place, model);
+    for (step, input) in model.steps.iter().zip(&case.steps) {
         lines.push(step.name.clone());
         let mut told = step_lines(step);
         told.extend(input.velocity.iter().map(|(name, velocity)| {
             let [vx, vy] = velocity.map(number);
-            format!("{name} starts with the velocity ({vx}, {vy})")
+            format!("{name}: initial velocity ({vx}, {vy})")
         }));
         told.extend(input.damping.iter().map(|(name, Damping { mass, retardation })| {
-            format!("damping of {name} from here on: mass {}, stiffness {}", number(*mass), number(*retardation))
+            format!("damping of {name} from this step on: mass {}, stiffness {}", number(*mass), number(*retardation))
         }));
         told.extend(
             input.temperature.iter().map(|(name, given)| format!("temperature of {name}: {}", drive(&given.into()))),
         );
-        let on = |place: &Place| on(place, model);
-        let loads = input.loads.iter().filter_map(|load| written_load(load, on));
-        for (key, text) in written_supports(input, on).into_iter().chain(loads) {
-            match text {
-                Some(text) => drop(in_force.insert(key, (text, k))),
-                None => {
-                    in_force.remove(&key);
-                    told.push(end(key, step.scheme.is_dynamic()));
-                }
-            }
-        }
-        told.extend(in_force.iter().map(|((verb, on, kind), (text, given))| {
-            let kept = if *given == k { "" } else { " (kept)" };
-            format!("{verb} {on}: {kind} {text}{kept}")
+        let fades = if step.scheme.is_dynamic() { "at once" } else { "its reaction fades over the step" };
+        let released = supports.step(written_supports(input, on));
+        told.extend(released.map(|(on, kind)| format!("support {on}: {kind} released, {fades}")));
+        told.extend(loads.step(input.loads.iter().filter_map(|load| written_load(load, on))).map(|(on, kind)| {
+            let fades = if ENDS_AT_ONCE.contains(&kind) { "at once" } else { "it fades over the step" };
+            format!("load {on}: {kind} ended, {fades}")
         }));
+        told.extend(supports.lines("support").into_iter().chain(loads.lines("load")));
         lines.extend(told.into_iter().map(|line| format!("  {line}")));
         lines.push(format!("  {} prescribed", count(step.supports.len(), "dof")));
     }
@@ -61,53 +54,82 @@ fn step_lines(step: &Step) -> Vec<String> {
     let [initial, min, max] = [increments.initial, increments.min, increments.max].map(number);
     let mut lines = vec![
         format!("time {} to {}, {scheme}", number(step.span.start), number(step.span.end)),
-        format!("increments start at {initial}, at least {min}, at most {max}"),
+        format!("dt: initial {initial}, min {min}, max {max}"),
     ];
     if !step.stabilization.is_empty() {
-        lines.push("stabilized: dashpots that fade away hold bodies until contact does".into());
+        lines.push("stabilized: fading dashpots constrain bodies until contact does".into());
     }
     lines.extend(step.until.as_ref().map(|until| {
         let Until { on, part, value, tolerance, .. } = until;
         let [value, tolerance] = [value, tolerance].map(|number_of| number(*number_of));
-        format!("ends when {} of {on} comes to {value}, met to {tolerance} of it", part.name())
+        format!("ends when {} of {on} reaches {value}, relative tolerance {tolerance}", part.name())
     }));
     let dynamic = step.scheme.is_dynamic();
     lines.extend(
         increments
             .error
             .filter(|_| !dynamic)
-            .map(|error| format!("each in error by at most {} in the slip of a contact point", number(error))),
+            .map(|error| format!("error per increment at most {} in the slip of any contact point", number(error))),
     );
     lines.extend(increments.error.filter(|_| dynamic).map(|error| {
         let located = number(EVENT_LOCATION * error);
-        format!("each in error by at most {} in a displacement, events of contact located to {located}", number(error))
+        format!(
+            "error per increment at most {} in any displacement, contact events located within {located}",
+            number(error)
+        )
     }));
     lines.extend(step.rupture.as_ref().map(|rupture| {
         let [rate, calm] = [rupture.slip_rate, rupture.calm].map(number);
-        format!("explicit while a contact slips faster than {rate}, on the mean of {calm} when it returns")
+        format!(
+            "explicit integration while a contact slips faster than {rate}; implicit again from the mean motion over \
+             {calm}"
+        )
     }));
     lines
 }
 
-/// A support or load in words: whether it holds or loads, where, and its kind.
-type Key = (&'static str, String, &'static str);
+/// Supports or loads in force in a step, by place and kind, as last written; `null` ends an entry.
+struct InForce(BTreeMap<(String, &'static str), Written>);
 
-const HELD: &str = "held";
-const LOADED: &str = "loaded";
-
-/// One entry of a step; without a text it ends what was in force.
-type Entry = (Key, Option<String>);
+struct Written {
+    text: String,
+    kept: bool,
+}
 
 /// Loads without a value that could fade.
 const ENDS_AT_ONCE: [&str; 3] = ["spring", "dashpot", "absorbing side"];
 
-/// How a support or load ends.
-fn end((verb, on, kind): Key, dynamic: bool) -> String {
-    match verb == HELD {
-        true if dynamic => format!("freed {on}: {kind}, at once"),
-        true => format!("freed {on}: {kind}, its reaction fades over the step"),
-        false if ENDS_AT_ONCE.contains(&kind) => format!("ended {on}: {kind}, at once"),
-        false => format!("ended {on}: {kind}, it fades over the step"),
+/// Place, kind and value of one entry of a step.
+type Entry = (String, &'static str, Option<String>);
+
+impl InForce {
+    fn new() -> Self {
+        Self(BTreeMap::new())
+    }
+
+    /// Take over what is written; returns what is ended.
+    fn step(&mut self, entries: impl IntoIterator<Item = Entry>) -> impl Iterator<Item = (String, &'static str)> {
+        self.0.values_mut().for_each(|written| written.kept = true);
+        let mut ended = Vec::new();
+        for (on, kind, text) in entries {
+            match text {
+                Some(text) => drop(self.0.insert((on, kind), Written { text, kept: false })),
+                None => {
+                    self.0.remove(&(on.clone(), kind));
+                    ended.push((on, kind));
+                }
+            }
+        }
+        ended.into_iter()
+    }
+
+    fn lines(&self, what: &str) -> Vec<String> {
+        let line = |((on, kind), written): (&(String, &str), &Written)| {
+            let equals = if written.text.starts_with(char::is_alphabetic) { "" } else { "= " };
+            let kept = if written.kept { " (kept)" } else { "" };
+            format!("{what} {on}: {kind} {equals}{}{kept}", written.text)
+        };
+        self.0.iter().map(line).collect()
     }
 }
 
@@ -119,8 +141,8 @@ fn on(place: &Place, model: &Model) -> String {
 fn written_supports(step: &LoadStep, on: impl Fn(&Place) -> String) -> Vec<Entry> {
     let mut entries: Vec<Entry> = Vec::new();
     for support in &step.supports {
-        let mut add = |kind, text| entries.push(((HELD, on(&support.on), kind), text));
-        for (kind, given) in [("ux", &support.ux), ("uy", &support.uy), ("along its normal", &support.un)] {
+        let mut add = |kind, text| entries.push((on(&support.on), kind, text));
+        for (kind, given) in [("ux", &support.ux), ("uy", &support.uy), ("un", &support.un)] {
             if let Some(given) = given {
                 add(kind, given.given().map(drive));
             }
@@ -131,7 +153,7 @@ fn written_supports(step: &LoadStep, on: impl Fn(&Place) -> String) -> Vec<Entry
         }
         if let (Some(direction), Some(given)) = (support.along, &support.u) {
             let on = format!("{} along ({})", on(&support.on), direction.map(number).join(", "));
-            entries.push(((HELD, on, "u"), given.given().map(drive)));
+            entries.push((on, "u", given.given().map(drive)));
         }
     }
     entries
@@ -139,7 +161,7 @@ fn written_supports(step: &LoadStep, on: impl Fn(&Place) -> String) -> Vec<Entry
 
 fn written_load(load: &Load, place: impl Fn(&Place) -> String) -> Option<Entry> {
     let spring = |SpringLoad { kx, ky, driver }: &SpringLoad| {
-        format!("kx {}, ky {}{}", number(*kx), number(*ky), driven("moved by", driver))
+        format!("kx {}, ky {}{}", number(*kx), number(*ky), driven("displaced by", driver))
     };
     let dashpot = |DashpotLoad { cx, cy, driver }: &DashpotLoad| {
         format!("cx {}, cy {}{}", number(*cx), number(*cy), driven("moving with", driver))
@@ -156,11 +178,11 @@ fn written_load(load: &Load, place: impl Fn(&Place) -> String) -> Option<Entry> 
         Action::TotalForce(given) => ("total force", given.map(components)),
         Action::Force(given) => ("force", given.map(components)),
     };
-    Some(((LOADED, place(&load.on), kind), text))
+    Some((place(&load.on), kind, text))
 }
 
 fn driven(how: &str, driver: &Option<Components>) -> String {
-    driver.as_ref().map_or(String::new(), |driver| format!(", its far end {how} {}", components(driver)))
+    driver.as_ref().map_or(String::new(), |driver| format!(", far end {how} {}", components(driver)))
 }
 
 fn components(of: &Components) -> String {

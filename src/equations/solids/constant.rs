@@ -71,7 +71,7 @@ pub(super) struct Constant {
     /// Whether they are rings
     ring: bool,
     blocks: Vec<Block>,
-    /// Where each node finds its blocks' forces
+    /// Places of each node's block forces
     pub places: Places,
     /// Forces of the blocks on their nodes, `stride` places a block [F]
     pub forces: Vec<Vector2<f64>>,
@@ -140,7 +140,7 @@ impl Constant {
         });
     }
 
-    /// What all elements store, or which is the first whose strain is not finite.
+    /// Stored energy of all elements, or the first one whose strain is not finite.
     pub fn stored(&self, model: &Model, u: &[f64]) -> Result<f64, TrialFailure> {
         let energy: f64 = self.energies.iter().sum();
         if !energy.is_finite() {
@@ -355,7 +355,7 @@ fn find_initial(model: &Model, elements: &[Vec<usize>], blocks: &mut [Block]) {
     });
 }
 
-/// Where an element lies on Morton's curve: the digits of its centre's coordinates in turn.
+/// Position of an element on the Morton curve, which interleaves the digits of its centre's coordinates.
 fn curve(model: &Model) -> impl Fn(usize) -> u64 {
     let nodes = &model.mesh.nodes;
     let [low, high] = [f64::min, f64::max].map(|choose| {
@@ -371,7 +371,7 @@ fn curve(model: &Model) -> impl Fn(usize) -> u64 {
     }
 }
 
-/// What the blocks are asked for.
+/// Evaluation of the blocks.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Pass<'a> {
     /// Forces at displacements, and the sums of their magnitudes if wanted
@@ -388,7 +388,7 @@ const fn first(ring: bool) -> usize {
     if ring { 0 } else { 1 }
 }
 
-/// Motions by nodes.
+/// A list of dofs as motions of nodes.
 fn all(motion: &[f64]) -> &[[f64; 2]] {
     motion.as_chunks().0
 }

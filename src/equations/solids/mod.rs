@@ -52,7 +52,7 @@ impl Solids {
         }
     }
 
-    /// Which elements are constant.
+    /// Flags of the elements with a constant tangent.
     pub fn constant(&self) -> &[bool] {
         &self.constant.is
     }
@@ -91,7 +91,7 @@ impl Solids {
         self.write(force, magnitudes);
     }
 
-    /// The same, after [`Solids::add`] has found those of the constant elements.
+    /// Viscous forces, after [`Solids::add`] has evaluated those of the constant elements.
     pub fn other_viscous(&mut self, motion: [&[f64]; 2], force: &mut [f64]) {
         let Self { model, constant, others, retardation } = self;
         others.evaluate_viscous(model, retardation, motion);

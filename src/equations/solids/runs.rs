@@ -23,7 +23,7 @@ const FEW: usize = 64;
 /// Elements of a model in runs.
 pub(super) struct Runs {
     runs: Vec<Run>,
-    /// Where each node finds its elements' forces
+    /// Places of each node's element forces
     pub places: Places,
     /// Forces of the elements on their nodes [F]
     pub forces: Vec<Vector2<f64>>,
@@ -56,7 +56,7 @@ impl Run {
 }
 
 impl Runs {
-    /// Of the elements that are `wanted`.
+    /// Runs of equal elements among those that are `wanted`.
     pub fn new(model: &Model, wanted: impl Fn(usize) -> bool + Clone) -> Self {
         let elements = &model.mesh.elements;
         let mut runs: Vec<Run> = Vec::new();
@@ -137,7 +137,7 @@ impl Runs {
         }
     }
 
-    /// What all elements store, or which is the first that is turned inside out.
+    /// Stored energy of all elements, or the first one that is inverted.
     pub fn stored(&self, model: &Model) -> Result<f64, TrialFailure> {
         let mut energy = 0.0;
         for e in self.runs.iter().filter(|run| !run.evolves).flat_map(|run| run.elements.clone()) {
@@ -215,15 +215,15 @@ pub const BATCH: usize = 1024;
 /// Nodes whose sums are done sooner than another thread wakes up.
 const FEW_NODES: usize = 1024;
 
-/// Where each node finds what is summed up there.
+/// For each node, the places of the values that are summed up there.
 pub(super) struct Places {
-    /// Where the places of each node start, and where the last one's end; empty if no node has any
+    /// Start of the places of each node, and end of the last; empty without places
     starts: Vec<u32>,
     places: Vec<u32>,
 }
 
 impl Places {
-    /// Of `count` nodes, the places being those of the given nodes.
+    /// Places for `count` nodes, from pairs of node and place.
     pub fn new(count: usize, nodes: impl Iterator<Item = (u32, usize)> + Clone) -> Self {
         let mut starts = vec![0; count + 1];
         nodes.clone().for_each(|(_, node)| starts[node + 1] += 1);
@@ -239,7 +239,7 @@ impl Places {
         Self { starts, places }
     }
 
-    /// What is at the places of a node.
+    /// Forces at the places of a node.
     fn at<'a>(&'a self, node: usize, forces: &'a [Vector2<f64>]) -> impl Iterator<Item = Vector2<f64>> + 'a {
         let own =
             if self.starts.is_empty() { 0..0 } else { self.starts[node] as usize..self.starts[node + 1] as usize };

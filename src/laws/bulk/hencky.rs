@@ -120,7 +120,7 @@ struct ShearStrain {
 }
 
 impl ShearStrain {
-    /// From x = sinh²(d/2), equation (3).
+    /// The shear strain from x = sinh²(d/2), equation (3).
     fn from_sinh_squared(x: f64) -> Self {
         if x == 0.0 {
             return Self { d: 0.0, a: 1.0, l: 1.0 / 3.0 };

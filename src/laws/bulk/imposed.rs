@@ -38,7 +38,7 @@ pub const TEMPERATURE: [&str; 2] = ["temperature_rise", "expansion_stress"];
 #[derive(Clone, Debug)]
 pub struct Imposed {
     law: Arc<dyn Material>,
-    /// A linear law in plane stress, which no stretch across the plane is asked of
+    /// A linear law in plane stress, whose out-of-plane stretch is not evaluated
     flat: bool,
     stressed: bool,
     /// α [1/Θ]
@@ -47,8 +47,8 @@ pub struct Imposed {
 }
 
 impl Imposed {
-    /// A law in a body with an initial stress, or with an expansion α when it is heated, or both; `None` if it does not know
-    /// a stretch across the plane.
+    /// A law in a body with an initial stress, or with an expansion α when it is heated, or both; `None` if it does not
+    /// know an out-of-plane stretch.
     pub fn new(law: impl Into<Arc<dyn Material>>, stressed: bool, expansion: Option<f64>) -> Option<Self> {
         let law = law.into();
         law.spatial()?;
@@ -62,7 +62,7 @@ impl Imposed {
         Self { law, flat, stressed, expansion, names }
     }
 
-    /// F and F₃₃ as the law under it sees them, at a thermal strain.
+    /// F and F₃₃ of the underlying law, without the thermal strain.
     fn elastic<'a>(&self, straining: &Straining<'a>, strain: f64) -> Straining<'a> {
         let Straining { deformation, stretch, dt, old } = *straining;
         let old = &old[..self.law.variables().len()];

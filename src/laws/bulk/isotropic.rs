@@ -4,7 +4,7 @@ use nalgebra::{Matrix2, Vector4};
 
 use super::{MaterialFailure, MaterialResponse, Stretched, cofactor, positive_jacobian};
 
-/// The two invariants that an isotropic law sees in plane strain, and their derivatives.
+/// The two invariants of an isotropic law in plane strain, and their derivatives.
 ///
 /// ```text
 /// J = λ₁ λ₂ = det F                       ∂J/∂F = cof F                          (1)
@@ -34,7 +34,7 @@ pub(super) struct StrainEnergy {
     pub w_jj: f64,
 }
 
-/// Derivatives of W(m, J, h) by the stretch h across the plane, J being that in plane.
+/// Derivatives of W(m, J, h) by the stretch h out of plane, J being that in plane.
 pub(super) struct Across {
     pub w_h: f64,
     pub w_mh: f64,
@@ -53,7 +53,7 @@ impl Invariants {
         Ok(Self { jacobian, volume_strain, distortion, cofactor, deviation })
     }
 
-    /// ln J
+    /// ln J, without cancellation near J = 1.
     pub(super) fn ln_jacobian(&self) -> f64 {
         if self.volume_strain.abs() < 0.5 { self.volume_strain.ln_1p() } else { self.jacobian.ln() }
     }
@@ -84,7 +84,7 @@ impl Invariants {
         MaterialResponse { stress, tangent, energy: w, stress_zz, dissipation: 0.0 }
     }
 
-    /// The answer in plane at the stretch h, and what comes with it across the plane.
+    /// The in-plane response at the stretch h, and its out-of-plane part.
     ///
     /// ```text
     /// P₃₃ = W_h,   ∂P/∂h = 2 W_mh D + W_Jh cof F,   ∂P₃₃/∂h = W_hh                       (5)

@@ -12,9 +12,9 @@ use crate::laws::parameter::InvalidParameter;
 /// W = ½ P:ε,   σ_zz = λ tr ε                             (2)
 /// ```
 ///
-/// The law does not tell the reference from the current configuration: P is reported as the Cauchy stress.
-/// A rotation strains it, so it is for small rotations only; it never inverts. In plane stress it is (1) with
-/// λ* = 2 λ G/(λ + 2G) in place of λ, and σ_zz = 0.
+/// The law does not distinguish the reference from the current configuration: P is reported as the Cauchy stress. A
+/// rotation strains it, so it is for small rotations only; it never inverts. In plane stress it is (1) with λ* = 2 λ
+/// G/(λ + 2G) in place of λ, and σ_zz = 0.
 ///
 /// # Errors
 /// [`MaterialFailure::Inverted`] when F is not finite.

@@ -10,8 +10,8 @@
 //! All have the same two constants, λ and G, and the same response to small strains. [`Viscoelastic`] has a neo-Hookean body
 //! beside a Maxwell arm that relaxes.
 //!
-//! Laws are written in plane strain, F₃₃ = 1. One that also knows what a stretch across the plane does is [`Spatial`], and
-//! can be that of a ring; [`PlaneStress`] is such a law in a plate, and [`Imposed`] one in a body with an initial stress or a
+//! Laws are written in plane strain, F₃₃ = 1. One that also covers an out-of-plane stretch is [`Spatial`], and can be
+//! that of a ring; [`PlaneStress`] is such a law in a plate, and [`Imposed`] one in a body with an initial stress or a
 //! temperature.
 //!
 //! A law may remember some numbers of its own at every quadrature point. They are handled like the state of friction: the
@@ -50,7 +50,7 @@ pub use saint_venant_kirchhoff::SaintVenantKirchhoff;
 pub use spatial::{PlaneStress, Spatial, Stretched};
 pub use viscoelastic::{Viscoelastic, ViscoelasticConstants};
 
-/// What a law answers at the end of an increment; it writes its new variables itself.
+/// Response of a law at the end of an increment; it writes its new variables itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 #[must_use]
@@ -68,13 +68,14 @@ pub struct MaterialResponse {
 }
 
 impl MaterialResponse {
-    /// P, ∂P/∂F and W of a law that has neither stress across the plane nor dissipation, unless these fields are set.
+    /// P, ∂P/∂F and W of a law that has neither out-of-plane stress nor dissipation, unless these fields are set.
     pub fn new(stress: Matrix2<f64>, tangent: Matrix4<f64>, energy: f64) -> Self {
         Self { stress, tangent, energy, stress_zz: 0.0, dissipation: 0.0 }
     }
 }
 
-/// What a law is asked for at one quadrature point: where an increment ends, and what the law remembers from its start.
+/// Input of a law at one quadrature point: deformation at the end of the increment, and internal variables at its
+/// start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 pub struct Straining<'a> {
@@ -126,13 +127,13 @@ impl CauchyStress {
 #[non_exhaustive]
 pub enum MaterialFailure {
     /// The deformation has no volume left: J = det F ≤ 0, or not a number.
-    #[error("the material is turned inside out (J = {jacobian:.3e})")]
+    #[error("the material is inverted (det F = {jacobian:.3e})")]
     Inverted {
         /// J = det F [-]
         jacobian: f64,
     },
     /// The equations of the law were not solved, such as those of a return to its yield surface.
-    #[error("the material law did not converge: {rest:.3e} of the stress {stress:.3e} is left")]
+    #[error("the material law did not converge: residual {rest:.3e} of the stress {stress:.3e}")]
     NotConverged {
         /// what is left out of balance [F/L²]
         rest: f64,
@@ -192,12 +193,12 @@ pub trait Material: Debug + Send + Sync {
         self.respond(&straining, &mut old.clone())
     }
 
-    /// The law in a plate, which has no stress across the plane; none unless it is known.
+    /// The law in a plate, which has no out-of-plane stress; none unless it is known.
     fn plane_stress(&self) -> Option<Box<dyn Material>> {
         None
     }
 
-    /// The law with a stretch across the plane, as rings have it; none unless it is known.
+    /// The law with an out-of-plane stretch, as rings have it; none unless it is known.
     fn spatial(&self) -> Option<&dyn Spatial> {
         None
     }

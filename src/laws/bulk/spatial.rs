@@ -1,16 +1,16 @@
-//! Laws with a stretch across the plane, which plane stress and axisymmetry need.
+//! Laws with an out-of-plane stretch, which plane stress and axisymmetry need.
 //!
-//! Bodies are not sheared across the plane, so F and P have five components each, (11, 21, 12, 22, 33).
+//! Bodies are not sheared out of plane, so F and P have five components each, (11, 21, 12, 22, 33).
 //!
 //! # Plane stress
 //!
-//! Plates: no stress across the plane.
+//! Plates: no out-of-plane stress.
 
 use nalgebra::{Matrix2, Matrix3, Matrix5, Vector2, Vector4, Vector5};
 
 use super::{CauchyStress, Material, MaterialFailure, MaterialResponse, Straining};
 
-/// What a law answers at F with a stretch across the plane.
+/// Response of a law at F with an out-of-plane stretch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretched {
     /// P [F/L²]
@@ -24,7 +24,7 @@ pub struct Stretched {
 }
 
 impl Stretched {
-    /// From the part in plane and what comes across it: P₃₃, ∂P/∂F₃₃ = (∂P₃₃/∂F)ᵀ, ∂P₃₃/∂F₃₃.
+    /// From the in-plane part and the out-of-plane part: P₃₃, ∂P/∂F₃₃ = (∂P₃₃/∂F)ᵀ, ∂P₃₃/∂F₃₃.
     pub(super) fn new(
         (stress, tangent): (Matrix2<f64>, nalgebra::Matrix4<f64>),
         (stress_33, coupling, stiffness): (f64, Vector4<f64>, f64),
@@ -39,7 +39,7 @@ impl Stretched {
     }
 }
 
-/// A law that knows the stretch across the plane.
+/// A law with an out-of-plane stretch.
 pub trait Spatial: Material {
     /// The answer to an increment, as [`Material::respond`], at any F₃₃.
     ///
@@ -120,7 +120,7 @@ pub(super) fn positive_stretch(straining: &Straining) -> Result<f64, MaterialFai
     if h > 0.0 && h.is_finite() { Ok(h) } else { Err(MaterialFailure::Inverted { jacobian }) }
 }
 
-/// A law in plane stress: F₃₃ is what leaves no stress across the plane.
+/// A law in plane stress: F₃₃ is what leaves no out-of-plane stress.
 ///
 /// ```text
 /// τ₃₃ = h P₃₃(F, h) = 0,   h = F₃₃                                            solved for ln h               (1)

@@ -93,7 +93,7 @@ struct Tensor {
 }
 
 impl Tensor {
-    /// From its components xx, yy, xy, zz.
+    /// A tensor from its components xx, yy, xy, zz.
     fn from(components: &[f64]) -> Self {
         let [xx, yy, xy, zz] = [0, 1, 2, 3].map(|k| components[k]);
         Self { plane: Matrix2::new(xx, xy, xy, yy), zz }

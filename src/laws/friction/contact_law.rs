@@ -7,18 +7,18 @@ use serde::{Deserialize, Serialize};
 use super::{Answer, Description, FrictionLaw, FrictionResponse, FrictionState, Sliding, observables};
 use crate::laws::parameter::{InvalidParameter, require_positive};
 
-/// Dilatancy of a contact, with any friction law: asperities ride up on each other as the surfaces slip, until the interface has its
-/// largest opening.
+/// Dilatancy of a contact, with any friction law: asperities override each other as the surfaces slip, until the
+/// interface has its largest opening.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 #[must_use]
 pub struct Dilatancy {
-    /// tan ψ: opening per plastic slip at the start, whichever way it goes; below the least coefficient that friction can come to
-    /// (mu, mu_k, mu_d), for the work that lifts the load is friction's [-]
+    /// tan ψ: initial opening per plastic slip, in either direction of slip; below the lowest friction coefficient of
+    /// the law (mu, mu_k, mu_d), because friction supplies the work of dilatancy [-]
     pub rate: f64,
-    /// d_max: opening that much slip leads to, dδ = tan ψ (1 − δ/d_max) × plastic slip; no limit unless given. The opening δ stands
-    /// in tables and frames as `dilation` [L]
+    /// d_max: opening after long slip, dδ = tan ψ (1 − δ/d_max) × plastic slip; no limit by default. The opening δ is
+    /// `dilation` in tables and frames [L]
     pub limit: Option<f64>,
 }
 
@@ -33,7 +33,7 @@ impl Dilatancy {
         Self { limit: Some(limit), ..self }
     }
 
-    /// δ₁ and ∂δ₁/∂λ.
+    /// Dilation δ₁ after the slip λ, and ∂δ₁/∂λ.
     fn after(self, dilation: f64, slip: f64) -> [f64; 2] {
         let Some(limit) = self.limit else { return [dilation + self.rate * slip, self.rate] };
         let exponent = -slip * self.rate / limit;
@@ -42,7 +42,7 @@ impl Dilatancy {
     }
 }
 
-/// How the surfaces of a contact move apart, or wear, with plastic slip, whatever their law: not at all unless given.
+/// Dilatancy and wear of the surfaces of a contact, independent of its friction law; none by default.
 ///
 /// ```text
 /// λ = |Δu^p|                                         plastic slip of the increment, whichever way it goes
@@ -160,8 +160,8 @@ impl ContactLaw {
         let law = Self::from(law);
         if let Some([value, least]) = offsets.beyond(&law.description) {
             let allowed = format!(
-                "it must be below {least}, the least friction coefficient that the law can come to, or sliding would yield work \
-                 instead of taking it: lower it, or raise the friction"
+                "it must be below {least}, the lowest friction coefficient of the law, or sliding would produce \
+                 energy: lower it, or raise the friction"
             );
             return Err(InvalidParameter { name: "dilatancy.rate", value, allowed: allowed.into() });
         }
@@ -195,7 +195,7 @@ impl ContactLaw {
         self.offsets.moved(old, sliding.pressure, answer?, self.description.stiffness)
     }
 
-    /// The value of an observable in a state, or what stands for it where the law does not know it: NaN if it is a further one.
+    /// The value of an observable in a state, or its default where the law does not define it: NaN for a further one.
     pub fn observe(&self, name: &str, state: &FrictionState) -> f64 {
         match name {
             "dilation" if self.description.opening.contains(&name) => state.opening + state.wear,

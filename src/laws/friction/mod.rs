@@ -1,7 +1,7 @@
 //! The friction-law contract: what an interface point remembers, and how a law answers one increment.
 //!
-//! A law is a pure function of (committed state, increment). It sees scalars in the frame that turns with the
-//! interface, never nodes or meshes, so the same law serves a finite-element interface, a point mass or a test.
+//! A law is a pure function of (committed state, increment). Its arguments are scalars in the frame that rotates with
+//! the interface, never nodes or meshes, so the same law serves a finite-element interface, a point mass or a test.
 //!
 //! Signs: `q` resists positive slip of the slave along +s; pressure is positive in compression.
 //!
@@ -65,7 +65,8 @@ pub struct FrictionResponse {
     pub dtraction_dpressure: f64,
     /// ∂d/∂Δu_t [-]
     pub dopening_dslip: f64,
-    /// ∂d/∂p, below 1/α_n: an opening that grew faster with the pressure than the contact gives way would have no end [L³/F]
+    /// ∂d/∂p, below 1/α_n: an opening that grew faster with the pressure than the contact compliance would be unbounded
+    /// [L³/F]
     pub dopening_dpressure: f64,
     /// Evaluations of the scalar equation of plastic slip that this answer took; 0 where it has a closed form
     pub evaluations: usize,
@@ -111,7 +112,7 @@ impl FrictionResponse {
     }
 }
 
-/// What a law says of one point.
+/// Response of a law at one point.
 pub type Answer = Result<FrictionResponse, LawFailure>;
 
 /// A friction law, integrated over one increment. Pure: the same `old` and `sliding` give the same answer.
@@ -121,7 +122,7 @@ pub type Answer = Result<FrictionResponse, LawFailure>;
 /// p = p̄ − α_n (g − d)                                                d: how far the law holds the surfaces apart (dilatancy)
 /// W₁ − W₀ = ∫ q dλ − ∫ p dd ≥ 0                                     dissipation [F/L]; q²/(2 α_t) is stored
 /// ```
-/// Units: q, p [F/L²], Δu_t, d [L], α_t [F/L³], Δt [T]. A law is asked for the pressure it answers to, so that it never sees
+/// Units: q, p [F/L²], Δu_t, d [L], α_t [F/L³], Δt [T]. A law is called with the pressure that it responds to, so that it never receives
 /// penalty or multiplier; the contact finds the pressure that goes with the opening.
 ///
 /// Where Δt = 0 the law answers to slip and pressure that come up at once, and q stays as it was if neither does: a step begins with
@@ -172,7 +173,7 @@ pub type Answer = Result<FrictionResponse, LawFailure>;
 /// # Ok::<(), LawFailure>(())
 /// ```
 pub trait FrictionLaw: Debug + Send + Sync {
-    /// What the law says of itself, whatever a point does.
+    /// Description of the law, independent of the state of a point.
     fn description(&self) -> Description;
 
     /// State of a point that has not slipped, closed from the start under these tractions, or open where they are 0.
@@ -208,23 +209,23 @@ pub trait FrictionLaw: Debug + Send + Sync {
         None
     }
 
-    /// How fast a point slips under a traction, if the law says so.
+    /// Slip rate under a given traction, for laws that define one.
     fn rates(&self) -> Option<&dyn RateLaw> {
         None
     }
 
-    /// How its answers vary with its parameters, if the law says so.
+    /// Derivatives with respect to the parameters, for laws that provide them.
     fn sensitivities(&self) -> Option<&dyn SensitiveLaw> {
         None
     }
 
-    /// What its parameters mean for the peak of friction, its fall and its healing, if the law says so.
+    /// Peak, weakening and healing by its parameters, for laws that provide them.
     fn onset(&self) -> Option<Onset> {
         None
     }
 }
 
-/// What a friction law says of itself, whatever a point does. What a law does not say is left as in
+/// Description of a friction law, independent of the state of a point. Fields that do not apply stay as in
 /// [`default`](Self::default): no stiffness, no variables, no bounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
@@ -246,7 +247,7 @@ pub struct Description {
     pub takes_means: bool,
     /// Largest |q|/p that a point which has not slipped yet may start with; none for a law that lets an excess slip off [-]
     pub starting_coefficient: Option<f64>,
-    /// Least |q|/p that a point can come to that goes on sliding, at any rate and state; none where there is no such bound, or the
+    /// Lowest |q|/p of a point in continued sliding, at any rate and state; none where there is no such bound, or the
     /// law does not say [-]
     pub least_coefficient: Option<f64>,
     /// −d(q/p)/dδ at its largest: how much friction fast slip takes over its way δ, 0 where it takes none [1/L]
@@ -311,7 +312,10 @@ impl Sliding {
 #[non_exhaustive]
 pub enum LawFailure {
     /// The increment itself is not a finite number.
-    #[error("friction was asked for a slip {slip}, pressure {pressure} and time {dt} that are not all finite")]
+    #[error(
+        "the friction law was evaluated for a slip {slip}, pressure {pressure} and time increment {dt} that are not \
+         all finite"
+    )]
     NotFinite {
         /// slip increment [L]
         slip: f64,
@@ -321,14 +325,15 @@ pub enum LawFailure {
         dt: f64,
     },
     /// The increment goes back in time.
-    #[error("friction was asked for an increment of negative time {dt}")]
+    #[error("the friction law was evaluated for a negative time increment {dt}")]
     NegativeTime {
         /// increment length [T]
         dt: f64,
     },
     /// The equation of plastic slip was not solved, or the sub-steps of the increment did not come to agree.
     #[error(
-        "friction did not converge within {evaluations} evaluations: {rest:.3e} of the trial traction {trial:.3e} is left"
+        "the friction law did not converge within {evaluations} evaluations: residual {rest:.3e} of the trial traction \
+         {trial:.3e}"
     )]
     NotConverged {
         /// evaluations of the equation of plastic slip
@@ -338,8 +343,11 @@ pub enum LawFailure {
         /// |q_tr|: traction without plastic slip [F/L²]
         trial: f64,
     },
-    /// The opening of a law that dilates grows faster with the pressure than the contact gives way.
-    #[error("the opening {opening:.6e} of the friction law and the pressure {pressure:.6e} did not come to agree")]
+    /// The opening of a dilating law grows faster with the pressure than the contact compliance.
+    #[error(
+        "the opening {opening:.6e} of the friction law and the pressure {pressure:.6e} did not converge to a common \
+         solution"
+    )]
     Opening {
         /// d [L]
         opening: f64,
@@ -347,15 +355,15 @@ pub enum LawFailure {
         pressure: f64,
     },
     /// Parameters that vary in time have no good value at a time.
-    #[error("the parameters of the friction law are not finite, or out of their range, at t = {time}: look at `along`")]
+    #[error("the parameters of the friction law are not finite, or out of their range, at t = {time}: check `along`")]
     Undefined {
         /// t [T]
         time: f64,
     },
     /// Parameters that vary in time let the surfaces dilate more than they rub.
     #[error(
-        "the opening per slip {rate} (dilatancy.rate) is not below the least friction coefficient {least} that the law can come to \
-         at t = {time}, and sliding would yield work: lower dilatancy.rate, or see that `along` stays above it"
+        "the opening per slip {rate} (dilatancy.rate) is not below the lowest friction coefficient {least} of the law \
+         at t = {time}, and sliding would produce energy: lower dilatancy.rate, or keep `along` above it"
     )]
     Dilates {
         /// t [T]
@@ -371,12 +379,12 @@ pub enum LawFailure {
         /// q: traction [F/L²]
         traction: f64,
     },
-    /// A registered law has failed; whoever registered it knows why.
-    #[error("a registered friction law gave no answer")]
+    /// A registered law has failed, for a reason of its own.
+    #[error("a registered friction law returned no result")]
     Registered,
 }
 
-/// What acts on a point of an interface that radiates.
+/// Tractions at a point of an interface with radiation damping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointLoad {
     /// τ = q + η V: what friction and radiation damping carry together [F/L²]
@@ -417,7 +425,7 @@ pub trait RateLaw: Debug + Send + Sync {
         0.0
     }
 
-    /// Stick or slip.
+    /// Whether the point sticks or slips.
     fn regime(&self, x: f64, slip_rate: f64) -> Regime;
 }
 

@@ -10,7 +10,7 @@ pub const ALWAYS: [(&str, f64); 3] = [("R", 0.0), ("mu", 0.0), ("structure", 1.0
 /// Parts of an opening that outputs show.
 const OF_OPENING: [&str; 2] = ["dilation", "wear"];
 
-/// What else outputs say of a contact point by name: nothing that a law names may be taken for it.
+/// Names of other outputs at contact points, which laws may not use.
 const TAKEN: [&str; 28] = [
     "time",
     "contact",
@@ -54,7 +54,7 @@ const LONGEST: usize = 64;
 pub fn check_names(description: &Description) -> Result<(), String> {
     let Description { variables, opening, .. } = description;
     if variables.len() > MOST_VARIABLES {
-        return Err(format!("it has {} variables: {MOST_VARIABLES} are the most", variables.len()));
+        return Err(format!("it has {} variables: at most {MOST_VARIABLES} are allowed", variables.len()));
     }
     if let Some(name) = opening.iter().find(|name| !OF_OPENING.contains(name)) {
         let [dilation, wear] = OF_OPENING;
@@ -69,19 +69,17 @@ fn check_each(names: &[&str]) -> Result<(), String> {
         let fits = name.starts_with(char::is_alphabetic) && name.chars().all(|c| c.is_alphanumeric() || c == '_');
         if !fits || name.len() > LONGEST {
             return Err(format!(
-                "the name {name:?} of a variable must begin with a letter, and have letters, digits and _ alone, \
-                 {LONGEST} bytes at most: columns and files of the results have it too"
+                "the name {name:?} of a variable must begin with a letter and contain only letters, digits and _, at \
+                 most {LONGEST} bytes: columns and files of the results are named by it"
             ));
         }
         if TAKEN.iter().any(|taken| taken.eq_ignore_ascii_case(name)) {
-            return Err(format!(
-                "a variable cannot be named `{name}`: results have something else of that name; rename it"
-            ));
+            return Err(format!("a variable cannot be named `{name}`: the results already use that name; rename it"));
         }
         let always =
             ALWAYS.iter().map(|(always, _)| always).find(|always| *always != name && always.eq_ignore_ascii_case(name));
         if let Some(other) = always.or_else(|| names[..k].iter().find(|other| other.eq_ignore_ascii_case(name))) {
-            return Err(format!("the names `{other}` and `{name}` are told apart by capitals at most: rename one"));
+            return Err(format!("the names `{other}` and `{name}` differ at most in capitals: rename one"));
         }
     }
     Ok(())
@@ -99,7 +97,7 @@ pub fn further<'a>(laws: impl IntoIterator<Item = &'a Description>) -> Vec<&'sta
     names
 }
 
-/// The value of an observable, or what stands for it where the law does not know it: NaN if it is a further one.
+/// The value of an observable, or its default where the law does not define it: NaN for a further one.
 pub fn value(law: &dyn FrictionLaw, name: &str, state: &FrictionState) -> f64 {
     let absent = || ALWAYS.iter().find(|(always, _)| *always == name).map_or(f64::NAN, |(_, absent)| *absent);
     law.observe(name, state).unwrap_or_else(absent)

@@ -24,7 +24,7 @@ pub enum FrictionParameters {
     Frictionless {},
     /// Elastic until |q| = μ p, then sliding at constant μ
     Coulomb(CoulombParameters),
-    /// Time-dependent super/subloading-surface friction: slip weakens the interface, rest heals it
+    /// Time-dependent super/subloading-surface friction: slip weakens the interface, stationary contact heals it
     SuperSubloading(SuperSubloadingParameters),
     /// Friction that falls linearly with slip from static to dynamic, and does not heal
     SlipWeakening(SlipWeakeningParameters),
@@ -200,7 +200,7 @@ impl RegisteredParameters {
         let alpha_t = self.alpha_t.unwrap_or(default_alpha_t);
         require_positive("alpha_t", alpha_t)?;
         if let Some(&value) = self.parameters.get("alpha_t") {
-            let allowed = "the stiffness stands beside the parameters, as \"alpha_t\" of the law".into();
+            let allowed = "the stiffness is given beside the parameters, as \"alpha_t\" of the law".into();
             return Err(InvalidParameter { name: "parameters.alpha_t", value, allowed });
         }
         let maker = REGISTER.read().unwrap_or_else(PoisonError::into_inner).get(&self.name).cloned();

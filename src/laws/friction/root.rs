@@ -3,7 +3,7 @@
 /// Evaluations after which the bracket is only halved, which resolves any bracket in about fifty more: the search ends.
 const MOST_PROPOSALS: usize = 100;
 
-/// What f says about a trial argument of [`bracketed_root`].
+/// Value of f at a trial argument of [`bracketed_root`].
 pub(super) struct Argument {
     /// f at the argument
     pub value: f64,

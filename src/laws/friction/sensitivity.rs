@@ -38,10 +38,10 @@ pub trait SensitiveLaw: Debug + Send + Sync {
     /// The parameters it differentiates by, as cases name them.
     fn parameters(&self) -> &'static [&'static str];
 
-    /// How the state of a point that has not slipped varies with a parameter.
+    /// Derivative of the state of a point that has not slipped with respect to a parameter.
     fn start(&self, parameter: &str) -> Variation;
 
-    /// How the state at the end of an increment varies along two directions.
+    /// Derivatives of the state at the end of an increment along two directions.
     ///
     /// # Errors
     /// As of the answer itself.
@@ -54,7 +54,7 @@ pub trait SensitiveLaw: Debug + Send + Sync {
 }
 
 impl Variation {
-    /// Of a law with one variable.
+    /// Variation of a law with one internal variable.
     pub(super) fn new(traction: f64, variable: f64) -> Self {
         let mut variables = [0.0; MOST_VARIABLES];
         variables[0] = variable;
@@ -63,12 +63,12 @@ impl Variation {
 }
 
 impl Direction {
-    /// How much a parameter varies: 1 or 0.
+    /// Derivative of a parameter along this direction: 1 or 0.
     pub(super) fn of(&self, parameter: &str) -> f64 {
         f64::from(u8::from(self.parameter == Some(parameter)))
     }
 
-    /// Of the only variable of a law.
+    /// Derivative of the only internal variable of a law.
     pub(super) fn variable(&self) -> f64 {
         self.state.variables[0]
     }

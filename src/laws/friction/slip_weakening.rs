@@ -112,7 +112,7 @@ struct Slid {
     mu: f64,
     /// |q| = c + μ p [F/L²]
     strength: f64,
-    /// How much of α_t is lost to slip
+    /// Factor α_t/(α_t − w p), w the weakening per slip, by which weakening amplifies slip; 1 at μ_d [-]
     softness: f64,
 }
 
@@ -193,8 +193,8 @@ impl SlipWeakening {
 }
 
 /// How much of the mean of (A + B λ)/(C + D λ) over a stretch of λ is its value at the end, the rest being its value at
-/// the beginning, if the denominator gains the share `z` of itself on the way; a half if it gains nothing, or if slip would
-/// have to cease on the way.
+/// the beginning, if the denominator gains the share `z` of itself along the stretch; a half if it gains nothing, or if
+/// slip would have to cease within it.
 ///
 /// ```text
 /// (1 + z)/z (1 − ln(1 + z)/z)

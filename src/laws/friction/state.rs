@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// Most variables that a law may have of its own.
 pub const MOST_VARIABLES: usize = 4;
 
-/// What friction remembers at one contact point between increments.
+/// Internal state of friction at one contact point between increments.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
 #[must_use]
@@ -24,7 +24,7 @@ pub struct FrictionState {
     pub opening: f64,
     /// w: what of the surfaces has worn away, which `opening` counts [L]
     pub wear: f64,
-    /// Open, stick or slip, as the law sees its last increment
+    /// Open, stick or slip by the law's last increment
     pub regime: Regime,
     /// What else the law remembers, by the names of its [`variables`](super::Description::variables); the rest is 0
     pub variables: [f64; MOST_VARIABLES],

@@ -17,7 +17,7 @@ use super::scale::Scaling;
 use super::solve;
 use super::symbolic::Symbolic;
 
-/// What condensations on the same nodes share: the order of elimination and the structure of the factors.
+/// Common data of condensations on the same nodes: the order of elimination and the structure of the factors.
 pub struct Condensation {
     symbolic: Arc<Symbolic>,
     scaling: Scaling,
@@ -45,7 +45,7 @@ impl Condensation {
         size_of::<f64>() * (self.symbolic.values() + self.kept * self.kept + 2 * self.symbolic.pattern.nodes() * 3)
     }
 
-    /// Eliminate all other nodes from a matrix on the pattern; nothing if a pivot vanished on the way, or there is no room.
+    /// Eliminate all other nodes from a matrix on the pattern; nothing if a pivot is zero, or memory is short.
     pub fn condense(&mut self, matrix: &SparseMatrix) -> Option<Condensed> {
         let Self { symbolic, scaling, kept } = self;
         let mut factors = Factors::default();

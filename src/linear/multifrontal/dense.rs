@@ -15,7 +15,7 @@ const SMALL_PRODUCT: usize = 1 << 22;
 /// A pivot of a matrix scaled to 1 that is nothing but round-off.
 const VANISHED: f64 = 64.0 * f64::EPSILON;
 
-/// What takes the place of a vanished pivot: √ε, so that the error it makes and the growth it causes are alike.
+/// Replacement of a zero pivot: √ε, so that the error it makes and the growth it causes are alike.
 const REPLACEMENT: f64 = 1.490_116_119_384_765_6e-8;
 
 /// The rows and columns of the pivots in a front.
@@ -156,7 +156,7 @@ fn solve_upper(l: MatRef<'_, f64>, x: &mut [f64], rows: usize) {
     solve_upper(l.submatrix(middle, middle, n - middle, n - middle), right, rows);
 }
 
-/// The same for a few columns, one by one.
+/// Substitution for a few columns, one by one.
 struct Substitution<'a> {
     l: MatRef<'a, f64>,
     x: &'a mut [f64],

@@ -326,14 +326,14 @@ impl<'a, P: Send> Job<'a, P> {
         Self { below: jobs.into_values().collect(), forests, chain: Vec::new() }
     }
 
-    /// Children before parents.
+    /// Visit the tree with children before parents.
     pub fn upwards(self, light: &(impl Fn(&Forest, P) + Sync), heavy: &(impl Fn(u32, P) + Sync)) {
         let Self { below, forests, chain } = self;
         Self::at_once(below, forests, &|job| job.upwards(light, heavy), light);
         chain.into_iter().for_each(|(front, part)| heavy(front, part));
     }
 
-    /// Parents before children.
+    /// Visit the tree with parents before children.
     pub fn downwards(self, light: &(impl Fn(&Forest, P) + Sync), heavy: &(impl Fn(u32, P) + Sync)) {
         let Self { below, forests, chain } = self;
         chain.into_iter().rev().for_each(|(front, part)| heavy(front, part));
@@ -358,7 +358,7 @@ impl<'a, P: Send> Job<'a, P> {
     }
 }
 
-/// What fronts have made for each other, by the number of the front below.
+/// Contributions of fronts to their parents, by the number of the child front.
 #[derive(Default)]
 pub struct Waiting(Mutex<HashMap<u32, Vec<f64>>>);
 
@@ -381,7 +381,7 @@ pub fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What becomes of a front.
+/// Treatment of a front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     /// It is eliminated
@@ -401,7 +401,7 @@ impl Action {
     }
 }
 
-/// What becomes of every front when the values `new` follow those `before`, if any, and this is `kept`.
+/// Treatment of every front when the values `new` follow those `before`, if any, and this is `kept`.
 pub fn actions(symbolic: &Symbolic, before: Option<&[f64]>, new: &[f64], kept: &HashMap<u32, Vec<f64>>) -> Vec<Action> {
     let fronts = &symbolic.fronts;
     let Some(before) = before else { return vec![Action::Eliminate; fronts.len()] };

@@ -27,7 +27,7 @@ pub struct Front {
     pub to_parent: Vec<u32>,
     /// The rows below that stay together in the parent; the first `inner_runs` of them are eliminated there
     pub runs: Vec<Run>,
-    /// How many of `runs` are eliminated in the parent
+    /// Number of `runs` that are eliminated in the parent
     pub inner_runs: usize,
     /// The fronts whose contributions are added to this one
     pub children: Vec<u32>,
@@ -70,7 +70,7 @@ pub struct Run {
     pub from: u32,
     /// Its row in the parent
     pub to: u32,
-    /// How many they are
+    /// Number of positions in the run
     pub length: u32,
 }
 

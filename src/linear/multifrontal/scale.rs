@@ -7,10 +7,11 @@ use super::super::SparseMatrix;
 /// The row of a prescribed displacement has its own scale, and a penalty is far stiffer than a solid. Without scaling
 /// neither the choice of a pivot among rows nor the size of a vanished one would mean anything.
 ///
-/// The rows of a point that begins to slip get other scales, and with them fronts change that would stay otherwise. They
-/// are few: where a soft block slides on a linear ground, 2 to 7 % more than those whose values have changed (664 to 676
-/// instead of 651 of 2814 fronts, 1796 to 1950 instead of 1743 to 1826 of 11 000, with penalties of 10 to 1000 E/L). Scales from what is constant
-/// alone would save them, but not bring a stiff penalty to 1, and a vanished pivot would not be told from its round-off.
+/// The rows of a point that begins to slip get other scales, and with them fronts change that would stay otherwise.
+/// They are few: where a soft block slides on a linear ground, 2 to 7 % more than those whose values have changed (664
+/// to 676 instead of 651 of 2814 fronts, 1796 to 1950 instead of 1743 to 1826 of 11 000, with penalties of 10 to 1000
+/// E/L). Scales from what is constant alone would save them, but not bring a stiff penalty to 1, and a zero pivot could
+/// not be distinguished from its round-off.
 #[derive(Default)]
 pub struct Scaling {
     pub rows: Vec<f64>,

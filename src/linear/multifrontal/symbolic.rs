@@ -124,7 +124,7 @@ fn fronts(pattern: &Pattern, elimination: &Elimination, supernodes: &[Supernode]
     fronts
 }
 
-/// Where the rows of a child lie in its parent, a front of the positions `first..end` and then `rows`.
+/// Places of a child's rows in its parent, a front of the positions `first..end` and then `rows`.
 fn place_in_parent(child: &mut Front, first: usize, end: usize, rows: &[u32]) {
     child.to_parent = places(&child.rows, first, end, rows);
     let inner = child.rows.partition_point(|&row| (row as usize) < end);
@@ -150,7 +150,7 @@ fn owners(supernodes: &[Supernode], positions: usize) -> Vec<usize> {
     owners
 }
 
-/// Where the nodes `wanted` lie in a front of the positions `first..end` and then `rows`. All lists ascend.
+/// Places of the nodes `wanted` in a front of the positions `first..end` and then `rows`. All lists ascend.
 fn places(wanted: &[u32], first: usize, end: usize, rows: &[u32]) -> Vec<u32> {
     let mut k = 0;
     let place = |&position: &u32| {

@@ -136,9 +136,9 @@ impl Grid {
             }
             let [x, y]: [f64; 2] = (0.25 * corners.iter().sum::<Vector2<f64>>()).into();
             let cause = match wrong_turns(&self.sides.corners, turn) {
-                0 => "its arcs are too much for its sides: divide it",
-                1 => "it has a corner of a half turn or more: divide it there",
-                _ => "two of its sides cross or fall together: give its corners in turn, one way round",
+                0 => "its arcs distort it too much: divide it",
+                1 => "it has an interior angle of 180° or more: divide it there",
+                _ => "two of its sides cross or coincide: give its corners in order around the block",
             };
             return Err(format!("has elements that are folded or flat, near ({x}, {y}); {cause}"));
         }
@@ -162,7 +162,7 @@ fn area(polygon: &[Vector2<f64>]) -> f64 {
 /// Corners that a side goes between in the map: with growing s or t.
 const ENDS: [[usize; 2]; 4] = [[0, 1], [1, 2], [3, 2], [0, 3]];
 
-/// The four sides.
+/// The four sides of a block.
 struct Sides {
     corners: [Vector2<f64>; 4],
     /// centre of the circle of each, and the angle from its one end to the other
@@ -186,7 +186,8 @@ impl Sides {
                 ));
             }
             if !(angle != 0.0 && angle.abs() < (1.0 - ROUND) * std::f64::consts::PI) {
-                let message = "is a half circle, or none: an arc goes the shorter way round, so divide the block";
+                let message = "spans a half circle, or no angle: an arc follows the shorter direction, so divide the \
+                               block";
                 return Err(format!("arcs[{k}] {message}"));
             }
             arcs[k] = Some((centre, angle));
@@ -239,12 +240,12 @@ impl Sides {
         (at - foot).norm().min(beyond)
     }
 
-    /// How far a side leaves its chord; nothing where it is straight.
+    /// Offset of a curved side from its chord; zero where it is straight.
     fn bulge(&self, side: usize, s: Share) -> Vector2<f64> {
         self.on(side, s) - self.chord(side, s)
     }
 
-    /// The transfinite map.
+    /// Position by the transfinite map.
     fn place(&self, s: Share, t: Share) -> Vector2<f64> {
         let (below, above) = (self.on(0, s), self.on(2, s));
         let (left, right) = (self.bulge(3, t), self.bulge(1, t));
@@ -253,7 +254,7 @@ impl Sides {
     }
 }
 
-/// How the sizes of elements vary along a side: as a geometric series.
+/// Grading of the element sizes along a side, as a geometric series.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Grading {

@@ -103,13 +103,13 @@ impl Join<'_> {
             return Err(self.complain(one, other, &message));
         }
         if !a.iter().zip(&b).all(|(a, b)| together(*a, *b)) {
-            let message = "but its nodes lie elsewhere between the ends: give both the same grading, seen from the same end, \
-                and the same arc";
+            let message = "but its nodes are at other positions between the ends: give both the same grading, seen \
+                           from the same end, and the same arc";
             return Err(self.complain(one, other, message));
         }
         // Round two blocks on either side of an edge this runs in opposite directions.
         if opposite != (self.grids[one.0].upright == self.grids[other.0].upright) {
-            return Err(self.complain(one, other, "on the same side of it: the two lie on each other; remove one"));
+            return Err(self.complain(one, other, "on the same side of it: the two overlap; remove one"));
         }
         self.partners(one, other)?;
         a.into_iter().zip(b).for_each(|(a, b)| self.same.join(a, b));
@@ -120,8 +120,7 @@ impl Join<'_> {
     fn partners(&mut self, one: Side, other: Side) -> Result<(), BlockError> {
         for (side, partner) in [(one, other), (other, one)] {
             if let Some(third) = self.partner[side.0][side.1].replace(partner) {
-                let message =
-                    format!("which is joined to blocks[{}] already: blocks lie on each other; remove one", third.0);
+                let message = format!("which is joined to blocks[{}] already: the blocks overlap; remove one", third.0);
                 return Err(self.complain(one, other, &message));
             }
             if let Some(name) = &self.blocks.blocks[side.0].sides[side.1] {
@@ -141,7 +140,7 @@ impl Join<'_> {
         BlockError::new(format!("blocks[{}]", other.0), what)
     }
 
-    /// How near places of two blocks are the same.
+    /// Distance below which places of two blocks coincide.
     fn near(&self, a: usize, b: usize) -> f64 {
         let corners = [a, b].map(|block| [0, 1, 2, 3].map(|corner| self.grids[block].corner(corner)));
         let sides = corners.iter().flat_map(|c| (0..4).map(|k| (c[(k + 1) % 4] - c[k]).norm()));
@@ -175,8 +174,10 @@ impl Join<'_> {
         let outline = self.grids[b].outline();
         match self.grids[a].inside.iter().find(|at| is_inside(**at, &outline)) {
             Some(at) => {
-                let message =
-                    format!("lies on blocks[{b}], at ({}, {}) for one: move it, or give it another body", at.x, at.y);
+                let message = format!(
+                    "overlaps blocks[{b}], for example at ({}, {}): move it, or give it another body",
+                    at.x, at.y
+                );
                 Err(BlockError::new(format!("blocks[{a}]"), message))
             }
             None => Ok(()),

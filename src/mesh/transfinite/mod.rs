@@ -138,7 +138,7 @@ pub struct Blocks {
     pub apart: Vec<String>,
 }
 
-/// What is wrong with a block, and what to do.
+/// Error of a block, with a remedy.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{place}: {message}")]
 #[non_exhaustive]

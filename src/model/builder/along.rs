@@ -16,12 +16,12 @@ use crate::laws::parameter::UnknownParameter;
 use crate::mesh::names::nearest;
 use crate::model::boundary::Profile;
 
-/// What of friction varies along the slave, and in time: expressions may have the run time t besides x and y.
+/// Friction parameters that vary along the slave and in time: expressions may depend on x, y and the run time t.
 #[derive(Clone, Debug, Default, Serialize, JsonSchema)]
 #[non_exhaustive]
 #[must_use]
 pub struct Along {
-    /// Other laws than `friction` on parts of the slave; where several say so, the first holds
+    /// Other laws than `friction` on parts of the slave; where several apply, the first one is used
     #[schemars(default)]
     pub law: Vec<LawChoice>,
     /// Parameters of `friction`, by name: they replace the numbers given there. A rate enters by its mean over an increment,
@@ -55,7 +55,7 @@ impl Along {
 #[non_exhaustive]
 #[must_use]
 pub struct LawChoice {
-    /// It holds where this is positive
+    /// The law applies where this is positive
     #[serde(rename = "where")]
     pub place: Profile,
     /// Friction law

@@ -19,7 +19,7 @@ use crate::mesh::{Group, Mesh};
 use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::element::{SolidElement, consistent_mass};
 use crate::model::imposed::{InitialStress, Temperature, Thermal};
-use crate::model::told::number;
+use crate::model::text::number;
 use crate::model::{Body, Damping, Model, PointMass};
 
 /// A body.
@@ -187,7 +187,7 @@ pub fn with_imposed(
         Some(imposed) => Ok(Arc::new(imposed)),
         None => {
             let key = if stress.is_some() { "initial_stress" } else { "thermal" };
-            let message = "needs a law that knows a stretch across the plane: take another material, or leave it out";
+            let message = "needs a law with an out-of-plane stretch: take another material, or leave it out";
             Err(ModelError::new(format!("{place}.{key}"), message))
         }
     }
@@ -220,7 +220,7 @@ pub fn check_stress(stress: &InitialStress, nodes: &[usize], mesh: &Mesh, place:
             if zz.is_none() && !mesh.section.is_plate() {
                 return refused(
                     "components.zz",
-                    "is missing: give the stress across the plane as well, 0 if there is none".into(),
+                    "is missing: give the out-of-plane stress as well, 0 if there is none".into(),
                 );
             }
             let given = [("xx", xx), ("yy", yy), ("xy", xy)].into_iter().chain(zz.as_ref().map(|zz| ("zz", zz)));
@@ -230,7 +230,7 @@ pub fn check_stress(stress: &InitialStress, nodes: &[usize], mesh: &Mesh, place:
                 for &node in nodes {
                     let value = defined(profile, mesh.nodes[node], &place)?;
                     if key == "zz" && value != 0.0 && mesh.section.is_plate() {
-                        let message = format!("is {value}: a plate has no stress across its plane, so leave it out");
+                        let message = format!("is {value}: plane stress has no out-of-plane stress, so leave it out");
                         return Err(ModelError::new(place, message));
                     }
                 }
@@ -259,8 +259,8 @@ pub fn check_stiffness(
     };
     let [largest, shear, x, y] = [largest, shear, mesh.nodes[node].x, mesh.nodes[node].y].map(number);
     let message = format!(
-        "reaches {largest} at ({x}, {y}), and the shear modulus is {shear}: no body bears so much at rest; check the units, or take \
-         material linear, which adds stresses without limit"
+        "reaches {largest} at ({x}, {y}), and the shear modulus is {shear}: too much for a body at rest; check the \
+         units, or take material linear, which superposes stresses without limit"
     );
     Err(ModelError::new(place, message))
 }
@@ -301,7 +301,7 @@ fn check_expansion(amplitude: &Amplitude, body: usize, thermal: Thermal, place: 
             let stretch = 1.0 + thermal.expansion * (value - thermal.reference);
             if !value.is_finite() || stretch <= 0.0 {
                 let [value, time, x, y] = [value, time, at.x, at.y].map(number);
-                let cause = if stretch <= 0.0 { ", at which the body has shrunk to nothing" } else { "" };
+                let cause = if stretch <= 0.0 { ", at which the body has no volume left" } else { "" };
                 let message =
                     format!("is {value} at t = {time}, (x, y) = ({x}, {y}){cause}: check temperature and expansion");
                 return Err(ModelError::new(place, message));

@@ -23,8 +23,8 @@ const LOOSEST: f64 = 1e-2;
 pub fn checked_newton(newton: NewtonSettings) -> Checked<NewtonSettings> {
     if !(newton.tolerance > 0.0 && newton.tolerance <= LOOSEST) {
         let message = format!(
-            "is {}: must be above 0 and at most {LOOSEST}, the share of the forces that may be out of balance (1e-8 is the \
-             default)",
+            "is {}: must be above 0 and at most {LOOSEST}, the fraction of the forces that may be out of balance (1e-8 \
+             is the default)",
             newton.tolerance
         );
         return Err(ModelError::new("newton.tolerance", message));
@@ -51,8 +51,9 @@ pub fn check_rows(model: &Model) -> Checked<()> {
     match rows <= MOST_INCREMENTS {
         true => Ok(()),
         false => {
-            let message =
-                format!("is {interval:e}: that makes {rows:.1e} rows of results, and {MOST_INCREMENTS:e} are the most");
+            let message = format!(
+                "is {interval:e}: that makes {rows:.1e} rows of results, at most {MOST_INCREMENTS:e} are allowed"
+            );
             Err(ModelError::new("output.interval", message))
         }
     }
@@ -68,7 +69,7 @@ pub fn checked_times(times: Vec<f64>, steps: &[Step]) -> Checked<Vec<f64>> {
             return refused(format!("is {time}: must be after {start} and not after {end}, the end of the last step"));
         }
         if k > 0 && *time <= times[k - 1] {
-            return refused(format!("is {time}, but {} comes before it: times must ascend", times[k - 1]));
+            return refused(format!("is {time}, but {} comes before it: times must increase", times[k - 1]));
         }
     }
     Ok(times)
@@ -83,8 +84,8 @@ pub fn check_schemes(contacts: &[Contact], model: &Model) -> Checked<()> {
         |name: &str, key: &str, message: String| Err(ModelError::new(format!("contacts.{name}.{key}"), message));
     if let (Some(pair), Some(step)) = (augmented, model.steps.iter().find(|step| step.scheme.theta() > 1.0)) {
         let message = format!(
-            "the step `{}` seeks equilibrium beyond its increments (Wilson-θ), where multipliers mean nothing: leave it out, \
-             or take another scheme",
+            "the step `{}` solves for equilibrium beyond the end of its increments (Wilson-θ), where multipliers have \
+             no meaning: leave it out, or take another scheme",
             step.name
         );
         return refused(&pair.name, "normal.penetration", message);
@@ -127,7 +128,7 @@ pub fn check_quasi_dynamic(model: &Model) -> Checked<()> {
             return Err(ModelError::new(format!("bodies.{}.{key}", body.name), message));
         }
         if !(model.plates.is_empty() && model.linkage.is_empty()) {
-            return Err(ModelError::new("plates", "are not for quasi_dynamic steps: lead the side by supports"));
+            return Err(ModelError::new("plates", "are not for quasi_dynamic steps: drive the side by supports"));
         }
         model.contacts.iter().try_for_each(check_contact)?;
         check_nodes(model)?;
@@ -152,12 +153,13 @@ fn check_contact(pair: &ContactPair) -> Checked<()> {
     if pair.fluid.is_some() {
         return refused(
             ".fluid_pressure",
-            "is not for quasi_dynamic steps, which know no change of pressure: take static steps with radiation_damping",
+            "is not for quasi_dynamic steps, which ignore changes of pressure: take static steps with \
+             radiation_damping",
         );
     }
     if let Some(name) = pair.laws.iter().find_map(|law| law.description.opening.first()) {
         let key = if *name == "wear" { ".wear" } else { ".dilatancy" };
-        return refused(key, "is not for quasi_dynamic steps, which know no change of pressure: leave it out");
+        return refused(key, "is not for quasi_dynamic steps, which ignore changes of pressure: leave it out");
     }
     if pair.laws.iter().any(|law| law.law.rates().is_none()) {
         let message = "has no slip rate that follows from traction and state, as quasi_dynamic steps need it: take \
@@ -180,20 +182,20 @@ fn check_nodes(model: &Model) -> Checked<()> {
             let Some(point) = point else {
                 let own: Vec<usize> = slave.position.iter().map(|(node, _)| *node).collect();
                 return refused(format!(
-                    "nothing faces the slave at node {}, as quasi_dynamic steps need it",
+                    "the slave node {} has no projection on the master, as quasi_dynamic steps need it",
                     tags(&own)
                 ));
             };
             let Some((own, master)) = point.facing() else {
                 return refused(format!(
-                    "nodes {} meet in one point: quasi_dynamic steps need every slave node to face a master node (and \
-                     method node_to_segment or mortar)",
+                    "nodes {} coincide: quasi_dynamic steps need a master node opposite every slave node (and method \
+                     node_to_segment or mortar)",
                     tags(&point.nodes)
                 ));
             };
             for node in std::iter::once(own).chain(master).map(|node| model.ties.original(node)) {
                 if !seen.insert(node) {
-                    return refused(format!("node {} faces two others: quasi_dynamic steps need pairs", tags(&[node])));
+                    return refused(format!("node {} has two partners: quasi_dynamic steps need pairs", tags(&[node])));
                 }
             }
         }
@@ -230,7 +232,7 @@ fn check_supports(place: &str, step: &Step, model: &Model) -> Checked<()> {
         };
         if !is_even {
             return refused(
-                "supports go evenly within a quasi_dynamic step: give a value or a rate, and a step a kink",
+                "supports vary linearly within a quasi_dynamic step: give a value or a rate, and one step per kink",
             );
         }
     }
@@ -246,13 +248,16 @@ fn check_loads(place: &str, step: &Step) -> Checked<()> {
     }
     if !loads.pressures.is_empty() {
         return refused(
-            "pressures turn with the surface, and are not for quasi_dynamic steps: take a dead_pressure or a traction",
+            "pressures rotate with the surface, and are not for quasi_dynamic steps: take a dead_pressure or a \
+             traction",
         );
     }
     let of_springs = loads.springs.iter().filter_map(|spring| spring.driver.as_ref());
     let mut amplitudes = loads.dead.iter().map(|load| &load.amplitude).chain(of_springs);
     if amplitudes.any(|Amplitude { drive, span, .. }| !is_even(drive, *span, step.span)) {
-        return refused("loads grow evenly within a quasi_dynamic step: give a value or a rate, and a step a kink");
+        return refused(
+            "loads vary linearly within a quasi_dynamic step: give a value or a rate, and one step per kink",
+        );
     }
     Ok(())
 }

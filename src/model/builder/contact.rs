@@ -27,58 +27,60 @@ pub struct Contact {
     /// Edge group whose points are kept out of the master, the finer or softer side; or a group of points, each with the
     /// `area`
     pub slave: String,
-    /// Area that each point of a slave group of points stands for, with the thickness or the full turn; it does not change.
-    /// Edges have lengths of their own [L, the thickness being 1, or L²]
+    /// Tributary area of each point of a slave group of points, with the thickness or the full turn; it does not
+    /// change. Edges have lengths of their own [L, the thickness being 1, or L²]
     pub area: Option<f64>,
-    /// Edge group, or a rigid body. The slave's group again: contact of the surface with itself, each point of which then
-    /// stands for half its length, because every contact is met from both sides
+    /// Edge group, or a rigid body. The slave's group again: self-contact of the surface; each point then has half its
+    /// tributary length, because every contact is evaluated from both sides
     pub master: MasterSide,
-    /// Where contact is evaluated. Unless given: mortar where an edge of either side is quadratic or a side curved (its
-    /// direction turns by more than 1° between two corners of more than 45°); gauss_to_segment between straight linear
-    /// edges, with a `smooth` master, and where `points` are given
+    /// Contact method. By default mortar where an edge of either side is quadratic or a side curved (its direction
+    /// turns by more than 1° between two corners of more than 45°); gauss_to_segment between straight linear edges,
+    /// with a `smooth` master, and where `points` are given
     pub method: Option<Method>,
-    /// Gauss points a slave edge (gauss_to_segment), 2 to 4; 2 unless given
+    /// Gauss points per slave edge (gauss_to_segment), 2 to 4; default 2
     pub points: Option<usize>,
-    /// Whether the master's straight edges are taken for a smooth curve through their nodes (not by mortar), so that nothing
-    /// jumps where a slave slides from one to the next. Corners of more than 45° stay
+    /// Whether the master's straight edges are replaced by a smooth curve through their nodes (not with mortar), so
+    /// that forces do not jump where a slave slides from one edge to the next. Corners of more than 45° remain
     #[serde(default)]
     pub smooth: bool,
-    /// How far the surfaces may slide on each other: any way (finite), or by a small part of the distance between nodes (small)
+    /// Sliding range: finite, or small compared with the distance between nodes
     #[serde(default)]
     pub sliding: SlidingRange,
     /// Normal contact
     #[serde(default)]
     pub normal: Normal,
-    /// Whether what the surfaces overlap at the start is brought in over the first step (shrink fit) instead of at once
+    /// Whether the initial overlap of the surfaces is applied gradually over the first step (shrink fit) instead of at
+    /// once
     #[serde(default)]
     pub shrink_fit: bool,
-    /// Implicit dynamics: the mass of the slave's nodes is moved to the other nodes of their elements, so that an impact does
-    /// not set them ringing on the contact's stiffness, and the contact force with them
+    /// Implicit dynamics: the mass of the slave's nodes is moved to the other nodes of their elements, so that impact
+    /// does not excite spurious oscillation of these nodes and of the contact force
     #[serde(default)]
     pub massless: bool,
     /// Friction law
     pub friction: Friction,
-    /// How far the surfaces move apart with plastic slip
+    /// Dilatancy: opening by plastic slip
     pub dilatancy: Option<Dilatancy>,
-    /// k of Archard's law: the surfaces wear away by dw = k p × plastic slip, whichever way it goes, and come nearer; k is the wear
-    /// coefficient over the hardness. The depth w stands in tables and frames as `wear` [L²/F]
+    /// k of Archard's law: the surfaces wear by dw = k p × plastic slip, in either direction of slip; k is the wear
+    /// coefficient over the hardness. The wear depth w is `wear` in tables and frames [L²/F]
     pub wear: Option<f64>,
-    /// Static steps: a traction η × slip rate that resists slip beside friction, in place of the inertia that is left out: the
-    /// shear waves that slip would send into unbounded bodies take it away. A number is η [F·T/L³]; true is that of the
-    /// bodies, 1/η = 1/Z₁ + 1/Z₂ with Z = ρ c_s of each side: G/(2 c_s) where both are alike, Z on a rigid master. Dynamic and
-    /// explicit steps have inertia, and leave it out
+    /// Static steps: radiation damping, a traction η × slip rate that resists slip in addition to friction and
+    /// approximates the inertia that is neglected, by shear waves radiated into unbounded bodies. A number is η
+    /// [F·T/L³]; true takes the impedances of the bodies, 1/η = 1/Z₁ + 1/Z₂ with Z = ρ c_s of each side: G/(2 c_s) for
+    /// equal bodies, Z on a rigid master. Dynamic and explicit steps have inertia, and omit it
     #[serde(default)]
     pub radiation_damping: Radiation,
-    /// p_w: pressure of a fluid between the surfaces, zero or positive; expressions may have the run time t besides the
-    /// reference position x, y of the slave. It pushes both sides apart wherever the master faces the slave, closed or open, beside
-    /// the pressure p that the surfaces carry; friction, `initial.pressure` and all outputs called pressure are this effective p
-    /// alone. It is given, and does not flow. Not for quasi_dynamic steps [F/L²]
+    /// p_w: pressure of a fluid between the surfaces, zero or positive; expressions may depend on the run time t and on
+    /// the reference position x, y of the slave. It acts on both surfaces wherever the slave projects onto the master,
+    /// closed or open, in addition to the contact pressure p; friction, `initial.pressure` and all outputs called
+    /// pressure use this effective p only. The pressure is prescribed: there is no flow. Not for quasi_dynamic steps
+    /// [F/L²]
     pub fluid_pressure: Option<Profile>,
-    /// What of friction varies along the slave, and in time
+    /// Friction parameters that vary along the slave and in time
     #[serde(default)]
     pub along: Along,
-    /// Tractions and structure at the start of a contact that starts closed. The gap of every slave point is then counted
-    /// from where the pressure acts at its initial position, all through the run
+    /// Tractions and structure at the start of a contact that starts closed. The gap of every slave point is then
+    /// measured, throughout the run, relative to the gap at which this pressure acts in its initial position
     pub initial: Option<InitialTractions>,
 }
 
@@ -87,28 +89,28 @@ pub struct Contact {
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct Normal {
-    /// α_n: pressure per penetration [F/L³]; unless given 10 (λ + 2G)/h, with λ + 2G of the softer of the two sides and the
-    /// depth h of the elements behind the slave. A slave group of points has none behind it and needs a number
+    /// α_n: pressure per penetration [F/L³]; default 10 (λ + 2G)/h, with λ + 2G of the softer body and the depth h of
+    /// the slave's elements. A slave group of points has no elements and needs a number
     pub alpha_n: Option<f64>,
-    /// Largest penetration left [L]: the pressure is raised until no closed gap is larger (augmented Lagrangian by Uzawa's
-    /// method), so that the answer does not depend on alpha_n; penalty alone unless given
+    /// Largest penetration allowed [L]: the pressure is increased until no penetration is larger (augmented Lagrangian
+    /// by Uzawa's method), so that the solution does not depend on alpha_n; default: penalty only
     pub penetration: Option<f64>,
 }
 
-/// How far surfaces may slide on each other, and turn.
+/// Sliding range of the surfaces of a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[schemars(rename = "Sliding")]
 #[non_exhaustive]
 pub enum SlidingRange {
-    /// Any way: every point meets what it faces at the time
+    /// Finite sliding and rotation: every point is projected on the current master
     #[default]
     Finite,
-    /// A small part of the distance between nodes: every point keeps the foot, the normal, the weights of the nodes and the
-    /// length that it has at the start, so that gap and slip are linear in the displacements. With linear bodies nothing but
-    /// friction and opening is nonlinear then. For small rotations only; what nothing faces at the start never touches. A run
-    /// warns where a point slides by more than a tenth of the distance between nodes, or a surface turns or stretches by more
-    /// than 0.02. Not for contact of a surface with itself
+    /// Slip small compared with the distance between nodes: every point keeps its initial projection, normal, nodal
+    /// weights and tributary length, so that gap and slip are linear in the displacements. With linear bodies, only
+    /// friction and opening are nonlinear then. For small rotations only; points without a projection at the start
+    /// never come into contact. A run warns where a point slides by more than a tenth of the distance between nodes, or
+    /// a surface rotates or stretches by more than 0.02. Not for self-contact
     Small,
 }
 
@@ -137,10 +139,10 @@ pub enum MasterSide {
     },
     /// A rigid body bounded by straight lines
     Polyline {
-        /// Its corners, the solid on the right of the way; the first again at the end closes it [L]
+        /// Its corners, with the solid on the right in their order; the first corner repeated at the end closes it [L]
         points: Vec<[f64; 2]>,
     },
-    /// Edge group of the mesh; the slave's own is contact of the surface with itself
+    /// Edge group of the mesh; the slave's own group means self-contact
     #[serde(skip)]
     #[schemars(!skip, untagged)]
     Group(String),
@@ -163,7 +165,7 @@ impl From<&str> for MasterSide {
 #[serde(untagged, expecting = "must be true, false or a number")]
 #[non_exhaustive]
 pub enum Radiation {
-    /// That of the bodies' impedances, dashpots in series, or none
+    /// true: from the impedances of the bodies, as dashpots in series; false: none
     OfBodies(bool),
     /// η [F·T/L³]
     Given(f64),
@@ -187,11 +189,11 @@ pub struct InitialTractions {
     pub traction: Option<Profile>,
     /// 1/R*: structure of the super/subloading law, from 1 to μ_s/μ_k; that of the law unless given [-]
     pub structure: Option<Profile>,
-    /// Whether an initial stress of the bodies is in equilibrium with these tractions. Displacements and stresses of the
-    /// run are then those that come on top of the initial stress
+    /// Whether an initial stress of the bodies is in equilibrium with these tractions. Displacements and stresses of
+    /// the run are then changes from the initial stress
     #[serde(default)]
     pub balanced: bool,
-    /// Instead of pressure and traction: those with which the `initial_stress` of the slave's body ends at the contact, p = −n·σn
+    /// Instead of pressure and traction: those of the `initial_stress` of the slave's body at the contact, p = −n·σn
     /// (less the pressure of a fluid at the start) and q = s·σn, with the normal n and the tangent s of the master
     #[serde(default)]
     pub of_bodies: bool,

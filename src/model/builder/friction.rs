@@ -62,8 +62,9 @@ impl Friction {
         self.parameters.as_ref()
     }
 
-    /// With other friction at the points where a profile is positive at the start; of several the first holds. Messages name
-    /// profile and friction by `name`, such as `along.law[0]`.
+    /// With other friction in the region where a profile is positive at the start; of several the first holds. Messages
+    /// name profile and friction by `name`, such as `along.law[0]`.
+    #[must_use]
     pub fn in_region(mut self, name: &str, profile: Profile, friction: impl Into<Self>) -> Self {
         let friction = Self { name: format!("{name}.friction"), ..friction.into() };
         self.elsewhere.push((format!("{name}.where"), profile, friction));
@@ -233,8 +234,7 @@ pub fn check_profile(profile: &Profile, place: &str) -> Checked<()> {
 pub fn check_in_time(profile: &Profile, place: &str) -> Checked<()> {
     let parameter = place.rsplit('.').next().unwrap_or_default();
     if profile.depends_on_time() && OF_THE_START.contains(&parameter) {
-        let message =
-            format!("{parameter} is one number a point from the start on: the variables are x and y, and not t");
+        let message = format!("{parameter} is constant in time at each point: the variables are x and y, and not t");
         return Err(ModelError::new(place, message));
     }
     let (name, table) = match profile {
@@ -247,7 +247,7 @@ pub fn check_in_time(profile: &Profile, place: &str) -> Checked<()> {
         return Err(ModelError::new(format!("{place}.{name}"), message));
     }
     let Some(pair) = table.windows(2).find(|pair| pair[1][0] < pair[0][0]) else { return Ok(()) };
-    let message = format!("the coordinates of the table must ascend: {} follows {}", pair[1][0], pair[0][0]);
+    let message = format!("the coordinates of the table must increase: {} follows {}", pair[1][0], pair[0][0]);
     Err(ModelError::new(format!("{place}.{name}"), message))
 }
 
@@ -264,7 +264,7 @@ struct InTime {
     law: Arc<LawAt>,
     /// α_t of a law that has none of its own [F/L³]
     alpha_t: f64,
-    /// How its surfaces move apart with slip
+    /// Dilatancy and wear of its surfaces
     offsets: Offsets,
 }
 

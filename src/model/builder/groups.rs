@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::{Checked, ModelError};
 use crate::mesh::{Edge, Group, Mesh};
-use crate::model::told::number;
+use crate::model::text::number;
 use crate::model::written::written;
 use crate::model::{Model, WatchedSet};
 
@@ -69,7 +69,7 @@ fn nearest(mesh: &Mesh, point: [f64; 2]) -> Result<usize, String> {
     match near <= sides.fold(round_off, f64::max) {
         true => Ok(node),
         false => Err(format!(
-            "no node is near ({x}, {y}): the nearest, {tag}, lies {} away, farther than the elements there are long",
+            "no node is near ({x}, {y}): the nearest, {tag}, lies {} away, farther than the size of the elements there",
             number(near)
         )),
     }

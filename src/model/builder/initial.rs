@@ -45,7 +45,7 @@ pub fn velocities(
 pub fn launch(step: &LoadStep, scheme: Scheme, place: &str, model: &Model) -> Checked<Vec<(usize, [f64; 2])>> {
     let place = format!("{place}.velocity");
     if !step.velocity.is_empty() && !scheme.is_dynamic() {
-        return Err(ModelError::new(place, "is for dynamic and explicit steps: a static one knows no velocities"));
+        return Err(ModelError::new(place, "is for dynamic and explicit steps: a static one has no velocities"));
     }
     check_velocities(&place, &step.velocity, model)?;
     let mut given = Given { velocity: vec![None; model.mesh.nodes.len()], model };
@@ -112,8 +112,7 @@ pub fn close(pair: &mut ContactPair, given: &InitialTractions, slave: &str, mode
         if traction.abs() > limit * (1.0 + ROUNDED) {
             let mu = law.observe("mu", &law.law.initial_state(0.0, 0.0));
             let message = format!(
-                "is {traction}: the initial strength is exceeded already, which is mu p = {limit} with mu = {mu} and \
-                 p = {pressure}"
+                "is {traction}: it exceeds the initial strength, mu p = {limit} with mu = {mu} and p = {pressure}"
             );
             return Err(ModelError::new(format!("{place}.traction"), message));
         }
@@ -125,7 +124,8 @@ pub fn close(pair: &mut ContactPair, given: &InitialTractions, slave: &str, mode
 
 fn faces_nothing(pair: &ContactPair, point: usize, model: &Model, place: &str) -> ModelError {
     let at = pair.points[point].at(&model.mesh.undeformed());
-    let message = format!("the slave point at ({}, {}) faces no part of the master: it cannot be pressed", at.x, at.y);
+    let message =
+        format!("the slave point at ({}, {}) has no projection on the master: it cannot carry a pressure", at.x, at.y);
     ModelError::new(place, message)
 }
 
@@ -190,7 +190,7 @@ fn of_bodies(
         if pressure < -ROUNDED * largest || largest == 0.0 && pressure < 0.0 {
             let at = position(&pair.points[point], &model.mesh);
             return refused(format!(
-                "gives the pressure {pressure} at ({}, {}): the stress pulls there, which a contact cannot",
+                "gives the pressure {pressure} at ({}, {}): the stress is tensile there, which contact cannot carry",
                 at.x, at.y
             ));
         }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use super::groups::Place;
 use crate::model::boundary::Drive;
 
-/// A load: exactly one kind an entry. It replaces the load of its kind that an earlier step gave there.
+/// A load: exactly one kind per entry. It replaces the load of the same kind and place of an earlier step.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(not(feature = "internals"), non_exhaustive)]
@@ -29,22 +29,22 @@ pub struct Load {
     /// Force on every node of the group [F]
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub force: Option<Change<Components>>,
-    /// Force on edges as a whole, spread over them as an even traction: a unit of depth in plane strain, the thickness of a
-    /// plate, the full turn of a ring. Its expressions depend on t alone [F]
+    /// Resultant force on edges, applied as a uniform traction: per unit of depth in plane strain, for the thickness in
+    /// plane stress, per full turn in axisymmetry. Its expressions depend on t only [F]
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub total_force: Option<Change<Components>>,
-    /// Moment on a plate that moves as a rigid body, counter-clockwise; it turns with the plate [F L]
+    /// Moment on a loading plate that moves as a rigid body, counter-clockwise; it rotates with the plate [F L]
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub moment: Option<Change<Drive>>,
-    /// Spring at every node of the group, to the ground or to a moving driver; what it does to the node counts as work
-    /// from outside
+    /// Spring at every node of the group, to the ground or to a moving driver; its work on the node counts as external
+    /// work
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub spring: Option<Change<SpringLoad>>,
     /// Dashpot at every node of the group, to the ground or to a moving driver
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub dashpot: Option<Change<DashpotLoad>>,
-    /// true: a side of a body absorbs waves, as if the body went on (Lysmer-Kuhlemeyer: dashpots rho c_p along the normal
-    /// and rho c_s along the side, of the undeformed body); false or null ends it
+    /// true: an absorbing side, as if the body were unbounded there (Lysmer-Kuhlemeyer: dashpots rho c_p along the
+    /// normal and rho c_s along the side, of the undeformed body); false or null ends it
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub absorbing: Option<Change<bool>>,
 }
@@ -118,7 +118,7 @@ pub struct SpringLoad {
     /// Stiffness in y [F/L]
     #[serde(default)]
     pub ky: f64,
-    /// Displacement of the far end; the ground unless given [L]
+    /// Displacement of the far end; default: the ground [L]
     pub driver: Option<Components>,
 }
 
@@ -147,7 +147,7 @@ pub struct DashpotLoad {
     /// Coefficient in y [F T/L]
     #[serde(default)]
     pub cy: f64,
-    /// Velocity of the far end; the ground unless given [L/T]
+    /// Velocity of the far end; default: the ground [L/T]
     pub driver: Option<Components>,
 }
 
@@ -251,13 +251,13 @@ impl Load {
         Self { force: Some(force.into()), ..Self::on(on) }
     }
 
-    /// Force on edges as a whole, spread over them as an even traction: a unit of depth in plane strain, the thickness of a
-    /// plate, the full turn of a ring [F].
+    /// Resultant force on edges, applied as a uniform traction: per unit of depth in plane strain, for the thickness in
+    /// plane stress, per full turn in axisymmetry [F].
     pub fn total_force(on: impl Into<Place>, force: impl Into<Change<Components>>) -> Self {
         Self { total_force: Some(force.into()), ..Self::on(on) }
     }
 
-    /// A moment on a plate that turns, counter-clockwise [F L].
+    /// A moment on a plate that can rotate, counter-clockwise [F L].
     pub fn moment(on: impl Into<Place>, moment: impl Into<Change<Drive>>) -> Self {
         Self { moment: Some(moment.into()), ..Self::on(on) }
     }

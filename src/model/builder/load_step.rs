@@ -12,7 +12,7 @@ use crate::model::boundary::{BodyTemperature, Drive};
 use crate::model::scheme::{Scheme, nine_tenths};
 use crate::model::step::ForceComponent;
 
-/// Share of a force within which it is met unless told otherwise.
+/// Default relative tolerance of the force that ends a step.
 #[doc(hidden)]
 pub const MET: f64 = 1e-6;
 
@@ -27,40 +27,42 @@ pub struct LoadStep {
     pub name: String,
     /// Length of the step [T]
     pub duration: f64,
-    /// Time scheme; inherited from the step before unless given, static in the first step
+    /// Time scheme; by default inherited from the previous step, static in the first step
     pub scheme: Option<Scheme>,
-    /// Increments; inherited from the step before unless given, a tenth of the first step
+    /// Increments; by default inherited from the previous step, a tenth of the first step
     pub dt: Option<IncrementSettings>,
-    /// Static steps only, where bodies are held by nothing until contact holds them: dashpots at all nodes of every body
-    /// resist motion, at the start of the step as if this share of the body's stiffness lambda + 2G moved it in the
-    /// time of the step; they fade linearly and are gone at its end, which takes at least two increments. 1e-3 is a good
-    /// start. Not inherited
+    /// Static steps only, for bodies that are unconstrained until contact closes: dashpots at all nodes of every body
+    /// resist motion, at the start of the step with this fraction of the body's stiffness lambda + 2G for a motion over
+    /// the duration of the step; they fade linearly to zero at its end, which takes at least two increments. 1e-3 is a
+    /// good start. Not inherited
     pub stabilize: Option<f64>,
-    /// Static and implicit steps: the step goes on explicitly while a contact slips fast. Not inherited
+    /// Static and implicit steps: automatic switch to explicit integration while a contact slips fast. Not inherited
     pub rupture: Option<RuptureSettings>,
-    /// Velocity [x, y] that whole bodies or point masses take when this step begins, a dynamic or explicit one: settle under gravity,
-    /// then launch. What it changes of the kinetic energy counts as work from outside. Supported nodes keep to their supports [L/T]
+    /// Velocity [x, y] given to whole bodies or point masses at the start of this step, which is dynamic or explicit:
+    /// settle under gravity, then launch. The change of kinetic energy counts as external work. Supported nodes follow
+    /// their supports [L/T]
     #[serde(default)]
     pub velocity: BTreeMap<String, [f64; 2]>,
-    /// Damping of bodies from this step on, in place of what the body or a step before has; inherited. Statics know none
+    /// Damping of bodies from this step on, replacing that of the body or of an earlier step; inherited. No effect in
+    /// static steps
     #[serde(default)]
     pub damping: BTreeMap<String, Damping>,
-    /// Static and implicit steps: the step ends before its time when a reaction comes to a value, and those after it begin then.
-    /// A step that comes to its own end without stops the run. Not inherited
+    /// Static and implicit steps: the step ends early when a reaction reaches a value, and later steps begin then. If
+    /// the step ends before the reaction reaches it, the run stops. Not inherited
     pub until: Option<UntilSettings>,
-    /// Temperature of bodies that have `thermal` [Θ]; inherited, and replaced where the same body is named again. A number is reached
-    /// linearly at the end of the step, from the temperature at its start; expressions may have the reference position x, y
-    /// and the run time t
+    /// Temperature of bodies that have `thermal` [Θ]; inherited, and replaced where the same body is named again. A
+    /// number is reached linearly at the end of the step, from the temperature at its start; expressions may depend on
+    /// the reference position x, y and the run time t
     #[serde(default)]
     pub temperature: BTreeMap<String, BodyTemperature>,
-    /// Supports; inherited, and replaced where the same group and direction is named again. One that null frees is gone at
-    /// once in dynamic and explicit steps; in a static step, also while `rupture` makes it explicit, its reaction stays as a
-    /// force that fades linearly over the step
+    /// Supports; inherited, and replaced where the same group and direction is named again. A support released by null
+    /// ends at once in dynamic and explicit steps; in a static step, also while `rupture` makes it explicit, its
+    /// reaction remains as a force that fades linearly over the step
     #[serde(default)]
     pub supports: Vec<Support>,
-    /// Loads; inherited, and replaced where the same group and kind is named again. In any scheme null takes a pressure,
-    /// traction, force or gravity linearly to zero over the step, as the value 0 would, and ends springs, dashpots and
-    /// absorbing sides at once. A table or expression makes an end as sudden as it is to be
+    /// Loads; inherited, and replaced where the same group and kind is named again. In any scheme null reduces a
+    /// pressure, traction, force or gravity linearly to zero over the step, as the value 0 would, and ends springs,
+    /// dashpots and absorbing sides at once. For a sudden end, use a table or expression
     #[serde(default)]
     pub loads: Vec<Load>,
 }
@@ -74,14 +76,15 @@ pub struct LoadStep {
 pub struct IncrementSettings {
     /// First increment [T]
     pub initial: f64,
-    /// Increments are not cut below this [T]; initial/1000 unless given, with `error` initial/10⁶, in quasi_dynamic steps what
+    /// Shortest increment [T]; default initial/1000, with `error` initial/10⁶, in quasi_dynamic steps the shortest that
     /// round-off of the time allows
     pub min: Option<f64>,
-    /// Increments do not grow beyond this [T]; initial unless given, with `error` and in quasi_dynamic steps a tenth of the step
+    /// Longest increment [T]; default initial, with `error` and in quasi_dynamic steps a tenth of the step
     pub max: Option<f64>,
-    /// Increments are as long as the estimated error of each stays below this [L]: in dynamic steps the error of a
-    /// displacement, and events of contact (slip sets in, stops or turns round) are located to ten times this; in static
-    /// steps the error of the slip of a contact point, half of what its plastic slip differs from that at the last rate
+    /// Error control: the longest increments whose estimated error stays below this [L]. In dynamic steps it is the
+    /// error of a displacement, and contact events (onset, arrest and reversal of slip) are located to ten times this;
+    /// in static steps it is the error of the slip of a contact point, half the difference of its plastic slip from
+    /// that at the last rate
     pub error: Option<f64>,
 }
 
@@ -108,11 +111,12 @@ impl IncrementSettings {
     }
 }
 
-/// When a step goes on explicitly, and returns to its own scheme. An increment in which a contact point slips faster than
-/// `slip_rate`, or that cannot be solved, is halved down to `dt.min` and, if that does not help, made explicitly. The step
-/// returns when no point has slipped that fast, on the mean of the time that a shear wave takes across the model. What slides
-/// without friction does not count. To be noticed, an event must slip more than `slip_rate` times `dt.max`. Waves that are
-/// left die in a static step, and their energy counts as damped
+/// Automatic switch of a step to explicit integration and back. An increment in which a contact point slips faster than
+/// `slip_rate`, or that cannot be solved, is halved down to `dt.min` and, if that does not help, integrated explicitly.
+/// The step returns to its own scheme when no point has slipped that fast, on average over the time that a shear wave
+/// takes across the model. Frictionless contacts do not count. To be detected, an event must slip more than `slip_rate`
+/// times `dt.max`. Remaining waves are removed on return to a static step, and their energy counts as damping
+/// dissipation
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Rupture")]
@@ -121,7 +125,7 @@ impl IncrementSettings {
 pub struct RuptureSettings {
     /// Slip rate above which increments are explicit [L/T]
     pub slip_rate: f64,
-    /// Explicit increments as a share of the longest that is stable, above 0 and at most 1; 0.9 unless given [-]
+    /// Explicit increments as a fraction of the longest stable one, above 0 and at most 1; default 0.9 [-]
     #[serde(default = "nine_tenths")]
     pub safety: f64,
 }
@@ -133,30 +137,30 @@ impl From<f64> for RuptureSettings {
 }
 
 impl RuptureSettings {
-    /// Explicit increments as another share of the longest that is stable [-].
+    /// Explicit increments as another fraction of the longest stable one [-].
     pub fn safety(self, safety: f64) -> Self {
         Self { safety, ..self }
     }
 }
 
-/// A reaction that ends a step: displacement control up to a force. The increment in which the force passes its value is made
-/// shorter until it has it. Supports that were to come to a value stay where the step has ended; tables and expressions go on by
-/// the time of the run. Exactly one of `fx`, `fy` and `force` is given
+/// A reaction that ends a step: displacement control up to a force. The increment in which the force passes its value
+/// is shortened until it has the value. Supports that move to a value stay where the step has ended; tables and
+/// expressions continue with the time of the run. Exactly one of `fx`, `fy` and `force` is given
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Until")]
 #[non_exhaustive]
 pub struct UntilSettings {
-    /// Whose reaction: what supports put on these nodes
+    /// Place of the reaction: the forces of the supports on these nodes
     pub on: Place,
     /// Its x component [F]
     pub fx: Option<f64>,
     /// Its y component [F]
     pub fy: Option<f64>,
-    /// Its size [F]
+    /// Its magnitude [F]
     pub force: Option<f64>,
-    /// Share of the value, or of the reaction at the start of the step if that is larger, within which it is met, at most 0.1;
-    /// 1e-6 unless given [-]
+    /// Tolerance relative to the value, or to the reaction at the start of the step if that is larger, at most 0.1;
+    /// default 1e-6 [-]
     #[serde(default = "met")]
     pub tolerance: f64,
 }
@@ -184,25 +188,26 @@ impl UntilSettings {
 pub struct Support {
     /// Where
     pub on: Place,
-    /// Displacement in x [L]; null frees it, see `supports`
+    /// Displacement in x [L]; null releases it, see `supports`
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub ux: Option<Change<Drive>>,
-    /// Displacement in y [L]; null frees it, see `supports`
+    /// Displacement in y [L]; null releases it, see `supports`
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub uy: Option<Change<Drive>>,
     /// Direction [x, y] of the displacement u; it need not be of unit length
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub along: Option<[f64; 2]>,
-    /// Displacement along the direction `along`; what is across is free, unless another support of the node holds that as well:
-    /// two directions at a node hold both of its components. null frees it, see `supports` [L]
+    /// Displacement along the direction `along`; the perpendicular component is free, unless another support of the
+    /// node constrains it: two directions at a node constrain both of its components. null releases it, see `supports`
+    /// [L]
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub u: Option<Change<Drive>>,
-    /// Displacement along the normal of a side, positive out of the body; the side slides. The normal is that of the undeformed
-    /// body, averaged over the edges at a node; where edges of the group meet at 45 degrees or more, both normals hold. null
-    /// frees it, see `supports` [L]
+    /// Displacement along the normal of a side, positive out of the body; the side can slide. The normal is that of the
+    /// undeformed body, averaged over the edges at a node; where edges of the group meet at 45 degrees or more, both
+    /// normals are constrained. null releases it, see `supports` [L]
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub un: Option<Change<Drive>>,
-    /// Rigid rotation about a point, instead of all others; null frees it, see `supports`
+    /// Rigid rotation about a point, instead of all others; null releases it, see `supports`
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub rotation: Option<Change<Rotation>>,
 }
@@ -273,13 +278,13 @@ impl LoadStep {
         Self { dt: Some(increments.into()), ..self }
     }
 
-    /// Held until contact holds: by dashpots that fade over this static step, at its start as if this share of the bodies'
-    /// stiffness moved them in the time of the step; 1e-3 is a good start [-].
+    /// Constrained until contact closes: by dashpots that fade over this static step, at its start as if this share of
+    /// the bodies' stiffness moved them in the time of the step; 1e-3 is a good start [-].
     pub fn stabilize(self, share: f64) -> Self {
         Self { stabilize: Some(share), ..self }
     }
 
-    /// Going on explicitly while a contact slips faster than this: a slip rate [L/T], or all settings.
+    /// Explicit integration while a contact slips faster than this: a slip rate [L/T], or all settings.
     pub fn rupture(self, rupture: impl Into<RuptureSettings>) -> Self {
         Self { rupture: Some(rupture.into()), ..self }
     }

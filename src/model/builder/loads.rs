@@ -17,7 +17,7 @@ use super::supports::frees_nothing;
 use crate::model::Model;
 use crate::model::boundary::{Amplitude, Dashpot, DeadLoad, Drive, FollowerPressure, Loads, PlateMoment, Span, Spring};
 use crate::model::scheme::Scheme;
-use crate::model::told::number;
+use crate::model::text::number;
 
 /// The most changes of a load within its steps of which the last depends on the first, from place to place.
 const MOST_REMEMBERED: usize = 1000;
@@ -115,8 +115,7 @@ impl LoadsInForce {
         for before in self.0.get_mut(&key).into_iter().flat_map(Loads::amplitudes) {
             *before = before.settled(span.start);
             if before.chain().count() > MOST_REMEMBERED {
-                let message =
-                    "was changed too often for one that varies from place to place: give it as an expression in t";
+                let message = "was changed too often for one that varies in space: give it as an expression in t";
                 return Err(ModelError::new(place, message));
             }
         }
@@ -307,8 +306,7 @@ impl Changing<'_> {
 fn check_even(given: Option<&Components>, place: &str) -> Checked<()> {
     for (component, name) in ["x", "y"].into_iter().enumerate() {
         if given.and_then(|given| given.along(component)).is_some_and(Drive::depends_on_position) {
-            let message =
-                "is the force on the whole group, which does not vary from place to place: give it in t, or a traction";
+            let message = "is the force on the whole group, which does not vary in space: give it in t, or a traction";
             return Err(ModelError::new(format!("{place}.total_force.{name}"), message));
         }
     }

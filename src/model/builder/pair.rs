@@ -92,8 +92,8 @@ fn pair(contact: &Contact, model: &Model) -> Checked<ContactPair> {
     };
     if contact.sliding == SlidingRange::Small {
         if contact.is_own() {
-            let message = "a surface meets itself where only its motion brings it, and small sliding keeps what faces a point at \
-                           the start: take finite sliding, or name the two parts that touch as slave and master";
+            let message = "self-contact comes about by large motion, and small sliding keeps the initial projections: \
+                           take finite sliding, or name the two parts that touch as slave and master";
             return Err(ModelError::new(format!("{place}.sliding"), message));
         }
         pair.slide_little(&model.mesh.undeformed());
@@ -235,7 +235,7 @@ fn lone_points(place: &str, contact: &Contact, nodes: &[usize]) -> Checked<Vec<S
     let at = format!("{place}.area");
     let Some(area) = contact.area else {
         let message =
-            format!("is missing: `{}` is a group of points, and each needs the area it stands for", contact.slave);
+            format!("is missing: `{}` is a group of points, and each needs its tributary area", contact.slave);
         return Err(ModelError::new(at, message));
     };
     check_positive(&at, area, "")?;

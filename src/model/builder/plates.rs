@@ -16,7 +16,7 @@ use crate::model::Model;
 use crate::model::linkage::{Follower, Linkage, alike, rigid};
 use crate::model::written::written;
 
-/// How the nodes of a loading plate move.
+/// Motion of the nodes of a loading plate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 #[schemars(rename = "PlateMotion")]
@@ -25,11 +25,12 @@ pub enum Plate {
     /// Alike, without turning: what the name of the group alone says
     #[default]
     AsOne,
-    /// Alike in x, each as it will in y: a greased plate
+    /// Equal ux, free uy: a frictionless platen
     UxAlike,
-    /// Alike in y, each as it will in x
+    /// Equal uy, free ux
     UyAlike,
-    /// As a rigid body, which turns under forces, springs and a `moment`; supports hold at most one of its nodes
+    /// As a rigid body that rotates under forces, springs and a `moment`; supports may constrain at most one of its
+    /// nodes
     Rigid,
 }
 
@@ -98,7 +99,7 @@ fn partners(names: &[String; 2], mesh: &Mesh, place: &str) -> Result<Vec<[usize;
         [side(&names[0]).map_err(|e| complain(e.to_string()))?, side(&names[1]).map_err(|e| complain(e.to_string()))?];
     if first.len() != second.len() {
         return Err(complain(format!(
-            "`{}` has {} nodes and `{}` has {}: the nodes of periodic sides must lie alike",
+            "`{}` has {} nodes and `{}` has {}: the nodes of periodic sides must match",
             names[0],
             first.len(),
             names[1],
@@ -110,7 +111,7 @@ fn partners(names: &[String; 2], mesh: &Mesh, place: &str) -> Result<Vec<[usize;
     let period = middle(&second) - middle(&first);
     let near = ROUNDED * period.norm();
     if mesh.section.is_axisymmetric() && period.x.abs() > near {
-        return Err(complain("the sides of axisymmetric bodies lie alike along y alone, the axis".into()));
+        return Err(complain("axisymmetric bodies can be periodic along y only, the axis".into()));
     }
     if let Some(shared) = first.iter().find(|node| second.binary_search(node).is_ok()) {
         let tag = mesh.node_tags[*shared];
@@ -130,7 +131,7 @@ fn partners(names: &[String; 2], mesh: &Mesh, place: &str) -> Result<Vec<[usize;
             let (tag, at) = (mesh.node_tags[node], mesh.nodes[node]);
             complain(format!(
                 "node {tag} of `{}` at ({}, {}) has no partner on `{}`, where one should lie at ({}, {}): the nodes of \
-                 periodic sides must lie alike",
+                 periodic sides must match",
                 names[0], at.x, at.y, names[1], expected.x, expected.y
             ))
         })
@@ -158,14 +159,15 @@ pub fn linkage(given: &[LoadingPlateInput], steps: &[LoadStep], model: &Model) -
         let dofs = || nodes.iter().flat_map(|node| (0..2).filter(|i| components[*i]).map(|i| (*node, i)));
         if let Some((node, _)) = dofs().find(|dof| tied.contains(&dof.0) || seen.contains(dof)) {
             return refused(format!(
-                "node {} moves with others already, a periodic side or another plate: leave it out of one of the two",
+                "node {} is tied to others already, by a periodic side or another plate: leave it out of one of the \
+                 two",
                 mesh.node_tags[node]
             ));
         }
         seen.extend(dofs());
         if mesh.section.is_axisymmetric() && components[0] {
             return refused(
-                "x is the radius of axisymmetric bodies: plates there are alike in uy, or move as one".into(),
+                "x is the radius of axisymmetric bodies: plates there have equal uy, or translate together".into(),
             );
         }
         match plate {
@@ -215,8 +217,9 @@ pub fn plate_of_moment(model: &Model, on: &Place, place: &str) -> Checked<[usize
     let is_plate = model.linkage.plates.iter().any(|(plate, components)| *components == [true; 2] && *plate == nodes);
     let leaders = model.linkage.rigid.iter().find(|plate| plate.iter().all(|node| nodes.contains(node)));
     leaders.filter(|_| is_plate).copied().ok_or_else(|| {
-        let message =
-            format!("{on} is no plate that turns, on which a moment acts: give it in plates, moving as rigid");
+        let message = format!(
+            "a moment acts on a plate that rotates, and {on} is none: list it in plates, with \"moves\": \"rigid\""
+        );
         ModelError::new(format!("{place}.on"), message)
     })
 }
@@ -236,8 +239,8 @@ fn leaders(nodes: &[usize], all_held: &BTreeSet<usize>, mesh: &Mesh, place: &str
     if held.len() > 1 {
         let tags: Vec<u64> = held.iter().take(2).map(|node| mesh.node_tags[*node]).collect();
         let message = format!(
-            "turns, but supports hold more than one of its nodes, {} and {}: hold it by one, load it by forces, springs and a \
-             moment, or prescribe the rotation of the side and leave the plate out",
+            "rotates, but supports constrain more than one of its nodes, {} and {}: constrain one only, load it by \
+             forces, springs and a moment, or prescribe the rotation of the side and leave the plate out",
             tags[0], tags[1]
         );
         return Err(ModelError::new(place, message));
@@ -250,7 +253,7 @@ fn leaders(nodes: &[usize], all_held: &BTreeSet<usize>, mesh: &Mesh, place: &str
     let b = nodes.iter().copied().fold(last, |b, node| if distance(node) > distance(b) { node } else { b });
     match distance(b) > 0.0 {
         true => Ok([a, b]),
-        false => Err(ModelError::new(place, "is one point, which does not turn: leave it out")),
+        false => Err(ModelError::new(place, "is one point, which cannot rotate: leave it out")),
     }
 }
 
@@ -262,7 +265,7 @@ pub fn check_support(support: &Support, nodes: &[usize], model: &Model, place: &
         let tag = model.mesh.node_tags[*node];
         let whole = components[0] && components[1];
         if support.rotation.is_some() || inclined && !whole {
-            let message = format!("node {tag} is one of a plate that moves alike: give ux and uy");
+            let message = format!("node {tag} belongs to a plate with tied displacements: give ux and uy");
             return Err(ModelError::new(place, message));
         }
     }

@@ -78,7 +78,7 @@ impl Gauge {
         }
         let [from, to] = [Vector2::from(from), Vector2::from(to)];
         if from == to {
-            let message = format!("is ({}, {}), where the line begins: its points would be one", to.x, to.y);
+            let message = format!("is ({}, {}), the start of the line: its points would coincide", to.x, to.y);
             return Err(ModelError::new(format!("probes.{}.to", self.name), message));
         }
         let share = |k: usize| k as f64 / (number - 1) as f64;

@@ -145,10 +145,10 @@ pub fn increments(place: &str, given: Option<IncrementSettings>, span: Span, sch
     }
     if given.error.is_some() && scheme != Scheme::Static && scheme.error_constant().is_none() {
         let message = match scheme {
-            Scheme::Explicit { .. } => "explicit takes increments as long as they are stable: leave error out",
+            Scheme::Explicit { .. } => "explicit takes the longest stable increments: leave error out",
             Scheme::QuasiDynamic { .. } => "quasi_dynamic has a tolerance of its own: leave error out",
-            Scheme::Wilson { .. } => "wilson has no estimate of its error: take newmark, hht or generalized_alpha",
-            _ => "newmark with beta near 1/6 has no estimate of its error: take another beta",
+            Scheme::Wilson { .. } => "wilson has no error estimate: take newmark, hht or generalized_alpha",
+            _ => "newmark with beta near 1/6 has no error estimate: take another beta",
         };
         return Err(ModelError::new(format!("{place}.error"), message));
     }
@@ -174,8 +174,8 @@ pub fn check_bounds(place: &str, [min, max]: [f64; 2], left: Span, scheme: Schem
     let count = duration / max;
     if count > MOST_INCREMENTS && !matches!(scheme, Scheme::Explicit { .. }) {
         let message = format!(
-            "increments of at most {max:e} make {count:.1e} of them in a step of {duration:e}, and {MOST_INCREMENTS:e} are the \
-             most: make them longer"
+            "increments of at most {max:e} make {count:.1e} of them in a step of {duration:e}, and at most \
+             {MOST_INCREMENTS:e} are allowed: make them longer"
         );
         return Err(ModelError::new(place, message));
     }
@@ -187,11 +187,11 @@ pub fn stabilization(place: &str, given: &LoadStep, scheme: Scheme, model: &Mode
     let Some(share) = given.stabilize else { return Ok(Vec::new()) };
     if !(share > 0.0 && share <= 1.0) {
         let message =
-            format!("is {share}: must be a share of the stiffness, above 0 and at most 1 (1e-3 is a good start)");
+            format!("is {share}: must be a fraction of the stiffness, above 0 and at most 1 (1e-3 is a good start)");
         return Err(ModelError::new(place, message));
     }
     if scheme != Scheme::Static {
-        return Err(ModelError::new(place, "is for static steps: in a dynamic one inertia holds the bodies"));
+        return Err(ModelError::new(place, "is for static steps: in a dynamic one inertia constrains the bodies"));
     }
     let mut coefficients = vec![0.0; model.dofs()];
     for body in &model.bodies {
@@ -219,8 +219,8 @@ pub fn rupture(place: &str, given: Option<RuptureSettings>, step: &Step, model: 
         return Err(ModelError::new(place, "needs a contact that may slip: leave it out"));
     }
     if model.bodies.is_empty() {
-        let cause = "needs a body: slip is over when it is slow over the time in which a shear wave crosses the bodies; use a \
-                     dynamic scheme under error control (`dt.error`)";
+        let cause = "needs a body: fast slip ends when it stays slow for the time in which a shear wave crosses the \
+                     bodies; use a dynamic scheme under error control (`dt.error`)";
         return Err(ModelError::new(place, cause));
     }
     let scheme = Scheme::Explicit { safety };
@@ -268,8 +268,9 @@ pub fn until(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Check
         ForceComponent::Magnitude => (along(0) || along(1), ""),
     };
     if !has {
-        let message =
-            format!("{on} has no support{axis} in this step, and no reaction: name the side that is moved or held");
+        let message = format!(
+            "{on} has no support{axis} in this step, and no reaction: name the side that is moved or supported"
+        );
         return refused(".on", message);
     }
     check_step(&place, given, step, model)?;
@@ -280,17 +281,18 @@ pub fn until(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Check
 fn check_step(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Checked<()> {
     let refused = |message: &str| Err(ModelError::new(place, message));
     if matches!(step.scheme, Scheme::Explicit { .. } | Scheme::QuasiDynamic { .. }) {
-        return refused("ends static and implicit steps alone: leave it out, and give the step its time");
+        return refused("ends static and implicit steps only: leave it out, and give the step its time");
     }
     if given.rupture.is_some() {
         return refused(
-            "and rupture do not go together: what slips fast is explicit, and has no increments that are cut",
+            "and rupture cannot be combined: fast slip is integrated explicitly, without increments that could be cut \
+             back",
         );
     }
     if given.stabilize.is_some() || !step.released.is_empty() {
         return refused(
-            "ends the step before its time, and what fades over the step (stabilize, or the reaction of supports that null frees) \
-             would be left: let it fade in a step before",
+            "may end the step early, and what fades over the step (stabilize, or the reaction of supports released by \
+             null) would be left: let it fade in an earlier step",
         );
     }
     check_ramps(place, step, model)
@@ -299,7 +301,7 @@ fn check_step(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Chec
 /// What comes to a value over the whole of the step would go on coming to it in the next one.
 fn check_ramps(place: &str, step: &Step, model: &Model) -> Checked<()> {
     let refused = |what: &str, instead: &str| {
-        let message = format!("ends the step before its time, and {what} would not be there yet: {instead}");
+        let message = format!("may end the step early, before {what} is fully applied: {instead}");
         Err(ModelError::new(place, message))
     };
     let is_new = |of: &Amplitude| of.span == step.span && matches!(of.drive, Drive::Constant(_) | Drive::ByPlace(..));

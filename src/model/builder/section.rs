@@ -11,7 +11,7 @@ use crate::mesh::section::Section;
 use crate::model::Model;
 use crate::model::boundary::{Drive, Span};
 use crate::model::support::{Motion, Prescribed};
-use crate::model::told::number;
+use crate::model::text::number;
 
 /// Share of the model's size within which a node counts as one on the axis.
 const ON_AXIS: f64 = 1e-12;
@@ -49,15 +49,15 @@ pub fn material(
     match section {
         Section::PlaneStress { .. } if element == Formulation::FBar => refused(
             "element",
-            "f_bar has nothing to cure in plane stress, where the thickness gives way and elements do not lock for nu near \
-             1/2: leave it out",
+            "f_bar is not needed in plane stress, where the thickness is free to change and elements do not lock for \
+             nu near 1/2: leave it out",
         ),
         Section::PlaneStress { .. } => match given.plane_stress() {
             Some(law) => Ok(law.into()),
-            None => refused("material", "does not know plane stress: take another law, or plane strain"),
+            None => refused("material", "does not support plane stress: take another law, or plane strain"),
         },
         Section::Axisymmetric if given.spatial().is_none() => {
-            refused("material", "does not know the hoop stretch of axisymmetric bodies: take another law")
+            refused("material", "does not support the hoop stretch of axisymmetric bodies: take another law")
         }
         Section::Axisymmetric | Section::PlaneStrain | Section::Graded { .. } => Ok(given),
     }

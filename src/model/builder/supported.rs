@@ -64,7 +64,7 @@ fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Result<(), ModelErr
         Some(dof) => Err(ModelError::new(
             format!("steps[{k}].supports"),
             format!(
-                "node {} belongs to no element and is free along {}: hold it by a support, a spring or contact",
+                "node {} belongs to no element and is free along {}: constrain it by a support, a spring or contact",
                 model.mesh.node_tags[dof / 2],
                 ["x", "y"][dof % 2]
             ),
@@ -116,9 +116,10 @@ pub fn check_floating(given: &[LoadStep], model: &Model) -> Result<(), ModelErro
         let held = if given[k].supports.is_empty() && step.supports.is_empty() {
             "there is no support at all"
         } else {
-            "the supports do not hold it"
+            "the supports do not constrain it"
         };
-        let message = format!("{free}: {held}; a static step needs supports or springs against every rigid motion");
+        let message =
+            format!("{free}: {held}; a static step needs supports or springs against every rigid-body motion");
         return Err(ModelError::new(format!("steps[{k}].supports"), message));
     }
     Ok(())

@@ -38,7 +38,7 @@ use crate::mesh::Edge;
 use crate::model::Model;
 use crate::model::boundary::{Amplitude, Drive, Span};
 use crate::model::support::{Direction, Inclined, Motion, Prescribed};
-use crate::model::told::number;
+use crate::model::text::number;
 
 /// Take over the supports of the step before, and replace those given again.
 pub fn supports(in_force: &mut InForce, given: &[Support], place: &str, span: Span, model: &Model) -> Checked<()> {
@@ -134,7 +134,7 @@ fn check_on_plates(support: &Support, nodes: &[usize], model: &Model, place: &st
         Err(ModelError::new(format!("{place}.{key}"), format!("node {tag} is one of a plate, {message}")))
     };
     if let Some(Change::To(_)) = support.rotation {
-        return told("rotation", "which does not turn: give ux and uy");
+        return told("rotation", "which does not rotate: give ux and uy");
     }
     for (key, change) in support.displacements() {
         if change.given().is_some_and(Drive::depends_on_position) {
@@ -362,7 +362,8 @@ fn resolved(node: usize, given: Vec<Prescribed>, held: &[Held]) -> Result<Vec<Pr
     for support in &given {
         let Motion::Displacement(drive, span) = &support.motion else {
             return Err(
-                "is turned by a rotation and held along another direction: leave it out of one of the two".into()
+                "is prescribed by a rotation and constrained along another direction: leave it out of one of the two"
+                    .into(),
             );
         };
         let direction = support.at.vector();
@@ -378,7 +379,7 @@ fn resolved(node: usize, given: Vec<Prescribed>, held: &[Held]) -> Result<Vec<Pr
         check_angles(straight, held, &all)?;
     }
     let d = [&all[0], &all[1]].map(|of| of.direction.transpose());
-    let inverse = Matrix2::from_rows(&d).try_inverse().ok_or("is held twice along one direction")?;
+    let inverse = Matrix2::from_rows(&d).try_inverse().ok_or("is constrained twice along one direction")?;
     for third in &all[2..] {
         check_agrees([&all[0], &all[1], third], inverse)?;
     }
@@ -400,8 +401,8 @@ fn check_angles(straight: usize, held: &[Held], all: &[Inclined]) -> Result<(), 
             let least = if normals { CORNER } else { LEAST_ANGLE };
             if angle < least {
                 return Err(format!(
-                    "is held along two directions that differ by {} degrees, and cannot move at all: put sides that go on \
-                     evenly into one group, leave the node out of one of the two, or give it ux and uy",
+                    "is constrained along two directions that differ by {} degrees, and cannot move at all: put sides \
+                     that continue smoothly into one group, leave the node out of one of the two, or give it ux and uy",
                     number(angle)
                 ));
             }
@@ -424,7 +425,9 @@ fn check_agrees([first, second, third]: [&Inclined; 3], inverse: Matrix2<f64>) -
             return Ok(());
         }
     }
-    Err("is held along three directions that do not agree: two say where it goes, so leave it out of the third".into())
+    Err("is constrained along three directions with contradictory values: two determine its displacement, so leave it \
+         out of the third"
+        .into())
 }
 
 /// Unit normals out of the body, node by node; the sides of a periodic model share those of their nodes.

@@ -1,8 +1,8 @@
 //! One page to look at results in a browser, without a network and without another program.
 //!
-//! The numbers of the folders are packed into the page ([`table`]), and unpacked and drawn there by what stands in `page/`.
-//! Where there are too many, some are left out; the page says which. Faults in a folder are told on the page and hide no more
-//! than they must.
+//! The numbers of the folders are packed into the page ([`table`]), and unpacked and drawn there by what stands in
+//! `page/`. Where there are too many, some are left out; the page says which. Faults in a folder are reported on the
+//! page and hide no more than they must.
 
 mod newton;
 mod run;
@@ -24,13 +24,13 @@ use table::Pack;
 /// Name of the page in a folder of results.
 pub const FILE: &str = "report.html";
 
-/// By this a page is known to be one of ours.
+/// Marker of pages written by this program.
 const OURS: &str = "<meta name=\"generator\" content=\"fecontact report\">";
 
 /// All packed numbers at most [bytes]; with the rest the page stays below 30 MB.
 const ROOM: usize = 28_000_000;
 
-/// What draws the page, in the order in which it is run.
+/// Scripts of the page, in the order of execution.
 const SCRIPTS: [&str; 18] = [
     include_str!("page/uplot/uPlot.iife.min.js"),
     include_str!("page/dom.js"),

@@ -1,4 +1,4 @@
-//! Convergence as `newton.csv` tells it: solves and residuals by increment, and the attempts that were given up.
+//! Convergence from `newton.csv`: solves and residuals by increment, and the rejected attempts.
 
 use std::cmp::Reverse;
 use std::ops::Range;
@@ -56,14 +56,14 @@ pub fn residuals(newton: &Columns, increments: &[Range<usize>]) -> Result<Vec<[f
 /// Attempts that were given up and are shown at most.
 const MOST: usize = 500;
 
-/// What the rows of one attempt came to.
+/// Summary of the rows of one attempt.
 struct Attempt {
     rows: Range<usize>,
     /// whether another one at the same increment followed
     given_up: bool,
 }
 
-/// What is needed of the table; `None` where it has no such columns.
+/// The columns needed of the table; `None` where it lacks them.
 struct Table<'a> {
     step: (&'a [f64], &'a [String]),
     increment: &'a [f64],
@@ -113,7 +113,7 @@ impl<'a> Table<'a> {
         attempts
     }
 
-    /// What became of an attempt, where the table says so.
+    /// Outcome of an attempt, if the table has it.
     fn verdict(&self, rows: &Range<usize>) -> Option<&str> {
         word(self.verdict?, rows.end - 1)
     }

@@ -1,4 +1,4 @@
-//! What the page knows of one folder of results.
+//! Data of the page from one folder of results.
 
 use serde_json::{Value, json};
 
@@ -13,7 +13,7 @@ use crate::output::store::read::{StoredContact, contacts};
 /// Rows of a table at most.
 const ROWS: usize = 40_000;
 
-/// What a packed number takes, as a rough guess [bytes].
+/// Rough size of a packed number [bytes].
 const NUMBER: f64 = 3.0;
 
 /// Rows of newton.csv beyond which only its increments are shown.
@@ -33,12 +33,12 @@ impl<'a> Run<'a> {
         Self { source, room, notes: Vec::new() }
     }
 
-    /// How many rows of so many numbers fit into a share of the room.
+    /// Number of rows of `numbers` values each that fit into a fraction of the room.
     fn fit(&self, share: f64, numbers: usize) -> usize {
         (share * self.room as f64 / (NUMBER * numbers.max(1) as f64)) as usize
     }
 
-    /// All of it.
+    /// Everything that the page shows of the run.
     pub fn show(mut self, pack: &mut Pack) -> Value {
         let summary = self.summary();
         let status = summary["status"].as_str().unwrap_or("unknown").to_owned();
@@ -75,7 +75,7 @@ impl<'a> Run<'a> {
         let read = std::fs::read_to_string(self.source.folder.join("summary.json"));
         let summary = read.ok().and_then(|text| serde_json::from_str(&text).ok());
         summary.filter(Value::is_object).unwrap_or_else(|| {
-            self.notes.push("summary.json is missing or cannot be understood: how the run ended is not known".into());
+            self.notes.push("summary.json is missing or cannot be read: the end status of the run is unknown".into());
             json!({})
         })
     }
@@ -93,7 +93,7 @@ impl<'a> Run<'a> {
             return Value::Null;
         }
         for (name, count) in table.not_numbers() {
-            self.notes.push(format!("{file}: {count} values of {name} are no numbers; they are left blank"));
+            self.notes.push(format!("{file}: {count} values of {name} are not numbers and are left blank"));
         }
         let shown = table.spread(self.fit(0.2, table.count()).min(ROWS));
         if shown.len() < all {

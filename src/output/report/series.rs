@@ -26,7 +26,7 @@ pub struct Series {
     frames: Vec<(Frame, Grid)>,
 }
 
-/// A frame, packed.
+/// A frame, packed for the page.
 struct PackedFrame {
     time: f64,
     /// displacement of all [L]
@@ -87,20 +87,22 @@ impl Series {
                     notes.extend(not_numbers(&grid).map(|what| format!("{}: {what}; left blank", frame.file)));
                     series.frames.push((frame, grid));
                 }
-                Ok(_) => notes.push(format!("{} has other points or cells than the first frame: left out", frame.file)),
+                Ok(_) => {
+                    notes.push(format!("{} has different points or cells from the first frame: left out", frame.file))
+                }
                 Err(fault) => notes.push(format!("{} {fault}: this frame is left out", frame.file)),
             }
         }
         Some(series).filter(|series| !series.frames.is_empty())
     }
 
-    /// What points and cells take, as a rough guess [bytes].
+    /// Rough size of points and cells [bytes].
     fn mesh(&self) -> usize {
         let count = |(_, grid): &(Frame, Grid)| 9 * grid.points.len() + 3 * grid.connectivity.len();
         self.frames.first().map_or(0, count)
     }
 
-    /// What a frame takes at most [bytes].
+    /// Upper bound of the size of a frame [bytes].
     fn estimate(&self) -> usize {
         let size = self.size();
         self.frames.iter().map(|frame| self.packed(frame, size).size()).max().unwrap_or(0).max(1)
@@ -167,7 +169,7 @@ impl Series {
 /// Frames of one kind at most.
 const MOST: usize = 2000;
 
-/// What moves a point.
+/// Array that moves the points.
 const DISPLACEMENT: &str = "displacement";
 
 fn displacement(grid: &Grid) -> Option<&Array> {
@@ -210,7 +212,7 @@ fn not_numbers(grid: &Grid) -> impl Iterator<Item = String> {
     let bad = |array: &&Array| array.values.iter().filter(|value| !value.is_finite()).count();
     let arrays = grid.at_points.iter().map(move |array| (array, bad(&array)));
     let some = arrays.filter(|(array, bad)| *bad > 0 && (*bad < array.values.len() || array.name == DISPLACEMENT));
-    some.map(|(array, bad)| format!("{bad} values of {} are no numbers", array.name))
+    some.map(|(array, bad)| format!("{bad} values of {} are not numbers", array.name))
 }
 
 /// Places in order: those of a further line of the interface go on behind the one before.
@@ -262,7 +264,7 @@ pub fn map((number, map): (usize, &StoredContact), most: usize, pack: &mut Pack,
             continue;
         }
         if bad > 0 {
-            notes.push(format!("{STORE}: {bad} values of {name} are no numbers; they are left blank"));
+            notes.push(format!("{STORE}: {bad} values of {name} are not numbers and are left blank"));
         }
         let values = thinned(name, values, &shown, points);
         let range = range(values.iter().copied());

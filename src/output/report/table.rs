@@ -116,7 +116,7 @@ impl Columns {
         self.columns.iter().find(|column| column.name == name)
     }
 
-    /// A column.
+    /// A column by its name.
     ///
     /// # Errors
     /// [`ReportError::Unreadable`] when the file does not have it.
@@ -127,12 +127,12 @@ impl Columns {
         })
     }
 
-    /// What the values of a column of words stand for; nothing for a column of numbers.
+    /// Words behind the values of a column of words; `None` for a column of numbers.
     pub fn words(&self, name: &str) -> Option<&[String]> {
         self.find(name)?.words.as_deref()
     }
 
-    /// How many values are not numbers, by column.
+    /// Number of values that are not numbers, by column.
     pub fn not_numbers(&self) -> impl Iterator<Item = (&str, usize)> {
         let bad = |column: &Column| column.values.iter().filter(|value| !value.is_finite()).count();
         self.columns.iter().map(move |column| (column.name.as_str(), bad(column))).filter(|(_, count)| *count > 0)
@@ -181,7 +181,7 @@ fn row(line: &str, columns: &mut [Column]) -> Result<(), String> {
     let mut cells = line.split(',');
     for column in columns {
         let cell = cells.next().ok_or_else(|| format!(" ends before {}", column.name))?;
-        column.read(cell).ok_or_else(|| format!(": {} is no number: {cell}", column.name))?;
+        column.read(cell).ok_or_else(|| format!(": {} is not a number: {cell}", column.name))?;
     }
     Ok(())
 }
@@ -228,7 +228,7 @@ const PLACES: f64 = 1.0 / 1_048_576.0;
 pub struct Packed(String);
 
 impl Packed {
-    /// How much room it takes [bytes].
+    /// Size of the packed numbers [bytes].
     pub fn size(&self) -> usize {
         self.0.len()
     }
@@ -238,7 +238,7 @@ impl Packed {
         Self::of(values.iter().map(|value| value.to_le_bytes()), values.len())
     }
 
-    /// Single precision.
+    /// Pack values in single precision.
     pub fn single(values: &[f64]) -> Self {
         Self::of(values.iter().map(|value| (*value as f32).to_le_bytes()), values.len())
     }
@@ -257,12 +257,12 @@ impl Packed {
         Self::of(values.map(|value| (((value / step).round() * step) as f32).to_le_bytes()), count)
     }
 
-    /// Whole numbers.
+    /// Pack whole numbers.
     pub fn counts(values: &[u32]) -> Self {
         Self::of(values.iter().map(|value| value.to_le_bytes()), values.len())
     }
 
-    /// Of one byte each.
+    /// Pack values of one byte each.
     pub fn bytes(values: &[u8]) -> Self {
         Self::of(values.iter().map(|value| [*value]), values.len())
     }
@@ -278,7 +278,7 @@ impl Packed {
     }
 }
 
-/// Where packed numbers stand among all of them: start, length.
+/// Range of packed numbers among all of them: start, length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Chunk(usize, usize);
 
@@ -290,7 +290,7 @@ pub struct Pack {
 }
 
 impl Pack {
-    /// Add some.
+    /// Add packed numbers; returns their range.
     pub fn add(&mut self, packed: &Packed) -> Chunk {
         let start = self.text.len();
         self.text += &packed.0;

@@ -11,7 +11,7 @@ use crate::model::Model;
 use crate::output::events::{ContactPoints, Point};
 use crate::output::quantities::{LENGTH, NONE, PLACE, Quantity, TIME, Unit, in_store};
 
-/// What a friction-free contact's slip is.
+/// Meaning of the slip of a frictionless contact.
 const FREE_MOTION: &str = "motion along the master so far; the contact has no friction";
 
 /// Names of the contacts as they can stand in names of files, each one once.
@@ -40,7 +40,7 @@ pub fn time(units: &BTreeMap<String, String>) -> Description {
     Description { name: "time".into(), number: Number::Double, dimensions: vec!["time".into()], attributes }
 }
 
-/// Where the points of a contact are before anything moves.
+/// Undeformed positions of the points of a contact.
 pub fn along(
     model: &Model,
     pair: &ContactPair,

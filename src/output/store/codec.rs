@@ -29,7 +29,7 @@ pub const QUICK: u8 = 1;
 pub enum Number {
     /// Rounded, in 4 bytes
     Single,
-    /// As it is, in 8 bytes
+    /// Unchanged, in 8 bytes
     Double,
     /// A whole number in 4 bytes
     Whole,

@@ -48,7 +48,7 @@ pub struct InterfaceStore {
     last: (f64, Vec<Vec<f64>>),
 }
 
-/// Where the slip stands among the quantities of the store, ...
+/// Index of the slip among the quantities of the store, ...
 const SLIP: usize = 0;
 /// ... and its rate.
 const SLIP_RATE: usize = 2;
@@ -107,7 +107,7 @@ impl InterfaceStore {
         }
     }
 
-    /// What a state says; the slip rates are those of its increment yet.
+    /// Record of a state; its slip rates are still those of its increment.
     fn record_of(&self, model: &Model, state: &State) -> Record {
         let mut record = vec![vec![state.time]];
         for ((pair, states), names) in model.contacts.iter().zip(&state.contacts).zip(&self.names) {

@@ -15,7 +15,7 @@ use super::codec::{Number, unpacked, unshuffled};
 use super::zarr::{ARRAY, ATTRIBUTES, METADATA};
 use crate::output::quantities::FORMER;
 
-/// What one contact did.
+/// Stored history of one contact.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StoredContact {
     /// its name
@@ -50,7 +50,7 @@ pub struct Unreadable {
     pub cause: String,
 }
 
-/// What a store says of itself.
+/// Metadata of a store.
 #[derive(Deserialize)]
 struct Metadata {
     metadata: BTreeMap<String, Value>,
@@ -90,7 +90,7 @@ pub fn contacts(folder: &Path, wanted: impl Fn(&str) -> bool) -> Result<Vec<Stor
     names.into_iter().zip(&prefixes).map(|(name, prefix)| reader.contact(name, prefix, &times, &wanted)).collect()
 }
 
-/// What a quantity of a store is called now; versions before called some otherwise.
+/// Present name of a quantity of a store; earlier versions used other names for some.
 fn name_of_now(quantity: &str) -> &str {
     FORMER.iter().find(|(former, _)| *former == quantity).map_or(quantity, |(_, now)| now)
 }

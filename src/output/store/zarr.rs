@@ -154,7 +154,7 @@ impl Store {
         Ok(())
     }
 
-    /// The last flush.
+    /// Flush the last records.
     ///
     /// # Errors
     /// As [`flush`](Self::flush).
@@ -306,7 +306,7 @@ pub const ATTRIBUTES: &str = ".zattrs";
 /// See [`GROUP`].
 pub const METADATA: &str = ".zmetadata";
 
-/// What an array is, besides its numbers.
+/// Description of an array without its values.
 #[derive(Clone, Debug)]
 pub struct Description {
     /// its name
@@ -333,7 +333,7 @@ pub struct Series {
 }
 
 impl Series {
-    /// One without records.
+    /// An array without records.
     pub fn new(is: Description, width: Option<usize>) -> Self {
         Self { is, width, complete: crc32fast::Hasher::new(), chunk: Vec::new() }
     }
@@ -346,12 +346,12 @@ impl Series {
         let mut found = crc32fast::Hasher::new();
         for path in (0..chunks).map(|number| store.join(self.file(number))) {
             if !path.is_file() {
-                return Err(failed(&path, &"was there when the checkpoint was written, and is gone"));
+                return Err(failed(&path, &"existed when the checkpoint was written, and is missing"));
             }
             found.update(&fs::read(&path).map_err(|cause| failed(&path, &cause))?);
         }
-        let changed = "was changed since the checkpoint was written: its chunks have another checksum; put it back as it was, \
-                       or begin anew in another folder";
+        let changed = "was changed since the checkpoint was written: its chunks have another checksum; restore it, or \
+                       start a new run in another folder";
         if found.finalize() == crc { Ok(()) } else { Err(failed(&store.join(&self.is.name), &changed)) }
     }
 

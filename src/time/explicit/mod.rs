@@ -47,10 +47,10 @@ pub use stability::ExplicitMemory;
 use stability::Stability;
 
 /// Share of its size that no element changes by more than in an increment: what strikes it is stopped by its stiffness
-/// before it is turned inside out.
+/// before it inverts.
 const MOST_CHANGE: f64 = 0.1;
 
-/// How much shorter increments are after those before collapsed.
+/// Factor on the increments after a collapse.
 const CUT: f64 = 0.5;
 
 /// Increments are not made shorter than this share of the safe ones.
@@ -59,14 +59,14 @@ const MOST_CAREFUL: f64 = 0.125;
 /// Share of a step's end within which an output falls on it.
 const ROUND_OFF: f64 = 1e-9;
 
-/// What explicit increments of one step need besides the state.
+/// Data of the explicit increments of one step besides the state.
 #[derive(Clone)]
 pub struct Explicit {
     model: Arc<Model>,
     step: Arc<Step>,
     /// Mass of every node, that of copies with the nodes they move with and with the copies as well [M]
     mass: Vec<f64>,
-    /// Plates of which one component is alike, and rigid ones
+    /// Plates with one equal component, and rigid ones
     plates: Plates,
     /// Dashpots, absorbing sides and damping by the masses, one entry a node
     dampers: Vec<Absorber>,
@@ -81,7 +81,7 @@ pub struct Explicit {
     stable: f64,
     /// Displacements at the end of the increment that is next
     displacement: Vec<f64>,
-    /// Where each support goes in it, and its velocity before
+    /// Motion of each support in the increment, and its velocity before
     places: Vec<([f64; 4], f64)>,
 }
 

@@ -1,4 +1,4 @@
-//! Plates of which one component is alike, and rigid ones, in explicit increments.
+//! Plates with one equal component, and rigid ones, in explicit increments.
 //!
 //! ```text
 //! Σ m_c a = −Σ f_c                              alike in one component; m_c: lumped masses
@@ -35,10 +35,10 @@ pub(super) struct Plates {
     members: Vec<bool>,
 }
 
-/// A plate of which one component is alike.
+/// A plate with one equal component.
 #[derive(Clone)]
 struct Alike {
-    /// Its nodes, the first of which leads
+    /// Its nodes, the first of which is the master
     nodes: Vec<usize>,
     component: usize,
     /// Σ m [M]
@@ -48,7 +48,7 @@ struct Alike {
 }
 
 impl Plates {
-    /// Those of a model in a step, with the lumped mass of every node.
+    /// The plates of a model in a step, with the lumped mass of every node.
     pub fn new(model: &Model, step: &Step, mass: &[f64]) -> Self {
         let linkage = &model.linkage;
         let alike = linkage.plates.iter().filter(|(_, [x, y])| x != y).map(|(nodes, components)| Alike {
@@ -83,7 +83,7 @@ impl Plates {
         self.rigid.iter_mut().for_each(|plate| plate.begin(dt, state));
     }
 
-    /// The rest of (8) at the displacement `u` under the gathered forces, where supports accelerate as told.
+    /// The rest of (8) at the displacement `u` under the gathered forces, where supports accelerate as prescribed.
     pub fn accelerate(
         &mut self,
         (model, dt): (&Model, f64),
@@ -287,7 +287,7 @@ impl Rigid {
         [perpendicular(e) * spin, perpendicular(e) * angular - e * (spin * spin)]
     }
 
-    /// The rest of (8) at the displacement `u` under the gathered forces, where supports accelerate as told.
+    /// The rest of (8) at the displacement `u` under the gathered forces, where supports accelerate as prescribed.
     pub fn accelerate(&mut self, dt: f64, (u, force): (&[f64], &[f64]), supported: &impl Fn(usize) -> f64) {
         let [a, b] = self.leaders;
         let e = self.arm + relative(self.leaders, u);
@@ -315,7 +315,8 @@ impl Rigid {
         self.rates = [self.rates[0] + found * (0.5 * dt), self.rates[1] + found];
     }
 
-    /// a_R and θ̈ from forces and moment, with what resists them besides the masses; where A is held, they are as told.
+    /// a_R and θ̈ from forces and moment, with what resists them besides the masses; where A is supported, they are
+    /// prescribed.
     fn solve(
         &self,
         e: Vector2<f64>,

@@ -45,7 +45,7 @@ const LOOK_AGAIN: usize = 200;
 /// Elements that are compared sooner than another thread wakes up.
 const FEW: usize = 2048;
 
-/// What bounds the increment, as last looked at.
+/// Bounds of the increment, as last evaluated.
 #[derive(Clone)]
 pub(super) struct Stability {
     pub(super) model: Arc<Model>,
@@ -64,7 +64,7 @@ pub(super) struct Stability {
     since: usize,
     /// Whether some elements were looked at again since
     relooked: bool,
-    /// How far nodes may move against each other until an element may have changed [L]
+    /// Relative motion of nodes below which an element counts as unchanged [L]
     margin: f64,
     /// Elements whose stiffness depends on a temperature
     heated: Vec<usize>,
@@ -96,7 +96,7 @@ impl Stability {
         Ok(stability)
     }
 
-    /// Take note of an increment in which no two nodes move by more than `way` against each other.
+    /// Record an increment in which no two nodes move by more than `way` against each other.
     pub(super) fn moved(&mut self, way: f64) {
         self.margin -= way;
         self.since += 1;
@@ -160,7 +160,7 @@ impl Stability {
         largest
     }
 
-    /// How far the nodes of an element have moved against its first one since it was looked at [L].
+    /// Largest motion of an element's nodes relative to its first since its last check [L].
     fn change(&self, e: usize, u: &[f64]) -> f64 {
         let places = self.stride * e..self.stride * (e + 1);
         let (nodes, seen) = (&self.nodes[places.clone()], &self.seen[places]);
@@ -257,7 +257,7 @@ fn longest(square: f64, viscous: f64) -> f64 {
     4.0 / (viscous + (viscous * viscous + 4.0 * square).sqrt())
 }
 
-/// Share of its size to which an element may be crushed: increments would become shorter without end.
+/// Fraction of its size to which an element may be compressed: increments would become shorter without end.
 const CRUSHED: f64 = 1e-3;
 
 /// One element, as last looked at.
@@ -362,7 +362,7 @@ fn alike(model: &Model) -> Vec<usize> {
     (0..model.solids.len()).map(first).collect()
 }
 
-/// What explicit increments remember.
+/// Memory of explicit increments.
 #[derive(Serialize, Deserialize)]
 pub struct ExplicitMemory {
     care: f64,
@@ -389,7 +389,7 @@ impl ExplicitMemory {
 }
 
 impl Explicit {
-    /// What it remembers.
+    /// Its memory, for a checkpoint.
     pub fn memory(&self) -> ExplicitMemory {
         let Stability { elements, seen, softness, segments, since, relooked, margin, .. } = self.stability.clone();
         let seen = seen.into_iter().map(Into::into).collect();

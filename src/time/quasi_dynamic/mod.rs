@@ -27,7 +27,7 @@ use crate::solve::failure::IncrementFailure;
 /// Share of the length of a step within which it ends on the end of the load step.
 const NEAR_END: f64 = 1e-9;
 
-/// What quasi-dynamic steps need besides the state: it follows from the model and the load step.
+/// Data of quasi-dynamic steps besides the state, which follow from the model and the load step.
 pub struct QuasiDynamic {
     model: Arc<Model>,
     step: Arc<Step>,
@@ -36,7 +36,7 @@ pub struct QuasiDynamic {
     loading: Shift,
 }
 
-/// What became of some steps.
+/// Outcome of some steps.
 pub struct Gone {
     /// steps taken
     pub steps: usize,
@@ -215,8 +215,8 @@ impl QuasiDynamic {
         let at = slave.at(&self.model.configuration(&state.displacement));
         let why = if rates.pressure <= 0.0 {
             format!(
-                "the pressure has come to {:e}, and quasi_dynamic steps keep every point closed: press harder, or take static steps \
-                 with radiation_damping",
+                "the pressure has dropped to {:e}, and quasi_dynamic steps keep every point closed: raise the \
+                 compression, or take static steps with radiation_damping",
                 rates.pressure
             )
         } else if !rates.is_good() {

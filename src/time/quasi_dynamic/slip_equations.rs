@@ -17,7 +17,7 @@ use crate::laws::friction::{PointLoad, RateLaw};
 /// Points that one thread takes at a time; their order does not matter to any sum.
 const PART: usize = 32;
 
-/// What a point does at a time.
+/// Rates and tractions of a point at a time.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Rates {
     /// V [L/T]

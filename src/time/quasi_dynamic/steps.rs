@@ -46,7 +46,7 @@ pub struct Steps<'a> {
     pub last: Vec<f64>,
     /// Taken by friction and radiated since t₀, per area [F/L]
     pub works: Vec<[f64; 2]>,
-    /// At the stages; the first are those of the present
+    /// Rates at the stages; the first stage is the present state
     rates: Vec<Vec<Rates>>,
     trial: Vec<f64>,
 }
@@ -143,7 +143,7 @@ impl<'a> Steps<'a> {
     }
 }
 
-/// Stages.
+/// Number of stages.
 pub const STAGES: usize = 7;
 
 /// a_ij, a row a stage; the last is b.
@@ -157,9 +157,9 @@ pub const A: [&[f64]; STAGES] = [
     &[35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0],
 ];
 
-/// c_i.
+/// Nodes c_i of the stages.
 pub const C: [f64; STAGES] = [0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0];
 
-/// b_i − b̂_i.
+/// Weights b_i − b̂_i of the error estimate.
 pub const E: [f64; STAGES] =
     [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339_200.0, 22.0 / 525.0, -1.0 / 40.0];

@@ -41,16 +41,16 @@ type Values = [f64; 4];
 /// d(q, ln θ) along two directions
 type Derivatives = [[f64; 2]; 2];
 
-/// What is extrapolated.
+/// Values and derivatives that are extrapolated.
 #[derive(Clone, Copy)]
 struct Entry {
     values: Values,
     derivatives: Derivatives,
 }
 
-/// Where a path is, and how that varies.
+/// State at an integration point along the path, with its variations.
 #[derive(Clone, Copy)]
-struct Station {
+struct PathState {
     state: FrictionState,
     variations: [Variation; 2],
 }
@@ -58,7 +58,7 @@ struct Station {
 /// An increment whose slip and pressure are linear in time.
 pub(super) struct Ramp<'a> {
     law: &'a RateAndState,
-    start: Station,
+    start: PathState,
     sliding: Sliding,
     /// Directions along which slip, pressure and a parameter vary
     directions: [Direction; 2],
@@ -75,14 +75,14 @@ impl<'a> Ramp<'a> {
         directions: [Direction; 2],
         dpressure: [f64; 2],
     ) -> Self {
-        let start = Station { state: *old, variations: directions.map(|by| by.state) };
+        let start = PathState { state: *old, variations: directions.map(|by| by.state) };
         Self { law, start, sliding, directions, dpressure, evaluations: 0 }
     }
 
     /// The answer at the end of the increment, the directions being those of the consistent tangent.
     pub(super) fn answer(mut self) -> Answer {
         let old = self.start.state;
-        let Station { state, variations } = self.end()?;
+        let PathState { state, variations } = self.end()?;
         let regime = match state.pressure > 0.0 {
             true => RateLaw::regime(self.law, self.law.evolving(&state), self.rate(&state)),
             false => Regime::Open,
@@ -97,7 +97,7 @@ impl<'a> Ramp<'a> {
         .checked(self.law.coefficients.alpha_t)
     }
 
-    /// How the state at the end varies.
+    /// Variations of the state at the end of the path.
     ///
     /// # Errors
     /// As of the answer.
@@ -111,10 +111,10 @@ impl<'a> Ramp<'a> {
     }
 
     /// The end: sub-steps are halved until their error is below the tolerance, and doubled where it allows.
-    fn end(&mut self) -> Result<Station, LawFailure> {
-        let (mut station, mut at, mut step) = (self.start, 0, WHOLE);
+    fn end(&mut self) -> Result<PathState, LawFailure> {
+        let (mut path_state, mut at, mut step) = (self.start, 0, WHOLE);
         for _ in 0..MOST_ATTEMPTS {
-            let (next, error) = match self.extrapolated(&station, at, step) {
+            let (next, error) = match self.extrapolated(&path_state, at, step) {
                 Ok(found) => found,
                 Err(_) if step > 1 => {
                     step /= 2;
@@ -122,7 +122,7 @@ impl<'a> Ramp<'a> {
                 }
                 Err(failure) => return Err(failure),
             };
-            let snaps = step <= SHORT && self.drive(&station, step) <= SNAP;
+            let snaps = step <= SHORT && self.drive(&path_state, step) <= SNAP;
             if error > 1.0 && !snaps || error.is_nan() {
                 if step == 1 {
                     break;
@@ -130,20 +130,20 @@ impl<'a> Ramp<'a> {
                 step /= 2;
                 continue;
             }
-            (station, at) = (next, at + step);
+            (path_state, at) = (next, at + step);
             if at == WHOLE {
-                return Ok(station);
+                return Ok(path_state);
             }
             if (error <= DOUBLED || snaps) && at % (2 * step) == 0 {
                 step *= 2;
             }
         }
-        let trial = (station.state.traction + self.law.coefficients.alpha_t * self.sliding.slip * share(step)).abs();
+        let trial = (path_state.state.traction + self.law.coefficients.alpha_t * self.sliding.slip * share(step)).abs();
         Err(LawFailure::NotConverged { evaluations: self.evaluations, rest: trial, trial })
     }
 
     /// Most that slip and pressure change tractions by over a sub-step without a snap, in tolerances.
-    fn drive(&self, from: &Station, step: u64) -> f64 {
+    fn drive(&self, from: &PathState, step: u64) -> f64 {
         let change = self.law.coefficients.alpha_t * self.sliding.slip.abs()
             + self.law.coefficients.f_0 * (self.sliding.pressure - self.start.state.pressure).abs();
         let most = self.sliding.pressure.max(from.state.pressure);
@@ -159,7 +159,7 @@ impl<'a> Ramp<'a> {
     /// extrapolated: the answer of the finest row is taken.
     ///
     /// Source: Deuflhard (1985), SIAM Review 27, 505; Hairer & Wanner, Solving Ordinary Differential Equations II, IV.9.
-    fn extrapolated(&mut self, from: &Station, at: u64, step: u64) -> Result<(Station, f64), LawFailure> {
+    fn extrapolated(&mut self, from: &PathState, at: u64, step: u64) -> Result<(PathState, f64), LawFailure> {
         let (mut rows, mut error): (Vec<Entry>, f64) = (Vec::with_capacity(MOST_ROWS), f64::INFINITY);
         let mut fine = *from;
         for j in 1..=MOST_ROWS {
@@ -174,7 +174,7 @@ impl<'a> Ramp<'a> {
             }
             rows = row;
             if j > 1 && error <= 1.0 {
-                return Ok((self.station(&entry, fine), error));
+                return Ok((self.path_state(&entry, fine), error));
             }
             if error > HOPELESS[j - 1] && step > SHORT {
                 break;
@@ -184,27 +184,27 @@ impl<'a> Ramp<'a> {
     }
 
     /// A sub-step by so many increments.
-    fn increments(&mut self, from: &Station, at: u64, step: u64, count: usize) -> Result<Station, LawFailure> {
+    fn increments(&mut self, from: &PathState, at: u64, step: u64, count: usize) -> Result<PathState, LawFailure> {
         let Sliding { slip, pressure, dt } = self.sliding;
         let first = self.start.state.pressure;
-        let mut station = *from;
+        let mut path_state = *from;
         for i in 1..=count {
             let part = share(step) / count as f64;
             let x = if i == count { share(at + step) } else { share(at) + i as f64 * part };
             let sliding = Sliding { slip: slip * part, pressure: (1.0 - x) * first + x * pressure, dt: dt * part };
             let directions = [0, 1].map(|k| {
                 let Direction { slip, parameter, .. } = self.directions[k];
-                Direction { state: station.variations[k], slip: slip * part, parameter }
+                Direction { state: path_state.variations[k], slip: slip * part, parameter }
             });
             let dpressure = self.dpressure.map(|dpressure| x * dpressure);
-            let (answer, variations) = self.law.increment(&station.state, sliding, directions, dpressure)?;
+            let (answer, variations) = self.law.increment(&path_state.state, sliding, directions, dpressure)?;
             self.evaluations += answer.evaluations;
-            station = Station { state: answer.state, variations };
+            path_state = PathState { state: answer.state, variations };
         }
-        Ok(station)
+        Ok(path_state)
     }
 
-    fn entry(&self, Station { state, variations }: &Station) -> Entry {
+    fn entry(&self, PathState { state, variations }: &PathState) -> Entry {
         let (traction, theta) = (state.traction, state.variables[0]);
         let work = state.dissipation + 0.5 * traction * traction / self.law.coefficients.alpha_t;
         Entry {
@@ -213,18 +213,18 @@ impl<'a> Ramp<'a> {
         }
     }
 
-    /// The station at the end of a sub-step that an entry stands for; `fine` is there too.
-    fn station(&self, entry: &Entry, fine: Station) -> Station {
+    /// The state at the end of a sub-step that an entry stands for; `fine` is there too.
+    fn path_state(&self, entry: &Entry, fine: PathState) -> PathState {
         let [traction, log_theta, plastic_slip, work] = entry.values;
         let theta = log_theta.exp();
         let stored = 0.5 * traction * traction / self.law.coefficients.alpha_t;
         let state = FrictionState { traction, plastic_slip, dissipation: work - stored, ..fine.state };
         let variations = entry.derivatives.map(|[traction, log]| Variation::new(traction, theta * log));
-        Station { state: state.with_variables([theta]), variations }
+        PathState { state: state.with_variables([theta]), variations }
     }
 
-    /// How much further the next extrapolation goes, in tolerances.
-    fn error(&self, entry: &Entry, above: &Entry, factor: f64, [from, to]: [&Station; 2], step: u64) -> f64 {
+    /// Change by the next extrapolation, in tolerances.
+    fn error(&self, entry: &Entry, above: &Entry, factor: f64, [from, to]: [&PathState; 2], step: u64) -> f64 {
         let law = &self.law.coefficients;
         let [traction, log_theta, _, work] = [0, 1, 2, 3].map(|i| factor * (entry.values[i] - above.values[i]).abs());
         let strength = law.f_0 * from.state.pressure.max(to.state.pressure);
@@ -244,7 +244,8 @@ impl<'a> Ramp<'a> {
 }
 
 impl Ramp<'_> {
-    /// Slip at the beginning of a sub-step that unloads so much that none of its rows sees it: V decays by |q|/(a p).
+    /// Slip at the beginning of a sub-step that unloads so much that none of its rows resolves it: V decays by |q|/(a
+    /// p).
     fn overlooked(&self, from: &FrictionState, to: &FrictionState, step: u64) -> f64 {
         if from.pressure <= 0.0 || to.pressure <= 0.0 {
             return 0.0;

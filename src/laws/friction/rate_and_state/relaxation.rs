@@ -19,7 +19,7 @@ pub enum StateEvolution {
     Slip,
 }
 
-/// What friction follows from.
+/// Coefficients of the friction law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Coefficients {
     pub f_0: f64,
@@ -72,7 +72,7 @@ pub(super) struct Relaxation<'a> {
     pub log_state: f64,
 }
 
-/// What an increment comes to if it slips by Δλ.
+/// Result of an increment with the slip Δλ.
 #[derive(Clone, Copy)]
 pub(super) struct Relaxed {
     /// Δλ [L]
@@ -117,7 +117,7 @@ impl Relaxation<'_> {
         (log, dlog / critical_slip)
     }
 
-    /// What it comes to after Δλ.
+    /// Traction and state after the slip Δλ.
     pub(super) fn outcome(&self, slip: f64) -> Relaxed {
         let Coefficients { a, b, reference_rate, alpha_t, .. } = *self.law;
         let (log_state, dlog_state) = self.log_state_after(slip);
@@ -321,7 +321,7 @@ impl Relaxation<'_> {
 }
 
 impl Variation {
-    /// With the traction counted along the sign.
+    /// The variation with its traction multiplied by the sign of slip.
     pub(super) fn along(self, sign: f64) -> Self {
         Self { traction: sign * self.traction, ..self }
     }

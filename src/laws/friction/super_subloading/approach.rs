@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, LN_2, PI};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How R follows from plastic slip.
+/// Sliding curve: R as a function of plastic slip.
 ///
 /// ```text
 /// dR/dλ = U(R),   y = (R − R_e)/(1 − R_e),   λ = (1 − R_e)/r T(ζ)
@@ -23,7 +23,7 @@ pub(super) struct SlidingCurve {
 
 /// A point of the curve.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Reach {
+pub(super) struct CurvePoint {
     /// ζ, or the plastic slip itself where R = 1
     pub coordinate: f64,
     /// Plastic slip up to here, from y = 0 or from where R = 1 was met [L]
@@ -50,34 +50,34 @@ impl SlidingCurve {
 
     /// The point where plastic slip starts from a ratio R.
     #[inline]
-    pub(super) fn start(&self, ratio: f64) -> Reach {
+    pub(super) fn start(&self, ratio: f64) -> CurvePoint {
         let y = self.progress(ratio).max(LEAST_Y);
         if y < 1.0 {
             let (zeta, here) = self.approach.locate(y);
-            self.reach(zeta, &here)
+            self.curve_point(zeta, &here)
         } else {
-            Reach { coordinate: 0.0, slip: 0.0, stretch: 1.0, bend: 0.0, ratio: 1.0, rate: 0.0, full: true }
+            CurvePoint { coordinate: 0.0, slip: 0.0, stretch: 1.0, bend: 0.0, ratio: 1.0, rate: 0.0, full: true }
         }
     }
 
     /// Whether the point is the beginning of the curve, where U is infinite.
-    pub(super) fn begins_at(&self, reach: &Reach) -> bool {
-        self.progress(reach.ratio) <= LEAST_Y
+    pub(super) fn begins_at(&self, curve_point: &CurvePoint) -> bool {
+        self.progress(curve_point.ratio) <= LEAST_Y
     }
 
     /// The point at a coordinate of the curve that begins at `start`.
     #[inline(always)]
-    pub(super) fn at(&self, coordinate: f64, start: &Reach) -> Reach {
+    pub(super) fn at(&self, coordinate: f64, start: &CurvePoint) -> CurvePoint {
         if start.full {
-            Reach { coordinate, slip: coordinate, ..*start }
+            CurvePoint { coordinate, slip: coordinate, ..*start }
         } else {
-            self.reach(coordinate, &self.approach.at(coordinate))
+            self.curve_point(coordinate, &self.approach.at(coordinate))
         }
     }
 
     #[inline]
-    fn reach(&self, coordinate: f64, here: &Progress) -> Reach {
-        Reach {
+    fn curve_point(&self, coordinate: f64, here: &Progress) -> CurvePoint {
+        CurvePoint {
             coordinate,
             slip: here.distance * self.length,
             stretch: here.stretch * self.length,
@@ -89,7 +89,7 @@ impl SlidingCurve {
     }
 
     /// How R varies where r varies by `dr` and R_e by `dcore`, after a given plastic slip, R at the start being given.
-    pub(super) fn varied(&self, start: &Reach, here: &Reach, dr: f64, dcore: f64) -> f64 {
+    pub(super) fn varied(&self, start: &CurvePoint, here: &CurvePoint, dr: f64, dcore: f64) -> f64 {
         if start.full {
             return 0.0;
         }
@@ -101,25 +101,26 @@ impl SlidingCurve {
     }
 
     /// Mean of R over the plastic slip between two points.
-    pub(super) fn mean_ratio(&self, from: &Reach, to: &Reach) -> f64 {
+    pub(super) fn mean_ratio(&self, from: &CurvePoint, to: &CurvePoint) -> f64 {
         let slip = to.slip - from.slip;
         if from.full || slip <= 0.0 {
             return to.ratio;
         }
-        let area =
-            |reach: &Reach| self.approach.area(reach.coordinate, self.progress(reach.ratio), reach.slip / self.length);
+        let area = |curve_point: &CurvePoint| {
+            self.approach.area(curve_point.coordinate, self.progress(curve_point.ratio), curve_point.slip / self.length)
+        };
         let mean = (area(to) - area(from)) * self.length / slip;
         (self.elastic_core + (1.0 - self.elastic_core) * mean).clamp(from.ratio, to.ratio.max(from.ratio))
     }
 
     /// A coordinate that is at least `slip` beyond the start.
     #[inline]
-    pub(super) fn beyond(&self, slip: f64, start: &Reach) -> f64 {
+    pub(super) fn beyond(&self, slip: f64, start: &CurvePoint) -> f64 {
         let slip = start.slip + slip;
         if start.full { slip } else { self.approach.beyond(slip / self.length) }
     }
 
-    /// y
+    /// Normalized progress y of R.
     #[inline]
     pub(super) fn progress(&self, ratio: f64) -> f64 {
         (ratio - self.elastic_core) * self.per_range

@@ -5,7 +5,7 @@
 //! The scalar equation of plastic slip, and its smallest root.
 
 use super::SuperSubloading;
-use super::approach::{Reach, SlidingCurve};
+use super::approach::{CurvePoint, SlidingCurve};
 use super::peak::{Peak, PeakShift};
 use crate::laws::friction::root::{Argument, bracketed_root};
 use crate::laws::friction::{LEAST_SLOPE, LawFailure, STEEPEST};
@@ -13,7 +13,7 @@ use crate::laws::friction::{LEAST_SLOPE, LawFailure, STEEPEST};
 /// Derivatives along two directions of what an answer depends on.
 pub(super) type Derivative = [f64; 2];
 
-/// How what an answer depends on varies along the two directions.
+/// Derivatives of the inputs of an increment along the two directions.
 #[derive(Clone, Copy)]
 pub(super) struct Directions {
     /// of Δu
@@ -34,7 +34,7 @@ impl Directions {
         Self { slip: [1.0, 0.0], pressure: [0.0, 1.0], traction: [0.0; 2], mu: [0.0; 2], parameters: None };
 }
 
-/// How much each parameter of the law varies.
+/// Derivative of each parameter of the law along a direction.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Shift {
     pub alpha_t: f64,
@@ -60,7 +60,7 @@ pub(super) struct LoadPath<'a> {
     pub time: f64,
     /// Derivatives of the time
     pub dtime: Derivative,
-    /// How the parameters vary, if they do
+    /// Derivatives of the parameters, if they vary
     pub parameters: Option<[Shift; 2]>,
     /// Evaluations of the slip equation so far
     pub evaluations: usize,
@@ -68,7 +68,7 @@ pub(super) struct LoadPath<'a> {
 
 /// A point of the path.
 #[derive(Clone, Copy)]
-pub(super) struct Station {
+pub(super) struct PathState {
     pub x: f64,
     /// q ≥ 0 [F/L²]
     pub traction: f64,
@@ -79,7 +79,7 @@ pub(super) struct Station {
     /// Derivatives of μ
     pub dmu: Derivative,
     /// R and where it is on its curve
-    pub reach: Reach,
+    pub curve_point: CurvePoint,
     /// Plastic slip since the start of the path [L]
     pub plastic_slip: f64,
     /// Work dissipated since the start of the path [F/L]
@@ -95,19 +95,19 @@ impl LoadPath<'_> {
         (traction, dtraction): (f64, Derivative),
         (mu, dmu): (f64, Derivative),
         ratio: f64,
-    ) -> Station {
-        let reach = self.law.curve.start(ratio);
+    ) -> PathState {
+        let curve_point = self.law.curve.start(ratio);
         let (plastic_slip, work, overlooked) = (0.0, 0.0, 0.0);
-        Station { x: 0.0, traction, dtraction, mu, dmu, reach, plastic_slip, work, overlooked }
+        PathState { x: 0.0, traction, dtraction, mu, dmu, curve_point, plastic_slip, work, overlooked }
     }
 
-    /// One sub-step.
+    /// Integrate one sub-step.
     #[inline]
-    pub(super) fn advance(&mut self, from: &Station, x: f64) -> Result<Station, LawFailure> {
+    pub(super) fn advance(&mut self, from: &PathState, x: f64) -> Result<PathState, LawFailure> {
         let share = x - from.x;
         let equation = SlipEquation {
             law: self.law,
-            start: from.reach,
+            start: from.curve_point,
             trial: from.traction + self.law.alpha_t * self.slip * share,
             pressure: self.pressure(x),
             old_mu: from.mu,
@@ -126,7 +126,7 @@ impl LoadPath<'_> {
 
     /// A sub-step without plastic slip.
     #[inline]
-    fn stick(&self, from: &Station, x: f64, trial: f64) -> Station {
+    fn stick(&self, from: &PathState, x: f64, trial: f64) -> PathState {
         let share = x - from.x;
         let pressure = self.pressure(x);
         // Only weakening that has taken the traction from under an unloading can leave it to reverse: it waits at 0.
@@ -134,9 +134,9 @@ impl LoadPath<'_> {
         let (mu, by_time) = self.law.evolution.rested(from.mu, self.time * share);
         let old_rate = self.law.evolution.recovery(from.mu);
         let by_old = if old_rate > 0.0 { by_time / old_rate } else { 1.0 };
-        let reach = self.law.curve.start(traction / (mu * pressure));
-        let rate = self.rate(traction, mu, pressure, &reach);
-        Station {
+        let curve_point = self.law.curve.start(traction / (mu * pressure));
+        let rate = self.rate(traction, mu, pressure, &curve_point);
+        PathState {
             x,
             traction,
             dtraction: if trial > 0.0 { [0, 1].map(|i| self.dtrial(from, share, i)) } else { [0.0; 2] },
@@ -148,7 +148,7 @@ impl LoadPath<'_> {
                     self.law.evolution.rested_by(from.mu, self.time * share, by, &shifts[i].peak)
                 }
             }),
-            reach,
+            curve_point,
             overlooked: self.law.alpha_t * rate * share,
             ..*from
         }
@@ -165,26 +165,27 @@ impl LoadPath<'_> {
     /// ```
     /// Parameters that vary add their own part to α_t Δλ, δμ and δR.
     #[inline]
-    fn slide(&self, from: &Station, x: f64, point: &Point) -> Station {
+    fn slide(&self, from: &PathState, x: f64, point: &Point) -> PathState {
         let share = x - from.x;
         let (start_pressure, pressure) = (self.pressure(from.x), self.pressure(x));
-        let (reach, peak, slip) = (point.reach, point.peak, point.slip);
-        let traction = reach.ratio * peak.mu * pressure;
+        let (curve_point, peak, slip) = (point.curve_point, point.peak, point.slip);
+        let traction = curve_point.ratio * peak.mu * pressure;
         let per_slope = 1.0 / point.slope.max(LEAST_SLOPE * self.law.alpha_t);
 
         // U/(U₀ μ₀ p₀), as dR₀ = (dq₀ − R₀ (p₀ dμ₀ + μ₀ dp₀))/(μ₀ p₀); R₀ does not matter where the curve begins.
         let given = from.x == 0.0 && self.parameters.is_none();
-        let begins = given || self.law.curve.begins_at(&from.reach) || from.reach.rate == 0.0;
-        let inherited = if begins { 0.0 } else { reach.rate / from.reach.rate / (from.mu * start_pressure) };
+        let begins = given || self.law.curve.begins_at(&from.curve_point) || from.curve_point.rate == 0.0;
+        let inherited =
+            if begins { 0.0 } else { curve_point.rate / from.curve_point.rate / (from.mu * start_pressure) };
         let derivatives = |i: usize| {
             let dstart_pressure = self.dpressure(from.x)[i];
             let dratio =
-                from.dtraction[i] - from.reach.ratio * (start_pressure * from.dmu[i] + from.mu * dstart_pressure);
+                from.dtraction[i] - from.curve_point.ratio * (start_pressure * from.dmu[i] + from.mu * dstart_pressure);
             let own = self.parameters.map_or([0.0; 3], |shifts| self.own(from, x, point, &shifts[i]));
             let dtrial = self.dtrial(from, share, i) - own[0];
             let dmu = peak.by_old * from.dmu[i] + peak.by_time * share * self.dtime[i] + own[1];
-            let dstrength = pressure * (peak.mu * inherited * dratio + peak.mu * own[2] + reach.ratio * dmu)
-                + reach.ratio * peak.mu * self.dpressure(x)[i];
+            let dstrength = pressure * (peak.mu * inherited * dratio + peak.mu * own[2] + curve_point.ratio * dmu)
+                + curve_point.ratio * peak.mu * self.dpressure(x)[i];
             let dslip = (dtrial - dstrength) * per_slope;
             let limit = match self.parameters {
                 Some(_) => f64::INFINITY,
@@ -198,14 +199,16 @@ impl LoadPath<'_> {
         let (dq_dpressure, dmu_dpressure) = derivatives(1);
 
         let strengths = [from.mu * start_pressure, peak.mu * pressure];
-        let work = mean_traction(&self.law.curve, [&from.reach, &reach], strengths, [from.traction, traction]) * slip;
-        Station {
+        let work =
+            mean_traction(&self.law.curve, [&from.curve_point, &curve_point], strengths, [from.traction, traction])
+                * slip;
+        PathState {
             x,
             traction,
             dtraction: [dq_dslip, dq_dpressure],
             mu: peak.mu,
             dmu: [dmu_dslip, dmu_dpressure],
-            reach,
+            curve_point,
             plastic_slip: from.plastic_slip + slip,
             work: from.work + work,
             overlooked: 0.0,
@@ -214,31 +217,31 @@ impl LoadPath<'_> {
 
     /// Derivatives of the trial traction.
     #[inline]
-    fn dtrial(&self, from: &Station, share: f64, i: usize) -> f64 {
+    fn dtrial(&self, from: &PathState, share: f64, i: usize) -> f64 {
         let by_stiffness = self.parameters.map_or(0.0, |shifts| shifts[i].alpha_t * self.slip * share);
         from.dtraction[i] + self.law.alpha_t * self.dslip[i] * share + by_stiffness
     }
 
-    /// What parameters that vary add to α_t Δλ, μ and R after a given plastic slip from a given start.
-    fn own(&self, from: &Station, x: f64, point: &Point, by: &Shift) -> [f64; 3] {
+    /// Contribution of varying parameters to α_t Δλ, μ and R after a given plastic slip from a given start.
+    fn own(&self, from: &PathState, x: f64, point: &Point, by: &Shift) -> [f64; 3] {
         let time = self.time * (x - from.x);
         [
             by.alpha_t * point.slip,
             self.law.evolution.after_by(from.mu, point.slip, time, &by.peak),
-            self.law.curve.varied(&from.reach, &point.reach, by.r, by.elastic_core),
+            self.law.curve.varied(&from.curve_point, &point.curve_point, by.r, by.elastic_core),
         ]
     }
 
     /// dλ/dx of the rate equations, 0 where R falls by itself or the answer is not unique.
     #[inline]
-    fn rate(&self, traction: f64, mu: f64, pressure: f64, reach: &Reach) -> f64 {
-        if traction < reach.ratio * mu * pressure * (1.0 - ROUND_OFF) {
+    fn rate(&self, traction: f64, mu: f64, pressure: f64, curve_point: &CurvePoint) -> f64 {
+        if traction < curve_point.ratio * mu * pressure * (1.0 - ROUND_OFF) {
             return 0.0; // inside the elastic core
         }
         let (weakening, recovery) = (self.law.evolution.weakening(mu), self.law.evolution.recovery(mu));
         let drive = self.law.alpha_t * self.slip
-            - reach.ratio * (recovery * self.time * pressure + mu * (self.pressures[1] - self.pressures[0]));
-        let stiffness = self.law.alpha_t + pressure * (reach.rate * mu - reach.ratio * weakening);
+            - curve_point.ratio * (recovery * self.time * pressure + mu * (self.pressures[1] - self.pressures[0]));
+        let stiffness = self.law.alpha_t + pressure * (curve_point.rate * mu - curve_point.ratio * weakening);
         if drive > 0.0 && stiffness > 0.0 { drive / stiffness } else { 0.0 }
     }
 
@@ -257,7 +260,7 @@ impl LoadPath<'_> {
 /// as linear in λ, which it is where it snaps: the contact springs back, and what the strength does not take is lost too.
 pub(super) fn mean_traction(
     curve: &SlidingCurve,
-    reaches: [&Reach; 2],
+    curve_points: [&CurvePoint; 2],
     strengths: [f64; 2],
     tractions: [f64; 2],
 ) -> f64 {
@@ -265,7 +268,7 @@ pub(super) fn mean_traction(
     if tractions[1] < tractions[0] {
         mean(tractions)
     } else {
-        curve.mean_ratio(reaches[0], reaches[1]) * mean(strengths)
+        curve.mean_ratio(curve_points[0], curve_points[1]) * mean(strengths)
     }
 }
 
@@ -277,8 +280,8 @@ pub(super) fn mean_traction(
 /// ```
 pub(super) struct SlipEquation<'a> {
     pub law: &'a SuperSubloading,
-    /// Where plastic slip starts.
-    pub start: Reach,
+    /// Point of the sliding curve at which plastic slip starts.
+    pub start: CurvePoint,
     /// |q_tr| [F/L²]
     pub trial: f64,
     /// p at the end [F/L²]
@@ -292,7 +295,7 @@ pub(super) struct SlipEquation<'a> {
 /// The equation at one point of the curve.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Point {
-    pub reach: Reach,
+    pub curve_point: CurvePoint,
     /// Δλ [L]
     pub slip: f64,
     /// μ and its derivatives
@@ -364,10 +367,10 @@ impl SlipEquation<'_> {
     }
 
     #[inline(always)]
-    fn point(&self, reach: Reach) -> Point {
+    fn point(&self, curve_point: CurvePoint) -> Point {
         let Self { law: SuperSubloading { alpha_t, .. }, pressure, .. } = *self;
-        let Reach { stretch, bend, ratio, rate, .. } = reach;
-        let slip = (reach.slip - self.start.slip).max(0.0);
+        let CurvePoint { stretch, bend, ratio, rate, .. } = curve_point;
+        let slip = (curve_point.slip - self.start.slip).max(0.0);
         let peak = self.law.evolution.after(self.old_mu, slip, self.dt);
         let residual = self.trial - alpha_t * slip - ratio * peak.mu * pressure;
         let slope = self.slope(ratio, rate, &peak);
@@ -378,8 +381,8 @@ impl SlipEquation<'_> {
         let newton = residual * per_gradient;
         let bending = 0.5 * newton * curvature * per_gradient;
         let step = if bending.abs() < 0.5 { newton * (1.0 - bending) } else { newton };
-        let close = self.is_close(&reach, slope, step);
-        Point { reach, slip, peak, residual, slope, step, close }
+        let close = self.is_close(&curve_point, slope, step);
+        Point { curve_point, slip, peak, residual, slope, step, close }
     }
 
     #[inline(always)]
@@ -390,15 +393,17 @@ impl SlipEquation<'_> {
     /// The point with μ and D as they are there, and not as they were before the last step.
     pub(super) fn settled(&self, point: Point) -> Point {
         let peak = self.law.evolution.after(self.old_mu, point.slip, self.dt);
-        Point { peak, slope: self.slope(point.reach.ratio, point.reach.rate, &peak), ..point }
+        Point { peak, slope: self.slope(point.curve_point.ratio, point.curve_point.rate, &peak), ..point }
     }
 
     /// Whether terms of third order of the step are round-off; the fold where D = 0 magnifies them.
     #[inline(always)]
-    fn is_close(&self, reach: &Reach, slope: f64, step: f64) -> bool {
+    fn is_close(&self, curve_point: &CurvePoint, slope: f64, step: f64) -> bool {
         let last = if self.law.evolution.is_linear() { LAST_STEP } else { LAST_STEP_OF_FIRST_ORDER };
-        let relative = reach.stretch + reach.bend + reach.stretch * reach.stretch * self.law.evolution.sharpness();
-        step.abs() * relative * self.law.alpha_t <= last * reach.stretch * slope.min(self.law.alpha_t)
+        let relative = curve_point.stretch
+            + curve_point.bend
+            + curve_point.stretch * curve_point.stretch * self.law.evolution.sharpness();
+        step.abs() * relative * self.law.alpha_t <= last * curve_point.stretch * slope.min(self.law.alpha_t)
     }
 
     /// A first coordinate: a step from the start or, near R = R_e where U is infinite, the elastic answer if there is
@@ -406,8 +411,8 @@ impl SlipEquation<'_> {
     #[inline]
     fn guess(&self, start: &Point) -> f64 {
         let strength = start.peak.mu * self.pressure;
-        if self.law.curve.progress(start.reach.ratio) > SMALL_Y {
-            start.reach.coordinate + start.step
+        if self.law.curve.progress(start.curve_point.ratio) > SMALL_Y {
+            start.curve_point.coordinate + start.step
         } else if self.trial < 0.9 * strength {
             self.law.curve.approach.locate(self.law.curve.progress(self.trial / strength)).0
         } else {
@@ -426,10 +431,10 @@ impl SlipEquation<'_> {
             self.at(coordinate)
         };
         let mut left = start;
-        let near = start.reach.coordinate + 2.0 * start.step;
-        let mut right = at(if start.reach.coordinate < near && near < end { near } else { end });
+        let near = start.curve_point.coordinate + 2.0 * start.step;
+        let mut right = at(if start.curve_point.coordinate < near && near < end { near } else { end });
         for _ in 0..MAX_PIECES {
-            let (low, high) = (left.reach.coordinate, right.reach.coordinate);
+            let (low, high) = (left.curve_point.coordinate, right.curve_point.coordinate);
             let (least, most) = self.slope_bounds(&left, &right);
             let narrow = high - low <= LEAST_PIECE * (1.0 + low.abs());
             if right.residual <= 0.0 && (least > 0.0 || narrow) {
@@ -452,8 +457,8 @@ impl SlipEquation<'_> {
 
     /// Least and greatest D between two points, from the monotony of U, R, μ and ∂μ/∂Δλ.
     fn slope_bounds(&self, left: &Point, right: &Point) -> (f64, f64) {
-        let least = right.reach.rate * right.peak.mu + right.reach.ratio * left.peak.slope;
-        let most = left.reach.rate * left.peak.mu + left.reach.ratio * right.peak.slope;
+        let least = right.curve_point.rate * right.peak.mu + right.curve_point.ratio * left.peak.slope;
+        let most = left.curve_point.rate * left.peak.mu + left.curve_point.ratio * right.peak.slope;
         (self.law.alpha_t + self.pressure * least, self.law.alpha_t + self.pressure * most)
     }
 }
@@ -462,17 +467,18 @@ impl Point {
     /// The point after its last step.
     #[inline(always)]
     fn moved(self, equation: &SlipEquation) -> Self {
-        let Self { mut reach, mut slip, peak, step, close, .. } = self;
+        let Self { mut curve_point, mut slip, peak, step, close, .. } = self;
         if !close {
             return self;
         }
-        let advance = step * (reach.stretch + 0.5 * step * reach.bend);
-        let rise = reach.rate * step * (reach.stretch + 0.5 * step * (reach.bend - reach.stretch));
-        reach.coordinate += step;
-        reach.slip += advance;
-        reach.stretch += step * reach.bend;
-        reach.ratio = (reach.ratio + rise).min(1.0);
-        reach.rate *= 1.0 - step * (1.0 - 0.5 * step);
+        let advance = step * (curve_point.stretch + 0.5 * step * curve_point.bend);
+        let rise =
+            curve_point.rate * step * (curve_point.stretch + 0.5 * step * (curve_point.bend - curve_point.stretch));
+        curve_point.coordinate += step;
+        curve_point.slip += advance;
+        curve_point.stretch += step * curve_point.bend;
+        curve_point.ratio = (curve_point.ratio + rise).min(1.0);
+        curve_point.rate *= 1.0 - step * (1.0 - 0.5 * step);
         slip = (slip + advance).max(0.0);
         let evolution = equation.law.evolution;
         let peak = if evolution.is_linear() {
@@ -480,7 +486,7 @@ impl Point {
         } else {
             Peak { mu: evolution.clamp(peak.mu + advance * peak.slope), ..peak }
         };
-        let slope = equation.slope(reach.ratio, reach.rate, &peak);
-        Self { reach, slip, peak, slope, ..self }
+        let slope = equation.slope(curve_point.ratio, curve_point.rate, &peak);
+        Self { curve_point, slip, peak, slope, ..self }
     }
 }

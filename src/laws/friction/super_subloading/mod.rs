@@ -16,7 +16,7 @@ use increment::{Directions, ROUND_OFF, SlipEquation, mean_traction};
 use peak::PeakEvolution;
 pub use peak::{Integration, Onset, Rise};
 
-/// Super/subloading friction: slip weakens the interface, rest heals it.
+/// Super/subloading friction: slip weakens the interface, stationary contact heals it.
 ///
 /// ```text
 /// q̇ = α_t (v − λ sgn q)                               slip = elastic + plastic     (1)
@@ -151,13 +151,13 @@ impl SuperSubloading {
             return Ok(self.elastic(old, trial, pressure, start.peak.mu));
         }
         let (end, evaluations) = equation.solve(start)?;
-        let strength = trial.signum() * end.reach.ratio * end.peak.mu;
+        let strength = trial.signum() * end.curve_point.ratio * end.peak.mu;
         // Plastic slip starts from the old pressure, or from that where the traction passes 0.
         let passed = if reversed { old.traction / (old.traction - trial) } else { 0.0 };
         let start_pressure = old.pressure + passed * (pressure - old.pressure);
         let strengths = [old_mu * start_pressure, end.peak.mu * pressure];
         let tractions = [if reversed { 0.0 } else { old.traction.abs() }, strength.abs() * pressure];
-        let mean = mean_traction(&self.curve, [&equation.start, &end.reach], strengths, tractions);
+        let mean = mean_traction(&self.curve, [&equation.start, &end.curve_point], strengths, tractions);
         let softness = self.alpha_t / end.slope.max(LEAST_SLOPE * self.alpha_t);
         Ok(FrictionResponse {
             state: ruled(
@@ -193,7 +193,7 @@ impl SuperSubloading {
     }
 }
 
-/// Whether R can only fall on the way to the trial traction.
+/// Whether R can only decrease towards the trial traction.
 fn falls(old: &FrictionState, trial: f64, pressure: f64) -> bool {
     let ratio_falls = trial.abs() * old.pressure <= old.traction.abs() * pressure * (1.0 + ROUND_OFF);
     trial * old.traction.signum() >= 0.0 && ratio_falls && old.pressure > 0.0
@@ -306,7 +306,7 @@ pub struct SuperSubloadingParameters {
     /// How an increment is integrated
     #[serde(default)]
     pub integration: Integration,
-    /// Error allowed to the controlled integration, as a share of μ_s p, from 1e-12 to 0.1; 1e-6 by default [-]
+    /// Error tolerance of the controlled integration, as a fraction of μ_s p, from 1e-12 to 0.1; 1e-6 by default [-]
     #[serde(default)]
     pub tolerance: Option<f64>,
 }

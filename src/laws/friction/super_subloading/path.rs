@@ -12,7 +12,7 @@
 //!
 //! How the answers vary with the parameters, and with the state at the start.
 
-use super::increment::{Derivative, Directions, LoadPath, Shift, Station};
+use super::increment::{Derivative, Directions, LoadPath, PathState, Shift};
 use super::peak::PeakShift;
 use super::{EXCESS, SuperSubloading, SuperSubloadingParameters, falls, mu_of};
 use crate::laws::friction::sensitivity::{Direction, SensitiveLaw, Variation};
@@ -27,7 +27,7 @@ impl SuperSubloading {
         trial: f64,
         Sliding { slip, pressure, dt }: Sliding,
         by: &Directions,
-    ) -> (LoadPath<'_>, Station, f64) {
+    ) -> (LoadPath<'_>, PathState, f64) {
         let reversed = old.traction != 0.0 && trial * old.traction.signum() < 0.0;
         let sign = if reversed || old.traction == 0.0 { trial.signum() } else { old.traction.signum() };
         let mirrored = |derivative: Derivative| derivative.map(|d| sign * d);
@@ -53,7 +53,7 @@ impl SuperSubloading {
     }
 
     /// Leave to the path what comes after the share of the increment at which the traction passes 0; its first station.
-    fn pass_zero(&self, path: &mut LoadPath, old_mu: f64, trial: f64, share: f64, by: &Directions) -> Station {
+    fn pass_zero(&self, path: &mut LoadPath, old_mu: f64, trial: f64, share: f64, by: &Directions) -> PathState {
         let (alpha_t, slip, dt) = (self.alpha_t, path.slip, path.time);
         let dstiffness = [0, 1].map(|i| by.parameters.map_or(0.0, |shifts| shifts[i].alpha_t));
         let dshare = [0, 1]
@@ -92,22 +92,22 @@ const NOISE: f64 = 2e-13;
 /// The difference of two stations over the error of the value extrapolated from them, where it converges slowly.
 const CAUTION: f64 = 4.0;
 
-/// In q, in μ p and in the work done
+/// Errors in q, in μ p and in the work
 type Differences = [f64; 3];
 
 /// A sub-step, and the same in two halves.
 #[derive(Clone, Copy)]
 struct Halves<'a> {
-    from: &'a Station,
-    coarse: &'a Station,
-    middle: &'a Station,
-    fine: &'a Station,
+    from: &'a PathState,
+    coarse: &'a PathState,
+    middle: &'a PathState,
+    fine: &'a PathState,
 }
 
 impl Halves<'_> {
     /// Whether there is plastic slip in the whole and in both halves.
     fn slide(&self) -> bool {
-        let slips = |from: &Station, to: &Station| to.plastic_slip > from.plastic_slip;
+        let slips = |from: &PathState, to: &PathState| to.plastic_slip > from.plastic_slip;
         slips(self.from, self.coarse) && slips(self.from, self.middle) && slips(self.middle, self.fine)
     }
 }
@@ -117,7 +117,7 @@ impl LoadPath<'_> {
     ///
     /// # Errors
     /// [`LawFailure::NotConverged`] when sub-steps do not come to agree.
-    pub(super) fn end(&mut self, start: &Station) -> Result<Station, LawFailure> {
+    pub(super) fn end(&mut self, start: &PathState) -> Result<PathState, LawFailure> {
         let end = self.advance(start, 1.0)?;
         if self.is_right_alone(start, &end) {
             return Ok(end);
@@ -135,11 +135,11 @@ impl LoadPath<'_> {
     /// a snap, whose place is known as well as the tolerance asks.
     fn refine(
         &mut self,
-        from: &Station,
-        coarse: Station,
+        from: &PathState,
+        coarse: PathState,
         expected: Differences,
         halvings: u32,
-    ) -> Result<Station, LawFailure> {
+    ) -> Result<PathState, LawFailure> {
         let middle = self.advance(from, 0.5 * (from.x + coarse.x))?;
         let fine = self.advance(&middle, coarse.x)?;
         let halves = Halves { from, coarse: &coarse, middle: &middle, fine: &fine };
@@ -169,7 +169,7 @@ impl LoadPath<'_> {
     }
 
     /// Most that slip, pressure and time change the traction or the strength by over a sub-step without a snap.
-    fn drive(&self, from: &Station, to: &Station) -> f64 {
+    fn drive(&self, from: &PathState, to: &PathState) -> f64 {
         let share = to.x - from.x;
         let recovery = self.law.evolution.recovery(from.mu.min(to.mu))
             * self.time
@@ -205,7 +205,7 @@ impl LoadPath<'_> {
     }
 
     /// The finer of two stations after plastic slip, extrapolated to vanishing sub-steps.
-    fn extrapolated(&self, halves: &Halves) -> Station {
+    fn extrapolated(&self, halves: &Halves) -> PathState {
         let Halves { from, coarse, fine, .. } = *halves;
         let beyond = |fine: f64, coarse: f64| fine + (fine - coarse) / 3.0;
         let beyond_each = |fine: Derivative, coarse: Derivative| [0, 1].map(|i| beyond(fine[i], coarse[i]));
@@ -223,13 +223,13 @@ impl LoadPath<'_> {
             (traction, dtraction) = (mu * pressure, [0, 1].map(|i| pressure * dmu[i] + mu * dpressure[i]));
         }
         let energy = beyond(self.energy(fine), self.energy(coarse));
-        Station {
+        PathState {
             x: fine.x,
             traction,
             dtraction,
             mu,
             dmu,
-            reach: self.law.curve.start(traction / (mu * pressure)),
+            curve_point: self.law.curve.start(traction / (mu * pressure)),
             plastic_slip: beyond(fine.plastic_slip, coarse.plastic_slip).max(from.plastic_slip),
             work: (energy - 0.5 * traction * traction / self.law.alpha_t).max(from.work),
             overlooked: 0.0,
@@ -237,8 +237,8 @@ impl LoadPath<'_> {
     }
 
     /// Work done by the traction: dissipated, and stored in the contact spring.
-    fn energy(&self, station: &Station) -> f64 {
-        station.work + 0.5 * station.traction * station.traction / self.law.alpha_t
+    fn energy(&self, path_state: &PathState) -> f64 {
+        path_state.work + 0.5 * path_state.traction * path_state.traction / self.law.alpha_t
     }
 }
 
@@ -249,7 +249,7 @@ const SHARE: f64 = 0.01;
 /// Most that the rate of plastic slip changes by within a step taken alone, relative: bounds from its ends need it steady.
 const STEADY: f64 = 0.25;
 
-/// What makes the rate of plastic slip at one end of a step.
+/// Quantities that determine the rate of plastic slip at one end of a step.
 struct Ends {
     /// p U μ, what R's approach adds to D = α_t + p (U μ − R κ (μ/μ_k − 1)) [F/L³]
     approach: f64,
@@ -274,7 +274,7 @@ impl LoadPath<'_> {
     /// commutator of weakening and recovery), and q to α_t R p/D times this. The rate D dλ/dx = α_t du/dx − R (ξ (1 − μ/μ_s) p
     /// dt/dx + μ dp/dx) is made of terms that are monotone in the step, so that its ends bound w; it must be positive
     /// throughout. The mean of q is a trapezoidal rule, whose error the slopes at its ends bound.
-    fn is_right_alone(&self, from: &Station, to: &Station) -> bool {
+    fn is_right_alone(&self, from: &PathState, to: &PathState) -> bool {
         let slip = to.plastic_slip - from.plastic_slip;
         if !(self.law.evolution.is_linear() && slip > 0.0) {
             return false;
@@ -297,10 +297,10 @@ impl LoadPath<'_> {
         q_error <= SHARE * strength && self.mean_error(from, to, &start, &end) <= strength
     }
 
-    /// What makes the rate of plastic slip at a station.
-    fn ends(&self, at: &Station) -> Ends {
-        let (pressure, ratio) = (self.pressure(at.x), at.reach.ratio);
-        let approach = pressure * at.reach.rate * at.mu;
+    /// Quantities that determine the rate of plastic slip in a state.
+    fn ends(&self, at: &PathState) -> Ends {
+        let (pressure, ratio) = (self.pressure(at.x), at.curve_point.ratio);
+        let approach = pressure * at.curve_point.rate * at.mu;
         let weakening = pressure * ratio * self.law.evolution.weakening(at.mu);
         let recovery = ratio * pressure * self.law.evolution.recovery(at.mu) * self.time;
         let pressing = ratio * at.mu * (self.pressures[1] - self.pressures[0]);
@@ -318,7 +318,7 @@ impl LoadPath<'_> {
     /// Bound of the error of the mean of q, by which plastic slip is multiplied in the dissipation: a trapezoidal rule of f
     /// over the length L is off by at most L |f′(end) − f′(start)|/8 where f′ is monotone, taken part by part. The rule is for
     /// q over λ where q falls, else for μ p over ∫ R dλ (`mean_traction`).
-    fn mean_error(&self, from: &Station, to: &Station, start: &Ends, end: &Ends) -> f64 {
+    fn mean_error(&self, from: &PathState, to: &PathState, start: &Ends, end: &Ends) -> f64 {
         let slip = to.plastic_slip - from.plastic_slip;
         // R d(μ p)/dλ by weakening, recovery and pressure, and μ p dR/dλ
         let parts = |e: &Ends| {
@@ -338,7 +338,7 @@ impl LoadPath<'_> {
     }
 }
 
-/// How much each parameter varies along a direction.
+/// Derivative of each parameter along a direction.
 fn shift(by: &Direction) -> Shift {
     let [mu_s, mu_k, kappa, xi, m, n] = ["mu_s", "mu_k", "kappa", "xi", "m", "n"].map(|name| by.of(name));
     let peak = PeakShift { mu_s, mu_k, kappa, xi, m, n };

@@ -13,7 +13,7 @@ use std::f64::consts::LN_2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::approach::{Reach, SlidingCurve};
+use super::approach::{CurvePoint, SlidingCurve};
 use crate::laws::friction::root::{Argument, bracketed_root};
 
 /// How the evolution of an increment is integrated.
@@ -238,7 +238,7 @@ impl PeakEvolution {
     }
 }
 
-/// What is left of a deviation after Z relaxation times.
+/// Remaining deviation after Z relaxation times.
 struct Decay {
     /// e^(−Z)
     left: f64,
@@ -283,7 +283,7 @@ fn scaled(slope: f64, factor: f64) -> f64 {
     if factor == 0.0 { 0.0 } else { slope * factor }
 }
 
-/// How much each parameter of [`PeakEvolution`] varies.
+/// Derivative of each parameter of [`PeakEvolution`].
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PeakShift {
     pub mu_s: f64,
@@ -303,7 +303,7 @@ struct Exponents {
 }
 
 impl PeakEvolution {
-    /// How μ varies where [`clamp`](Self::clamp) has put it.
+    /// Derivative of μ where [`clamp`](Self::clamp) has limited it.
     pub(super) fn clamped_by(&self, mu: f64, dmu: f64, by: &PeakShift) -> f64 {
         if mu > self.mu_s {
             by.mu_s
@@ -402,7 +402,8 @@ fn logarithmic(power: f64, x: f64) -> f64 {
     if x > 0.0 { power * x.ln() } else { 0.0 }
 }
 
-/// What the parameters of a law mean for the coefficient q/p, with slip so fast that nothing heals meanwhile.
+/// Peak, residual and characteristic slips of q/p by the parameters of a law, for slip so fast that nothing heals
+/// meanwhile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Onset {
@@ -418,7 +419,7 @@ pub struct Onset {
     pub half_healed: Option<f64>,
 }
 
-/// How friction rises in fast slip.
+/// Rise of friction to its peak in rapid slip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Rise {
@@ -428,14 +429,14 @@ pub struct Rise {
     pub slip: Option<f64>,
 }
 
-/// Coordinates of the curve between which R goes from 0 to 1 as far as double precision sees.
+/// Coordinates of the curve between which R goes from 0 to 1 in double precision.
 const ENDS: [f64; 2] = [-20.0, 40.0];
 /// Places at which a peak is looked for, and thirds taken off to meet it.
 const PLACES: u32 = 1200;
 const THIRDS: usize = 100;
 
 impl Onset {
-    /// Of a law's curve of R and evolution of μ, from the μ that an interface begins with.
+    /// Peak for a law's sliding curve and evolution of μ, from the initial μ of an interface.
     pub(super) fn of(curve: &SlidingCurve, evolution: &PeakEvolution, initial_mu: f64) -> Self {
         let half = |x: f64| (evolution.mu_s > evolution.mu_k && x.is_finite()).then_some(x);
         Self {
@@ -452,9 +453,9 @@ impl Rise {
     /// max R(λ) μ(λ), with R along its curve from R_e and μ falling from `mu`.
     fn of(curve: &SlidingCurve, evolution: &PeakEvolution, mu: f64) -> Self {
         let start = curve.start(0.0);
-        let at = |place: f64| -> (Reach, f64) {
-            let reach = curve.at(place, &start);
-            (reach, reach.ratio * evolution.slid(mu, reach.slip))
+        let at = |place: f64| -> (CurvePoint, f64) {
+            let curve_point = curve.at(place, &start);
+            (curve_point, curve_point.ratio * evolution.slid(mu, curve_point.slip))
         };
         let width = (ENDS[1] - ENDS[0]) / f64::from(PLACES);
         let places = (0..=PLACES).map(|k| ENDS[0] + f64::from(k) * width);
@@ -464,11 +465,11 @@ impl Rise {
             let third = (high - low) / 3.0;
             if at(low + third).1 < at(high - third).1 { low += third } else { high -= third }
         }
-        let (reach, peak) = at(0.5 * (low + high));
+        let (curve_point, peak) = at(0.5 * (low + high));
         // Without weakening, or under one that is over long before R is near 1, friction only rises.
         let limit = if evolution.kappa > 0.0 { evolution.mu_k } else { mu };
         match peak > limit * (1.0 + f64::EPSILON) {
-            true => Self { peak, slip: Some(reach.slip) },
+            true => Self { peak, slip: Some(curve_point.slip) },
             false => Self { peak: limit, slip: None },
         }
     }
@@ -503,7 +504,7 @@ impl PeakEvolution {
     }
 }
 
-/// How far x goes until a deviation d₀ that falls by dd/dx = −d^k is half of it.
+/// Distance in x over which a deviation d₀ that decays by dd/dx = −d^k is halved.
 fn half(deviation: f64, k: f64) -> f64 {
     if k == 1.0 { LN_2 } else { ((k - 1.0) * LN_2).exp_m1() / ((k - 1.0) * deviation.powf(k - 1.0)) }
 }

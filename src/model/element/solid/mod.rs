@@ -20,8 +20,8 @@ use ring::Hoop;
 /// K_ai,bk = ∫ N_a,J A_iJkL N_b,L dV,   A = ∂P/∂F         tangent ∂f_ai/∂u_bk               (3)
 /// ```
 ///
-/// F-bar (Q4 only) lets every point have the volume change of the centre, so that nearly incompressible materials
-/// do not lock. The law sees F̄, and its Cauchy stress acts on the true geometry:
+/// F-bar (Q4 only) lets every point have the volume change of the centre, so that nearly incompressible materials do
+/// not lock. The law is evaluated at F̄, and its Cauchy stress acts on the true geometry:
 ///
 /// ```text
 /// F̄ = r F,   r = √(J₀/J),   J₀ = det F₀ at the centre                                      (4)
@@ -46,7 +46,7 @@ pub struct SolidElement {
     mean_weight: f64,
     /// ∂N_a/∂X at the centre, for F-bar [1/L]
     centre: Option<Vec<Vector2<f64>>>,
-    /// Of rings, which are evaluated in a file of their own
+    /// Hoop terms of axisymmetric elements
     hoop: Option<Hoop>,
 }
 
@@ -194,7 +194,7 @@ impl SolidElement {
     }
 }
 
-/// F of (1)
+/// Deformation gradient F by equation (1).
 fn deformation_gradient(gradients: &[Vector2<f64>], u: &[Vector2<f64>]) -> Matrix2<f64> {
     u.iter().zip(gradients).fold(Matrix2::identity(), |sum, (u, gradient)| sum + u * gradient.transpose())
 }
@@ -299,7 +299,7 @@ impl Centre<'_> {
     }
 }
 
-/// A_iJkL F_kL
+/// Contraction A_iJkL F_kL.
 fn contract(tangent: &Matrix4<f64>, f: &Matrix2<f64>) -> Matrix2<f64> {
     let stress =
         tangent.column(0) * f.m11 + tangent.column(1) * f.m21 + tangent.column(2) * f.m12 + tangent.column(3) * f.m22;
@@ -356,14 +356,15 @@ fn rate_gradient(gradients: &[Vector2<f64>], v: &[Vector2<f64>]) -> Matrix2<f64>
     v.iter().zip(gradients).fold(Matrix2::zeros(), |sum, (v, gradient)| sum + v * gradient.transpose())
 }
 
-/// What an element's material remembers over an increment: its variables at the first quadrature point, then at the second, …
+/// Internal variables of an element's material over an increment: its variables at the first quadrature point, then at
+/// the second, …
 #[derive(Debug)]
 pub struct Memory<'a> {
     /// Δt [T]
     pub dt: f64,
     /// Committed
     pub old: &'a [f64],
-    /// Of the trial, written over
+    /// Values of the trial, overwritten
     pub new: &'a mut [f64],
 }
 

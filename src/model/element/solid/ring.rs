@@ -20,12 +20,12 @@ use crate::laws::bulk::{
 };
 use crate::mesh::few::Few;
 
-/// What the hoops of an element need.
+/// Data of an element for the hoop stretch.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Hoop {
     /// N_a/R of all nodes at the first quadrature point, then at the second, … [1/L]
     pub values: Vec<f64>,
-    /// The same at the centre, for F-bar [1/L]
+    /// Hoop values N_a/R at the centre, for F-bar [1/L]
     pub centre: Vec<f64>,
 }
 
@@ -43,7 +43,7 @@ struct Centre<'a> {
     inverse_transpose: Vector5<f64>,
 }
 
-/// F as the law sees it at a point.
+/// Deformation gradient F at a point, as given to the law.
 struct Seen {
     deformation: Vector5<f64>,
     /// r of (8)
@@ -84,7 +84,7 @@ impl SolidElement {
         Ok([energy, dissipated])
     }
 
-    /// The same at once, of a body that has not been strained before.
+    /// Response without history, of a body that has not been strained before.
     pub(super) fn ring_at_once(
         &self,
         material: &dyn Material,
@@ -243,7 +243,7 @@ fn jacobian(f: &Vector5<f64>) -> Result<f64, MaterialFailure> {
     if jacobian > 0.0 && jacobian.is_finite() { Ok(jacobian) } else { Err(MaterialFailure::Inverted { jacobian }) }
 }
 
-/// F⁻ᵀ
+/// Inverse transpose F⁻ᵀ.
 fn inverse_transpose(f: &Vector5<f64>) -> Vector5<f64> {
     let plane = plane(f);
     components(&(cofactor(&plane) / plane.determinant()), 1.0 / f[4])

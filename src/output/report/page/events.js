@@ -145,7 +145,7 @@ async function showEvents() {
       const columns = [
         ["contact", (row) => row.contact, "contact"], ["onset", (row) => row.onset, withUnit("onset", time)],
         ["duration", (row) => row.duration, withUnit("duration", time)], ["place", (row) => row.place, withUnit("place", length)],
-        ["share", (row) => row.share, "share of the points"], ["slip", (row) => row.slip, withUnit("mean slip", length)],
+        ["share", (row) => row.share, "fraction of the points"], ["slip", (row) => row.slip, withUnit("mean slip", length)],
         ["peak", (row) => row.peak, withUnit("peak slip rate", velocity)],
       ];
       section.append(el("h3", {}, `${name}${found.length} event${found.length > 1 ? "s" : ""}, by the slip rates of the interface`),

@@ -1,9 +1,9 @@
 "use strict";
-// How the runs ended, what was warned of, what the page leaves out; the case as it was understood.
+// Status and warnings of the runs, what the page leaves out; the case as interpreted.
 
 const STATUS = {
   completed: ["✓", "completed"], running: ["…", "running"], stopped: ["✕", "stopped"], interrupted: ["‖", "interrupted"],
-  killed: ["✕", "ended without a word"], unknown: ["?", "how it ended is not known"],
+  killed: ["✕", "ended without a status"], unknown: ["?", "end status unknown"],
 };
 
 /** How a run ended; one that still says it runs may have been killed. */
@@ -43,9 +43,9 @@ function facts(run) {
 const peakOf = (peak) => (peak ? `peak |q|/p = ${told(peak.coefficient)} at t = ${told(peak.time)}` : null);
 
 const REASONS = {
-  killed: "Its summary says that it runs, but no process of this computer writes here any more: it was killed, or runs on " +
-    "another computer. What it wrote until then is shown.",
-  running: "It is still running: this is what it had written when this page was made. Make the page anew to see more.",
+  killed: "The summary says that the run is active, but no process of this computer writes to the folder any more: it was " +
+    "killed, or runs on another computer. The results written until then are shown.",
+  running: "The run is still active: this page shows what had been written when it was made. Make it again to see more.",
 };
 
 function runHead(run, several) {
@@ -98,12 +98,12 @@ function showHead() {
   const notes = runs.flatMap((run) => run.notes.map((note) => (several ? `${run.name}: ${note}` : note)));
   const faults = document.getElementById("faults");
   if (notes.length) {
-    faults.append(listed(`What this page leaves out, and what is wrong with the files (${notes.length})`, notes, "notes"));
+    faults.append(listed(`Data left out of this page, and faults of the files (${notes.length})`, notes, "notes"));
     faults.hidden = false;
   }
   const version = runs.map((run) => run.summary.version).find(Boolean);
   document.getElementById("foot").replaceChildren(
-    `fecontact ${version || DATA.version}. Charts: drag to zoom, double click for all; with the keyboard ← → read off, + − zoom, ` +
+    `fecontact ${version || DATA.version}. Charts: drag to zoom, double click for all; keys ← → read off, + − zoom, ` +
     "0 shows all. Bodies: drag to move, wheel or + − to zoom, ← → frames, space plays.");
 }
 

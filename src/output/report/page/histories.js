@@ -40,7 +40,7 @@ function timeAxis() {
 function grid(made) {
   const [all, constants] = [made.filter((one) => one instanceof Chart), made.filter((one) => typeof one === "string")];
   const charts = all.length ? [el("div", { class: "grid" }, all.map((chart) => chart.element))] : [];
-  return constants.length ? [...charts, el("p", { class: "facts" }, `Always the same: ${constants.join("; ")}`)] : charts;
+  return constants.length ? [...charts, el("p", { class: "facts" }, `Constant: ${constants.join("; ")}`)] : charts;
 }
 
 /** Charts under a heading; the first few stand open. */
@@ -130,9 +130,9 @@ function contactCharts(runs, contact) {
     overTime(runs, `Normal force in ${contact}`, of([["normal_force", "normal"]]), "normal force", force),
     path.some((one) => sizeOf([one]) > 0) && new Chart({ title: `Friction path of ${contact}`, x: { label: withUnit("normal force", force), include: [0] },
       y: { label: withUnit("tangential force", force), include: [0] }, series: path, path: true }),
-    overTime(runs, `Share of ${contact} that slips`, of([["slip_fraction", "slipping share of what is closed"]]), "slipping share", "", { include: [0, 1], always: true }),
+    overTime(runs, `Slipping fraction of ${contact}`, of([["slip_fraction", "slipping fraction of the closed length"]]), "slipping share", "", { include: [0, 1], always: true }),
     overTime(runs, `Slip in ${contact}`, of([["mean_slip", "plastic slip"], ["mean_elastic_slip", "elastic slip"]]), "mean slip", unitOf("length")),
-    overTime(runs, `Length of ${contact} that is closed`, of([["contact_length", "closed length"]]), "closed length", unitOf("length")),
+    overTime(runs, `Closed length of ${contact}`, of([["contact_length", "closed length"]]), "closed length", unitOf("length")),
     overTime(runs, `Penetration in ${contact}`, of([["max_penetration", "largest penetration"]]), "penetration", unitOf("length")),
     ...observed.map((name) => {
       const what = name.split(".mean_").pop();
@@ -141,14 +141,14 @@ function contactCharts(runs, contact) {
   ];
 }
 
-/** Of one run all energies together, of several each by itself; what is missing in the audit stands apart. */
+/** All energies of one run in one chart; with several runs, one chart per energy. The energy error has its own. */
 function energyCharts(runs) {
   const present = ENERGIES.filter((energy) => sizeOf(curves(runs, [energy])) > 0);
   const unit = unitOf("energy");
   const charts = several
     ? present.map((energy) => overTime(runs, `Energy: ${energy[1]}`, [energy], "energy", unit))
-    : [present.length ? overTime(runs, "External work, and where it goes", present, "energy", unit) : null];
-  return [...charts, overTime(runs, "Audit: energy not accounted for", [["energy_error", "error"]], "energy", unit)];
+    : [present.length ? overTime(runs, "Energy balance", present, "energy", unit) : null];
+  return [...charts, overTime(runs, "Energy error", [["energy_error", "error"]], "energy", unit)];
 }
 
 async function showConvergence(runs) {
@@ -163,12 +163,12 @@ async function showConvergence(runs) {
     const title = (text) => (several ? `${run.name}: ${text}` : text);
     const colour = curveColour(k);
     charts.push(new Chart({
-      title: title("Linear solves of every increment, failed attempts included"), x: timeAxis(), y: { label: "linear solves", include: [0] },
+      title: title("Linear solves per increment, with rejected attempts"), x: timeAxis(), y: { label: "linear solves", include: [0] },
       series: [{ name: "solves", x: solves.get("time"), y: solves.get("solves"), colour }], time: true,
     }));
     const what = newton.hardest < newton.increments ? `the ${newton.hardest} hardest of ${newton.increments} increments` : "every increment";
     charts.push(new Chart({
-      title: title(`Residuals of ${what}`), x: { label: "iteration" }, y: { label: "‖r‖/‖forces at work‖", log: true },
+      title: title(`Residuals of ${what}`), x: { label: "iteration" }, y: { label: "relative residual", log: true },
       series: [{ name: "residual", x: residuals.get("iteration"), y: residuals.get("residual"), colour: `${colour}80`, plain: true }], path: true,
     }));
     if (newton.attempts?.total) attempts.push(givenUp(run, newton.attempts));
@@ -179,7 +179,7 @@ async function showConvergence(runs) {
   section.append(el("div", { class: "grid" }, drawn.map((chart) => chart.element)), ...attempts.flat());
 }
 
-/** Attempts that were given up, and why. */
+/** Rejected attempts, with the reason of each. */
 function givenUp(run, { given_up, total }) {
   const unit = unitOf("time");
   const more = given_up.length < total ? `, the first ${given_up.length} of which are listed` : "";
@@ -189,10 +189,10 @@ function givenUp(run, { given_up, total }) {
     ["t", (row) => row.time, withUnit("from t", unit)], ["dt", (row) => row.dt, withUnit("Δt", unit)], ["step", (row) => row.step, "step"],
     ["increment", (row) => row.increment, "increment"], ["attempt", (row) => row.attempt, "attempt"],
     ["iterations", (row) => row.iterations, "solves"], ["residual", (row) => row.residual, "last residual"],
-    ["counts", (row) => row.counts.join(" / "), "open / stick / slip"], ["why", (row) => row.why, "why, as newton.csv tells"],
+    ["counts", (row) => row.counts.join(" / "), "open / stick / slip"], ["why", (row) => row.why, "reason"],
   ];
   return [
-    el("h3", {}, `${several ? `${run.name}: ` : ""}${total} attempt${total > 1 ? "s" : ""} given up${more}`),
+    el("h3", {}, `${several ? `${run.name}: ` : ""}${total} rejected attempt${total > 1 ? "s" : ""}${more}`),
     el("ul", {}, causes),
     tableOf(columns, given_up, (row) => now.set(row.time, "table")),
   ];

@@ -110,7 +110,7 @@ class Interface extends InterfacePicture {
         (name) => this.show(map.quantities.find((one) => one.name === name))),
       ...(map.points > 1 ? [
         choice("map", Object.keys(MAPS).map((name) => [name, name]), settings.colours, redraw((name) => (settings.colours = name))),
-        choice("upwards", [["time", "time"], ["row", "output after output"]], settings.axis, (axis) => {
+        choice("upwards", [["time", "time"], ["row", "output row"]], settings.axis, (axis) => {
           settings.axis = axis;
           this.all();
           this.look();

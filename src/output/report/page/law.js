@@ -23,7 +23,7 @@ function coefficientChart(runs, x) {
   return drawn.length ? new Chart({ title: "Friction coefficient over time", x, y: { label: "q/p, μ" }, series: drawn, time: true }) : null;
 }
 
-/** The peak after each hold over how long it was: what rest gives back. */
+/** Peak friction after each hold over its duration: healing. */
 function ageingChart(runs) {
   const drawn = runs.flatMap(({ run, k }) => {
     const holds = [...(run.summary.holds || [])].sort((a, b) => a.duration - b.duration);
@@ -31,8 +31,8 @@ function ageingChart(runs) {
     const [x, y] = [holds.map((hold) => hold.duration), holds.map((hold) => hold.peak.coefficient)];
     return [{ name: several ? run.name : "peak |q|/p", x, y, colour: curveColour(k), points: true }];
   });
-  const x = { label: withUnit("time at rest before", unitOf("time")), log: true };
-  return drawn.length ? new Chart({ title: "Peak after a hold over its length", x, y: { label: "peak |q|/p" }, series: drawn }) : null;
+  const x = { label: withUnit("hold duration", unitOf("time")), log: true };
+  return drawn.length ? new Chart({ title: "Peak friction after a hold", x, y: { label: "peak |q|/p" }, series: drawn }) : null;
 }
 
 /** The law and its parameters in a line. */

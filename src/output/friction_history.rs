@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::told::number;
+use crate::model::text::number;
 
 /// Shares that are the same but for round-off.
 const ROUND_OFF: f64 = 1e-9;
@@ -20,9 +20,9 @@ pub struct Borne {
     pub ratio: f64,
 }
 
-/// How the friction of a contact went, by the accepted increments.
+/// Friction history of a contact over the accepted increments, in a few numbers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct FrictionCourse {
+pub struct FrictionHistory {
     /// when a point slipped first [T]
     pub first_slip: Option<f64>,
     /// when all that was closed slipped at once for the first time [T]
@@ -33,8 +33,8 @@ pub struct FrictionCourse {
     pub last: Option<Borne>,
 }
 
-impl FrictionCourse {
-    /// Take note of the forces [F] and of the share of the closed length that slips [-].
+impl FrictionHistory {
+    /// Record the forces [F] and the slipping fraction of the closed length [-].
     pub fn note(&mut self, time: f64, [normal, tangential]: [f64; 2], slipping: f64) {
         let ratio = if normal > 0.0 { tangential.abs() / normal } else { 0.0 };
         let borne = Borne { time, tangential_force: tangential, ratio };
@@ -58,14 +58,14 @@ impl FrictionCourse {
     }
 }
 
-impl fmt::Display for FrictionCourse {
+impl fmt::Display for FrictionHistory {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match (self.first_slip, self.full_slip) {
             (None, _) => write!(f, "sticks")?,
-            (Some(first), None) => write!(f, "slips in part from t = {}", number(first))?,
-            (Some(first), Some(all)) if first == all => write!(f, "slips from t = {}", number(first))?,
+            (Some(first), None) => write!(f, "partial slip from t = {}", number(first))?,
+            (Some(first), Some(all)) if first == all => write!(f, "full sliding from t = {}", number(first))?,
             (Some(first), Some(all)) => {
-                write!(f, "slips from t = {}, all of it at t = {}", number(first), number(all))?
+                write!(f, "partial slip from t = {}, full sliding from t = {}", number(first), number(all))?
             }
         }
         if let [Some(largest), Some(last)] = [self.largest, self.last] {
@@ -73,7 +73,7 @@ impl fmt::Display for FrictionCourse {
                 |borne: Borne| format!("{} ({:.4} of the normal force)", number(borne.tangential_force), borne.ratio);
             write!(
                 f,
-                "; tangential force at most {} at t = {}, {} at the end",
+                "; peak tangential force {} at t = {}, {} at the end",
                 told(largest),
                 number(largest.time),
                 told(last)

@@ -1,4 +1,4 @@
-//! Numbers and counts as a reader is told them.
+//! Numbers and counts in text.
 
 /// A number with at most six digits, in powers of ten where it is very large or small.
 pub fn number(value: f64) -> String {
