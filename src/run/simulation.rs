@@ -387,7 +387,6 @@ impl Saved {
     }
 
     /// The state as the beginning of another run, with increments and energies counted from here.
-    #[must_use]
     pub fn begin(mut self) -> Self {
         let mut state = State::clone(&self.state);
         let Energy { kinetic, strain, contact_elastic, .. } = state.energy;

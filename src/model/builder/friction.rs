@@ -64,7 +64,6 @@ impl Friction {
 
     /// With other friction in the region where a profile is positive at the start; of several the first holds. Messages
     /// name profile and friction by `name`, such as `along.law[0]`.
-    #[must_use]
     pub fn in_region(mut self, name: &str, profile: Profile, friction: impl Into<Self>) -> Self {
         let friction = Self { name: format!("{name}.friction"), ..friction.into() };
         self.elsewhere.push((format!("{name}.where"), profile, friction));
