@@ -1,5 +1,8 @@
 //! The laws alone: friction and bulk, against closed forms, differential equations and differences.
 
+// What `with` does, to defaults too.
+#![allow(clippy::field_reassign_with_default)]
+
 /// A value with other fields: structures that may grow are not written out from outside the library.
 macro_rules! with {
     ($value:expr $(, $field:ident: $new:expr)+ $(,)?) => {{
