@@ -26,7 +26,9 @@
 //! });
 //! ended?;
 //! let peak = report.peaks.peak.expect("it slides");
-//! assert!(peak.coefficient > 0.3 && tractions.last().is_some_and(|q| *q < 2.1));
+//! // Steady sliding at the rate V: κ (μ/μ_k − 1) V = ξ (1 − μ/μ_s).
+//! let steady = (100.0 * 0.1 + 0.01) / (100.0 * 0.1 / 0.2 + 0.01 / 0.4);
+//! assert!((tractions[100] - steady * 10.0).abs() < 1e-6 && steady < peak.coefficient && peak.coefficient < 0.4);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -137,7 +139,8 @@ impl PathDrive {
 }
 
 /// A quantity of the path has no finite value.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("the {quantity} has no finite value at time {time}")]
 #[non_exhaustive]
 pub struct Undefined {
     /// "slip" or "pressure"
