@@ -68,7 +68,7 @@ impl Observer for Warnings {
     }
 
     fn restore(&mut self, memory: &[u8]) -> Result<(), Error> {
-        *self = Self { warn: self.warn.take(), ..csv::recalled(memory)? };
+        *self = Self { warn: self.warn.take(), ..csv::recalled::<Warnings>(memory)? };
         // Those were reported when they arose.
         self.reported = self.list.len();
         Ok(())

@@ -447,7 +447,7 @@ fn what_is_wrong_is_named() {
         (small().contact(on_floor()), "contacts.base: is given twice"),
         (small().contact(Contact { name: "a,b".into(), ..on_floor() }), "contacts: the name \"a,b\" has ',' in it"),
         (second(on_floor().alpha_n(-1.0)), "contacts.b.normal.alpha_n: is -1: must be positive"),
-        (second(on_floor().alpha_n(f64::NAN)), "contacts.b.normal: alpha_n is NaN"),
+        (second(on_floor().alpha_n(f64::NAN)), "contacts.b.normal.alpha_n: is NaN: must be positive"),
         (second(Contact { smooth: true, ..on_floor() }), "contacts.b.smooth: is for a master of mesh edges"),
         (
             small().contact(Contact::new("b", "block_left", "block_righ", Frictionless)),

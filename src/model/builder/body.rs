@@ -92,7 +92,7 @@ pub fn bodies(given: &[(String, BodyInput)], mesh: &Mesh) -> Checked<(Vec<Body>,
             BulkLaw::FromCode(law) => law.clone(),
         };
         let material = with_imposed(law, initial_stress.as_ref(), *thermal, &place)?;
-        let material = section::material(material, *element, mesh.section, &place)?;
+        let material = section::material(material, *element == Formulation::FBar, mesh.section, &place)?;
         let group = group(mesh, name, &place)?;
         let Group::Elements(elements) = group else {
             let message = format!("`{name}` is a group of {}, not of solid elements", kind(group));

@@ -9,7 +9,6 @@ use std::collections::BTreeSet;
 use thiserror::Error;
 
 use super::Builder;
-use super::groups::no_body;
 use crate::laws::parameter::InvalidParameter;
 use crate::mesh::names::is_unwritable;
 
@@ -140,6 +139,12 @@ pub fn check_line(place: &str, text: &str) -> Checked<()> {
         }
         None => Ok(()),
     }
+}
+
+/// That a body is not among those that there are.
+pub fn no_body<'n>(name: &str, known: impl Iterator<Item = &'n str>, place: &str) -> ModelError {
+    let known: Vec<&str> = known.collect();
+    ModelError::new(place, format!("there is no body `{name}`; the bodies are {}", known.join(", ")))
 }
 
 /// The watched groups, each named once.

@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::{Checked, ModelError};
+use super::error::{Checked, ModelError, no_body};
 use crate::mesh::{Edge, Group, Mesh};
 use crate::model::text::number;
 use crate::model::written::written;
@@ -144,12 +144,6 @@ pub fn group_at<'p>(on: &'p Place, place: &str) -> Checked<&'p str> {
 pub fn body(model: &Model, name: &str, place: &str) -> Checked<usize> {
     let names = || model.bodies.iter().map(|body| body.name.as_str());
     names().position(|known| known == name).ok_or_else(|| no_body(name, names(), place))
-}
-
-/// That a body is not among those that there are.
-pub fn no_body<'n>(name: &str, known: impl Iterator<Item = &'n str>, place: &str) -> ModelError {
-    let known: Vec<&str> = known.collect();
-    ModelError::new(place, format!("there is no body `{name}`; the bodies are {}", known.join(", ")))
 }
 
 /// The watched groups.

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::body::Formulation;
 use super::error::{Checked, ModelError, check_positive, check_size};
 use crate::laws::bulk::Material;
 use crate::mesh::Mesh;
@@ -39,15 +38,10 @@ pub fn check(mesh: &Mesh) -> Checked<()> {
 }
 
 /// The law of a body in a section.
-pub fn material(
-    given: Arc<dyn Material>,
-    element: Formulation,
-    section: Section,
-    place: &str,
-) -> Checked<Arc<dyn Material>> {
+pub fn material(given: Arc<dyn Material>, f_bar: bool, section: Section, place: &str) -> Checked<Arc<dyn Material>> {
     let refused = |key: &str, message: &str| Err(ModelError::new(format!("{place}.{key}"), message));
     match section {
-        Section::PlaneStress { .. } if element == Formulation::FBar => refused(
+        Section::PlaneStress { .. } if f_bar => refused(
             "element",
             "f_bar is not needed in plane stress, where the thickness is free to change and elements do not lock for \
              nu near 1/2: leave it out",
