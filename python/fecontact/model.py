@@ -172,8 +172,7 @@ class Damping(dict[str, Any]):
 
 
 class Geostatic(dict[str, Any]):
-    """Ground at rest under its weight along -y: σ_yy = −weight (surface − y), and σ_xx = σ_zz = K0 σ_yy; σ_zz = 0 in a
-    plate.
+    """Ground at rest under its weight along -y.
 
     Args:
         surface: Level y at which the vertical stress is zero: the top of the body, or above it if it lies
@@ -297,7 +296,7 @@ class Contact(dict[str, Any]):
         slave: str,
         master: Master,
         friction: Friction,
-        along: Mapping[str, Any] | Given = NOT_GIVEN,
+        along: Along | Given = NOT_GIVEN,
         area: float | None | Given = NOT_GIVEN,
         dilatancy: Dilatancy | None | Given = NOT_GIVEN,
         fluid_pressure: Profile | None | Given = NOT_GIVEN,
@@ -316,7 +315,7 @@ class Contact(dict[str, Any]):
 
 
 class Plane(dict[str, Any]):
-    """A rigid half-space.
+    """A half-space.
 
     Args:
         point: A point of its surface [L]
@@ -333,7 +332,7 @@ class Plane(dict[str, Any]):
 
 
 class Circle(dict[str, Any]):
-    """A rigid disk, or the rim of a hole.
+    """A disk, or the rim of a hole.
 
     Args:
         centre: Centre [L]
@@ -352,7 +351,7 @@ class Circle(dict[str, Any]):
 
 
 class Polyline(dict[str, Any]):
-    """A rigid body bounded by straight lines.
+    """A body bounded by straight lines.
 
     Args:
         points: Its corners, the solid on the right of the way; the first again at the end closes it [L]
@@ -525,6 +524,21 @@ class Registered(dict[str, Any]):
         super().__init__({"law": "registered", **_given({"name": name, "alpha_t": alpha_t, "parameters": parameters})})
 
 
+class Along(dict[str, Any]):
+    """What of friction varies along the slave, and in time: expressions may have the run time t besides x and y.
+
+    Args:
+        law: Other laws than `friction` on parts of the slave; where several say so, the first holds
+    """
+
+    def __init__(
+        self,
+        *,
+        law: Sequence[LawChoice] | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"law": law}))
+
+
 class LawChoice(dict[str, Any]):
     """A law on a part of the slave.
 
@@ -545,8 +559,7 @@ class LawChoice(dict[str, Any]):
 
 
 class Dilatancy(dict[str, Any]):
-    """Dilatancy of a contact, with any friction law: asperities ride up on each other as the surfaces slip, until the
-    interface has its largest opening.
+    """Dilatancy of a contact, with any friction law.
 
     Args:
         rate: tan ψ: opening per plastic slip at the start, whichever way it goes; below the least coefficient
@@ -842,14 +855,14 @@ class PlaneStress(dict[str, Any]):
 
 
 class Step(dict[str, Any]):
-    """A step: a time span with its scheme and increments, supports and loads.
+    """A step.
 
     Args:
         name: Name in messages and results
         duration: Length of the step [T]
         damping: Damping of bodies from this step on, in place of what the body or a step before has; inherited.
             Statics know none
-        dt: Increments; inherited from the step before unless given, a tenth of the first step
+        dt: Increments; inherited from the step before unless given
         loads: Loads; inherited, and replaced where the same group and kind is named again. In any scheme null
             takes a pressure, traction, force or gravity linearly to zero over the step, as the value 0 would,
             and ends springs, dashpots and absorbing sides at once. A table or expression makes an end as sudden
@@ -920,7 +933,7 @@ class Increments(dict[str, Any]):
 
 
 class Load(dict[str, Any]):
-    """A load: exactly one kind an entry. It replaces the load of its kind that an earlier step gave there.
+    """A load: exactly one kind an entry.
 
     Args:
         on: Where
@@ -959,14 +972,14 @@ class Load(dict[str, Any]):
 
 
 class Node(dict[str, Any]):
-    """Single node: its tag in the mesh file (its number from 0 in a mesh given in place)."""
+    """Its tag in the mesh file (its number from 0 in a mesh given in place)."""
 
     def __init__(self, node: int) -> None:
         super().__init__({"node": node})
 
 
 class Near(dict[str, Any]):
-    """Single node of the undeformed mesh that is nearest to this point [x, y]. It must be the only one, and no farther
+    """The node of the undeformed mesh that is nearest to this point [x, y]. It must be the only one, and no farther
     away than the elements there are long [L].
     """
 
@@ -1232,12 +1245,12 @@ Formulation = Union[Literal["displacement"], Literal["f_bar"]]
 # start are expressions, such as "-9.81" for a gravity, for a number grows from zero over the step
 InitialStress = Union[Geostatic, Components]
 
-# How a quantity varies along a surface, by reference position. A table is linear between its pairs, constant outside;
-# the same coordinate twice is a jump, and the second value holds there and beyond.
-Profile = Union[AlongX, AlongY, float, str]
+# Values by a coordinate of the reference position: linear between, constant outside. The same coordinate twice is a
+# jump.
+ProfileTable = Union[AlongX, AlongY]
 
-# The master side: a group of the mesh, or a rigid body at rest that is given by a formula.
-Master = Union[Plane, Circle, Polyline, str]
+# A rigid body at rest, given by a formula.
+Rigid = Union[Plane, Circle, Polyline]
 
 # A friction law and its parameters.
 Friction = Union[Frictionless, Coulomb, SuperSubloading, SlipWeakening, RateAndState, Prescribed, Registered]
@@ -1257,7 +1270,7 @@ StateEvolution = Union[Literal["ageing"], Literal["slip"]]
 # Where contact is evaluated.
 Method = Union[Literal["node_to_segment"], Literal["gauss_to_segment"], Literal["mortar"]]
 
-# Radiation damping of a contact in static steps: whether, or how much.
+# Radiation damping: whether, or how much.
 Radiation = Union[bool, float]
 
 # How far surfaces may slide on each other, and turn.
@@ -1287,18 +1300,33 @@ PlateMotion = Union[Literal["as_one"], Literal["ux_alike"], Literal["uy_alike"],
 # What the plane stands for in space.
 Section = Union[Literal["plane_strain"], PlaneStress, Literal["axisymmetric"]]
 
-# A group or a single node.
-Place = Union[Node, Near, str]
+# A single node.
+Spot = Union[Node, Near]
 
-# How a quantity varies.
-Drive = Union[Rate, Table, float, str]
+# A variation in time.
+Time = Union[Rate, Table]
 
 # Time scheme of a step, as the case file names it.
 Scheme = Union[Literal["static"], Newmark, Hht, GeneralizedAlpha, Explicit, QuasiDynamic, Wilson]
 
-# How warm a body is. A table by x or y, of the reference position, is reached at the end of the step, linearly from
-# the temperature at its start: linear between, constant outside, the same coordinate twice is a jump.
-Temperature = Union[Rate, Table, AlongX, AlongY, float, str]
+# A temperature that varies. A table by x or y, of the reference position, is reached at the end of the step, linearly
+# from the temperature at its start: linear between, constant outside, the same coordinate twice is a jump.
+TemperatureVariation = Union[Rate, Table, AlongX, AlongY]
+
+# How a quantity varies along a surface.
+Profile = Union[float, str, ProfileTable]
+
+# The master side.
+Master = Union[str, Rigid]
+
+# A group or a single node.
+Place = Union[str, Spot]
+
+# How a quantity varies.
+Drive = Union[float, str, Time]
+
+# How warm a body is.
+Temperature = Union[float, str, TemperatureVariation]
 
 
 class CaseKeys(TypedDict, total=False):
