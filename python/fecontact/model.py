@@ -172,7 +172,8 @@ class Damping(dict[str, Any]):
 
 
 class Geostatic(dict[str, Any]):
-    """Ground at rest under its weight along -y.
+    """Ground at rest under its weight along -y: σ_yy = −weight (surface − y), and σ_xx = σ_zz = K0 σ_yy; σ_zz = 0 in a
+    plate.
 
     Args:
         surface: Level y at which the vertical stress is zero: the top of the body, or above it if it lies
@@ -213,7 +214,8 @@ class Components(dict[str, Any]):
         xx: σ_xx [F/L²]
         yy: σ_yy [F/L²]
         xy: σ_xy; 0 unless given [F/L²]
-        zz: σ_zz: across the plane, of rings along the hoops. Needed but in plane stress, where it is 0 [F/L²]
+        zz: σ_zz: out of plane, the hoop stress in axisymmetry. Required except in plane stress, where it is 0
+            [F/L²]
     """
 
     def __init__(
@@ -228,8 +230,8 @@ class Components(dict[str, Any]):
 
 
 class Thermal(dict[str, Any]):
-    """Thermal expansion of a body, whose `temperature` the steps give. With F = (1 + α (T − T₀)) F_e the material sees
-    F_e; a `linear` one sees the strain less α (T − T₀).
+    """Thermal expansion of a body, whose `temperature` the steps give. With F = (1 + α (T − T₀)) F_e the material is
+    evaluated at F_e; a `linear` one at the strain less α (T − T₀).
 
     Args:
         expansion: α: strain per temperature, against the undeformed body [1/Θ]
@@ -251,43 +253,42 @@ class Contact(dict[str, Any]):
     Args:
         slave: Edge group whose points are kept out of the master, the finer or softer side; or a group of
             points, each with the `area`
-        master: Edge group, or a rigid body. The slave's group again: contact of the surface with itself, each
-            point of which then stands for half its length, because every contact is met from both sides
+        master: Edge group, or a rigid body. The slave's group again: self-contact of the surface; each point
+            then has half its tributary length, because every contact is evaluated from both sides
         friction: Friction law
-        along: What of friction varies along the slave, and in time
-        area: Area that each point of a slave group of points stands for, with the thickness or the full turn;
-            it does not change. Edges have lengths of their own [L, the thickness being 1, or L²]
-        dilatancy: How far the surfaces move apart with plastic slip
-        fluid_pressure: p_w: pressure of a fluid between the surfaces, zero or positive; expressions may have
-            the run time t besides the reference position x, y of the slave. It pushes both sides apart wherever
-            the master faces the slave, closed or open, beside the pressure p that the surfaces carry; friction,
-            `initial.pressure` and all outputs called pressure are this effective p alone. It is given, and does
-            not flow. Not for quasi_dynamic steps [F/L²]
+        along: Friction parameters that vary along the slave and in time
+        area: Tributary area of each point of a slave group of points, with the thickness or the full turn; it
+            does not change. Edges have lengths of their own [L, the thickness being 1, or L²]
+        dilatancy: Dilatancy: opening by plastic slip
+        fluid_pressure: p_w: pressure of a fluid between the surfaces, zero or positive; expressions may depend
+            on the run time t and on the reference position x, y of the slave. It acts on both surfaces wherever
+            the slave projects onto the master, closed or open, in addition to the contact pressure p; friction,
+            `initial.pressure` and all outputs called pressure use this effective p only. The pressure is
+            prescribed: there is no flow. Not for quasi_dynamic steps [F/L²]
         initial: Tractions and structure at the start of a contact that starts closed. The gap of every slave
-            point is then counted from where the pressure acts at its initial position, all through the run
+            point is then measured, throughout the run, relative to the gap at which this pressure acts in its
+            initial position
         massless: Implicit dynamics: the mass of the slave's nodes is moved to the other nodes of their
-            elements, so that an impact does not set them ringing on the contact's stiffness, and the contact
-            force with them
-        method: Where contact is evaluated. Unless given: mortar where an edge of either side is quadratic or a
-            side curved (its direction turns by more than 1° between two corners of more than 45°);
-            gauss_to_segment between straight linear edges, with a `smooth` master, and where `points` are given
+            elements, so that impact does not excite spurious oscillation of these nodes and of the contact
+            force
+        method: Contact method. By default mortar where an edge of either side is quadratic or a side curved
+            (its direction turns by more than 1° between two corners of more than 45°); gauss_to_segment between
+            straight linear edges, with a `smooth` master, and where `points` are given
         normal: Normal contact
-        points: Gauss points a slave edge (gauss_to_segment), 2 to 4; 2 unless given
-        radiation_damping: Static steps: a traction η × slip rate that resists slip beside friction, in place of
-            the inertia that is left out: the shear waves that slip would send into unbounded bodies take it
-            away. A number is η [F·T/L³]; true is that of the bodies, 1/η = 1/Z₁ + 1/Z₂ with Z = ρ c_s of each
-            side: G/(2 c_s) where both are alike, Z on a rigid master. Dynamic and explicit steps have inertia,
-            and leave it out
-        shrink_fit: Whether what the surfaces overlap at the start is brought in over the first step (shrink
+        points: Gauss points per slave edge (gauss_to_segment), 2 to 4; default 2
+        radiation_damping: Static steps: radiation damping, a traction η × slip rate that resists slip in
+            addition to friction and approximates the inertia that is neglected, by shear waves radiated into
+            unbounded bodies. A number is η [F·T/L³]; true takes the impedances of the bodies, 1/η = 1/Z₁ + 1/Z₂
+            with Z = ρ c_s of each side: G/(2 c_s) for equal bodies, Z on a rigid master. Dynamic and explicit
+            steps have inertia, and omit it
+        shrink_fit: Whether the initial overlap of the surfaces is applied gradually over the first step (shrink
             fit) instead of at once
-        sliding: How far the surfaces may slide on each other: any way (finite), or by a small part of the
-            distance between nodes (small)
-        smooth: Whether the master's straight edges are taken for a smooth curve through their nodes (not by
-            mortar), so that nothing jumps where a slave slides from one to the next. Corners of more than 45°
-            stay
-        wear: k of Archard's law: the surfaces wear away by dw = k p × plastic slip, whichever way it goes, and
-            come nearer; k is the wear coefficient over the hardness. The depth w stands in tables and frames as
-            `wear` [L²/F]
+        sliding: Sliding range: finite, or small compared with the distance between nodes
+        smooth: Whether the master's straight edges are replaced by a smooth curve through their nodes (not with
+            mortar), so that forces do not jump where a slave slides from one edge to the next. Corners of more
+            than 45° remain
+        wear: k of Archard's law: the surfaces wear by dw = k p × plastic slip, in either direction of slip; k
+            is the wear coefficient over the hardness. The wear depth w is `wear` in tables and frames [L²/F]
     """
 
     def __init__(
@@ -296,7 +297,7 @@ class Contact(dict[str, Any]):
         slave: str,
         master: Master,
         friction: Friction,
-        along: Along | Given = NOT_GIVEN,
+        along: Mapping[str, Any] | Given = NOT_GIVEN,
         area: float | None | Given = NOT_GIVEN,
         dilatancy: Dilatancy | None | Given = NOT_GIVEN,
         fluid_pressure: Profile | None | Given = NOT_GIVEN,
@@ -315,7 +316,7 @@ class Contact(dict[str, Any]):
 
 
 class Plane(dict[str, Any]):
-    """A half-space.
+    """A rigid half-space.
 
     Args:
         point: A point of its surface [L]
@@ -332,7 +333,7 @@ class Plane(dict[str, Any]):
 
 
 class Circle(dict[str, Any]):
-    """A disk, or the rim of a hole.
+    """A rigid disk, or the rim of a hole.
 
     Args:
         centre: Centre [L]
@@ -351,10 +352,11 @@ class Circle(dict[str, Any]):
 
 
 class Polyline(dict[str, Any]):
-    """A body bounded by straight lines.
+    """A rigid body bounded by straight lines.
 
     Args:
-        points: Its corners, the solid on the right of the way; the first again at the end closes it [L]
+        points: Its corners, with the solid on the right in their order; the first corner repeated at the end
+            closes it [L]
     """
 
     def __init__(
@@ -391,7 +393,7 @@ class Coulomb(dict[str, Any]):
 
 
 class SuperSubloading(dict[str, Any]):
-    """Time-dependent super/subloading-surface friction: slip weakens the interface, rest heals it.
+    """Time-dependent super/subloading-surface friction: slip weakens the interface, stationary contact heals it.
 
     Args:
         mu_s: μ_s: static friction coefficient, μ_s ≥ μ_k [-]
@@ -406,8 +408,8 @@ class SuperSubloading(dict[str, Any]):
         m: m: exponent of the loss, m > 0 [-]
         n: n: exponent of the recovery, n > 0 [-]
         structure: 1/R*₀: structure at first touch, from 1 (μ = μ_k) to μ_s/μ_k (μ = μ_s, the default) [-]
-        tolerance: Error allowed to the controlled integration, as a share of μ_s p, from 1e-12 to 0.1; 1e-6 by
-            default [-]
+        tolerance: Error tolerance of the controlled integration, as a fraction of μ_s p, from 1e-12 to 0.1;
+            1e-6 by default [-]
         xi: ξ: recovery of structure with time, ξ ≥ 0 [1/T]
     """
 
@@ -524,26 +526,11 @@ class Registered(dict[str, Any]):
         super().__init__({"law": "registered", **_given({"name": name, "alpha_t": alpha_t, "parameters": parameters})})
 
 
-class Along(dict[str, Any]):
-    """What of friction varies along the slave, and in time: expressions may have the run time t besides x and y.
-
-    Args:
-        law: Other laws than `friction` on parts of the slave; where several say so, the first holds
-    """
-
-    def __init__(
-        self,
-        *,
-        law: Sequence[LawChoice] | Given = NOT_GIVEN,
-    ) -> None:
-        super().__init__(_given({"law": law}))
-
-
 class LawChoice(dict[str, Any]):
     """A law on a part of the slave.
 
     Args:
-        where: It holds where this is positive
+        where: The law applies where this is positive
         friction: Friction law
         along: Its parameters that vary along the slave, and in time, by name
     """
@@ -559,13 +546,14 @@ class LawChoice(dict[str, Any]):
 
 
 class Dilatancy(dict[str, Any]):
-    """Dilatancy of a contact, with any friction law.
+    """Dilatancy of a contact, with any friction law: asperities override each other as the surfaces slip, until the
+    interface has its largest opening.
 
     Args:
-        rate: tan ψ: opening per plastic slip at the start, whichever way it goes; below the least coefficient
-            that friction can come to (mu, mu_k, mu_d), for the work that lifts the load is friction's [-]
-        limit: d_max: opening that much slip leads to, dδ = tan ψ (1 − δ/d_max) × plastic slip; no limit unless
-            given. The opening δ stands in tables and frames as `dilation` [L]
+        rate: tan ψ: initial opening per plastic slip, in either direction of slip; below the lowest friction
+            coefficient of the law (mu, mu_k, mu_d), because friction supplies the work of dilatancy [-]
+        limit: d_max: opening after long slip, dδ = tan ψ (1 − δ/d_max) × plastic slip; no limit by default. The
+            opening δ is `dilation` in tables and frames [L]
     """
 
     def __init__(
@@ -582,10 +570,10 @@ class Initial(dict[str, Any]):
 
     Args:
         balanced: Whether an initial stress of the bodies is in equilibrium with these tractions. Displacements
-            and stresses of the run are then those that come on top of the initial stress
-        of_bodies: Instead of pressure and traction: those with which the `initial_stress` of the slave's body
-            ends at the contact, p = −n·σn (less the pressure of a fluid at the start) and q = s·σn, with the
-            normal n and the tangent s of the master
+            and stresses of the run are then changes from the initial stress
+        of_bodies: Instead of pressure and traction: those of the `initial_stress` of the slave's body at the
+            contact, p = −n·σn (less the pressure of a fluid at the start) and q = s·σn, with the normal n and
+            the tangent s of the master
         pressure: p: contact pressure, zero or positive [F/L²]
         structure: 1/R*: structure of the super/subloading law, from 1 to μ_s/μ_k; that of the law unless given
             [-]
@@ -609,12 +597,11 @@ class Normal(dict[str, Any]):
     """Normal contact.
 
     Args:
-        alpha_n: α_n: pressure per penetration [F/L³]; unless given 10 (λ + 2G)/h, with λ + 2G of the softer of
-            the two sides and the depth h of the elements behind the slave. A slave group of points has none
-            behind it and needs a number
-        penetration: Largest penetration left [L]: the pressure is raised until no closed gap is larger
-            (augmented Lagrangian by Uzawa's method), so that the answer does not depend on alpha_n; penalty
-            alone unless given
+        alpha_n: α_n: pressure per penetration [F/L³]; default 10 (λ + 2G)/h, with λ + 2G of the softer body and
+            the depth h of the slave's elements. A slave group of points has no elements and needs a number
+        penetration: Largest penetration allowed [L]: the pressure is increased until no penetration is larger
+            (augmented Lagrangian by Uzawa's method), so that the solution does not depend on alpha_n; default:
+            penalty only
     """
 
     def __init__(
@@ -654,12 +641,12 @@ class Block(dict[str, Any]):
 
     Args:
         body: Name of the body that its elements belong to
-        corners: The four corners [x, y] in turn, either way round [L]
+        corners: The four corners [x, y] in order around the block, clockwise or counterclockwise [L]
         elements: Number of elements along side 0, from corner 0 to corner 1, and along side 1, from corner 1 to
             corner 2
         arcs: For each side null where it is straight, or the centre [x, y] of the circle through its two
             corners: it is the shorter arc
-        grading: How their sizes vary along side 0 and along side 1, as a geometric series; even unless given
+        grading: Grading of their sizes along side 0 and along side 1, as a geometric series; default: uniform
         kind: Kind of the elements
         sides: For each side its name, or null: edges of a name are a group for contacts, supports and loads
     """
@@ -679,7 +666,7 @@ class Block(dict[str, Any]):
 
 
 class Middle(dict[str, Any]):
-    """Sizes that are alike at both ends.
+    """Equal sizes at both ends, with another in the middle.
 
     Args:
         middle: Size in the middle over that at both ends
@@ -694,7 +681,7 @@ class Middle(dict[str, Any]):
 
 
 class Newton(dict[str, Any]):
-    """When Newton's method stops.
+    """Stopping criteria of Newton's method.
 
     Args:
         max_iterations: Linear solves an increment before it is cut
@@ -711,14 +698,14 @@ class Newton(dict[str, Any]):
 
 
 class Output(dict[str, Any]):
-    """What is written.
+    """Output of a run.
 
     Args:
-        checkpoint: Minutes of wall time between checkpoints (checkpoint.bin), from which `run --resume` goes on
-            to the same bits after whatever has ended the run; the last one is written at the end. 5 unless
-            given; null or 0 for none
-        every: Fields are written with every n-th row of the history, and at the end of each step; with every
-            row unless given, or with none where `times` are
+        checkpoint: Minutes of wall time between checkpoints (checkpoint.bin), from which `run --resume`
+            continues with bitwise identical results, however the run ended; the last one is written at the end.
+            Default 5; null or 0 for none
+        every: Fields are written with every n-th row of the history, and at the end of each step; default: with
+            every row, or with none where `times` are given
         fields: Whether fields are written at all
         fronts: The fronts that run along contacts with friction (fronts.csv), and the events of slip that they
             make (events.csv)
@@ -749,12 +736,12 @@ class Output(dict[str, Any]):
 
 
 class Fronts(dict[str, Any]):
-    """What counts as a front.
+    """Definition of fronts.
 
     Args:
         slip_rate: Slip rate whose passage from below is the arrival of a front; an event of slip lasts while a
             point of the contact slips faster [L/T]
-        arrival: What tells of arrivals instead of the slip rate
+        arrival: Criterion for arrivals instead of the slip rate
     """
 
     def __init__(
@@ -839,7 +826,7 @@ class Probe(dict[str, Any]):
 
 
 class PlaneStress(dict[str, Any]):
-    """A plate, free of stress across the plane: forces, masses and energies of its whole thickness. Pressures and
+    """A plate, free of out-of-plane stress: forces, masses and energies of its whole thickness. Pressures and
     tractions, those of contact included, count the undeformed thickness.
 
     Args:
@@ -855,36 +842,35 @@ class PlaneStress(dict[str, Any]):
 
 
 class Step(dict[str, Any]):
-    """A step.
+    """A step: a time span with its scheme and increments, supports and loads.
 
     Args:
         name: Name in messages and results
         duration: Length of the step [T]
-        damping: Damping of bodies from this step on, in place of what the body or a step before has; inherited.
-            Statics know none
-        dt: Increments; inherited from the step before unless given
+        damping: Damping of bodies from this step on, replacing that of the body or of an earlier step;
+            inherited. No effect in static steps
+        dt: Increments; by default inherited from the previous step, a tenth of the first step
         loads: Loads; inherited, and replaced where the same group and kind is named again. In any scheme null
-            takes a pressure, traction, force or gravity linearly to zero over the step, as the value 0 would,
-            and ends springs, dashpots and absorbing sides at once. A table or expression makes an end as sudden
-            as it is to be
-        rupture: Static and implicit steps: the step goes on explicitly while a contact slips fast. Not
-            inherited
-        scheme: Time scheme; inherited from the step before unless given, static in the first step
-        stabilize: Static steps only, where bodies are held by nothing until contact holds them: dashpots at all
-            nodes of every body resist motion, at the start of the step as if this share of the body's stiffness
-            lambda + 2G moved it in the time of the step; they fade linearly and are gone at its end, which
-            takes at least two increments. 1e-3 is a good start. Not inherited
-        supports: Supports; inherited, and replaced where the same group and direction is named again. One that
-            null frees is gone at once in dynamic and explicit steps; in a static step, also while `rupture`
-            makes it explicit, its reaction stays as a force that fades linearly over the step
+            reduces a pressure, traction, force or gravity linearly to zero over the step, as the value 0 would,
+            and ends springs, dashpots and absorbing sides at once. For a sudden end, use a table or expression
+        rupture: Static and implicit steps: automatic switch to explicit integration while a contact slips fast.
+            Not inherited
+        scheme: Time scheme; by default inherited from the previous step, static in the first step
+        stabilize: Static steps only, for bodies that are unconstrained until contact closes: dashpots at all
+            nodes of every body resist motion, at the start of the step with this fraction of the body's
+            stiffness lambda + 2G for a motion over the duration of the step; they fade linearly to zero at its
+            end, which takes at least two increments. 1e-3 is a good start. Not inherited
+        supports: Supports; inherited, and replaced where the same group and direction is named again. A support
+            released by null ends at once in dynamic and explicit steps; in a static step, also while `rupture`
+            makes it explicit, its reaction remains as a force that fades linearly over the step
         temperature: Temperature of bodies that have `thermal` [Θ]; inherited, and replaced where the same body
             is named again. A number is reached linearly at the end of the step, from the temperature at its
-            start; expressions may have the reference position x, y and the run time t
-        until: Static and implicit steps: the step ends before its time when a reaction comes to a value, and
-            those after it begin then. A step that comes to its own end without stops the run. Not inherited
-        velocity: Velocity [x, y] that whole bodies or point masses take when this step begins, a dynamic or
-            explicit one: settle under gravity, then launch. What it changes of the kinetic energy counts as
-            work from outside. Supported nodes keep to their supports [L/T]
+            start; expressions may depend on the reference position x, y and the run time t
+        until: Static and implicit steps: the step ends early when a reaction reaches a value, and later steps
+            begin then. If the step ends before the reaction reaches it, the run stops. Not inherited
+        velocity: Velocity [x, y] given to whole bodies or point masses at the start of this step, which is
+            dynamic or explicit: settle under gravity, then launch. The change of kinetic energy counts as
+            external work. Supported nodes follow their supports [L/T]
     """
 
     def __init__(
@@ -911,14 +897,13 @@ class Increments(dict[str, Any]):
 
     Args:
         initial: First increment [T]
-        error: Increments are as long as the estimated error of each stays below this [L]: in dynamic steps the
-            error of a displacement, and events of contact (slip sets in, stops or turns round) are located to
-            ten times this; in static steps the error of the slip of a contact point, half of what its plastic
-            slip differs from that at the last rate
-        max: Increments do not grow beyond this [T]; initial unless given, with `error` and in quasi_dynamic
-            steps a tenth of the step
-        min: Increments are not cut below this [T]; initial/1000 unless given, with `error` initial/10⁶, in
-            quasi_dynamic steps what round-off of the time allows
+        error: Error control: the longest increments whose estimated error stays below this [L]. In dynamic
+            steps it is the error of a displacement, and contact events (onset, arrest and reversal of slip) are
+            located to ten times this; in static steps it is the error of the slip of a contact point, half the
+            difference of its plastic slip from that at the last rate
+        max: Longest increment [T]; default initial, with `error` and in quasi_dynamic steps a tenth of the step
+        min: Shortest increment [T]; default initial/1000, with `error` initial/10⁶, in quasi_dynamic steps the
+            shortest that round-off of the time allows
     """
 
     def __init__(
@@ -933,23 +918,25 @@ class Increments(dict[str, Any]):
 
 
 class Load(dict[str, Any]):
-    """A load: exactly one kind an entry.
+    """A load: exactly one kind per entry. It replaces the load of the same kind and place of an earlier step.
 
     Args:
         on: Where
-        absorbing: true: a side of a body absorbs waves, as if the body went on (Lysmer-Kuhlemeyer: dashpots rho
+        absorbing: true: an absorbing side, as if the body were unbounded there (Lysmer-Kuhlemeyer: dashpots rho
             c_p along the normal and rho c_s along the side, of the undeformed body); false or null ends it
         dashpot: Dashpot at every node of the group, to the ground or to a moving driver
         dead_pressure: Pressure on edges that keeps the force and direction it has on the undeformed edges,
             positive toward the body [F/L²]
         force: Force on every node of the group [F]
         gravity: Acceleration of gravity on a body or on point masses [L/T²]
-        moment: Moment on a plate that moves as a rigid body, counter-clockwise; it turns with the plate [F L]
+        moment: Moment on a loading plate that moves as a rigid body, counter-clockwise; it rotates with the
+            plate [F L]
         pressure: Pressure on edges that follows the surface, positive toward the body [F/L²]
-        spring: Spring at every node of the group, to the ground or to a moving driver; what it does to the node
-            counts as work from outside
-        total_force: Force on edges as a whole, spread over them as an even traction: a unit of depth in plane
-            strain, the thickness of a plate, the full turn of a ring. Its expressions depend on t alone [F]
+        spring: Spring at every node of the group, to the ground or to a moving driver; its work on the node
+            counts as external work
+        total_force: Resultant force on edges, applied as a uniform traction: per unit of depth in plane strain,
+            for the thickness in plane stress, per full turn in axisymmetry. Its expressions depend on t only
+            [F]
         traction: Traction on reference edges that keeps its direction [F/L²]
     """
 
@@ -972,14 +959,14 @@ class Load(dict[str, Any]):
 
 
 class Node(dict[str, Any]):
-    """Its tag in the mesh file (its number from 0 in a mesh given in place)."""
+    """Single node: its tag in the mesh file (its number from 0 in a mesh given in place)."""
 
     def __init__(self, node: int) -> None:
         super().__init__({"node": node})
 
 
 class Near(dict[str, Any]):
-    """The node of the undeformed mesh that is nearest to this point [x, y]. It must be the only one, and no farther
+    """Single node of the undeformed mesh that is nearest to this point [x, y]. It must be the only one, and no farther
     away than the elements there are long [L].
     """
 
@@ -993,7 +980,7 @@ class Dashpot(dict[str, Any]):
     Args:
         cx: Coefficient in x [F T/L]
         cy: Coefficient in y [F T/L]
-        driver: Velocity of the far end; the ground unless given [L/T]
+        driver: Velocity of the far end; default: the ground [L/T]
     """
 
     def __init__(
@@ -1024,7 +1011,7 @@ class Spring(dict[str, Any]):
     """A spring.
 
     Args:
-        driver: Displacement of the far end; the ground unless given [L]
+        driver: Displacement of the far end; default: the ground [L]
         kx: Stiffness in x [F/L]
         ky: Stiffness in y [F/L]
     """
@@ -1040,16 +1027,17 @@ class Spring(dict[str, Any]):
 
 
 class Rupture(dict[str, Any]):
-    """When a step goes on explicitly, and returns to its own scheme. An increment in which a contact point slips
-    faster than `slip_rate`, or that cannot be solved, is halved down to `dt.min` and, if that does not help, made
-    explicitly. The step returns when no point has slipped that fast, on the mean of the time that a shear wave
-    takes across the model. What slides without friction does not count. To be noticed, an event must slip more than
-    `slip_rate` times `dt.max`. Waves that are left die in a static step, and their energy counts as damped.
+    """Automatic switch of a step to explicit integration and back. An increment in which a contact point slips faster
+    than `slip_rate`, or that cannot be solved, is halved down to `dt.min` and, if that does not help, integrated
+    explicitly. The step returns to its own scheme when no point has slipped that fast, on average over the time
+    that a shear wave takes across the model. Frictionless contacts do not count. To be detected, an event must slip
+    more than `slip_rate` times `dt.max`. Remaining waves are removed on return to a static step, and their energy
+    counts as damping dissipation.
 
     Args:
         slip_rate: Slip rate above which increments are explicit [L/T]
-        safety: Explicit increments as a share of the longest that is stable, above 0 and at most 1; 0.9 unless
-            given [-]
+        safety: Explicit increments as a fraction of the longest stable one, above 0 and at most 1; default 0.9
+            [-]
     """
 
     def __init__(
@@ -1062,7 +1050,7 @@ class Rupture(dict[str, Any]):
 
 
 class Newmark(dict[str, Any]):
-    """Newmark; β = 1/4, γ = 1/2 (the trapezoidal rule) unless given.
+    """Newmark; default β = 1/4, γ = 1/2 (the trapezoidal rule).
 
     Args:
         beta: β > 0 [-]
@@ -1079,7 +1067,7 @@ class Newmark(dict[str, Any]):
 
 
 class Hht(dict[str, Any]):
-    """Hilber–Hughes–Taylor: second order, damps what the steps do not resolve.
+    """Hilber–Hughes–Taylor: second order, with damping of frequencies that the increments do not resolve.
 
     Args:
         alpha: −1/3 ≤ α ≤ 0; the nearer to −1/3, the more damping [-]
@@ -1094,11 +1082,10 @@ class Hht(dict[str, Any]):
 
 
 class GeneralizedAlpha(dict[str, Any]):
-    """Generalized-α: second order, and of all such schemes the one that damps least what the steps resolve.
+    """Generalized-α: second order, with the least damping of resolved frequencies among such schemes.
 
     Args:
-        rho_infinity: 0 ≤ ρ∞ ≤ 1: what is left after an increment of a motion far too fast for it; 0.8 unless
-            given, 1 does not damp [-]
+        rho_infinity: 0 ≤ ρ∞ ≤ 1: spectral radius at infinite frequency; default 0.8, 1 does not damp [-]
     """
 
     def __init__(
@@ -1110,11 +1097,11 @@ class GeneralizedAlpha(dict[str, Any]):
 
 
 class Explicit(dict[str, Any]):
-    """Central differences: no equations to solve, but increments no longer than the fastest vibration of a single
-    element or contact point allows.
+    """Central differences: no equations to solve, but increments are limited by the highest frequency of a single
+    element or contact point.
 
     Args:
-        safety: 0 < safety ≤ 1: increment as a share of the longest that is stable; 0.9 unless given [-]
+        safety: 0 < safety ≤ 1: increment as a fraction of the longest stable one; default 0.9 [-]
     """
 
     def __init__(
@@ -1126,14 +1113,14 @@ class Explicit(dict[str, Any]):
 
 
 class QuasiDynamic(dict[str, Any]):
-    """Without inertia, bodies linear and contacts in small sliding with radiation damping: slip and state of the
-    interface are integrated explicitly, in steps that their error decides. For friction whose slip rate follows
-    from traction and state (rate_and_state, prescribed), nodes facing nodes, loads and supports that go evenly
+    """Quasi-dynamic: no inertia, linear bodies and contacts in small sliding with radiation damping; slip and state of
+    the interface are integrated explicitly with error control. For friction laws that define a slip rate by
+    traction and state (rate_and_state, prescribed), matching nodes, and loads and supports that vary linearly
     within the step.
 
     Args:
-        every: Steps from one result to the next, at least 1; 10 unless given
-        tolerance: Error of one step in the coefficient of friction, 0 < tolerance < 0.1; 1e-5 unless given [-]
+        every: Steps per row of results, at least 1; default 10
+        tolerance: Error of one step in the friction coefficient, 0 < tolerance < 0.1; default 1e-5 [-]
     """
 
     def __init__(
@@ -1149,7 +1136,7 @@ class Wilson(dict[str, Any]):
     """Wilson-θ: linear acceleration, equilibrium at t + θ Δt.
 
     Args:
-        theta: 1.37 ≤ θ ≤ 2; 1.4 unless given [-]
+        theta: 1.37 ≤ θ ≤ 2; default 1.4 [-]
     """
 
     def __init__(
@@ -1166,15 +1153,15 @@ class Support(dict[str, Any]):
     Args:
         on: Where
         along: Direction [x, y] of the displacement u; it need not be of unit length
-        rotation: Rigid rotation about a point, instead of all others; null frees it, see `supports`
-        u: Displacement along the direction `along`; what is across is free, unless another support of the node
-            holds that as well: two directions at a node hold both of its components. null frees it, see
-            `supports` [L]
-        un: Displacement along the normal of a side, positive out of the body; the side slides. The normal is
+        rotation: Rigid rotation about a point, instead of all others; null releases it, see `supports`
+        u: Displacement along the direction `along`; the perpendicular component is free, unless another support
+            of the node constrains it: two directions at a node constrain both of its components. null releases
+            it, see `supports` [L]
+        un: Displacement along the normal of a side, positive out of the body; the side can slide. The normal is
             that of the undeformed body, averaged over the edges at a node; where edges of the group meet at 45
-            degrees or more, both normals hold. null frees it, see `supports` [L]
-        ux: Displacement in x [L]; null frees it, see `supports`
-        uy: Displacement in y [L]; null frees it, see `supports`
+            degrees or more, both normals are constrained. null releases it, see `supports` [L]
+        ux: Displacement in x [L]; null releases it, see `supports`
+        uy: Displacement in y [L]; null releases it, see `supports`
     """
 
     def __init__(
@@ -1210,16 +1197,16 @@ class Rotation(dict[str, Any]):
 
 class Until(dict[str, Any]):
     """A reaction that ends a step: displacement control up to a force. The increment in which the force passes its
-    value is made shorter until it has it. Supports that were to come to a value stay where the step has ended;
-    tables and expressions go on by the time of the run. Exactly one of `fx`, `fy` and `force` is given.
+    value is shortened until it has the value. Supports that move to a value stay where the step has ended; tables
+    and expressions continue with the time of the run. Exactly one of `fx`, `fy` and `force` is given.
 
     Args:
-        on: Whose reaction: what supports put on these nodes
-        force: Its size [F]
+        on: Place of the reaction: the forces of the supports on these nodes
+        force: Its magnitude [F]
         fx: Its x component [F]
         fy: Its y component [F]
-        tolerance: Share of the value, or of the reaction at the start of the step if that is larger, within
-            which it is met, at most 0.1; 1e-6 unless given [-]
+        tolerance: Tolerance relative to the value, or to the reaction at the start of the step if that is
+            larger, at most 0.1; default 1e-6 [-]
     """
 
     def __init__(
@@ -1240,17 +1227,17 @@ Material = Union[Linear, SaintVenantKirchhoff, NeoHookean, Hencky, Viscoelastic]
 # How the elements of a body are integrated.
 Formulation = Union[Literal["displacement"], Literal["f_bar"]]
 
-# Stress of a body before anything has moved. Displacements and strains count from there, stresses are whole. The run
-# tells how far it is out of balance with what acts at the start of the first step; loads that are there from the
-# start are expressions, such as "-9.81" for a gravity, for a number grows from zero over the step
+# Initial stress of a body. Displacements and strains are measured from the initial state, stresses are total. The run
+# reports its imbalance with the loads at the start of the first step; loads that act from the start are expressions,
+# such as "-9.81" for a gravity, because a number grows from zero over the step
 InitialStress = Union[Geostatic, Components]
 
-# Values by a coordinate of the reference position: linear between, constant outside. The same coordinate twice is a
-# jump.
-ProfileTable = Union[AlongX, AlongY]
+# Quantity that varies along a surface, by reference position. A table is linear between its pairs, constant outside;
+# the same coordinate twice is a jump, and the second value holds there and beyond.
+Profile = Union[AlongX, AlongY, float, str]
 
-# A rigid body at rest, given by a formula.
-Rigid = Union[Plane, Circle, Polyline]
+# The master side: a group of the mesh, or a rigid body at rest that is given by a formula.
+Master = Union[Plane, Circle, Polyline, str]
 
 # A friction law and its parameters.
 Friction = Union[Frictionless, Coulomb, SuperSubloading, SlipWeakening, RateAndState, Prescribed, Registered]
@@ -1267,13 +1254,13 @@ Integration = Union[Literal["controlled"], Literal["backward_euler"]]
 # Evolution of the state θ of rate-and-state friction.
 StateEvolution = Union[Literal["ageing"], Literal["slip"]]
 
-# Where contact is evaluated.
+# Contact method: where contact is evaluated.
 Method = Union[Literal["node_to_segment"], Literal["gauss_to_segment"], Literal["mortar"]]
 
-# Radiation damping: whether, or how much.
+# Radiation damping of a contact in static steps: whether, or how much.
 Radiation = Union[bool, float]
 
-# How far surfaces may slide on each other, and turn.
+# Sliding range of the surfaces of a contact.
 Sliding = Union[Literal["finite"], Literal["small"]]
 
 # A mesh file or a mesh in place.
@@ -1282,94 +1269,79 @@ MeshSource = Union[str, Blocks, Mapping[str, Any]]
 # A number that may depend on the parameters of the mesh.
 Amount = Union[float, str]
 
-# How the sizes of elements vary along a side.
+# Grading of the element sizes along a side.
 Grading = Union[float, str, Middle]
 
 # Elements of a block.
 BlockKind = Union[Literal["Q4"], Literal["Q8"]]
 
-# What tells that a front arrives at a point.
+# Criterion for the arrival of a front at a point.
 Arrival = Union[ArrivalR, ArrivalMu]
 
 # A loading plate.
 LoadingPlate = Union[str, MovingPlate]
 
-# How the nodes of a loading plate move.
+# Motion of the nodes of a loading plate.
 PlateMotion = Union[Literal["as_one"], Literal["ux_alike"], Literal["uy_alike"], Literal["rigid"]]
 
-# What the plane stands for in space.
+# The kind of plane section that the model represents.
 Section = Union[Literal["plane_strain"], PlaneStress, Literal["axisymmetric"]]
 
-# A single node.
-Spot = Union[Node, Near]
+# A group or a single node.
+Place = Union[Node, Near, str]
 
-# A variation in time.
-Time = Union[Rate, Table]
+# Prescribed quantity as a function of time and place.
+Drive = Union[Rate, Table, float, str]
 
 # Time scheme of a step, as the case file names it.
 Scheme = Union[Literal["static"], Newmark, Hht, GeneralizedAlpha, Explicit, QuasiDynamic, Wilson]
 
-# A temperature that varies. A table by x or y, of the reference position, is reached at the end of the step, linearly
+# Temperature of a body. A table by x or y, of the reference position, is reached at the end of the step, linearly
 # from the temperature at its start: linear between, constant outside, the same coordinate twice is a jump.
-TemperatureVariation = Union[Rate, Table, AlongX, AlongY]
-
-# How a quantity varies along a surface.
-Profile = Union[float, str, ProfileTable]
-
-# The master side.
-Master = Union[str, Rigid]
-
-# A group or a single node.
-Place = Union[str, Spot]
-
-# How a quantity varies.
-Drive = Union[float, str, Time]
-
-# How warm a body is.
-Temperature = Union[float, str, TemperatureVariation]
+Temperature = Union[Rate, Table, AlongX, AlongY, float, str]
 
 
 class CaseKeys(TypedDict, total=False):
     """The keys of a case."""
 
-    # Folder of results, or checkpoint, of a case that has come to its end, relative to this file: this case begins
-    # there. Mesh, bodies and contacts must be the same but for the parameters of friction and damping. The steps
-    # follow on those of that case: supports, loads and time go on from there; energies are counted anew
+    # Folder of results, or checkpoint, of a completed case, relative to this file: this case begins with its final
+    # state. Mesh, bodies and contacts must be the same except for the parameters of friction and damping. The steps
+    # follow those of that case: supports, loads and time continue; energies start from zero
     begin_with: str | None
     # Bodies by the name of their mesh group
     bodies: Mapping[str, Body]
     # Contacts by a name of your choice
     contacts: Mapping[str, Contact]
-    # Initial velocity [x, y] of whole bodies; supported nodes keep to their supports
+    # Initial velocity [x, y] of whole bodies; supported nodes follow their supports
     initial_velocity: Mapping[str, Vector]
     # Path of a gmsh MSH 4.1 file relative to the case file, or a mesh given in place: as blocks that are divided
     # into elements, or node by node
     mesh: Mesh | MeshSource
-    # When Newton's method stops
+    # Stopping criteria of Newton's method
     newton: Newton
-    # What is written
+    # Output
     output: Output
-    # Periodic sides: pairs of groups whose nodes lie alike. What leaves by one side comes in by the other: each
-    # node moves as its partner does, and what acts on one acts on both
+    # Periodic sides: pairs of groups with matching nodes. Each node has the displacement of its partner, and forces
+    # on one act on both
     periodic: Sequence[Sequence[str]]
-    # Loading plates: groups whose nodes all move alike, as if glued to a rigid plate that does not turn. A support,
-    # force, spring or dashpot on one of its nodes acts on the whole plate once, a `total_force` on its group as
-    # well. Its reaction counts in the watched groups that all of the plate belongs to. In axisymmetry a plate keeps
-    # its radius, ux = 0. Other plates say how they `moves`: only one component alike, or as a rigid body that turns
+    # Loading plates: groups whose nodes all have the same displacement, as if bonded to a rigid platen that does
+    # not rotate. A support, force, spring or dashpot on one of its nodes acts once on the whole plate, as does a
+    # `total_force` on its group. Its reaction counts in the watched groups that contain the whole plate. In
+    # axisymmetry a plate keeps its radius, ux = 0. Other plates are given by `moves`: only one component equal, or
+    # a rigid body that can rotate
     plates: Sequence[LoadingPlate]
     # Point masses by the name of a mesh group: a mass at each of its nodes
     point_masses: Mapping[str, PointMass]
     # Gauges by a name of your choice: displacement, velocity, strain and stress at points of the bodies, at every
     # row of the history (probes.csv)
     probes: Mapping[str, Probe]
-    # What the plane stands for in space: "plane_strain", a plate {"plane_stress": {"thickness": …}}, or
-    # "axisymmetric"
+    # Kind of plane section: "plane_strain", a plate {"plane_stress": {"thickness": …}}, or "axisymmetric"
     section: Section
     # Steps, one after the other
     steps: Sequence[Step]
-    # What the case shows, in a line
+    # Title of the case, in one line
     title: str
     # Labels of the units used, for readers; any consistent set will do
     units: Mapping[str, str]
-    # Groups whose mean displacement and reaction go to the history
+    # Groups whose mean displacement and reaction are written to the history
     watch: Sequence[str]
