@@ -588,7 +588,9 @@ impl Writer<'_> {
             _ => json!({}),
         };
         friction["law"] = json!(law);
-        let own = law == "super_subloading" || self.pick("own alpha_t", &[0.0, 1.0]) == 1.0;
+        // Where normal contact is compared with another, alpha_t does not follow alpha_n.
+        let picked = self.pick("own alpha_t", &[0.0, 1.0]) == 1.0;
+        let own = law == "super_subloading" || self.ways.normal.is_some() || picked;
         if law != "frictionless" && own {
             friction["alpha_t"] = json!(2e4 * f.stress / f.length);
         }
