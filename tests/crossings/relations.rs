@@ -63,14 +63,15 @@ impl<'a> Base<'a> {
             let place = format!("ended {:?}, and was {:?}", record.ended, self.record.ended);
             return self.judged(Difference { share: f64::INFINITY, place, values: [0.0; 2] }, skip);
         }
-        // How long explicit increments may be follows from the one foot that stands for a point: the order of segments has a say.
-        let is_explicit = self.draft.is("scheme", "explicit") || self.draft.has("rupture");
-        if is_explicit && record.increments != self.record.increments {
+        // How long the next increment is hangs on whole numbers: the iterations of the one before, whether one was rejected, the foot
+        // that stands for a point. Where round-off changes one of them (some 1 in 1000 models), the increments are others.
+        if record.increments != self.record.increments {
             return Outcome::Idle;
         }
         let difference = compare(&self.record, record, skip);
         let tolerance = if is_dynamic(self.draft.of("scheme")) { tolerance.max(SAME_IN_MOTION) } else { tolerance };
         let tolerance = if self.draft.is("normal", "augmented") { tolerance.max(SAME_AUGMENTED) } else { tolerance };
+        let tolerance = if self.draft.has("until") { tolerance.max(SAME_UNTIL) } else { tolerance };
         if difference.share <= tolerance { Outcome::Holds } else { self.judged(difference, skip) }
     }
 
@@ -114,6 +115,9 @@ const SAME_IN_MOTION: f64 = 1e-7;
 
 /// The augmented Lagrangian ends at the penetration that is asked for, 1e-9: α_n times that, 2e4 · 1e-9, of pressures near 6.
 const SAME_AUGMENTED: f64 = 4e-6;
+
+/// A step that ends with a reaction ends where that is met to 1e-6: its length is as uncertain, and rates are ten times as much.
+const SAME_UNTIL: f64 = 1e-5;
 
 pub const RELATIONS: &[Relation] = &[
     Relation { name: "resumed", rarity: 5, check: resumed },
