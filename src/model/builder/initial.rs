@@ -194,6 +194,8 @@ fn of_bodies(
                 at.x, at.y
             ));
         }
+        // Round-off of the surface's direction is no shear stress that friction would have to bear.
+        let traction = if traction.abs() > ROUNDED * largest { traction } else { 0.0 };
         initial.push(InitialTraction { pressure: pressure.max(0.0), traction });
     }
     Ok(initial)
