@@ -136,6 +136,20 @@ pub fn gather_residual(model: &Model, residual: &mut [f64]) {
     }
 }
 
+/// Work of the moments on rigid plates, whose equations stand in the place of a force on B, beside what that would do.
+pub fn missing_work<'a>(
+    model: &'a Model,
+    u: &'a [f64],
+    residual: &'a [f64],
+    way: &'a [f64],
+) -> impl Iterator<Item = f64> + 'a {
+    model.linkage.rigid.iter().map(move |&[a, b]| {
+        let (e, length) = arm(model, [a, b], u);
+        let turn = e.perp(&relative([a, b], way)) / e.norm_squared();
+        residual[2 * b] * (length * turn - way[2 * b]) - residual[2 * b + 1] * way[2 * b + 1]
+    })
+}
+
 /// The equations of followers, and of B of rigid plates, whose forces `r_B` were in the residual.
 pub(super) fn prescribe(model: &Model, weight: f64, trial: Trial, u: &[f64], tangent: bool, system: &mut System) {
     for follower in &model.linkage.followers {

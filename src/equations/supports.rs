@@ -37,6 +37,19 @@ pub fn free(model: &Model, step: &Step, residual: &[f64]) -> Vec<f64> {
     residual.iter().zip(fixed(model, step)).map(|(&residual, fixed)| if fixed { 0.0 } else { residual }).collect()
 }
 
+/// Work of the forces that are out of balance at the displacement `u` along a correction: the equations of inclined supports and of rigid
+/// plates are not those of their dofs [F·L].
+pub fn work(model: &Model, step: &Step, u: &[f64], residual: &[f64], way: &[f64]) -> f64 {
+    let inclined = step.supports.iter().filter_map(|support| support.at.across());
+    let across = inclined.map(|across| residual[across.dof] * (across.of(way) - way[across.dof]));
+    dot(residual, way) + across.chain(links::missing_work(model, u, residual, way)).sum::<f64>()
+}
+
+/// The same where every equation is that of its dof.
+pub fn dot(residual: &[f64], way: &[f64]) -> f64 {
+    residual.iter().zip(way).map(|(r, x)| r * x).sum()
+}
+
 /// Replace the equations of prescribed dofs and of copies.
 pub(super) fn prescribe(
     model: &Model,

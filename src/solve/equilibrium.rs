@@ -29,6 +29,7 @@ use super::newton::{self, NewtonFailure};
 use super::{IterationRecord, Workspace};
 use crate::contact::force::ContactState;
 use crate::equations::sums::TrialFailure;
+use crate::equations::supports;
 use crate::equations::{Assembler, Trial};
 use crate::linear::system::Request;
 use crate::linear::{LinearFailure, SparseMatrix};
@@ -68,15 +69,22 @@ fn on_all(
     if watch.begins {
         iteration.start_increment();
     }
-    let (iterations, result) = newton::solve(start, settings(model), &mut **solver, system, |u, request, system| {
-        iteration.evaluate_all(assembler, trial, u, request, system)?;
-        if request == Request::Tangent && watch.begins && watch.tangents == 0 && is_unaided(trial) {
-            watch.floating = null_motion(model, u, &system.tangent);
-        }
-        let acted = Acted { stiffening: usize::from(trial.stiffening > 1.0), ..iteration.acted };
-        watch.note(request, assembler, system.forces, acted, foreseen);
-        Ok(())
-    });
+    let (iterations, result) = newton::solve(
+        start,
+        settings(model),
+        &mut **solver,
+        system,
+        |u, request, system| {
+            iteration.evaluate_all(assembler, trial, u, request, system)?;
+            if request == Request::Tangent && watch.begins && watch.tangents == 0 && is_unaided(trial) {
+                watch.floating = null_motion(model, u, &system.tangent);
+            }
+            let acted = Acted { stiffening: usize::from(trial.stiffening > 1.0), ..iteration.acted };
+            watch.note(request, assembler, system.forces, acted, foreseen);
+            Ok(())
+        },
+        |u, residual, way| supports::work(model, trial.step, u, residual, way),
+    );
     watch.record(iterations);
     result
 }
@@ -145,6 +153,7 @@ fn round(
             watch.note(request, assembler, system.forces, acted, foreseen);
             Ok::<(), TrialFailure>(())
         },
+        |_, residual, way| supports::dot(residual, way),
     );
     watch.record(iterations);
     match result {

@@ -16,7 +16,8 @@
 //! u_{k+1} = u_k + α Δu,   s(α) = Δu·r(u_k + α Δu),   |s(α)| ≤ 0.1 |s(0)|
 //! ```
 //!
-//! With a potential, r = ∂Π/∂u, s is the slope of Π along Δu, and Π falls by every correction. Switch `downhill`; `aid_downhill`
+//! s is the work of the forces that are out of balance, as those say who know which equations are forces. With a potential,
+//! r = ∂Π/∂u, it is the slope of Π along Δu, and Π falls by every correction. Switch `downhill`; `aid_downhill`
 //! is 1 where a correction was searched.
 //! Source: Matthies & Strang (1979), The solution of nonlinear finite element equations, doi:10.1002/nme.1620141104.
 //!
@@ -116,13 +117,15 @@ const OLD_TANGENT_CORRECTIONS: f64 = 3.0;
 /// is often the price of a contact that finds its place.
 const STALLED: usize = 2;
 
-/// Solve r(u) = 0 from the start value `u`; `evaluate` fills the system at a displacement.
+/// Solve r(u) = 0 from the start value `u`; `evaluate` fills the system at a displacement, `work` is that of a residual at `u`
+/// along a correction.
 pub fn solve<E>(
     mut u: Vec<f64>,
     settings: Settings,
     solver: &mut dyn LinearSolver,
     system: &mut System,
     mut evaluate: impl FnMut(&[f64], Request, &mut System) -> Result<(), E>,
+    work: impl Fn(&[f64], &[f64], &[f64]) -> f64,
 ) -> Iterated<E> {
     let mut iterations: Vec<Iteration> = Vec::new();
     let result = (|| {
@@ -135,7 +138,7 @@ pub fn solve<E>(
             }
             let mut solution = correction(plan.factorized, solver, system)?;
             if plan.searched {
-                let along = |residual: &[f64]| -> f64 { residual.iter().zip(&solution.x).map(|(r, x)| r * x).sum() };
+                let along = |residual: &[f64]| work(&u, residual, &solution.x);
                 let share = downhill(along(&here), |share| {
                     let there: Vec<f64> = u.iter().zip(&solution.x).map(|(u, x)| u + share * x).collect();
                     evaluate(&there, Request::Between, system).map_or(f64::NAN, |()| along(&system.residual))

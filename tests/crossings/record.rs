@@ -12,7 +12,7 @@ use fecontact::output::newton_log::NewtonLog;
 use fecontact::output::probes::Probes;
 use fecontact::output::warnings::Warnings;
 use fecontact::run::observer::Observer;
-use fecontact::run::{RunBytes, SavedRun, Simulation, watch};
+use fecontact::run::{RunBytes, RunReport, SavedRun, Simulation, watch};
 use serde_json::Value;
 
 use crate::frame::{Frame, Kind};
@@ -44,6 +44,8 @@ pub struct Record {
     pub rows: Vec<(f64, Vec<Entry>)>,
     /// increments, those between two rows of explicit steps included
     pub increments: usize,
+    /// attempts at increments that were given up
+    pub given_up: usize,
     /// whether points of the first contact closed, and slipped
     pub closed: bool,
     pub slipped: bool,
@@ -70,8 +72,15 @@ pub fn run(document: &Value, ways: &Ways, lead: Lead) -> Record {
         std::fs::write(Path::new(&folder).join(format!("{k}.json")), document.to_string())
             .expect("a folder to dump cases in");
     }
-    let refused =
-        |ended| Record { ended, tables: Vec::new(), rows: Vec::new(), increments: 0, closed: false, slipped: false };
+    let refused = |ended| Record {
+        ended,
+        tables: Vec::new(),
+        rows: Vec::new(),
+        increments: 0,
+        given_up: 0,
+        closed: false,
+        slipped: false,
+    };
     let model = match built(document) {
         Ok(model) => model,
         Err(message) => return refused(Ended::Refused(message)),
@@ -107,7 +116,8 @@ pub fn run(document: &Value, ways: &Ways, lead: Lead) -> Record {
     if let (Some((_, last)), Ended::Complete) = (rows.last_mut(), &ended) {
         last.extend(point_entries(&simulation, ways));
     }
-    Record { ended, tables, closed, slipped, rows, increments: simulation.report().increments }
+    let RunReport { increments, cutbacks, rejected, .. } = simulation.report();
+    Record { ended, tables, closed, slipped, rows, increments, given_up: cutbacks + rejected }
 }
 
 fn built(document: &Value) -> Result<Arc<Model>, String> {

@@ -17,7 +17,7 @@ fn root(start: f64, equation: impl Fn(f64) -> Result<[f64; 2], ()>) -> Iterated<
     let tangent = SparseMatrix::zero(pattern);
     let mut system = System { residual: vec![0.0; 2], tangent, forces: 1.0, imbalance: 1.0 };
     let settings = Settings { tolerance: 1e-12, max_iterations: 30, old_tangents: true, downhill: true };
-    solve(vec![start, 0.0], settings, &mut Multifrontal::default(), &mut system, |u, request, system| {
+    let evaluate = |u: &[f64], request, system: &mut System| {
         let [r, slope] = equation(u[0])?;
         system.residual = vec![r, 0.0];
         system.imbalance = r.abs();
@@ -27,7 +27,9 @@ fn root(start: f64, equation: impl Fn(f64) -> Result<[f64; 2], ()>) -> Iterated<
             system.tangent.add_diagonal(1, 1.0);
         }
         Ok(())
-    })
+    };
+    let work = |_: &[f64], residual: &[f64], way: &[f64]| residual[0] * way[0];
+    solve(vec![start, 0.0], settings, &mut Multifrontal::default(), &mut system, evaluate, work)
 }
 
 /// The correction of atan(u) = 0 from u = 1.6 leads to −2.5, which is out of bounds here, and that is told; from u = 1 it
