@@ -411,6 +411,11 @@ fn energies(base: &Base) -> Outcome {
     if !base.has_ended_well() || draft.has("error_control") || draft.has("until") || springs {
         return Outcome::Idle;
     }
+    // Dilatancy holds the surfaces apart, and friction acts across that gap without a couple; an augmented Lagrangian stores nothing that
+    // would bound it.
+    if draft.has("dilatancy") && draft.is("normal", "augmented") {
+        return Outcome::Idle;
+    }
     // A support that starts at a velocity strikes what it holds, and loses ½ m v² by it.
     let drive = if is_dynamic(draft.of("scheme")) { Some("smooth") } else { base.ways.drive };
     let audited = |finer| {
