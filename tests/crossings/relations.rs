@@ -416,6 +416,13 @@ fn energies(base: &Base) -> Outcome {
     if draft.has("dilatancy") && draft.is("normal", "augmented") {
         return Outcome::Idle;
     }
+    // A point that slides off the end of its master takes its force along, at once.
+    let length =
+        |row: &[Entry]| row.iter().find(|entry| &*entry.column == "c.contact_length").map_or(0.0, |entry| entry.value);
+    let lengths: Vec<f64> = base.record.rows.iter().map(|(_, row)| length(row)).collect();
+    if !is_dynamic(draft.of("scheme")) && lengths.windows(2).any(|pair| pair[1] < 0.95 * pair[0]) {
+        return Outcome::Idle;
+    }
     // A support that starts at a velocity strikes what it holds, and loses ½ m v² by it.
     let drive = if is_dynamic(draft.of("scheme")) { Some("smooth") } else { base.ways.drive };
     let audited = |finer| {
