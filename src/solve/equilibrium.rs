@@ -342,7 +342,13 @@ fn from_start_values(
     work: &mut Workspace,
 ) -> (Vec<IterationRecord>, Result<Vec<f64>, IncrementFailure>) {
     let (mut iterations, result) = equilibrium(model, trial, None, work);
-    let unsolved = matches!(result, Err(IncrementFailure::Newton(_) | IncrementFailure::ContactLost(_)));
+    let unsolved = match &result {
+        Err(IncrementFailure::Newton(failure)) => {
+            matches!(failure, NewtonFailure::TooManyIterations { .. } | NewtonFailure::Diverged { .. })
+        }
+        Err(IncrementFailure::ContactLost(_)) => true,
+        _ => false,
+    };
     if !(model.aids.softening && unsolved && trial.step.scheme == Scheme::Static && !model.contacts.is_empty()) {
         return (iterations, result);
     }
