@@ -21,7 +21,7 @@
 //!
 //! Which points of slender bodies are closed is hard to find with a stiff penalty: bending is so much softer than the contact
 //! that every linear solve closes and opens others, from touch on, however short the increment. With a soft one few iterations
-//! do, and what they find is nearly right for a stiffer one. A static increment without equilibrium starts anew,
+//! do, and what they find is nearly right for a stiffer one. A static increment without equilibrium starts anew where friction does not weaken,
 //!
 //! ```text
 //! α_n × 1e-8, 1e-6, 1e-4, 1e-2, 1                     each equilibrium is the start value of the next
@@ -335,6 +335,13 @@ const SOFTER: [f64; 4] = [1e-8, 1e-6, 1e-4, 1e-2];
 /// ‖r‖/‖f‖ to which a start value is found [-]
 const ROUGHLY: f64 = 1e-2;
 
+/// Whether contacts find the same equilibrium from wherever they come, as far as their laws go: weakening may have several, and the
+/// nearest is sought.
+fn has_one_answer(model: &Model) -> bool {
+    let mut laws = model.contacts.iter().flat_map(|pair| &pair.laws).peekable();
+    laws.peek().is_some() && laws.all(|law| law.description.weakening == 0.0)
+}
+
 /// Equilibrium of a new increment; of a static one that has none from its own start value, from softer penalties on.
 fn from_start_values(
     model: &Model,
@@ -346,10 +353,9 @@ fn from_start_values(
         Err(IncrementFailure::Newton(failure)) => {
             matches!(failure, NewtonFailure::TooManyIterations { .. } | NewtonFailure::Diverged { .. })
         }
-        Err(IncrementFailure::ContactLost(_)) => true,
         _ => false,
     };
-    if !(model.aids.softening && unsolved && trial.step.scheme == Scheme::Static && !model.contacts.is_empty()) {
+    if !(model.aids.softening && unsolved && trial.step.scheme == Scheme::Static && has_one_answer(model)) {
         return (iterations, result);
     }
     let (mut start, _) = start_value(model, trial);
