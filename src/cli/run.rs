@@ -117,6 +117,9 @@ fn conclude(summary: &Summary, model: &Model, folder: &Path, supplied: f64) {
         folder.display()
     );
     summary.friction_course.iter().for_each(|(name, course)| say!("contact `{name}`: {course}"));
+    if let Some(share) = summary.energy_in_penalties {
+        say!("contact penalties: {:.2} % of the elastic energy when that was largest", 100.0 * share);
+    }
     if !report.given_up.is_empty() {
         say!("rejected attempts: {} (see column `reason` of newton.csv)", most_first(&report.given_up));
     }

@@ -187,9 +187,10 @@ impl ContactPair {
         closed.map(|state| state.clearance().abs() / tolerance).fold(0.0, f64::max)
     }
 
-    /// α_n, under the augmented Lagrangian this many times the one given.
+    /// α_n times what the iterations of an increment make it: more than one under the augmented Lagrangian alone, where answers
+    /// do not depend on it; less than one on the way to a start value.
     pub fn normal_stiffness(&self, stiffening: f64) -> f64 {
-        if self.penetration.is_some() { stiffening * self.alpha_n } else { self.alpha_n }
+        if self.penetration.is_some() || stiffening < 1.0 { stiffening * self.alpha_n } else { self.alpha_n }
     }
 
     /// p_w at a slave point; 0 without a fluid [F/L²].

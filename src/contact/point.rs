@@ -222,7 +222,7 @@ pub struct ContactIncrement {
     pub radiates: bool,
     /// Share of an initial overlap that does not count yet
     pub fading: f64,
-    /// α_n under the augmented Lagrangian is this many times the one given
+    /// α_n is this many times the one given: [`super::pair::ContactPair::normal_stiffness`]
     pub stiffening: f64,
     /// Whether the bodies deform under the pressures that arise within the increment
     pub settles: bool,

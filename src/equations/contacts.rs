@@ -3,9 +3,10 @@
 use super::sums::{Dependence, Sums, add_blocks};
 use super::trial::Trial;
 use crate::contact::force::ContactState;
-use crate::contact::pair::{BadPressure, ContactIncrement, Presumption};
+use crate::contact::pair::{BadPressure, ContactIncrement, ContactPair, Presumption};
 use crate::contact::response::PairResponse;
 use crate::equations::sums::TrialFailure;
+use crate::laws::friction::Description;
 use crate::linear::system::Request;
 use crate::model::Model;
 
@@ -71,19 +72,34 @@ pub(super) fn add_fluids(model: &Model, responses: &[PairResponse], loads: &mut 
     }
 }
 
-/// Stored: ∫ (α_n (g − d)²/2 + q²/(2 α_t)) ds of the closed points [F·L].
-pub fn stored(model: &Model, contacts: &[Vec<ContactState>]) -> f64 {
-    let mut energy = 0.0;
-    for (pair, states) in model.contacts.iter().zip(contacts) {
+/// Stored in the springs of a contact: ∫ (α_n (g − d)²/2 + q²/(2 α_t)) ds of its closed points.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Springs {
+    /// All of it [F·L]
+    pub stored: f64,
+    /// What is numerical: an exact contact would not give way there [F·L]
+    pub numerical: f64,
+}
+
+impl Springs {
+    /// Those of a contact in some state.
+    pub fn of(pair: &ContactPair, states: &[ContactState]) -> Self {
+        let mut springs = Self::default();
         for (point, state) in pair.points.iter().zip(states) {
             let ContactState { friction, length, .. } = state;
             let normal = if friction.pressure > 0.0 { 0.5 * pair.alpha_n * state.clearance().powi(2) } else { 0.0 };
-            let stiffness = pair.law(point).description.stiffness;
+            let Description { stiffness, stiffness_is_penalty, .. } = pair.law(point).description;
             let tangential = if stiffness > 0.0 { 0.5 * friction.traction.powi(2) / stiffness } else { 0.0 };
-            energy += length * (normal + tangential);
+            springs.stored += length * (normal + tangential);
+            springs.numerical += length * if stiffness_is_penalty { normal + tangential } else { normal };
         }
+        springs
     }
-    energy
+}
+
+/// Stored in the springs of all contacts [F·L].
+pub fn stored(model: &Model, contacts: &[Vec<ContactState>]) -> f64 {
+    model.contacts.iter().zip(contacts).map(|(pair, states)| Springs::of(pair, states).stored).sum()
 }
 
 /// Dissipated by friction from `old` to `new` [F·L].

@@ -20,7 +20,8 @@ pub struct Trial<'a> {
     pub dt: f64,
     /// Start and end of the increment beyond whose end equilibrium is asked for, if it is
     pub beyond: Option<[f64; 2]>,
-    /// α_n of contacts under the augmented Lagrangian is this many times the one given
+    /// α_n is this many times the one given: above 1 for contacts under the augmented Lagrangian, below 1 for all on the way to
+    /// a start value
     pub stiffening: f64,
     /// Whether the bodies deform under the pressures that arise within the increment; central differences move first
     pub settles: bool,

@@ -34,6 +34,8 @@ pub struct Aids {
     pub downhill: bool,
     /// The augmented Lagrangian stiffens where it is slow: [`crate::solve::equilibrium`]
     pub stiffening: bool,
+    /// A static increment that is not solved starts anew from softer penalties: [`crate::solve::equilibrium`]
+    pub softening: bool,
 }
 
 impl Default for Aids {
@@ -53,6 +55,7 @@ impl Default for Aids {
             old_tangents: true,
             downhill: true,
             stiffening: true,
+            softening: true,
         }
     }
 }

@@ -5,7 +5,14 @@
 //! ```
 //!
 //! The error is measured by the most that there was to be stored or dissipated: initial energy and external work.
+//!
+//! # How much contacts give way
+//!
+//! An exact contact stores nothing along its normal, and nothing while it sticks. What penalties store there, beside the energy of
+//! bodies and contacts at the time when that was largest, tells how far the answer is off by them; as p²/2α_n it falls with the
+//! penalty.
 
+use crate::equations::contacts::Springs;
 use crate::model::scheme::{Scheme, time_text};
 use crate::model::state::State;
 use crate::model::{Model, Step};
@@ -30,6 +37,17 @@ pub struct Audit {
     steps: Vec<(String, f64, String)>,
     /// Possible work of round-off in the forces [F·L]
     noise: f64,
+    /// How much contacts give way
+    pub give: Give,
+}
+
+/// How much of the elastic energy of bodies and contacts was in penalties of contacts, when that energy was largest.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Give {
+    /// Elastic energy [F·L]
+    elastic: f64,
+    /// What of it was in penalties [F·L]
+    penalties: f64,
 }
 
 impl Audit {
@@ -46,6 +64,7 @@ impl Audit {
         if error.abs() > self.worst.0.abs() || error.is_nan() {
             self.worst = (error, new.time);
         }
+        self.give.record(model, new);
         let ways = old.displacement.iter().zip(&new.displacement).map(|(old, new)| (new - old).abs());
         self.noise += round_off(model, new) * ways.fold(0.0, f64::max);
     }
@@ -67,6 +86,22 @@ impl Audit {
             worst.abs(),
             self.supplied
         ))
+    }
+}
+
+impl Give {
+    fn record(&mut self, model: &Model, state: &State) {
+        let elastic = state.energy.strain + state.energy.contact_elastic;
+        if elastic > self.elastic {
+            let pairs = model.contacts.iter().zip(&state.contacts);
+            self.penalties = pairs.map(|(pair, states)| Springs::of(pair, states).numerical).sum();
+            self.elastic = elastic;
+        }
+    }
+
+    /// The share of the penalties, if anything was stored [-]
+    pub fn share(&self) -> Option<f64> {
+        (self.elastic > 0.0).then(|| self.penalties / self.elastic)
     }
 }
 

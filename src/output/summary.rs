@@ -114,6 +114,10 @@ pub struct Summary {
     pub chatter: Option<BTreeMap<String, f64>>,
     /// how the friction of each contact went; none of those that bore none
     pub friction_course: BTreeMap<String, FrictionHistory>,
+    /// how much of the elastic energy of bodies and contacts was in penalties of contacts when it was largest; nothing without
+    /// contacts [-]
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy_in_penalties: Option<f64>,
     /// largest resident memory of the process, where the system reports it [MiB]
     pub peak_memory_mib: Option<f64>,
     /// warnings
@@ -134,6 +138,7 @@ impl Summary {
             report,
             chatter: None,
             friction_course: BTreeMap::new(),
+            energy_in_penalties: None,
             peak_memory_mib: peak_memory_mib(),
             warnings,
         }

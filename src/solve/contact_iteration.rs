@@ -40,14 +40,17 @@
 //! value takes it farther away than the bodies would follow if its pressure went, and the penalty would reach,
 //!
 //! ```text
-//! g ≤ p₀ (c + 10/α_n)                                 c: compliance of the bodies
+//! g ≤ max(p₀ (c + 10/α_n), h/100)                     c: compliance of the bodies, h: shortest edge of the slave
 //! ```
+//!
+//! The start value goes on in a straight line, so that slender bodies which turn where they touch are a little apart by it,
+//! under pressures next to nothing: without h/100 all their points would open at once, and the bodies spring through each other.
 //!
 //! Switch `pull`, for those points that are open by the start value, and needs `keep`; `aid_pull` counts them.
 //!
 //! Source: as the choice of the active set from p + δp rather than from the gap in primal–dual active set methods (Hintermüller,
 //! Ito & Kunisch 2002, doi:10.1137/S1052623401383558), where it is Newton's method for the kink of ⟨p⟩. The reach is the
-//! displacement over which p₀ goes to zero; its factor 10 is a rule of thumb.
+//! displacement over which p₀ goes to zero; its factor 10 and the hundredth are rules of thumb.
 //!
 //! # Carried
 //!
@@ -310,10 +313,18 @@ fn promise_acts(presumption: &Presumption, closed: &Closed) -> bool {
 /// The penalty may have drawn a point that was closed back by this many p/α_n.
 const MOST_PULL: f64 = 10.0;
 
+/// The start value may have lifted it by this many gaps of touch, each 1e-9 of the slave's shortest edge.
+const MOST_LIFT: f64 = 1e7;
+
 /// Predicted traction, from the committed state, of a point that is open by the start value.
 fn kept_at_start(pair: &ContactPair, state: &ContactState, old: &ContactState) -> Tractions {
     let reach = old.friction.pressure * (pair.compliance + MOST_PULL / pair.alpha_n);
-    if state.clearance() <= reach { Tractions::of(&old.friction) } else { Tractions::default() }
+    let closed = old.friction.pressure > 0.0;
+    if closed && state.clearance() <= reach.max(MOST_LIFT * pair.touch) {
+        Tractions::of(&old.friction)
+    } else {
+        Tractions::default()
+    }
 }
 
 /// Whether a point is closed for a promise alone.
@@ -439,11 +450,13 @@ pub struct Acted {
     pub downhill: usize,
     /// the augmented Lagrangian is stiffened
     pub stiffening: usize,
+    /// penalties are softer than given, on the way to a start value
+    pub softening: usize,
 }
 
 impl Acted {
     /// Columns of `newton.csv`.
-    pub const COLUMNS: [&str; 13] = [
+    pub const COLUMNS: [&str; 14] = [
         "aid_start",
         "aid_promise",
         "aid_limit",
@@ -457,12 +470,28 @@ impl Acted {
         "aid_condense",
         "aid_downhill",
         "aid_stiffening",
+        "aid_softening",
     ];
 
     /// The counts, in the order of the columns.
     pub fn counts(self) -> [usize; Self::COLUMNS.len()] {
         let Self { start, promise, limit, keep, pull, carried, touch, .. } = self;
-        let Self { stick, stick_again, valley, condense, downhill, stiffening, .. } = self;
-        [start, promise, limit, keep, pull, carried, touch, stick, stick_again, valley, condense, downhill, stiffening]
+        let Self { stick, stick_again, valley, condense, downhill, stiffening, softening, .. } = self;
+        [
+            start,
+            promise,
+            limit,
+            keep,
+            pull,
+            carried,
+            touch,
+            stick,
+            stick_again,
+            valley,
+            condense,
+            downhill,
+            stiffening,
+            softening,
+        ]
     }
 }

@@ -17,6 +17,21 @@
 //!
 //! Source: the predictor of Newmark (1959) in dynamics; in statics the secant predictor of path following.
 //!
+//! # Softer penalties first
+//!
+//! Which points of slender bodies are closed is hard to find with a stiff penalty: bending is so much softer than the contact
+//! that every linear solve closes and opens others, from touch on, however short the increment. With a soft one few iterations
+//! do, and what they find is nearly right for a stiffer one. A static increment without equilibrium starts anew where friction does not weaken,
+//!
+//! ```text
+//! α_n × 1e-8, 1e-6, 1e-4, 1e-2, 1                     each equilibrium is the start value of the next
+//! ```
+//!
+//! those of the softer ones to a hundredth of the forces only. Switch `softening`; `aid_softening` is 1 in their iterations.
+//!
+//! Source: path following in the penalty, Hintermüller & Kunisch (2006), Path-following methods for a class of constrained
+//! minimization problems in function space, SIAM J. Optim. 17, 159.
+//!
 //! # Augmented Lagrangian
 //!
 //! The augmented Lagrangian: multipliers that leave no more penetration than allowed.
@@ -34,6 +49,7 @@ use crate::equations::{Assembler, Trial};
 use crate::linear::system::Request;
 use crate::linear::{LinearFailure, SparseMatrix};
 use crate::model::Model;
+use crate::model::scheme::Scheme;
 use crate::model::state::{LastIncrement, State};
 
 /// Equilibrium at the time of a trial, wherever the scheme asks for it; from the start value of a new increment unless
@@ -71,7 +87,7 @@ fn on_all(
     }
     let (iterations, result) = newton::solve(
         start,
-        settings(model),
+        settings(model, trial),
         &mut **solver,
         system,
         |u, request, system| {
@@ -79,8 +95,7 @@ fn on_all(
             if request == Request::Tangent && watch.begins && watch.tangents == 0 && is_unaided(trial) {
                 watch.floating = null_motion(model, u, &system.tangent);
             }
-            let acted = Acted { stiffening: usize::from(trial.stiffening > 1.0), ..iteration.acted };
-            watch.note(request, assembler, system.forces, acted, foreseen);
+            watch.note(request, assembler, system.forces, in_trial(trial, iteration.acted), foreseen);
             Ok(())
         },
         |u, residual, way| supports::work(model, trial.step, u, residual, way),
@@ -118,7 +133,7 @@ fn on_contacts(
         if let Some(last) = watch.records.last_mut() {
             last.newton.residual = system.imbalance;
         }
-        if system.imbalance <= model.newton.tolerance {
+        if system.imbalance <= tolerance(model, trial) {
             return Some(Ok(u));
         }
     }
@@ -140,7 +155,7 @@ fn round(
     let mut all = u.to_vec();
     let (iterations, result) = newton::solve(
         nodes.gather(u),
-        settings(model),
+        settings(model, trial),
         &mut solver.with(rung.eliminated.as_ref(), *whole),
         condensed,
         |x, request, system| {
@@ -149,7 +164,7 @@ fn round(
                 round.equations.assemble(assembler, trial, x, responses, request, system);
                 Ok(())
             })?;
-            let acted = Acted { stiffening: usize::from(trial.stiffening > 1.0), condense: 1, ..iteration.acted };
+            let acted = Acted { condense: 1, ..in_trial(trial, iteration.acted) };
             watch.note(request, assembler, system.forces, acted, foreseen);
             Ok::<(), TrialFailure>(())
         },
@@ -261,9 +276,14 @@ fn told(
     }
 }
 
-fn settings(model: &Model) -> newton::Settings {
+/// ‖r‖/‖f‖ of every part of a solution; a start value need not be as good [-]
+fn tolerance(model: &Model, trial: Trial) -> f64 {
+    if trial.stiffening < 1.0 { model.newton.tolerance.max(ROUGHLY) } else { model.newton.tolerance }
+}
+
+fn settings(model: &Model, trial: Trial) -> newton::Settings {
     newton::Settings {
-        tolerance: model.newton.tolerance,
+        tolerance: tolerance(model, trial),
         max_iterations: model.newton.max_iterations,
         old_tangents: model.aids.old_tangents,
         downhill: model.aids.downhill,
@@ -274,6 +294,12 @@ fn settings(model: &Model) -> newton::Settings {
 fn is_unaided(trial: Trial) -> bool {
     let Trial { old, step, .. } = trial;
     old.last_increment.is_none() || (!step.stabilization.is_empty() && trial.stabilization_left() == 0.0)
+}
+
+/// What acted on contact points, with what the penalties of the trial say.
+fn in_trial(trial: Trial, acted: Acted) -> Acted {
+    let stiffening = usize::from(trial.stiffening > 1.0);
+    Acted { stiffening, softening: usize::from(trial.stiffening < 1.0), ..acted }
 }
 
 /// The start value of an increment, and whether it is another one than the committed displacement.
@@ -303,6 +329,48 @@ fn goes_on(old: &State) -> Option<&LastIncrement> {
     old.last_increment.as_ref().filter(|last| !last.ends_in_touch)
 }
 
+/// α_n of the start values, as a share of the one given.
+const SOFTER: [f64; 4] = [1e-8, 1e-6, 1e-4, 1e-2];
+
+/// ‖r‖/‖f‖ to which a start value is found [-]
+const ROUGHLY: f64 = 1e-2;
+
+/// Whether contacts find the same equilibrium from wherever they come, as far as their laws go: weakening may have several, and the
+/// nearest is sought.
+fn has_one_answer(model: &Model) -> bool {
+    let mut laws = model.contacts.iter().flat_map(|pair| &pair.laws).peekable();
+    laws.peek().is_some() && laws.all(|law| law.description.weakening == 0.0)
+}
+
+/// Equilibrium of a new increment; of a static one that has none from its own start value, from softer penalties on.
+fn from_start_values(
+    model: &Model,
+    trial: Trial,
+    work: &mut Workspace,
+) -> (Vec<IterationRecord>, Result<Vec<f64>, IncrementFailure>) {
+    let (mut iterations, result) = equilibrium(model, trial, None, work);
+    let unsolved = match &result {
+        Err(IncrementFailure::Newton(failure)) => {
+            matches!(failure, NewtonFailure::TooManyIterations { .. } | NewtonFailure::Diverged { .. })
+        }
+        _ => false,
+    };
+    if !(model.aids.softening && unsolved && trial.step.scheme == Scheme::Static && has_one_answer(model)) {
+        return (iterations, result);
+    }
+    let (mut start, _) = start_value(model, trial);
+    work.iteration.start_increment();
+    for stiffening in SOFTER {
+        let (more, softer) = equilibrium(model, Trial { stiffening, ..trial }, Some(start), work);
+        iterations.extend(more);
+        let Ok(found) = softer else { return (iterations, result) };
+        start = found;
+    }
+    let (more, result) = equilibrium(model, trial, Some(start), work);
+    iterations.extend(more);
+    (iterations, result)
+}
+
 /// Solutions with better and better multipliers before an increment of the augmented Lagrangian is given up.
 const MOST_PASSES: usize = 100;
 
@@ -326,7 +394,7 @@ pub fn augment(
     trial: Trial,
     work: &mut Workspace,
 ) -> (Vec<IterationRecord>, Result<Vec<f64>, IncrementFailure>) {
-    let (mut iterations, mut result) = equilibrium(model, trial, None, work);
+    let (mut iterations, mut result) = from_start_values(model, trial, work);
     let (mut stiffening, mut before) = (1.0, f64::INFINITY);
     for pass in 1.. {
         let Ok(u) = &result else { break };

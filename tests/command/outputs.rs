@@ -298,6 +298,28 @@ fn an_interval_thins_rows_but_no_events() {
 
 /// Two points pressed by forces N and drawn by s: friction turns μ N times the plastic slip s − q/α_t into heat, each contact by itself,
 /// and all of it is the friction dissipation of the audit. The power is that of the increment; a thinned table has the same.
+/// A column of length L = 2 with ν = 0 on a penalty is two springs in series, E/L and α_n: the penalty has 1/α_n of the compliance, and
+/// as much of the energy, (1/α_n)/(1/α_n + L/E).
+#[test]
+fn the_share_of_energy_in_penalties_is_that_of_springs_in_series() {
+    let folder = TempDir::new().unwrap();
+    for (alpha_n, share) in [(50.0, 0.5), (4950.0, 1.0 / 100.0)] {
+        let case = json!({
+            "mesh": Blocks::default().rectangle("column", [1, 4], [0.0, 0.0], [1.0, 2.0]).json(),
+            "bodies": {"column": {"material": {"model": "linear", "E": 100, "nu": 0}}},
+            "contacts": {"base": {
+                "slave": "column_bottom", "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+                "friction": {"law": "coulomb", "mu": 0.5}, "normal": {"alpha_n": alpha_n}
+            }},
+            "steps": [{"name": "press", "duration": 1, "supports": [{"on": "column_top", "ux": 0, "uy": -0.01}]}]
+        });
+        run(folder.path(), &case);
+        let summary = fs::read_to_string(folder.path().join("out/summary.json")).unwrap();
+        let summary: Value = serde_json::from_str(&summary).unwrap();
+        close("share", summary["energy_in_penalties"].as_f64().unwrap(), share, 1e-9);
+    }
+}
+
 #[test]
 fn the_heat_of_each_contact_is_its_friction_times_its_slip() {
     let contact = |slave: &str, area: f64, mu: f64| {

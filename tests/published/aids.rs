@@ -124,6 +124,22 @@ fn ridge(slope: f64, mu: f64) -> Model {
     }))
 }
 
+/// A cantilever 10 long and 0.5 high, pushed on the end of one like it.
+fn cantilevers() -> Model {
+    model(&json!({
+        "mesh": Blocks::default()
+            .rectangle("lower", [40, 2], [0.0, -0.5], [10.0, 0.0]).rectangle("upper", [43, 2], [5.0, 0.0], [15.0, 0.5]).json(),
+        "bodies": {
+            "lower": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
+            "upper": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
+        },
+        "contacts": {"base": {"slave": "upper_bottom", "master": "lower_top", "friction": {"law": "frictionless"}}},
+        "steps": [{"name": "push", "duration": 1, "dt": {"initial": 0.05}, "supports": [
+            {"on": "lower_left", "ux": 0, "uy": 0}, {"on": "upper_right", "ux": 0, "uy": -1},
+        ]}],
+    }))
+}
+
 /// A softer block pushed by its top over a faceted ridge.
 fn faceted(height: f64, method: &str, mu: f64) -> Model {
     let top = |x: f64| -height * x.abs();
@@ -200,6 +216,7 @@ const CASES: [Case; 25] = [
     quick("impact_error", || struck_bar(Some(1e-6))),
     quick("slope", || committed("paper/slope", |case| case["steps"][0]["duration"] = json!(5))),
     quick("thrown", || thrown(1e5)),
+    quick("cantilevers", cantilevers),
     quick("ridge", || faceted(0.2, "node_to_segment", 0.3)),
     quick("valley", || ridge(0.1, 0.5)),
     quick("slab_touch", || slab(0.0, 0.1, 8, 1e6, 0.5)),
@@ -235,6 +252,7 @@ const SWITCHES: [Switch; 13] = [
     ("old_tangents", |aids| aids.old_tangents = false),
     ("downhill", |aids| aids.downhill = false),
     ("stiffening", |aids| aids.stiffening = false),
+    ("softening", |aids| aids.softening = false),
 ];
 
 /// What a run cost.
@@ -372,6 +390,7 @@ fn every_aid_saves_solves_or_a_failure() {
         ("old_tangents", "valley"),
         ("downhill", "ridge"),
         ("stiffening", "greco augmented"),
+        ("softening", "cantilevers"),
     ] {
         let (_, off) = SWITCHES.iter().find(|(name, _)| *name == aid).expect("an aid");
         let (with, without) = (cost((case(name).model)()), cost_without(case(name), *off));

@@ -136,8 +136,7 @@ impl Job {
         let Self { opened, model, folder, saved, damage } = self;
         let summary = |ending, report, warnings| Summary::new(ending, about.clone(), model, report, warnings);
         let first = summary(Ending::running(&folder.files), RunReport::default(), model.warnings());
-        let mut work =
-            Work { simulation: None, warnings: Vec::new(), chatter: None, courses: BTreeMap::new(), supplied: 0.0 };
+        let mut work = Work::default();
         let result = defect::catch(|| work.go(opened, model, folder, saved.take(), &first, callbacks));
         let result = match (result, opened.resumes(), &work.simulation) {
             (Ok(Err(error)), true, None) => return Err(error.into()),
@@ -153,8 +152,12 @@ impl Job {
         }
         let report = work.simulation.map(|simulation| simulation.report()).unwrap_or_default();
         work.warnings.extend(damage.take().map(|damage| format!("{damage}; the previous checkpoint was used")));
-        let last =
-            Summary { chatter: work.chatter, friction_course: work.courses, ..summary(ending, report, work.warnings) };
+        let last = Summary {
+            chatter: work.chatter,
+            friction_course: work.courses,
+            energy_in_penalties: work.energy_in_penalties,
+            ..summary(ending, report, work.warnings)
+        };
         let written = summary::write(&last, &folder.path);
         let ended = result.map_err(Failed::Defect).and_then(|ended| ended.map_err(Failed::Stopped));
         Ok(Outcome { summary: last, supplied: work.supplied, ended, written })
@@ -181,6 +184,7 @@ impl Job {
 }
 
 /// Results of a run that are kept however it ends.
+#[derive(Default)]
 struct Work {
     /// `None` until it has begun
     simulation: Option<Simulation>,
@@ -188,6 +192,8 @@ struct Work {
     /// restarts of slip, if the case asks for fronts
     chatter: Option<BTreeMap<String, f64>>,
     courses: BTreeMap<String, FrictionHistory>,
+    /// how much of the elastic energy was in penalties of contacts [-]
+    energy_in_penalties: Option<f64>,
     /// the most energy that there was [F·L]
     supplied: f64,
 }
@@ -232,6 +238,7 @@ impl Work {
         self.courses = outputs.courses(model);
         self.chatter = outputs.fronts.as_ref().map(Fronts::chatter);
         self.supplied = outputs.warnings.audit.supplied;
+        self.energy_in_penalties = outputs.warnings.audit.give.share().filter(|_| !model.contacts.is_empty());
         self.warnings = std::mem::take(&mut outputs.warnings.list);
         self.warnings.extend(keeper.concern);
         result

@@ -72,6 +72,7 @@ impl FrictionLaw for Coulomb {
     fn description(&self) -> Description {
         Description {
             stiffness: self.alpha_t,
+            stiffness_is_penalty: true,
             observables: Some(&["R", "mu"]),
             starting_coefficient: Some(self.mu),
             least_coefficient: Some(self.mu),

@@ -232,6 +232,8 @@ pub trait FrictionLaw: Debug + Send + Sync {
 pub struct Description {
     /// α_t: tangential contact stiffness; the contact stores q²/(2 α_t). 0 where it stores nothing [F/L³]
     pub stiffness: f64,
+    /// Whether α_t is a penalty: the law knows no elastic slip, and q/α_t is an error as a penetration is
+    pub stiffness_is_penalty: bool,
     /// Names of the [`FrictionState::variables`] that the law uses: its own, and not those of what outputs show anyway
     /// ([`observables::check_names`])
     pub variables: &'static [&'static str],

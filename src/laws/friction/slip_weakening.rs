@@ -219,6 +219,7 @@ impl FrictionLaw for SlipWeakening {
     fn description(&self) -> Description {
         Description {
             stiffness: self.alpha_t,
+            stiffness_is_penalty: true,
             variables: &["weakening_slip"],
             observables: Some(&["R", "mu", "structure"]),
             least_coefficient: Some(self.mu_d),
