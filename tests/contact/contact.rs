@@ -6,7 +6,7 @@ use fecontact::contact::force::{
     Closed, ClosedPoints, ContactState, PointEvaluation, PointIncrement, PointPlace, Tractions, closes, place,
 };
 use fecontact::contact::kinematics::{Kinematics, kinematics};
-use fecontact::contact::master::{Circle, Master, Plane, Polyline, Rigid};
+use fecontact::contact::master::{Circle, Master, Plane, Polyline, Shape};
 use fecontact::contact::mortar::{Mortar, Overlaps, Room, mortar_points};
 use fecontact::contact::pair::{ContactIncrement, ContactPair, InitialTraction, Presumption};
 use fecontact::contact::projection::{Bound, nearest};
@@ -324,7 +324,7 @@ fn a_promise_is_of_second_order_and_changes_no_force() {
 /// p/α_n; with the augmented Lagrangian d = c p, whatever α_n.
 #[test]
 fn slip_counts_from_touch() {
-    let plane = Rigid::Plane(Plane { point: Vector2::zeros(), normal: Vector2::new(0.0, 1.0) });
+    let plane = Shape::Plane(Plane { point: Vector2::zeros(), normal: Vector2::new(0.0, 1.0) });
     let plain = pair(gauss_points(&[vec![0, 1]], 2), Master::Rigid(plane), COULOMB);
     let check = |pair: &ContactPair, deep: f64, during: ContactIncrement, d: f64| {
         let x = vec![Vector2::new(0.2, -deep), Vector2::new(0.9, -deep)];
@@ -348,7 +348,7 @@ fn slip_counts_from_touch() {
 /// touch.
 #[test]
 fn a_carried_pressure_is_where_the_answer_is_exact() {
-    let plane = Rigid::Plane(Plane { point: Vector2::zeros(), normal: Vector2::new(0.0, 1.0) });
+    let plane = Shape::Plane(Plane { point: Vector2::zeros(), normal: Vector2::new(0.0, 1.0) });
     let pair = pair(gauss_points(&[vec![0, 1]], 2), Master::Rigid(plane), COULOMB);
     let at = |y: f64| vec![Vector2::new(0.2, y), Vector2::new(0.9, y)];
     for (back, gap) in [(0.002, 0.03), (0.2, 0.03), (0.002, 0.0), (0.2, 0.0)] {
@@ -372,11 +372,11 @@ fn tangent_equals_differences_on_rigid_bodies() {
     let x: Positions = vec![Vector2::new(0.2, -0.01), Vector2::new(0.9, -0.03)];
     let at = |points: &[(f64, f64)]| points.iter().map(|&(x, y)| Vector2::new(x, y)).collect::<Vec<_>>();
     for body in [
-        Rigid::Plane(Plane { point: Vector2::new(0.0, 0.0), normal: Vector2::new(-0.06, 1.0).normalize() }),
-        Rigid::Circle(Circle { centre: Vector2::new(0.5, -3.0), radius: 3.0, hole: false }),
-        Rigid::Circle(Circle { centre: Vector2::new(0.5, 2.0), radius: 1.9, hole: true }),
-        Rigid::Polyline(Polyline::new(at(&[(-1.0, 0.5), (0.35, 0.01), (2.0, 0.6)]))),
-        Rigid::Polyline(Polyline::new(at(&[(-1.0, 0.0), (2.0, 0.03)]))),
+        Shape::Plane(Plane { point: Vector2::new(0.0, 0.0), normal: Vector2::new(-0.06, 1.0).normalize() }),
+        Shape::Circle(Circle { centre: Vector2::new(0.5, -3.0), radius: 3.0, hole: false }),
+        Shape::Circle(Circle { centre: Vector2::new(0.5, 2.0), radius: 1.9, hole: true }),
+        Shape::Polyline(Polyline::new(at(&[(-1.0, 0.5), (0.35, 0.01), (2.0, 0.6)]))),
+        Shape::Polyline(Polyline::new(at(&[(-1.0, 0.0), (2.0, 0.03)]))),
     ] {
         let pair = pair(gauss_points(&[vec![0, 1]], 2), Master::Rigid(body), SUPER);
         let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.laws[0].law.initial_state(0.0, 0.0) };
@@ -392,7 +392,7 @@ fn tangent_equals_differences_on_rigid_bodies() {
 #[test]
 fn feet_on_a_rigid_circle() {
     for (hole, side) in [(false, 1.0), (true, -1.0)] {
-        let body = Rigid::Circle(Circle { centre: Vector2::new(1.0, 1.0), radius: 2.0, hole });
+        let body = Shape::Circle(Circle { centre: Vector2::new(1.0, 1.0), radius: 2.0, hole });
         let at = |angle: f64| Vector2::new(1.0, 1.0) + Vector2::new(angle.cos(), angle.sin()) * 2.1;
         let (point, here) = (&lone_point(0, 1.0), vec![at(3.1)]);
         let moved = at(-3.1) - at(3.1);
@@ -508,10 +508,10 @@ fn behind_a_ridge_a_point_belongs_to_the_side_it_comes_from() {
 fn mortar_tangent_on_rigid_bodies_equals_differences() {
     let x: Positions = [(0.2, -0.01), (0.6, -0.05), (0.9, -0.03)].map(|(x, y)| Vector2::new(x, y)).to_vec();
     for body in [
-        Rigid::Plane(Plane { point: Vector2::new(0.0, 0.0), normal: Vector2::new(-0.06, 1.0).normalize() }),
-        Rigid::Circle(Circle { centre: Vector2::new(0.5, -3.0), radius: 3.0, hole: false }),
-        Rigid::Circle(Circle { centre: Vector2::new(0.5, 2.0), radius: 1.9, hole: true }),
-        Rigid::Polyline(Polyline::new([(-1.0, 0.0), (2.0, 0.03)].map(|(x, y)| Vector2::new(x, y)).to_vec())),
+        Shape::Plane(Plane { point: Vector2::new(0.0, 0.0), normal: Vector2::new(-0.06, 1.0).normalize() }),
+        Shape::Circle(Circle { centre: Vector2::new(0.5, -3.0), radius: 3.0, hole: false }),
+        Shape::Circle(Circle { centre: Vector2::new(0.5, 2.0), radius: 1.9, hole: true }),
+        Shape::Polyline(Polyline::new([(-1.0, 0.0), (2.0, 0.03)].map(|(x, y)| Vector2::new(x, y)).to_vec())),
     ] {
         for slave in [vec![vec![0, 1], vec![1, 2]], vec![vec![0, 2, 1]]] {
             let (points, mortar) = mortar_points(&slave, &x);
@@ -603,7 +603,7 @@ fn tangent_equals_differences_where_contact_starts_closed_across_a_gap() {
     let lone = [6, 7, 8].map(|node| lone_point(node, 0.7)).to_vec();
     let plane = Plane { point: Vector2::new(0.0, -0.5), normal: Vector2::new(-0.2, 1.0).normalize() };
     for points in [lone, gauss_points(&[vec![6, 7], vec![7, 8]], 2)] {
-        for master in [Master::Mesh(Surface::new(&edges)), Master::Rigid(Rigid::Plane(plane))] {
+        for master in [Master::Mesh(Surface::new(&edges)), Master::Rigid(Shape::Plane(plane))] {
             let mut pair = pair(points.clone(), master, SUPER);
             let at = displaced(&x);
             pair.start_closed(vec![InitialTraction { pressure: 20.0, traction: 2.0 }; pair.points.len()], &at)
@@ -660,7 +660,7 @@ fn points_that_nothing_faced_slip_past_what_they_meet() {
     let (straight, x) = wavy();
     let slave = [vec![6, 7], vec![7, 8]];
     let surface = Master::Mesh(Surface::new(&straight));
-    let plane = Master::Rigid(Rigid::Plane(Plane {
+    let plane = Master::Rigid(Shape::Plane(Plane {
         point: Vector2::new(0.0, 0.05),
         normal: Vector2::new(-0.02, 1.0).normalize(),
     }));
@@ -992,7 +992,7 @@ fn strips(n: usize, quadratic: bool) -> (Vec<Vec<usize>>, Vec<Vec<usize>>, Posit
 /// slave slides by trifles, by parts of an edge and over several edges, and the master stretches, shrinks and waves under it.
 #[test]
 fn what_is_kept_and_what_is_left_out_changes_no_bit() {
-    let plane = Rigid::Plane(Plane { point: Vector2::new(0.0, 0.02), normal: Vector2::new(0.0, 1.0) });
+    let plane = Shape::Plane(Plane { point: Vector2::new(0.0, 0.02), normal: Vector2::new(0.0, 1.0) });
     for quadratic in [false, true] {
         let (master, slave, x) = strips(30, quadratic);
         let surface = || Master::Mesh(Surface::new(&master));

@@ -14,6 +14,7 @@ use super::initial::launch;
 use super::load_step::{IncrementSettings, LoadStep, RuptureSettings, UntilSettings};
 use super::loads;
 use super::loads::LoadsInForce;
+use super::rigid;
 use super::section::hold_axis;
 use super::supports::{InForce, freed, supports};
 use crate::contact::pair::ContactPair;
@@ -73,8 +74,10 @@ impl Schedule<'_> {
             self.in_force.stay();
         }
         supports(&mut self.in_force, &given.supports, place, span, self.model)?;
+        rigid::hold(&mut self.in_force, span, self.model);
         hold_axis(&mut self.in_force.dofs, place, span, self.model)?;
         let before = std::mem::replace(&mut self.supports, self.in_force.all(place, self.model)?);
+        rigid::check_held(&self.supports, place, self.model)?;
         // In motion there is no rest of the reaction: what held is gone.
         let released = if scheme.is_dynamic() { Vec::new() } else { freed(&before, &self.supports) };
         for (k, load) in given.loads.iter().enumerate() {

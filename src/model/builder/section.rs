@@ -75,15 +75,16 @@ pub fn hold_axis(in_force: &mut BTreeMap<usize, Prescribed>, place: &str, span: 
         let message = "a rotation in the plane is no motion of axisymmetric bodies: prescribe ux and uy";
         return Err(ModelError::new(format!("{place}.supports"), message));
     }
-    for node in on_axis(model).chain(model.plates.iter().flatten().copied()) {
+    let rigid = model.mesh.rigid_bodies.iter().map(|body| body.reference);
+    for node in on_axis(model).chain(model.plates.iter().flatten().copied()).chain(rigid) {
         let dof = 2 * model.ties.original(node);
         let held = Prescribed::displacement(dof, Drive::Constant(0.0), span);
         let given = in_force.entry(dof).or_insert(held);
         let rests = |drive: &Drive| matches!(drive, Drive::Constant(0.0) | Drive::Rate(0.0));
         if !matches!(&given.motion, Motion::Displacement(drive, _) if rests(drive)) {
             let message = format!(
-                "node {} lies on the axis or on a plate, and keeps its radius: ux is 0 there; leave it out of the group that is \
-                 moved",
+                "node {} lies on the axis, on a plate or on a rigid body, and keeps its radius: ux is 0 there; leave it out of the \
+                 group that is moved",
                 model.mesh.node_tags[node]
             );
             return Err(ModelError::new(format!("{place}.supports"), message));
