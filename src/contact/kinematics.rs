@@ -272,7 +272,8 @@ impl Kinematics {
         let mut whole: Vector2<f64> = self.nodes.iter().zip(&self.relative).map(|(&node, &w)| w * motion(node)).sum();
         if let Some(body) = body {
             let offset = |(&node, &w): (&usize, &f64)| before.between(body.reference, node) * w;
-            let apart = self.nodes.iter().zip(&self.relative).filter(|(node, _)| **node != body.turning).map(offset).sum();
+            let apart =
+                self.nodes.iter().zip(&self.relative).filter(|(node, _)| **node != body.turning).map(offset).sum();
             whole -= turned(apart, body.angle(x) - body.angle(before));
         }
         let (n, s) = (self.normal, self.tangent);

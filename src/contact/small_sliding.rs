@@ -104,7 +104,8 @@ impl SmallPoint {
     pub fn new(met: Meeting, k: &Kinematics, slave: &SlavePoint, master: &Master, x: &Configuration) -> Self {
         let Meeting { gap, foot } = met;
         let Kinematics { normal, tangent, length, .. } = *k;
-        let takes_part = |k: &Kinematics, at: usize| k.relative[at] != 0.0 || k.lever.is_some_and(|lever| lever.at == at);
+        let takes_part =
+            |k: &Kinematics, at: usize| k.relative[at] != 0.0 || k.lever.is_some_and(|lever| lever.at == at);
         let part = (0..k.nodes.len()).filter(|&at| takes_part(k, at));
         let (nodes, weights): (Vec<usize>, Vec<f64>) = part.map(|at| (k.nodes[at], k.relative[at])).unzip();
         let place = |lever: Lever| nodes.iter().position(|node| *node == k.nodes[lever.at]);

@@ -32,7 +32,10 @@ pub fn add(given: &[(String, RigidBodyInput)], mesh: &mut Mesh) -> Checked<()> {
         let place = format!("rigid_bodies.{name}");
         check_finite(&format!("{place}.reference"), *reference)?;
         if mesh.groups.contains_key(name) {
-            return Err(ModelError::new(place, "is a group of the mesh as well, and supports would not know which: rename it"));
+            return Err(ModelError::new(
+                place,
+                "is a group of the mesh as well, and supports would not know which: rename it",
+            ));
         }
         let point = Vector2::from(*reference);
         let farthest = mesh.nodes.iter().map(|node| (node - point).norm()).fold(0.0, f64::max);
@@ -51,7 +54,8 @@ pub fn of_contact(contact: &Contact, mesh: &Mesh, place: &str) -> Checked<Option
     let Some(name) = &contact.rigid_body else { return Ok(None) };
     let place = format!("{place}.rigid_body");
     if let MasterSide::Group(group) = &contact.master {
-        let message = format!("is for a rigid master, and `{group}` is a group of edges, which move by themselves: leave it out");
+        let message =
+            format!("is for a rigid master, and `{group}` is a group of edges, which move by themselves: leave it out");
         return Err(ModelError::new(place, message));
     }
     match mesh.rigid_body(name) {
@@ -92,7 +96,8 @@ pub fn check_support(support: &Support, place: &str, mesh: &Mesh) -> Checked<()>
     let Place::Group(name) = &support.on else { return Ok(()) };
     match (&support.rotation, mesh.rigid_body(name)) {
         (Some(Change::To(_)), Some(_)) => {
-            let message = "is for a group of nodes: give a rigid body ux, uy and angle, which turns it about its reference point";
+            let message =
+                "is for a group of nodes: give a rigid body ux, uy and angle, which turns it about its reference point";
             Err(ModelError::new(format!("{place}.rotation"), message))
         }
         _ => Ok(()),

@@ -119,7 +119,9 @@ fn check_directions(support: &Support, place: &str) -> Checked<()> {
     let Some((key, _)) = given.into_iter().find(|(_, given)| *given) else {
         return match (rotation, angle) {
             (Some(_), _) | (_, Some(_)) => Ok(()),
-            (None, None) => Err(ModelError::new(place, "prescribes nothing: give ux, uy, along with u, un or rotation")),
+            (None, None) => {
+                Err(ModelError::new(place, "prescribes nothing: give ux, uy, along with u, un or rotation"))
+            }
         };
     };
     match rotation {
