@@ -91,6 +91,9 @@ impl Names {
 /// What a thing that stands aside is called; it comes first and last of all bodies.
 pub const ASIDE: [&str; 2] = ["aaa", "zzz"];
 
+/// The rigid body that moves, if there is one.
+const TOOL: &str = "tool";
+
 const DYNAMIC: [&str; 5] = ["newmark", "hht", "generalized_alpha", "wilson", "explicit"];
 
 pub fn is_dynamic(scheme: &str) -> bool {
@@ -130,6 +133,8 @@ enum What {
     /// displacement along the canonical axes that are held
     Support([bool; 2]),
     Rotation,
+    /// of the tool
+    Angle,
     Pressure,
     DeadPressure,
     Traction,
@@ -223,6 +228,9 @@ impl Writer<'_> {
         let mut case = Map::new();
         case.insert("mesh".into(), self.mesh());
         case.insert("bodies".into(), self.bodies());
+        if self.has("tool") {
+            case.insert("rigid_bodies".into(), json!({TOOL: {"reference": self.frame.point([1.25, -0.375])}}));
+        }
         case.insert("contacts".into(), self.contacts());
         case.insert("steps".into(), self.steps().into());
         let plates = self.plates();
@@ -471,6 +479,9 @@ impl Writer<'_> {
             _ => json!(self.group("ground_top")),
         };
         let mut contact = json!({"slave": slave, "master": master, "friction": self.friction(draft.of("friction"))});
+        if self.has("tool") {
+            contact["rigid_body"] = json!(TOOL);
+        }
         if self.ways.swapped {
             contact["slave"] = master;
             contact["master"] = json!(slave);
@@ -701,6 +712,12 @@ impl Writer<'_> {
         }
         if self.is("plate", "rigid") {
             second.push(target(What::Moment, "block_right", [0.3 * self.frame_moment(), 0.0]));
+        }
+        if self.has("tool") {
+            let tool = |what, to| Target { on: TOOL.into(), ..target(what, "block", to) };
+            let path = What::Support([true, true]);
+            first.extend([tool(path, [0.0, 0.0]), tool(What::Angle, [0.0, 0.0])]);
+            second.extend([tool(path, [-0.4 * drag, -0.05 * down]), tool(What::Angle, [0.002, 0.0])]);
         }
         let mut stages = vec![Stage { name: "press", targets: first }, Stage { name: "drag", targets: second }];
         if self.has("reversal") {
@@ -1001,6 +1018,7 @@ impl Writer<'_> {
                 let angle = change.to[0] * f.sign();
                 supports.push(json!({"on": on, "rotation": {"about": f.point([0.5, 2.0]), "angle": angle}}));
             }
+            What::Angle => supports.push(json!({"on": on, "angle": self.drive(pair(0), change, f.sign(), true)})),
             What::Pressure => loads.push(json!({"on": on, "pressure": scalar(Kind::Stress, 1.0)})),
             What::DeadPressure => loads.push(json!({"on": on, "dead_pressure": scalar(Kind::Stress, 1.0)})),
             What::Traction => loads.push(json!({"on": on, "traction": vector(Kind::Stress, 1.0)})),
