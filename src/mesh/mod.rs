@@ -147,6 +147,12 @@ impl Mesh {
         nodes
     }
 
+    /// Number of nodes without those of rigid bodies, which come last.
+    #[doc(hidden)]
+    pub fn own_nodes(&self) -> usize {
+        self.nodes.len() - self.rigid_bodies.iter().map(|body| body.nodes().len()).sum::<usize>()
+    }
+
     /// The rigid body of this name.
     #[doc(hidden)]
     pub fn rigid_body(&self, name: &str) -> Option<&RigidBody> {

@@ -54,13 +54,12 @@ fn nearest(mesh: &Mesh, point: [f64; 2]) -> Result<usize, String> {
         return Err(format!("near ({x}, {y}) is no place: give finite numbers"));
     }
     let distance = |node: usize| (mesh.nodes[node] - Vector2::from(point)).norm();
-    let count = mesh.nodes.len() - 2 * mesh.rigid_bodies.len();
-    let Some(node) = (0..count).min_by(|a, b| distance(*a).total_cmp(&distance(*b))) else {
+    let Some(node) = (0..mesh.own_nodes()).min_by(|a, b| distance(*a).total_cmp(&distance(*b))) else {
         return Err("the mesh has no nodes".into());
     };
     let tag = mesh.node_tags[node];
     let (near, round_off) = (distance(node), EQUALLY_NEAR * mesh.diagonal());
-    if let Some(other) = (0..count).find(|other| *other != node && distance(*other) <= near + round_off) {
+    if let Some(other) = (0..mesh.own_nodes()).find(|other| *other != node && distance(*other) <= near + round_off) {
         let other = mesh.node_tags[other];
         return Err(format!("nodes {tag} and {other} are equally near to ({x}, {y}): name one as {{\"node\": {tag}}}"));
     }
