@@ -7,6 +7,9 @@
 //!                                                      first dof of the turning node: r θ     force on it: M/r, M about x_R
 //! ```
 //!
+//! The mass of a rigid body that moves by itself is that of a point at the reference node, its centre of mass; its moment of inertia I is a
+//! mass I/r² at the turning node: m a = F, I θ̈ = M.
+//!
 //! r is a length of the size of the model, so that all dofs are lengths and all forces on them forces. The second dof of the
 //! turning node does nothing, and is 0. In this way supports, reactions, energies, time schemes and checkpoints know of rigid
 //! bodies without being told.
@@ -26,12 +29,19 @@ pub struct RigidBody {
     pub turning: usize,
     /// r: displacement of the turning node per angle [L]
     pub radius: f64,
+    /// Moment of inertia about the reference point, 0 where none is given [M L²]
+    pub inertia: f64,
 }
 
 impl RigidBody {
     /// Its nodes.
     pub fn nodes(&self) -> [usize; 2] {
         [self.reference, self.turning]
+    }
+
+    /// Mass of the turning node [M].
+    pub fn turning_mass(&self) -> f64 {
+        self.inertia / self.radius.powi(2)
     }
 
     /// θ, counter-clockwise [rad].

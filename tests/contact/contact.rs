@@ -369,7 +369,7 @@ fn a_carried_pressure_is_where_the_answer_is_exact() {
 
 /// A rigid master that moves with a body of two nodes behind those of the slave.
 fn moving(shape: Shape, slaves: usize) -> Rigid {
-    let body = RigidBody { name: "tool".into(), reference: slaves, turning: slaves + 1, radius: TURNING };
+    let body = RigidBody { name: "tool".into(), reference: slaves, turning: slaves + 1, radius: TURNING, inertia: 0.0 };
     Rigid { shape, body: Some(body) }
 }
 

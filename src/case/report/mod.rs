@@ -182,8 +182,9 @@ fn plates(case: &Case, model: &Model) -> Vec<String> {
 }
 
 fn rigid_bodies(case: &Case) -> Vec<String> {
-    let row = |(name, RigidBodyInput { reference }): (&String, &RigidBodyInput)| {
-        format!("{name}: moves about ({})", reference.map(number).join(", "))
+    let row = |(name, RigidBodyInput { reference, inertia }): (&String, &RigidBodyInput)| {
+        let inertia = inertia.map_or(String::new(), |inertia| format!(", moment of inertia {}", number(inertia)));
+        format!("{name}: reference point ({}){inertia}", reference.map(number).join(", "))
     };
     case.rigid_bodies.iter().map(row).collect()
 }

@@ -194,7 +194,14 @@ impl Builder {
     /// A rigid body with its reference point, for contacts whose rigid master moves ([`Contact::rigid_body`]) and supports `on`
     /// its name [L].
     pub fn rigid_body(mut self, name: impl Into<String>, reference: [f64; 2]) -> Self {
-        self.rigid_bodies.push((name.into(), RigidBodyInput { reference }));
+        self.rigid_bodies.push((name.into(), RigidBodyInput { reference, inertia: None }));
+        self
+    }
+
+    /// A rigid body that may turn by itself, with its centre of mass [L] and its moment of inertia about that [M L²]; its mass is a
+    /// [point mass](Self::point_mass) of its name.
+    pub fn free_rigid_body(mut self, name: impl Into<String>, reference: [f64; 2], inertia: f64) -> Self {
+        self.rigid_bodies.push((name.into(), RigidBodyInput { reference, inertia: Some(inertia) }));
         self
     }
 

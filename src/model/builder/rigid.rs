@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::contact::{Contact, MasterSide};
-use super::error::{Checked, ModelError, check_finite};
+use super::error::{Checked, ModelError, check_finite, check_positive};
 use super::groups::Place;
 use super::load::Change;
 use super::load_step::Support;
@@ -16,7 +16,8 @@ use crate::model::Model;
 use crate::model::boundary::{Drive, Span};
 use crate::model::support::{Motion, Prescribed};
 
-/// A rigid body that moves: contacts with a rigid master name it, and supports `on` its name move it.
+/// A rigid body that moves: contacts with a rigid master name it; supports, forces and a moment `on` its name move it. Its mass is
+/// given as a point mass of its name, and is at the reference point
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "RigidBody")]
@@ -24,13 +25,17 @@ pub struct RigidBodyInput {
     /// Reference point [x, y]: `ux` and `uy` of a support are its displacement, `angle` is the rotation about it, and the
     /// moment in the history is about it [L]
     pub reference: [f64; 2],
+    /// Moment of inertia about the reference point, which is then the centre of mass; needed in dynamic steps unless supports
+    /// give the `angle` [M L²]
+    pub inertia: Option<f64>,
 }
 
 /// Add rigid bodies to a mesh.
 pub fn add(given: &[(String, RigidBodyInput)], mesh: &mut Mesh) -> Checked<()> {
-    for (name, RigidBodyInput { reference }) in given {
+    for (name, RigidBodyInput { reference, inertia }) in given {
         let place = format!("rigid_bodies.{name}");
         check_finite(&format!("{place}.reference"), *reference)?;
+        check_positive(&format!("{place}.inertia"), inertia.unwrap_or(1.0), " (leave it out for none)")?;
         if mesh.groups.contains_key(name) {
             return Err(ModelError::new(
                 place,
@@ -44,7 +49,13 @@ pub fn add(given: &[(String, RigidBodyInput)], mesh: &mut Mesh) -> Checked<()> {
         mesh.nodes.extend([point; 2]);
         mesh.node_tags.extend([tag, tag + 1]);
         mesh.groups.insert(name.clone(), Group::Nodes(vec![node]));
-        mesh.rigid_bodies.push(RigidBody { name: name.clone(), reference: node, turning: node + 1, radius });
+        mesh.rigid_bodies.push(RigidBody {
+            name: name.clone(),
+            reference: node,
+            turning: node + 1,
+            radius,
+            inertia: inertia.unwrap_or(0.0),
+        });
     }
     Ok(())
 }
@@ -115,15 +126,17 @@ pub fn hold(in_force: &mut InForce, span: Span, model: &Model) {
     }
 }
 
-/// Every motion of a rigid body must be given.
-pub fn check_held(supports: &[Prescribed], place: &str, model: &Model) -> Checked<()> {
-    let is_held = |dof: usize| supports.binary_search_by_key(&dof, |support| support.at.dof).is_ok();
-    for RigidBody { name, reference, turning, .. } in &model.mesh.rigid_bodies {
-        let motions = [("ux", 2 * reference), ("uy", 2 * reference + 1), ("angle", 2 * turning)];
-        if let Some((key, _)) = motions.into_iter().find(|(_, dof)| !is_held(*dof)) {
-            let message = format!("give the rigid body `{name}` no {key}: prescribe its motion, with 0 where it rests");
-            return Err(ModelError::new(format!("{place}.supports"), message));
-        }
+/// The turning node of the rigid body that a moment acts on.
+pub fn of_moment<'m>(on: &Place, model: &'m Model) -> Option<&'m RigidBody> {
+    match on {
+        Place::Group(name) => model.mesh.rigid_body(name),
+        Place::Node(_) | Place::Near(_) => None,
     }
-    Ok(())
+}
+
+/// In words, what a dof that nothing holds or carries is of a rigid body; none of any other node.
+pub fn free_motion(mesh: &Mesh, dof: usize) -> Option<(&RigidBody, &'static str)> {
+    let body = mesh.rigid_bodies.iter().find(|body| body.nodes().contains(&(dof / 2)))?;
+    let along = if dof == 2 * body.turning { "angle" } else { ["ux", "uy"][dof % 2] };
+    Some((body, along))
 }
