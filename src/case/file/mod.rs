@@ -52,8 +52,8 @@ pub struct Case {
     /// rigid body that can rotate
     #[serde(default)]
     pub plates: Vec<LoadingPlateInput>,
-    /// Rigid bodies that move, by a name of your choice: rigid masters of contacts are parts of them. A support on the name
-    /// gives the path: `ux`, `uy` and `angle`, each in every step, with 0 where it rests. They are not solids of the mesh
+    /// Rigid bodies that move, by a name of your choice: rigid masters of contacts are parts of them. Supports on the name
+    /// give the path, `ux`, `uy` and `angle`, 0 where it rests; what they leave free moves under contact and loads on the name
     #[serde(default)]
     pub rigid_bodies: BTreeMap<String, RigidBodyInput>,
     /// Contacts by a name of your choice
