@@ -210,7 +210,7 @@ pub struct Support {
     /// Rigid rotation about a point, instead of all others; null releases it, see `supports`
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub rotation: Option<Change<Rotation>>,
-    /// Rotation of a rigid body about its reference point, counter-clockwise [rad]
+    /// Rotation of a rigid body about its reference point, counter-clockwise; null releases it, see `supports` [rad]
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub angle: Option<Change<Drive>>,
 }
