@@ -368,6 +368,7 @@ pub const ALL: [(&str, &[Group]); 10] = [
             ("SET", &EDGES),
             ("CONTACT", &[FLUID_FORCE]),
             ("CONTACT", &HEAT),
+            ("RIGID", &RIGID),
         ],
     ),
     ("interface.zarr", &[("", &[INCREMENT[0]]), ("CONTACT", &PLACE), ("CONTACT", &IN_STORE), ("CONTACT", &OF_SOME)]),
