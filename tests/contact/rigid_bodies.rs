@@ -15,7 +15,9 @@ use fecontact::run::run;
 use nalgebra::{Rotation2, Vector2};
 use serde_json::json;
 
-use crate::common::{Blocks, Finished, Record, close, expression, finish, linear, model, neo_hookean, run_through};
+use crate::common::{
+    Blocks, Finished, Record, close, expression, finish, finish_at, linear, model, neo_hookean, run_through,
+};
 
 const MU: f64 = 0.3;
 
@@ -426,6 +428,28 @@ fn free_rigid_bodies_need_something_that_holds_them() {
     let (_, result) = run(&Arc::new(model), &mut []);
     let told = result.expect_err("a free body").to_string();
     assert!(told.contains("rigid body `tool` along y"), "{told}");
+}
+
+/// The disk of `cases/indenter.json`: pressed in, its forces are those of the base; dragged, it slides everywhere, Q = μ N; rolling, hardly.
+#[test]
+fn an_indenter_is_pressed_in_dragged_and_rolls() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/indenter.json");
+    let case: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(&path).expect("the case")).expect("a case");
+    let run = finish_at(&case, &path);
+    for state in &run.states {
+        let [disk, base] = ["disk", "base"].map(|name| run.reaction(name, state));
+        (0..2).for_each(|i| close("in balance", disk[i], -base[i], 1e-5));
+    }
+    let ratio = |time: f64| {
+        let [normal, tangential] = run.contact_force(run.at(time));
+        assert!(normal > 1.0, "N = {normal} at {time}");
+        tangential / normal
+    };
+    close("dragged", ratio(3.0).abs(), MU, 1e-3);
+    assert!(ratio(4.0).abs() < 0.5 * MU, "rolling: {}", ratio(4.0));
+    let energy = run.last().energy;
+    close("energy", energy.error(), 0.0, 0.02 * energy.supplied());
 }
 
 /// History has the motion of a rigid body, and the force and moment that move it, whether it is watched or not.
