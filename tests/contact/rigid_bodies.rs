@@ -131,7 +131,7 @@ fn a_tool_that_moves_is_a_block_that_moves() {
 #[test]
 fn a_tool_that_turns_is_a_block_that_turns() {
     let about = [0.4, -1.0];
-    let polyline = || MasterSide::Polyline { points: vec![[-2.0, 0.3], [-0.5, 0.0], [0.7, -0.01], [2.5, 0.2]] };
+    let polyline = || MasterSide::Polyline { points: vec![[-2.0, -0.3], [-0.5, 0.0], [0.7, -0.01], [2.5, -0.2]] };
     let shapes: [fn() -> MasterSide; 2] = [plane, polyline];
     for (shape, method) in
         shapes.iter().flat_map(|shape| [Method::GaussToSegment, Method::Mortar].map(|method| (shape, method)))
@@ -204,10 +204,10 @@ fn a_tool_that_moves_steadily_is_a_block_that_does() {
         (0..2).for_each(|i| close(&what, held[i], force[i], 1e-6));
         let state = b.velocity[2 * moving.nodes("tool")[0]];
         close(&format!("{what}: velocity of the tool"), state, -v, 1e-9);
-        let energy = b.energy;
-        let allowed = if matches!(scheme, Scheme::Newmark { .. }) { 1e-2 } else { 5e-2 };
-        close(&format!("{what}: energy"), energy.error(), a.energy.error(), 1e-3 * energy.external_work.abs().max(1.0));
-        assert!(energy.error().abs() < allowed * energy.supplied(), "{what}: {energy:?}");
+        if matches!(scheme, Scheme::Newmark { .. }) {
+            // Momentum is the mean force over an increment times its length: what a frame that moves steadily adds to both cancels.
+            close(&format!("{what}: energy"), b.energy.error(), a.energy.error(), 1e-6);
+        }
     }
 }
 
@@ -302,29 +302,27 @@ fn a_slope_rises_until_what_lies_on_it_slides() {
     assert!(last <= critical && critical - last < 2e-4 * steep, "it stayed until {last}, and μ is that of {critical}");
 }
 
-/// A disk under a force is one that is pressed in as deep: the force that holds it there is that force; held by nothing but the block
-/// along y, and by friction against turning.
+/// A disk under a force sinks in as deep as that force presses it that is prescribed: the way there does not matter without friction.
 #[test]
 fn a_disk_sinks_in_under_its_force() {
-    let force = 1.5;
-    let press = || LoadStep::new("press", 1.0).dt(0.25).fix("block_top");
-    let base = || block(true, on(disk()).rigid_body("tool")).rigid_body("tool", [0.0, -3.0]);
-    let by_hand = press().support(Support::on("tool").ux(0.0).uy(0.02).angle(0.0));
-    let free = Support { uy: Some(Change::End), angle: Some(Change::End), ..Support::on("tool") };
-    let loaded = run_through(
-        base()
-            .step(by_hand.clone())
-            .step(LoadStep::new("load", 1.0).dt(0.125).support(free).load(Load::force("tool", [0.0, force]))),
-    );
+    let force = 6.0;
+    let contact = || Contact::new("base", "block_bottom", disk(), FrictionParameters::Frictionless {});
+    let base = || block(true, contact().rigid_body("tool")).rigid_body("tool", [0.0, -3.0]);
+    let press = || {
+        let path = Support::on("tool").ux(0.0).uy(0.02).angle(0.0);
+        LoadStep::new("press", 1.0).dt(0.25).fix("block_top").support(path)
+    };
+    let free = Support { uy: Some(Change::End), ..Support::on("tool") };
+    let load = LoadStep::new("load", 1.0).dt(0.125).support(free).load(Load::force("tool", [0.0, force]));
+    let loaded = run_through(base().step(press()).step(load));
     let (state, tool) = (loaded.last(), loaded.nodes("tool")[0]);
     close("no reaction", loaded.reaction("tool", state)[1], 0.0, 1e-10);
     close("the top bears it", loaded.reaction("block_top", state)[1], -force, 1e-8);
-    let [deep, angle] = [2 * tool + 1, 2 * tool + 2].map(|dof| state.displacement[dof]);
-    assert!(deep > 0.02 && angle.abs() < 1e-9, "{deep}, {angle}");
-    let pressed = run_through(
-        base().step(by_hand).step(LoadStep::new("press on", 1.0).dt(0.125).support(Support::on("tool").uy(deep))),
-    );
-    close("the force of that depth", pressed.reaction("tool", pressed.last())[1], force, 1e-6);
+    let deep = state.displacement[2 * tool + 1];
+    assert!(deep > 0.02, "{deep}");
+    let on = LoadStep::new("press on", 1.0).dt(0.125).support(Support::on("tool").uy(deep));
+    let pressed = run_through(base().step(press()).step(on));
+    close("the force of that depth", pressed.reaction("tool", pressed.last())[1], force, 1e-8);
 }
 
 /// A roller of radius 2 below a point that presses on it and is held along x: under a moment M it turns until friction bears that,
@@ -361,7 +359,7 @@ fn a_roller_turns_under_a_moment() {
 fn a_disk_and_a_point_keep_their_momentum() {
     let (masses, inertia, area) = ([0.5, 2.0], 3.0, 0.1);
     let velocities = [Vector2::new(0.0, -0.4), Vector2::new(0.3, 0.6)];
-    for (scheme, dt) in [(json!({"newmark": {}}), 5e-4), (json!({"explicit": {"safety": 0.1}}), 1.0)] {
+    for scheme in [json!({"newmark": {}}), json!({"explicit": {}})] {
         let case = json!({
             "mesh": {"nodes": [[0.4, 1.25]], "points": {"p": [0]}},
             "rigid_bodies": {"disk": {"reference": [0, 0], "inertia": inertia}},
@@ -370,7 +368,7 @@ fn a_disk_and_a_point_keep_their_momentum() {
             "contacts": {"c": {"slave": "p", "area": area, "rigid_body": "disk", "normal": {"alpha_n": 2e3},
                 "master": {"circle": {"centre": [0, 0], "radius": 1.2}},
                 "friction": {"law": "coulomb", "mu": MU, "alpha_t": 1e3}}},
-            "steps": [{"name": "fly", "duration": 0.5, "scheme": scheme, "dt": {"initial": dt}}],
+            "steps": [{"name": "fly", "duration": 0.5, "scheme": scheme, "dt": {"initial": 5e-4}}],
             "output": {"interval": 0.01}
         });
         let run = finish(&case);
