@@ -713,12 +713,13 @@ impl Writer<'_> {
         if self.is("plate", "rigid") {
             second.push(target(What::Moment, "block_right", [0.3 * self.frame_moment(), 0.0]));
         }
-        if self.has("tool") {
-            let tool = |what, to| Target { on: TOOL.into(), ..target(what, "block", to) };
-            let path = What::Support([true, true]);
-            first.extend([tool(path, [0.0, 0.0]), tool(What::Angle, [0.0, 0.0])]);
-            second.extend([tool(path, [-0.4 * drag, -0.05 * down]), tool(What::Angle, [0.002, 0.0])]);
-        }
+        let tool = |to: [f64; 2], angle: f64| {
+            let on = |what, to| Target { on: TOOL.into(), ..target(what, "block", to) };
+            let path = [on(What::Support([true, true]), to), on(What::Angle, [angle, 0.0])];
+            path.into_iter().filter(|_| self.has("tool"))
+        };
+        first.extend(tool([0.0, 0.0], 0.0));
+        second.extend(tool([-0.4 * drag, -0.05 * down], 0.002));
         let mut stages = vec![Stage { name: "press", targets: first }, Stage { name: "drag", targets: second }];
         if self.has("reversal") {
             let back = match press {
@@ -727,7 +728,9 @@ impl Writer<'_> {
                 "displacement" => target(What::Support([true, true]), "block_top", [-0.5 * drag, -1.1 * down]),
                 _ => target(held, "block_top", [-0.5 * drag, 0.0]),
             };
-            stages.push(Stage { name: "back", targets: vec![back] });
+            // A rate would go on where nothing is said of it.
+            let rests = tool([-0.4 * drag, -0.05 * down], 0.002);
+            stages.push(Stage { name: "back", targets: std::iter::once(back).chain(rests).collect() });
         }
         stages
     }
