@@ -82,9 +82,14 @@ pub fn hold_axis(in_force: &mut BTreeMap<usize, Prescribed>, place: &str, span: 
         let given = in_force.entry(dof).or_insert(held);
         let rests = |drive: &Drive| matches!(drive, Drive::Constant(0.0) | Drive::Rate(0.0));
         if !matches!(&given.motion, Motion::Displacement(drive, _) if rests(drive)) {
+            if let Some(body) = model.mesh.rigid_bodies.iter().find(|body| body.reference == node) {
+                let message =
+                    format!("the rigid body `{}` moves along y alone in axisymmetry: leave its ux out", body.name);
+                return Err(ModelError::new(format!("{place}.supports"), message));
+            }
             let message = format!(
-                "node {} lies on the axis, on a plate or on a rigid body, and keeps its radius: ux is 0 there; leave it out of the \
-                 group that is moved",
+                "node {} lies on the axis or on a plate, and keeps its radius: ux is 0 there; leave it out of the group that is \
+                 moved",
                 model.mesh.node_tags[node]
             );
             return Err(ModelError::new(format!("{place}.supports"), message));
