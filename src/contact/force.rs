@@ -311,7 +311,7 @@ pub fn place(
     if closes || fluid != 0.0 {
         kinematics(slave, &pair.master, &projection, old.foot, x, k);
         if old.foot.is_none() {
-            k.count_from(before, x);
+            k.count_from(pair.master.rigid_body(), before, x);
         }
     }
     PointPlace { gap, foot: Some(projection.foot), closes, fluid }

@@ -17,6 +17,18 @@
 //! ```
 //!
 //! A foot bound to a node x_v: g = ±‖x_s − x_v‖, δg = n·(δx_s − δx_v), δθ = −s·(δx_s − δx_v)/g, δξ = 0.
+//!
+//! # Rigid masters that move
+//!
+//! What counts is the motion of the point as the rigid body sees it, with the displacement u_R and the angle φ of the body:
+//!
+//! ```text
+//! δr = δx_s − δu_R + b rδφ,   b = −J (x_s − x_R)/r             b: the lever;   J: turned by 90°
+//! δg = n·δr,   δΔu_t = a s·δr,   δθ = t s·δr + δφ              a, t: advance and turn of the shape
+//! Δr = d − Q(Δφ) d_before,   d = x_s − x_R                     motion of a point without an old foot, along s the slip
+//! ```
+//! The body gets the opposite of what the slave gets, at the place of the slave: −t ℓ at its reference node and, as the moment of
+//! that, b·t ℓ at the node that carries r φ. So the forces of the two are in balance, and do work on δr alone.
 
 use nalgebra::Vector2;
 
@@ -24,6 +36,7 @@ use super::master::{Master, Rigid};
 use super::projection::{Bound, FACING, Projection, normal_of, tangent_of};
 use super::surface::{MasterPoint, Path, SlavePoint, Surface};
 use crate::mesh::configuration::Configuration;
+use crate::mesh::rigid::{RigidBody, turned};
 use crate::mesh::shape;
 
 /// Kinematics of one contact point and, if the tangent is asked for, the variations with respect to its nodes' displacements.
@@ -57,8 +70,21 @@ pub struct Kinematics {
     pub changing: Vec<usize>,
     /// δw_a of these, row by row [1/L]
     pub drelative: Vec<f64>,
+    /// What the rotation of a rigid master adds to Σ w_a x_a; none on any other
+    pub lever: Option<Lever>,
+    /// δb of the lever, its two components
+    pub dlever: [Vec<f64>; 2],
     /// δξ of the foot
     dfoot: Vec<f64>,
+}
+
+/// Motion of a slave point relative to a rigid master that rotates: b per displacement of the node that carries the rotation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lever {
+    /// Position of that node in `nodes`
+    pub at: usize,
+    /// b [-]
+    pub arm: Vector2<f64>,
 }
 
 /// Closest-point projection of a slave point on the master, with its gap.
@@ -80,15 +106,15 @@ pub fn kinematics(
     k: &mut Kinematics,
 ) {
     match master {
-        Master::Rigid(body) => past_rigid(slave, body, projection, from, x, k),
+        Master::Rigid(rigid) => past_rigid(slave, rigid, projection, from, x, k),
         Master::Mesh(surface) => on_surface(slave, surface, projection, from, x, k),
     }
 }
 
-/// Kinematics of `slave` projected on a rigid body, with the slip counted from the committed foot `from`.
+/// Kinematics of `slave` projected on a rigid master, with the slip counted from the committed foot `from`.
 pub fn past_rigid(
     slave: &SlavePoint,
-    body: &Rigid,
+    rigid: &Rigid,
     projection: &Projection,
     from: Option<MasterPoint>,
     x: &Configuration,
@@ -96,14 +122,23 @@ pub fn past_rigid(
 ) {
     k.begin(projection.normal);
     k.list_slave(slave);
+    if let Some(body) = &rigid.body {
+        k.list([body.reference, body.turning]);
+    }
     k.take_slave(slave, x);
+    if let Some(body) = &rigid.body {
+        k.take_rigid(slave, body, x);
+    }
     let (n, s) = (k.normal, k.tangent);
     let Bound::Rigid { advance, turn } = projection.bound else { return };
-    k.vary(&slave.position, n, |k| &mut k.dgap);
-    k.vary(&slave.position, s * turn, |k| &mut k.drotation);
+    k.vary_past(slave, rigid, n, |k| &mut k.dgap);
+    k.vary_past(slave, rigid, s * turn, |k| &mut k.drotation);
+    if let (Some(body), Some(Lever { at, .. }), true) = (&rigid.body, k.lever, k.varied) {
+        k.drotation[2 * at] += 1.0 / body.radius;
+    }
     if let Some(from) = from {
-        k.slip = body.way(slave, from, projection.foot, x);
-        k.vary(&slave.position, s * advance, |k| &mut k.dslip);
+        k.slip = rigid.way(slave, from, projection.foot, x);
+        k.vary_past(slave, rigid, s * advance, |k| &mut k.dslip);
     }
 }
 
@@ -158,9 +193,11 @@ impl Kinematics {
     pub fn begin(&mut self, normal: Vector2<f64>) {
         (self.normal, self.tangent) = (normal, tangent_of(normal));
         (self.slip, self.length) = (0.0, 0.0);
+        self.lever = None;
         self.nodes.clear();
         self.changing.clear();
         self.drelative.clear();
+        self.dlever.iter_mut().for_each(Vec::clear);
     }
 
     /// All weights and variations zero, once the nodes are listed.
@@ -229,10 +266,16 @@ impl Kinematics {
         }
     }
 
-    /// Count the slip of a point that nothing faced in the configuration `before`.
-    pub fn count_from(&mut self, before: &Configuration, x: &Configuration) {
+    /// Count the slip of a point that nothing faced in the configuration `before`; `body` is that of a rigid master that moves.
+    pub fn count_from(&mut self, body: Option<&RigidBody>, before: &Configuration, x: &Configuration) {
         let motion = |node: usize| x.since(before, node);
-        let whole: Vector2<f64> = self.nodes.iter().zip(&self.relative).map(|(&node, &w)| w * motion(node)).sum();
+        let mut whole: Vector2<f64> = self.nodes.iter().zip(&self.relative).map(|(&node, &w)| w * motion(node)).sum();
+        if let Some(body) = body {
+            let offset = |(&node, &w): (&usize, &f64)| before.between(body.reference, node) * w;
+            let apart =
+                self.nodes.iter().zip(&self.relative).filter(|(node, _)| **node != body.turning).map(offset).sum();
+            whole -= turned(apart, body.angle(x) - body.angle(before));
+        }
         let (n, s) = (self.normal, self.tangent);
         self.slip = s.dot(&whole);
         if !self.varied {
@@ -240,6 +283,9 @@ impl Kinematics {
         }
         let Self { nodes, relative, dslip, drotation, changing, drelative, .. } = self;
         dslip.iter_mut().zip(&*drotation).for_each(|(dslip, turn)| *dslip = turn * n.dot(&whole));
+        if let (Some(body), Some(Lever { at, arm })) = (body, self.lever) {
+            dslip[2 * at] += s.dot(&arm) - n.dot(&whole) / body.radius;
+        }
         for (a, &w) in relative.iter().enumerate() {
             dslip[2 * a] += w * s.x;
             dslip[2 * a + 1] += w * s.y;
@@ -274,6 +320,40 @@ impl Kinematics {
             if let Some(slope) = x.weight_slope(&share.at) {
                 self.vary(&share.at, slope * (share.factor * along.norm()), |k| &mut k.dlength);
             }
+        }
+    }
+
+    /// The weight of a rigid body, and its lever with its variation, once the slave's weights are there.
+    fn take_rigid(&mut self, slave: &SlavePoint, body: &RigidBody, x: &Configuration) {
+        let [reference, at] = [body.reference, body.turning].map(|node| self.local(node));
+        self.relative[reference] = -1.0;
+        let [apart, moved] = x.apart(&slave.position, x.reference(body.reference));
+        let arm = -normal_of(apart + moved - x.displacement(body.reference)) / body.radius;
+        self.lever = Some(Lever { at, arm });
+        if !self.varied {
+            return;
+        }
+        // δb = −J (δx_s − δu_R)/r
+        for (i, direction) in [Vector2::y(), -Vector2::x()].into_iter().enumerate() {
+            self.dlever[i].resize(2 * self.nodes.len(), 0.0);
+            let direction = direction / body.radius;
+            self.vary(&slave.position, direction, |k| &mut k.dlever[i]);
+            self.vary(&[(body.reference, 1.0)], -direction, |k| &mut k.dlever[i]);
+        }
+    }
+
+    /// Add `direction`·δr to a variation: the motion of the slave as its rigid master sees it.
+    fn vary_past(
+        &mut self,
+        slave: &SlavePoint,
+        rigid: &Rigid,
+        direction: Vector2<f64>,
+        row: impl Fn(&mut Self) -> &mut Vec<f64>,
+    ) {
+        self.vary(&slave.position, direction, &row);
+        if let (Some(body), Some(Lever { at, arm }), true) = (&rigid.body, self.lever, self.varied) {
+            self.vary(&[(body.reference, 1.0)], -direction, &row);
+            row(self)[2 * at] += direction.dot(&arm);
         }
     }
 

@@ -2,7 +2,8 @@
 //!
 //! # Rigid masters
 //!
-//! Rigid masters at rest, given by formula: the foot of a point, and how it moves with the point.
+//! Rigid masters, given by formula: the foot of a point, and how it moves with the point. One that moves is met in the frame that
+//! moves with it, where it rests: feet, and ways from one to another, are those of its shape.
 
 use nalgebra::Vector2;
 
@@ -10,17 +11,26 @@ use super::point::{MasterPoint, SlavePoint};
 use super::projection::{Bound, FACING, Projection, normal_of, tangent_of};
 use super::surface::{Segment, Surface};
 use crate::mesh::configuration::Configuration;
+use crate::mesh::rigid::RigidBody;
 
 /// The master side of a contact: mesh edges or a rigid body.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Master {
     /// A surface of the mesh
     Mesh(Surface),
-    /// A rigid body at rest
+    /// A rigid body
     Rigid(Rigid),
 }
 
 impl Master {
+    /// The rigid body that it moves with; none on a mesh, and of one at rest.
+    pub fn rigid_body(&self) -> Option<&RigidBody> {
+        match self {
+            Self::Mesh(_) => None,
+            Self::Rigid(rigid) => rigid.body.as_ref(),
+        }
+    }
+
     /// The segments of a surface of the mesh; none of a rigid body.
     pub fn segments(&self) -> &[Segment] {
         match self {
@@ -30,9 +40,18 @@ impl Master {
     }
 }
 
-/// A rigid master body at rest, given by a formula.
+/// A rigid master.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Rigid {
+pub struct Rigid {
+    /// Its shape, in the reference configuration
+    pub shape: Shape,
+    /// The rigid body that it is a part of; none is at rest
+    pub body: Option<RigidBody>,
+}
+
+/// Shape of a rigid master, given by a formula.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
     /// A half-space
     Plane(Plane),
     /// A disk, or everything but a disk
@@ -69,27 +88,36 @@ pub struct Polyline {
     arcs: Vec<f64>,
 }
 
+impl From<Shape> for Rigid {
+    /// At rest.
+    fn from(shape: Shape) -> Self {
+        Self { shape, body: None }
+    }
+}
+
 impl Rigid {
     /// The foot of a slave point; `None` past the end of a polyline.
     ///
     /// X and u are kept apart: what a displacement changes is exact, however far away a plane's point or a circle's centre
     /// lies.
     pub fn project(&self, slave: &SlavePoint, x: &Configuration) -> Option<Projection> {
-        match self {
-            Self::Plane(plane) => Some(plane.project(x.apart(&slave.position, plane.point))),
-            Self::Circle(circle) => circle.project(x.apart(&slave.position, circle.centre)),
-            Self::Polyline(polyline) => polyline.project(|corner| x.apart(&slave.position, corner), slave.outward(x)),
-        }
+        let Some(body) = &self.body else {
+            return self.shape.project(|origin| x.apart(&slave.position, origin), || slave.outward(x));
+        };
+        let rotation = body.rotation(x);
+        let outward = || slave.outward(x).map(|outward| rotation.inverse() * outward);
+        let found = self.shape.project(|origin| body.seen(&slave.position, origin, x), outward)?;
+        Some(Projection { normal: rotation * found.normal, ..found })
     }
 
     /// The way of a slave point's foot from one place to another along s [L].
     pub fn way(&self, slave: &SlavePoint, from: MasterPoint, to: MasterPoint, x: &Configuration) -> f64 {
         let way = to.xi - from.xi;
         let round_trip = |way: f64, round: f64| way - round * (way / round).round();
-        match self {
-            Self::Plane(_) => way,
-            Self::Circle(circle) => round_trip(way, 2.0 * std::f64::consts::PI * circle.radius),
-            Self::Polyline(polyline) => {
+        match &self.shape {
+            Shape::Plane(_) => way,
+            Shape::Circle(circle) => round_trip(way, 2.0 * std::f64::consts::PI * circle.radius),
+            Shape::Polyline(polyline) => {
                 let start = |line: usize| {
                     let [reference, _] = x.apart(&slave.position, polyline.corners[line]);
                     polyline.arcs[line] + reference.dot(&polyline.direction(line))
@@ -100,6 +128,21 @@ impl Rigid {
                     false => way + apart,
                 }
             }
+        }
+    }
+}
+
+impl Shape {
+    /// The foot of a point, given by X and u from any origin, on a surface that looks `outward`.
+    fn project(
+        &self,
+        from: impl Fn(Vector2<f64>) -> [Vector2<f64>; 2],
+        outward: impl FnOnce() -> Option<Vector2<f64>>,
+    ) -> Option<Projection> {
+        match self {
+            Self::Plane(plane) => Some(plane.project(from(plane.point))),
+            Self::Circle(circle) => circle.project(from(circle.centre)),
+            Self::Polyline(polyline) => polyline.project(from, outward()),
         }
     }
 }

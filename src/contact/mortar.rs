@@ -35,7 +35,7 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use super::dual::{Dual, DualVector, Number};
-use super::kinematics::{Kinematics, Meeting, past_rigid};
+use super::kinematics::{Kinematics, Lever, Meeting, past_rigid};
 use super::master::{Master, Rigid};
 pub use super::mortar_segments::Overlaps;
 use super::mortar_segments::{CutEdge, Frame, Line, Overlap};
@@ -431,6 +431,8 @@ struct Sums {
     gap: f64,
     slip: f64,
     along: Vector2<f64>,
+    /// That of the lever of a rigid body that moves
+    arm: Vector2<f64>,
     foot: Option<MasterPoint>,
 }
 
@@ -440,12 +442,12 @@ impl Mortar {
     pub fn meet_rigid(
         &self,
         point: usize,
-        body: &Rigid,
+        rigid: &Rigid,
         [before, x]: [&Configuration; 2],
         (mean, room): (&mut Kinematics, &mut Room),
     ) -> Option<Meeting> {
         let around = &self.around[point];
-        let meet = |slave: &SlavePoint, k: &mut Kinematics| meet(slave, body, [before, x], k);
+        let meet = |slave: &SlavePoint, k: &mut Kinematics| meet(slave, rigid, [before, x], k);
         let Room { around: k, turns, .. } = room;
         k.varied = mean.varied;
         mean.begin(Vector2::zeros());
@@ -458,6 +460,7 @@ impl Mortar {
         let dofs = mean.dgap.len();
         mean.changing.extend((0..mean.nodes.len()).filter(|_| mean.varied));
         mean.drelative.resize(mean.changing.len() * dofs, 0.0);
+        mean.dlever.iter_mut().for_each(|row| row.resize(dofs, 0.0));
         let mut sums = Sums::default();
         turns.iter_mut().for_each(|turn| *turn = zeros(std::mem::take(turn), dofs));
         for slave in around {
@@ -466,17 +469,20 @@ impl Mortar {
                 sums.add(k, projection.gap, mean, turns);
             }
         }
-        let Sums { length, gap, slip, along, foot } = sums;
+        let Sums { length, gap, slip, along, arm, foot } = sums;
         let foot = foot?;
         mean.normal = along.normalize();
         mean.tangent = tangent_of(mean.normal);
         (mean.length, mean.slip) = (length, slip / length);
-        let Kinematics { relative, dgap, dslip, drotation, dlength, drelative, tangent, .. } = mean;
+        let turning = rigid.body.as_ref().and_then(|body| mean.nodes.iter().position(|node| *node == body.turning));
+        mean.lever = turning.map(|at| Lever { at, arm: arm / length });
+        let Kinematics { relative, dgap, dslip, drotation, dlength, drelative, dlever, tangent, .. } = mean;
         let vary = |row: &mut [f64], mean: f64| {
             row.iter_mut().zip(&*dlength).for_each(|(rate, dlength)| *rate = (*rate - dlength * mean) / length);
         };
         vary(dgap, gap / length);
         vary(dslip, slip / length);
+        dlever.iter_mut().zip(arm.iter()).for_each(|(row, arm)| vary(row, arm / length));
         relative.iter_mut().for_each(|w| *w /= length);
         if dofs > 0 {
             drelative.chunks_exact_mut(dofs).zip(&*relative).for_each(|(row, w)| vary(row, *w));
@@ -490,7 +496,7 @@ impl Mortar {
 impl Sums {
     /// Add what a point of Gauss's rule has; its weights and variations to those of the `mean`, those of n to the `turns`.
     fn add(&mut self, k: &Kinematics, gap: f64, mean: &mut Kinematics, turns: &mut [Vec<f64>; 2]) {
-        let Kinematics { nodes, relative, dgap, dslip, dlength, drelative, .. } = mean;
+        let Kinematics { nodes, relative, dgap, dslip, dlength, drelative, dlever, .. } = mean;
         let local = |node: usize| nodes.iter().position(|other| *other == node).unwrap_or_default();
         let add = |sum: &mut [f64], factor: f64, row: &[f64]| {
             for (dof, value) in row.iter().enumerate() {
@@ -509,6 +515,13 @@ impl Sums {
         for (sum, n, s) in [(0, k.normal.x, k.tangent.x), (1, k.normal.y, k.tangent.y)] {
             add(&mut turns[sum], n, &k.dlength);
             add(&mut turns[sum], -k.length * s, &k.drotation);
+        }
+        if let Some(Lever { arm, .. }) = k.lever {
+            self.arm += k.length * arm;
+            for (i, row) in dlever.iter_mut().enumerate() {
+                add(row, arm[i], &k.dlength);
+                add(row, k.length, &k.dlever[i]);
+            }
         }
         let dofs = dgap.len();
         for (&node, &w) in k.nodes.iter().zip(&k.relative) {
@@ -529,12 +542,12 @@ fn zeros(mut values: Vec<f64>, count: usize) -> Vec<f64> {
 }
 
 /// Projection of one Gauss point on the body.
-fn meet(slave: &SlavePoint, body: &Rigid, [before, x]: [&Configuration; 2], k: &mut Kinematics) -> Option<Projection> {
-    let projection = body.project(slave, x)?;
-    let from = body.project(slave, before).map(|was| was.foot);
-    past_rigid(slave, body, &projection, from, x, k);
+fn meet(slave: &SlavePoint, rigid: &Rigid, [before, x]: [&Configuration; 2], k: &mut Kinematics) -> Option<Projection> {
+    let projection = rigid.project(slave, x)?;
+    let from = rigid.project(slave, before).map(|was| was.foot);
+    past_rigid(slave, rigid, &projection, from, x, k);
     if from.is_none() {
-        k.count_from(before, x);
+        k.count_from(rigid.body.as_ref(), before, x);
     }
     Some(projection)
 }

@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 
 use nalgebra::Vector2;
 
-use super::kinematics::{Kinematics, kinematics};
+use super::kinematics::{Kinematics, Lever, kinematics};
 use super::pair::ContactPair;
 use super::point::{ContactState, Tractions, Weights};
 use super::search::Index;
@@ -155,6 +155,10 @@ impl ClosedPoints {
         for &w in &k.relative {
             self.force.extend([0, 1].map(|i| -w * traction[i] * k.length));
         }
+        if let Some(Lever { at, arm }) = k.lever {
+            let first = self.force.len() - 2 * k.nodes.len();
+            self.force[first + 2 * at] -= arm.dot(&traction) * k.length;
+        }
         if k.varied {
             self.push_tangent(k, response, radiates[1], whole(promised.unwrap_or(tractions)));
         }
@@ -167,7 +171,11 @@ impl ClosedPoints {
         }
         self.fluid.resize(self.force.len(), 0.0);
         let traction = k.normal * fluid;
+        let first = self.fluid.len();
         self.fluid.extend(k.relative.iter().flat_map(|&w| [0, 1].map(|i| w * traction[i] * k.length)));
+        if let Some(Lever { at, arm }) = k.lever {
+            self.fluid[first + 2 * at] += arm.dot(&traction) * k.length;
+        }
     }
 
     /// δp = a δg + b δΔu_t of the next point.
@@ -202,6 +210,10 @@ impl ClosedPoints {
         }
         let columns = tangent[first..].chunks_exact_mut(dofs);
         for (c, column) in columns.enumerate() {
+            if let Some(Lever { at, arm }) = k.lever {
+                let turned = (0..2).map(|i| arm[i] * rows[i][c] + k.dlever[i][c] * force[i] * k.length);
+                column[2 * at] -= turned.sum::<f64>();
+            }
             for (&a, dw) in k.changing.iter().zip(k.drelative.chunks_exact(dofs)) {
                 (0..2).for_each(|i| column[2 * a + i] += -force[i] * k.length * dw[c]);
             }
@@ -217,7 +229,8 @@ fn turned(k: &Kinematics, Tractions { pressure: p, traction: q }: Tractions) -> 
 /// Nodal forces of a traction: w_a (p n − q s) ℓ [F].
 pub fn nodal_forces(k: &Kinematics, p: f64, q: f64) -> Vec<(usize, Vector2<f64>)> {
     let force = turned(k, Tractions { pressure: p, traction: q }) * k.length;
-    k.nodes.iter().zip(&k.relative).map(|(&node, &w)| (node, force * w)).collect()
+    let moment = k.lever.map(|Lever { at, arm }| (k.nodes[at], Vector2::new(arm.dot(&force), 0.0)));
+    k.nodes.iter().zip(&k.relative).map(|(&node, &w)| (node, force * w)).chain(moment).collect()
 }
 
 /// Force and moment that the master puts on the slave.

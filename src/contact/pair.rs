@@ -34,6 +34,7 @@ use super::small_sliding::SmallSliding;
 use super::surface::SlavePoint;
 use crate::laws::friction::{ContactLaw, FrictionState, LawFailure, Regime, Sliding, observables};
 use crate::mesh::configuration::Configuration;
+use crate::mesh::rigid::RigidBody;
 
 /// Laws that one thread resolves at a time.
 const PART: usize = 64;
@@ -118,7 +119,8 @@ impl ContactPair {
 
     /// The nodes of both sides, some of them several times.
     pub fn nodes(&self) -> impl Iterator<Item = usize> {
-        self.slave_nodes().chain(self.master.segments().iter().flat_map(|segment| segment.nodes()))
+        let rigid = self.master.rigid_body().into_iter().flat_map(RigidBody::nodes);
+        self.slave_nodes().chain(self.master.segments().iter().flat_map(|segment| segment.nodes())).chain(rigid)
     }
 
     /// Whether the master is the slave itself.

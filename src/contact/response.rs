@@ -134,7 +134,7 @@ impl ContactPair {
                 let weights = committed.weights(k);
                 let meeting = mortar.meet(k, surface, overlaps, weights, x, (&mut *kinematics, room));
                 if meeting.is_some() && weights.is_none() {
-                    kinematics.count_from(before, x);
+                    kinematics.count_from(None, before, x);
                 }
                 averaged(self, slave, meeting, old, increment, x)
             });

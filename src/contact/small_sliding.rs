@@ -22,7 +22,7 @@
 
 use nalgebra::Vector2;
 
-use super::kinematics::{Kinematics, Meeting};
+use super::kinematics::{Kinematics, Lever, Meeting};
 use super::master::Master;
 use super::surface::{MasterPoint, Segment, SlavePoint};
 use crate::mesh::configuration::Configuration;
@@ -50,8 +50,10 @@ impl SmallSliding {
 pub struct SmallPoint {
     /// Nodes that take part
     pub nodes: Vec<usize>,
-    /// w_a of each; they sum to zero on a master of the mesh, to one on a rigid one
+    /// w_a of each; they sum to zero on a master that may move, to one on a rigid one at rest
     pub weights: Vec<f64>,
+    /// Lever of a rigid master that may rotate
+    pub lever: Option<Lever>,
     /// n
     pub normal: Vector2<f64>,
     /// s
@@ -102,7 +104,12 @@ impl SmallPoint {
     pub fn new(met: Meeting, k: &Kinematics, slave: &SlavePoint, master: &Master, x: &Configuration) -> Self {
         let Meeting { gap, foot } = met;
         let Kinematics { normal, tangent, length, .. } = *k;
-        let (nodes, weights) = k.nodes.iter().zip(&k.relative).filter(|(_, w)| **w != 0.0).unzip();
+        let takes_part =
+            |k: &Kinematics, at: usize| k.relative[at] != 0.0 || k.lever.is_some_and(|lever| lever.at == at);
+        let part = (0..k.nodes.len()).filter(|&at| takes_part(k, at));
+        let (nodes, weights): (Vec<usize>, Vec<f64>) = part.map(|at| (k.nodes[at], k.relative[at])).unzip();
+        let place = |lever: Lever| nodes.iter().position(|node| *node == k.nodes[lever.at]);
+        let lever = k.lever.and_then(|lever| Some(Lever { at: place(lever)?, ..lever }));
         let against = match master {
             Master::Rigid(body) => {
                 Against::Rigid { normal: body.project(slave, x).map_or(normal, |projection| projection.normal) }
@@ -117,12 +124,15 @@ impl SmallPoint {
                 Against::Mesh { ends, spacing: own.fold(spacing((middle.is_some(), ends)), f64::min) }
             }
         };
-        Self { nodes, weights, normal, tangent, gap, length, foot, against }
+        Self { nodes, weights, lever, normal, tangent, gap, length, foot, against }
     }
 
     /// The slave's node and the one of the master that it faces, or the slave's alone on a rigid master; none where the point
-    /// is more than one node of either side.
+    /// is more than one node of either side, or the master may rotate.
     pub fn facing(&self) -> Option<(usize, Option<usize>)> {
+        if self.lever.is_some() {
+            return None;
+        }
         let counts = |&(_, w): &(&usize, &f64)| w.abs() > ROUND_OFF;
         let mut part = self.nodes.iter().zip(&self.weights).filter(counts);
         let whole = |(node, w): (&usize, &f64), of: f64| ((w - of).abs() <= ROUND_OFF).then_some(*node);
@@ -161,7 +171,11 @@ impl SmallPoint {
     }
 
     fn row(&self, direction: Vector2<f64>) -> impl Iterator<Item = f64> {
-        self.weights.iter().flat_map(move |w| [w * direction.x, w * direction.y])
+        let of = move |(at, w): (usize, &f64)| match self.lever {
+            Some(lever) if lever.at == at => [lever.arm.dot(&direction), 0.0],
+            _ => [w * direction.x, w * direction.y],
+        };
+        self.weights.iter().enumerate().flat_map(of)
     }
 
     /// Σ w_a of some motion of the nodes; a common motion of both sides is taken out before it can leave its round-off.
@@ -170,7 +184,8 @@ impl SmallPoint {
             Against::Mesh { .. } => motion(self.nodes[0]),
             Against::Rigid { .. } => Vector2::zeros(),
         };
-        self.nodes.iter().zip(&self.weights).map(|(&node, &w)| (motion(node) - common) * w).sum()
+        let turned = self.lever.map(|Lever { at, arm }| arm * motion(self.nodes[at]).x);
+        self.nodes.iter().zip(&self.weights).map(|(&node, &w)| (motion(node) - common) * w).chain(turned).sum()
     }
 
     /// Motion of the point against its foot since the reference configuration [L].
@@ -184,6 +199,10 @@ impl SmallPoint {
         k.nodes.extend_from_slice(&self.nodes);
         k.clear();
         k.relative.copy_from_slice(&self.weights);
+        k.lever = self.lever;
+        if k.varied && k.lever.is_some() {
+            k.dlever.iter_mut().for_each(|row| row.resize(2 * self.nodes.len(), 0.0));
+        }
         (k.tangent, k.length) = (self.tangent, self.length);
         k.slip = self.tangent.dot(&self.relative(|node| x.since(before, node)));
         k.dgap.iter_mut().zip(self.normal_row()).for_each(|(dgap, value)| *dgap = value);

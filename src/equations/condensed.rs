@@ -477,6 +477,9 @@ fn of_pair(pair: &ContactPair) -> impl Iterator<Item = Jump> {
 }
 
 fn jump(slave: usize, point: &SmallPoint, alpha_n: f64) -> Option<Jump> {
+    if point.lever.is_some() {
+        return None;
+    }
     let (mut own, mut feet) = (0.0, Vec::new());
     for (&node, &weight) in point.nodes.iter().zip(&point.weights) {
         if node == slave { own += weight } else { feet.push((node, -weight)) }

@@ -8,6 +8,7 @@ use crate::contact::master::Master;
 use crate::contact::response::PairResponse;
 use crate::contact::surface::Path;
 use crate::linear::{BlockPosition, Pattern, SparseMatrix};
+use crate::mesh::rigid::RigidBody;
 use crate::model::Model;
 use crate::model::state::State;
 
@@ -182,6 +183,7 @@ impl Layout {
                 let Some(foot) = state.foot.or(old.foot) else { continue };
                 let mut nodes: Vec<usize> = slave.position.iter().map(|&(node, _)| node).collect();
                 nodes.extend(responses.acting(k).into_iter().flat_map(|closed| closed.nodes));
+                nodes.extend(pair.master.rigid_body().into_iter().flat_map(RigidBody::nodes));
                 if let Master::Mesh(surface) = &pair.master {
                     let way = old.foot.and_then(|from| surface.path(from, foot)).into_iter();
                     let slip: f64 = way.flat_map(Path::parts).map(|(_, from, to)| to - from).sum();

@@ -28,6 +28,9 @@ pub(super) fn mass(model: &Model, layout: &Layout) -> SparseMatrix {
         let dofs = nodes.flat_map(|node| [2 * node, 2 * node + 1]);
         dofs.for_each(|dof| mass.add_diagonal(dof, point.mass));
     }
+    for body in &model.mesh.rigid_bodies {
+        mass.add_diagonal(2 * body.turning, body.turning_mass());
+    }
     mass
 }
 

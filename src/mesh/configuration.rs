@@ -63,6 +63,11 @@ impl<'a> Configuration<'a> {
         self.reference[node] + self.displacement(node)
     }
 
+    /// X of a node.
+    pub fn reference(&self, node: usize) -> Vector2<f64> {
+        self.reference[node]
+    }
+
     /// u of a node.
     pub fn displacement(&self, node: usize) -> Vector2<f64> {
         self.displacement.map_or_else(Vector2::zeros, |u| vector(u, node))

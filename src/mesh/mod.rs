@@ -16,6 +16,7 @@ cfg_if::cfg_if! {
         pub mod few;
         pub mod joined;
         pub mod names;
+        pub mod rigid;
         pub mod section;
         pub mod shape;
         pub mod ties;
@@ -25,6 +26,7 @@ cfg_if::cfg_if! {
         pub(crate) mod few;
         pub(crate) mod joined;
         pub(crate) mod names;
+        pub(crate) mod rigid;
         pub(crate) mod section;
         pub(crate) mod shape;
         pub(crate) mod ties;
@@ -40,6 +42,7 @@ use crate::mesh::configuration::{Configuration, vector};
 pub use error::MeshError;
 pub use inline::InlineMesh;
 pub use names::UnknownGroup;
+use rigid::RigidBody;
 pub use section::Section;
 pub use shape::ElementKind;
 pub use transfinite::{Block, BlockError, BlockKind, Blocks, Grading};
@@ -92,6 +95,9 @@ pub struct Mesh {
     pub groups: BTreeMap<String, Group>,
     /// The kind of plane section
     pub section: Section,
+    /// Rigid bodies, whose nodes belong to no element
+    #[doc(hidden)]
+    pub rigid_bodies: Vec<RigidBody>,
 }
 
 impl Mesh {
@@ -139,6 +145,18 @@ impl Mesh {
         nodes.sort_unstable();
         nodes.dedup();
         nodes
+    }
+
+    /// Number of nodes without those of rigid bodies, which come last.
+    #[doc(hidden)]
+    pub fn own_nodes(&self) -> usize {
+        self.nodes.len() - self.rigid_bodies.iter().map(|body| body.nodes().len()).sum::<usize>()
+    }
+
+    /// The rigid body of this name.
+    #[doc(hidden)]
+    pub fn rigid_body(&self, name: &str) -> Option<&RigidBody> {
+        self.rigid_bodies.iter().find(|body| body.name == name)
     }
 
     /// The body (the group of elements) that an element belongs to.

@@ -212,6 +212,19 @@ impl Drive {
         }
     }
 
+    /// The profile times a number.
+    #[must_use]
+    pub fn times(&self, factor: f64) -> Self {
+        let scaled = |table: &[[f64; 2]]| table.iter().map(|[at, value]| [*at, factor * value]).collect();
+        match self {
+            Self::Constant(value) => Self::Constant(factor * value),
+            Self::Rate(rate) => Self::Rate(factor * rate),
+            Self::Table(table) => Self::Table(scaled(table)),
+            Self::Expression(expression) => Self::Expression(expression.times(factor)),
+            Self::ByPlace(along, table) => Self::ByPlace(*along, scaled(table)),
+        }
+    }
+
     /// Value at a reference position and run time, `start` being the value at the start of the step. Beyond an
     /// increment it is extrapolated linearly through the increment's start and end, wherever it bends or the step ends.
     pub fn value(&self, position: Vector2<f64>, at: impl Into<Moment>, span: Span, start: f64) -> f64 {

@@ -103,6 +103,14 @@ impl Expression {
         Self { text: format!("-({})", self.text).into(), operations }
     }
 
+    /// The expression times a number.
+    #[must_use]
+    pub fn times(&self, factor: f64) -> Self {
+        let product = [Operation::Number(factor), Operation::Binary(|a, b| a * b)];
+        let operations = self.operations.iter().copied().chain(product).collect();
+        Self { text: format!("({})*{factor}", self.text).into(), operations }
+    }
+
     /// Whether t stands in it.
     pub fn depends_on_time(&self) -> bool {
         self.operations.iter().any(|operation| matches!(operation, Operation::Variable(TIME)))

@@ -3,6 +3,7 @@
 use nalgebra::Vector2;
 
 use super::boundary::{Amplitude, Drive, Moment, Span};
+use crate::mesh::rigid::turned;
 
 /// A direction in which a node is held: a coordinate, or an inclined one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -132,10 +133,7 @@ impl Prescribed {
             Motion::Rotation { about, angle } => {
                 let arm = (position - about) + start;
                 let turn = angle.value(position, time) - angle.at_start_of(step, position);
-                // Q − I, to the last digit of small angles as well
-                let (sine, versed) = (turn.sin(), 2.0 * (0.5 * turn).sin().powi(2));
-                let moved = Vector2::new(-versed * arm.x - sine * arm.y, sine * arm.x - versed * arm.y);
-                (start + moved)[component]
+                (start + turned(arm, turn))[component]
             }
         }
     }

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::balance;
 use super::text::{count, number};
-use crate::contact::master::{Master, Rigid};
+use crate::contact::master::{Master, Rigid, Shape};
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::SlavePoint;
 use crate::mesh::Mesh;
@@ -198,7 +198,7 @@ impl Gaps {
     fn of(model: &Model, pair: &ContactPair, farthest: f64) -> Self {
         let x = model.mesh.undeformed();
         let reach = match &pair.master {
-            Master::Rigid(Rigid::Circle(circle)) => circle.radius + circle.centre.norm(),
+            Master::Rigid(Rigid { shape: Shape::Circle(circle), .. }) => circle.radius + circle.centre.norm(),
             _ => 0.0,
         };
         let size = farthest.max(reach);

@@ -29,21 +29,22 @@ impl Shown {
     }
 }
 
-/// Fills the grid of the bodies.
+/// Fills the grid of the bodies. Rigid bodies have no cells, and what their nodes carry is no field.
 pub fn solid_frame(model: &Model, Shown { state, contact_forces }: &Shown, grid: &mut Grid) {
     let stresses = nodal_stresses(model, state);
+    let nodes = model.mesh.own_nodes();
     // A body has one material, and a material serves one body: the two ids agree.
     let body = || model.body_of_element.iter().map(|&body| body as i32);
     grid.begin(|| {
         let cell = |element: &Element| (cell_type(element.kind), element.nodes.clone());
-        (model.mesh.nodes.clone(), model.mesh.elements.iter().map(cell).collect())
+        (model.mesh.nodes[..nodes].to_vec(), model.mesh.elements.iter().map(cell).collect())
     });
-    grid.vectors("displacement", &state.displacement);
-    grid.vectors("velocity", &state.velocity);
-    grid.vectors("acceleration", &state.acceleration);
-    grid.vectors("reaction", &state.reaction);
-    grid.vectors("contact_force", contact_forces);
-    add_stresses(grid, &stresses);
+    grid.vectors("displacement", &state.displacement[..2 * nodes]);
+    grid.vectors("velocity", &state.velocity[..2 * nodes]);
+    grid.vectors("acceleration", &state.acceleration[..2 * nodes]);
+    grid.vectors("reaction", &state.reaction[..2 * nodes]);
+    grid.vectors("contact_force", &contact_forces[..2 * nodes]);
+    add_stresses(grid, &stresses[..nodes]);
     grid.at_cells("body", body());
     grid.at_cells("material", body());
 }

@@ -10,7 +10,7 @@ use super::csv;
 use super::csv::{Rows, Sheet, Table};
 use super::friction_history::FrictionHistory;
 use super::quantities::{
-    BODY, CONTACT, EDGES, ENERGIES, FLUID_FORCE, HEAT, INCREMENT, Quantity, RADIATED, RESULTANT, WATCHED, names,
+    BODY, CONTACT, EDGES, ENERGIES, FLUID_FORCE, HEAT, INCREMENT, Quantity, RADIATED, RESULTANT, RIGID, WATCHED, names,
 };
 use crate::contact::force::ContactState;
 use crate::contact::nodal_forces::Resultant;
@@ -76,6 +76,7 @@ impl Rows for HistoryRows {
         let in_fluid = model.contacts.iter().filter(|pair| pair.fluid.is_some());
         header.extend(in_fluid.flat_map(|pair| of(&pair.name, &[FLUID_FORCE])));
         header.extend(model.contacts.iter().flat_map(|pair| of(&pair.name, &HEAT)));
+        header.extend(model.mesh.rigid_bodies.iter().flat_map(|body| of(&body.name, &RIGID)));
         let undeformed = model.mesh.undeformed();
         let rows = Self {
             observed,
@@ -136,6 +137,9 @@ impl Rows for HistoryRows {
             let more = contacts::dissipated(slice::from_ref(old), slice::from_ref(new));
             *heat += more;
             table.numbers([*heat, more / (state.time - attempt.old.time)]);
+        }
+        for body in &model.mesh.rigid_bodies {
+            table.numbers([body.angle(&x), body.radius * state.reaction[2 * body.turning]]);
         }
         table.end_row_as(attempt.row)
     }

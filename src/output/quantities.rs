@@ -143,6 +143,12 @@ pub const WATCHED: [Quantity; 4] = [
     q("fy", FORCE, "along y"),
 ];
 
+/// Rotation of a rigid body, and the moment that its supports put on it.
+pub const RIGID: [Quantity; 2] = [
+    q("angle", ANGLE, "rotation about the reference point, counter-clockwise [rad]"),
+    q("moment", ENERGY, "reaction moment about the reference point where it is now, counter-clockwise"),
+];
+
 /// Resultant of a contact on its slave.
 pub const RESULTANT: [Quantity; 3] = [
     q("force_x", FORCE, "forces of pressure, friction and radiation damping on the slave, without a fluid"),
@@ -362,6 +368,7 @@ pub const ALL: [(&str, &[Group]); 10] = [
             ("SET", &EDGES),
             ("CONTACT", &[FLUID_FORCE]),
             ("CONTACT", &HEAT),
+            ("RIGID", &RIGID),
         ],
     ),
     ("interface.zarr", &[("", &[INCREMENT[0]]), ("CONTACT", &PLACE), ("CONTACT", &IN_STORE), ("CONTACT", &OF_SOME)]),

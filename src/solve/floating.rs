@@ -201,6 +201,11 @@ fn null_motion_of_a_node(model: &Model, tangent: &SparseMatrix) -> Option<String
         let block = tangent.pattern.block(node, node)?;
         let stiffness = Matrix2::from_fn(|i, j| tangent.values[block.value(i, j)]);
         let along = free_direction(&stiffness)?;
+        if let Some(body) = model.mesh.rigid_bodies.iter().find(|body| body.nodes().contains(&node)) {
+            let component = usize::from(along[0].abs() <= along[1].abs());
+            let motion = MOTIONS[if node == body.turning { 2 } else { component }];
+            return Some(format!("nothing resists the motion of the rigid body `{}` {motion}", body.name));
+        }
         let tag = model.mesh.node_tags[node];
         let motion = if along[0].abs() > along[1].abs() { MOTIONS[0] } else { MOTIONS[1] };
         Some(format!("nothing resists the motion of node {tag} {motion}"))

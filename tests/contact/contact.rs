@@ -6,7 +6,7 @@ use fecontact::contact::force::{
     Closed, ClosedPoints, ContactState, PointEvaluation, PointIncrement, PointPlace, Tractions, closes, place,
 };
 use fecontact::contact::kinematics::{Kinematics, kinematics};
-use fecontact::contact::master::{Circle, Master, Plane, Polyline, Rigid};
+use fecontact::contact::master::{Circle, Master, Plane, Polyline, Rigid, Shape};
 use fecontact::contact::mortar::{Mortar, Overlaps, Room, mortar_points};
 use fecontact::contact::pair::{ContactIncrement, ContactPair, InitialTraction, Presumption};
 use fecontact::contact::projection::{Bound, nearest};
@@ -18,7 +18,8 @@ use fecontact::laws::friction::{
 };
 use fecontact::linear::system::{Contribution, Request};
 use fecontact::mesh::configuration::Configuration;
-use nalgebra::{DMatrix, DVector, Vector2};
+use fecontact::mesh::rigid::RigidBody;
+use nalgebra::{DMatrix, DVector, Rotation2, Vector2};
 
 type Positions = Vec<Vector2<f64>>;
 
@@ -324,8 +325,8 @@ fn a_promise_is_of_second_order_and_changes_no_force() {
 /// p/α_n; with the augmented Lagrangian d = c p, whatever α_n.
 #[test]
 fn slip_counts_from_touch() {
-    let plane = Rigid::Plane(Plane { point: Vector2::zeros(), normal: Vector2::new(0.0, 1.0) });
-    let plain = pair(gauss_points(&[vec![0, 1]], 2), Master::Rigid(plane), COULOMB);
+    let plane = Shape::Plane(Plane { point: Vector2::zeros(), normal: Vector2::new(0.0, 1.0) });
+    let plain = pair(gauss_points(&[vec![0, 1]], 2), Master::Rigid(plane.into()), COULOMB);
     let check = |pair: &ContactPair, deep: f64, during: ContactIncrement, d: f64| {
         let x = vec![Vector2::new(0.2, -deep), Vector2::new(0.9, -deep)];
         let old = pulled(pair, 0, &x, 0.005, pair.laws[0].law.initial_state(0.0, 0.0), 0.03);
@@ -348,8 +349,8 @@ fn slip_counts_from_touch() {
 /// touch.
 #[test]
 fn a_carried_pressure_is_where_the_answer_is_exact() {
-    let plane = Rigid::Plane(Plane { point: Vector2::zeros(), normal: Vector2::new(0.0, 1.0) });
-    let pair = pair(gauss_points(&[vec![0, 1]], 2), Master::Rigid(plane), COULOMB);
+    let plane = Shape::Plane(Plane { point: Vector2::zeros(), normal: Vector2::new(0.0, 1.0) });
+    let pair = pair(gauss_points(&[vec![0, 1]], 2), Master::Rigid(plane.into()), COULOMB);
     let at = |y: f64| vec![Vector2::new(0.2, y), Vector2::new(0.9, y)];
     for (back, gap) in [(0.002, 0.03), (0.2, 0.03), (0.002, 0.0), (0.2, 0.0)] {
         let old = pulled(&pair, 0, &at(-0.04), back, pair.laws[0].law.initial_state(0.0, 0.0), gap);
@@ -366,24 +367,96 @@ fn a_carried_pressure_is_where_the_answer_is_exact() {
     }
 }
 
-/// Plane, disk, hole, and a polyline with a ridge that the first point has gone through and a line for the second.
+/// A rigid master that moves with a body of two nodes behind those of the slave.
+fn moving(shape: Shape, slaves: usize) -> Rigid {
+    let body = RigidBody { name: "tool".into(), reference: slaves, turning: slaves + 1, radius: TURNING, inertia: 0.0 };
+    Rigid { shape, body: Some(body) }
+}
+
+/// r of [`moving`].
+const TURNING: f64 = 1.7;
+
+/// Places that a rigid body sees where it has moved and turned, and those of its nodes. (Its reference point is the origin.)
+fn seen(x: &Positions, shift: [f64; 2], angle: f64) -> Positions {
+    let shift = Vector2::from(shift);
+    let placed = x.iter().map(|x| shift + Rotation2::new(angle) * x);
+    placed.chain([shift, Vector2::new(TURNING * angle, 0.0)]).collect()
+}
+
+/// Plane, disk, hole, and a polyline with a ridge that the first point has gone through and a line for the second; each at rest,
+/// and moved and turned with all of its own motion in the tangent.
 #[test]
 fn tangent_equals_differences_on_rigid_bodies() {
-    let x: Positions = vec![Vector2::new(0.2, -0.01), Vector2::new(0.9, -0.03)];
+    let rest: Positions = vec![Vector2::new(0.2, -0.01), Vector2::new(0.9, -0.03)];
     let at = |points: &[(f64, f64)]| points.iter().map(|&(x, y)| Vector2::new(x, y)).collect::<Vec<_>>();
     for body in [
-        Rigid::Plane(Plane { point: Vector2::new(0.0, 0.0), normal: Vector2::new(-0.06, 1.0).normalize() }),
-        Rigid::Circle(Circle { centre: Vector2::new(0.5, -3.0), radius: 3.0, hole: false }),
-        Rigid::Circle(Circle { centre: Vector2::new(0.5, 2.0), radius: 1.9, hole: true }),
-        Rigid::Polyline(Polyline::new(at(&[(-1.0, 0.5), (0.35, 0.01), (2.0, 0.6)]))),
-        Rigid::Polyline(Polyline::new(at(&[(-1.0, 0.0), (2.0, 0.03)]))),
+        Shape::Plane(Plane { point: Vector2::new(0.0, 0.0), normal: Vector2::new(-0.06, 1.0).normalize() }),
+        Shape::Circle(Circle { centre: Vector2::new(0.5, -3.0), radius: 3.0, hole: false }),
+        Shape::Circle(Circle { centre: Vector2::new(0.5, 2.0), radius: 1.9, hole: true }),
+        Shape::Polyline(Polyline::new(at(&[(-1.0, 0.5), (0.35, 0.01), (2.0, 0.6)]))),
+        Shape::Polyline(Polyline::new(at(&[(-1.0, 0.0), (2.0, 0.03)]))),
     ] {
-        let pair = pair(gauss_points(&[vec![0, 1]], 2), Master::Rigid(body), SUPER);
-        let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.laws[0].law.initial_state(0.0, 0.0) };
-        for k in 0..2 {
-            for back in [1e-4, 0.01, -0.2] {
-                check_tangent(&pair, k, &pulled(&pair, k, &x, back, pressed, -0.02), &x, &format!("{:?}", pair.master));
+        for (rigid, x) in [(body.clone().into(), rest.clone()), (moving(body, 2), seen(&rest, [0.4, -0.3], 0.7))] {
+            let pair = pair(gauss_points(&[vec![0, 1]], 2), Master::Rigid(rigid), SUPER);
+            let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..pair.laws[0].law.initial_state(0.0, 0.0) };
+            for k in 0..2 {
+                for (back, gap) in [(1e-4, -0.02), (0.01, -0.02), (-0.2, -0.02), (0.02, 0.03)] {
+                    let old = pulled(&pair, k, &x, back, pressed, gap);
+                    check_tangent(&pair, k, &old, &x, &format!("{:?}", pair.master));
+                }
             }
+        }
+    }
+}
+
+/// What a rigid body that moves and turns sees is what one at rest sees: pressures and tractions are the same, forces turn with it,
+/// and it gets their opposite, with their moment about its reference point where that is now. At points that had a foot and at
+/// points that had none, which slip past what they meet: where an increment turns the body by 0.5, too.
+#[test]
+fn a_rigid_body_that_moves_answers_as_one_at_rest() {
+    let rest: Positions = vec![Vector2::new(0.2, -0.01), Vector2::new(0.9, -0.03)];
+    let before: Positions = rest.iter().map(|x| x - Vector2::new(0.004, 0.001)).collect();
+    let shape = Shape::Circle(Circle { centre: Vector2::new(0.5, -3.0), radius: 3.0, hole: false });
+    let slave = [vec![0, 1]];
+    let (points, mortar) = mortar_points(&slave, &rest);
+    for (points, mortar) in [(gauss_points(&slave, 2), None), (points, Some(mortar))] {
+        for faced in [true, false] {
+            let answer = |rigid: Rigid, before: &Positions, x: &Positions| {
+                let pair =
+                    ContactPair { mortar: mortar.clone(), ..pair(points.clone(), Master::Rigid(rigid), COULOMB) };
+                let (before, x) = (displaced(before), displaced(x));
+                let mut old = pair.initial_states(&before);
+                old.iter_mut().for_each(|state| state.foot = state.foot.filter(|_| faced));
+                respond(&pair, &old, [&before, &x], INCREMENT)
+            };
+            let still = answer(shape.clone().into(), &before, &rest);
+            let (shift, angle) = (Vector2::new(-0.2, 0.6), -0.3);
+            let x = seen(&rest, shift.into(), angle);
+            let moved = answer(moving(shape.clone(), 2), &seen(&before, [0.4, -0.3], 0.2), &x);
+            let mut sums = [Vector2::zeros(), Vector2::zeros()];
+            let mut moments = [0.0; 2];
+            for ((a, still), (b, moved)) in still.iter().zip(&moved) {
+                for (a, b) in [(a.friction.pressure, b.friction.pressure), (a.friction.traction, b.friction.traction)] {
+                    assert!((a - b).abs() < 1e-11 && a != 0.0, "{a}, at rest {b}");
+                }
+                let (still, moved) = (still.as_ref().expect("closed"), moved.as_ref().expect("closed"));
+                let at = |of: &Contribution, k: usize| Vector2::new(of.force[2 * k], of.force[2 * k + 1]);
+                for (k, &node) in moved.nodes.iter().enumerate() {
+                    if node < 2 {
+                        let turned = Rotation2::new(angle) * at(still, k);
+                        assert!((turned - at(moved, k)).norm() < 1e-11, "{turned}, {}", at(moved, k));
+                        sums[0] += at(moved, k);
+                        moments[0] += (x[node] - shift).perp(&at(moved, k));
+                    } else if node == 2 {
+                        sums[1] += at(moved, k);
+                    } else {
+                        moments[1] += TURNING * at(moved, k).x;
+                        assert_eq!(at(moved, k).y, 0.0);
+                    }
+                }
+            }
+            assert!((sums[0] + sums[1]).norm() < 1e-11 * sums[0].norm(), "{sums:?}");
+            assert!((moments[0] + moments[1]).abs() < 1e-11 * sums[0].norm(), "{moments:?}");
         }
     }
 }
@@ -392,7 +465,7 @@ fn tangent_equals_differences_on_rigid_bodies() {
 #[test]
 fn feet_on_a_rigid_circle() {
     for (hole, side) in [(false, 1.0), (true, -1.0)] {
-        let body = Rigid::Circle(Circle { centre: Vector2::new(1.0, 1.0), radius: 2.0, hole });
+        let body = Rigid::from(Shape::Circle(Circle { centre: Vector2::new(1.0, 1.0), radius: 2.0, hole }));
         let at = |angle: f64| Vector2::new(1.0, 1.0) + Vector2::new(angle.cos(), angle.sin()) * 2.1;
         let (point, here) = (&lone_point(0, 1.0), vec![at(3.1)]);
         let moved = at(-3.1) - at(3.1);
@@ -502,23 +575,27 @@ fn behind_a_ridge_a_point_belongs_to_the_side_it_comes_from() {
     }
 }
 
-/// Mortar on rigid bodies: the tangent of every closed point equals differences, on straight and on curved edges, from a
-/// place in which the slave lay elsewhere.
+/// Mortar on rigid bodies, at rest and moving: the tangent of every closed point equals differences, on straight and on curved edges,
+/// from a place in which the slave, and the body, lay elsewhere.
 #[test]
 fn mortar_tangent_on_rigid_bodies_equals_differences() {
-    let x: Positions = [(0.2, -0.01), (0.6, -0.05), (0.9, -0.03)].map(|(x, y)| Vector2::new(x, y)).to_vec();
+    let rest: Positions = [(0.2, -0.01), (0.6, -0.05), (0.9, -0.03)].map(|(x, y)| Vector2::new(x, y)).to_vec();
     for body in [
-        Rigid::Plane(Plane { point: Vector2::new(0.0, 0.0), normal: Vector2::new(-0.06, 1.0).normalize() }),
-        Rigid::Circle(Circle { centre: Vector2::new(0.5, -3.0), radius: 3.0, hole: false }),
-        Rigid::Circle(Circle { centre: Vector2::new(0.5, 2.0), radius: 1.9, hole: true }),
-        Rigid::Polyline(Polyline::new([(-1.0, 0.0), (2.0, 0.03)].map(|(x, y)| Vector2::new(x, y)).to_vec())),
+        Shape::Plane(Plane { point: Vector2::new(0.0, 0.0), normal: Vector2::new(-0.06, 1.0).normalize() }),
+        Shape::Circle(Circle { centre: Vector2::new(0.5, -3.0), radius: 3.0, hole: false }),
+        Shape::Circle(Circle { centre: Vector2::new(0.5, 2.0), radius: 1.9, hole: true }),
+        Shape::Polyline(Polyline::new([(-1.0, 0.0), (2.0, 0.03)].map(|(x, y)| Vector2::new(x, y)).to_vec())),
     ] {
-        for slave in [vec![vec![0, 1], vec![1, 2]], vec![vec![0, 2, 1]]] {
-            let (points, mortar) = mortar_points(&slave, &x);
-            let pair = ContactPair { mortar: Some(mortar), ..pair(points, Master::Rigid(body.clone()), SUPER) };
+        let slaves = [vec![vec![0, 1], vec![1, 2]], vec![vec![0, 2, 1]]];
+        for (slave, moves) in slaves.iter().flat_map(|slave| [(slave, false), (slave, true)]) {
+            let (points, mortar) = mortar_points(slave, &rest);
+            let rigid = if moves { moving(body.clone(), 3) } else { body.clone().into() };
+            let x = if moves { seen(&rest, [0.4, -0.3], 0.7) } else { rest.clone() };
+            let pair = ContactPair { mortar: Some(mortar), ..pair(points, Master::Rigid(rigid), SUPER) };
             let mut closed = 0;
             for (way, gap) in [(1e-5, -0.02), (0.02, -0.02), (-0.3, -0.02), (0.02, 0.03)] {
-                let before: Positions = x.iter().map(|x| x - Vector2::new(way, 0.0)).collect();
+                let before: Positions = rest.iter().map(|x| x - Vector2::new(way, 0.0)).collect();
+                let before = if moves { seen(&before, [0.3, -0.4], 0.5) } else { before };
                 let friction = pair.laws[0].law.initial_state(0.0, 0.0);
                 let pressed = FrictionState { traction: 1.0, pressure: 10.0, ..friction };
                 let friction = if gap > 0.0 { friction } else { pressed };
@@ -603,7 +680,7 @@ fn tangent_equals_differences_where_contact_starts_closed_across_a_gap() {
     let lone = [6, 7, 8].map(|node| lone_point(node, 0.7)).to_vec();
     let plane = Plane { point: Vector2::new(0.0, -0.5), normal: Vector2::new(-0.2, 1.0).normalize() };
     for points in [lone, gauss_points(&[vec![6, 7], vec![7, 8]], 2)] {
-        for master in [Master::Mesh(Surface::new(&edges)), Master::Rigid(Rigid::Plane(plane))] {
+        for master in [Master::Mesh(Surface::new(&edges)), Master::Rigid(Shape::Plane(plane).into())] {
             let mut pair = pair(points.clone(), master, SUPER);
             let at = displaced(&x);
             pair.start_closed(vec![InitialTraction { pressure: 20.0, traction: 2.0 }; pair.points.len()], &at)
@@ -660,10 +737,8 @@ fn points_that_nothing_faced_slip_past_what_they_meet() {
     let (straight, x) = wavy();
     let slave = [vec![6, 7], vec![7, 8]];
     let surface = Master::Mesh(Surface::new(&straight));
-    let plane = Master::Rigid(Rigid::Plane(Plane {
-        point: Vector2::new(0.0, 0.05),
-        normal: Vector2::new(-0.02, 1.0).normalize(),
-    }));
+    let plane = Shape::Plane(Plane { point: Vector2::new(0.0, 0.05), normal: Vector2::new(-0.02, 1.0).normalize() });
+    let plane = Master::Rigid(plane.into());
     let rough = r#"{"law": "coulomb", "mu": 1e6}"#;
     let by_mortar = |law: &str| {
         let (points, mortar) = mortar_points(&slave, &x);
@@ -992,7 +1067,7 @@ fn strips(n: usize, quadratic: bool) -> (Vec<Vec<usize>>, Vec<Vec<usize>>, Posit
 /// slave slides by trifles, by parts of an edge and over several edges, and the master stretches, shrinks and waves under it.
 #[test]
 fn what_is_kept_and_what_is_left_out_changes_no_bit() {
-    let plane = Rigid::Plane(Plane { point: Vector2::new(0.0, 0.02), normal: Vector2::new(0.0, 1.0) });
+    let plane = Shape::Plane(Plane { point: Vector2::new(0.0, 0.02), normal: Vector2::new(0.0, 1.0) });
     for quadratic in [false, true] {
         let (master, slave, x) = strips(30, quadratic);
         let surface = || Master::Mesh(Surface::new(&master));
@@ -1005,9 +1080,9 @@ fn what_is_kept_and_what_is_left_out_changes_no_bit() {
             pair(nodal_points(&slave), surface(), SUPER),
             pair(gauss_points(&slave, 3), surface(), COULOMB),
             pair(gauss_points(&slave, 2), if quadratic { surface() } else { smooth }, SUPER),
-            pair(gauss_points(&slave, 2), Master::Rigid(plane.clone()), COULOMB),
+            pair(gauss_points(&slave, 2), Master::Rigid(plane.clone().into()), COULOMB),
             mortar(surface()),
-            mortar(Master::Rigid(plane.clone())),
+            mortar(Master::Rigid(plane.clone().into())),
         ];
         for (number, pair) in pairs.iter().enumerate() {
             let (mut kept, mut closed, mut went_over) = (PairResponse::default(), 0, 0);

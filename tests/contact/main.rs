@@ -8,6 +8,7 @@ mod contact;
 mod moving;
 mod periodic;
 mod points;
+mod rigid_bodies;
 mod rings;
 mod self_contact;
 mod small_sliding;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::contact::pair as pair_under;
 use crate::common::{self, Blocks, Finished, close, distance, finish, half_way, quadratic};
 use fecontact::contact::force::ContactState;
-use fecontact::contact::master::{Circle, Master, Rigid};
+use fecontact::contact::master::{Circle, Master, Shape};
 use fecontact::contact::mortar::mortar_points;
 use fecontact::contact::pair::{ContactIncrement, ContactPair, Presumption};
 use fecontact::contact::response::PairResponse;
@@ -400,7 +400,8 @@ fn rigid_bodies_are_left_where_their_normal_turns() {
 #[test]
 fn a_circle_is_its_tangent() {
     let x = vec![Vector2::new(-0.3, 1.96), Vector2::new(0.4, 1.95)];
-    let circle = Master::Rigid(Rigid::Circle(Circle { centre: Vector2::zeros(), radius: 2.0, hole: false }));
+    let circle = Shape::Circle(Circle { centre: Vector2::zeros(), radius: 2.0, hole: false });
+    let circle = Master::Rigid(circle.into());
     let mut pair = pair_under(nodal_points(&[vec![0, 1]]), circle, COULOMB);
     let undeformed = Configuration::undeformed(&x);
     pair.slide_little(&undeformed);

@@ -23,6 +23,7 @@ pub const SLOTS: &[Slot] = &[
     ("block_law", LAWS),
     ("surfaces", &[("apart", 2), ("matching", 1)]),
     ("master", &[("deformable", 10), ("plane", 2), ("circle", 2), ("polyline", 2), ("itself", 2)]),
+    ("tool", &[("no", 1), ("moves", 1)]),
     ("method", &[("gauss_to_segment", 3), ("node_to_segment", 3), ("mortar", 3), ("chosen", 1)]),
     ("gauss_points", &[("2", 3), ("3", 1), ("4", 1)]),
     ("smooth", OPTION),
@@ -116,6 +117,7 @@ pub const EXCLUDED: &[(&[&str], &[&str], &str)] = &[
     (&["section:rings_around"], &["press:plate"], "the plate would not change its radius"),
     (&["section:rings_on_end"], &["plate:alike"], "the side would keep its radius"),
     (&["section:rings_around"], &["gravity"], "there is no weight along the radius"),
+    (&["tool"], &["master:deformable", "master:itself", "scheme:quasi_dynamic"], "a rigid master moves"),
     (&["master:plane", "master:circle", "master:polyline"], GROUND, "there is no second body"),
     (
         &["master:itself"],

@@ -91,6 +91,9 @@ impl Names {
 /// What a thing that stands aside is called; it comes first and last of all bodies.
 pub const ASIDE: [&str; 2] = ["aaa", "zzz"];
 
+/// The rigid body that moves, if there is one.
+const TOOL: &str = "tool";
+
 const DYNAMIC: [&str; 5] = ["newmark", "hht", "generalized_alpha", "wilson", "explicit"];
 
 pub fn is_dynamic(scheme: &str) -> bool {
@@ -130,6 +133,8 @@ enum What {
     /// displacement along the canonical axes that are held
     Support([bool; 2]),
     Rotation,
+    /// of the tool
+    Angle,
     Pressure,
     DeadPressure,
     Traction,
@@ -223,6 +228,9 @@ impl Writer<'_> {
         let mut case = Map::new();
         case.insert("mesh".into(), self.mesh());
         case.insert("bodies".into(), self.bodies());
+        if self.has("tool") {
+            case.insert("rigid_bodies".into(), json!({TOOL: {"reference": self.frame.point([1.25, -0.375])}}));
+        }
         case.insert("contacts".into(), self.contacts());
         case.insert("steps".into(), self.steps().into());
         let plates = self.plates();
@@ -471,6 +479,9 @@ impl Writer<'_> {
             _ => json!(self.group("ground_top")),
         };
         let mut contact = json!({"slave": slave, "master": master, "friction": self.friction(draft.of("friction"))});
+        if self.has("tool") {
+            contact["rigid_body"] = json!(TOOL);
+        }
         if self.ways.swapped {
             contact["slave"] = master;
             contact["master"] = json!(slave);
@@ -704,6 +715,13 @@ impl Writer<'_> {
         if self.is("plate", "rigid") {
             second.push(target(What::Moment, "block_right", [0.3 * self.frame_moment(), 0.0]));
         }
+        let tool = |to: [f64; 2], angle: f64| {
+            let on = |what, to| Target { on: TOOL.into(), ..target(what, "block", to) };
+            let path = [on(What::Support([true, true]), to), on(What::Angle, [angle, 0.0])];
+            path.into_iter().filter(|_| self.has("tool"))
+        };
+        first.extend(tool([0.0, 0.0], 0.0));
+        second.extend(tool([-0.4 * drag, -0.05 * down], 0.002));
         let mut stages = vec![Stage { name: "press", targets: first }, Stage { name: "drag", targets: second }];
         if self.has("reversal") {
             let back = match press {
@@ -712,7 +730,9 @@ impl Writer<'_> {
                 "displacement" => target(What::Support([true, true]), "block_top", [-0.5 * drag, -1.1 * down]),
                 _ => target(held, "block_top", [-0.5 * drag, 0.0]),
             };
-            stages.push(Stage { name: "back", targets: vec![back] });
+            // A rate would go on where nothing is said of it.
+            let rests = tool([-0.4 * drag, -0.05 * down], 0.002);
+            stages.push(Stage { name: "back", targets: std::iter::once(back).chain(rests).collect() });
         }
         stages
     }
@@ -1003,6 +1023,7 @@ impl Writer<'_> {
                 let angle = change.to[0] * f.sign();
                 supports.push(json!({"on": on, "rotation": {"about": f.point([0.5, 2.0]), "angle": angle}}));
             }
+            What::Angle => supports.push(json!({"on": on, "angle": self.drive(pair(0), change, f.sign(), true)})),
             What::Pressure => loads.push(json!({"on": on, "pressure": scalar(Kind::Stress, 1.0)})),
             What::DeadPressure => loads.push(json!({"on": on, "dead_pressure": scalar(Kind::Stress, 1.0)})),
             What::Traction => loads.push(json!({"on": on, "traction": vector(Kind::Stress, 1.0)})),

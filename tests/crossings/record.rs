@@ -289,7 +289,7 @@ fn form(column: &str, header: &[&str]) -> Form {
         "uy" | "edge_uy" | "vy" | "fy" | "force_y" | "momentum_y" | "centre_y" => Form::Skip,
         "moment" => Form::Signed(Kind::Energy),
         "angular_momentum" => Form::Signed(Kind::AngularMomentum),
-        "rotation" => Form::Signed(Kind::Number),
+        "rotation" | "angle" => Form::Signed(Kind::Number),
         "frictional_power" => Form::Scalar(Kind::Power),
         "strain_xx" => Form::Tensor(Kind::Number),
         "stress_xx" => Form::Tensor(Kind::Stress),

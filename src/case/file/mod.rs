@@ -12,7 +12,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use crate::mesh::InlineMesh;
 use crate::mesh::section::Section;
 use crate::model::NewtonSettings;
-use crate::model::builder::{BodyInput, Contact, Gauge, LoadStep, LoadingPlateInput, PointMassInput};
+use crate::model::builder::{BodyInput, Contact, Gauge, LoadStep, LoadingPlateInput, PointMassInput, RigidBodyInput};
 use crate::model::written::Written;
 use blocks::MeshKeys;
 pub(super) use blocks::blocks;
@@ -52,6 +52,10 @@ pub struct Case {
     /// rigid body that can rotate
     #[serde(default)]
     pub plates: Vec<LoadingPlateInput>,
+    /// Rigid bodies that move, by a name of your choice: rigid masters of contacts are parts of them. Supports on the name
+    /// give the path, `ux`, `uy` and `angle`, 0 where it rests; what they leave free moves under contact and loads on the name
+    #[serde(default)]
+    pub rigid_bodies: BTreeMap<String, RigidBodyInput>,
     /// Contacts by a name of your choice
     #[serde(default)]
     pub contacts: BTreeMap<String, Contact>,

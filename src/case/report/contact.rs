@@ -78,7 +78,7 @@ fn contact(case: &Case, model: &Model, pair: &ContactPair, chosen: Option<&Chose
         None => "10 (λ + 2G)/h of the softer body, h the depth of the slave's elements",
     };
     let mut lines = vec![
-        format!("slave {} against master {}", input.slave, master(input)),
+        format!("slave {} against master {}{}", input.slave, master(input), moves(input)),
         format!("{}: {}", evaluated(input, chosen), count(pair.points.len(), "contact point")),
         format!("alpha_n {} ({alpha_n})", number(pair.alpha_n)),
     ];
@@ -178,6 +178,11 @@ fn master(input: &Contact) -> String {
         }
         MasterSide::Polyline { points } => format!("the rigid polyline through {}", count(points.len(), "point")),
     }
+}
+
+/// What a rigid master moves with.
+fn moves(input: &Contact) -> String {
+    input.rigid_body.as_ref().map_or(String::new(), |body| format!(", part of the rigid body {body}"))
 }
 
 /// Method and contact points, with the reason if the program chose the method.

@@ -11,7 +11,7 @@ use steps::steps;
 use super::file::{Case, MeshSource};
 use crate::mesh::Group;
 use crate::mesh::shape::ElementKind;
-use crate::model::builder::{BodyInput, Formulation, LoadingPlateInput, Plate};
+use crate::model::builder::{BodyInput, Formulation, LoadingPlateInput, Plate, RigidBodyInput};
 use crate::model::imposed::{InitialStress, Thermal};
 use crate::model::text::{count, number};
 use crate::model::{Damping, Model, PointMass};
@@ -41,6 +41,7 @@ pub fn understood(case: &Case, model: &Model) -> Vec<(String, Vec<String>)> {
         ("periodic", periodic(case, model)),
         ("plates", plates(case, model)),
         ("points", point_masses(case, model)),
+        ("rigid", rigid_bodies(case)),
         ("contacts", contacts(case, model)),
         ("steps", steps(case, model)),
         ("newton", vec![newton(case)]),
@@ -178,6 +179,14 @@ fn plates(case: &Case, model: &Model) -> Vec<String> {
         format!("{name}: {} {moves}", count(nodes, "node"))
     };
     case.plates.iter().map(LoadingPlateInput::parts).map(told).collect()
+}
+
+fn rigid_bodies(case: &Case) -> Vec<String> {
+    let row = |(name, RigidBodyInput { reference, inertia }): (&String, &RigidBodyInput)| {
+        let inertia = inertia.map_or(String::new(), |inertia| format!(", moment of inertia {}", number(inertia)));
+        format!("{name}: reference point ({}){inertia}", reference.map(number).join(", "))
+    };
+    case.rigid_bodies.iter().map(row).collect()
 }
 
 fn point_masses(case: &Case, model: &Model) -> Vec<String> {

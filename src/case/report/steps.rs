@@ -142,7 +142,8 @@ fn written_supports(step: &LoadStep, on: impl Fn(&Place) -> String) -> Vec<Entry
     let mut entries: Vec<Entry> = Vec::new();
     for support in &step.supports {
         let mut add = |kind, text| entries.push((on(&support.on), kind, text));
-        for (kind, given) in [("ux", &support.ux), ("uy", &support.uy), ("un", &support.un)] {
+        for (kind, given) in [("ux", &support.ux), ("uy", &support.uy), ("un", &support.un), ("angle", &support.angle)]
+        {
             if let Some(given) = given {
                 add(kind, given.given().map(drive));
             }

@@ -130,6 +130,10 @@ pub fn check_quasi_dynamic(model: &Model) -> Checked<()> {
         if !(model.plates.is_empty() && model.linkage.is_empty()) {
             return Err(ModelError::new("plates", "are not for quasi_dynamic steps: drive the side by supports"));
         }
+        if let Some(body) = model.mesh.rigid_bodies.first() {
+            let message = "is not for quasi_dynamic steps: leave it out, and move the body by supports";
+            return Err(ModelError::new(format!("rigid_bodies.{}", body.name), message));
+        }
         model.contacts.iter().try_for_each(check_contact)?;
         check_nodes(model)?;
         check_supports(&place, step, model)?;

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::along::Along;
 use super::error::{Checked, ModelError, check_finite, check_positive};
 use super::friction::{Friction, check_in_time};
-use crate::contact::master::{Circle, Plane, Polyline, Rigid};
+use crate::contact::master::{Circle, Plane, Polyline, Shape};
 use crate::contact::pair::{BadPressure, ContactPair, Fluid};
 use crate::laws::friction::Dilatancy;
 use crate::model::Model;
@@ -33,6 +33,8 @@ pub struct Contact {
     /// Edge group, or a rigid body. The slave's group again: self-contact of the surface; each point then has half its
     /// tributary length, because every contact is evaluated from both sides
     pub master: MasterSide,
+    /// Rigid body that a rigid master is a part of, and moves with: one of `rigid_bodies`. Without it the master is at rest
+    pub rigid_body: Option<String>,
     /// Contact method. By default mortar where an edge of either side is quadratic or a side curved (its direction
     /// turns by more than 1° between two corners of more than 45°); gauss_to_segment between straight linear edges,
     /// with a `smooth` master, and where `points` are given
@@ -114,7 +116,8 @@ pub enum SlidingRange {
     Small,
 }
 
-/// The master side: a group of the mesh, or a rigid body at rest that is given by a formula.
+/// The master side: a group of the mesh, or a rigid master given by a formula, at rest unless `rigid_body` says what it moves
+/// with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(remote = "Self", rename_all = "snake_case", deny_unknown_fields)]
 #[schemars(rename = "Master")]
@@ -212,6 +215,7 @@ impl Contact {
             slave: slave.into(),
             area: None,
             master: master.into(),
+            rigid_body: None,
             method: None,
             points: None,
             smooth: false,
@@ -233,6 +237,11 @@ impl Contact {
     pub fn alpha_n(mut self, alpha_n: f64) -> Self {
         self.normal.alpha_n = Some(alpha_n);
         self
+    }
+
+    /// With a rigid master that moves with a rigid body of the model.
+    pub fn rigid_body(self, name: impl Into<String>) -> Self {
+        Self { rigid_body: Some(name.into()), ..self }
     }
 
     /// Evaluated by this method.
@@ -352,15 +361,15 @@ pub fn check_fluid(pair: &ContactPair, place: &str, model: &Model) -> Checked<()
     Err(ModelError::new(format!("{place}.fluid_pressure"), message))
 }
 
-/// The body of a rigid master.
-pub fn rigid(side: &MasterSide, place: &str) -> Checked<Rigid> {
+/// The shape of a rigid master.
+pub fn shape(side: &MasterSide, place: &str) -> Checked<Shape> {
     match side {
         MasterSide::Group(group) => Err(ModelError::new(place, format!("`{group}` is a group, not a rigid body"))),
         MasterSide::Plane { point, normal } => plane(*point, *normal, place),
         MasterSide::Circle { centre, radius, hole } => {
             check_finite(&format!("{place}.circle.centre"), *centre)?;
             check_positive(&format!("{place}.circle.radius"), *radius, "")?;
-            Ok(Rigid::Circle(Circle { centre: Vector2::from(*centre), radius: *radius, hole: *hole }))
+            Ok(Shape::Circle(Circle { centre: Vector2::from(*centre), radius: *radius, hole: *hole }))
         }
         MasterSide::Polyline { points } => {
             let place = format!("{place}.polyline.points");
@@ -372,17 +381,17 @@ pub fn rigid(side: &MasterSide, place: &str) -> Checked<Rigid> {
                 let message = format!("points {} and {} are the same: leave one out", k, k + 1);
                 return Err(ModelError::new(place, message));
             }
-            Ok(Rigid::Polyline(Polyline::new(points.iter().map(|&point| Vector2::from(point)).collect())))
+            Ok(Shape::Polyline(Polyline::new(points.iter().map(|&point| Vector2::from(point)).collect())))
         }
     }
 }
 
-fn plane(point: [f64; 2], normal: [f64; 2], place: &str) -> Checked<Rigid> {
+fn plane(point: [f64; 2], normal: [f64; 2], place: &str) -> Checked<Shape> {
     check_finite(&format!("{place}.plane.point"), point)?;
     let given = Vector2::from(normal);
     let Some(normal) = given.try_normalize(0.0).filter(|normal| normal.norm() > 0.5) else {
         let message = format!("is [{}, {}]: must have a direction, such as [0, 1]", given.x, given.y);
         return Err(ModelError::new(format!("{place}.plane.normal"), message));
     };
-    Ok(Rigid::Plane(Plane { point: Vector2::from(point), normal }))
+    Ok(Shape::Plane(Plane { point: Vector2::from(point), normal }))
 }

@@ -98,10 +98,14 @@ impl Builder {
         for (body, _) in &self.bodies {
             check_name("bodies", body)?;
         }
+        for (body, _) in &self.rigid_bodies {
+            check_name("rigid_bodies", body)?;
+        }
         check_line("title", &self.title)?;
         check_watched(&self.watch)?;
         check_once("contacts", self.contacts.iter().map(|contact| &contact.name))?;
         check_once("bodies", self.bodies.iter().map(|(name, _)| name))?;
+        check_once("rigid_bodies", self.rigid_bodies.iter().map(|(name, _)| name))?;
         check_once("point_masses", self.point_masses.iter().map(|(name, _)| name))?;
         let Some(name) = &self.unknown else { return Ok(()) };
         Err(no_body(name, self.bodies.iter().map(|(name, _)| name.as_str()), &format!("bodies.{name}")))

@@ -54,12 +54,12 @@ fn nearest(mesh: &Mesh, point: [f64; 2]) -> Result<usize, String> {
         return Err(format!("near ({x}, {y}) is no place: give finite numbers"));
     }
     let distance = |node: usize| (mesh.nodes[node] - Vector2::from(point)).norm();
-    let Some(node) = (0..mesh.nodes.len()).min_by(|a, b| distance(*a).total_cmp(&distance(*b))) else {
+    let Some(node) = (0..mesh.own_nodes()).min_by(|a, b| distance(*a).total_cmp(&distance(*b))) else {
         return Err("the mesh has no nodes".into());
     };
     let tag = mesh.node_tags[node];
     let (near, round_off) = (distance(node), EQUALLY_NEAR * mesh.diagonal());
-    if let Some(other) = (0..mesh.nodes.len()).find(|other| *other != node && distance(*other) <= near + round_off) {
+    if let Some(other) = (0..mesh.own_nodes()).find(|other| *other != node && distance(*other) <= near + round_off) {
         let other = mesh.node_tags[other];
         return Err(format!("nodes {tag} and {other} are equally near to ({x}, {y}): name one as {{\"node\": {tag}}}"));
     }
@@ -146,9 +146,10 @@ pub fn body(model: &Model, name: &str, place: &str) -> Checked<usize> {
     names().position(|known| known == name).ok_or_else(|| no_body(name, names(), place))
 }
 
-/// The watched groups.
+/// The watched groups, and all rigid bodies.
 pub fn watched(names: &[String], model: &Model) -> Checked<Vec<WatchedSet>> {
-    names.iter().enumerate().map(|(k, name)| watched_set(model, k, name)).collect()
+    let rigid = model.mesh.rigid_bodies.iter().map(|body| &body.name).filter(|name| !names.contains(name));
+    names.iter().chain(rigid).enumerate().map(|(k, name)| watched_set(model, k, name)).collect()
 }
 
 /// A watched group. The reactions of copies are with the nodes they move with; the displacement of a plate counts with every node.

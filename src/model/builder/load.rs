@@ -33,7 +33,7 @@ pub struct Load {
     /// plane stress, per full turn in axisymmetry. Its expressions depend on t only [F]
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub total_force: Option<Change<Components>>,
-    /// Moment on a loading plate that moves as a rigid body, counter-clockwise; it rotates with the plate [F L]
+    /// Moment on a rigid body, or on a loading plate that moves as one, with which it rotates; counter-clockwise [F L]
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub moment: Option<Change<Drive>>,
     /// Spring at every node of the group, to the ground or to a moving driver; its work on the node counts as external

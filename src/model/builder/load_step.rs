@@ -210,6 +210,9 @@ pub struct Support {
     /// Rigid rotation about a point, instead of all others; null releases it, see `supports`
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub rotation: Option<Change<Rotation>>,
+    /// Rotation of a rigid body about its reference point, counter-clockwise; null releases it, see `supports` [rad]
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub angle: Option<Change<Drive>>,
 }
 
 /// A rigid rotation.
@@ -226,7 +229,7 @@ pub struct Rotation {
 impl Support {
     /// Supports at a place, which prescribe nothing yet.
     pub fn on(place: impl Into<Place>) -> Self {
-        Self { on: place.into(), ux: None, uy: None, along: None, u: None, un: None, rotation: None }
+        Self { on: place.into(), ux: None, uy: None, along: None, u: None, un: None, rotation: None, angle: None }
     }
 
     /// Its displacements, with their keys.
@@ -254,6 +257,11 @@ impl Support {
     /// With a displacement along the normal of a side, positive out of the body [L].
     pub fn un(self, un: impl Into<Change<Drive>>) -> Self {
         Self { un: Some(un.into()), ..self }
+    }
+
+    /// Of a rigid body: with a rotation about its reference point, counter-clockwise [rad].
+    pub fn angle(self, angle: impl Into<Change<Drive>>) -> Self {
+        Self { angle: Some(angle.into()), ..self }
     }
 
     /// With a rotation about a point, counter-clockwise [rad].

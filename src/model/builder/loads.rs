@@ -11,6 +11,7 @@ use super::groups::{Place, edges, group_at, node_lists, nodes_at};
 use super::load::{Action, Change, Components, DashpotLoad, Load, SpringLoad};
 use super::load_step::LoadStep;
 use super::plates::plate_of_moment;
+use super::rigid;
 use super::section::check_gravity;
 use super::shares::{Share, absorbers, edge_shares, even_shares, mass_shares, pressure_shares};
 use super::supports::frees_nothing;
@@ -247,6 +248,13 @@ impl Changing<'_> {
 
     fn moment(self, given: Option<&Drive>) -> Checked<Loads> {
         let Self { load, place, span, model, before } = self;
+        if let Some(body) = rigid::of_moment(&load.on, model) {
+            let before = before.dead.into_iter().next().map(|load| load.amplitude);
+            let amplitude = amplitude(given, before, &format!("{place}.moment"), span)?;
+            let shares = vec![(body.turning, 1.0 / body.radius, model.mesh.nodes[body.turning])];
+            let dead = amplitude.map(|amplitude| DeadLoad { component: 0, amplitude, shares });
+            return Ok(Loads { dead: dead.into_iter().collect(), ..Loads::default() });
+        }
         let plate = plate_of_moment(model, &load.on, place)?;
         let before = before.moments.into_iter().next().map(|moment| moment.amplitude);
         let amplitude = amplitude(given, before, &format!("{place}.moment"), span)?;

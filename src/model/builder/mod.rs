@@ -44,6 +44,7 @@ mod loads;
 mod pair;
 mod plates;
 mod probes;
+mod rigid;
 pub(crate) mod schedule;
 mod section;
 mod shares;
@@ -63,6 +64,7 @@ pub use loads::LoadsInForce;
 pub use pair::default_alpha_t;
 pub use plates::{LoadingPlateInput, MovingPlateInput, Plate};
 pub use probes::Gauge;
+pub use rigid::RigidBodyInput;
 
 use crate::laws::bulk::Material;
 use crate::mesh::Mesh;
@@ -84,6 +86,7 @@ pub struct Builder {
     pub(crate) point_masses: Vec<(String, PointMassInput)>,
     pub(crate) periodic: Vec<[String; 2]>,
     pub(crate) plates: Vec<LoadingPlateInput>,
+    pub(crate) rigid_bodies: Vec<(String, RigidBodyInput)>,
     pub(crate) contacts: Vec<Contact>,
     pub(crate) velocities: Vec<(String, [f64; 2])>,
     pub(crate) steps: Vec<LoadStep>,
@@ -188,6 +191,20 @@ impl Builder {
         self
     }
 
+    /// A rigid body with its reference point, for contacts whose rigid master moves ([`Contact::rigid_body`]) and supports `on`
+    /// its name [L].
+    pub fn rigid_body(mut self, name: impl Into<String>, reference: [f64; 2]) -> Self {
+        self.rigid_bodies.push((name.into(), RigidBodyInput { reference, inertia: None }));
+        self
+    }
+
+    /// A rigid body that may turn by itself, with its centre of mass [L] and its moment of inertia about that [M L²]; its mass is a
+    /// [point mass](Self::point_mass) of its name.
+    pub fn free_rigid_body(mut self, name: impl Into<String>, reference: [f64; 2], inertia: f64) -> Self {
+        self.rigid_bodies.push((name.into(), RigidBodyInput { reference, inertia: Some(inertia) }));
+        self
+    }
+
     /// A contact.
     pub fn contact(mut self, contact: Contact) -> Self {
         self.contacts.push(contact);
@@ -238,9 +255,10 @@ impl Builder {
     ///
     /// # Errors
     /// [`ModelError`] names the place, the value and what to do.
-    pub fn build(self) -> Checked<Model> {
+    pub fn build(mut self) -> Checked<Model> {
         self.check_names()?;
         section::check(&self.mesh)?;
+        rigid::add(&self.rigid_bodies, &mut self.mesh)?;
         let (bodies, body_of_element) = body::bodies(&self.bodies, &self.mesh)?;
         let solids = body::solids(&self.mesh, &self.bodies, &body_of_element)?;
         let mut model = Model {

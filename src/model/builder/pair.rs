@@ -32,7 +32,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::contact::{Contact, MasterSide, Radiation, SlidingRange};
 use super::error::{Checked, ModelError, check_positive, check_size};
 use super::groups::{edges, group, node_lists};
-use super::{along, contact, initial};
+use super::{along, contact, initial, rigid};
 use crate::contact::master::{Master, Rigid};
 use crate::contact::mortar::{Mortar, mortar_points};
 use crate::contact::pair::{ContactPair, Reverse};
@@ -250,8 +250,10 @@ fn master(place: &str, contact: &Contact, points: &[SlavePoint], model: &Model) 
         if contact.smooth {
             return refused("is for a master of mesh edges, and a rigid body needs none: leave it out");
         }
-        return contact::rigid(&contact.master, &format!("{place}.master")).map(Master::Rigid);
+        let shape = contact::shape(&contact.master, &format!("{place}.master"))?;
+        return Ok(Master::Rigid(Rigid { shape, body: rigid::of_contact(contact, mesh, place)? }));
     };
+    rigid::of_contact(contact, mesh, place)?;
     let master = edges(mesh, group, &format!("{place}.master"))?;
     let mut surface = Surface::new(&node_lists(master));
     if contact.is_own() {

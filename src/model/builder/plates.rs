@@ -218,7 +218,7 @@ pub fn plate_of_moment(model: &Model, on: &Place, place: &str) -> Checked<[usize
     let leaders = model.linkage.rigid.iter().find(|plate| plate.iter().all(|node| nodes.contains(node)));
     leaders.filter(|_| is_plate).copied().ok_or_else(|| {
         let message = format!(
-            "a moment acts on a plate that rotates, and {on} is none: list it in plates, with \"moves\": \"rigid\""
+            "a moment acts on a rigid body or a plate that rotates, and {on} is neither: list it in plates, with \"moves\": \"rigid\""
         );
         ModelError::new(format!("{place}.on"), message)
     })

@@ -14,6 +14,7 @@ use super::initial::launch;
 use super::load_step::{IncrementSettings, LoadStep, RuptureSettings, UntilSettings};
 use super::loads;
 use super::loads::LoadsInForce;
+use super::rigid;
 use super::section::hold_axis;
 use super::supports::{InForce, freed, supports};
 use crate::contact::pair::ContactPair;
@@ -73,6 +74,7 @@ impl Schedule<'_> {
             self.in_force.stay();
         }
         supports(&mut self.in_force, &given.supports, place, span, self.model)?;
+        rigid::hold(&mut self.in_force, span, self.model);
         hold_axis(&mut self.in_force.dofs, place, span, self.model)?;
         let before = std::mem::replace(&mut self.supports, self.in_force.all(place, self.model)?);
         // In motion there is no rest of the reaction: what held is gone.
@@ -198,6 +200,13 @@ pub fn stabilization(place: &str, given: &LoadStep, scheme: Scheme, model: &Mode
         let coefficient = share * body.material.p_wave_modulus() * given.duration / body.nodes.len() as f64;
         let dofs = body.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
         dofs.for_each(|dof| coefficients[dof] = coefficient * model.mesh.section.weight(model.mesh.nodes[dof / 2]));
+    }
+    // A rigid body has the dashpots of the softest body.
+    let softest = model.bodies.iter().map(|body| body.material.p_wave_modulus()).reduce(f64::min).unwrap_or_default();
+    let depth = model.solids.iter().map(|solid| solid.mean_weight()).reduce(f64::min).unwrap_or_default();
+    for body in &model.mesh.rigid_bodies {
+        let dofs = body.nodes().into_iter().flat_map(|node| [2 * node, 2 * node + 1]);
+        dofs.for_each(|dof| coefficients[dof] = share * softest * depth * given.duration);
     }
     Ok(coefficients)
 }

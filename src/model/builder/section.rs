@@ -75,12 +75,18 @@ pub fn hold_axis(in_force: &mut BTreeMap<usize, Prescribed>, place: &str, span: 
         let message = "a rotation in the plane is no motion of axisymmetric bodies: prescribe ux and uy";
         return Err(ModelError::new(format!("{place}.supports"), message));
     }
-    for node in on_axis(model).chain(model.plates.iter().flatten().copied()) {
+    let rigid = model.mesh.rigid_bodies.iter().map(|body| body.reference);
+    for node in on_axis(model).chain(model.plates.iter().flatten().copied()).chain(rigid) {
         let dof = 2 * model.ties.original(node);
         let held = Prescribed::displacement(dof, Drive::Constant(0.0), span);
         let given = in_force.entry(dof).or_insert(held);
         let rests = |drive: &Drive| matches!(drive, Drive::Constant(0.0) | Drive::Rate(0.0));
         if !matches!(&given.motion, Motion::Displacement(drive, _) if rests(drive)) {
+            if let Some(body) = model.mesh.rigid_bodies.iter().find(|body| body.reference == node) {
+                let message =
+                    format!("the rigid body `{}` moves along y alone in axisymmetry: leave its ux out", body.name);
+                return Err(ModelError::new(format!("{place}.supports"), message));
+            }
             let message = format!(
                 "node {} lies on the axis or on a plate, and keeps its radius: ux is 0 there; leave it out of the group that is \
                  moved",

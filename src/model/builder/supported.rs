@@ -26,10 +26,12 @@ use nalgebra::{DVector, Vector2, Vector3};
 
 use super::error::ModelError;
 use super::load_step::LoadStep;
+use super::rigid;
 use crate::contact::master::Master;
 use crate::contact::pair::ContactPair;
 use crate::contact::surface::Surface;
 use crate::mesh::joined::Joined;
+use crate::mesh::rigid::RigidBody;
 use crate::model::support::Direction;
 use crate::model::{Model, Step};
 
@@ -52,7 +54,8 @@ fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Result<(), ModelErr
     let nodes = model.bodies.iter().flat_map(|body| &body.nodes);
     nodes.for_each(|&node| held[2 * node..2 * node + 2].fill(true));
     // Whether contact holds a node that may part is left to the solver.
-    let points = model.contacts.iter().flat_map(ContactPair::slave_nodes);
+    let rigid = model.contacts.iter().filter_map(|pair| pair.master.rigid_body()).flat_map(RigidBody::nodes);
+    let points = model.contacts.iter().flat_map(ContactPair::slave_nodes).chain(rigid);
     points.for_each(|node| held[2 * node..2 * node + 2].fill(true));
     let follow = model.linkage.followers.iter().flat_map(|follower| follower.dofs());
     follow.for_each(|(_, dof)| held[dof] = true);
@@ -60,7 +63,13 @@ fn check_lone_nodes(k: usize, step: &Step, model: &Model) -> Result<(), ModelErr
         // An inclined direction and what is across it are counted as the dofs that have their equations.
         held[2 * node + usize::from(d.x.abs() < d.y.abs())] = true;
     }
-    match held.iter().position(|held| !held) {
+    let free = held.iter().position(|held| !held);
+    if let Some((RigidBody { name, .. }, key)) = free.and_then(|dof| rigid::free_motion(&model.mesh, dof)) {
+        let message =
+            format!("nothing touches the rigid body `{name}`, and its {key} is free: give it, 0 where it rests");
+        return Err(ModelError::new(format!("steps[{k}].supports"), message));
+    }
+    match free {
         Some(dof) => Err(ModelError::new(
             format!("steps[{k}].supports"),
             format!(
@@ -79,6 +88,7 @@ fn check_mass(k: usize, step: &Step, model: &Model) -> Result<(), ModelError> {
     let dense = model.bodies.iter().filter(|body| body.material.density() > 0.0).flat_map(|body| &body.nodes);
     let points = model.point_masses.iter().flat_map(|point| &point.nodes);
     dense.chain(points).for_each(|&node| carried[node] = true);
+    model.mesh.rigid_bodies.iter().for_each(|body| carried[body.turning] = body.inertia > 0.0);
     let prescribed = |dof: usize| step.supports.binary_search_by_key(&dof, |support| support.at.dof).is_ok();
     let held = |node: usize| prescribed(2 * node) && prescribed(2 * node + 1);
     let massless = |node: &usize| !(carried[*node] || held(*node));
@@ -87,7 +97,16 @@ fn check_mass(k: usize, step: &Step, model: &Model) -> Result<(), ModelError> {
         let message = format!("is 0, but {why}: give a density");
         return Err(ModelError::new(format!("bodies.{}.material.density", body.name), message));
     }
-    match (0..model.mesh.nodes.len()).find(massless) {
+    let free = (0..model.mesh.nodes.len()).find(massless);
+    let rigid = free.and_then(|node| model.mesh.rigid_bodies.iter().find(|body| body.nodes().contains(&node)));
+    if let Some(RigidBody { name, turning, .. }) = rigid {
+        let (place, motion) = match free == Some(*turning) {
+            true => (format!("rigid_bodies.{name}.inertia"), "or give its angle by a support"),
+            false => (format!("point_masses.{name}"), "or give its ux and uy by supports"),
+        };
+        return Err(ModelError::new(place, format!("is missing, but {why}: give one, {motion}")));
+    }
+    match free {
         Some(node) => Err(ModelError::new(
             "point_masses",
             format!("node {} belongs to no element, and {why}: give one to its group", model.mesh.node_tags[node]),

@@ -33,6 +33,7 @@ use super::groups::{Place, edges, nodes_at};
 use super::load::Change;
 use super::load_step::{Rotation, Support};
 use super::plates::check_support;
+use super::rigid;
 use super::shares::pressure_shares;
 use crate::mesh::Edge;
 use crate::model::Model;
@@ -49,6 +50,7 @@ pub fn supports(in_force: &mut InForce, given: &[Support], place: &str, span: Sp
         let nodes = nodes_at(&model.mesh, &support.on, &format!("{place}.on"))?;
         let nodes: Vec<usize> = nodes.into_iter().map(|node| model.ties.original(node)).collect();
         check_directions(support, &place)?;
+        rigid::check_support(support, &place, &model.mesh)?;
         check_on_plates(support, &nodes, model, &place)?;
         check_support(support, &nodes, model, &place)?;
         for (key, component, change) in [("ux", 0, &support.ux), ("uy", 1, &support.uy)] {
@@ -62,6 +64,12 @@ pub fn supports(in_force: &mut InForce, given: &[Support], place: &str, span: Sp
         }
         for along in inclined(support, &nodes, &place, model)? {
             along.change(in_force, span, model)?;
+        }
+        if let Some((dof, motion)) = rigid::angle(support, &place, span, model)? {
+            if motion.is_none() && !before.dofs.contains_key(&dof) {
+                return Err(frees_nothing(&format!("{place}.angle"), &support.on));
+            }
+            in_force.set(dof, motion.as_ref());
         }
         let Some(change) = &support.rotation else { continue };
         let held = nodes.iter().any(|node| before.dofs.contains_key(&(2 * node)));
@@ -101,7 +109,7 @@ fn inclined<'s>(support: &'s Support, nodes: &[usize], place: &str, model: &Mode
 
 /// A support must prescribe something, and no direction twice.
 fn check_directions(support: &Support, place: &str) -> Checked<()> {
-    let Support { ux, uy, along, u, un, rotation, .. } = support;
+    let Support { ux, uy, along, u, un, rotation, angle, .. } = support;
     match (along, u) {
         (Some(_), None) => return Err(ModelError::new(place, "gives a direction `along` and no displacement: give u")),
         (None, Some(_)) => return Err(ModelError::new(place, "gives u and no direction: give `along`, [x, y]")),
@@ -109,9 +117,11 @@ fn check_directions(support: &Support, place: &str) -> Checked<()> {
     }
     let given = [("ux", ux.is_some()), ("uy", uy.is_some()), ("along", along.is_some()), ("un", un.is_some())];
     let Some((key, _)) = given.into_iter().find(|(_, given)| *given) else {
-        return match rotation {
-            Some(_) => Ok(()),
-            None => Err(ModelError::new(place, "prescribes nothing: give ux, uy, along with u, un or rotation")),
+        return match (rotation, angle) {
+            (Some(_), _) | (_, Some(_)) => Ok(()),
+            (None, None) => {
+                Err(ModelError::new(place, "prescribes nothing: give ux, uy, along with u, un or rotation"))
+            }
         };
     };
     match rotation {

@@ -207,6 +207,7 @@ pub(super) fn masses(model: &Model) -> Vec<f64> {
     for point in &model.point_masses {
         point.nodes.iter().for_each(|&node| mass[node] += point.mass);
     }
+    model.mesh.rigid_bodies.iter().for_each(|body| mass[body.turning] += body.turning_mass());
     model.ties.gather(1, &mut mass);
     model.ties.spread(1, &mut mass);
     mass

@@ -25,9 +25,10 @@ use serde::{Deserialize, Serialize};
 
 use super::Explicit;
 use crate::contact::master::Master;
-use crate::contact::surface::SegmentWeights;
+use crate::contact::surface::{SegmentWeights, SlavePoint};
 use crate::equations::sums::TrialFailure;
-use crate::mesh::configuration::vector;
+use crate::mesh::configuration::{Configuration, vector};
+use crate::mesh::rigid::RigidBody;
 use crate::model::element::Memory;
 use crate::model::state::State;
 use crate::model::{Model, Step};
@@ -193,7 +194,7 @@ impl Stability {
         self.segments.clear();
         self.segments.extend(segments(state));
         (self.since, self.relooked) = (0, false);
-        self.add_stiffness(step, state);
+        self.add_stiffness(step, mass, state);
         let softness = self.softness.iter_mut().zip(mass);
         softness.for_each(|(added, mass)| *added = if *mass > 0.0 { *added / mass } else { 0.0 });
         let lone = self.softness.iter().map(|softness| longest(*softness, 0.0)).fold(f64::INFINITY, f64::min);
@@ -211,7 +212,7 @@ impl Stability {
     }
 
     /// Write k of (3) at every node over its softness [F/L].
-    fn add_stiffness(&mut self, step: &Step, state: &State) {
+    fn add_stiffness(&mut self, step: &Step, mass: &[f64], state: &State) {
         let Self { model, softness: added, .. } = self;
         let x = model.configuration(&state.displacement);
         added.clear();
@@ -222,7 +223,7 @@ impl Stability {
                 let stiffness = pair.stiffest(slave) * slave.current_length(&x);
                 let faced = match &pair.master {
                     Master::Mesh(surface) => surface.segments[foot.segment].position(foot.xi),
-                    Master::Rigid(_) => SegmentWeights::default(),
+                    Master::Rigid(rigid) => rigid_weights(rigid.body.as_ref(), slave, mass, &x),
                 };
                 let weights = || slave.position.iter().chain(&faced);
                 let total: f64 = weights().map(|(_, w)| w.abs()).sum();
@@ -233,6 +234,14 @@ impl Stability {
         model.ties.gather(1, added);
         model.ties.spread(1, added);
     }
+}
+
+/// How far the nodes of a rigid body that has mass move what it touches; none of one whose motion is prescribed.
+fn rigid_weights(body: Option<&RigidBody>, slave: &SlavePoint, mass: &[f64], x: &Configuration) -> SegmentWeights {
+    let Some(body) = body else { return SegmentWeights::default() };
+    let lever = (slave.at(x) - x.at(body.reference)).norm() / body.radius;
+    let weights = [(body.reference, 1.0), (body.turning, lever)];
+    weights.into_iter().filter(|(node, _)| mass[*node] > 0.0).collect()
 }
 
 /// Elements of bodies that expand when they are heated; those of a linear law are as stiff as before.

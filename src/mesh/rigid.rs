@@ -1,0 +1,69 @@
+//! Rigid bodies: masters of contacts that move as a whole.
+//!
+//! Two nodes without elements carry the motion of a rigid body, one its displacement and the other its rotation:
+//!
+//! ```text
+//! x = x_R + Q(θ)(X − X_R)          x_R = X_R + u_R     dofs of the reference node: u_R        forces on it: F
+//!                                                      first dof of the turning node: r θ     force on it: M/r, M about x_R
+//! ```
+//!
+//! The mass of a rigid body that moves by itself is that of a point at the reference node, its centre of mass; its moment of inertia I is a
+//! mass I/r² at the turning node: m a = F, I θ̈ = M.
+//!
+//! r is a length of the size of the model, so that all dofs are lengths and all forces on them forces. The second dof of the
+//! turning node does nothing, and is 0. In this way supports, reactions, energies, time schemes and checkpoints know of rigid
+//! bodies without being told.
+
+use nalgebra::{Rotation2, Vector2};
+
+use super::configuration::Configuration;
+
+/// A rigid body, by the nodes that carry its motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RigidBody {
+    /// Its name, which is that of a group with its reference node
+    pub name: String,
+    /// The node at its reference point
+    pub reference: usize,
+    /// The node that carries its rotation
+    pub turning: usize,
+    /// r: displacement of the turning node per angle [L]
+    pub radius: f64,
+    /// Moment of inertia about the reference point, 0 where none is given [M L²]
+    pub inertia: f64,
+}
+
+impl RigidBody {
+    /// Its nodes.
+    pub fn nodes(&self) -> [usize; 2] {
+        [self.reference, self.turning]
+    }
+
+    /// Mass of the turning node [M].
+    pub fn turning_mass(&self) -> f64 {
+        self.inertia / self.radius.powi(2)
+    }
+
+    /// θ, counter-clockwise [rad].
+    pub fn angle(&self, x: &Configuration) -> f64 {
+        x.displacement(self.turning).x / self.radius
+    }
+
+    /// Q(θ).
+    pub fn rotation(&self, x: &Configuration) -> Rotation2<f64> {
+        Rotation2::new(self.angle(x))
+    }
+
+    /// A point as the body sees it: X − origin and what has come to it, Qᵀ(u − u_R) + (Qᵀ − I)(X − X_R).
+    pub fn seen(&self, weights: &[(usize, f64)], origin: Vector2<f64>, x: &Configuration) -> [Vector2<f64>; 2] {
+        let [apart, u] = x.apart(weights, origin);
+        let [arm, moved] = [x.apart(weights, x.reference(self.reference))[0], u - x.displacement(self.reference)];
+        [apart, self.rotation(x).inverse() * moved + turned(arm, -self.angle(x))]
+    }
+}
+
+/// (Q − I) a, to the last digit of small angles as well.
+pub fn turned(a: Vector2<f64>, angle: f64) -> Vector2<f64> {
+    let (sine, versed) = (angle.sin(), 2.0 * (0.5 * angle).sin().powi(2));
+    Vector2::new(-versed * a.x - sine * a.y, sine * a.x - versed * a.y)
+}

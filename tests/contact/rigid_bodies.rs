@@ -1,0 +1,549 @@
+//! Rigid masters that move: what they do is what a block does that moves past them at rest; slopes, rollers, energies, input that is
+//! refused.
+
+use std::sync::Arc;
+
+use fecontact::contact::force::ContactState;
+use fecontact::laws::friction::{CoulombParameters, FrictionParameters};
+use fecontact::mesh::Section;
+use fecontact::model::boundary::Drive;
+use fecontact::model::builder::{Builder, Change, Contact, Load, LoadStep, MasterSide, Place, Support};
+use fecontact::model::method::Method;
+use fecontact::model::scheme::Scheme;
+use fecontact::model::{Model, NewtonSettings, State};
+use fecontact::output::history::History;
+use fecontact::run::run;
+use nalgebra::{Rotation2, Vector2};
+use serde_json::json;
+
+use crate::common::{
+    Blocks, Finished, Record, close, expression, finish, finish_at, linear, model, neo_hookean, run_through,
+};
+
+const MU: f64 = 0.3;
+
+/// A block 2 × 1 with its bottom on y = 0, on a master that is at rest or part of the rigid body `tool`.
+fn block(soft: bool, contact: Contact) -> Builder {
+    let mesh = Blocks::default().rectangle("block", [6, 3], [-1.0, 0.0], [1.0, 1.0]).mesh();
+    let builder = Model::builder(mesh).newton(NewtonSettings { tolerance: 1e-12, max_iterations: 40 });
+    let builder = match soft {
+        true => builder.body("block", neo_hookean(100.0, 0.3, 2.0)),
+        false => builder.body("block", linear(100.0, 0.3, 2.0)),
+    };
+    builder.contact(contact.alpha_n(3e3))
+}
+
+fn on(master: MasterSide) -> Contact {
+    Contact::new("base", "block_bottom", master, CoulombParameters::new(MU))
+}
+
+/// An indenter from below, its top at the origin.
+fn disk() -> MasterSide {
+    MasterSide::Circle { centre: [0.0, -3.0], radius: 3.0, hole: false }
+}
+
+fn plane() -> MasterSide {
+    MasterSide::Plane { point: [0.3, 0.0], normal: [0.0, 1.0] }
+}
+
+/// States of the contact agree, but for the place of the feet.
+fn same(what: &str, a: &[ContactState], b: &[ContactState], tolerance: f64) {
+    let largest = a.iter().fold(1.0f64, |most, state| most.max(state.friction.pressure));
+    for (a, b) in a.iter().zip(b) {
+        let of = |state: &ContactState| {
+            let friction = state.friction;
+            [friction.pressure, friction.traction, 1e3 * state.gap, 1e3 * friction.plastic_slip]
+        };
+        for (a, b) in of(a).into_iter().zip(of(b)) {
+            close(what, a, b, tolerance * largest);
+        }
+    }
+}
+
+/// Some points press, so that the comparison says something.
+fn touches(what: &str, states: &[ContactState]) {
+    assert!(states.iter().any(|state| state.friction.pressure > 0.1), "{what}: nothing touches");
+}
+
+/// Moment of the reactions of a group about a point.
+fn moment(run: &Finished, group: &str, state: &State, about: Vector2<f64>) -> f64 {
+    let x = run.model.configuration(&state.displacement);
+    let force = |node: usize| Vector2::new(state.reaction[2 * node], state.reaction[2 * node + 1]);
+    run.nodes(group).into_iter().map(|node| (x.at(node) - about).perp(&force(node))).sum()
+}
+
+/// The moment that supports put on the tool.
+fn moment_of_tool(run: &Finished, state: &State) -> f64 {
+    let body = &run.model.mesh.rigid_bodies[0];
+    body.radius * state.reaction[2 * body.turning]
+}
+
+/// A disk or a plane pressed into a block and dragged along it is a block pressed on it and dragged the other way: tractions, slip,
+/// forces, moments, work and stored energy, at nodes, at Gauss points and by mortar, in finite and in small sliding.
+#[test]
+fn a_tool_that_moves_is_a_block_that_moves() {
+    let path: [fn(f64) -> Drive; 2] = [
+        |sign| expression(&format!("{sign}*(0.2*max(0, t - 1))")),
+        |sign| Drive::Table(vec![[0.0, 0.0], [1.0, -0.04 * sign], [2.0, -0.05 * sign]]),
+    ];
+    let methods = [Method::NodeToSegment, Method::GaussToSegment, Method::Mortar];
+    let shapes: [fn() -> MasterSide; 2] = [disk, plane];
+    for (shape, method, small) in shapes
+        .iter()
+        .flat_map(|shape| methods.iter().flat_map(move |method| [false, true].map(|small| (shape, *method, small))))
+    {
+        let what = format!("{:?}, {method:?}, small {small}", shape());
+        let contact = || {
+            let contact = on(shape()).method(method);
+            if small { contact.small_sliding() } else { contact }
+        };
+        let step = || LoadStep::new("press and drag", 2.0).dt(0.125);
+        let [x, y] = path;
+        let resting =
+            run_through(block(!small, contact()).step(step().support(Support::on("block_top").ux(x(1.0)).uy(y(1.0)))));
+        let moving = run_through(
+            block(!small, contact().rigid_body("tool"))
+                .rigid_body("tool", [0.4, -1.0])
+                .step(step().fix("block_top").support(Support::on("tool").ux(x(-1.0)).uy(y(-1.0)).angle(0.0))),
+        );
+        assert_eq!(resting.states.len(), moving.states.len(), "{what}");
+        for (a, b) in resting.states.iter().zip(&moving.states) {
+            same(&what, &a.contacts[0], &b.contacts[0], 1e-9);
+            let [force, top, tool] =
+                [resting.reaction("block_top", a), moving.reaction("block_top", b), moving.reaction("tool", b)];
+            for i in 0..2 {
+                close(&format!("{what}: held"), top[i], force[i], 1e-9);
+                close(&format!("{what}: tool"), tool[i], -force[i], 1e-9);
+            }
+            let about = moving.model.configuration(&b.displacement).at(moving.nodes("tool")[0]);
+            if !small {
+                // All that acts on the block balances, and on the tool.
+                let sum = moment(&moving, "block_top", b, about) + moment_of_tool(&moving, b);
+                close(&format!("{what}: moment"), sum, 0.0, 1e-9);
+            }
+            let [a, b] = [a, b].map(|state| {
+                let energy = state.energy;
+                [energy.external_work, energy.strain, energy.contact_elastic, energy.friction_dissipation]
+            });
+            a.into_iter().zip(b).for_each(|(a, b)| close(&format!("{what}: energy"), a, b, 1e-9));
+        }
+        touches(&what, &moving.last().contacts[0]);
+        let slid = moving.last().contacts[0].iter().any(|state| state.friction.plastic_slip.abs() > 0.01);
+        assert!(slid, "{what}: nothing slides");
+    }
+}
+
+/// A tool that turns about its reference point is a block that turns about it the other way.
+#[test]
+fn a_tool_that_turns_is_a_block_that_turns() {
+    let about = [0.4, -1.0];
+    let polyline = || MasterSide::Polyline { points: vec![[-2.0, -0.3], [-0.5, 0.0], [0.7, -0.01], [2.5, -0.2]] };
+    let shapes: [fn() -> MasterSide; 2] = [plane, polyline];
+    for (shape, method) in
+        shapes.iter().flat_map(|shape| [Method::GaussToSegment, Method::Mortar].map(|method| (shape, method)))
+    {
+        let contact = || on(shape()).method(method);
+        let what = format!("{:?}, {method:?}", shape());
+        // Both begin with a press, and turn then.
+        let press = || LoadStep::new("press", 1.0).dt(0.25);
+        let turn = || LoadStep::new("turn", 1.0).dt(0.0625);
+        let down = || Support::on("block_top").ux(0.0).uy(-0.03);
+        let resting = run_through(
+            block(true, contact())
+                .step(press().support(down()))
+                .step(turn().support(Support::on("block_top").rotation(about, 0.3))),
+        );
+        let moving = run_through(
+            block(true, contact().rigid_body("tool"))
+                .rigid_body("tool", about)
+                .step(press().support(down()).support(Support::on("tool").ux(0.0).uy(0.0).angle(0.0)))
+                .step(turn().support(Support::on("tool").angle(-0.3))),
+        );
+        assert_eq!(resting.states.len(), moving.states.len(), "{what}");
+        for (a, b) in resting.states.iter().zip(&moving.states) {
+            same(&what, &a.contacts[0], &b.contacts[0], 1e-8);
+            let force = Vector2::from(resting.reaction("block_top", a));
+            let angle = -0.3 * (a.time - 1.0).max(0.0);
+            let turned = Rotation2::new(angle) * force;
+            close(&format!("{what}: force"), (Vector2::from(moving.reaction("tool", b)) + turned).norm(), 0.0, 1e-8);
+            let center = Vector2::from(about);
+            close(
+                &format!("{what}: moment"),
+                moment_of_tool(&moving, b),
+                -moment(&resting, "block_top", a, center),
+                1e-8,
+            );
+            let [a, b] = [a, b].map(|state| [state.energy.strain, state.energy.friction_dissipation]);
+            a.into_iter().zip(b).for_each(|(a, b)| close(&format!("{what}: energy"), a, b, 1e-8));
+        }
+        touches(&what, &moving.last().contacts[0]);
+    }
+}
+
+/// In motion: a block that flies along a plane at a steady speed, pressed on it, and a plane that passes below a block.
+#[test]
+fn a_tool_that_moves_steadily_is_a_block_that_does() {
+    let v = 0.5;
+    for scheme in
+        [Scheme::Newmark { beta: 0.25, gamma: 0.5 }, Scheme::Hht { alpha: -0.1 }, Scheme::Explicit { safety: 0.8 }]
+    {
+        let step = || LoadStep::new("move", 0.4).scheme(scheme).dt(0.004);
+        let down = || expression("-0.03*(1 - cos(7*t))");
+        let drag = |v: f64| Drive::Rate(v);
+        let contact = || on(plane()).method(Method::NodeToSegment);
+        let resting = run_through(
+            block(true, contact())
+                .initial_velocity("block", [v, 0.0])
+                .interval(0.02)
+                .step(step().support(Support::on("block_top").ux(drag(v)).uy(down()))),
+        );
+        let tool = || Support::on("tool").ux(drag(-v)).uy(0.0).angle(0.0);
+        let moving = run_through(
+            block(true, contact().rigid_body("tool"))
+                .rigid_body("tool", [0.0, -0.5])
+                .interval(0.02)
+                .step(step().support(Support::on("block_top").ux(0.0).uy(down())).support(tool())),
+        );
+        let what = format!("{scheme:?}");
+        let [a, b] = [resting.last(), moving.last()];
+        touches(&what, &b.contacts[0]);
+        same(&what, &a.contacts[0], &b.contacts[0], 1e-7);
+        let [force, held] = [resting.reaction("block_top", a), moving.reaction("block_top", b)];
+        (0..2).for_each(|i| close(&what, held[i], force[i], 1e-6));
+        let state = b.velocity[2 * moving.nodes("tool")[0]];
+        close(&format!("{what}: velocity of the tool"), state, -v, 1e-9);
+        if matches!(scheme, Scheme::Newmark { .. }) {
+            // Momentum is the mean force over an increment times its length: what a frame that moves steadily adds to both cancels.
+            close(&format!("{what}: energy"), b.energy.error(), a.energy.error(), 1e-6);
+        }
+    }
+}
+
+/// Without friction on a linear body every force is that of the motion: work of the tool is what is stored, to round-off.
+#[test]
+fn the_work_of_a_tool_is_stored() {
+    let contact = Contact::new("base", "block_bottom", disk(), FrictionParameters::Frictionless {});
+    let step =
+        LoadStep::new("press", 1.0).dt(0.1).fix("block_top").support(Support::on("tool").ux(0.0).uy(0.04).angle(0.1));
+    let run = run_through(
+        block(false, contact.small_sliding().rigid_body("tool")).rigid_body("tool", [0.0, -3.0]).step(step),
+    );
+    let energy = run.last().energy;
+    assert!(energy.external_work > 1e-2, "{energy:?}");
+    // Where a point closes within an increment the mean of the forces at its ends is not that of its course.
+    let closed = |state: &State| state.contacts[0].iter().filter(|state| state.friction.pressure > 0.0).count();
+    let steady = run.states.windows(2).filter(|two| closed(&two[0]) == closed(&two[1]));
+    let errors: Vec<f64> = steady.map(|two| two[1].energy.error() - two[0].energy.error()).collect();
+    assert!(errors.len() > 2, "{} increments without a change of contact", errors.len());
+    errors.iter().for_each(|error| close("balance", *error, 0.0, 1e-8 * energy.external_work));
+}
+
+/// A point of 0.7 under a weight on top of a roller of radius 2, held along x, that turns by 0.6: it slides by R θ less what it
+/// sticks elastically, q = μ N, and the moment is that of the friction at its arm, R − N/(α_n A).
+#[test]
+fn a_roller_that_turns_slides_below_a_point() {
+    let (weight, area, alpha_n, alpha_t, radius) = (3.0, 0.7, 2e3, 1e3, 2.0);
+    let case = json!({
+        "mesh": {"nodes": [[0, 2]], "points": {"p": [0]}},
+        "rigid_bodies": {"roller": {"reference": [0, 0]}},
+        "contacts": {"c": {"slave": "p", "area": area, "rigid_body": "roller", "normal": {"alpha_n": alpha_n},
+            "master": {"circle": {"centre": [0, 0], "radius": radius}},
+            "friction": {"law": "coulomb", "mu": MU, "alpha_t": alpha_t}}},
+        "steps": [
+            {"name": "press", "duration": 1, "dt": {"initial": 0.5}, "loads": [{"on": "p", "force": {"y": -weight}}],
+             "supports": [{"on": "p", "ux": 0}, {"on": "roller", "ux": 0, "uy": 0, "angle": 0}]},
+            {"name": "turn", "duration": 1, "dt": {"initial": 0.125}, "supports": [{"on": "roller", "angle": {"rate": 0.6}}]}
+        ]
+    });
+    let run = finish(&case);
+    let (state, point) = (run.last(), run.last().contacts[0][0]);
+    let (pressure, arm) = (weight / area, radius - weight / area / alpha_n);
+    close("p", point.friction.pressure, pressure, 1e-9);
+    // Counter-clockwise the top goes to −x: the point goes to +x on it, along s.
+    close("q", point.friction.traction, MU * pressure, 1e-9);
+    close("slip", point.friction.plastic_slip, radius * 0.6 - MU * pressure / alpha_t, 1e-9);
+    let node = run.nodes("p")[0];
+    close("pulled", state.reaction[2 * node], MU * weight, 1e-9);
+    close("moment", moment_of_tool(&run, state), MU * weight * arm, 1e-9);
+    // Work of the roller against friction; the weight sinks by the penetration.
+    close(
+        "dissipated",
+        state.energy.friction_dissipation,
+        MU * weight * (radius * 0.6 - MU * pressure / alpha_t),
+        1e-9,
+    );
+}
+
+/// A slope rises below a point under its weight: q = W sin θ/A and p = W cos θ/A, until tan θ = μ, beyond which nothing holds it.
+#[test]
+fn a_slope_rises_until_what_lies_on_it_slides() {
+    let (weight, area) = (3.0, 0.7);
+    let case = |end: f64| {
+        json!({
+            "mesh": {"nodes": [[0.4, 0]], "points": {"p": [0]}},
+            "rigid_bodies": {"slope": {"reference": [-1, -0.5]}},
+            "contacts": {"c": {"slave": "p", "area": area, "rigid_body": "slope", "normal": {"alpha_n": 1e5},
+                "master": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+                "friction": {"law": "coulomb", "mu": MU, "alpha_t": 1e5}}},
+            "newton": {"tolerance": 1e-12},
+            "steps": [
+                {"name": "press", "duration": 1, "dt": {"initial": 0.5}, "loads": [{"on": "p", "force": {"y": -weight}}],
+                 "supports": [{"on": "p", "ux": 0}, {"on": "slope", "ux": 0, "uy": 0, "angle": 0}]},
+                {"name": "tilt", "duration": 1, "dt": {"initial": 0.0625, "min": 1e-4},
+                 "supports": [{"on": "p", "ux": null}, {"on": "slope", "angle": end}]}
+            ]
+        })
+    };
+    let held = finish(&case(0.28));
+    for state in held.states.iter().filter(|state| state.time > 1.0) {
+        let angle = 0.28 * (state.time - 1.0);
+        let friction = state.contacts[0][0].friction;
+        close("p", friction.pressure * area, weight * angle.cos(), 1e-9);
+        // Downhill is to −x, where −s points.
+        close("q", friction.traction * area, -weight * angle.sin(), 1e-9);
+    }
+    let (critical, steep) = (MU.atan(), 0.4);
+    let mut record = Record::default();
+    let (_, result) = run(&Arc::new(model(&case(steep))), &mut [&mut record]);
+    assert!(result.is_err(), "nothing holds it on a slope of 0.4");
+    let last = steep * (record.states.last().expect("states").time - 1.0);
+    assert!(last <= critical && critical - last < 2e-4 * steep, "it stayed until {last}, and μ is that of {critical}");
+}
+
+/// A disk under a force sinks in as deep as that force presses it that is prescribed: the way there does not matter without friction.
+#[test]
+fn a_disk_sinks_in_under_its_force() {
+    let force = 6.0;
+    let contact = || Contact::new("base", "block_bottom", disk(), FrictionParameters::Frictionless {});
+    let base = || block(true, contact().rigid_body("tool")).rigid_body("tool", [0.0, -3.0]);
+    let press = || {
+        let path = Support::on("tool").ux(0.0).uy(0.02).angle(0.0);
+        LoadStep::new("press", 1.0).dt(0.25).fix("block_top").support(path)
+    };
+    let free = Support { uy: Some(Change::End), ..Support::on("tool") };
+    let load = LoadStep::new("load", 1.0).dt(0.125).support(free).load(Load::force("tool", [0.0, force]));
+    let loaded = run_through(base().step(press()).step(load));
+    let (state, tool) = (loaded.last(), loaded.nodes("tool")[0]);
+    close("no reaction", loaded.reaction("tool", state)[1], 0.0, 1e-10);
+    close("the top bears it", loaded.reaction("block_top", state)[1], -force, 1e-8);
+    let deep = state.displacement[2 * tool + 1];
+    assert!(deep > 0.02, "{deep}");
+    let on = LoadStep::new("press on", 1.0).dt(0.125).support(Support::on("tool").uy(deep));
+    let pressed = run_through(base().step(press()).step(on));
+    close("the force of that depth", pressed.reaction("tool", pressed.last())[1], force, 1e-8);
+}
+
+/// A roller of radius 2 below a point that presses on it and is held along x: under a moment M it turns until friction bears that,
+/// q A arm = M at the slip R θ = q/α_t.
+#[test]
+fn a_roller_turns_under_a_moment() {
+    let (weight, area, alpha_n, alpha_t, radius, moment) = (3.0, 0.7, 2e3, 1e3, 2.0, 1.2);
+    let case = json!({
+        "mesh": {"nodes": [[0, 2]], "points": {"p": [0]}},
+        "rigid_bodies": {"roller": {"reference": [0, 0]}},
+        "contacts": {"c": {"slave": "p", "area": area, "rigid_body": "roller", "normal": {"alpha_n": alpha_n},
+            "master": {"circle": {"centre": [0, 0], "radius": radius}},
+            "friction": {"law": "coulomb", "mu": MU, "alpha_t": alpha_t}}},
+        "newton": {"tolerance": 1e-12},
+        "steps": [
+            {"name": "press", "duration": 1, "dt": {"initial": 0.5}, "loads": [{"on": "p", "force": {"y": -weight}}],
+             "supports": [{"on": "p", "ux": 0}, {"on": "roller", "ux": 0, "uy": 0, "angle": 0}]},
+            {"name": "turn", "duration": 1, "dt": {"initial": 0.25}, "supports": [{"on": "roller", "angle": null}],
+             "loads": [{"on": "roller", "moment": moment}]}
+        ]
+    });
+    let run = finish(&case);
+    let (state, arm) = (run.last(), radius - weight / area / alpha_n);
+    let q = moment / (area * arm);
+    close("q", state.contacts[0][0].friction.traction, q, 1e-9);
+    let x = run.model.configuration(&state.displacement);
+    close("angle", run.model.mesh.rigid_bodies[0].angle(&x), q / alpha_t / radius, 1e-10);
+    close("no reaction", moment_of_tool(&run, state), 0.0, 1e-10);
+}
+
+/// A disk flies, turns not, and meets a point aside of its path; both go on freely. Momentum and angular momentum stay, to round-off and to
+/// second order in the increment, and what friction takes is all that is lost; in implicit and explicit steps alike.
+#[test]
+fn a_disk_and_a_point_keep_their_momentum() {
+    let (masses, inertia, area) = ([0.5, 2.0], 3.0, 0.1);
+    let velocities = [Vector2::new(0.5, -0.4), Vector2::new(0.3, 0.6)];
+    for scheme in [json!({"newmark": {}}), json!({"explicit": {}})] {
+        let case = json!({
+            "mesh": {"nodes": [[0.4, 1.25]], "points": {"p": [0]}},
+            "rigid_bodies": {"disk": {"reference": [0, 0], "inertia": inertia}},
+            "point_masses": {"p": {"mass": masses[0], "velocity": [velocities[0].x, velocities[0].y]},
+                "disk": {"mass": masses[1], "velocity": [velocities[1].x, velocities[1].y]}},
+            "contacts": {"c": {"slave": "p", "area": area, "rigid_body": "disk", "normal": {"alpha_n": 2e3},
+                "master": {"circle": {"centre": [0, 0], "radius": 1.2}},
+                "friction": {"law": "coulomb", "mu": MU, "alpha_t": 1e3}}},
+            "steps": [{"name": "fly", "duration": 0.5, "scheme": scheme, "dt": {"initial": 5e-4}}],
+            "output": {"interval": 0.01}
+        });
+        let run = finish(&case);
+        let (p, disk) = (run.nodes("p")[0], run.nodes("disk")[0]);
+        let body = run.model.mesh.rigid_bodies[0].clone();
+        let momenta = |state: &State| {
+            let x = run.model.configuration(&state.displacement);
+            let of = |node: usize, mass: f64| {
+                let v = Vector2::new(state.velocity[2 * node], state.velocity[2 * node + 1]) * mass;
+                (v, x.at(node).perp(&v))
+            };
+            let ([a, b], spin) =
+                ([of(p, masses[0]), of(disk, masses[1])], state.velocity[2 * body.turning] / body.radius);
+            (a.0 + b.0, a.1 + b.1 + inertia * spin, spin)
+        };
+        let (first, last) = (velocities[0] * masses[0] + velocities[1] * masses[1], run.last());
+        let (momentum, angular, spin) = momenta(last);
+        assert!(spin.abs() > 1e-2, "{scheme}: friction turns the disk, {spin}");
+        close(&format!("{scheme}: momentum"), (momentum - first).norm(), 0.0, 1e-7);
+        let start = Vector2::new(0.4, 1.25).perp(&(velocities[0] * masses[0]));
+        close(&format!("{scheme}: angular momentum"), angular, start, 1e-4);
+        assert!(last.contacts[0][0].friction.pressure == 0.0, "{scheme}: they part");
+        let energy = last.energy;
+        assert!(energy.friction_dissipation > 1e-3, "{scheme}: {energy:?}");
+        close(&format!("{scheme}: energy"), energy.error(), 0.0, 2e-3 * energy.initial);
+    }
+}
+
+/// What turns by itself in a static step must be held by something, and in motion needs inertia.
+#[test]
+fn free_rigid_bodies_need_something_that_holds_them() {
+    let tool = || block(true, on(plane()).rigid_body("tool")).rigid_body("tool", [0.0, -1.0]);
+    let step = || LoadStep::new("press", 1.0).dt(0.5).fix("block_top");
+    let newmark = || step().scheme(Scheme::Newmark { beta: 0.25, gamma: 0.5 });
+    let refused = |builder: Builder, told: &str| {
+        let error = builder.build().map(|_| ()).expect_err(told).to_string();
+        assert!(error.contains(told), "{error}, expected {told}");
+    };
+    refused(
+        tool().rigid_body("idle", [0.0, 0.0]).step(step().support(Support::on("idle").ux(0.0).angle(0.0))),
+        "nothing touches the rigid body `idle`, and its uy is free",
+    );
+    refused(
+        tool().step(newmark().support(Support::on("tool").ux(0.0).uy(0.0))),
+        "rigid_bodies.tool.inertia: is missing",
+    );
+    refused(tool().step(newmark().support(Support::on("tool").ux(0.0).angle(0.0))), "point_masses.tool: is missing");
+    // A plane without a block on it: what it lacks is told when it is solved.
+    let lifted = MasterSide::Plane { point: [0.0, -0.5], normal: [0.0, 1.0] };
+    let model = block(true, on(lifted).rigid_body("tool"))
+        .rigid_body("tool", [0.0, -1.0])
+        .step(step().support(Support::on("tool").ux(0.0).angle(0.0)))
+        .build()
+        .expect("a model");
+    let (_, result) = run(&Arc::new(model), &mut []);
+    let told = result.expect_err("a free body").to_string();
+    assert!(told.contains("rigid body `tool` along y"), "{told}");
+}
+
+/// The disk of `cases/indenter.json`: pressed in, its forces are those of the base; dragged, it slides everywhere, Q = μ N; rolling, hardly.
+#[test]
+fn an_indenter_is_pressed_in_dragged_and_rolls() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/indenter.json");
+    let case: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(&path).expect("the case")).expect("a case");
+    let run = finish_at(&case, &path);
+    for state in &run.states {
+        let [disk, base] = ["disk", "base"].map(|name| run.reaction(name, state));
+        (0..2).for_each(|i| close("in balance", disk[i], -base[i], 1e-5));
+    }
+    let ratio = |time: f64| {
+        let [normal, tangential] = run.contact_force(run.at(time));
+        assert!(normal > 1.0, "N = {normal} at {time}");
+        tangential / normal
+    };
+    close("dragged", ratio(3.0).abs(), MU, 1e-3);
+    // Material that has not slid since comes into contact as far as the disk has rolled on.
+    assert!(ratio(5.0).abs() < 0.8 * MU && ratio(5.0).abs() < ratio(4.0).abs(), "rolling: {}", ratio(5.0));
+    let energy = run.last().energy;
+    close("energy", energy.error(), 0.0, 0.02 * energy.supplied());
+}
+
+/// History has the motion of a rigid body, and the force and moment that move it, whether it is watched or not.
+#[test]
+fn history_tells_of_rigid_bodies() {
+    let contact = on(plane()).rigid_body("tool");
+    let step =
+        LoadStep::new("press", 1.0).dt(0.5).fix("block_top").support(Support::on("tool").ux(0.01).uy(0.03).angle(0.02));
+    let model = Arc::new(block(true, contact).rigid_body("tool", [0.0, -1.0]).step(step).build().expect("a model"));
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut history = History::create(folder.path(), &model).expect("a history");
+    let (_, result) = run(&model, &mut [&mut history]);
+    result.expect("a run");
+    let text = std::fs::read_to_string(folder.path().join("history.csv")).expect("a table");
+    let header: Vec<&str> = text.lines().next().expect("a header").split(',').collect();
+    let last: Vec<&str> = text.lines().last().expect("a row").split(',').collect();
+    let value = |name: &str| -> f64 {
+        let at = header.iter().position(|column| *column == name).unwrap_or_else(|| panic!("no {name} in {header:?}"));
+        last[at].parse().expect("a number")
+    };
+    close("ux", value("tool.ux"), 0.01, 1e-12);
+    close("angle", value("tool.angle"), 0.02, 1e-12);
+    close("fy", value("tool.fy"), value("base.force_y"), 1e-8);
+    close("fx", value("tool.fx"), value("base.force_x"), 1e-8);
+    // The moment on the block is about (0, 0), that on the tool about (0.01, −0.97).
+    let [fx, fy] = ["base.force_x", "base.force_y"].map(value);
+    let shifted =
+        value("base.moment") + (Vector2::new(0.0, 0.0) - Vector2::new(0.01, -0.97)).perp(&Vector2::new(fx, fy));
+    close("moment", value("tool.moment"), shifted, 1e-8);
+}
+
+/// A sphere on a cylinder of rubber: a rigid body of rings moves along y alone, by itself, and its force is that of the full turn.
+#[test]
+fn a_rigid_body_of_rings_moves_along_the_axis() {
+    let sphere = |contact: Contact| {
+        let mesh = Blocks::default().rectangle("block", [6, 3], [0.0, 0.0], [2.0, 1.0]).mesh();
+        let step = LoadStep::new("press", 1.0).dt(0.25);
+        let builder = Model::builder(mesh).section(Section::Axisymmetric).body("block", neo_hookean(100.0, 0.3, 2.0));
+        (builder.contact(contact.alpha_n(3e3)).newton(NewtonSettings { tolerance: 1e-12, max_iterations: 40 }), step)
+    };
+    let (resting, step) = sphere(on(disk()));
+    let resting = run_through(resting.step(step.support(Support::on("block_top").ux(0.0).uy(-0.05))));
+    let (moving, step) = sphere(on(disk()).rigid_body("tool"));
+    let moving = moving.rigid_body("tool", [0.0, -3.0]);
+    let tool = |support: Support| step.clone().support(Support::on("block_top").ux(0.0).uy(0.0)).support(support);
+    let run = run_through(moving.step(tool(Support::on("tool").uy(0.05))));
+    touches("rings", &run.last().contacts[0]);
+    same("rings", &resting.last().contacts[0], &run.last().contacts[0], 1e-9);
+    let force = resting.reaction("block_top", resting.last())[1];
+    close("force", run.reaction("tool", run.last())[1], -force, 1e-9 * force.abs());
+    for (support, told) in [
+        (Support::on("tool").uy(0.05).ux(0.1), "the rigid body `tool` moves along y alone"),
+        (Support::on("tool").uy(0.05).angle(0.1), "a rotation in the plane is no motion"),
+    ] {
+        let (builder, _) = sphere(on(disk()).rigid_body("tool"));
+        let refused = builder.rigid_body("tool", [0.0, -3.0]).step(tool(support)).build();
+        let error = refused.map(|_| ()).expect_err(told).to_string();
+        assert!(error.contains(told), "{error}, expected {told}");
+    }
+}
+
+/// What is refused, and what is said of it.
+#[test]
+fn rigid_bodies_that_are_refused() {
+    let tool = || block(true, on(plane()).rigid_body("tool")).rigid_body("tool", [0.0, -1.0]);
+    let step = || LoadStep::new("press", 1.0).dt(0.5).fix("block_top");
+    let path = || Support::on("tool").ux(0.0).uy(0.03).angle(0.0);
+    let refused = |builder: Builder, told: &str| {
+        let error = builder.build().map(|_| ()).expect_err(told).to_string();
+        assert!(error.contains(told), "{error}, expected {told}");
+    };
+    refused(tool().step(step().support(path().rotation([0.0, 0.0], 0.1))), "rotation");
+    refused(tool().step(step().support(path())).rigid_body("tool", [0.0, 0.0]), "rigid_bodies.tool: is given twice");
+    refused(tool().step(step().support(path())).rigid_body("block", [0.0, 0.0]), "rigid_bodies.block: is a group");
+    refused(tool().rigid_body("b", [f64::NAN, 0.0]).step(step()), "rigid_bodies.b.reference");
+    let other = block(true, on(plane()).rigid_body("punch")).rigid_body("tool", [0.0, -1.0]);
+    refused(other.step(step()), "contacts.base.rigid_body: there is no rigid body `punch`; there are tool");
+    let none = block(true, on(plane()).rigid_body("punch"));
+    refused(none.step(step()), "there is no rigid body `punch`: give it");
+    refused(
+        block(true, on(plane())).step(step().support(Support::on("block_top").angle(0.1))),
+        "steps[0].supports[1].angle: there is no rigid body `block_top`",
+    );
+    refused(
+        tool().step(step().support(path()).support(Support::on(Place::Node(0)).angle(0.1))),
+        "is for a rigid body, and node 0 is a node",
+    );
+    let soft = Contact::new("base", "block_bottom", "block_top", CoulombParameters::new(MU)).rigid_body("tool");
+    refused(block(true, soft).rigid_body("tool", [0.0, 0.0]).step(step().support(path())), "is for a rigid master");
+}
