@@ -60,7 +60,7 @@ def test_sensitivities_are_those_of_steady_sliding() -> None:
     rate, (mu_s, mu_k, kappa, xi) = 0.002, (TRUTH[name] for name in ("mu_s", "mu_k", "kappa", "xi"))
     time = np.linspace(0.0, 400.0, 2001)
     record = Interface(time, rate * time, 1.0, np.zeros_like(time))
-    space = calibration._Space("super_subloading", around("mu_s", "mu_k", "kappa", "xi"), {"r": 400.0, "alpha_t": 2e3})
+    space = calibration.Space("super_subloading", around("mu_s", "mu_k", "kappa", "xi"), {"r": 400.0, "alpha_t": 2e3})
     problem = calibration._Problem([record], space, None)
     last = problem.jacobian(space.coordinates(np.array([mu_s, mu_k, kappa, xi])))[-1]
     above, below = kappa * rate + xi, kappa * rate / mu_k + xi / mu_s
@@ -251,7 +251,7 @@ def test_ranges_that_overlap() -> None:
     found = fc.fit(record, "slip_weakening", free, alpha_t=2e3)
     for name in free:
         assert found.parameters[name] == pytest.approx(given[name], rel=1e-2), found
-    space = calibration._Space("slip_weakening", free, {"alpha_t": 2e3})
+    space = calibration.Space("slip_weakening", free, {"alpha_t": 2e3})
     problem = calibration._Problem([record], space, None)
     # Where mu_s = mu_d = 0.58, mu_s can only rise and mu_d only fall: q = mu_d + (mu_s - mu_d) (1 - s/D_c) up to s = D_c, then mu_d.
     by = problem.differences(space.coordinates(np.array([0.58, 0.58, 0.2])))

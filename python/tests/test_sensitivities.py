@@ -92,7 +92,7 @@ def test_a_record_of_ten_thousand_samples_takes_well_under_a_second() -> None:
 
 
 def problem(record: Any, free: dict[str, float], **fixed: float) -> tuple[Any, np.ndarray]:
-    space = calibration._Space("super_subloading", {name: (value / 9.0, value * 9.0) for name, value in free.items()}, fixed)
+    space = calibration.Space("super_subloading", {name: (value / 9.0, value * 9.0) for name, value in free.items()}, fixed)
     return calibration._Problem([record], space, None), space.coordinates(np.array(list(free.values())))
 
 
