@@ -33,7 +33,8 @@ class Space:
         # The room: the same, as far as μ_k ≤ μ_s can hold whatever the other parameters are.
         self.bottom, self.top = (self.coordinates(end) for end in self._room(ends))
         both = law == "super_subloading" and {"mu_s", "mu_k"} <= set(ranges)
-        self._static, self._kinetic = (self.names.index("mu_s"), self.names.index("mu_k")) if both else (None, None)
+        self._static: int | None = self.names.index("mu_s") if both else None
+        self._kinetic: int | None = self.names.index("mu_k") if both else None
 
     def _room(self, ends: Array) -> tuple[Array, Array]:
         """Lowest and highest values in the room."""

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from ._fit_names import check_names, check_room, no_room
 from ._fit_space import Array, Space
 from ._fit_words import Evidence, words
+from ._plain import a_name, count, names, number
 from ._records import MACHINE, Holds, Interface, Record, SpringSlider
 from .errors import CaseError, Stopped
 from .law import Law
@@ -189,7 +190,7 @@ def _first(problem: _Problem, start: Mapping[str, float], point: Array) -> Array
         values[space.names.index(name)] = value
         point = space.coordinates(values)
     if not np.isfinite(problem.at(point)).all():
-        raise ValueError(f"start: the law has no answer to these records there{f': {problem.refusal}' if problem.refusal else ''}")
+        raise ValueError("start: the law has no answer to these records there")
     return space.shares(point)
 
 
@@ -371,9 +372,14 @@ def fit(
         CaseError: a parameter that is given is wrong.
     """
     records = _records(data)
-    free = free if isinstance(free, Mapping) else [free] if isinstance(free, str) else list(free)
+    free = free if isinstance(free, Mapping) else [free] if isinstance(free, str) else free
+    names(list(free) if isinstance(free, Mapping) else free, "free", "fit")
+    if not isinstance(start, (Mapping, type(None))):
+        raise ValueError(f"start: is a {type(start).__name__}: give values of free parameters by name")
+    starts, seed, threads = count(starts, "starts") or 0, count(seed, "seed") or 0, count(threads, "threads")
     _check(records, free, fixed, starts)
-    check_names(law, [*free, *fixed])
+    _check_fixed(fixed)
+    check_names(a_name(law, "law", "fit"), [*free, *fixed])
     ranges = dict(free) if isinstance(free, Mapping) else _ranges(law, free, records)
     space = Space(law, ranges, fixed)
     check_room(law, ranges, fixed)
@@ -392,7 +398,7 @@ def _records(data: Any) -> list[Record]:
     Raises:
         ValueError: there are none, or something else.
     """
-    records = list(data) if isinstance(data, Iterable) else [data]
+    records: list[Any] = [data] if isinstance(data, np.ndarray) or not isinstance(data, Iterable) else list(data)
     for record in records:
         if not isinstance(record, (Interface, Holds)):
             raise ValueError(f"data: is a {type(record).__name__}: give Interface, SpringSlider or Holds, or several of them")
@@ -414,6 +420,17 @@ def _check(records: Sequence[Record], free: Iterable[str], fixed: Mapping[str, A
     samples, wanted = sum(record.measured.size for record in records), len(list(free))
     if not 0 < wanted < samples:
         raise ValueError(f"free: {wanted} parameters from {samples} samples: there must be some, and fewer than samples")
+
+
+def _check_fixed(fixed: Mapping[str, Any]) -> None:
+    """Parameters that are given must be one value each.
+
+    Raises:
+        CaseError: one is none.
+    """
+    for name, value in fixed.items():
+        if name in ("mu_s", "mu_k") or isinstance(value, (Sequence, np.ndarray)) and not isinstance(value, str):
+            number(value, name, "law")
 
 
 def _ranges(law: str, free: Iterable[str], records: Sequence[Record]) -> dict[str, tuple[float, float]]:
