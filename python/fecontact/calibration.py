@@ -2,9 +2,10 @@
 
 The parameters x are fitted by their logarithms where the range to find them in is positive, and as they are where it is not::
 
-    S(x) = Σ w² ((y(x) − ŷ)/σ)² → min,   cov = s² (JᵀJ)⁻¹,   interval = x ± t₀.₉₇₅(n − m) √cov
+    S(x) = Σ w² ((y(x) − ŷ)/σ)² → min,   cov = (JᵀJ/s² + diag(1/range²))⁻¹,   interval = x ± t₀.₉₇₅(n − m) √cov
 
-J is exact, of what the law computes with its sub-steps as they are: parameters and state are differentiated together from sample to sample
+The ranges count as knowledge: where the data say nothing, a parameter is somewhere in its range, and no further away do the others go with it. J
+is exact, of what the law computes with its sub-steps as they are: parameters and state are differentiated together from sample to sample
 (:meth:`fecontact.law.Law.drive`, ``by``). Laws that do not differentiate, those written in Python and backward Euler, have central differences.
 """
 
@@ -40,8 +41,8 @@ BEGUN, BEGINNING = 3, 12
 NOTHING = 2.3
 # Coordinates nearer to a border than this share of the range are there.
 BORDER = 1e-6
-# Largest spread of a parameter that is computed with.
-LARGEST = 1e100
+# Standard deviation of residuals that are nothing at all.
+LEAST_NOISE = 1e-100
 
 # Ranges of the parameters of super/subloading friction, of what the records cover: of the coefficient, 1/slip, 1/time, or
 # coefficient times pressure over slip.
@@ -145,12 +146,14 @@ def _search(problem: _Problem, shares: Array, most: int) -> _End:
     from scipy.optimize import least_squares
 
     space = problem.space
-    found = least_squares(
-        lambda shares: problem.at(space.within(shares)),
-        np.clip(shares, 1e-9, 1.0 - 1e-9),
-        lambda shares: problem.jacobian(space.within(shares)) @ space.slopes_within(shares),
-        (0.0, 1.0), x_scale="jac", ftol=1e-8, xtol=1e-8, gtol=None, max_nfev=most,
-    )  # fmt: skip
+    # Where there are no residuals at all, it divides by nothing.
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        found = least_squares(
+            lambda shares: problem.at(space.within(shares)),
+            np.clip(shares, 1e-9, 1.0 - 1e-9),
+            lambda shares: problem.jacobian(space.within(shares)) @ space.slopes_within(shares),
+            (0.0, 1.0), x_scale="jac", ftol=1e-8, xtol=1e-8, gtol=None, max_nfev=most,
+        )  # fmt: skip
     return _End(found.x, space.within(found.x), found.fun)
 
 
@@ -270,25 +273,25 @@ class Fit:
         free, sigma = len(space.names), problem.records[0].sigma is not None
         self.noise = float(np.sqrt(best.squares / (samples - free)))
         self.parameters = {name: _plain(value) for name, value in space.parameters(best.point[None]).items()}
-        # Beyond this a direction says nothing; it keeps the inverse finite.
-        _, singular, directions = np.linalg.svd(problem.jacobian(best.point), full_matrices=False)
-        spread = 1.0 / np.maximum(singular, max(1e-12 * singular[0], 1.0 / LARGEST))
+        at_border = np.minimum(abs(best.point - space.low), abs(best.point - space.high)) <= BORDER * (space.high - space.low)
+        scale = 1.0 if sigma else max(self.noise, LEAST_NOISE)
+        # That a parameter is somewhere in its range is known beforehand: without data its standard deviation is the width of it.
+        known = np.diag(1.0 / (space.high - space.low))
+        _, singular, directions = np.linalg.svd(np.vstack([problem.jacobian(best.point) / scale, known]), full_matrices=False)
+        spread = 1.0 / singular
         covariance = (directions.T * spread**2) @ directions
-        std = np.sqrt(np.diag(covariance))
+        self._std, self._sigma, self._quantile = np.sqrt(np.diag(covariance)), sigma, float(t.ppf(0.975, samples - free))
         index = pd.Index(space.names, name="parameter")
-        self.correlation = pd.DataFrame(covariance / np.outer(std, std), index=index, columns=index)
-        scale = 1.0 if sigma else self.noise
-        self._std, self._sigma, self._quantile = scale * std, sigma, float(t.ppf(0.975, samples - free))
+        self.correlation = pd.DataFrame(covariance / np.outer(self._std, self._std), index=index, columns=index)
         self.table = _table(space, best.point, self._std, self._quantile)
         parts = np.split(best.residuals, np.cumsum([record.measured.size for record in problem.records])[:-1])
         self.residuals = [part * noise / record.weight for part, noise, record in zip(parts, problem.scales, problem.records)]
         self.memory = max(_memory(part) for part in parts)
         self.ends = pd.DataFrame([[*space.values(end.point), end.squares] for end in ends], columns=[*space.names, "S"])
-        at_border = np.minimum(abs(best.point - space.low), abs(best.point - space.high)) <= BORDER * (space.high - space.low)
         misfit = max(_share(part, record.measured) for part, record in zip(self.residuals, problem.records))
         self.words = words(
             Evidence(
-                self.table, self.correlation, self.ends, self.parameters, scale * spread, directions, at_border,
+                self.table, self.correlation, self.ends, self.parameters, spread, directions, at_border,
                 self.noise, sigma, self.memory, samples, misfit,
             )
         )  # fmt: skip

@@ -277,8 +277,6 @@ def friction_law(
     remembered = [(a_name(key, "variables", "law"), number(value, key, "law")) for key, value in (variables or {}).items()]
 
     def register(function: Callable[..., Mapping[str, Any]]) -> Callable[..., Mapping[str, Any]]:
-        if not callable(function):
-            raise ValueError(f"law `{name}`: is a {type(function).__name__}: must be a function")
         _native.register_law(a_name(name, "name", "law"), function, remembered)
         return function
 

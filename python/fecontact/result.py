@@ -136,7 +136,8 @@ class Result:
         exact: Any = {} if int(pd.__version__.split(".")[0]) >= 3 else {"float_precision": "round_trip"}
         # An increment that was accepted has no reason why not: an empty text.
         table: pd.DataFrame = pd.read_csv(_finished(path), converters={"reason": str}, **exact)
-        table.attrs["units"] = {str(column): _quantities.unit_in(name, str(column), self.units) for column in table}
+        labels = self.units if (self.folder / "summary.json").is_file() else {}
+        table.attrs["units"] = {str(column): _quantities.unit_in(name, str(column), labels) for column in table}
         return table
 
     def __repr__(self) -> str:

@@ -264,17 +264,17 @@ def test_a_start_is_given() -> None:
 
 
 def test_intervals_that_say_nothing_are_not_determined() -> None:
-    # Only slow sliding: friction is steady, and that r or kappa could be anything shows nowhere; slip weakens far more than time heals.
-    time = np.linspace(0.0, 100.0, 100)
-    given = {**TRUTH, "xi": 1e-9}
-    q = fc.law("super_subloading", **given).drive(time, 10.0 * time, 1.0).traction + NOISE * np.random.default_rng(7).normal(size=100)
-    found = fc.fit(Interface(time, 10.0 * time, 1.0, q), free=["mu_s", "mu_k", "r", "kappa", "xi"], alpha_t=2e3)
-    assert covers(found, mu_k=0.4)["mu_k"] and found.table["high"]["mu_k"] < 0.41
-    for name in ("mu_s", "r", "kappa", "xi"):
-        assert (found.table["low"][name], found.table["high"][name]) == (0.0, np.inf), name
-    assert repr(found).count("not determined") == 4
-    # One sentence for all of them.
-    assert len([text for text in found.words if "determine" in text or "trade off" in text or "no effect" in text]) <= 2, found.words
+    # One fast slide: it has no time to heal unless it heals at once, which would go together with a stronger loss.
+    time = np.linspace(0.0, 0.1, 200)
+    q = traction(time, 2.0 * time) + NOISE * np.random.default_rng(1).normal(size=200)
+    record = Interface(time, 2.0 * time, 1.0, q)
+    found = fc.fit(record, free={**around("mu_s", "mu_k", "kappa"), "xi": (1e-6, 1.0)}, r=400.0, alpha_t=2e3)
+    assert (found.table["low"]["xi"], found.table["high"]["xi"]) == (0.0, np.inf) and repr(found).count("not determined") == 1
+    assert all(covers(found, mu_s=0.6, mu_k=0.4, kappa=40.0).values()) and found.table["high"]["mu_k"] < 0.5
+    assert "these data do not determine xi: fix it, or give data that depend on it" in found.words
+    wide = fc.fit(record, free=["mu_s", "mu_k", "kappa", "xi"], r=400.0, alpha_t=2e3)
+    assert wide.words == ["mu_k, kappa and xi trade off: these data do not tell them apart: fix one"]
+    assert all(wide.table["high"][name] == np.inf for name in ("mu_k", "kappa")) and wide.table["high"]["mu_s"] < 0.62
 
 
 def test_trades_are_told_in_groups() -> None:
@@ -343,7 +343,7 @@ def test_eight_parameters_take_seconds() -> None:
         ({"starts": 1.5}, "starts: is 1.5: must be a whole number"),
         ({"start": 3}, "start: is a int: give values of free parameters by name"),
         ({"start": {"m": 3}}, "start: m is no free parameter; there are mu_s, mu_k, r, kappa, xi"),
-        ({"start": {"mu_s": 1e3}}, "start: mu_s: 1000.0 is not within its range, 0.3"),
+        ({"start": {"mu_s": 1e3}}, "start: mu_s: 1000.0 is not within its range, 0.2"),
         ({"free": ["mu_s"], "mu_k": [0.3, 0.4]}, r"law: mu_k: is \[0.3, 0.4\]: must be a finite number"),
         ({"free": ["mu_s"], "mu_k": "low"}, "law: mu_k: is 'low': must be a number"),
         ({"free": ["m"]}, r"m: give the range to find it in: free=\{'m'"),

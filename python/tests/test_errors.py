@@ -111,7 +111,6 @@ COULOMB = fc.law("coulomb", mu=0.4, alpha_t=1e3)
         (lambda: fc.schema(3), "schema: schema: is 3: must be a name"),
         (lambda: fc.report("out", "page.html"), "folders: is 'out': give a list of folders"),
         (lambda: fc.friction_law("mine", 3), "law `mine`: variables: is a int: give values at first touch by name"),
-        (lambda: fc.friction_law("mine")(3), "law `mine`: is a int: must be a function"),
         (lambda: fc.calibration.Interface("x", [0], 1.0, [0]), "time: is a str: must be numbers"),
     ],
 )

@@ -85,11 +85,11 @@ def test_derivatives_where_the_coefficients_meet() -> None:
         for n in (0.1, 0.5, 1.0, 2.0):
             for kappa, xi, r, core in ((40.0, 0.05, 400.0, 0.0), (0.0, 0.0, 1e7, 0.5), (0.0, 5.0, 1e7, 0.999)):
                 law = fc.law("super_subloading", mu_s=0.4, mu_k=0.4, alpha_t=2e3, r=r, kappa=kappa, xi=xi, m=m, n=n, elastic_core=core)
-                drive = law.drive(time, slip, 100.0, by=law.sensitivities())
+                drive = law.drive(time, slip, 1.0, by=law.sensitivities())
                 columns = np.stack([drive[f"dtraction_d{name}"] for name in law.sensitivities()])
                 assert np.isfinite(columns).all(), (m, n, kappa)
                 # The end slides backwards: −μ p.
-                assert drive.dtraction_dmu_s[-1] + drive.dtraction_dmu_k[-1] == pytest.approx(-100.0, rel=1e-3), (m, n, kappa)
+                assert drive.dtraction_dmu_s[-1] + drive.dtraction_dmu_k[-1] == pytest.approx(-1.0, rel=1e-3), (m, n, kappa)
                 # Nothing weakens: how fast it would does not matter.
                 np.testing.assert_allclose(columns[[law.sensitivities().index(name) for name in ("kappa", "xi", "m", "n")]], 0.0, atol=1e-9)
 
