@@ -141,16 +141,18 @@ class _End:
         return float(np.sum(self.residuals**2))
 
 
-def _search(problem: _Problem, shares: Array, most: int) -> _End:
-    """The search from one point of the room, in at most so many solves."""
+def _search(problem: _Problem, shares: Array, most: int) -> _End | None:
+    """The search from one point of the room, in at most so many solves; none where the law has no answer there."""
     from scipy.optimize import least_squares
 
-    space = problem.space
+    space, shares = problem.space, np.clip(shares, 1e-9, 1.0 - 1e-9)
+    if not np.isfinite(problem.at(space.within(shares))).all():
+        return None
     # Where there are no residuals at all, it divides by nothing.
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         found = least_squares(
             lambda shares: problem.at(space.within(shares)),
-            np.clip(shares, 1e-9, 1.0 - 1e-9),
+            shares,
             lambda shares: problem.jacobian(space.within(shares)) @ space.slopes_within(shares),
             (0.0, 1.0), x_scale="jac", ftol=1e-8, xtol=1e-8, gtol=None, max_nfev=most,
         )  # fmt: skip
@@ -166,14 +168,19 @@ def _searched(problem: _Problem, start: Mapping[str, float], starts: int, seed: 
     with np.errstate(over="ignore"):
         costs = np.sum(rough.residuals(problem.space.within(spread)) ** 2, axis=-1)
     screened = [spread[k] for k in np.argsort(costs) if np.isfinite(costs[k])]
-    begun = sorted((_search(rough, one, BEGINNING) for one in screened[: BEGUN * starts]), key=lambda end: end.squares)
+    carried = [end.shares for end in _ends(rough, screened[: BEGUN * starts], BEGINNING)]
     problem.refusal = rough.refusal
-    # What the rough law answers, the exact one may not.
-    carried = [end.shares for end in begun if np.isfinite(problem.at(end.point)).all()][:starts]
     if start:
         first = _first(problem, start, problem.space.within(np.stack([*carried, np.full(len(spread[0]), 0.5)]))[0])
-        carried = [first, *carried[: starts - 1]]
-    return sorted((_search(problem, one, 100) for one in carried), key=lambda end: end.squares)
+        carried = [first, *carried]
+    # What the rough law answers, the exact one may not.
+    return _ends(problem, carried[:starts], 100) or _ends(problem, carried[starts:], 100)
+
+
+def _ends(problem: _Problem, begin: list[Array], most: int) -> list[_End]:
+    """Where searches from some points of the room have ended, the best first."""
+    found = (_search(problem, shares, most) for shares in begin)
+    return sorted((end for end in found if end is not None), key=lambda end: end.squares)
 
 
 def _first(problem: _Problem, start: Mapping[str, float], point: Array) -> Array:
@@ -247,6 +254,8 @@ def _held(problem: _Problem, k: int, at: float, near: Array) -> _End:
         return _End(point, point, problem.at(point))
     rest = Space(space.law, others, {**space.fixed, name: float(space.values(point)[k])})
     end = _search(_Problem(problem.records, rest, problem.threads), rest.shares(np.delete(point, k)), 40)
+    if end is None:
+        return _End(point, point, np.full(problem.at(near).size, np.inf))
     return _End(end.shares, np.insert(end.point, k, at), end.residuals)
 
 
@@ -465,7 +474,8 @@ def _table(space: Space, point: Array, std: Array, quantile: float) -> pd.DataFr
 
 def _share(residuals: Array, measured: Array) -> float:
     """Root mean square of residuals, as a share of the largest value measured."""
-    return float(np.sqrt(np.mean(residuals**2)) / max(np.abs(measured).max(), np.finfo(float).tiny))
+    size, largest = float(np.sqrt(np.mean(residuals**2))), float(np.abs(measured).max())
+    return size / largest if largest > size else float(size > 0.0)
 
 
 def _memory(residuals: NDArray[np.float64]) -> float:
