@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .errors import CaseError
 
@@ -35,6 +36,81 @@ def plain(value: Any, place: str = "", file: str = "case") -> Any:
     if isinstance(value, Sequence):
         return [plain(item, f"{place}[{k}]", file) for k, item in enumerate(value)]
     raise refused(file, place, f"is a {type(value).__name__}, which a case cannot hold")
+
+
+def numbers(given: Any, place: str, file: str) -> NDArray[np.float64]:
+    """The same as an array of numbers.
+
+    Raises:
+        CaseError: it is none, with its place.
+    """
+    try:
+        return np.asarray(given, dtype=float)
+    except (TypeError, ValueError):
+        raise refused(file, place, f"is {_told(given)}: must be a number, or numbers in rows of one length") from None
+
+
+def number(given: Any, place: str, file: str) -> float:
+    """The same as one finite number.
+
+    Raises:
+        CaseError: it is none, with its place.
+    """
+    values = numbers(given, place, file)
+    if values.ndim or not np.isfinite(values):
+        raise refused(file, place, f"is {_told(given)}: must be a finite number")
+    return float(values)
+
+
+def count(given: Any, name: str) -> int | None:
+    """A count of something, or none.
+
+    Raises:
+        ValueError: it is no whole number.
+    """
+    if given is not None and (isinstance(given, (bool, np.bool_)) or not isinstance(given, (int, np.integer))):
+        raise ValueError(f"{name}: is {_told(given)}: must be a whole number")
+    return None if given is None else int(given)
+
+
+def names(given: Any, place: str, file: str) -> list[str]:
+    """The same as a list of texts.
+
+    Raises:
+        CaseError: it is none, with its place.
+    """
+    listed: list[Any] = list(given) if isinstance(given, Sequence) and not isinstance(given, str) else [None]
+    if not all(isinstance(name, str) for name in listed):
+        raise refused(file, place, f"is {_told(given)}: must be a list of names")
+    return listed
+
+
+def a_name(given: Any, place: str, file: str) -> str:
+    """The same if it is a text.
+
+    Raises:
+        CaseError: it is none, with its place.
+    """
+    if not isinstance(given, str):
+        raise refused(file, place, f"is {_told(given)}: must be a name")
+    return given
+
+
+def path(given: Any, place: str) -> str:
+    """The same as a text.
+
+    Raises:
+        ValueError: it is no path.
+    """
+    if not isinstance(given, (str, os.PathLike)):
+        raise ValueError(f"{place}: is {_told(given)}: must be a path")
+    return str(os.fspath(given))
+
+
+def _told(given: Any) -> str:
+    """What it is, in a few letters."""
+    shown = " ".join(repr(given).split())
+    return shown if len(shown) <= 40 else f"a {type(given).__name__}"
 
 
 def below(place: str, key: object, file: str) -> str:

@@ -33,6 +33,14 @@ def unit(column: str, units: Mapping[str, str]) -> str | None:
     return units.get(known.get("of", ""))
 
 
+def unit_in(file: str, column: str, units: Mapping[str, str]) -> str:
+    """The unit of a column of a table: as the units of a case label it, else made of F, L and T, or their labels; nothing where it has none."""
+    own, name = _files().get(file, {}), column.rsplit(".")[-1]
+    known = own.get(name) or _known(name) or _known(name.removeprefix("mean_"))
+    labels = {"F": units.get("force", "F"), "L": units.get("length", "L"), "T": units.get("time", "T")}
+    return units.get(known.get("of", ""), "".join(labels.get(letter, letter) for letter in known.get("unit", "")))
+
+
 def name_of_now(name: str) -> str:
     """What a quantity of a store is called now; versions before called some otherwise."""
     store = _files()["interface.zarr"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -50,7 +51,7 @@ class Interface:
         size = self.time.size
         self.slip, self.measured = _array("slip", slip, size), _array("traction", traction, size)
         self.pressure = np.broadcast_to(_array("pressure", pressure, size), size)
-        self.initial = float(initial)
+        self.initial = float(_array("initial", initial, 1).ravel()[0])
         self.sigma, self.weight = _noise(sigma, weight, size)
 
     def scales(self) -> tuple[float, float, float]:
@@ -163,7 +164,7 @@ class Holds:
         size = self.hold.size
         self.measured = _array("peak", peak, size)
         for name, value in (("rate", rate), ("slide", slide), ("pressure", pressure), ("hold", self.hold.min(initial=1.0))):
-            if not value > 0:
+            if not (isinstance(value, Real) and float(value) > 0):
                 raise ValueError(f"{name}: is {value}: must be positive")
         self.rate, self.slide, self.pressure = float(rate), float(slide), float(pressure)
         self.sigma, self.weight = _noise(sigma, weight, size)
@@ -216,7 +217,10 @@ def _columns(drive: Drive, what: str, by: Sequence[str]) -> Array:
 
 
 def _array(name: str, given: ArrayLike, size: int | None = None) -> Array:
-    values = np.asarray(given, dtype=float)
+    try:
+        values = np.asarray(given, dtype=float)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: is a {type(given).__name__}: must be numbers") from None
     if values.ndim > 1 or (size is not None and values.shape not in ((), (size,))):
         raise ValueError(f"{name}: has the shape {values.shape}: must be ({'n' if size is None else size},)")
     if not np.isfinite(values).all():
@@ -225,7 +229,7 @@ def _array(name: str, given: ArrayLike, size: int | None = None) -> Array:
 
 
 def _noise(sigma: ArrayLike | None, weight: float, size: int) -> tuple[Array | None, float]:
-    if not weight > 0:
+    if not (isinstance(weight, Real) and weight > 0):
         raise ValueError(f"weight: is {weight}: must be positive")
     if sigma is None:
         return None, float(weight)

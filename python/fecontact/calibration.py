@@ -2,15 +2,18 @@
 
 The parameters x are fitted by their logarithms where the range to find them in is positive, and as they are where it is not::
 
-    S(x) = Σ w² ((y(x) − ŷ)/σ)² → min,   cov = s² (JᵀJ)⁻¹,   interval = x ± t₀.₉₇₅(n − m) √cov
+    S(x) = Σ w² ((y(x) − ŷ)/σ)² → min,   cov = (JᵀJ/s² + diag(1/range²))⁻¹,   interval = x ± t₀.₉₇₅(n − m) √cov
 
-J is exact, of what the law computes with its sub-steps as they are: parameters and state are differentiated together from sample to sample
+The ranges count as knowledge: where the data say nothing, a parameter is somewhere in its range, and no further away do the others go with it. J
+is exact, of what the law computes with its sub-steps as they are: parameters and state are differentiated together from sample to sample
 (:meth:`fecontact.law.Law.drive`, ``by``). Laws that do not differentiate, those written in Python and backward Euler, have central differences.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -18,7 +21,10 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from ._fit_names import check_names, check_room, no_room
-from ._records import MACHINE, Array, Holds, Interface, Record, SpringSlider
+from ._fit_space import Array, Space
+from ._fit_words import Evidence, words
+from ._plain import a_name, count, names, number
+from ._records import MACHINE, Holds, Interface, Record, SpringSlider
 from .errors import CaseError, Stopped
 from .law import Law
 from .law import law as law_of
@@ -27,20 +33,16 @@ __all__ = ["Fit", "Holds", "Interface", "SpringSlider", "fit"]
 
 # Step of differences, in logarithms or shares of the range.
 STEP = 1e-4
-# Error that the law is allowed where it controls it: far below what STEP changes.
-TOLERANCE = 1e-8
 # Points at which the search may start, from which the best are taken.
 SCREENED = 128
-# Standard deviation of a logarithm, or share of a range, from which on data tell nothing: a factor of 3 either way.
-UNKNOWN = 0.5
-# Share in a direction from which on a parameter belongs to it.
-SHARE = 0.3
-# Correlation from which on two parameters are told to trade off.
-TRADE = 0.98
-# Correlation of residuals beyond 1/√n at which they are no noise, in standard deviations.
-NOISE = 4.0
-# s/σ above which the law does not reach the noise that was given.
-MISFIT = 1.3
+# Searches that are begun for each that is carried on to its end, and linear solves that they have for it.
+BEGUN, BEGINNING = 3, 12
+# Standard deviation of a logarithm, or share of a range, from which on an interval says nothing: a factor of 100 either way.
+NOTHING = 2.3
+# Coordinates nearer to a border than this share of the range are there.
+BORDER = 1e-6
+# Standard deviation of residuals that are nothing at all.
+LEAST_NOISE = 1e-100
 
 # Ranges of the parameters of super/subloading friction, of what the records cover: of the coefficient, 1/slip, 1/time, or
 # coefficient times pressure over slip.
@@ -55,71 +57,11 @@ RANGES = {
 }
 
 
-class _Space:
-    """Free parameters as coordinates between −1 and 1 or logarithms, and all parameters of points in it."""
-
-    def __init__(self, law: str, ranges: Mapping[str, tuple[float, float]], fixed: Mapping[str, Any]) -> None:
-        self.names = list(ranges)
-        for name, (low, high) in ranges.items():
-            if not (np.isfinite([low, high]).all() and low < high):
-                raise ValueError(f"free: {name}: the range ({low}, {high}) must be finite and ascending")
-        ends = np.array(list(ranges.values()), dtype=float)
-        self.log = ends[:, 0] > 0
-        self.width = np.where(self.log, 1.0, ends[:, 1] - ends[:, 0])
-        self._law, self._fixed = law, dict(fixed)
-        self.low, self.high = self.coordinates(ends[:, 0]), self.coordinates(ends[:, 1])
-
-    def coordinates(self, values: Array) -> Array:
-        """Coordinates of values of the free parameters."""
-        return np.where(self.log, np.log(np.where(self.log, values, 1.0)), values / self.width)
-
-    def values(self, points: Array) -> Array:
-        """Values of the free parameters at points (..., free)."""
-        return np.where(self.log, np.exp(np.where(self.log, points, 0.0)), points * self.width)
-
-    def parameters(self, points: Array) -> dict[str, Any]:
-        """All parameters at points (sets, free)."""
-        free = dict(zip(self.names, self.values(points).T))
-        given = {"law": self._law, **self._fixed, **free}
-        if self._law == "super_subloading":
-            given.setdefault("tolerance", TOLERANCE)
-            # The law has μ_k ≤ μ_s only, and a structure up to μ_s/μ_k; what is missing it complains of itself.
-            if {"mu_s", "mu_k"} <= set(given):
-                if "mu_s" in free:
-                    given["mu_s"] = np.maximum(given["mu_s"], given["mu_k"])
-                elif "mu_k" in free:
-                    given["mu_k"] = np.minimum(given["mu_k"], given["mu_s"])
-                if given.get("structure") is not None:
-                    given["structure"] = np.clip(given["structure"], 1.0, given["mu_s"] / np.asarray(given["mu_k"]))
-        return given
-
-    def slopes(self, point: Array) -> dict[str, Array]:
-        """Derivatives of the parameters that vary, by the coordinates (free,)."""
-        values = self.values(point)
-        rows = dict(zip(self.names, np.diag(np.where(self.log, values, self.width))))
-        given = {**self._fixed, **dict(zip(self.names, values))}
-        if self._law != "super_subloading" or not {"mu_s", "mu_k"} <= set(given):
-            return rows
-        none = np.zeros(len(self.names))
-        if given["mu_s"] < given["mu_k"]:
-            if "mu_s" in rows:
-                rows["mu_s"], given["mu_s"] = rows.get("mu_k", none), given["mu_k"]
-            elif "mu_k" in rows:
-                rows["mu_k"], given["mu_k"] = none, given["mu_s"]
-        if given.get("structure") is not None:
-            most = given["mu_s"] / given["mu_k"]
-            if given["structure"] > most:
-                rows["structure"] = (rows.get("mu_s", none) - most * rows.get("mu_k", none)) / given["mu_k"]
-            elif given["structure"] < 1.0:
-                rows["structure"] = none
-        return rows
-
-
 class _Problem:
     """Residuals of all records over points of the space."""
 
-    def __init__(self, records: Sequence[Record], space: _Space, threads: int | None) -> None:
-        self.records, self.space, self._threads = records, space, threads
+    def __init__(self, records: Sequence[Record], space: Space, threads: int | None) -> None:
+        self.records, self.space, self.threads = records, space, threads
         # What the law said of the first parameters that it does not accept.
         self.refusal: CaseError | None = None
         self.scales = [np.ones(record.measured.size) if record.sigma is None else record.sigma for record in records]
@@ -136,7 +78,7 @@ class _Problem:
     def _predicted(self, record: Record, parameters: dict[str, Any]) -> Array:
         """What the law says; not a number for sets that it does not accept or has no answer for, from which the search turns back."""
         try:
-            return record.predicted(parameters, self._threads)
+            return record.predicted(parameters, self.threads)
         except (CaseError, Stopped) as error:
             if isinstance(error, CaseError):
                 self.refusal = self.refusal or error
@@ -152,14 +94,24 @@ class _Problem:
 
     def jacobian(self, point: Array) -> Array:
         """∂residual/∂coordinate (samples, free), exact where the law says how its answers vary."""
+        try:
+            found = self._exact(point)
+        except (CaseError, Stopped):
+            found = None
+        if found is None or not np.isfinite(found).all():
+            found = self.differences(point)
+        return np.nan_to_num(found, nan=0.0, posinf=0.0, neginf=0.0)
+
+    def _exact(self, point: Array) -> Array | None:
+        """The same as the law differentiates itself; none where it does not."""
         slopes = self.space.slopes(point)
         parameters = {name: _plain(value) for name, value in self.space.parameters(point[None]).items()}
         of_law = law_of({name: value for name, value in parameters.items() if name not in MACHINE})
         if not set(slopes) <= {*of_law.sensitivities(), *MACHINE}:
-            return self.differences(point)
+            return None
         by = list(slopes)
         parts = [
-            record.derivatives(parameters, by, self._threads) * (record.weight / np.broadcast_to(scale, record.measured.size))[:, None]
+            record.derivatives(parameters, by, self.threads) * (record.weight / np.broadcast_to(scale, record.measured.size))[:, None]
             for record, scale in zip(self.records, self.scales)
         ]
         return np.asarray(np.concatenate(parts) @ np.stack(list(slopes.values())))
@@ -175,12 +127,145 @@ class _Problem:
         return np.asarray(((sides[:count] - sides[count:]) / np.where(steps > 0.0, steps, 1.0)[:, None]).T)
 
 
+@dataclass(frozen=True)
+class _End:
+    """Where a search has ended: shares of the room, the point, and the residuals there."""
+
+    shares: Array
+    point: Array
+    residuals: Array
+
+    @property
+    def squares(self) -> float:
+        """S."""
+        return float(np.sum(self.residuals**2))
+
+
+def _search(problem: _Problem, shares: Array, most: int) -> _End | None:
+    """The search from one point of the room, in at most so many solves; none where the law has no answer there."""
+    from scipy.optimize import least_squares
+
+    space, shares = problem.space, np.clip(shares, 1e-9, 1.0 - 1e-9)
+    if not np.isfinite(problem.at(space.within(shares))).all():
+        return None
+    # Where there are no residuals at all, it divides by nothing.
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        found = least_squares(
+            lambda shares: problem.at(space.within(shares)),
+            shares,
+            lambda shares: problem.jacobian(space.within(shares)) @ space.slopes_within(shares),
+            (0.0, 1.0), x_scale="jac", ftol=1e-8, xtol=1e-8, gtol=None, max_nfev=most,
+        )  # fmt: skip
+    return _End(found.x, space.within(found.x), found.fun)
+
+
+def _searched(problem: _Problem, start: Mapping[str, float], starts: int, seed: int) -> list[_End]:
+    """Where the searches have ended, the best first: many are begun, the most promising carried on."""
+    from scipy.stats import qmc
+
+    rough = _Problem(problem.records, problem.space.rough(), problem.threads)
+    spread = qmc.LatinHypercube(len(problem.space.names), rng=seed).random(SCREENED)
+    with np.errstate(over="ignore"):
+        costs = np.sum(rough.residuals(problem.space.within(spread)) ** 2, axis=-1)
+    screened = [spread[k] for k in np.argsort(costs) if np.isfinite(costs[k])]
+    carried = [end.shares for end in _ends(rough, screened[: BEGUN * starts], BEGINNING)]
+    problem.refusal = rough.refusal
+    if start:
+        first = _first(problem, start, problem.space.within(np.stack([*carried, np.full(len(spread[0]), 0.5)]))[0])
+        carried = [first, *carried]
+    # What the rough law answers, the exact one may not.
+    return _ends(problem, carried[:starts], 100) or _ends(problem, carried[starts:], 100)
+
+
+def _ends(problem: _Problem, begin: list[Array], most: int) -> list[_End]:
+    """Where searches from some points of the room have ended, the best first."""
+    found = (_search(problem, shares, most) for shares in begin)
+    return sorted((end for end in found if end is not None), key=lambda end: end.squares)
+
+
+def _first(problem: _Problem, start: Mapping[str, float], point: Array) -> Array:
+    """The shares of where a search is asked to begin, what is not said being that of the point.
+
+    Raises:
+        ValueError: there is no such free parameter, or its value is out of its range.
+    """
+    space, point = problem.space, point.copy()
+    for name, value in start.items():
+        if name not in space.names:
+            raise ValueError(f"start: {name} is no free parameter; there are {', '.join(space.names)}")
+        low, high = space.ranges[name]
+        if not (isinstance(value, Real) and low <= value <= high):
+            raise ValueError(f"start: {name}: {value!r} is not within its range, {low:g} to {high:g}")
+        values = space.values(point)
+        values[space.names.index(name)] = value
+        point = space.coordinates(values)
+    if not np.isfinite(problem.at(point)).all():
+        raise ValueError("start: the law has no answer to these records there")
+    return space.shares(point)
+
+
+def _profile(problem: _Problem, best: _End, name: str, step: float, excess: float, points: int) -> pd.DataFrame:
+    """Least sums of squares where a parameter is held at values to either side of the best, up to `excess` above it."""
+    space, k = problem.space, problem.space.names.index(name)
+    # √(S − S_min), linear in the parameter where the law is.
+    target, rows = np.sqrt(excess), {float(best.point[k]): (0.0, best)}
+
+    def distance(at: float, near: _End) -> tuple[float, _End]:
+        rows[at] = (0.0, end := _held(problem, k, at, near.point))
+        rows[at] = (float(np.sqrt(max(end.squares - best.squares, 0.0))), end)
+        return rows[at]
+
+    ends = []
+    for side, border in ((-1.0, space.bottom[k]), (1.0, space.top[k])):
+        (inner, near), stride = (float(best.point[k]), best), min(max(step, 1e-6), 0.1 * float(space.high[k] - space.low[k]))
+        inside = 0.0
+        for left in range(points, 0, -1):
+            outer = float(border) if left == 1 else side * min(side * (inner + side * stride), side * float(border))
+            beyond, end = distance(outer, near)
+            if beyond > target or outer == border:
+                break
+            inner, near, inside, stride = outer, end, beyond, 1.5 * stride
+        if beyond <= target:
+            ends.append(side * np.inf)
+            continue
+        for _ in range(3):
+            middle = inner + (target - inside) / (beyond - inside) * (outer - inner)
+            found, end = distance(middle, near)
+            if found <= target:
+                inner, inside, near = middle, found, end
+            else:
+                outer, beyond = middle, found
+        ends.append(inner + (target - inside) / (beyond - inside) * (outer - inner))
+    table = pd.DataFrame(
+        [{**dict(zip(space.names, space.values(rows[at][1].point))), "S": rows[at][1].squares} for at in sorted(rows)]
+    )
+    low, high = (float(space.values(np.where(np.arange(len(space.names)) == k, end, best.point))[k]) for end in ends)
+    table.attrs.update(low=low, high=high, limit=best.squares + excess)
+    return table
+
+
+def _held(problem: _Problem, k: int, at: float, near: Array) -> _End:
+    """The best with one coordinate held, from the others of a point near it."""
+    space, point = problem.space, near.copy()
+    point[k] = at
+    name = space.names[k]
+    others = {other: ends for other, ends in space.ranges.items() if other != name}
+    if not others:
+        return _End(point, point, problem.at(point))
+    rest = Space(space.law, others, {**space.fixed, name: float(space.values(point)[k])})
+    end = _search(_Problem(problem.records, rest, problem.threads), rest.shares(np.delete(point, k)), 40)
+    if end is None:
+        return _End(point, point, np.full(problem.at(near).size, np.inf))
+    return _End(end.shares, np.insert(end.point, k, at), end.residuals)
+
+
 class Fit:
     """A fitted law.
 
     Attributes:
         parameters: all, those given included.
-        table: a row a free parameter: ``value``, ``low`` and ``high`` of its 95 % interval, ``std`` (of its logarithm where ``log``).
+        table: a row a free parameter: ``value``, ``low`` and ``high`` of its 95 % interval, from nothing to infinity where the data do not
+            determine it, ``std`` (of its logarithm where ``log``).
         correlation: of the free parameters.
         words: what to know about it, in plain words; empty where nothing is wrong.
         noise: s, standard deviation of the residuals; in units of sigma where sigma was given.
@@ -189,32 +274,36 @@ class Fit:
         ends: where each start has ended: the free parameters and S.
     """
 
-    def __init__(self, problem: _Problem, ends: list[Any]) -> None:
+    def __init__(self, problem: _Problem, ends: list[_End]) -> None:
         from scipy.stats import t
 
-        best, space = ends[0], problem.space
-        samples, free = best.jac.shape
-        self.noise = float(np.sqrt(2.0 * best.cost / (samples - free)))
-        self.parameters = {name: _plain(value) for name, value in space.parameters(best.x[None]).items()}
-        # Beyond this a direction says nothing; it keeps the inverse finite.
-        _, singular, turn = np.linalg.svd(problem.jacobian(best.x), full_matrices=False)
-        scale = 1.0 if problem.records[0].sigma is not None else self.noise
-        spread = scale / np.maximum(singular, 1e-12 * max(singular[0], np.finfo(float).tiny))
-        covariance = (turn.T * spread**2) @ turn
-        std = np.sqrt(np.diag(covariance))
-        half = t.ppf(0.975, samples - free) * std
-        with np.errstate(over="ignore"):
-            low, value, high = (space.values(best.x + side * half) for side in (-1.0, 0.0, 1.0))
+        self._problem, self._best = problem, ends[0]
+        best, space, samples = ends[0], problem.space, ends[0].residuals.size
+        free, sigma = len(space.names), problem.records[0].sigma is not None
+        self.noise = float(np.sqrt(best.squares / (samples - free)))
+        self.parameters = {name: _plain(value) for name, value in space.parameters(best.point[None]).items()}
+        at_border = np.minimum(abs(best.point - space.low), abs(best.point - space.high)) <= BORDER * (space.high - space.low)
+        scale = 1.0 if sigma else max(self.noise, LEAST_NOISE)
+        # That a parameter is somewhere in its range is known beforehand: without data its standard deviation is the width of it.
+        known = np.diag(1.0 / (space.high - space.low))
+        _, singular, directions = np.linalg.svd(np.vstack([problem.jacobian(best.point) / scale, known]), full_matrices=False)
+        spread = 1.0 / singular
+        covariance = (directions.T * spread**2) @ directions
+        self._std, self._sigma, self._quantile = np.sqrt(np.diag(covariance)), sigma, float(t.ppf(0.975, samples - free))
         index = pd.Index(space.names, name="parameter")
-        columns = {"value": value, "low": low, "high": high, "std": std * space.width, "log": space.log}
-        self.table = pd.DataFrame(columns, index=index)
-        self.correlation = pd.DataFrame(covariance / np.outer(std, std), index=index, columns=index)
-        parts = np.split(best.fun, np.cumsum([record.measured.size for record in problem.records])[:-1])
+        self.correlation = pd.DataFrame(covariance / np.outer(self._std, self._std), index=index, columns=index)
+        self.table = _table(space, best.point, self._std, self._quantile)
+        parts = np.split(best.residuals, np.cumsum([record.measured.size for record in problem.records])[:-1])
         self.residuals = [part * noise / record.weight for part, noise, record in zip(parts, problem.scales, problem.records)]
         self.memory = max(_memory(part) for part in parts)
-        self.ends = pd.DataFrame([[*space.values(end.x), 2.0 * end.cost] for end in ends], columns=[*space.names, "S"])
-        at_end = [np.abs(best.x - end) <= 1e-6 * (space.high - space.low) for end in (space.low, space.high)]
-        self.words = _words(self, spread, turn, at_end[0] | at_end[1], problem.records[0].sigma is not None)
+        self.ends = pd.DataFrame([[*space.values(end.point), end.squares] for end in ends], columns=[*space.names, "S"])
+        misfit = max(_share(part, record.measured) for part, record in zip(self.residuals, problem.records))
+        self.words = words(
+            Evidence(
+                self.table, self.correlation, self.ends, self.parameters, spread, directions, at_border,
+                self.noise, sigma, self.memory, samples, misfit,
+            )
+        )  # fmt: skip
 
     @property
     def law(self) -> Law:
@@ -226,9 +315,38 @@ class Fit:
         sets = {name: np.array([value]) if isinstance(value, float) else value for name, value in self.parameters.items()}
         return np.asarray(record.predicted(sets)[0])
 
+    def profile(self, name: str, points: int = 12) -> pd.DataFrame:
+        """How well the data can be followed with a parameter held at other values: its profile likelihood, for intervals where the law is
+        far from linear. It takes a search a point.
+
+        ```text
+        S(x) = min over the other parameters,   95 %:  S(x) ≤ S_min + t₀.₉₇₅² s²,   s = 1 where sigma was given
+        ```
+
+        Args:
+            name: of a free parameter.
+            points: at most so many to either side.
+
+        Returns:
+            A row a value, ascending: the free parameters, and S; ``attrs["low"]`` and ``attrs["high"]`` of the 95 % interval, ``attrs["limit"]``
+            of S. An end that the data do not determine, as S stays below the limit up to the border of the range, is 0 (−∞ where the
+            range is not positive) or ∞.
+
+        Raises:
+            ValueError: it is no free parameter.
+        """
+        if name not in self.table.index:
+            raise ValueError(f"name: {name} is no free parameter; there are {', '.join(self.table.index)}")
+        excess = self._quantile**2 * (1.0 if self._sigma else self.noise**2)
+        step = float(self._std[list(self.table.index).index(name)])
+        return _profile(self._problem, self._best, name, step, excess, max(2, points))
+
     def __repr__(self) -> str:
-        told = self.table[["value", "low", "high"]].to_string(float_format=lambda number: f"{number:.5g}")
-        return "\n".join([told, *self.words])
+        rows = {
+            name: {"value": f"{row['value']:.5g}", "95 % interval": f"{row['low']:.5g} to {row['high']:.5g}" if row["high"] < np.inf else "not determined"}
+            for name, row in self.table.iterrows()
+        }
+        return "\n".join([pd.DataFrame(rows).T.to_string(), *self.words])
 
 
 def fit(
@@ -236,6 +354,7 @@ def fit(
     law: str = "super_subloading",
     free: Sequence[str] | Mapping[str, tuple[float, float]] = ("mu_s", "mu_k", "r", "kappa", "xi"),
     *,
+    start: Mapping[str, float] | None = None,
     starts: int = 4,
     seed: int = 0,
     threads: int | None = None,
@@ -250,7 +369,9 @@ def fit(
         free: parameters to find, with the ranges to find them in; positive ones are searched by their logarithm. Without ranges
             (super/subloading friction only) they come from what the records cover, wide. Ranges may overlap: trials that the law does not accept,
             ``mu_d`` above ``mu_s``, are passed over.
-        starts: searches, from the best of 128 points spread over the ranges.
+        start: where the first search begins: values of free parameters, within their ranges; those that it does not name are as in the
+            best of the points that the other searches begin from.
+        starts: searches, of three times as many that are begun from the best of 128 points spread over the ranges.
         seed: of those points.
         threads: all cores unless given.
         **fixed: the other parameters; ``stiffness`` and ``mass`` are those of the machine of a :class:`SpringSlider`.
@@ -260,34 +381,47 @@ def fit(
 
     Raises:
         ValueError: a name that the law does not have, with the nearest that it has; ranges in which no start is valid.
+        CaseError: a parameter that is given is wrong.
     """
-    from scipy.optimize import least_squares
-    from scipy.stats import qmc
-
-    records = [data] if isinstance(data, (Interface, Holds)) else list(data)
-    _check(records, free, fixed)
-    check_names(law, [*free, *fixed])
+    records = _records(data)
+    free = free if isinstance(free, Mapping) else [free] if isinstance(free, str) else free
+    names(list(free) if isinstance(free, Mapping) else free, "free", "fit")
+    if not isinstance(start, (Mapping, type(None))):
+        raise ValueError(f"start: is a {type(start).__name__}: give values of free parameters by name")
+    starts, seed, threads = count(starts, "starts") or 0, count(seed, "seed") or 0, count(threads, "threads")
+    _check(records, free, fixed, starts)
+    _check_fixed(fixed)
+    check_names(a_name(law, "law", "fit"), [*free, *fixed])
     ranges = dict(free) if isinstance(free, Mapping) else _ranges(law, free, records)
-    space = _Space(law, ranges, fixed)
+    space = Space(law, ranges, fixed)
     check_room(law, ranges, fixed)
     problem = _Problem(records, space, threads)
-    spread = space.low + (space.high - space.low) * qmc.LatinHypercube(len(space.names), rng=seed).random(SCREENED)
-    costs = np.sum(problem.residuals(spread) ** 2, axis=-1)
-    ends = [
-        least_squares(problem.at, spread[k], problem.jacobian, (space.low, space.high), x_scale="jac", ftol=1e-8, xtol=1e-8, gtol=None, max_nfev=100)
-        for k in np.argsort(costs)[:starts]
-        if np.isfinite(costs[k])
-    ]
+    ends = _searched(problem, start or {}, starts, seed)
     if not ends and problem.refusal is not None:
         raise no_room(ranges, str(problem.refusal)) or problem.refusal
     if not ends:
         raise ValueError("free: the law has no answer to these records anywhere in the ranges: narrow them")
-    return Fit(problem, sorted(ends, key=lambda end: end.cost))
+    return Fit(problem, ends)
 
 
-def _check(records: Sequence[Record], free: Iterable[str], fixed: Mapping[str, Any]) -> None:
+def _records(data: Any) -> list[Record]:
+    """The records of a fit.
+
+    Raises:
+        ValueError: there are none, or something else.
+    """
+    records: list[Any] = [data] if isinstance(data, np.ndarray) or not isinstance(data, Iterable) else list(data)
+    for record in records:
+        if not isinstance(record, (Interface, Holds)):
+            raise ValueError(f"data: is a {type(record).__name__}: give Interface, SpringSlider or Holds, or several of them")
+    return records
+
+
+def _check(records: Sequence[Record], free: Iterable[str], fixed: Mapping[str, Any], starts: int) -> None:
     if not records:
         raise ValueError("data: there are no records")
+    if starts < 1:
+        raise ValueError(f"starts: is {starts}: must be at least 1")
     if both := set(free) & set(fixed):
         raise ValueError(f"free: {', '.join(sorted(both))}: given as well")
     known = [record.sigma is not None for record in records]
@@ -298,6 +432,17 @@ def _check(records: Sequence[Record], free: Iterable[str], fixed: Mapping[str, A
     samples, wanted = sum(record.measured.size for record in records), len(list(free))
     if not 0 < wanted < samples:
         raise ValueError(f"free: {wanted} parameters from {samples} samples: there must be some, and fewer than samples")
+
+
+def _check_fixed(fixed: Mapping[str, Any]) -> None:
+    """Parameters that are given must be one value each.
+
+    Raises:
+        CaseError: one is none.
+    """
+    for name, value in fixed.items():
+        if name in ("mu_s", "mu_k") or isinstance(value, (Sequence, np.ndarray)) and not isinstance(value, str):
+            number(value, name, "law")
 
 
 def _ranges(law: str, free: Iterable[str], records: Sequence[Record]) -> dict[str, tuple[float, float]]:
@@ -316,6 +461,23 @@ def _ranges(law: str, free: Iterable[str], records: Sequence[Record]) -> dict[st
     return found
 
 
+def _table(space: Space, point: Array, std: Array, quantile: float) -> pd.DataFrame:
+    """Values and 95 % intervals; those that say nothing, wider than the range to both sides or by far, have no ends."""
+    with np.errstate(over="ignore"):
+        low, value, high = (space.values(point + side * quantile * std) for side in (-1.0, 0.0, 1.0))
+    wide = (point - quantile * std < space.low) & (point + quantile * std > space.high)
+    nothing = wide | (std > np.where(space.log, NOTHING, 1.0))
+    low, high = np.where(nothing, np.where(space.log, 0.0, -np.inf), low), np.where(nothing, np.inf, high)
+    columns = {"value": value, "low": low, "high": high, "std": std * space.width, "log": space.log}
+    return pd.DataFrame(columns, index=pd.Index(space.names, name="parameter"))
+
+
+def _share(residuals: Array, measured: Array) -> float:
+    """Root mean square of residuals, as a share of the largest value measured."""
+    size, largest = float(np.sqrt(np.mean(residuals**2))), float(np.abs(measured).max())
+    return size / largest if largest > size else float(size > 0.0)
+
+
 def _memory(residuals: NDArray[np.float64]) -> float:
     """Correlation of a residual with the one before it."""
     power = float(np.sum(residuals**2))
@@ -328,61 +490,3 @@ def _entry(value: Any, k: int) -> Any:
 
 def _plain(value: Any) -> Any:
     return float(value[0]) if isinstance(value, np.ndarray) else value
-
-
-def _words(fit: Fit, spread: NDArray[np.float64], turn: NDArray[np.float64], at_end: NDArray[np.bool_], sigma: bool) -> list[str]:
-    """What to know of a fit, with the spread along each direction of its space."""
-    names, told = list(fit.table.index), []
-    unknown: set[str] = set()
-    for much, direction in zip(spread[::-1], turn[::-1]):
-        if much < UNKNOWN:
-            break
-        members = [name for name, share in zip(names, direction) if abs(share) > SHARE]
-        unknown.update(members)
-        if len(members) == 1:
-            told.append(f"these data do not determine {members[0]}: fix it, or give data that depend on it")
-        else:
-            told.append(f"{_and(members)} trade off: these data do not tell them apart: fix one")
-    told += _trades(fit, unknown)
-    for name, ends in zip(names, at_end):
-        if ends:
-            border = f"{name} ends at the border of its range, {fit.table['value'][name]:.6g}"
-            told.append(f"{border}: widen it, or fix it; its interval means nothing")
-    if {"mu_s", "mu_k"} <= set(fit.parameters) and fit.parameters["mu_s"] <= fit.parameters["mu_k"] * (1 + 1e-9):
-        told.append("mu_s = mu_k: these data show no weakening, and kappa, xi have no effect")
-    samples = sum(residuals.size for residuals in fit.residuals)
-    if fit.memory > NOISE / np.sqrt(samples):
-        told.append(
-            f"the residuals are no noise (each has the correlation {fit.memory:.2f} with the one before): this law does not follow these "
-            "data, or their noise has a memory; the intervals are too narrow"
-        )
-    if sigma and fit.noise > MISFIT:
-        told.append(
-            f"the residuals are {fit.noise:.3g} times as large as sigma: this law does not follow these data; the intervals are too narrow"
-        )
-    return told + _others(fit)
-
-
-def _trades(fit: Fit, unknown: set[str]) -> list[str]:
-    names, told = list(fit.table.index), []
-    for i, one in enumerate(names):
-        for other in names[:i]:
-            correlation = fit.correlation.loc[one, other]
-            if abs(correlation) > TRADE and not {one, other} <= unknown:
-                told.append(f"{other} and {one} trade off (correlation {correlation:.3f}): fix one for a narrower interval of the other")
-    return told
-
-
-def _others(fit: Fit) -> list[str]:
-    """Other fits that are as good and lie elsewhere."""
-    best = fit.ends.iloc[0]
-    for _, end in fit.ends.iloc[1:].iterrows():
-        away = [name for name in fit.table.index if not fit.table["low"][name] <= end[name] <= fit.table["high"][name]]
-        if end["S"] <= 1.02 * best["S"] and away:
-            values = ", ".join(f"{name} {end[name]:.4g}" for name in fit.table.index)
-            return [f"another fit is as good within 1 %, {values}: these data do not choose between them"]
-    return []
-
-
-def _and(names: list[str]) -> str:
-    return f"{', '.join(names[:-1])} and {names[-1]}"

@@ -14,7 +14,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _native
-from ._plain import plain, refused
+from ._plain import a_name, count, plain, refused
+from ._plain import path as as_path
 from ._progress import Progress
 from .errors import Defect, Interrupted, RunWarning, Stopped
 from .mesh import Mesh
@@ -67,8 +68,10 @@ class Case:
             self._native = _native.Case.read(self._path)
             self._document: dict[str, Any] = json.loads(self._native.document())
             return
+        self._path = os.path.join(as_path(folder, "folder"), "case")
+        if not isinstance(source, (Mapping, type(None))):
+            raise refused(self._path, "", f"is a {type(source).__name__}: give the path of a case file, or a case as a dict")
         given = {**(source or {}), **keys}
-        self._path = os.path.join(folder, "case")
         if isinstance(given.get("mesh"), Mesh):
             self._mesh = given["mesh"]
             given = {**given, "mesh": AT_HAND}
@@ -125,6 +128,8 @@ class Case:
         Raises:
             CaseError: there is no such place, or a value does not fit.
         """
+        if not isinstance(values, Mapping) or not all(isinstance(place, str) for place in values):
+            raise refused(self._path, "", f"replace: is a {type(values).__name__}: give values by place, as {{\"steps[0].duration\": 2.0}}")
         case = Case.__new__(Case)
         case._path, case._mesh, case._document = self._path, self._mesh, copy.deepcopy(self._document)
         for place, value in values.items():
@@ -149,6 +154,7 @@ class Case:
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """Write the case as a file for ``fecontact run``, a mesh at hand within it."""
+        path = as_path(path, "path")
         document = dict(self._document)
         mesh = document.get("mesh")
         if self._mesh is not None:
@@ -188,6 +194,7 @@ class Case:
                 raise ValueError("resume: give the folder `out` of the run to go on with")
             holder = tempfile.TemporaryDirectory(prefix="fecontact-", ignore_cleanup_errors=True)
             out = holder.name
+        out, threads = as_path(out, "out"), count(threads, "threads")
         with Progress(progress) as bar:
 
             def poll(told: list[str], place: _native.Place | None) -> None:
@@ -195,7 +202,7 @@ class Case:
                 for text in told:
                     warnings.warn(text, RunWarning, stacklevel=3)
 
-            status, why, raised = _native.run(self._native, os.fspath(out), threads, resume, report, poll)
+            status, why, raised = _native.run(self._native, out, threads, bool(resume), bool(report), poll)
         result = Result(out, _holder=holder)
         _raise(status, why, raised, result)
         return result
@@ -214,7 +221,7 @@ def _raise(status: str, why: str | None, raised: BaseException | None, result: R
         raise Interrupted(text, result) from None
     if raised is not None and status == "interrupted":
         # What was raised on the way, such as a warning that is an error.
-        raised.__notes__ = [f"the results so far are in {result.folder}"]
+        raised.__notes__ = [*getattr(raised, "__notes__", []), f"the results so far are in {result.folder}"]
         raise raised
     if status == "defect":
         raise Defect(why or "", result)
@@ -259,5 +266,5 @@ def _put(document: dict[str, Any], place: str, value: Any, file: str) -> None:
 def schema(of: str = "case") -> dict[str, Any]:
     """The JSON Schema of a ``"case"``, or of the test of a ``"law"``; of ``"results"`` the quantities of their files: names, units
     made of F, L and T, and what they are."""
-    found: dict[str, Any] = json.loads(_native.schema(of))
+    found: dict[str, Any] = json.loads(_native.schema(a_name(of, "schema", "schema")))
     return found

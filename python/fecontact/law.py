@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
-from ._plain import plain, refused
+from ._plain import a_name, count, names, number, numbers, plain, refused
 from ._steady import steady
 
 Array = NDArray[np.float64]
@@ -37,10 +37,11 @@ class Drive(Mapping[str, Array]):
         return len(self._arrays)
 
     def __getattr__(self, name: str) -> Array:
-        try:
-            return self.__dict__["_arrays"][name]  # type: ignore[no-any-return]
-        except KeyError:
-            raise AttributeError(f"a drive has no `{name}`; it has {', '.join(self.__dict__['_arrays'])}") from None
+        # One that is being copied has no arrays yet.
+        arrays: dict[str, Array] = self.__dict__.get("_arrays", {})
+        if name not in arrays:
+            raise AttributeError(f"a drive has no `{name}`; it has {', '.join(arrays)}")
+        return arrays[name]
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self._arrays]
@@ -53,7 +54,7 @@ class Law:
     """A friction law with its parameters, each a number, or an array of any shape: a set of parameters an entry."""
 
     def __init__(self, parameters: Mapping[str, Any]) -> None:
-        arrays = {name: np.asarray(value) for name, value in parameters.items() if _is_array(value)}
+        arrays = {name: numbers(value, name, "law") for name, value in parameters.items() if _is_array(value)}
         try:
             self.shape: tuple[int, ...] = np.broadcast_shapes(*(array.shape for array in arrays.values()))
         except ValueError:
@@ -106,9 +107,9 @@ class Law:
         """
         times = _times(time)
         courses = {name: self._course(name, given, times.size) for name, given in (("slip", slip), ("pressure", pressure))}
-        self._check_by(by, self.sensitivities())
-        initial = json.dumps({"traction": float(_finite("traction", traction))})
-        arrays = _native.drive(self._sets, times, courses["slip"], courses["pressure"], initial, list(by), threads)
+        by = self._checked(by, self.sensitivities())
+        initial = json.dumps({"traction": number(traction, "traction", "law")})
+        arrays = _native.drive(self._sets, times, courses["slip"], courses["pressure"], initial, by, count(threads, "threads"))
         answers = {name: array.reshape(*self.shape, times.size) for name, array in arrays}
         slips = np.broadcast_to(courses["slip"], (len(self._sets), times.size)).reshape(*self.shape, times.size)
         return Drive({"time": times, "slip": slips, **answers})
@@ -154,8 +155,7 @@ class Law:
         times = _times(time)
         if known := self.sensitivities():
             known += ["stiffness", "mass"]
-        self._check_by(by, known)
-        machine = []
+        by, machine = self._checked(by, known), []
         for name, given in (("stiffness", stiffness), ("mass", mass), ("tolerance", tolerance)):
             if not ((values := _finite(name, given)) > 0).all():
                 raise refused("law", name, f"is {values.min()}: must be positive")
@@ -163,17 +163,19 @@ class Law:
                 raise refused("law", name, f"has the shape {values.shape}: must be {self.shape}, as the parameters")
             machine.append(np.broadcast_to(values, self.shape).reshape(-1))
         course = {name: self._course(name, given, times.size) for name, given in (("load_point", load_point), ("pressure", pressure))}
-        start = (float(_finite("force", force)), float(tolerance))
+        start = (number(force, "force", "law"), number(tolerance, "tolerance", "law"))
         springs = np.stack(machine[:2], axis=1)
-        arrays = _native.ride(self._sets, springs, times, course["load_point"], course["pressure"], start, list(by), threads)
+        arrays = _native.ride(self._sets, springs, times, course["load_point"], course["pressure"], start, by, count(threads, "threads"))
         answers = {name: array.reshape(*self.shape, times.size) for name, array in arrays}
         led = {name: np.broadcast_to(given, (len(self._sets), times.size)).reshape(*self.shape, -1) for name, given in course.items()}
         return Drive({"time": times, **led, **answers})
 
-    def _check_by(self, by: Sequence[str], known: list[str]) -> None:
-        for name in by:
+    def _checked(self, by: Sequence[str], known: list[str]) -> list[str]:
+        listed = names(by, "by", "law")
+        for name in listed:
             if name not in known:
                 raise refused("law", "by", f"the law is not differentiated by {name}; it is by {', '.join(known) or 'nothing'}")
+        return listed
 
     def sensitivities(self) -> list[str]:
         """Parameters by which :meth:`drive` differentiates: those of Coulomb friction, slip weakening, rate and state, and
@@ -227,6 +229,8 @@ def law(law: str | Mapping[str, Any], **parameters: Any) -> Law:
     Raises:
         CaseError: there is no such law, or a parameter is wrong.
     """
+    if not isinstance(law, (str, Mapping)):
+        raise refused("law", "", f"is a {type(law).__name__}: give the name of a law, or its parameters")
     given = {"law": law} if isinstance(law, str) else dict(law)
     made = Law({**given, **parameters})
     made.check()
@@ -268,8 +272,12 @@ def friction_law(
         ValueError: a name cannot be one, or there are too many.
     """
 
+    if not isinstance(variables or {}, Mapping):
+        raise ValueError(f"law `{name}`: variables: is a {type(variables).__name__}: give values at first touch by name")
+    remembered = [(a_name(key, "variables", "law"), number(value, key, "law")) for key, value in (variables or {}).items()]
+
     def register(function: Callable[..., Mapping[str, Any]]) -> Callable[..., Mapping[str, Any]]:
-        _native.register_law(name, function, [(key, float(value)) for key, value in (variables or {}).items()])
+        _native.register_law(a_name(name, "name", "law"), function, remembered)
         return function
 
     return register
@@ -287,7 +295,7 @@ def _times(given: ArrayLike) -> Array:
 
 
 def _finite(name: str, given: ArrayLike) -> Array:
-    values = np.asarray(given, dtype=float)
+    values = numbers(given, name, "law")
     if not np.isfinite(values).all():
         at = np.argwhere(~np.isfinite(values))[0]
         place = name + "".join(f"[{k}]" for k in at)

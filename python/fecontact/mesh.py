@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
-from ._plain import plain, refused
+from ._plain import numbers, path as as_path, plain, refused
 
 Lists = Union[ArrayLike, Sequence[ArrayLike]]
 
@@ -40,22 +40,25 @@ class Mesh:
         edges: Mapping[str, Lists] | None = None,
         points: Mapping[str, ArrayLike] | None = None,
     ) -> None:
-        given = np.asarray(nodes, dtype=float)
+        given = numbers(nodes, "nodes", "mesh")
         if given.ndim != 2 or given.shape[1] != 2:
             raise refused("mesh", "nodes", f"has the shape {given.shape}: must be (nodes, 2)")
-        one = {name: np.asarray(numbers).reshape(-1, 1) for name, numbers in (points or {}).items()}
+        for kind, parts in (("elements", elements), ("edges", edges or {}), ("points", points or {})):
+            if not isinstance(parts, Mapping) or not all(isinstance(name, str) for name in parts):
+                raise refused("mesh", kind, f"is a {type(parts).__name__}: must be a dict of arrays by name")
+        one = {name: np.asarray(nodes).reshape(-1, 1) for name, nodes in (points or {}).items()}
         self._source: tuple[Any, ...] | bytes | str = (
             np.ascontiguousarray(given),
             {name: _lists("elements", name, lists, (3, 4, 6, 8, 9)) for name, lists in elements.items()},
             {name: _lists("edges", name, lists, (2, 3)) for name, lists in (edges or {}).items()},
-            {name: _lists("points", name, numbers, (1,)) for name, numbers in one.items()},
+            {name: _lists("points", name, nodes, (1,)) for name, nodes in one.items()},
         )
         self._native = _native.Mesh(*self._source)
 
     @classmethod
     def read(cls, path: str | os.PathLike[str]) -> Mesh:
         """The mesh in a gmsh file (MSH 4.1)."""
-        return cls._of(Path(path).read_bytes(), _native.Mesh.read(os.fspath(path)))
+        return cls._of(Path(as_path(path, "path")).read_bytes(), _native.Mesh.read(os.fspath(path)))
 
     @classmethod
     def from_blocks(
@@ -154,8 +157,11 @@ def _again(source: tuple[Any, ...] | bytes | str) -> Mesh:
 
 def _lists(kind: str, name: str, given: Any, widths: tuple[int, ...]) -> list[NDArray[np.int64]]:
     place = f"{kind}.{name}"
-    several = isinstance(given, (list, tuple)) and bool(given) and np.ndim(given[0]) == 2
-    arrays = [np.asarray(array) for array in (given if several else [given])]
+    try:
+        several = isinstance(given, (list, tuple)) and bool(given) and np.ndim(given[0]) == 2
+        arrays = [np.asarray(array) for array in (given if several else [given])]
+    except ValueError:
+        raise refused("mesh", place, "has rows of different lengths: give a list of arrays, one for each length") from None
     for array in arrays:
         if array.size == 0:
             continue

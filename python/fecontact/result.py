@@ -15,6 +15,7 @@ import numpy as np
 import pandas as pd
 
 from . import _native, _quantities
+from ._plain import path as as_path
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,10 +26,11 @@ class Result:
     """The results of a run, whoever made it: ``case.run()``, or ``fecontact run`` (:meth:`open`).
 
     Tables and fields are read when they are asked for, and kept; :meth:`reload` forgets them, for a run that is under way.
+    ``history.attrs["units"]`` has the unit of every column, as the case labels it, else made of F, L and T; so have the other tables.
     """
 
     def __init__(self, folder: str | os.PathLike[str], *, _holder: Any = None) -> None:
-        self.folder = Path(folder)
+        self.folder = Path(as_path(folder, "folder"))
         # A temporary folder lives as long as the result.
         self._holder = _holder
 
@@ -134,6 +136,8 @@ class Result:
         exact: Any = {} if int(pd.__version__.split(".")[0]) >= 3 else {"float_precision": "round_trip"}
         # An increment that was accepted has no reason why not: an empty text.
         table: pd.DataFrame = pd.read_csv(_finished(path), converters={"reason": str}, **exact)
+        labels = self.units if (self.folder / "summary.json").is_file() else {}
+        table.attrs["units"] = {str(column): _quantities.unit_in(name, str(column), labels) for column in table}
         return table
 
     def __repr__(self) -> str:
@@ -284,7 +288,9 @@ def _closed(text: str) -> str:
 
 def report(folders: Sequence[str | os.PathLike[str]], file: str | os.PathLike[str]) -> Path:
     """Write one page (HTML) to look at the results of some folders, overlaid: ``fecontact report``."""
-    _native.report([os.fspath(folder) for folder in folders], os.fspath(file))
+    if isinstance(folders, str) or not isinstance(folders, Sequence):
+        raise ValueError(f"folders: is {folders!r}: give a list of folders")
+    _native.report([as_path(folder, "folders") for folder in folders], as_path(file, "file"))
     return Path(file)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from ._plain import plain
+from ._plain import a_name, count, number, path, plain
 from .case import Case
 
 Array = NDArray[np.float64]
@@ -102,7 +102,7 @@ class ContactFields(Mapping[str, Array]):
         self._native, self._name = native, name
 
     def __getitem__(self, field: str) -> Array:
-        return self._native.contact_field(self._name, field)
+        return self._native.contact_field(self._name, a_name(field, "field", "contacts"))
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.ALWAYS)
@@ -141,7 +141,7 @@ class Simulation:
 
     def __init__(self, case: Case | Mapping[str, Any] | str | os.PathLike[str], threads: int | None = None) -> None:
         self.case = case if isinstance(case, Case) else Case(case)
-        self._native = _native.Simulation(self.case._native, threads)
+        self._native = _native.Simulation(self.case._native, count(threads, "threads"))
 
     def __iter__(self) -> Simulation:
         return self
@@ -195,15 +195,15 @@ class Simulation:
 
     def nodes_of(self, group: str) -> NDArray[np.intp]:
         """Numbers of the nodes of a group, ascending."""
-        return np.array(self._native.nodes_of(group), dtype=np.intp)
+        return np.array(self._native.nodes_of(a_name(group, "group", "nodes_of")), dtype=np.intp)
 
     def reaction(self, group: str) -> Array:
         """Sum of what the supports of a group put on it, shape (2,) [F]."""
-        return np.array(self._native.reaction(group))
+        return np.array(self._native.reaction(a_name(group, "group", "reaction")))
 
     def displacement(self, group: str) -> Array:
         """Mean displacement of the nodes of a group, shape (2,) [L]."""
-        return np.array(self._native.displacement(group))
+        return np.array(self._native.displacement(a_name(group, "group", "displacement")))
 
     @property
     def contacts(self) -> dict[str, ContactFields]:
@@ -219,9 +219,10 @@ class Simulation:
             ux, uy: displacements [L].
             by: when they are reached [T].
         """
-        for axis, to in enumerate((ux, uy)):
+        end = number(by, "by", "lead")
+        for axis, (name, to) in enumerate((("ux", ux), ("uy", uy))):
             if to is not None:
-                self._native.lead(group, axis, float(to), float(by))
+                self._native.lead(a_name(group, "group", "lead"), axis, number(to, name, "lead"), end)
 
     def load(self, on: str, *, by: float | None = None, **load: Any) -> None:
         """Give a load anew, to the end of the step.
@@ -232,7 +233,7 @@ class Simulation:
             **load: one kind, as in a step: ``pressure=2.0``, ``traction={"x": 1.0}``, ``force=``, ``gravity=``,
                 ``spring={"kx": 10, "driver": {"x": 0.1}}``, ``dashpot=``; ``None`` ends it.
         """
-        self._native.load(json.dumps(plain({"on": on, **load}, file="load")), None if by is None else float(by))
+        self._native.load(json.dumps(plain({"on": on, **load}, file="load")), None if by is None else number(by, "by", "load"))
 
     def increments(self, *, max: float | None = None, min: float | None = None) -> None:
         """Bound the increments of the step under way [T].
@@ -244,7 +245,8 @@ class Simulation:
         Raises:
             CaseError: a bound is not positive, ``min`` is above ``max``, or they ask for increments without end, as of ``dt`` in a case.
         """
-        self._native.increments(max, min)
+        bounds = (None if bound is None else number(bound, name, "increments") for name, bound in (("max", max), ("min", min)))
+        self._native.increments(*bounds)
 
     def stop(self) -> None:
         """End it: no increment follows. What is saved goes on as if it had not been ended."""
@@ -260,7 +262,7 @@ class Simulation:
         Raises:
             Stopped: it cannot be written, or supports and loads of the step under way were led, which no file holds.
         """
-        self._native.write(os.fspath(folder))
+        self._native.write(path(folder, "folder"))
 
     @classmethod
     def resume(
@@ -277,6 +279,8 @@ class Simulation:
         Raises:
             CaseError: the case has changed otherwise, and how: as of ``case.run(out, resume=True)``.
         """
+        if not isinstance(saved, _native.Saved):
+            raise ValueError(f"saved: is a {type(saved).__name__}: give what save() has returned")
         simulation = cls(case, threads)
         simulation._native.restore(saved)
         return simulation

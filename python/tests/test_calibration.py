@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import time as clock
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
+from scipy import stats
 
 import fecontact as fc
 from fecontact import calibration
+from fecontact._fit_words import Evidence, words
 from fecontact.calibration import Holds, Interface, SpringSlider
 
 TRUTH = {"mu_s": 0.6, "mu_k": 0.4, "alpha_t": 2000.0, "r": 400.0, "kappa": 40.0, "xi": 0.05}
@@ -60,7 +65,7 @@ def test_sensitivities_are_those_of_steady_sliding() -> None:
     rate, (mu_s, mu_k, kappa, xi) = 0.002, (TRUTH[name] for name in ("mu_s", "mu_k", "kappa", "xi"))
     time = np.linspace(0.0, 400.0, 2001)
     record = Interface(time, rate * time, 1.0, np.zeros_like(time))
-    space = calibration._Space("super_subloading", around("mu_s", "mu_k", "kappa", "xi"), {"r": 400.0, "alpha_t": 2e3})
+    space = calibration.Space("super_subloading", around("mu_s", "mu_k", "kappa", "xi"), {"r": 400.0, "alpha_t": 2e3})
     problem = calibration._Problem([record], space, None)
     last = problem.jacobian(space.coordinates(np.array([mu_s, mu_k, kappa, xi])))[-1]
     above, below = kappa * rate + xi, kappa * rate / mu_k + xi / mu_s
@@ -214,9 +219,133 @@ def test_no_weakening() -> None:
     assert found.parameters["mu_s"] == pytest.approx(0.4, rel=1e-4) and found.parameters["mu_k"] == pytest.approx(0.4, rel=1e-4)
 
 
+def creep(noise: float, seed: int = 1) -> Interface:
+    """A slow slide of a hundred seconds, under a pressure of 100."""
+    time = np.linspace(0.0, 100.0, 200)
+    q = fc.law("super_subloading", mu_s=0.6, mu_k=0.4, r=50.0, kappa=5.0, alpha_t=600.0, xi=0.0025).drive(time, 0.1 * time, 100.0).traction
+    return Interface(time, 0.1 * time, 100.0, q + noise * np.random.default_rng(seed).normal(size=200))
+
+
+def test_an_ordinary_call_ends_where_the_data_say() -> None:
+    # Ranges reach to r of which the curve is at R = 1 in every step, and to mu_s = mu_k.
+    found = fc.fit(creep(0.5), free=["mu_s", "mu_k", "r", "kappa"], alpha_t=600.0, xi=0.0025)
+    assert found.words == [] and found.noise == pytest.approx(0.5, rel=0.15)
+    assert all(covers(found, mu_k=0.4, kappa=5.0, r=50.0).values())
+
+
+@pytest.mark.parametrize("order", [["mu_s", "mu_k", "r", "kappa", "xi", "alpha_t"], ["alpha_t", "xi", "kappa", "r", "mu_k", "mu_s"]])
+def test_no_start_ends_where_nothing_weakens(order: list[str]) -> None:
+    # Wide ranges that overlap: over half of the box has mu_s < mu_k, where the sum of squares is flat in four directions.
+    found = fc.fit(noisy(0), free=order)
+    assert found.words == [] and all(covers(found, **TRUTH).values())
+    assert (found.ends["mu_s"] > 1.2 * found.ends["mu_k"]).all()
+
+
+def test_clean_data_are_followed() -> None:
+    # What the law computed itself, with residuals of its tolerance, which are no noise.
+    record = creep(0.0)
+    found = fc.fit(record, free=["mu_s", "mu_k", "r", "kappa"], alpha_t=600.0, xi=0.0025, starts=1)
+    assert found.words == [] and found.noise < 1e-5 * 60.0
+    for name, value in {"mu_s": 0.6, "mu_k": 0.4, "r": 50.0, "kappa": 5.0}.items():
+        assert found.parameters[name] == pytest.approx(value, rel=1e-5)
+    # Residuals that are exactly nothing: friction is mu p wherever it slides.
+    time = np.linspace(0.0, 1.0, 50)
+    exact = fc.fit(Interface(time, 0.0 * time, 1.0, 0.0 * time), "coulomb", {"mu": (0.1, 1.0)}, alpha_t=1e6, starts=1)
+    assert exact.noise == 0.0 and "mu" in repr(exact)
+
+
+def test_a_start_is_given() -> None:
+    free = around("mu_s", "mu_k", "kappa")
+    given = {"r": 400.0, "xi": 0.05, "alpha_t": 2e3}
+    found = fc.fit(noisy(0), free=free, start={"mu_s": 0.6, "kappa": 45.0}, starts=1, **given)
+    assert len(found.ends) == 1 and all(covers(found, mu_s=0.6, mu_k=0.4, kappa=40.0).values())
+    # It is one of the searches, whatever the others find.
+    assert len(fc.fit(noisy(0), free=free, start={"mu_s": 0.6}, starts=2, **given).ends) == 2
+
+
+def test_intervals_that_say_nothing_are_not_determined() -> None:
+    # One fast slide: it has no time to heal unless it heals at once, which would go together with a stronger loss.
+    time = np.linspace(0.0, 0.1, 200)
+    q = traction(time, 2.0 * time) + NOISE * np.random.default_rng(1).normal(size=200)
+    record = Interface(time, 2.0 * time, 1.0, q)
+    found = fc.fit(record, free={**around("mu_s", "mu_k", "kappa"), "xi": (1e-6, 1.0)}, r=400.0, alpha_t=2e3)
+    assert (found.table["low"]["xi"], found.table["high"]["xi"]) == (0.0, np.inf) and repr(found).count("not determined") == 1
+    assert all(covers(found, mu_s=0.6, mu_k=0.4, kappa=40.0).values()) and found.table["high"]["mu_k"] < 0.5
+    assert "these data do not determine xi: fix it, or give data that depend on it" in found.words
+    wide = fc.fit(record, free=["mu_s", "mu_k", "kappa", "xi"], r=400.0, alpha_t=2e3)
+    assert wide.words == ["mu_k, kappa and xi trade off: these data do not tell them apart: fix one"]
+    assert all(wide.table["high"][name] == np.inf for name in ("mu_k", "kappa")) and wide.table["high"]["mu_s"] < 0.62
+
+
+def test_trades_are_told_in_groups() -> None:
+    table = pd.DataFrame({"value": 1.0, "low": 0.9, "high": 1.1}, index=["a", "b", "c", "d", "e"])
+    matrix = np.eye(5)
+    for i, k in ((0, 1), (1, 2), (3, 4)):
+        matrix[i, k] = matrix[k, i] = 0.99
+    ends = pd.DataFrame({**dict.fromkeys(table.index, [1.0]), "S": [1.0]})
+    evidence = Evidence(
+        table, pd.DataFrame(matrix, index=table.index, columns=table.index), ends, {}, np.full(5, 0.1), np.eye(5), np.zeros(5, dtype=bool),
+        1.0, False, 0.0, 100, 0.1,
+    )  # fmt: skip
+    assert words(evidence) == [
+        "a, b and c trade off (correlations above 0.98): fix one for narrower intervals of the others",
+        "d and e trade off (correlation 0.990): fix one for a narrower interval of the other",
+    ]
+    # Two directions of which nothing is known in three parameters, and one parameter by itself.
+    directions = np.array([[0, 0, 0, 1, 0], [0, 0, 1, 0, 0], [0.6, 0.8, 0, 0, 0], [0.8, -0.6, 0, 0, 0], [0, 0, 0, 0, 1]], dtype=float)
+    spread = np.array([0.1, 0.1, 0.1, 2.0, 3.0])
+    assert words(replace(evidence, spread=spread, directions=directions, correlation=pd.DataFrame(np.eye(5)))) == [
+        "these data do not determine e: fix it, or give data that depend on it",
+        "a and b trade off: these data do not tell them apart: fix one",
+    ]
+
+
+def test_profiles() -> None:
+    # The sum of squares of Coulomb friction is a parabola in mu: mean ± t₀.₉₇₅(48) s/√49, of the 49 samples that slide.
+    time = np.linspace(0.0, 1.0, 50)
+    q = 0.4 + 0.01 * np.random.default_rng(8).normal(size=50)
+    q[0] = 0.0
+    found = fc.fit(Interface(time, time, 1.0, q), "coulomb", {"mu": (0.1, 1.0)}, alpha_t=1e6)
+    mean, half = q[1:].mean(), stats.t.ppf(0.975, 49) * np.sqrt(np.sum((q[1:] - q[1:].mean()) ** 2) / 49 / 49)
+    profile = found.profile("mu")
+    assert profile.attrs["low"] == pytest.approx(mean - half, rel=1e-5) and profile.attrs["high"] == pytest.approx(mean + half, rel=1e-5)
+    np.testing.assert_allclose(profile["S"], profile["S"].min() + 49 * (profile["mu"] - mean) ** 2, rtol=1e-7)
+    # Where the law is nearly linear it is the interval of the table; where the data tell nothing it has no end.
+    found = fc.fit(noisy(0), free=around("mu_s", "mu_k", "kappa"), r=400.0, xi=0.05, alpha_t=2e3, starts=2)
+    profile = found.profile("kappa", points=6)
+    row = found.table.loc["kappa"]
+    assert np.log(profile.attrs["high"] / profile.attrs["low"]) == pytest.approx(np.log(row["high"] / row["low"]), rel=0.05)
+    assert profile["kappa"].is_monotonic_increasing and profile["S"].min() == pytest.approx(found.ends["S"][0])
+    time = np.linspace(0.0, 0.1, 200)
+    record = Interface(time, 2.0 * time, 1.0, traction(time, 2.0 * time) + NOISE * np.random.default_rng(1).normal(size=200))
+    found = fc.fit(record, free=around("mu_k", "xi", by=10.0), mu_s=0.6, kappa=40.0, r=400.0, alpha_t=2e3)
+    assert found.profile("xi", points=4).attrs["low"] == 0.0
+    with pytest.raises(ValueError, match="name: r is no free parameter; there are mu_k, xi"):
+        found.profile("r")
+
+
+@pytest.mark.slow
+def test_eight_parameters_take_seconds() -> None:
+    start = clock.process_time()
+    found = fc.fit(noisy(0), free={**around(*TRUTH, by=20.0), "m": (0.3, 3.0), "n": (0.3, 3.0)})
+    assert all(covers(found, **TRUTH, m=1.0, n=1.0).values())
+    assert clock.process_time() - start < 20.0
+
+
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
+        ({"free": {"r": 3.0}}, r"free: r: the range is 3.0: give two numbers"),
+        ({"free": {"r": ("low", "high")}}, r"free: r: the range is \('low', 'high'\): give two numbers"),
+        ({"free": 3}, "fit: free: is 3: must be a list of names"),
+        ({"data": 3}, "data: is a int: give Interface, SpringSlider or Holds"),
+        ({"starts": 0}, "starts: is 0: must be at least 1"),
+        ({"starts": 1.5}, "starts: is 1.5: must be a whole number"),
+        ({"start": 3}, "start: is a int: give values of free parameters by name"),
+        ({"start": {"m": 3}}, "start: m is no free parameter; there are mu_s, mu_k, r, kappa, xi"),
+        ({"start": {"mu_s": 1e3}}, "start: mu_s: 1000.0 is not within its range, 0.2"),
+        ({"free": ["mu_s"], "mu_k": [0.3, 0.4]}, r"law: mu_k: is \[0.3, 0.4\]: must be a finite number"),
+        ({"free": ["mu_s"], "mu_k": "low"}, "law: mu_k: is 'low': must be a number"),
         ({"free": ["m"]}, r"m: give the range to find it in: free=\{'m'"),
         ({"free": ["r"], "r": 3.0}, "free: r: given as well"),
         ({"free": {"r": (2.0, 1.0)}}, "must be finite and ascending"),
@@ -251,7 +380,7 @@ def test_ranges_that_overlap() -> None:
     found = fc.fit(record, "slip_weakening", free, alpha_t=2e3)
     for name in free:
         assert found.parameters[name] == pytest.approx(given[name], rel=1e-2), found
-    space = calibration._Space("slip_weakening", free, {"alpha_t": 2e3})
+    space = calibration.Space("slip_weakening", free, {"alpha_t": 2e3})
     problem = calibration._Problem([record], space, None)
     # Where mu_s = mu_d = 0.58, mu_s can only rise and mu_d only fall: q = mu_d + (mu_s - mu_d) (1 - s/D_c) up to s = D_c, then mu_d.
     by = problem.differences(space.coordinates(np.array([0.58, 0.58, 0.2])))

@@ -88,6 +88,70 @@ def test_bad_meshes(change: dict[str, Any], message: str) -> None:
         fc.Mesh(**{**good, **change})
 
 
+COULOMB = fc.law("coulomb", mu=0.4, alpha_t=1e3)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: fc.law(3), "law: is a int: give the name of a law, or its parameters"),
+        (lambda: fc.law("coulomb", mu=[0.3, [0.4]], alpha_t=1.0), r"law: mu: is \[0.3, \[0.4\]\]: must be a number"),
+        (lambda: COULOMB.drive("x", [0, 1], 1.0), "law: time: is 'x': must be a number, or numbers in rows of one length"),
+        (lambda: COULOMB.drive([0, 1], {}, 1.0), "law: slip: is {}: must be a number"),
+        (lambda: COULOMB.drive([0, 1], [0, 1], 1.0, traction=[1, 2]), r"law: traction: is \[1, 2\]: must be a finite number"),
+        (lambda: COULOMB.drive([0, 1], [0, 1], 1.0, by=3), "law: by: is 3: must be a list of names"),
+        (lambda: COULOMB.drive([0, 1], [0, 1], 1.0, threads=2.5), "threads: is 2.5: must be a whole number"),
+        (lambda: COULOMB.ride([0, 1], [0, 1], 1.0, stiffness=1.0, mass=None), "law: mass: is nan"),
+        (lambda: fc.Case(3), "case: is a int: give the path of a case file, or a case as a dict"),
+        (lambda: fc.Case({}, folder=3), "folder: is 3: must be a path"),
+        (lambda: fc.Mesh(None, {}), "mesh: nodes: has the shape"),
+        (lambda: fc.Mesh("x", {}), "mesh: nodes: is 'x': must be a number"),
+        (lambda: fc.Mesh([[0, 0]], []), "mesh: elements: is a list: must be a dict of arrays by name"),
+        (lambda: fc.Mesh([[0, 0]], {"a": [[0, 1, 2], [0, 1]]}), "mesh: elements.a: has rows of different lengths"),
+        (lambda: fc.schema(3), "schema: schema: is 3: must be a name"),
+        (lambda: fc.report("out", "page.html"), "folders: is 'out': give a list of folders"),
+        (lambda: fc.friction_law("mine", 3), "law `mine`: variables: is a int: give values at first touch by name"),
+        (lambda: fc.calibration.Interface("x", [0], 1.0, [0]), "time: is a str: must be numbers"),
+    ],
+)
+def test_arguments_that_are_of_another_kind_are_named(call: Any, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        call()
+
+
+def test_arguments_of_a_simulation_are_named(document: dict[str, Any]) -> None:
+    simulation = fc.Simulation(document)
+    for call, message in (
+        (lambda: simulation.lead("block_top", ux="x", by=1.0), "lead: ux: is 'x': must be a number"),
+        (lambda: simulation.lead(3, ux=0.0, by=1.0), "lead: group: is 3: must be a name"),
+        (lambda: simulation.load("block_top", pressure=1.0, by=[1, 2]), r"load: by: is \[1, 2\]: must be a finite number"),
+        (lambda: simulation.increments(max=float("nan")), "increments: max: is nan: must be a finite number"),
+        (lambda: simulation.reaction(3), "reaction: group: is 3: must be a name"),
+        (lambda: simulation.write(3), "folder: is 3: must be a path"),
+        (lambda: fc.Simulation.resume(document, 3), "saved: is a int: give what save"),
+        (lambda: simulation.case.run(out=3, progress=False), "out: is 3: must be a path"),
+        (lambda: simulation.case.replace(3), "replace: is a int: give values by place"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            call()
+
+
+def test_notes_of_what_was_raised_are_kept(document: dict[str, Any]) -> None:
+    """What is raised while a run tells of its warnings ends it; its own notes stand before the folder."""
+    document["contacts"]["base"]["normal"] = {"alpha_n": 50.0}
+
+    def raised(*told: Any, **more: Any) -> None:
+        error = RuntimeError("not this one")
+        error.__notes__ = ["a note of its own"]
+        raise error
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("fecontact.case.warnings.warn", raised)
+        with pytest.raises(RuntimeError, match="not this one") as caught:
+            fc.Case(document).run(progress=False)
+    assert caught.value.__notes__[0] == "a note of its own" and "the results so far are in" in caught.value.__notes__[1]
+
+
 @pytest.mark.parametrize("text", ["{\"status\": \"comp", "[1]", "\xff"])
 def test_a_damaged_summary_is_told(tmp_path: Path, text: str) -> None:
     (tmp_path / "summary.json").write_text(text, encoding="latin-1")

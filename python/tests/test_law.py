@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import json
+import pickle
 from pathlib import Path
 from typing import Any
 
@@ -305,3 +307,14 @@ def test_the_stiffness_is_not_a_parameter_of_its_own(document: dict[str, Any]) -
 def test_committed_law_test_is_read() -> None:
     test = json.loads((REPOSITORY / "cases" / "law" / "monotone.json").read_text())
     assert fc.law(test["friction"]).drive([0, 1], [0, 0.1], 50.0).traction[-1] > 0
+
+
+def test_drives_are_copied_and_pickled() -> None:
+    drive = fc.law("coulomb", mu=[0.3, 0.4], alpha_t=1e3).drive([0.0, 1.0, 2.0], [0.0, 0.1, 0.0], 2.0)
+    for other in (copy.copy(drive), copy.deepcopy(drive), pickle.loads(pickle.dumps(drive))):
+        assert list(other) == list(drive) and repr(other) == repr(drive)
+        for name in drive:
+            np.testing.assert_array_equal(other[name], drive[name])
+    assert copy.deepcopy(drive).traction is not drive.traction
+    with pytest.raises(AttributeError, match="a drive has no `tractoin`; it has time, slip"):
+        _ = drive.tractoin

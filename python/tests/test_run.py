@@ -54,6 +54,16 @@ def test_check_says_what_the_command_line_says(program: Path, document: dict[str
     assert told.returncode == 0 and fc.Case(document).check() == told.stdout
 
 
+def test_tables_have_units(result: fc.Result, document: dict[str, Any]) -> None:
+    units = result.history.attrs["units"]
+    assert list(units) == list(result.history)
+    labelled = {"time": "s", "step": "", "strain": "N·mm", "base.normal_force": "N", "base.mean_slip": "mm", "base.slip_fraction": ""}
+    assert {name: units[name] for name in labelled} == labelled
+    # The points that slip are counted under the name of a length.
+    assert result.newton.attrs["units"]["slip"] == "" and result.newton.attrs["units"]["time"] == "s"
+    assert fc.Case({**document, "units": {}}).run(progress=False).history.attrs["units"]["strain"] == "F·L"
+
+
 def test_tables_and_interface(result: fc.Result) -> None:
     assert result.status == "completed" and result.contacts == ["base"]
     history = result.history

@@ -78,6 +78,22 @@ def test_derivatives_by_exponents_that_are_one() -> None:
         assert np.abs(exact - (above - below) / 2e-3).max() < 1e-4 * np.abs(exact).max(), by
 
 
+def test_derivatives_where_the_coefficients_meet() -> None:
+    """Finite at mu_s = mu_k, for any exponents and far along the sliding curve; moved together, both move q = μ p as it slides."""
+    time, slip, _ = path(200)
+    for m in (0.1, 0.5, 1.0, 2.0):
+        for n in (0.1, 0.5, 1.0, 2.0):
+            for kappa, xi, r, core in ((40.0, 0.05, 400.0, 0.0), (0.0, 0.0, 1e7, 0.5), (0.0, 5.0, 1e7, 0.999)):
+                law = fc.law("super_subloading", mu_s=0.4, mu_k=0.4, alpha_t=2e3, r=r, kappa=kappa, xi=xi, m=m, n=n, elastic_core=core)
+                drive = law.drive(time, slip, 1.0, by=law.sensitivities())
+                columns = np.stack([drive[f"dtraction_d{name}"] for name in law.sensitivities()])
+                assert np.isfinite(columns).all(), (m, n, kappa)
+                # The end slides backwards: −μ p.
+                assert drive.dtraction_dmu_s[-1] + drive.dtraction_dmu_k[-1] == pytest.approx(-1.0, rel=1e-3), (m, n, kappa)
+                # Nothing weakens: how fast it would does not matter.
+                np.testing.assert_allclose(columns[[law.sensitivities().index(name) for name in ("kappa", "xi", "m", "n")]], 0.0, atol=1e-9)
+
+
 def test_what_is_not_differentiated() -> None:
     assert fc.law({**{k: v for k, v in SUPER.items() if k != "tolerance"}, "integration": "backward_euler"}).sensitivities() == []
     assert fc.law("frictionless").sensitivities() == []
@@ -92,7 +108,7 @@ def test_a_record_of_ten_thousand_samples_takes_well_under_a_second() -> None:
 
 
 def problem(record: Any, free: dict[str, float], **fixed: float) -> tuple[Any, np.ndarray]:
-    space = calibration._Space("super_subloading", {name: (value / 9.0, value * 9.0) for name, value in free.items()}, fixed)
+    space = calibration.Space("super_subloading", {name: (value / 9.0, value * 9.0) for name, value in free.items()}, fixed)
     return calibration._Problem([record], space, None), space.coordinates(np.array(list(free.values())))
 
 

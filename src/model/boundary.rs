@@ -27,8 +27,8 @@ pub enum Drive {
     #[schemars(!skip, untagged)]
     Constant(f64),
     /// Expression in the reference position x, y and the run time t, with + - * / ^, brackets, pi, tau, e, and functions: abs, acos,
-    /// acosh, asin, asinh, atan, atanh, atan2(y, x), cbrt, ceil, cos, cosh, exp, floor, fract, ln, log (= ln), log10, log2,
-    /// max(a, b), min(a, b), round, signum, sin, sinh, sqrt, tan, tanh, trunc. -x^2 is -(x^2)
+    /// acosh, asin, asinh, atan, atanh, atan2(y, x), cbrt, ceil, cos, cosh, erf, erfc, exp, floor, fract, ln, log (= ln), log10,
+    /// log2, max(a, b), min(a, b), round, signum, sin, sinh, sqrt, tan, tanh, trunc. -x^2 is -(x^2)
     #[serde(skip)]
     #[schemars(!skip, untagged)]
     Expression(Expression),

@@ -176,7 +176,7 @@ type Function = fn(f64) -> f64;
 type Pair = fn(f64, f64) -> f64;
 
 /// Functions of one value.
-const FUNCTIONS: [(&str, Function); 26] = [
+const FUNCTIONS: [(&str, Function); 28] = [
     ("abs", f64::abs),
     ("acos", f64::acos),
     ("acosh", f64::acosh),
@@ -188,6 +188,8 @@ const FUNCTIONS: [(&str, Function); 26] = [
     ("ceil", f64::ceil),
     ("cos", f64::cos),
     ("cosh", f64::cosh),
+    ("erf", libm::erf),
+    ("erfc", libm::erfc),
     ("exp", f64::exp),
     ("floor", f64::floor),
     ("fract", f64::fract),

@@ -311,6 +311,33 @@ fn numbers_in_expressions_may_have_exponents() {
     }
 }
 
+/// Abramowitz & Stegun, tables 7.1 and 7.3, with more digits by mpmath.
+#[test]
+fn error_functions_of_expressions_are_those_of_tables() {
+    let value = |text: &str| Expression::parse(text).map(|expression| expression.value([2.0, 0.25].into(), 4.0));
+    for (text, expected) in [
+        ("erf(0)", 0.0),
+        ("erf(0.5)", 0.520_499_877_813_046_5),
+        ("erf(-1)", -0.842_700_792_949_714_9),
+        ("erf(x)", 0.995_322_265_018_952_7),
+        ("erfc(2*y)", 0.479_500_122_186_953_5),
+        ("erfc(x)", 0.004_677_734_981_047_266),
+        ("erfc(x/(2*sqrt(y*t/16)))", 1.541_725_790_028_001_9e-8),
+        ("erfc(-3)", 1.999_977_909_503_001_4),
+    ] {
+        close(
+            text,
+            value(text).unwrap_or_else(|error| panic!("{text}: {error}")),
+            expected,
+            1e-15 + 1e-14 * expected.abs(),
+        );
+    }
+    assert!(
+        Expression::parse("erfx(x)")
+            .is_err_and(|told| told.contains("did you mean `erf`?") || told.contains("did you mean `erfc`?"))
+    );
+}
+
 /// A quarter of a plane under 45°: a trapezoid whose right side runs from (2, 0) to (1, 1), with the normal (1, 1)/√2.
 fn trapezoid(section: Value, steps: Value) -> Finished {
     let mesh = Blocks::default().block("body", [3, 2], |s, t| [s * (2.0 - t), t]);

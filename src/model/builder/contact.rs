@@ -11,7 +11,7 @@ use crate::contact::master::{Circle, Plane, Polyline, Shape};
 use crate::contact::pair::{BadPressure, ContactPair, Fluid};
 use crate::laws::friction::Dilatancy;
 use crate::model::Model;
-use crate::model::boundary::Profile;
+use crate::model::boundary::{Profile, Span};
 use crate::model::method::Method;
 use crate::model::written::written;
 
@@ -349,16 +349,42 @@ pub fn fluid(place: &str, contact: &Contact) -> Checked<Option<Fluid>> {
     Ok(Some(Fluid::new(move |at, time| pressure.value_at(at, time))))
 }
 
-/// A fluid pushes, and does not pull; what it does later a run sees.
-pub fn check_fluid(pair: &ContactPair, place: &str, model: &Model) -> Checked<()> {
-    let Some(BadPressure { at, pressure }) = pair.bad_fluid_pressure(&model.mesh.undeformed(), 0.0) else {
+/// A fluid pushes, and does not pull.
+pub fn check_fluid(pair: &ContactPair, place: &str, model: &Model, time: f64) -> Checked<()> {
+    let Some(BadPressure { at, pressure }) = pair.bad_fluid_pressure(&model.mesh.undeformed(), time) else {
         return Ok(());
     };
     let message = format!(
-        "is {pressure} at ({}, {}) and t = 0: must be a finite number, zero or positive, which pushes the surfaces apart",
+        "is {pressure} at ({}, {}) and t = {time}: must be a finite number, zero or positive, which pushes the surfaces apart",
         at.x, at.y
     );
     Err(ModelError::new(format!("{place}.fluid_pressure"), message))
+}
+
+/// Most times in a step at which the pressure of a fluid is looked at before the run, and most values in all.
+const LOOKS: usize = 100;
+const VALUES: usize = 2_000_000;
+
+/// Fluids that would begin to pull: at evenly spaced times of the steps, as far as the run is certain to come. Between them a run sees it.
+pub fn check_fluids_in_time(contacts: &[Contact], model: &Model) -> Checked<()> {
+    for (contact, pair) in contacts.iter().zip(&model.contacts) {
+        if !contact.fluid_pressure.as_ref().is_some_and(Profile::depends_on_time) {
+            continue;
+        }
+        let looks = (VALUES / (pair.points.len().max(1) * model.steps.len().max(1))).clamp(1, LOOKS);
+        for step in &model.steps {
+            // Such a step may end as soon as it has begun, and the time of all that follows is not known.
+            if step.until.is_some() {
+                break;
+            }
+            let Span { start, end } = step.span;
+            for look in 1..=looks {
+                let time = if look == looks { end } else { start + (end - start) * look as f64 / looks as f64 };
+                check_fluid(pair, &format!("contacts.{}", contact.name), model, time)?;
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The shape of a rigid master.

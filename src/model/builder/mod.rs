@@ -306,6 +306,7 @@ impl Builder {
         checks::check_schemes(&self.contacts, &model)?;
         checks::check_rows(&model)?;
         checks::check_quasi_dynamic(&model)?;
+        contact::check_fluids_in_time(&self.contacts, &model)?;
         supported::check(&self.steps, &model)?;
         Ok(model)
     }

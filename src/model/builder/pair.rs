@@ -98,7 +98,7 @@ fn pair(contact: &Contact, model: &Model) -> Checked<ContactPair> {
         }
         pair.slide_little(&model.mesh.undeformed());
     }
-    contact::check_fluid(&pair, &place, model)?;
+    contact::check_fluid(&pair, &place, model, 0.0)?;
     start(&mut pair, contact, model, &place)?;
     Ok(pair)
 }

@@ -90,7 +90,8 @@ impl SlidingCurve {
 
     /// How R varies where r varies by `dr` and R_e by `dcore`, after a given plastic slip, R at the start being given.
     pub(super) fn varied(&self, start: &CurvePoint, here: &CurvePoint, dr: f64, dcore: f64) -> f64 {
-        if start.full {
+        // Far along the curve U underflows: R is 1 there, too.
+        if start.full || start.rate == 0.0 {
             return 0.0;
         }
         let slip = here.slip - start.slip;

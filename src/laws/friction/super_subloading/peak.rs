@@ -339,11 +339,17 @@ impl PeakEvolution {
             return Exponents { a: kappa * slip, b: xi * dt, da: dkappa * slip, db: dxi * dt };
         }
         let half = self.backward_euler(old, 0.5 * slip, 0.5 * dt);
-        let dhalf = self.backward_euler_by(half.mu, half.by_old, 0.5 * slip, 0.5 * dt, by);
-        let excess = ((half.mu - self.mu_k) * self.per_mu_k).max(f64::EPSILON);
-        let deficit = ((self.mu_s - half.mu) * self.per_mu_s).max(f64::EPSILON);
-        let dexcess = (dhalf - half.mu * self.per_mu_k * by.mu_k) * self.per_mu_k;
-        let ddeficit = (half.mu * self.per_mu_s * by.mu_s - dhalf) * self.per_mu_s;
+        let dhalf = self.backward_euler_by(half.mu, 0.5 * slip, 0.5 * dt, by);
+        let (dexcess, ddeficit) = (
+            (dhalf - half.mu * self.per_mu_k * by.mu_k) * self.per_mu_k,
+            (half.mu * self.per_mu_s * by.mu_s - dhalf) * self.per_mu_s,
+        );
+        // What is held at round-off does not vary.
+        let held = |share: f64, dshare: f64| {
+            if share > f64::EPSILON { (share, dshare) } else { (f64::EPSILON, 0.0) }
+        };
+        let (excess, dexcess) = held((half.mu - self.mu_k) * self.per_mu_k, dexcess);
+        let (deficit, ddeficit) = held((self.mu_s - half.mu) * self.per_mu_s, ddeficit);
         let (loss, gain) = (excess.powf(self.m - 1.0), deficit.powf(self.n - 1.0));
         let dloss = loss * (by.m * excess.ln() + (self.m - 1.0) * dexcess / excess);
         let dgain = gain * (by.n * deficit.ln() + (self.n - 1.0) * ddeficit / deficit);
@@ -355,13 +361,23 @@ impl PeakEvolution {
         }
     }
 
-    /// ∂μ of one backward-Euler step that ends with `mu`, `share` being ∂μ/∂μ₀.
-    fn backward_euler_by(&self, mu: f64, share: f64, slip: f64, dt: f64, by: &PeakShift) -> f64 {
+    /// ∂μ of one backward-Euler step that ends with `mu`, μ at the start being given.
+    ///
+    /// ```text
+    /// dμ (1 + A + B) = A μ/μ_k dμ_k + B μ/μ_s dμ_s + Δt (gain dξ + ξ ∂gain/∂n dn) − Δλ (loss dκ + κ ∂loss/∂m dm)
+    /// A = κ Δλ ∂loss/∂μ,   B = ξ Δt ∂(−gain)/∂μ
+    /// ```
+    /// Where m or n is less than 1 a slope is infinite at μ_k or μ_s: taken at round-off from there it holds μ to that end.
+    fn backward_euler_by(&self, mu: f64, slip: f64, dt: f64, by: &PeakShift) -> f64 {
         let (x, y) = ((mu - self.mu_k) * self.per_mu_k, (self.mu_s - mu) * self.per_mu_s);
-        let ((loss, loss_slope), (gain, gain_slope)) = (power(x, self.m), power(y, self.n));
-        let dloss = scaled(loss_slope, -mu * self.per_mu_k * self.per_mu_k * by.mu_k) + logarithmic(loss, x) * by.m;
-        let dgain = scaled(gain_slope, mu * self.per_mu_s * self.per_mu_s * by.mu_s) + logarithmic(gain, y) * by.n;
-        share * (dt * (by.xi * gain + self.xi * dgain) - slip * (by.kappa * loss + self.kappa * dloss))
+        let slope = |x: f64, k: f64| power(if k < 1.0 { x.max(f64::EPSILON) } else { x }, k).1;
+        let to_kinetic = self.kappa * slip * slope(x, self.m) * self.per_mu_k;
+        let to_static = self.xi * dt * slope(y, self.n) * self.per_mu_s;
+        let ((loss, _), (gain, _)) = (power(x, self.m), power(y, self.n));
+        let drawn = mu * (to_kinetic * self.per_mu_k * by.mu_k + to_static * self.per_mu_s * by.mu_s);
+        let gained = dt * (by.xi * gain + self.xi * logarithmic(gain, y) * by.n);
+        let lost = slip * (by.kappa * loss + self.kappa * logarithmic(loss, x) * by.m);
+        (drawn + gained - lost) / (1.0 + to_kinetic + to_static)
     }
 
     /// dμ after the time `dt` without plastic slip, where μ at the start varies by `dold` and the time by `ddt`.
