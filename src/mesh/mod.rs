@@ -16,6 +16,7 @@ cfg_if::cfg_if! {
         pub mod few;
         pub mod joined;
         pub mod names;
+        pub mod nearest;
         pub mod section;
         pub mod shape;
         pub mod ties;
@@ -25,6 +26,7 @@ cfg_if::cfg_if! {
         pub(crate) mod few;
         pub(crate) mod joined;
         pub(crate) mod names;
+        pub(crate) mod nearest;
         pub(crate) mod section;
         pub(crate) mod shape;
         pub(crate) mod ties;

@@ -12,7 +12,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use crate::mesh::InlineMesh;
 use crate::mesh::section::Section;
 use crate::model::NewtonSettings;
-use crate::model::builder::{BodyInput, Contact, Gauge, LoadStep, LoadingPlateInput, PointMassInput};
+use crate::model::builder::{BodyInput, Contact, Gauge, LoadStep, LoadingPlateInput, Place, PointMassInput};
 use crate::model::written::Written;
 use blocks::MeshKeys;
 pub(super) use blocks::blocks;
@@ -64,9 +64,10 @@ pub struct Case {
     /// state. Mesh, bodies and contacts must be the same except for the parameters of friction and damping. The steps
     /// follow those of that case: supports, loads and time continue; energies start from zero
     pub begin_with: Option<String>,
-    /// Groups whose mean displacement and reaction are written to the history
+    /// Groups, or single nodes {"near": [x, y]} or {"node": tag}, whose mean displacement and reaction are written to the history, under
+    /// the name of the group, `near_X_Y` or `node_TAG`
     #[serde(default)]
-    pub watch: Vec<String>,
+    pub watch: Vec<Place>,
     /// Gauges by a name of your choice: displacement, velocity, strain and stress at points of the bodies, at every row of
     /// the history (probes.csv)
     #[serde(default)]
