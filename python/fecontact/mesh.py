@@ -12,10 +12,12 @@ from typing import Any, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _native
+from . import _foreign, _native
 from ._plain import plain, refused
 
 Lists = Union[ArrayLike, Sequence[ArrayLike]]
+# What a mesh is made of again: arrays, the content of a gmsh file, blocks as JSON, or such of several meshes.
+Source = Union[tuple[Any, ...], bytes, str, list[Any]]
 
 
 class Mesh:
@@ -44,7 +46,7 @@ class Mesh:
         if given.ndim != 2 or given.shape[1] != 2:
             raise refused("mesh", "nodes", f"has the shape {given.shape}: must be (nodes, 2)")
         one = {name: np.asarray(numbers).reshape(-1, 1) for name, numbers in (points or {}).items()}
-        self._source: tuple[Any, ...] | bytes | str = (
+        self._source: Source = (
             np.ascontiguousarray(given),
             {name: _lists("elements", name, lists, (3, 4, 6, 8, 9)) for name, lists in elements.items()},
             {name: _lists("edges", name, lists, (2, 3)) for name, lists in (edges or {}).items()},
@@ -53,9 +55,44 @@ class Mesh:
         self._native = _native.Mesh(*self._source)
 
     @classmethod
-    def read(cls, path: str | os.PathLike[str]) -> Mesh:
-        """The mesh in a gmsh file (MSH 4.1)."""
-        return cls._of(Path(path).read_bytes(), _native.Mesh.read(os.fspath(path)))
+    def read(cls, path: str | os.PathLike[str], bodies: Sequence[str] | str | None = None) -> Mesh:
+        """The mesh in a file: of gmsh (``.msh``, MSH 4.1 or 2.2), or of another program, with its groups.
+
+        ================  =============================================  =================================================
+        file              bodies                                         other groups
+        ================  =============================================  =================================================
+        ``.inp``          element sets (Abaqus, CalculiX)                sets of lines and ``*SURFACE``: edges; node sets
+        ``.e``, ``.exo``  blocks (Exodus)                                side sets: edges; node sets
+        ``.med``          groups of cells                                groups of lines: edges; groups of nodes
+        ``.vtu``, others  values of an array of the cells, ``NAME_1``    lines alike
+        ================  =============================================  =================================================
+
+        All but ``.msh`` and ``.inp`` need ``pip install 'fecontact[meshio]'``. A set of nodes that are those of edges, or of a body,
+        of the same name is that group; with other nodes it is called ``NAME_nodes``.
+
+        Args:
+            path: the file; how its name ends says its format.
+            bodies: the sets of elements that are the bodies, where sets overlap; or the name of the array of the cells.
+
+        Raises:
+            CaseError: what cannot be read, or is no plane mesh.
+            ImportError: the format needs a package that is not there.
+        """
+        if Path(path).suffix.lower() == ".msh":
+            if bodies is not None:
+                raise refused(os.fspath(path), "bodies", "is for other formats: the bodies of gmsh are its physical surfaces")
+            return cls._of(Path(path).read_bytes(), _native.Mesh.read(os.fspath(path)))
+        return cls(**_foreign.read(os.fspath(path), bodies))
+
+    @classmethod
+    def join(cls, meshes: Sequence[Mesh]) -> Mesh:
+        """The meshes as one; they share no nodes, and each group is in one of them.
+
+        Raises:
+            CaseError: two of them have a group of the same name.
+        """
+        given = list(meshes)
+        return cls._of([mesh._source for mesh in given], _native.Mesh.join([mesh._native for mesh in given]))
 
     @classmethod
     def from_blocks(
@@ -103,7 +140,7 @@ class Mesh:
         return cls._of(content, _native.Mesh.from_bytes(content))
 
     @classmethod
-    def _of(cls, source: bytes | str, native: _native.Mesh) -> Mesh:
+    def _of(cls, source: Source, native: _native.Mesh) -> Mesh:
         mesh = cls.__new__(cls)
         mesh._source, mesh._native = source, native
         return mesh
@@ -142,7 +179,9 @@ class Mesh:
         return f"<Mesh of {len(self.nodes)} nodes and {len(self.elements)} elements, with the groups {groups}>"
 
 
-def _again(source: tuple[Any, ...] | bytes | str) -> Mesh:
+def _again(source: Source) -> Mesh:
+    if isinstance(source, list):
+        return Mesh.join([_again(part) for part in source])
     if isinstance(source, str):
         return Mesh._of(source, _native.Mesh.from_blocks(source))
     if isinstance(source, bytes):

@@ -38,7 +38,8 @@ pub fn nearest<'e>(
     let distance = |node: usize| (nodes[node] - Vector2::from(point)).norm();
     let node = (0..nodes.len()).min_by(|a, b| distance(*a).total_cmp(&distance(*b))).ok_or(NotOne::NoNodes)?;
     let corner = |pick: fn(Vector2<f64>, Vector2<f64>) -> Vector2<f64>| nodes.iter().copied().reduce(pick);
-    let diagonal = corner(|a, b| a.sup(&b)).zip(corner(|a, b| a.inf(&b))).map_or(0.0, |(high, low)| (high - low).norm());
+    let diagonal =
+        corner(|a, b| a.sup(&b)).zip(corner(|a, b| a.inf(&b))).map_or(0.0, |(high, low)| (high - low).norm());
     let (near, round_off) = (distance(node), EQUALLY_NEAR * diagonal);
     if let Some(other) = (0..nodes.len()).find(|other| *other != node && distance(*other) <= near + round_off) {
         return Err(NotOne::Several([node, other]));

@@ -6,7 +6,8 @@ mod output;
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
-use serde::de::Error;
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{Error, SeqAccess};
 use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::mesh::InlineMesh;
@@ -29,8 +30,8 @@ pub struct Case {
     /// Labels of the units used, for readers; any consistent set will do
     #[serde(default)]
     pub units: BTreeMap<String, String>,
-    /// Path of a gmsh MSH 4.1 file relative to the case file, or a mesh given in place: as blocks that are divided into elements, or
-    /// node by node
+    /// Path of a gmsh file (MSH 4.1, or 2.2 ASCII) relative to the case file, a list of such paths, or a mesh given in place: as blocks
+    /// that are divided into elements, or node by node
     pub mesh: MeshSource,
     /// Kind of plane section: "plane_strain", a plate {"plane_stress": {"thickness": …}}, or "axisymmetric"
     #[serde(default)]
@@ -86,6 +87,8 @@ pub struct Case {
 pub enum MeshSource {
     /// Path relative to the case file
     File(String),
+    /// Paths of several files: their meshes share no nodes, and each group is in one of them
+    Files(Vec<String>),
     /// Blocks, divided into elements
     Blocks(BlocksInput),
     /// Node by node
@@ -93,11 +96,14 @@ pub enum MeshSource {
 }
 
 impl Written for MeshSource {
-    const EXPECTING: &'static str =
-        "the path of a mesh file, or a mesh {\"blocks\": …} or {\"nodes\": …, \"elements\": …, \"edges\": …}";
+    const EXPECTING: &'static str = "the path of a mesh file, a list of such paths, or a mesh {\"blocks\": …} or {\"nodes\": …, \"elements\": …, \"edges\": …}";
 
     fn text(text: &str) -> Result<Self, String> {
         Ok(Self::File(text.into()))
+    }
+
+    fn list<'de, A: SeqAccess<'de>>(list: A) -> Result<Self, A::Error> {
+        Vec::deserialize(SeqAccessDeserializer::new(list)).map(Self::Files)
     }
 
     fn object<'de, D: Deserializer<'de>>(object: D) -> Result<Self, D::Error> {

@@ -67,6 +67,7 @@ fn aligned(rows: &[[String; 2]]) -> Vec<String> {
 fn mesh(case: &Case, model: &Model) -> Vec<String> {
     let source = match &case.mesh {
         MeshSource::File(file) => file.clone(),
+        MeshSource::Files(files) => files.join(", "),
         MeshSource::Inline(_) => "given in the case file".into(),
         MeshSource::Blocks(blocks) => count(blocks.blocks.len(), "block"),
     };

@@ -200,7 +200,9 @@ impl Join<'_> {
                 own.flat_map(partners).any(|other| other != name && list.contains(other))
             };
             if let Some(name) = list.iter().find(|name| !meets(name)) {
-                let message = format!("no block of `{name}` shares a whole side with one of the others: move it there, or leave it out");
+                let message = format!(
+                    "no block of `{name}` shares a whole side with one of the others: move it there, or leave it out"
+                );
                 return Err(BlockError::new(format!("joined[{k}]"), message));
             }
         }

@@ -234,7 +234,8 @@ impl Blocks {
         let sides: BTreeSet<&str> =
             self.blocks.iter().flat_map(|block| &block.sides).flatten().map(String::as_str).collect();
         for (k, name) in self.apart.iter().enumerate().filter(|(_, name)| !sides.contains(name.as_str())) {
-            let message = format!("no side is named `{name}`{}: name the sides that are not joined", meant(name, &sides));
+            let message =
+                format!("no side is named `{name}`{}: name the sides that are not joined", meant(name, &sides));
             return Err(BlockError::new(format!("apart[{k}]"), message));
         }
         let bodies: BTreeSet<&str> = self.blocks.iter().map(|block| block.body.as_str()).collect();
@@ -253,5 +254,6 @@ impl Blocks {
 
 /// The name that was probably meant, as a question.
 fn meant(name: &str, known: &BTreeSet<&str>) -> String {
-    super::names::nearest(name, known.iter().copied()).map_or_else(String::new, |near| format!(" (did you mean `{near}`?)"))
+    super::names::nearest(name, known.iter().copied())
+        .map_or_else(String::new, |near| format!(" (did you mean `{near}`?)"))
 }
