@@ -73,6 +73,9 @@ def _parts(found: Found, bodies: Sequence[str] | str | None) -> dict[str, Any]:
         own = [found.cells[cell] for cell in cells if found.dimensions[cell] == 1]
         if own and name not in members:
             lines[name] = [edges.get(frozenset(line), line) for line in own]
+        alone = [found.cells[cell][0] for cell in cells if found.dimensions[cell] == 0]
+        if alone:
+            found.points.setdefault(name, []).extend(alone)
     ends = {frozenset(edge[:2]): edge for edge in edges.values()}
     for name, sides in found.sides.items():
         lines.setdefault(name, []).extend(ends.get(frozenset(side), side) for side in sides)

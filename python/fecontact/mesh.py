@@ -58,14 +58,9 @@ class Mesh:
     def read(cls, path: str | os.PathLike[str], bodies: Sequence[str] | str | None = None) -> Mesh:
         """The mesh in a file: of gmsh (``.msh``, MSH 4.1 or 2.2), or of another program, with its groups.
 
-        ================  =============================================  =================================================
-        file              bodies                                         other groups
-        ================  =============================================  =================================================
-        ``.inp``          element sets (Abaqus, CalculiX)                sets of lines and ``*SURFACE``: edges; node sets
-        ``.e``, ``.exo``  blocks (Exodus)                                side sets: edges; node sets
-        ``.med``          groups of cells                                groups of lines: edges; groups of nodes
-        ``.vtu``, others  values of an array of the cells, ``NAME_1``    lines alike
-        ================  =============================================  =================================================
+        Bodies are the element sets of Abaqus and CalculiX (``.inp``), the blocks of Exodus (``.e``, ``.exo``), the groups of cells of
+        MED (``.med``), and in what else meshio reads, such as ``.vtu``, the values of an array of the cells (``NAME_1``, …). Element
+        surfaces, side sets, and groups of lines are groups of edges; node sets are groups of nodes.
 
         All but ``.msh`` and ``.inp`` need ``pip install 'fecontact[meshio]'``. A set of nodes that are those of edges, or of a body,
         of the same name is that group; with other nodes it is called ``NAME_nodes``.

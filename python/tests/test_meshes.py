@@ -153,12 +153,14 @@ def test_a_med_file_keeps_its_groups(tmp_path: pathlib.Path) -> None:
     meshio = pytest.importorskip("meshio")
     pytest.importorskip("h5py")
     mesh = meshio_squares(meshio)
-    mesh.cell_data["cell_tags"] = [np.array([-1]), np.array([-2, -2]), np.array([-3, -4, -4])]
-    mesh.cell_tags = {-1: ["left"], -2: ["right"], -3: ["joint"], -4: ["top"]}
+    mesh.cells.append(meshio.CellBlock("vertex", [[3], [6]]))
+    mesh.cell_data["cell_tags"] = [np.array([-1]), np.array([-2, -2]), np.array([-3, -4, -4]), np.array([-5, -5])]
+    mesh.cell_tags = {-1: ["left"], -2: ["right"], -3: ["joint"], -4: ["top"], -5: ["vertices"]}
     mesh.point_data["point_tags"] = np.array([1, 0, 0, 0, 0, 1, 0, 0])
     mesh.point_tags = {1: ["corners"]}
     meshio.write(tmp_path / "squares.med", mesh)
-    assert fc.Mesh.read(tmp_path / "squares.med").document() == expected()
+    points = {**SQUARES["points"], "vertices": [3, 6]}
+    assert fc.Mesh.read(tmp_path / "squares.med").document() == expected(points=points)
 
 
 def test_bodies_are_the_values_of_an_array_of_the_cells(tmp_path: pathlib.Path) -> None:
