@@ -95,6 +95,7 @@ class Mesh:
         blocks: Sequence[Mapping[str, Any]],
         parameters: Mapping[str, float | str] | None = None,
         apart: Sequence[str] = (),
+        joined: Sequence[Sequence[str]] = (),
     ) -> Mesh:
         """Quadrilaterals that are divided into elements and joined where two of a body share a side.
 
@@ -105,11 +106,13 @@ class Mesh:
             blocks: objects of :class:`fecontact.model.Block`, or dicts.
             parameters: numbers by name, which corners, numbers of elements and gradings may have in expressions.
             apart: names of sides that are not joined.
+            joined: lists of bodies that are joined with each other, too, such as two materials that are bonded.
 
         Raises:
             CaseError: which block is wrong, and why.
         """
-        given = plain({"blocks": list(blocks), "parameters": dict(parameters or {}), "apart": list(apart)}, file="mesh")
+        more = {"parameters": dict(parameters or {}), "apart": list(apart), "joined": [list(bodies) for bodies in joined]}
+        given = plain({"blocks": list(blocks), **more}, file="mesh")
         return _again(json.dumps(given, allow_nan=False))
 
     @classmethod

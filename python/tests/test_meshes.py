@@ -221,6 +221,15 @@ def test_joined_meshes_are_one() -> None:
         fc.Mesh.join([left, left])
 
 
+def test_blocks_of_two_bodies_share_nodes_where_they_are_joined() -> None:
+    square = {"elements": [2, 2], "body": "a", "corners": [[0, 0], [1, 0], [1, 1], [0, 1]], "points": {"tip": [1, 1]}}
+    blocks = [square, {**square, "body": "b", "corners": [[1, 0], [2, 0], [2, 1], [1, 1]], "points": {"tip": [2, 1]}}]
+    assert len(fc.Mesh.from_blocks(blocks).nodes) == 18
+    mesh = fc.Mesh.from_blocks(blocks, joined=[["a", "b"]])
+    assert len(mesh.nodes) == 15
+    assert mesh.nodes[mesh.document()["points"]["tip"]].tolist() == [[1, 1], [2, 1]]
+
+
 def test_a_case_of_several_files_is_written_beside_another(tmp_path: pathlib.Path) -> None:
     square = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 1 \"{0}\"\n1 2 \"{0}_low\"\n$EndPhysicalNames\n$Nodes\n4\n"
     square += "1 {1} 0 0\n2 {2} 0 0\n3 {2} 1 0\n4 {1} 1 0\n$EndNodes\n$Elements\n2\n1 3 2 1 1 1 2 3 4\n2 1 2 2 1 1 2\n$EndElements\n"

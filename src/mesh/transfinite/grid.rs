@@ -120,10 +120,9 @@ impl Grid {
     /// Slot of the one node nearest to a point.
     pub fn nearest(&self, point: [f64; 2]) -> Result<usize, String> {
         let [x, y] = point;
-        let elements: Vec<Vec<usize>> = self.elements();
-        let local: Vec<Vec<usize>> =
-            elements.iter().map(|element| element.iter().map(|slot| slot - self.first).collect()).collect();
-        let node = nearest(&self.nodes, local.iter().map(Vec::as_slice), point).map_err(|not_one| match not_one {
+        let mut elements = self.elements();
+        elements.iter_mut().flatten().for_each(|slot| *slot -= self.first);
+        let node = nearest(&self.nodes, elements.iter().map(Vec::as_slice), point).map_err(|not_one| match not_one {
             NotOne::NoPlace | NotOne::NoNodes => format!("({x}, {y}) is no place: give finite numbers"),
             NotOne::Several(both) => {
                 let [one, other] = both.map(|node| self.nodes[node]);

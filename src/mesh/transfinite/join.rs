@@ -167,7 +167,8 @@ impl Join<'_> {
             if !(joined || apart(a, &[corner, (corner + 3) % 4]) || apart(b, &touched)) {
                 let message = format!(
                     "its corner {corner} lies on side {side} of blocks[{b}] and is not joined to it: blocks of a body are joined \
-                     along whole sides, and so are those of bodies that are joined. Divide blocks[{b}] there, or list a name of one of the sides in `apart`"
+                     along whole sides, and so are those of bodies that are joined. Divide blocks[{b}] there, or list a name \
+                     of one of the sides in `apart`"
                 );
                 return Err(BlockError::new(format!("blocks[{a}]"), message));
             }

@@ -233,7 +233,7 @@ impl Blocks {
         }
         let sides: BTreeSet<&str> =
             self.blocks.iter().flat_map(|block| &block.sides).flatten().map(String::as_str).collect();
-        for (k, name) in self.apart.iter().enumerate().filter(|(_, name)| !sides.contains(name.as_str())) {
+        if let Some((k, name)) = self.apart.iter().enumerate().find(|(_, name)| !sides.contains(name.as_str())) {
             let message =
                 format!("no side is named `{name}`{}: name the sides that are not joined", meant(name, &sides));
             return Err(BlockError::new(format!("apart[{k}]"), message));
