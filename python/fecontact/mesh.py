@@ -73,7 +73,7 @@ class Mesh:
             CaseError: what cannot be read, or is no plane mesh.
             ImportError: the format needs a package that is not there.
         """
-        if Path(path).suffix.lower() == ".msh":
+        if Path(path).suffix.lower() == ".msh" or _is_gmsh(path):
             if bodies is not None:
                 raise refused(os.fspath(path), "bodies", "is for other formats: the bodies of gmsh are its physical surfaces")
             return cls._of(Path(path).read_bytes(), _native.Mesh.read(os.fspath(path)))
@@ -187,6 +187,14 @@ def _again(source: Source) -> Mesh:
     mesh = Mesh.__new__(Mesh)
     mesh._source, mesh._native = source, _native.Mesh(*source)
     return mesh
+
+
+def _is_gmsh(path: str | os.PathLike[str]) -> bool:
+    """Whether a file is one of gmsh, whatever its name."""
+    if not os.path.isfile(path):
+        return False
+    with open(path, "rb") as file:
+        return file.read(11) == b"$MeshFormat"
 
 
 def _lists(kind: str, name: str, given: Any, widths: tuple[int, ...]) -> list[NDArray[np.int64]]:
