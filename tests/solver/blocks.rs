@@ -7,7 +7,7 @@ use fecontact::case;
 use fecontact::mesh::{Block, BlockKind, Blocks, Grading, Group, InlineMesh, Mesh};
 use serde_json::{Value, json};
 
-use crate::common::{close, finish};
+use crate::common::{close, finish, model};
 
 fn mesh(blocks: &[Block], apart: &[&str]) -> Result<Mesh, String> {
     let apart = apart.iter().map(|name| name.to_string()).collect();
@@ -323,6 +323,23 @@ fn bonded_materials_stretch_in_series() {
         let held = &sets[2].held[0];
         close("a corner", held.iter().map(|&node| run.last().reaction[2 * node]).sum(), -stress * share, 1e-12);
     }
+}
+
+/// A node of two bodies has the shares of both: `stabilize` × (λ + 2G) × duration over the nodes of each, λ + 2G = E for ν = 0.
+#[test]
+fn stabilization_of_a_shared_node_is_that_of_both_bodies() {
+    let mut case = bar();
+    case["mesh"]["parameters"]["dip"] = json!("pi/2");
+    case["mesh"]["blocks"][1]["body"] = json!("tip");
+    case["mesh"]["blocks"][0]["points"] = json!({"joint": ["L/2", "H"]});
+    case["mesh"]["joined"] = json!([["bar", "tip"]]);
+    let material = |young: f64| json!({"material": {"model": "linear", "E": young, "nu": 0}});
+    case["bodies"] = json!({"bar": material(100.0), "tip": material(25.0)});
+    case["steps"][0]["stabilize"] = json!(1e-3);
+    let model = model(&case);
+    let joint = model.mesh.nodes_of(model.mesh.group("joint").unwrap())[0];
+    close("c", model.steps[0].stabilization[2 * joint], 1e-3 * (100.0 / 45.0 + 25.0 / 25.0), 1e-15);
+    close("c", model.steps[0].stabilization[0], 1e-3 * 100.0 / 45.0, 1e-15);
 }
 
 #[test]
