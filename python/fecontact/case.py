@@ -148,8 +148,9 @@ class Case:
         mesh = self._document.get("mesh")
         if self._mesh is not None:
             of.update(json.dumps(self._mesh.document(), sort_keys=True).encode())
-        elif isinstance(mesh, str):
-            of.update(Path(os.path.dirname(self._path), mesh).read_bytes())
+        else:
+            for file in _files(mesh):
+                of.update(Path(os.path.dirname(self._path), file).read_bytes())
         return of.hexdigest()[:16]
 
     def write(self, path: str | os.PathLike[str]) -> None:
@@ -159,8 +160,10 @@ class Case:
         mesh = document.get("mesh")
         if self._mesh is not None:
             document["mesh"] = self._mesh.document()
-        elif isinstance(mesh, str):
-            document["mesh"] = os.path.relpath(os.path.join(os.path.dirname(self._path), mesh), os.path.dirname(path) or ".")
+        elif _files(mesh):
+            folder = os.path.dirname(path) or "."
+            beside = [os.path.relpath(os.path.join(os.path.dirname(self._path), file), folder) for file in _files(mesh)]
+            document["mesh"] = beside[0] if isinstance(mesh, str) else beside
         Path(path).write_text(json.dumps(document, indent=1) + "\n")
 
     def run(
@@ -229,6 +232,11 @@ def _raise(status: str, why: str | None, raised: BaseException | None, result: R
         raise Stopped(why or "", result) from raised
     if raised is not None:
         raise raised
+
+
+def _files(mesh: Any) -> list[str]:
+    """The files that a case names as its mesh."""
+    return [mesh] if isinstance(mesh, str) else mesh if isinstance(mesh, list) else []
 
 
 def _again(document: dict[str, Any], path: str, mesh: Mesh | None) -> Case:

@@ -12,10 +12,12 @@ from typing import Any, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _native
+from . import _foreign, _native
 from ._plain import numbers, path as as_path, plain, refused
 
 Lists = Union[ArrayLike, Sequence[ArrayLike]]
+# What a mesh is made of again: arrays, the content of a gmsh file, blocks as JSON, or such of several meshes.
+Source = Union[tuple[Any, ...], bytes, str, list[Any]]
 
 
 class Mesh:
@@ -47,7 +49,7 @@ class Mesh:
             if not isinstance(parts, Mapping) or not all(isinstance(name, str) for name in parts):
                 raise refused("mesh", kind, f"is a {type(parts).__name__}: must be a dict of arrays by name")
         one = {name: np.asarray(nodes).reshape(-1, 1) for name, nodes in (points or {}).items()}
-        self._source: tuple[Any, ...] | bytes | str = (
+        self._source: Source = (
             np.ascontiguousarray(given),
             {name: _lists("elements", name, lists, (3, 4, 6, 8, 9)) for name, lists in elements.items()},
             {name: _lists("edges", name, lists, (2, 3)) for name, lists in (edges or {}).items()},
@@ -56,9 +58,40 @@ class Mesh:
         self._native = _native.Mesh(*self._source)
 
     @classmethod
-    def read(cls, path: str | os.PathLike[str]) -> Mesh:
-        """The mesh in a gmsh file (MSH 4.1)."""
-        return cls._of(Path(as_path(path, "path")).read_bytes(), _native.Mesh.read(os.fspath(path)))
+    def read(cls, path: str | os.PathLike[str], bodies: Sequence[str] | str | None = None) -> Mesh:
+        """The mesh in a file: of gmsh (``.msh``, MSH 4.1 or 2.2), or of another program, with its groups.
+
+        Bodies are the element sets of Abaqus and CalculiX (``.inp``), the blocks of Exodus (``.e``, ``.exo``), the groups of cells of
+        MED (``.med``), and in what else meshio reads, such as ``.vtu``, the values of an array of the cells (``NAME_1``, …). Element
+        surfaces, side sets, and groups of lines are groups of edges; node sets are groups of nodes.
+
+        All but ``.msh`` and ``.inp`` need ``pip install 'fecontact[meshio]'``. A set of nodes that are those of edges, or of a body,
+        of the same name is that group; with other nodes it is called ``NAME_nodes``.
+
+        Args:
+            path: the file; how its name ends says its format.
+            bodies: the sets of elements that are the bodies, where sets overlap; or the name of the array of the cells.
+
+        Raises:
+            CaseError: what cannot be read, or is no plane mesh.
+            ImportError: the format needs a package that is not there.
+        """
+        path = as_path(path, "path")
+        if Path(path).suffix.lower() == ".msh" or _is_gmsh(path):
+            if bodies is not None:
+                raise refused(os.fspath(path), "bodies", "is for other formats: the bodies of gmsh are its physical surfaces")
+            return cls._of(Path(path).read_bytes(), _native.Mesh.read(os.fspath(path)))
+        return cls(**_foreign.read(os.fspath(path), bodies))
+
+    @classmethod
+    def join(cls, meshes: Sequence[Mesh]) -> Mesh:
+        """The meshes as one; they share no nodes, and each group is in one of them.
+
+        Raises:
+            CaseError: two of them have a group of the same name.
+        """
+        given = list(meshes)
+        return cls._of([mesh._source for mesh in given], _native.Mesh.join([mesh._native for mesh in given]))
 
     @classmethod
     def from_blocks(
@@ -66,6 +99,7 @@ class Mesh:
         blocks: Sequence[Mapping[str, Any]],
         parameters: Mapping[str, float | str] | None = None,
         apart: Sequence[str] = (),
+        joined: Sequence[Sequence[str]] = (),
     ) -> Mesh:
         """Quadrilaterals that are divided into elements and joined where two of a body share a side.
 
@@ -76,11 +110,13 @@ class Mesh:
             blocks: objects of :class:`fecontact.model.Block`, or dicts.
             parameters: numbers by name, which corners, numbers of elements and gradings may have in expressions.
             apart: names of sides that are not joined.
+            joined: lists of bodies that are joined with each other, too, such as two materials that are bonded.
 
         Raises:
             CaseError: which block is wrong, and why.
         """
-        given = plain({"blocks": list(blocks), "parameters": dict(parameters or {}), "apart": list(apart)}, file="mesh")
+        more = {"parameters": dict(parameters or {}), "apart": list(apart), "joined": [list(bodies) for bodies in joined]}
+        given = plain({"blocks": list(blocks), **more}, file="mesh")
         return _again(json.dumps(given, allow_nan=False))
 
     @classmethod
@@ -106,7 +142,7 @@ class Mesh:
         return cls._of(content, _native.Mesh.from_bytes(content))
 
     @classmethod
-    def _of(cls, source: bytes | str, native: _native.Mesh) -> Mesh:
+    def _of(cls, source: Source, native: _native.Mesh) -> Mesh:
         mesh = cls.__new__(cls)
         mesh._source, mesh._native = source, native
         return mesh
@@ -145,7 +181,9 @@ class Mesh:
         return f"<Mesh of {len(self.nodes)} nodes and {len(self.elements)} elements, with the groups {groups}>"
 
 
-def _again(source: tuple[Any, ...] | bytes | str) -> Mesh:
+def _again(source: Source) -> Mesh:
+    if isinstance(source, list):
+        return Mesh.join([_again(part) for part in source])
     if isinstance(source, str):
         return Mesh._of(source, _native.Mesh.from_blocks(source))
     if isinstance(source, bytes):
@@ -153,6 +191,14 @@ def _again(source: tuple[Any, ...] | bytes | str) -> Mesh:
     mesh = Mesh.__new__(Mesh)
     mesh._source, mesh._native = source, _native.Mesh(*source)
     return mesh
+
+
+def _is_gmsh(path: str | os.PathLike[str]) -> bool:
+    """Whether a file is one of gmsh, whatever its name."""
+    if not os.path.isfile(path):
+        return False
+    with open(path, "rb") as file:
+        return file.read(11) == b"$MeshFormat"
 
 
 def _lists(kind: str, name: str, given: Any, widths: tuple[int, ...]) -> list[NDArray[np.int64]]:

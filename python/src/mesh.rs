@@ -58,6 +58,12 @@ impl Mesh {
         checked(py, Pool::new(Some(1))?.short(py, || gmsh::read(&path))?)
     }
 
+    /// Several meshes as one.
+    #[staticmethod]
+    fn join(py: Python, meshes: Vec<PyRef<Self>>) -> PyResult<Self> {
+        checked(py, Checked::join(meshes.iter().map(|mesh| mesh.mesh.clone())))
+    }
+
     /// Positions (n, 2).
     fn nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         let nodes = &self.mesh.nodes;

@@ -4,6 +4,7 @@
 //! How two cases differ, place by place.
 
 use std::path::{Path, PathBuf};
+use std::slice;
 use std::sync::Arc;
 
 use serde_json::{Map, Value};
@@ -84,7 +85,8 @@ impl Opened {
     }
 
     fn new(path: &Path, document: Value, case: Case, start: Option<Checkpoint>) -> Self {
-        let inputs = document["mesh"].as_str().map(|mesh| beside(path, mesh)).into_iter().collect();
+        let files = document["mesh"].as_array().map_or(slice::from_ref(&document["mesh"]), Vec::as_slice);
+        let inputs = files.iter().filter_map(Value::as_str).map(|mesh| beside(path, mesh)).collect();
         Self { case, path: path.to_owned(), document, taken_over: 0, inputs, mesh: None, start, resumes: false }
     }
 
@@ -316,7 +318,7 @@ pub fn both<'a>(
 pub fn compare(place: String, was: Option<&Value>, is: Option<&Value>, differences: &mut Vec<Difference>) {
     match (was, is) {
         // Two meshes are compared themselves, wherever they lie.
-        (Some(Value::String(_)), Some(Value::String(_))) if place == "mesh" => {}
+        (Some(Value::String(_) | Value::Array(_)), Some(Value::String(_) | Value::Array(_))) if place == "mesh" => {}
         (Some(Value::Object(was)), Some(Value::Object(is))) => {
             both(was, is).for_each(|(key, was, is)| compare(format!("{place}.{key}"), was, is, differences));
         }

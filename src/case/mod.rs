@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use crate::mesh::section::Section;
-use crate::mesh::{Mesh, gmsh};
+use crate::mesh::{Mesh, MeshError, gmsh};
 use crate::model::Model;
 use crate::model::builder::{Builder, Checked, Contact, Gauge, ModelError, check_line, check_positive};
 pub use again::Opened;
@@ -109,12 +109,24 @@ fn check_units(units: &BTreeMap<String, String>) -> Checked<()> {
 }
 
 fn mesh(case: &Case, path: &Path) -> Checked<Mesh> {
+    let read = |file: &String| gmsh::read(&path.parent().unwrap_or(Path::new("")).join(file));
     let mesh = match &case.mesh {
         MeshSource::Inline(mesh) => mesh.build(),
         MeshSource::Blocks(blocks) => file::blocks(blocks, "mesh")?.build(),
-        MeshSource::File(file) => gmsh::read(&path.parent().unwrap_or(Path::new("")).join(file)),
+        MeshSource::File(file) => read(file),
+        MeshSource::Files(files) if files.is_empty() => {
+            return Err(ModelError::new("mesh", "is an empty list: give the paths of mesh files"));
+        }
+        MeshSource::Files(files) => files.iter().map(read).collect::<Result<Vec<_>, _>>().and_then(Mesh::join),
     };
-    mesh.map_err(|error| ModelError::new("mesh", error))
+    mesh.map_err(|error| match (error, &case.mesh) {
+        (MeshError::InTwoMeshes { group, meshes: [first, second] }, MeshSource::Files(files)) => {
+            let message =
+                format!("the group `{group}` is in {} and in {}: rename it in one", files[first], files[second]);
+            ModelError::new(format!("mesh[{second}]"), message)
+        }
+        (error, _) => ModelError::new("mesh", error),
+    })
 }
 
 /// A mesh of blocks from its text, as `mesh` of a case has it.

@@ -34,10 +34,10 @@ pub enum MeshError {
     #[error("this is not a gmsh mesh: it does not begin with $MeshFormat; {EXPORT}")]
     NotGmsh,
     /// A gmsh mesh of another version.
-    #[error("the mesh is in MSH format {0}, and only 4.1 is read; {EXPORT}")]
+    #[error("the mesh is in MSH format {0}, and only 4.1 and 2.2 are read; {EXPORT}")]
     Version(String),
     /// The line below `$MeshFormat` makes no sense.
-    #[error("the format line of the mesh is `{0}`, where `4.1 0 8` or `4.1 1 8` was expected; {EXPORT}")]
+    #[error("the format line of the mesh is `{0}`, where `4.1 0 8`, `4.1 1 8` or `2.2 0 8` was expected; {EXPORT}")]
     Format(String),
     /// A section is not there.
     #[error("the mesh has no ${0} section: the file is incomplete or was cut short; {EXPORT}")]
@@ -135,6 +135,17 @@ pub enum MeshError {
     /// One name for two groups.
     #[error("two groups of the mesh are named `{0}`; give each its own name")]
     SameName(String),
+    /// One name for groups of two meshes that are joined.
+    #[error(
+        "the group `{group}` is in mesh {} and in mesh {} of those that are joined; give each its own name",
+        meshes[0] + 1, meshes[1] + 1
+    )]
+    InTwoMeshes {
+        /// name of the group
+        group: String,
+        /// which meshes, from 0
+        meshes: [usize; 2],
+    },
     /// A group without members.
     #[error("the group `{0}` is empty; mesh what it names, or remove it")]
     EmptyGroup(String),

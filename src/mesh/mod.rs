@@ -1,12 +1,13 @@
 //! Nodes, solid elements, and the named groups that a case refers to.
 //!
 //! A mesh comes from a gmsh file ([`gmsh::read`]), from blocks ([`Blocks`]), or node by node from the case file or from code
-//! ([`InlineMesh::build`]). Readers only fill in a raw mesh; one check turns it into a [`Mesh`], so that a mesh keeps its promises wherever it comes from.
+//! ([`InlineMesh::build`]); several are put side by side by [`Mesh::join`]. Readers only fill in a raw mesh; one check turns it into a [`Mesh`], so that a mesh keeps its promises wherever it comes from.
 
 mod check;
 mod error;
 pub mod gmsh;
 mod inline;
+mod several;
 mod transfinite;
 
 cfg_if::cfg_if! {
@@ -16,6 +17,7 @@ cfg_if::cfg_if! {
         pub mod few;
         pub mod joined;
         pub mod names;
+        pub mod nearest;
         pub mod rigid;
         pub mod section;
         pub mod shape;
@@ -26,6 +28,7 @@ cfg_if::cfg_if! {
         pub(crate) mod few;
         pub(crate) mod joined;
         pub(crate) mod names;
+        pub(crate) mod nearest;
         pub(crate) mod rigid;
         pub(crate) mod section;
         pub(crate) mod shape;
@@ -85,7 +88,7 @@ pub enum Group {
 pub struct Mesh {
     /// X: reference position of each node [L]
     pub nodes: Vec<Vector2<f64>>,
-    /// The tag each node has in the mesh file, for messages
+    /// The tag each node has in its mesh file, for messages
     pub node_tags: Vec<u64>,
     /// Solid elements
     pub elements: Vec<Element>,

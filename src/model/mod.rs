@@ -44,7 +44,7 @@ use serde::{Deserialize, Serialize};
 use crate::contact::pair::ContactPair;
 use crate::mesh::configuration::Configuration;
 use crate::mesh::ties::Ties;
-use crate::mesh::{Element, Mesh};
+use crate::mesh::{Edge, Element, Mesh};
 use aids::Aids;
 pub use body::{Body, Damping, Memories, PointMass};
 use boundary::Loads;
@@ -93,10 +93,12 @@ impl Default for NewtonSettings {
 #[derive(Clone, Debug, PartialEq)]
 #[doc(hidden)]
 pub struct WatchedSet {
-    /// name of the group
+    /// name in results: that of the group, or what says which node it is
     pub name: String,
     /// its nodes, of which the displacement is the mean
     pub nodes: Vec<usize>,
+    /// its edges, where it is a group of edges
+    pub edges: Vec<Edge>,
     /// nodes whose reactions along x and y are its own
     pub held: [Vec<usize>; 2],
 }

@@ -1,12 +1,12 @@
-//! Input that may be written as a number, a text or an object, told apart by the JSON type, so that a complaint about the inside of
+//! Input that may be written as a number, a text, a list or an object, told apart by the JSON type, so that a complaint about the inside of
 //! the object names its place.
 
 use std::marker::PhantomData;
 
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{Deserializer, Error, MapAccess, Unexpected, Visitor};
+use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Unexpected, Visitor};
 
-/// Input given as a text or an object, in some cases as a number. [`written!`] writes the implementation.
+/// Input given as a text or an object, in some cases as a number or a list. [`written!`] writes the implementation.
 pub trait Written: Sized {
     /// The forms there are, for messages
     const EXPECTING: &'static str;
@@ -21,6 +21,14 @@ pub trait Written: Sized {
     /// # Errors
     /// What cannot be read.
     fn text(text: &str) -> Result<Self, String>;
+
+    /// The value from a list, if lists are allowed.
+    ///
+    /// # Errors
+    /// The deserializer's.
+    fn list<'de, A: SeqAccess<'de>>(_list: A) -> Result<Self, A::Error> {
+        Err(A::Error::invalid_type(Unexpected::Seq, &Forms::<Self>(PhantomData)))
+    }
 
     /// The value from an object.
     ///
@@ -66,6 +74,10 @@ impl<'de, T: Written> Visitor<'de> for Forms<T> {
 
     fn visit_str<E: Error>(self, value: &str) -> Result<T, E> {
         T::text(value).map_err(E::custom)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, entries: A) -> Result<T, A::Error> {
+        T::list(entries)
     }
 
     fn visit_map<A: MapAccess<'de>>(self, entries: A) -> Result<T, A::Error> {

@@ -17,7 +17,7 @@ use crate::contact::nodal_forces::Resultant;
 use crate::contact::pair::ContactPair;
 use crate::equations::contacts;
 use crate::laws::friction::{Regime, observables};
-use crate::mesh::{Group, shape};
+use crate::mesh::shape;
 use crate::model::state::{Energy, State};
 use crate::model::{Model, WatchedSet};
 use crate::run::error::Error;
@@ -223,10 +223,12 @@ fn watched_row(set: &WatchedSet, state: &State) -> [f64; WATCHED.len()] {
 /// ū = ∫ u ds/∫ ds                         along the undeformed edges, over the area of rings
 /// ```
 fn edge_means(model: &Model, set: &WatchedSet) -> Option<EdgeMeans> {
-    let Ok(Group::Edges(edges)) = model.mesh.group(&set.name) else { return None };
+    if set.edges.is_empty() {
+        return None;
+    }
     let x = model.mesh.undeformed();
     let mut shares: Vec<(usize, f64)> = Vec::new();
-    for edge in edges {
+    for edge in &set.edges {
         let count = edge.nodes.len();
         for (xi, weight) in shape::gauss(3) {
             let slope: Vec<(usize, f64)> = edge.nodes.iter().copied().zip(shape::edge_derivatives(count, xi)).collect();

@@ -261,7 +261,9 @@ fn wrong_types_are_named() {
         ("/steps/0/supports/0/uy", json!(true), ["steps[0].supports[0].uy: ", "true, but must be a number, an expr"]),
         ("/steps/0/supports/0/uy", json!({"rate": "x"}), ["steps[0].supports[0].uy", "\"x\", but must be a number"]),
         ("/initial_velocity", json!({"block": [1, 2, 3]}), ["initial_velocity.block: ", "has 3 entries"]),
-        ("/mesh", json!(["a.msh"]), ["mesh: ", "a list […], but must be the path of a mesh file"]),
+        ("/mesh", json!([3]), ["mesh[0]: ", "is 3, but must be text in quotes"]),
+        ("/mesh", json!([]), ["mesh: ", "is an empty list: give the paths of mesh files"]),
+        ("/mesh", json!(3), ["mesh: ", "must be the path of a mesh file, a list of such paths"]),
         ("/mesh/nodes/3", json!([1]), ["mesh.nodes[3]", "has 1 entries, but must have 2 numbers"]),
         ("/output", json!({"fields": 0}), ["output.fields: ", "0, but must be true or false"]),
     ] {
@@ -482,6 +484,9 @@ fn steps_are_checked() {
         ("/steps/0/name", json!("press\ndrag"), ["steps[0].name: ", "'\\n'"]),
         ("/watch/0", json!("block_tip"), ["watch[0]: ", "did you mean `block_top`?"]),
         ("/watch", json!(["block_top", "block_top"]), ["watch[1]: ", "watched already"]),
+        ("/watch/0", json!({"near": [0.5, 7]}), ["watch[0]: ", "no node is near (0.5, 7)"]),
+        ("/watch/0", json!({"node": 99}), ["watch[0]: ", "the mesh has no node 99"]),
+        ("/watch", json!([{"node": 3}, {"node": 3}]), ["watch[1]: ", "`node_3` is watched already"]),
         ("/output", json!({"every": 0}), ["output.every: ", "must be at least 1"]),
         ("/newton", json!({"tolerance": 0}), ["newton.tolerance: ", "above 0 and at most 0.01"]),
         ("/newton", json!({"max_iterations": 0}), ["newton.max_iterations: ", "1 to 1000"]),
@@ -776,19 +781,58 @@ fn a_point_that_floats_while_solving_is_named() {
 #[test]
 fn files_that_are_no_meshes_are_refused() {
     let folder = TempDir::new().unwrap();
-    write(folder.path(), "old.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n");
+    write(folder.path(), "old.msh", "$MeshFormat\n2.1 0 8\n$EndMeshFormat\n");
     write(folder.path(), "cut.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n4 4 1 0\n1 0 0 0 0\n");
     write(folder.path(), "empty.msh", "");
     fs::create_dir(folder.path().join("folder.msh")).unwrap();
     for (mesh, fragments) in [
         ("nowhere.msh", ["nowhere.msh: ", "there is no such mesh file"]),
         ("folder.msh", ["folder.msh: ", "not a file but a folder"]),
-        ("old.msh", ["old.msh: ", "MSH format 2.2, and only 4.1 is read"]),
+        ("old.msh", ["old.msh: ", "MSH format 2.1, and only 4.1 and 2.2 are read"]),
         ("cut.msh", ["cut.msh: ", "the file was cut short"]),
         ("empty.msh", ["empty.msh: ", "not a gmsh mesh"]),
     ] {
         write(folder.path(), "bad.json", with(&[("/mesh", json!(mesh))]).to_string());
         refused(folder.path(), &["run", "bad.json"], &[&["error: bad.json: mesh: "], &fragments[..]].concat());
+    }
+}
+
+/// Two files are one mesh, unless both have a group, or a node that is named by its tag.
+#[test]
+fn what_two_mesh_files_share_is_refused() {
+    let folder = TempDir::new().unwrap();
+    let file = |body: &str, y: f64, top: &str| {
+        let [low, high] = [y, y + 1.0];
+        format!(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 1 \"{body}_bottom\"\n1 2 \"{top}\"\n2 3 \"{body}\"\n\
+             $EndPhysicalNames\n$Nodes\n4\n1 0 {low} 0\n2 1 {low} 0\n3 1 {high} 0\n4 0 {high} 0\n$EndNodes\n$Elements\n3\n\
+             1 1 2 1 1 1 2\n2 1 2 2 1 3 4\n3 3 2 3 1 1 2 3 4\n$EndElements\n"
+        )
+    };
+    write(folder.path(), "ground.msh", file("ground", -1.0, "ground_top"));
+    write(folder.path(), "block.msh", file("block", 0.0, "block_top"));
+    write(folder.path(), "clash.msh", file("block", 0.0, "ground_top"));
+    let both = |edits: &[(&str, Value)]| {
+        let mesh = ("/mesh", json!(["ground.msh", "block.msh"]));
+        with(&[std::slice::from_ref(&mesh), edits].concat()).to_string()
+    };
+    write(folder.path(), "good.json", both(&[]));
+    let checked = fecontact(folder.path(), &["check", "good.json"]);
+    assert_eq!(checked.status.code(), Some(0), "{}", stderr(&checked));
+    let told = String::from_utf8_lossy(&checked.stdout).into_owned();
+    assert!(told.contains("ground.msh, block.msh") && told.contains("8 nodes, 2 elements"), "{told}");
+    let node = json!([{"node": 3}]);
+    for (edits, fragments) in [
+        (vec![("/mesh/1", json!("clash.msh"))], ["mesh[1]: ", "`ground_top` is in ground.msh and in clash.msh"]),
+        (vec![("/mesh/1", json!("ground.msh"))], ["mesh[1]: ", "is in ground.msh and in ground.msh"]),
+        (vec![("/mesh/1", json!("nowhere.msh"))], ["mesh: nowhere.msh: ", "no such mesh file"]),
+        (
+            vec![("/watch", node)],
+            ["watch[0]: ", "several of the mesh files have a node 3: name it by {\"near\": [x, y]}"],
+        ),
+    ] {
+        write(folder.path(), "bad.json", both(&edits));
+        refused(folder.path(), &["run", "bad.json"], &fragments);
     }
 }
 

@@ -90,6 +90,30 @@ fn healing() -> Value {
     json!({"law": "super_subloading", "mu_s": 0.4, "mu_k": 0.2, "alpha_t": 2e3, "r": 100, "kappa": 10, "xi": 0.002})
 }
 
+/// The reactions of single nodes add up to that of their group, and their displacements to its mean.
+#[test]
+fn single_nodes_are_watched_as_groups_are() {
+    let folder = TempDir::new().expect("a folder");
+    let places = [0.4, 0.6, 0.8, 1.0, 1.2, 1.4];
+    let mut case = dragged(healing(), "node_to_segment");
+    case["watch"] = json!(["block_top"]);
+    let nodes = places.map(|x| json!({"near": [x, 0.51]}));
+    case["watch"].as_array_mut().expect("a list").extend(nodes);
+    run(folder.path(), &case);
+    let history = table(&folder.path().join("out/history.csv"));
+    let column = |x: f64, name: &str| &history[&format!("near_{x}_0.51.{name}")];
+    assert_eq!(history.keys().filter(|name| name.starts_with("near_")).count(), 4 * places.len());
+    for k in 0..history["time"].len() {
+        for (name, share) in [("ux", 1.0 / 6.0), ("uy", 1.0 / 6.0), ("fx", 1.0), ("fy", 1.0)] {
+            let sum: f64 = places.iter().map(|x| share * column(*x, name)[k]).sum();
+            let whole = history[&format!("block_top.{name}")][k];
+            close(name, sum, whole, 1e-12 * (1.0 + whole.abs()));
+        }
+    }
+    let largest = column(0.4, "fy").iter().fold(0.0, |most: f64, force| most.max(force.abs()));
+    assert!(largest > 0.01, "{largest}");
+}
+
 /// The store against the frames of the same run, which are in double precision, and against the history.
 #[test]
 fn the_store_holds_what_the_frames_show() {

@@ -15,7 +15,7 @@ const ELSEWHERE: &[(&[&str], &str)] = &[
         "what is written, not what is computed: tests/command",
     ),
     (
-        &["blocks", "apart", "arcs", "corners", "grading", "kind", "middle", "sides", "body"],
+        &["blocks", "apart", "joined", "arcs", "corners", "grading", "kind", "middle", "sides", "body"],
         "another way to write a mesh: tests/solver/blocks.rs",
     ),
     (&["node", "near"], "other ways to name a node: tests/solver/boundary.rs"),

@@ -7,11 +7,11 @@ use fecontact::case;
 use fecontact::mesh::{Block, BlockKind, Blocks, Grading, Group, InlineMesh, Mesh};
 use serde_json::{Value, json};
 
-use crate::common::{close, finish};
+use crate::common::{close, finish, model};
 
 fn mesh(blocks: &[Block], apart: &[&str]) -> Result<Mesh, String> {
     let apart = apart.iter().map(|name| name.to_string()).collect();
-    let mesh = Blocks { blocks: blocks.to_vec(), apart }.mesh().map_err(|error| error.to_string())?;
+    let mesh = Blocks { apart, ..Blocks::new(blocks) }.mesh().map_err(|error| error.to_string())?;
     mesh.build().map_err(|error| error.to_string())
 }
 
@@ -284,6 +284,97 @@ fn joined_blocks_carry_constant_stress() {
             close("uy", run.last().displacement[2 * node + 1], -1e-3 / 3.0 * x.y, 1e-14);
         }
     }
+}
+
+/// Two materials in series, ν = 0: F = u/(L₁/E₁ + L₂/E₂) for each unit of height, and the joint moves by F L₁/E₁. Without `joined`
+/// nothing holds the parts together.
+#[test]
+fn bonded_materials_stretch_in_series() {
+    let [e1, e2, u] = [100.0, 25.0, 0.003];
+    for kind in ["Q4", "Q8"] {
+        let mut case = bar();
+        (0..2).for_each(|b| case["mesh"]["blocks"][b]["kind"] = json!(kind));
+        case["mesh"]["parameters"]["dip"] = json!("pi/2");
+        case["mesh"]["blocks"][1]["body"] = json!("tip");
+        case["mesh"]["blocks"][0]["points"] = json!({"joint": ["L/2", "H"], "corners": [0, 0]});
+        case["mesh"]["blocks"][1]["points"] = json!({"corners": ["L", 0]});
+        let material = |young: f64| json!({"material": {"model": "linear", "E": young, "nu": 0}});
+        case["bodies"] = json!({"bar": material(e1), "tip": material(e2)});
+        case["watch"] = json!(["joint", {"near": [3, 1]}, {"node": 0}, "corners"]);
+        let apart = finish(&case);
+        close("apart", apart.reaction("right", apart.last())[0], 0.0, 1e-12);
+        case["mesh"]["joined"] = json!([["bar", "tip"]]);
+        let run = finish(&case);
+        let nodes = if kind == "Q4" { 13 * 5 } else { 25 * 5 + 13 * 4 };
+        assert_eq!(run.model.mesh.nodes.len(), nodes);
+        let stress = u / (1.5 / e1 + 1.5 / e2);
+        close("force", run.reaction("right", run.last())[0], stress, 1e-12);
+        let sets = &run.model.watch;
+        assert_eq!(
+            sets.iter().map(|set| set.name.as_str()).collect::<Vec<_>>(),
+            ["joint", "near_3_1", "node_0", "corners"]
+        );
+        assert_eq!(sets.iter().map(|set| set.nodes.len()).collect::<Vec<_>>(), [1, 1, 1, 2]);
+        let at = |set: usize| run.model.mesh.nodes[sets[set].nodes[0]];
+        assert_eq!([at(0), at(1), at(2)].map(|x| [x.x, x.y]), [[1.5, 1.0], [3.0, 1.0], [0.0, 0.0]]);
+        close("the joint", run.last().displacement[2 * sets[0].nodes[0]], stress * 1.5 / e1, 1e-14);
+        // The reaction of a corner: σ over half an edge, or a sixth of a quadratic one; the edges are 1/8, 3/8, 3/8 and 1/8 high.
+        let share = 0.125 * if kind == "Q4" { 0.5 } else { 1.0 / 6.0 };
+        let held = &sets[2].held[0];
+        close("a corner", held.iter().map(|&node| run.last().reaction[2 * node]).sum(), -stress * share, 1e-12);
+    }
+}
+
+/// A node of two bodies has the shares of both: `stabilize` × (λ + 2G) × duration over the nodes of each, λ + 2G = E for ν = 0.
+#[test]
+fn stabilization_of_a_shared_node_is_that_of_both_bodies() {
+    let mut case = bar();
+    case["mesh"]["parameters"]["dip"] = json!("pi/2");
+    case["mesh"]["blocks"][1]["body"] = json!("tip");
+    case["mesh"]["blocks"][0]["points"] = json!({"joint": ["L/2", "H"]});
+    case["mesh"]["joined"] = json!([["bar", "tip"]]);
+    let material = |young: f64| json!({"material": {"model": "linear", "E": young, "nu": 0}});
+    case["bodies"] = json!({"bar": material(100.0), "tip": material(25.0)});
+    case["steps"][0]["stabilize"] = json!(1e-3);
+    let model = model(&case);
+    let joint = model.mesh.nodes_of(model.mesh.group("joint").unwrap())[0];
+    close("c", model.steps[0].stabilization[2 * joint], 1e-3 * (100.0 / 45.0 + 25.0 / 25.0), 1e-15);
+    close("c", model.steps[0].stabilization[0], 1e-3 * 100.0 / 45.0, 1e-15);
+}
+
+#[test]
+fn points_and_joined_bodies_are_checked() {
+    for (pointer, value, fragments) in [
+        ("/mesh/joined", json!([["bar"]]), &["mesh.joined[0]: must name two bodies or more"][..]),
+        ("/mesh/joined", json!([["bar", "bat"]]), &["mesh.joined[0][1]: no block is of the body `bat`", "mean `bar`?"]),
+        ("/mesh/joined", json!([["bar", "bar"]]), &["mesh.joined[0]: no block of `bar` shares a whole side"]),
+        ("/mesh/blocks/0/points", json!({"p": ["L/4", "H/2", 0]}), &["mesh.blocks[0].points.p: has 3 entries"]),
+        ("/mesh/blocks/0/points", json!({"p": ["L/32", 0]}), &["are equally near to (0.09375, 0)"]),
+        (
+            "/mesh/blocks/0/points",
+            json!({"p": ["2*L", 0]}),
+            &["mesh.blocks[0].points.p: no node of this block is near (6, 0)"],
+        ),
+        ("/mesh/blocks/0/points", json!({"p": ["K", 0]}), &["mesh.blocks[0].points.p[0]: ", "`K`"]),
+        ("/mesh/blocks/0/points", json!({"left": [0, 0]}), &["two groups of the mesh are named `left`"]),
+        ("/mesh/points", json!({"p": [0]}), &["has both `blocks` and `points`"]),
+    ] {
+        let message = refused(pointer, value);
+        fragments.iter().for_each(|fragment| assert!(message.contains(fragment), "`{fragment}` is not in: {message}"));
+    }
+    let square = |body: &str, x: f64| Block::new(body, [[x, 0.0], [x + 1.0, 0.0], [x + 1.0, 1.0], [x, 1.0]], [2, 2]);
+    let joined = |blocks: &[Block]| {
+        let mesh = Blocks::new(blocks).joined(["a", "b"]).mesh().map_err(|error| error.to_string());
+        mesh.map(|mesh| mesh.nodes.len())
+    };
+    assert_eq!(joined(&[square("a", 0.0), square("b", 1.0)]), Ok(15));
+    // The side between them is no boundary of one body.
+    let message = joined(&[square("a", 0.0), square("b", 1.0).side(3, "joint")]).unwrap_err();
+    assert!(message.contains("`joint` lies between bodies that are joined"), "{message}");
+    let message = joined(&[square("a", 0.0), square("b", 3.0)]).unwrap_err();
+    assert!(message.contains("joined[0]: no block of `a` shares a whole side with one of the others"), "{message}");
+    let message = joined(&[square("a", 0.0), square("b", 0.5)]).unwrap_err();
+    assert!(message.contains("blocks["), "{message}");
 }
 
 fn refused(pointer: &str, value: Value) -> String {

@@ -251,7 +251,12 @@ fn bad_gmsh_files_are_refused() {
     let elements_header = "$Elements\n4 7 1 7\n";
     for (piece, replacement, fragments) in [
         ("$MeshFormat\n", "solid cube\n", &["this is not a gmsh mesh", "gmsh -2 -format msh41"][..]),
-        ("4.1 0 8", "2.2 0 8", &["MSH format 2.2", "only 4.1", "gmsh -2 -format msh41", "Mesh.MshFileVersion = 4.1"]),
+        (
+            "4.1 0 8",
+            "2.1 0 8",
+            &["MSH format 2.1", "only 4.1 and 2.2", "gmsh -2 -format msh41", "Mesh.MshFileVersion = 4.1"],
+        ),
+        ("4.1 0 8", "2.2 1 8", &["format line", "`2.2 1 8`", "`2.2 0 8` was expected"]),
         ("4.1 0 8", "4.1 0 4", &["format line", "`4.1 0 4`"]),
         ("4.1 0 8", "4.1 1 8", &["format line"]),
         ("4.1 0 8", "", &["format line"]),
@@ -300,6 +305,71 @@ fn bad_gmsh_files_are_refused() {
         assert!(good.contains(piece), "{piece}");
         assert_says(&verdict(good.replacen(piece, replacement, 1).as_bytes()), fragments);
     }
+}
+
+/// The files `*_22.msh` are the others as gmsh 4.15 writes them in its older format.
+#[test]
+fn files_of_both_formats_give_the_same_mesh() {
+    for (new, old) in [("quad4.msh", "quad4_22.msh"), ("tri6.msh", "tri6_22.msh"), ("quad9.msh", "quad9_22.msh")] {
+        let [new, old] = [new, old].map(read);
+        assert_eq!((&new.elements, &new.groups, &new.nodes), (&old.elements, &old.groups, &old.nodes));
+        assert_eq!((new.node_tags, new.element_tags), (old.node_tags, old.element_tags));
+    }
+}
+
+/// Each case replaces one piece of a good file of format 2.2.
+#[test]
+fn bad_files_of_the_older_format_are_refused() {
+    let good = fs::read_to_string(data("quad4_22.msh")).unwrap();
+    for (piece, replacement, fragments) in [
+        ("$Nodes\n6\n", "$Knots\n6\n", &["no $Nodes section"][..]),
+        ("$Elements\n7\n", "$Bricks\n7\n", &["no $Elements section"]),
+        ("$EndElements\n", "", &["$Elements section has no $EndElements", "cut short"]),
+        ("$Nodes\n6\n", "$Nodes\n7\n", &["$Nodes section claims 7 entries but holds 6"]),
+        ("$Nodes\n6\n", "$Nodes\n9000000000000000000\n", &["claims 9000000000000000000 entries but holds 6"]),
+        ("$Elements\n7\n", "$Elements\nseven\n", &["at $Elements", "does not begin with the number"]),
+        ("$Nodes\n", "$ParametricNodes\n$EndParametricNodes\n$Nodes\n", &["parametric", "Mesh.SaveParametric = 0"]),
+        ("3 2 1 0\n", "3 2 1 0.5\n", &["node 3 has z = 0.5 where node 1 has z = 0", "plane"]),
+        ("3 2 1 0\n", "3 2 1 zero\n", &["cannot be understood at line 14: a node is: tag x y z"]),
+        ("3 2 1 0\n", "3 2 1\n", &["cannot be understood at line 14"]),
+        ("3 2 1 0\n", "3 2 1e999 0\n", &["node 3 has a coordinate that is not finite"]),
+        ("3 2 1 0\n", "2 2 1 0\n", &["two nodes have the tag 2"]),
+        ("6 3 2 1 1 1 5 6 4", "6 4 2 1 1 1 5 6 4", &["element 6 is a kind that is not read (gmsh type 4)"]),
+        ("6 3 2 1 1 1 5 6 4", "6 3 2 1 1 1 5 6", &["line 26: an element has another number of nodes than its type"]),
+        ("6 3 2 1 1 1 5 6 4", "6 3 20 1 1 1 5 6 4", &["line 26: an element is: tag type"]),
+        ("6 3 2 1 1 1 5 6 4", "6 3 2 0 1 1 5 6 4", &["1 elements (the first is 6) belong to no physical surface"]),
+        ("6 3 2 1 1 1 5 6 4", "6 3 0 1 5 6 4", &["1 elements (the first is 6) belong to no physical surface"]),
+        ("6 3 2 1 1 1 5 6 4", "6 3 2 1 1 1 5 6 40", &["element 6 of `body` uses node 40"]),
+        (
+            "6 3 2 1 1 1 5 6 4",
+            "6 3 2 9 1 5 2 3 6",
+            &["element 7 of `body` and element 6 of `physical_9` have the same corners"],
+        ),
+        ("1 2 \"bottom\"", "1 2 \"body\"", &["two groups", "`body`"]),
+        ("1 2 \"bottom\"", "1 9 \"bottom\"", &["the group `bottom` is empty"]),
+        ("1 2 \"bottom\"", "1 2 bottom", &["$PhysicalNames", "`1 2 bottom`"]),
+    ] {
+        assert!(good.contains(piece), "{piece}");
+        assert_says(&verdict(good.replacen(piece, replacement, 1).as_bytes()), fragments);
+    }
+    // A negative tag, and none of a line; line ends of Windows.
+    let reversed = good.replacen("2 1 2 2 1 5 1", "2 1 2 -2 1 5 1", 1).replace('\n', "\r\n");
+    assert_same(&gmsh::from_bytes(reversed.into()).unwrap(), &read("quad4.msh"));
+    let lost = gmsh::from_bytes(good.replacen("4 1 2 7 3 3 6", "4 1 2 0 3 3 6", 1).into()).unwrap();
+    assert_eq!(edges(&lost, "physical_7").len(), 1);
+}
+
+/// Joined in the order of their names, two meshes are the same as written as one.
+#[test]
+fn joined_meshes_lie_side_by_side() {
+    let block = InlineMesh::default().rectangle("block", [3, 2], [0.5, 0.0], [1.5, 1.0]);
+    let ground = InlineMesh::default().rectangle("ground", [4, 2], [0.0, -1.0], [2.0, 0.0]);
+    let whole = block.clone().rectangle("ground", [4, 2], [0.0, -1.0], [2.0, 0.0]).build().unwrap();
+    let joined = Mesh::join([block.build().unwrap(), ground.build().unwrap()]).unwrap();
+    assert_eq!((&whole.nodes, &whole.elements, &whole.groups), (&joined.nodes, &joined.elements, &joined.groups));
+    assert_eq!(joined.node_tags[12..14], [0, 1]);
+    let twice = Mesh::join([joined, ground.build().unwrap()]).map(|_| ()).unwrap_err().to_string();
+    assert_says(&twice, &["the group `ground` is in mesh 1 and in mesh 2", "its own name"]);
 }
 
 /// What is checked in the first section would be read from the second: without nodes, where the parser's count underflows.
@@ -355,7 +425,7 @@ fn garbage_is_refused() {
 /// Every truncation, and every byte replaced by others, gives a mesh or an error, never a panic.
 #[test]
 fn damaged_files_never_panic() {
-    for name in ["quad4.msh", "quad4_binary.msh", "quad9_binary.msh"] {
+    for name in ["quad4.msh", "quad4_22.msh", "quad4_binary.msh", "quad9_binary.msh"] {
         let good = fs::read(data(name)).unwrap();
         for at in 0..good.len() {
             assert!(gmsh::from_bytes(good[..at].into()).is_err() || at + 1 == good.len(), "{name} cut at {at}");

@@ -13,7 +13,7 @@ use crate::model::builder::{Checked, ModelError};
 use crate::model::written::written;
 
 /// A mesh of blocks: quadrilaterals with straight sides or arcs, each divided into rows and columns of elements. Blocks of one body
-/// that share a whole side are joined there, with the same nodes; those of different bodies never are
+/// that share a whole side are joined there, with the same nodes; those of different bodies only where `joined` says so
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct BlocksInput {
@@ -25,6 +25,10 @@ pub struct BlocksInput {
     /// Names of sides that are not joined to others, such as the two sides of a crack in one body
     #[serde(default)]
     pub apart: Vec<String>,
+    /// Lists of bodies that are joined with each other, as one body is, where their blocks share a whole side, such as two materials
+    /// that are bonded
+    #[serde(default)]
+    pub joined: Vec<Vec<String>>,
 }
 
 /// A quadrilateral divided into elements. Side k goes from corner k to the next one, in the order in which the corners are given
@@ -49,6 +53,10 @@ pub struct BlockInput {
     /// For each side its name, or null: edges of a name are a group for contacts, supports and loads
     #[serde(default)]
     pub sides: [Option<String>; 4],
+    /// Points [x, y] by a name of your choice: the node of this block that is nearest to it is in the group of nodes of that name, which
+    /// points of other blocks may share. It must be the only one, and no farther away than the elements there are long [L]
+    #[serde(default)]
+    pub points: BTreeMap<String, [Amount; 2]>,
 }
 
 /// A number that may depend on the parameters of the mesh.
@@ -106,13 +114,14 @@ pub(super) struct MeshKeys {
     blocks: Option<Vec<BlockInput>>,
     parameters: Option<BTreeMap<String, Amount>>,
     apart: Option<Vec<String>>,
+    joined: Option<Vec<Vec<String>>>,
 }
 
 impl TryFrom<MeshKeys> for MeshSource {
     type Error = String;
 
     fn try_from(keys: MeshKeys) -> Result<Self, String> {
-        let MeshKeys { nodes, elements, edges, points, blocks, parameters, apart } = keys;
+        let MeshKeys { nodes, elements, edges, points, blocks, parameters, apart, joined } = keys;
         let given = |pairs: &[(&'static str, bool)]| pairs.iter().find(|(_, given)| *given).map(|(key, _)| *key);
         let of_nodes = [
             ("nodes", nodes.is_some()),
@@ -120,11 +129,12 @@ impl TryFrom<MeshKeys> for MeshSource {
             ("edges", edges.is_some()),
             ("points", points.is_some()),
         ];
-        let of_blocks = [("parameters", parameters.is_some()), ("apart", apart.is_some())];
+        let of_blocks =
+            [("parameters", parameters.is_some()), ("apart", apart.is_some()), ("joined", joined.is_some())];
         match (blocks, given(&of_nodes), given(&of_blocks)) {
             (Some(blocks), None, _) => {
-                let (parameters, apart) = (parameters.unwrap_or_default(), apart.unwrap_or_default());
-                Ok(Self::Blocks(BlocksInput { parameters, blocks, apart }))
+                let (parameters, joined) = (parameters.unwrap_or_default(), joined.unwrap_or_default());
+                Ok(Self::Blocks(BlocksInput { parameters, blocks, apart: apart.unwrap_or_default(), joined }))
             }
             (Some(_), Some(key), _) => {
                 Err(format!("has both `blocks` and `{key}`: give blocks, or nodes with their elements and edges"))
@@ -151,7 +161,7 @@ pub fn blocks(input: &BlocksInput, place: &str) -> Checked<InlineMesh> {
         return Err(ModelError::new(at(&format!("parameters.{name}")), message));
     }
     let complain = |BlockError { place, message }| ModelError::new(at(&place), message);
-    Blocks { blocks, apart: input.apart.clone() }.mesh().map_err(complain)
+    Blocks { blocks, apart: input.apart.clone(), joined: input.joined.clone() }.mesh().map_err(complain)
 }
 
 /// Numbers by their names.
@@ -261,6 +271,10 @@ fn block(input: &BlockInput, parameters: &Parameters, place: &str) -> Checked<Bl
     for k in 0..2 {
         block.elements[k] = parameters.count(&input.elements[k], &format!("{place}.elements[{k}]"))?;
         block.grading[k] = parameters.grading(&input.grading[k], &format!("{place}.grading[{k}]"))?;
+    }
+    for (name, near) in &input.points {
+        let near = parameters.point(near, &format!("{place}.points.{name}"))?;
+        block.points.insert(name.clone(), near);
     }
     Ok(Block { kind: input.kind, sides: input.sides.clone(), ..block })
 }

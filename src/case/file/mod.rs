@@ -6,13 +6,16 @@ mod output;
 use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
-use serde::de::Error;
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{Error, SeqAccess};
 use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::mesh::InlineMesh;
 use crate::mesh::section::Section;
 use crate::model::NewtonSettings;
-use crate::model::builder::{BodyInput, Contact, Gauge, LoadStep, LoadingPlateInput, PointMassInput, RigidBodyInput};
+use crate::model::builder::{
+    BodyInput, Contact, Gauge, LoadStep, LoadingPlateInput, Place, PointMassInput, RigidBodyInput,
+};
 use crate::model::written::Written;
 use blocks::MeshKeys;
 pub(super) use blocks::blocks;
@@ -29,8 +32,8 @@ pub struct Case {
     /// Labels of the units used, for readers; any consistent set will do
     #[serde(default)]
     pub units: BTreeMap<String, String>,
-    /// Path of a gmsh MSH 4.1 file relative to the case file, or a mesh given in place: as blocks that are divided into elements, or
-    /// node by node
+    /// Path of a gmsh file (MSH 4.1, or 2.2 ASCII) relative to the case file, a list of such paths, or a mesh given in place: as blocks
+    /// that are divided into elements, or node by node
     pub mesh: MeshSource,
     /// Kind of plane section: "plane_strain", a plate {"plane_stress": {"thickness": …}}, or "axisymmetric"
     #[serde(default)]
@@ -68,9 +71,10 @@ pub struct Case {
     /// state. Mesh, bodies and contacts must be the same except for the parameters of friction and damping. The steps
     /// follow those of that case: supports, loads and time continue; energies start from zero
     pub begin_with: Option<String>,
-    /// Groups whose mean displacement and reaction are written to the history
+    /// Groups, or single nodes {"near": [x, y]} or {"node": tag}, whose mean displacement and reaction are written to the history, under
+    /// the name of the group, `near_X_Y` or `node_TAG`
     #[serde(default)]
-    pub watch: Vec<String>,
+    pub watch: Vec<Place>,
     /// Gauges by a name of your choice: displacement, velocity, strain and stress at points of the bodies, at every row of
     /// the history (probes.csv)
     #[serde(default)]
@@ -89,6 +93,8 @@ pub struct Case {
 pub enum MeshSource {
     /// Path relative to the case file
     File(String),
+    /// Paths of several files: their meshes share no nodes, and each group is in one of them
+    Files(Vec<String>),
     /// Blocks, divided into elements
     Blocks(BlocksInput),
     /// Node by node
@@ -96,11 +102,14 @@ pub enum MeshSource {
 }
 
 impl Written for MeshSource {
-    const EXPECTING: &'static str =
-        "the path of a mesh file, or a mesh {\"blocks\": …} or {\"nodes\": …, \"elements\": …, \"edges\": …}";
+    const EXPECTING: &'static str = "the path of a mesh file, a list of such paths, or a mesh {\"blocks\": …} or {\"nodes\": …, \"elements\": …, \"edges\": …}";
 
     fn text(text: &str) -> Result<Self, String> {
         Ok(Self::File(text.into()))
+    }
+
+    fn list<'de, A: SeqAccess<'de>>(list: A) -> Result<Self, A::Error> {
+        Vec::deserialize(SeqAccessDeserializer::new(list)).map(Self::Files)
     }
 
     fn object<'de, D: Deserializer<'de>>(object: D) -> Result<Self, D::Error> {

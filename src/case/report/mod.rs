@@ -6,7 +6,7 @@ mod steps;
 use std::fmt::Write;
 
 use contact::{contacts, parameters, pressed_too_hard};
-use steps::steps;
+use steps::{steps, watched};
 
 use super::file::{Case, MeshSource};
 use crate::mesh::Group;
@@ -68,6 +68,7 @@ fn aligned(rows: &[[String; 2]]) -> Vec<String> {
 fn mesh(case: &Case, model: &Model) -> Vec<String> {
     let source = match &case.mesh {
         MeshSource::File(file) => file.clone(),
+        MeshSource::Files(files) => files.join(", "),
         MeshSource::Inline(_) => "given in the case file".into(),
         MeshSource::Blocks(blocks) => count(blocks.blocks.len(), "block"),
     };
@@ -225,8 +226,11 @@ fn output(case: &Case, model: &Model) -> Vec<String> {
             format!("fields with every {} row of the history, and at the end of each step", ordinal(every))
         }
     };
-    let watched = if case.watch.is_empty() { "none".into() } else { case.watch.join(", ") };
-    let mut lines = vec![format!("watched groups: {watched}"), fields];
+    let names = match case.watch.iter().map(|place| watched(place, model)).collect::<Vec<_>>() {
+        none if none.is_empty() => "none".into(),
+        some => some.join(", "),
+    };
+    let mut lines = vec![format!("watched groups: {names}"), fields];
     if let Some(interval) = case.output.interval {
         let step = number(interval);
         lines.push(format!("rows at least {step} apart, and at events; explicit steps write at multiples of {step}"));

@@ -5,6 +5,7 @@
 use nalgebra::{Rotation2, Vector2};
 
 use super::{Block, BlockKind};
+use crate::mesh::nearest::{NotOne, nearest};
 
 /// Radii at the ends of an arc that differ by less, relative, are the same; and an arc is less than a half circle by more.
 const ROUND: f64 = 1e-6;
@@ -114,6 +115,29 @@ impl Grid {
         };
         let rows = (0..m).step_by(order);
         rows.flat_map(|j| (0..n).step_by(order).map(move |i| [i, j])).map(|[i, j]| element(i, j)).collect()
+    }
+
+    /// Slot of the one node nearest to a point.
+    pub fn nearest(&self, point: [f64; 2]) -> Result<usize, String> {
+        let [x, y] = point;
+        let mut elements = self.elements();
+        elements.iter_mut().flatten().for_each(|slot| *slot -= self.first);
+        let node = nearest(&self.nodes, elements.iter().map(Vec::as_slice), point).map_err(|not_one| match not_one {
+            NotOne::NoPlace | NotOne::NoNodes => format!("({x}, {y}) is no place: give finite numbers"),
+            NotOne::Several(both) => {
+                let [one, other] = both.map(|node| self.nodes[node]);
+                format!(
+                    "the nodes at ({}, {}) and ({}, {}) are equally near to ({x}, {y}): give the place of one",
+                    one.x, one.y, other.x, other.y
+                )
+            }
+            NotOne::Far { node, distance } => format!(
+                "no node of this block is near ({x}, {y}): the nearest, at ({}, {}), lies {distance:.4} away, farther than the size \
+                 of the elements there",
+                self.nodes[node].x, self.nodes[node].y
+            ),
+        })?;
+        Ok(self.first + node)
     }
 
     /// Places all around, from corner 0 on.

@@ -42,17 +42,21 @@ pub fn joined(blocks: &Blocks, grids: &[Grid]) -> Result<Vec<usize>, BlockError>
         join.refuse_overlap(a, b)?;
         join.refuse_overlap(b, a)?;
     }
+    join.refuse_strangers()?;
     Ok(join.numbers())
 }
 
-/// Pairs of blocks of one body that may touch, in the order of the second ones.
+/// Pairs of blocks of one body, or of bodies that are joined, that may touch, in the order of the second ones.
 fn neighbours(blocks: &Blocks, grids: &[Grid]) -> Vec<[usize; 2]> {
     let boxes: Vec<Box2> = grids.iter().filter_map(reach).collect();
     let tree = Tree::new(boxes.iter().copied());
-    let one_body = |[a, b]: &[usize; 2]| blocks.blocks[*a].body == blocks.blocks[*b].body;
+    let may_join = |[a, b]: &[usize; 2]| {
+        let both = [*a, *b].map(|block| &blocks.blocks[block].body);
+        both[0] == both[1] || blocks.joined.iter().any(|list| both.iter().all(|body| list.contains(body)))
+    };
     let before =
         |(b, own): (usize, &Box2)| tree.meeting(own).into_iter().take_while(move |a| *a < b).map(move |a| [a, b]);
-    boxes.iter().enumerate().flat_map(before).filter(one_body).collect()
+    boxes.iter().enumerate().flat_map(before).filter(may_join).collect()
 }
 
 /// A box that what touches a block cannot miss.
@@ -124,9 +128,11 @@ impl Join<'_> {
                 return Err(self.complain(one, other, &message));
             }
             if let Some(name) = &self.blocks.blocks[side.0].sides[side.1] {
+                let bodies = [side, partner].map(|(block, _)| &self.blocks.blocks[block].body);
+                let inside = if bodies[0] == bodies[1] { "inside the body" } else { "between bodies that are joined" };
                 let message = format!(
-                    "is joined to side {} of blocks[{}], so `{name}` lies inside the body: leave the name out, or list it in \
-                     `apart` if the two sides can part",
+                    "is joined to side {} of blocks[{}], so `{name}` lies {inside}: leave the name out, or list it in `apart` if \
+                     the two sides can part",
                     partner.1, partner.0
                 );
                 return Err(BlockError::new(format!("blocks[{}].sides[{}]", side.0, side.1), message));
@@ -161,7 +167,8 @@ impl Join<'_> {
             if !(joined || apart(a, &[corner, (corner + 3) % 4]) || apart(b, &touched)) {
                 let message = format!(
                     "its corner {corner} lies on side {side} of blocks[{b}] and is not joined to it: blocks of a body are joined \
-                     along whole sides. Divide blocks[{b}] there, or list a name of one of the sides in `apart`"
+                     along whole sides, and so are those of bodies that are joined. Divide blocks[{b}] there, or list a name \
+                     of one of the sides in `apart`"
                 );
                 return Err(BlockError::new(format!("blocks[{a}]"), message));
             }
@@ -182,6 +189,25 @@ impl Join<'_> {
             }
             None => Ok(()),
         }
+    }
+
+    /// A body that is listed as joined and shares no side with another one of its list.
+    fn refuse_strangers(&self) -> Result<(), BlockError> {
+        let body = |block: usize| &self.blocks.blocks[block].body;
+        let partners = |block: usize| self.partner[block].iter().flatten().map(|(other, _)| body(*other));
+        for (k, list) in self.blocks.joined.iter().enumerate() {
+            let meets = |name: &String| {
+                let own = (0..self.grids.len()).filter(|block| body(*block) == name);
+                own.flat_map(partners).any(|other| other != name && list.contains(other))
+            };
+            if let Some(name) = list.iter().find(|name| !meets(name)) {
+                let message = format!(
+                    "no block of `{name}` shares a whole side with one of the others: move it there, or leave it out"
+                );
+                return Err(BlockError::new(format!("joined[{k}]"), message));
+            }
+        }
+        Ok(())
     }
 
     /// Numbers in the order in which nodes come first.

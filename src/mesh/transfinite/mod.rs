@@ -18,7 +18,7 @@
 mod grid;
 mod join;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -71,6 +71,8 @@ pub struct Block {
     pub kind: BlockKind,
     /// names of the sides
     pub sides: [Option<String>; 4],
+    /// for each name a point: the node nearest to it is in the group of nodes of that name [L]
+    pub points: BTreeMap<String, [f64; 2]>,
 }
 
 impl Block {
@@ -84,6 +86,7 @@ impl Block {
             grading: [Grading::default(); 2],
             kind: BlockKind::Q4,
             sides: [const { None }; 4],
+            points: BTreeMap::new(),
         }
     }
 
@@ -115,9 +118,15 @@ impl Block {
         self.sides[side] = Some(name.into());
         self
     }
+
+    /// With a name of the node nearest to a point [L].
+    pub fn point(mut self, name: impl Into<String>, near: [f64; 2]) -> Self {
+        self.points.insert(name.into(), near);
+        self
+    }
 }
 
-/// Blocks, joined where two of one body share a side.
+/// Blocks, joined where two of one body, or of bodies that are joined, share a side.
 ///
 /// ```
 /// use fecontact::mesh::{Block, Blocks, Grading};
@@ -136,6 +145,8 @@ pub struct Blocks {
     pub blocks: Vec<Block>,
     /// names of sides that are not joined, such as the two sides of a crack
     pub apart: Vec<String>,
+    /// lists of bodies that are joined with each other, such as two materials bonded along a side
+    pub joined: Vec<Vec<String>>,
 }
 
 /// Error of a block, with a remedy.
@@ -158,10 +169,16 @@ impl BlockError {
 impl Blocks {
     /// Blocks that are joined where they share a side.
     pub fn new(blocks: impl Into<Vec<Block>>) -> Self {
-        Self { blocks: blocks.into(), apart: Vec::new() }
+        Self { blocks: blocks.into(), ..Self::default() }
     }
 
-    /// The mesh: a body of each name, and a group of edges for each name of sides.
+    /// With bodies that are joined, too, where their blocks share a side.
+    pub fn joined<const N: usize>(mut self, bodies: [&str; N]) -> Self {
+        self.joined.push(bodies.map(String::from).into());
+        self
+    }
+
+    /// The mesh: a body of each name, a group of edges for each name of sides, and one of nodes for each name of points.
     ///
     /// # Errors
     /// [`BlockError`] of a block that is none, or of blocks that touch and cannot be joined.
@@ -176,7 +193,7 @@ impl Blocks {
         }
         let numbers = join::joined(self, &grids)?;
         let mut mesh = InlineMesh::default();
-        for (grid, block) in grids.iter().zip(&self.blocks) {
+        for (b, (grid, block)) in grids.iter().zip(&self.blocks).enumerate() {
             let own = &numbers[grid.first..grid.first + grid.nodes.len()];
             for (&number, &position) in own.iter().zip(&grid.nodes) {
                 if number == mesh.nodes.len() {
@@ -191,6 +208,11 @@ impl Blocks {
                 if let Some(name) = name {
                     mesh.edges.entry(name.clone()).or_default().extend(named(grid.edges(k)));
                 }
+            }
+            for (name, near) in &block.points {
+                let place = || format!("blocks[{b}].points.{name}");
+                let slot = grid.nearest(*near).map_err(|message| BlockError::new(place(), message))?;
+                mesh.points.entry(name.clone()).or_default().push(numbers[slot]);
             }
         }
         Ok(mesh)
@@ -209,18 +231,29 @@ impl Blocks {
                 return Err(BlockError::new(place, message));
             }
         }
-        let sides: BTreeMap<_, _> =
-            self.blocks.iter().flat_map(|block| &block.sides).flatten().map(|s| (s, ())).collect();
-        match self.apart.iter().position(|name| !sides.contains_key(name)) {
-            Some(k) => {
-                let known = sides.keys().map(|name| name.as_str());
-                let near = super::names::nearest(&self.apart[k], known);
-                let meant = near.map_or_else(String::new, |near| format!(" (did you mean `{near}`?)"));
-                let message =
-                    format!("no side is named `{}`{meant}: name the sides that are not joined", self.apart[k]);
-                Err(BlockError::new(format!("apart[{k}]"), message))
-            }
-            None => Ok(()),
+        let sides: BTreeSet<&str> =
+            self.blocks.iter().flat_map(|block| &block.sides).flatten().map(String::as_str).collect();
+        if let Some((k, name)) = self.apart.iter().enumerate().find(|(_, name)| !sides.contains(name.as_str())) {
+            let message =
+                format!("no side is named `{name}`{}: name the sides that are not joined", meant(name, &sides));
+            return Err(BlockError::new(format!("apart[{k}]"), message));
         }
+        let bodies: BTreeSet<&str> = self.blocks.iter().map(|block| block.body.as_str()).collect();
+        for (k, list) in self.joined.iter().enumerate() {
+            if list.len() < 2 {
+                return Err(BlockError::new(format!("joined[{k}]"), "must name two bodies or more"));
+            }
+            if let Some((at, name)) = list.iter().enumerate().find(|(_, name)| !bodies.contains(name.as_str())) {
+                let message = format!("no block is of the body `{name}`{}", meant(name, &bodies));
+                return Err(BlockError::new(format!("joined[{k}][{at}]"), message));
+            }
+        }
+        Ok(())
     }
+}
+
+/// The name that was probably meant, as a question.
+fn meant(name: &str, known: &BTreeSet<&str>) -> String {
+    super::names::nearest(name, known.iter().copied())
+        .map_or_else(String::new, |near| format!(" (did you mean `{near}`?)"))
 }

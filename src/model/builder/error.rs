@@ -102,7 +102,6 @@ impl Builder {
             check_name("rigid_bodies", body)?;
         }
         check_line("title", &self.title)?;
-        check_watched(&self.watch)?;
         check_once("contacts", self.contacts.iter().map(|contact| &contact.name))?;
         check_once("bodies", self.bodies.iter().map(|(name, _)| name))?;
         check_once("rigid_bodies", self.rigid_bodies.iter().map(|(name, _)| name))?;
@@ -149,18 +148,6 @@ pub fn check_line(place: &str, text: &str) -> Checked<()> {
 pub fn no_body<'n>(name: &str, known: impl Iterator<Item = &'n str>, place: &str) -> ModelError {
     let known: Vec<&str> = known.collect();
     ModelError::new(place, format!("there is no body `{name}`; the bodies are {}", known.join(", ")))
-}
-
-/// The watched groups, each named once.
-pub fn check_watched(watch: &[String]) -> Checked<()> {
-    let mut seen = BTreeSet::new();
-    for (k, name) in watch.iter().enumerate() {
-        check_name(&format!("watch[{k}]"), name)?;
-        if !seen.insert(name) {
-            return Err(ModelError::new(format!("watch[{k}]"), format!("`{name}` is watched already: name it once")));
-        }
-    }
-    Ok(())
 }
 
 /// Nothing of one kind may be given twice.

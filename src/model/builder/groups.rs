@@ -1,12 +1,13 @@
 //! Groups and nodes of the mesh by name.
 
+use std::collections::BTreeSet;
 use std::fmt::{Display, Formatter, Result as Written};
 
-use nalgebra::Vector2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::error::{Checked, ModelError, no_body};
+use super::error::{Checked, ModelError, check_name, no_body};
+use crate::mesh::nearest::{NotOne, nearest as nearest_node};
 use crate::mesh::{Edge, Group, Mesh};
 use crate::model::text::number;
 use crate::model::written::written;
@@ -32,52 +33,63 @@ pub enum Place {
 written!(Place, "the name of a group, {\"node\": tag}, or {\"near\": [x, y]}", text: Group);
 
 impl Place {
-    /// The same, with the tag of the node that is nearest to a point.
+    /// The same, with the tag of the node that is nearest to a point; with its position where several mesh files use that tag.
     ///
     /// # Errors
     /// Where it is not one node, or far away.
     pub fn settled(&self, mesh: &Mesh) -> Result<Self, String> {
         match self {
-            Self::Near(point) => nearest(mesh, *point).map(|node| Self::Node(mesh.node_tags[node])),
+            Self::Near(point) => nearest(mesh, *point).map(|node| match tagged(mesh, mesh.node_tags[node])[..] {
+                [_] => Self::Node(mesh.node_tags[node]),
+                _ => Self::Near(mesh.nodes[node].into()),
+            }),
             _ => Ok(self.clone()),
+        }
+    }
+
+    /// Its name in the columns of results.
+    pub fn column(&self) -> String {
+        match self {
+            Self::Group(name) => name.clone(),
+            Self::Node(tag) => format!("node_{tag}"),
+            Self::Near([x, y]) => format!("near_{x}_{y}"),
         }
     }
 }
 
-/// Two nodes whose distances differ by less than this share of the model's size are equally near.
-const EQUALLY_NEAR: f64 = 1e-9;
-
 /// The one node nearest to a point, which the elements there must reach.
 fn nearest(mesh: &Mesh, point: [f64; 2]) -> Result<usize, String> {
     let [x, y] = point.map(number);
-    if !point.iter().all(|coordinate| coordinate.is_finite()) {
-        return Err(format!("near ({x}, {y}) is no place: give finite numbers"));
-    }
-    let distance = |node: usize| (mesh.nodes[node] - Vector2::from(point)).norm();
-    let Some(node) = (0..mesh.own_nodes()).min_by(|a, b| distance(*a).total_cmp(&distance(*b))) else {
-        return Err("the mesh has no nodes".into());
-    };
-    let tag = mesh.node_tags[node];
-    let (near, round_off) = (distance(node), EQUALLY_NEAR * mesh.diagonal());
-    if let Some(other) = (0..mesh.own_nodes()).find(|other| *other != node && distance(*other) <= near + round_off) {
-        let other = mesh.node_tags[other];
-        return Err(format!("nodes {tag} and {other} are equally near to ({x}, {y}): name one as {{\"node\": {tag}}}"));
-    }
-    let beside = mesh.elements.iter().filter(|element| element.nodes.contains(&node));
-    let sides =
-        beside.flat_map(|element| element.nodes.iter().map(|other| (mesh.nodes[*other] - mesh.nodes[node]).norm()));
-    match near <= sides.fold(round_off, f64::max) {
-        true => Ok(node),
-        false => Err(format!(
-            "no node is near ({x}, {y}): the nearest, {tag}, lies {} away, farther than the size of the elements there",
-            number(near)
-        )),
-    }
+    let elements = mesh.elements.iter().map(|element| element.nodes.as_slice());
+    nearest_node(&mesh.nodes[..mesh.own_nodes()], elements, point).map_err(|not_one| match not_one {
+        NotOne::NoPlace => format!("near ({x}, {y}) is no place: give finite numbers"),
+        NotOne::NoNodes => "the mesh has no nodes".into(),
+        NotOne::Several(both) => {
+            let [tag, other] = both.map(|node| mesh.node_tags[node]);
+            format!("nodes {tag} and {other} are equally near to ({x}, {y}): name one as {{\"node\": {tag}}}")
+        }
+        NotOne::Far { node, distance } => format!(
+            "no node is near ({x}, {y}): the nearest, {}, lies {} away, farther than the size of the elements there",
+            mesh.node_tags[node],
+            number(distance)
+        ),
+    })
+}
+
+/// The nodes of a tag: one, unless meshes are joined.
+fn tagged(mesh: &Mesh, tag: u64) -> Vec<usize> {
+    (0..mesh.own_nodes()).filter(|node| mesh.node_tags[*node] == tag).collect()
 }
 
 impl From<&str> for Place {
     fn from(group: &str) -> Self {
         Self::Group(group.into())
+    }
+}
+
+impl From<String> for Place {
+    fn from(group: String) -> Self {
+        Self::Group(group)
     }
 }
 
@@ -123,9 +135,13 @@ pub fn nodes_at(mesh: &Mesh, on: &Place, place: &str) -> Checked<Vec<usize>> {
     match on {
         Place::Group(name) => Ok(mesh.nodes_of(group(mesh, name, place)?)),
         Place::Near(point) => Ok(vec![nearest(mesh, *point).map_err(|message| ModelError::new(place, message))?]),
-        Place::Node(node) => match mesh.node_tags.iter().position(|tag| tag == node) {
-            Some(node) => Ok(vec![node]),
-            None => Err(ModelError::new(place, format!("the mesh has no node {node}"))),
+        Place::Node(tag) => match tagged(mesh, *tag)[..] {
+            [node] => Ok(vec![node]),
+            [] => Err(ModelError::new(place, format!("the mesh has no node {tag}"))),
+            [..] => {
+                let message = "several of the mesh files have a node";
+                Err(ModelError::new(place, format!("{message} {tag}: name it by {{\"near\": [x, y]}}, or by a group")))
+            }
         },
     }
 }
@@ -146,17 +162,35 @@ pub fn body(model: &Model, name: &str, place: &str) -> Checked<usize> {
     names().position(|known| known == name).ok_or_else(|| no_body(name, names(), place))
 }
 
-/// The watched groups, and all rigid bodies.
-pub fn watched(names: &[String], model: &Model) -> Checked<Vec<WatchedSet>> {
-    let rigid = model.mesh.rigid_bodies.iter().map(|body| &body.name).filter(|name| !names.contains(name));
-    names.iter().chain(rigid).enumerate().map(|(k, name)| watched_set(model, k, name)).collect()
+/// The watched groups and nodes, each named once, and all rigid bodies.
+pub fn watched(places: &[Place], model: &Model) -> Checked<Vec<WatchedSet>> {
+    let mut seen = BTreeSet::new();
+    let mut sets = Vec::with_capacity(places.len());
+    for (k, on) in places.iter().enumerate() {
+        let (place, name) = (format!("watch[{k}]"), on.column());
+        check_name(&place, &name)?;
+        if !seen.insert(name.clone()) {
+            return Err(ModelError::new(place, format!("`{name}` is watched already: name it once")));
+        }
+        sets.push(watched_set(model, on, &place)?);
+    }
+    for body in model.mesh.rigid_bodies.iter().filter(|body| !seen.contains(&body.name)) {
+        sets.push(watched_set(model, &Place::Group(body.name.clone()), "rigid_bodies")?);
+    }
+    Ok(sets)
 }
 
-/// A watched group. The reactions of copies are with the nodes they move with; the displacement of a plate counts with every node.
-fn watched_set(model: &Model, k: usize, name: &str) -> Checked<WatchedSet> {
-    let group = group(&model.mesh, name, &format!("watch[{k}]"))?;
-    let nodes = model.mesh.nodes_of(group);
+/// What is watched. The reactions of copies are with the nodes they move with; the displacement of a plate counts with every node.
+fn watched_set(model: &Model, on: &Place, place: &str) -> Checked<WatchedSet> {
+    let nodes = nodes_at(&model.mesh, on, place)?;
+    let edges = match on {
+        Place::Group(name) => match group(&model.mesh, name, place)? {
+            Group::Edges(edges) => edges.clone(),
+            _ => Vec::new(),
+        },
+        _ => Vec::new(),
+    };
     let held = [0, 1].map(|i| model.ties.originals(model.held(&nodes, i)));
     let nodes = if model.plates.is_empty() { model.ties.originals(nodes) } else { nodes };
-    Ok(WatchedSet { name: name.into(), nodes, held })
+    Ok(WatchedSet { name: on.column(), nodes, edges, held })
 }

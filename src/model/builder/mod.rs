@@ -90,7 +90,7 @@ pub struct Builder {
     pub(crate) contacts: Vec<Contact>,
     pub(crate) velocities: Vec<(String, [f64; 2])>,
     pub(crate) steps: Vec<LoadStep>,
-    pub(crate) watch: Vec<String>,
+    pub(crate) watch: Vec<Place>,
     pub(crate) newton: NewtonSettings,
     pub(crate) interval: Option<f64>,
     pub(crate) times: Vec<f64>,
@@ -223,9 +223,9 @@ impl Builder {
         self
     }
 
-    /// A group whose mean displacement and reaction are reported.
-    pub fn watch(mut self, group: impl Into<String>) -> Self {
-        self.watch.push(group.into());
+    /// A group, or a single node, whose mean displacement and reaction are reported.
+    pub fn watch(mut self, on: impl Into<Place>) -> Self {
+        self.watch.push(on.into());
         self
     }
 

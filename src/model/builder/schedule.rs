@@ -199,7 +199,8 @@ pub fn stabilization(place: &str, given: &LoadStep, scheme: Scheme, model: &Mode
     for body in &model.bodies {
         let coefficient = share * body.material.p_wave_modulus() * given.duration / body.nodes.len() as f64;
         let dofs = body.nodes.iter().flat_map(|&node| [2 * node, 2 * node + 1]);
-        dofs.for_each(|dof| coefficients[dof] = coefficient * model.mesh.section.weight(model.mesh.nodes[dof / 2]));
+        // A node of two bodies has the shares of both.
+        dofs.for_each(|dof| coefficients[dof] += coefficient * model.mesh.section.weight(model.mesh.nodes[dof / 2]));
     }
     // A rigid body has the dashpots of the softest body.
     let softest = model.bodies.iter().map(|body| body.material.p_wave_modulus()).reduce(f64::min).unwrap_or_default();

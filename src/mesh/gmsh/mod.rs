@@ -1,6 +1,6 @@
-//! Reads gmsh meshes, format MSH 4.1, ASCII or binary.
+//! Reads gmsh meshes, format MSH 4.1, ASCII or binary, and MSH 2.2, ASCII (`msh2.rs`).
 //!
-//! The `mshio` crate parses the sections. Around it this file checks what `mshio` takes on trust (the format line, the
+//! The `mshio` crate parses the sections of 4.1. Around it this file checks what `mshio` takes on trust (the format line, the
 //! presence of the sections, the counts in their headers) and reads the names of the physical groups, which it skips.
 //!
 //! # Bytes
@@ -11,17 +11,19 @@
 //!
 //! The parsed gmsh file: from entities to named groups.
 
+mod msh2;
+
 use std::collections::{BTreeMap, HashMap};
 use std::fs;
 use std::ops::Range;
 use std::path::Path;
 
 use memchr::memmem;
-use mshio::mshfile::{self, ElementType, Entities, MshFile, Node, NodeBlock, Nodes};
+use mshio::mshfile::{self, ElementType, Entities, MshFile, NodeBlock, Nodes};
 use nalgebra::Vector2;
 
-use super::check::{RawCell, RawMesh};
-use super::{Mesh, MeshError, check};
+use crate::mesh::check::{RawCell, RawMesh};
+use crate::mesh::{Mesh, MeshError, check};
 
 /// The mesh in a gmsh file: bodies are its physical surfaces, edge groups its physical curves, node groups its physical
 /// points. A physical group without a name is called `physical_<tag>`.
@@ -59,7 +61,10 @@ fn refusal(error: std::io::Error) -> MeshError {
 }
 
 fn parse(mut bytes: Vec<u8>) -> Result<RawMesh, MeshError> {
-    let encoding = encoding(&bytes)?;
+    let encoding = match format(&bytes)? {
+        Format::Msh2 => return msh2::parse(&bytes),
+        Format::Msh4(encoding) => encoding,
+    };
     checked_count(&bytes, encoding, "Entities")?;
     let node_count = checked_count(&bytes, encoding, "Nodes")?;
     let element_count = checked_count(&bytes, encoding, "Elements")?;
@@ -72,6 +77,15 @@ fn parse(mut bytes: Vec<u8>) -> Result<RawMesh, MeshError> {
     assemble(file, &names, node_count, element_count)
 }
 
+/// The formats that are read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Format {
+    /// 2.2, ASCII
+    Msh2,
+    /// 4.1
+    Msh4(Encoding),
+}
+
 /// Encoding of the numbers in the file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Encoding {
@@ -80,9 +94,9 @@ enum Encoding {
     BigEndian,
 }
 
-/// Encoding by the first two lines, `$MeshFormat` and `4.1 (0 ASCII | 1 binary) 8`; in a binary file an integer 1
+/// Format by the first two lines, `$MeshFormat` and `2.2 0 8` or `4.1 (0 ASCII | 1 binary) 8`; in a binary file an integer 1
 /// follows.
-fn encoding(bytes: &[u8]) -> Result<Encoding, MeshError> {
+fn format(bytes: &[u8]) -> Result<Format, MeshError> {
     let mut lines = bytes.splitn(3, |&b| b == b'\n');
     if lines.next().map(<[u8]>::trim_ascii) != Some(b"$MeshFormat") {
         return Err(MeshError::NotGmsh);
@@ -91,10 +105,11 @@ fn encoding(bytes: &[u8]) -> Result<Encoding, MeshError> {
     let one = lines.next().and_then(|rest| rest.first_chunk::<4>()).copied().unwrap_or_default();
     let words: Vec<&str> = line.split_whitespace().collect();
     match words[..] {
-        ["4.1", "0", "8"] => Ok(Encoding::Ascii),
-        ["4.1", "1", "8"] if i32::from_le_bytes(one) == 1 => Ok(Encoding::LittleEndian),
-        ["4.1", "1", "8"] if i32::from_be_bytes(one) == 1 => Ok(Encoding::BigEndian),
-        [version, _, _] if version != "4.1" && version.parse::<f64>().is_ok() => {
+        ["2.2", "0", "8"] => Ok(Format::Msh2),
+        ["4.1", "0", "8"] => Ok(Format::Msh4(Encoding::Ascii)),
+        ["4.1", "1", "8"] if i32::from_le_bytes(one) == 1 => Ok(Format::Msh4(Encoding::LittleEndian)),
+        ["4.1", "1", "8"] if i32::from_be_bytes(one) == 1 => Ok(Format::Msh4(Encoding::BigEndian)),
+        [version, _, _] if !["2.2", "4.1"].contains(&version) && version.parse::<f64>().is_ok() => {
             Err(MeshError::Version(version.into()))
         }
         _ => Err(MeshError::Format(line.chars().take(40).collect())),
@@ -371,8 +386,9 @@ fn plane_nodes(nodes: Nodes<u64, i32, f64>) -> Result<Vec<(u64, Vector2<f64>)>, 
     for block in &nodes.node_blocks {
         tagged.extend(node_tags(block, nodes.min_node_tag)?.into_iter().zip(&block.nodes));
     }
+    let tagged: Vec<(u64, [f64; 3])> = tagged.into_iter().map(|(tag, node)| (tag, [node.x, node.y, node.z])).collect();
     check_plane(&tagged)?;
-    Ok(tagged.into_iter().map(|(tag, node)| (tag, Vector2::new(node.x, node.y))).collect())
+    Ok(tagged.into_iter().map(|(tag, [x, y, _])| (tag, Vector2::new(x, y))).collect())
 }
 
 /// The tags of a block's nodes in their order; `mshio` gives none if all of the mesh is one node.
@@ -392,12 +408,11 @@ fn node_tags(block: &NodeBlock<u64, i32, f64>, only_tag: u64) -> Result<Vec<u64>
     Ok(tags.into_iter().map(|(_, tag)| tag).collect())
 }
 
-fn check_plane(nodes: &[(u64, &Node<f64>)]) -> Result<(), MeshError> {
-    let Some(&(first, origin)) = nodes.first() else { return Ok(()) };
-    let extent = nodes.iter().map(|(_, node)| (node.x - origin.x).hypot(node.y - origin.y)).fold(0.0, f64::max);
-    let in_plane = |z: f64| (z - origin.z).abs() <= 1e-9 * extent;
-    match nodes.iter().skip(1).find(|(_, node)| !in_plane(node.z)) {
-        Some(&(node, &Node { z, .. })) => Err(MeshError::NotPlane { first, first_z: origin.z, node, z }),
+fn check_plane(nodes: &[(u64, [f64; 3])]) -> Result<(), MeshError> {
+    let Some(&(first, [x0, y0, z0])) = nodes.first() else { return Ok(()) };
+    let extent = nodes.iter().map(|(_, [x, y, _])| (x - x0).hypot(y - y0)).fold(0.0, f64::max);
+    match nodes.iter().skip(1).find(|(_, [.., z])| (z - z0).abs() > 1e-9 * extent) {
+        Some(&(node, [.., z])) => Err(MeshError::NotPlane { first, first_z: z0, node, z }),
         None => Ok(()),
     }
 }
