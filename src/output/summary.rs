@@ -1,12 +1,14 @@
 //! `summary.json`: how a run or test ended, and what it took.
 
 use std::collections::BTreeMap;
+use std::io::ErrorKind;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
 use super::csv::failed;
 use super::files;
+use super::folder::SUMMARY;
 use super::friction_history::FrictionHistory;
 use crate::laws::friction::FrictionParameters;
 use crate::model::Model;
@@ -145,9 +147,43 @@ impl Summary {
 /// # Errors
 /// [`Error::Output`] when it cannot be written.
 pub fn write(summary: &impl Serialize, folder: &Path) -> Result<(), Error> {
-    let path = folder.join("summary.json");
+    let path = folder.join(SUMMARY);
     let text = serde_json::to_string_pretty(summary).map_err(|cause| failed(&path, &cause))?;
     files::replace_for_good(&path, (text + "\n").as_bytes()).map_err(|cause| failed(&path, &cause))
+}
+
+/// Whether a run that has left no checkpoint may begin anew in `folder`: nothing is there, or the unfinished run of the same
+/// case, wherever its file lies now.
+///
+/// # Errors
+/// What is there instead.
+pub fn may_begin_anew(folder: &Path, about: &About) -> Result<(), String> {
+    #[derive(Deserialize)]
+    struct Begun {
+        status: String,
+        #[serde(flatten)]
+        about: About,
+    }
+    // A run that was killed when it had just begun leaves its lock, and half a summary.
+    let passing = [files::LOCK.into(), files::aside(Path::new(SUMMARY)).into_os_string()];
+    let is_empty = match folder.read_dir() {
+        Ok(mut entries) => entries.all(|entry| entry.is_ok_and(|entry| passing.contains(&entry.file_name()))),
+        Err(cause) if cause.kind() == ErrorKind::NotFound => true,
+        Err(cause) => return Err(format!("the folder cannot be read ({cause})")),
+    };
+    if is_empty {
+        return Ok(());
+    }
+    let text = std::fs::read_to_string(folder.join(SUMMARY)).unwrap_or_default();
+    let Ok(begun) = serde_json::from_str::<Begun>(&text) else {
+        return Err(format!("the folder holds files, but no readable {SUMMARY} of a run"));
+    };
+    let named = |about: &About| About { case: String::new(), ..about.clone() };
+    match begun.status.as_str() {
+        "completed" => Err("the run in the folder has completed".into()),
+        _ if named(&begun.about) == named(about) => Ok(()),
+        _ => Err(format!("the folder holds the run of another case, or this one was changed ({})", begun.about.case)),
+    }
 }
 
 /// Largest resident set so far, from the Linux process status.
