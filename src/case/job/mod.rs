@@ -234,7 +234,8 @@ impl Work {
             summary::write(first, &folder.path)?;
         }
         let warnings = Warnings::reporting(model.warnings(), warn);
-        let mut outputs = Outputs::open(&folder.path, model, &opened.case, saved.as_ref(), warnings)?;
+        let frames = opened.case.output.frames(opened.case.steps.len() - opened.taken_over);
+        let mut outputs = Outputs::open(&folder.path, model, &opened.case, frames, saved.as_ref(), warnings)?;
         let mut observers = outputs.observers();
         if let Some(progress) = &mut progress {
             observers.push(&mut **progress);
