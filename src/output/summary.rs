@@ -5,6 +5,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use super::csv::failed;
 use super::files;
@@ -37,6 +38,9 @@ pub struct About {
     pub front_slip_rate: Option<f64>,
     /// the case as `check` prints it: headings with their lines
     pub understood: Vec<(String, Vec<String>)>,
+    /// the case as it is written, but for a mesh given node by node; nothing for a law alone
+    #[serde(skip_serializing_if = "Value::is_null")]
+    pub given: Value,
 }
 
 /// Status of the run: the first lines of every `summary.json`.

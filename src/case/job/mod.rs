@@ -186,7 +186,11 @@ impl Job {
 }
 
 /// Data about the case for readers of the results.
-fn about(Opened { case, path, .. }: &Opened, model: &Model) -> About {
+fn about(Opened { case, path, document, .. }: &Opened, model: &Model) -> About {
+    let mut given = document.clone();
+    if let Some(case) = given.as_object_mut().filter(|case| case.get("mesh").is_some_and(|mesh| mesh.get("nodes").is_some())) {
+        case.remove("mesh");
+    }
     About {
         case: path.display().to_string(),
         title: case.title.clone(),
@@ -200,6 +204,7 @@ fn about(Opened { case, path, .. }: &Opened, model: &Model) -> About {
         wave_speeds: events::wave_speeds(model),
         front_slip_rate: case.output.fronts.map(|fronts| fronts.slip_rate),
         understood: understood(case, model),
+        given,
     }
 }
 
