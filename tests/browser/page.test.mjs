@@ -107,8 +107,11 @@ test("all charts are there when the page is ready, whoever looks, and on paper",
 test("no title and no label is clipped, on the page and in a picture that is saved", async () => {
   for (const [name, width] of [["slip_front", 1280], ["block_on_ground", 400]]) {
     const page = await open(of(name), { viewport: { width, height: 900 } });
-    const clipped = await page.evaluate(() => {
+    const clipped = await page.evaluate(async () => {
       const found = [];
+      const [first] = charts;
+      first.set(first.series, "a long title ".repeat(12).trim(), { ...first.y, label: "a label that is longer than its axis is high [mm]" });
+      await new Promise((done) => setTimeout(done));
       for (const chart of charts.filter((one) => one.plot)) {
         const caption = chart.element.querySelector("figcaption");
         if (caption.scrollWidth > caption.clientWidth + 1) found.push(`caption ${chart.title}`);

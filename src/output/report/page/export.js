@@ -92,7 +92,9 @@ function svg(chart) {
   });
   parts.push(`<rect x="${bx}" y="${by}" width="${w}" height="${h}" fill="none" stroke="#444"/>`);
   text(bx + w / 2, by + h + 36, chart.x.label);
-  parts.push(`<text transform="translate(14 ${by + h / 2}) rotate(-90)" text-anchor="middle">${escaped(chart.y.label)}</text>`);
+  // A label that is longer than its axis is written smaller.
+  const size = Math.min(11.5, (11.5 * (h + by)) / (6.5 * chart.y.label.length)).toFixed(1);
+  parts.push(`<text transform="translate(14 ${by + h / 2}) rotate(-90)" text-anchor="middle" font-size="${size}">${escaped(chart.y.label)}</text>`);
   parts.push(`<clipPath id="box"><rect x="${bx}" y="${by}" width="${w}" height="${h}"/></clipPath><g clip-path="url(#box)">`);
   for (const { series, k } of shown) {
     const colour = chart.series[k - 1].colour;
