@@ -156,12 +156,11 @@ pub fn write(summary: &impl Serialize, folder: &Path) -> Result<(), Error> {
     files::replace_for_good(&path, (text + "\n").as_bytes()).map_err(|cause| failed(&path, &cause))
 }
 
-/// Whether a run that has left no checkpoint may begin anew in `folder`: nothing is there, or the unfinished run of the same
-/// case, wherever its file lies now.
+/// The unfinished run that a folder holds; `None` where nothing is there.
 ///
 /// # Errors
 /// What is there instead.
-pub fn may_begin_anew(folder: &Path, about: &About) -> Result<(), String> {
+pub fn unfinished(folder: &Path) -> Result<Option<About>, String> {
     #[derive(Deserialize)]
     struct Begun {
         status: String,
@@ -176,17 +175,13 @@ pub fn may_begin_anew(folder: &Path, about: &About) -> Result<(), String> {
         Err(cause) => return Err(format!("the folder cannot be read ({cause})")),
     };
     if is_empty {
-        return Ok(());
+        return Ok(None);
     }
     let text = std::fs::read_to_string(folder.join(SUMMARY)).unwrap_or_default();
-    let Ok(begun) = serde_json::from_str::<Begun>(&text) else {
-        return Err(format!("the folder holds files, but no readable {SUMMARY} of a run"));
-    };
-    let named = |about: &About| About { case: String::new(), ..about.clone() };
-    match begun.status.as_str() {
-        "completed" => Err("the run in the folder has completed".into()),
-        _ if named(&begun.about) == named(about) => Ok(()),
-        _ => Err(format!("the folder holds the run of another case, or this one was changed ({})", begun.about.case)),
+    match serde_json::from_str::<Begun>(&text) {
+        Err(_) => Err(format!("the folder holds files, but no readable {SUMMARY} of a run")),
+        Ok(Begun { status, .. }) if status == "completed" => Err("the run in the folder has completed".into()),
+        Ok(Begun { about, .. }) => Ok(Some(about)),
     }
 }
 

@@ -13,8 +13,10 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use serde_json::Value;
 use thiserror::Error;
 
+use super::again::is_same;
 use super::report::understood;
 use super::{CaseError, Opened};
 use crate::model::Model;
@@ -137,8 +139,14 @@ impl Job {
         let mut opened = open(checkpoint)?;
         let (model, saved) = opened.build()?;
         if begins_anew {
-            summary::may_begin_anew(place, &about(&opened, &model))
-                .map_err(|why| Refused::Anew(place.to_owned(), why))?;
+            let refused = |why: String| Refused::Anew(place.to_owned(), why);
+            let begun = summary::unfinished(place).map_err(refused)?;
+            if let Some(begun) = begun.filter(|begun| !is_same(&begun.given, &given(&opened.document))) {
+                return Err(refused(format!(
+                    "the folder holds the run of another case, or of this one before a change ({})",
+                    begun.case
+                )));
+            }
         }
         Ok(Self { damage, begins_anew, ..Self::claim(opened, model, saved, place)? })
     }
@@ -187,10 +195,6 @@ impl Job {
 
 /// Data about the case for readers of the results.
 fn about(Opened { case, path, document, .. }: &Opened, model: &Model) -> About {
-    let mut given = document.clone();
-    if let Some(case) = given.as_object_mut().filter(|case| case.get("mesh").is_some_and(|mesh| mesh.get("nodes").is_some())) {
-        case.remove("mesh");
-    }
     About {
         case: path.display().to_string(),
         title: case.title.clone(),
@@ -204,8 +208,18 @@ fn about(Opened { case, path, document, .. }: &Opened, model: &Model) -> About {
         wave_speeds: events::wave_speeds(model),
         front_slip_rate: case.output.fronts.map(|fronts| fronts.slip_rate),
         understood: understood(case, model),
-        given,
+        given: given(document),
     }
+}
+
+/// A case as it is written, but for a mesh given node by node.
+fn given(document: &Value) -> Value {
+    let mut given = document.clone();
+    let is_of_nodes = document.get("mesh").is_some_and(|mesh| mesh.get("nodes").is_some());
+    if let Some(case) = given.as_object_mut().filter(|_| is_of_nodes) {
+        case.remove("mesh");
+    }
+    given
 }
 
 /// Results of a run that are kept however it ends.
