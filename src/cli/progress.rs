@@ -153,22 +153,18 @@ fn message(model: &Model, attempt: &Attempt, terse: bool) -> String {
             let contacts = if points > 0 { format!("  open {open} stick {stick} slip {slip}") } else { String::new() };
             format!("{}{solves}{contacts}", at(state.time))
         }
-        None => format!("{}  {}", at(attempt.old.time), given_up(attempt, terse)),
+        None => format!("{}  {}", at(attempt.old.time), given_up(attempt)),
     }
 }
 
-/// Text about a rejected attempt with its reason; in a `terse` line only the kind of failure.
-fn given_up(attempt: &Attempt, terse: bool) -> String {
+/// Text about a rejected attempt with the kind of its failure; `newton.csv` has the reason.
+fn given_up(attempt: &Attempt) -> String {
     let what = if attempt.verdict == Verdict::Unsolved { "rejected" } else { "repeated" };
     let when = match attempt.iterations.len() {
         0 => "before a solve".into(),
         solves => format!("after {}", count(solves, "iteration")),
     };
-    let why = match attempt.cause.map_or(attempt.verdict.kind(), IncrementFailure::kind) {
-        kind if terse => kind.into(),
-        kind => attempt.reason().unwrap_or_else(|| kind.into()),
-    };
-    format!("{what} {when}: {why}")
+    format!("{what} {when}: {}", attempt.cause.map_or(attempt.verdict.kind(), IncrementFailure::kind))
 }
 
 /// A time to so many digits that an increment shows.

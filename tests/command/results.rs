@@ -132,15 +132,13 @@ fn the_last_lines_tell_how_friction_went() {
     assert!(told.contains("contact `base`: sticks; peak tangential force "), "{told}");
 }
 
-/// A run of thousands of quick increments does not drown its reader: a hundred lines, then two a second; the history has
-/// them all.
+/// A run of thousands of quick increments does not drown its reader: it has ten lines; the history has them all.
 #[test]
 fn progress_does_not_drown_its_reader() {
     let folder = TempDir::new().unwrap();
     let output = run(folder.path(), &slider(60.0, 0.02));
-    let lines = String::from_utf8_lossy(&output.stderr).lines().filter(|line| line.starts_with("pull")).count();
-    assert!((100..1000).contains(&lines), "{lines} lines");
-    assert!(String::from_utf8_lossy(&output.stderr).contains("only some increments are printed"));
+    let lines = String::from_utf8_lossy(&output.stderr).lines().filter(|line| line.contains(" %  pull")).count();
+    assert_eq!(lines, 10);
     let rows = fs::read_to_string(folder.path().join("out/case/history.csv")).unwrap().lines().count();
     assert_eq!(rows, 3000 + 1);
 }
@@ -444,13 +442,8 @@ fn what_fails_before_a_solve_is_told_as_well() {
     let [row] = unsolved[..] else { panic!("one attempt had no solve: {text}") };
     assert!(row[verdict] == "unsolved" && row[reason].starts_with("element 0 of body `sled` is inverted (det F = -"));
     let told = String::from_utf8(output.stderr).unwrap();
-    for part in [
-        format!("press  t 0.5  dt 5.000e-1  rejected before a solve: {}\n", row[reason].replace(';', ",")),
-        "rejected after 1 iteration: element 0 of body `sled` is inverted (det F = -4.821e-1) at (0.5, 0.5)\n".into(),
-        "\nrejected attempts: 2 × element inverted (see column `reason` of newton.csv)\n".into(),
-    ] {
-        assert!(told.contains(&part), "{part:?} is not in {told}");
-    }
+    assert!(told.contains("\nrejected attempts: 2 × element inverted (see column `reason` of newton.csv)\n"), "{told}");
+    assert!(rows.iter().any(|row| row[reason].contains("is inverted (det F = -4.821e-1) at (0.5, 0.5)")), "{text}");
     let summary: Value = serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
     assert_eq!((&summary["given_up"], &summary["cutbacks"]), (&json!({"element inverted": 2}), &json!(2)));
     // Rows with a solve are as many as solves; and no file is listed that is not there.
