@@ -9,13 +9,15 @@ use serde_json::Value;
 
 use super::csv::failed;
 use super::files;
-use super::folder::SUMMARY;
 use super::friction_history::FrictionHistory;
 use crate::laws::friction::FrictionParameters;
 use crate::model::Model;
 use crate::run::control::RunReport;
 use crate::run::error::Error;
 use crate::run::law::LawReport;
+
+/// File that every folder of results has.
+pub const SUMMARY: &str = "summary.json";
 
 /// Origin of the results, and what their readers need to know of it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
