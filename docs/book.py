@@ -18,7 +18,7 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 FENCE = re.compile(r"^ *```.*?^ *```", re.M | re.S)
 EQUATION = re.compile(r"^```math\n(.*?)^```", re.M | re.S)
 # Pages of the book beside those below docs/.
-BESIDE = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "python/README.md", "benches/README.md"]
+BESIDE = ["README.md", "CONTRIBUTING.md", "CODE_OF_CONDUCT.md", "CHANGELOG.md", "python/README.md", "benches/README.md"]
 
 
 def pages():

@@ -12,7 +12,7 @@ import zlib
 import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-TYPES = {"Float64": "<f8", "Int32": "<i4", "UInt64": "<u8", "UInt8": "u1"}
+TYPES = {"Float64": "<f8", "Float32": "<f4", "Int32": "<i4", "UInt64": "<u8", "UInt8": "u1"}
 
 
 def committed(path):
@@ -52,7 +52,8 @@ class Run:
         self.holder = tempfile.TemporaryDirectory()
         self.folder = pathlib.Path(self.holder.name) / "out"
         path = pathlib.Path(self.holder.name) / "case.json"
-        path.write_text(json.dumps(case))
+        # Frames of what is compared: of every increment, with all digits.
+        path.write_text(json.dumps({**case, "output": {"exact": True, "every": 1, **case.get("output", {})}}))
         said = subprocess.run([program, "run", path, "--out", self.folder, "--quiet"], capture_output=True, text=True)
         if said.returncode and not may_stop:
             raise SystemExit(f"{case.get('title', 'a case')}: {said.stderr}")

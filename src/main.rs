@@ -27,10 +27,11 @@ enum Command {
         /// Threads [default: all cores]
         #[arg(long)]
         threads: Option<usize>,
-        /// Print errors only
+        /// Print warnings and the last line only
         #[arg(long)]
         quiet: bool,
-        /// Resume from the last checkpoint in the folder; results are bitwise identical to those of an uninterrupted run
+        /// Resume from the last checkpoint in the folder, to results bitwise identical to those of an uninterrupted run; begin
+        /// anew where this case's own run has left none yet
         #[arg(long)]
         resume: bool,
     },

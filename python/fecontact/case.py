@@ -183,7 +183,8 @@ class Case:
             out: folder of the results; a temporary one, which goes with the result, unless given.
             threads: all cores unless given; the results do not depend on it.
             progress: whether a bar is shown, on a terminal or in a notebook.
-            resume: whether to go on from the last checkpoint in ``out``.
+            resume: whether to go on from the last checkpoint in ``out``; where this case's own run has left none yet, it begins anew,
+                with a warning.
             report: whether to write ``report.html`` into ``out``.
 
         Raises:

@@ -95,6 +95,8 @@ def study(
     worker dies is begun again from its checkpoint (``output.checkpoint`` of the case: minutes between two); one whose worker
     dies three times without coming further is ``lost``. Ctrl-C ends the study with a checkpoint of every run.
 
+    Runs write no fields unless the case asks for them: ``output.fields``, ``every``, ``times`` or ``points``.
+
     Args:
         case: what all runs have in common.
         parameters: values by place, such as ``{"contacts.base.friction.mu_s": [0.3, 0.4]}``: all combinations (:func:`grid`); or

@@ -28,7 +28,7 @@ pub fn complaint(py: Python, file: &str, place: &str, message: impl ToString) ->
 pub fn refused(py: Python, refused: &Refused) -> PyErr {
     match refused {
         Refused::Case(error) => case_error(py, error),
-        Refused::Folder(..) | Refused::Checkpoint(..) | Refused::Run(_) => {
+        Refused::Folder(..) | Refused::Checkpoint(..) | Refused::Anew(..) | Refused::Run(_) => {
             exception(py, "CaseError", (refused.to_string(), "", "", refused.to_string()))
         }
     }

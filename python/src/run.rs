@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use fecontact::case::job::{Callbacks, Failed, Job, Outcome, Refused, last};
+use fecontact::case::job::{Callbacks, Failed, Job, Outcome, Refused};
 use fecontact::equations::ContactCounts;
 use fecontact::model::Model;
 use fecontact::output::report as page;
@@ -98,15 +98,25 @@ fn teller(news: &Arc<Mutex<News>>) -> Arc<dyn Fn(&str) + Send + Sync> {
 }
 
 fn open(case: &Case, out: &Path, resume: bool, report: bool, warn: &dyn Fn(&str)) -> Result<Job, Refused> {
-    let (mut opened, damage) = match resume {
-        true => last(out, |checkpoint| case.resumed(checkpoint), warn)?,
-        false => (case.opened()?, None),
+    let opened = |checkpoint| {
+        let mut opened = match checkpoint {
+            Some(checkpoint) => case.resumed(checkpoint)?,
+            None => case.opened()?,
+        };
+        opened.case.output.report = report;
+        Ok(opened)
     };
-    opened.case.output.report = report;
-    if let Some(damage) = &damage {
+    let job = match resume {
+        true => Job::resume(out, opened, warn)?,
+        false => Job::open(opened(None)?, out)?,
+    };
+    if job.begins_anew {
+        warn(&format!("{}: no checkpoint yet, the run begins anew", out.display()));
+    }
+    if let Some(damage) = &job.damage {
         warn(&format!("{damage}; the previous checkpoint is used"));
     }
-    Job::open(opened, damage, out)
+    Ok(job)
 }
 
 /// Write one page (HTML) to look at results: `fecontact report`.

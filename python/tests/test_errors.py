@@ -167,8 +167,14 @@ def test_folders_in_use_are_told(document: dict[str, Any], tmp_path: Path) -> No
     for threads in (0, -1):
         with pytest.raises(ValueError, match=f"threads {threads}: give 1 to 1024"):
             fc.Case(document).run(threads=threads)
-    with pytest.raises(fc.CaseError, match="there is none"):
-        fc.Case(document).run(tmp_path / "new", resume=True, progress=False)
+    with pytest.raises(fc.CaseError, match="--resume: there is no checkpoint"):
+        fc.Case(document).run(tmp_path, resume=True, progress=False)
+
+
+def test_a_run_that_has_left_nothing_to_resume_begins_anew(document: dict[str, Any], tmp_path: Path) -> None:
+    with pytest.warns(fc.RunWarning, match="no checkpoint yet, the run begins anew"):
+        result = fc.Case(document).run(tmp_path / "new", resume=True, progress=False)
+    assert result.status == "completed"
 
 
 def test_a_run_that_stops_holds_its_results(document: dict[str, Any]) -> None:

@@ -288,6 +288,15 @@ def test_a_study_that_ends_leaves_no_solver_and_goes_on(tmp_path: Path, by: sign
     same_as_alone(out, slider(8000.0), table, 1, tmp_path / "alone")
 
 
+def test_runs_write_fields_only_where_the_case_asks_for_them(tmp_path: Path) -> None:
+    for output, written in [({}, False), ({"fields": True}, True), ({"every": 10}, True)]:
+        case, out = slider(1.0).replace({"output": output}), tmp_path / f"{len(output)}{written}{'every' in output}"
+        table = studies.study(case, {MU_S: [0.5]}, peak, out, progress=False)
+        assert (out / "runs" / table["run"][0] / "contact.pvd").is_file() == written
+        same_as_alone(out, case, table, 0, out / "alone")
+        assert (out / "alone" / "contact.pvd").is_file()
+
+
 def test_workers_that_cannot_begin(tmp_path: Path) -> None:
     file = tmp_path / "script.py"
     file.write_text(

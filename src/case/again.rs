@@ -179,6 +179,16 @@ impl Opened {
     }
 }
 
+/// Whether two cases are the same but for keys that never affect how a run continues.
+pub(super) fn is_same(one: &Value, other: &Value) -> bool {
+    let solved = |case: &Value| {
+        let mut case = case.as_object().cloned().unwrap_or_default();
+        FREE.iter().for_each(|key| drop(case.remove(*key)));
+        case
+    };
+    solved(one) == solved(other)
+}
+
 fn check_mesh(before: &MeshPrint, model: &Model) -> Result<(), String> {
     before.difference(&MeshPrint::of(&model.mesh)).map_or(Ok(()), Err)
 }

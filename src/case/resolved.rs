@@ -26,7 +26,6 @@ pub fn resolved(case: &Case, model: &Model) -> String {
             }
         }
     }
-    case.output.every = case.output.every();
     // What was read from JSON can be written as JSON.
     serde_json::to_string_pretty(&case).unwrap_or_default()
 }

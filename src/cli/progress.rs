@@ -1,4 +1,5 @@
-//! Progress on stderr: one line that is kept up to date on a terminal, plain lines elsewhere; warnings as they come.
+//! Progress on stderr: one line that is kept up to date on a terminal, a line every tenth of the run elsewhere; warnings as they
+//! come.
 
 use std::time::{Duration, Instant};
 
@@ -15,8 +16,8 @@ use crate::solve::failure::IncrementFailure;
 /// Destination of progress and warnings.
 #[derive(Clone, Debug)]
 pub enum Voice {
-    /// Nothing is printed
-    Silent,
+    /// Only warnings, as lines on stderr
+    Quiet,
     /// Lines on stderr
     Lines,
     /// A terminal, above the line that is kept up to date
@@ -30,7 +31,7 @@ impl Voice {
         // written over: beside a terminal, and on one whose TERM is unset or `dumb`.
         let target = ProgressDrawTarget::stderr();
         match (quiet, target.is_hidden()) {
-            (true, _) => Self::Silent,
+            (true, _) => Self::Quiet,
             (false, true) => Self::Lines,
             (false, false) => {
                 let bar = ProgressBar::with_draw_target(None, target);
@@ -43,7 +44,7 @@ impl Voice {
     /// Print a line.
     pub fn say(&self, line: &str) {
         match self {
-            Self::Silent => {}
+            Self::Quiet => {}
             Self::Lines => say!("{line}"),
             Self::Terminal(bar) => bar.suspend(|| say!("{line}")),
         }
@@ -51,7 +52,10 @@ impl Voice {
 
     /// Print a warning.
     pub fn warn(&self, warning: &str) {
-        self.say(&format!("warning: {warning}"));
+        match self {
+            Self::Quiet => say!("warning: {warning}"),
+            Self::Lines | Self::Terminal(_) => self.say(&format!("warning: {warning}")),
+        }
     }
 }
 
@@ -62,19 +66,17 @@ pub struct Progress {
     start: Instant,
     /// Share of the run that was done at the start; `None` before the first attempt
     done_before: Option<f64>,
-    /// when to speak again, after the start
+    /// When the line of a terminal may be drawn again, after the start
     next: Duration,
-    lines: u32,
+    /// Tenths of the run that have had their line
+    tenths: f64,
 }
 
 /// The line is drawn no more often than this.
 const FRAME: Duration = Duration::from_millis(100);
 
-/// Every increment has a line up to this many, ...
-const LINES: u32 = 100;
-
-/// ... and later there is one in this time.
-const PAUSE: Duration = Duration::from_millis(500);
+/// Part of a time that may be lost to round-off.
+const ROUND_OFF: f64 = 1e-9;
 
 /// Before this nobody knows how long it will take.
 const TOO_EARLY: Duration = Duration::from_secs(1);
@@ -85,7 +87,7 @@ impl Progress {
         if let Voice::Terminal(bar) = &voice {
             bar.set_message("the first increment is under way");
         }
-        Self { voice, start: Instant::now(), done_before: None, next: Duration::ZERO, lines: 0 }
+        Self { voice, start: Instant::now(), done_before: None, next: Duration::ZERO, tenths: 0.0 }
     }
 }
 
@@ -101,28 +103,25 @@ impl Observer for Progress {
     fn record(&mut self, model: &Model, attempt: &Attempt) -> Result<(), Error> {
         let now = self.start.elapsed();
         let end = model.steps.last().map_or(1.0, |step| step.span.end);
-        let before = *self.done_before.get_or_insert(attempt.old.time / end);
-        if now < self.next {
-            return Ok(());
-        }
+        let tenths = |share: f64| (10.0 * share * (1.0 + ROUND_OFF)).floor();
+        let before = *self.done_before.get_or_insert_with(|| {
+            self.tenths = tenths(attempt.old.time / end);
+            attempt.old.time / end
+        });
         let share = attempt.accepted.map_or(attempt.old.time, |state| state.time) / end;
         match &self.voice {
-            Voice::Silent => {}
-            Voice::Terminal(bar) => {
+            Voice::Terminal(bar) if now >= self.next => {
                 let left = left(now, share - before, 1.0 - share);
                 bar.set_message(
                     in_line(&format!("{:.1} %{left}  {}", 100.0 * share, message(model, attempt, true))).into_owned(),
                 );
                 self.next = now + FRAME;
             }
-            Voice::Lines => {
-                say!("{}", message(model, attempt, false));
-                self.lines += 1;
-                if self.lines == LINES {
-                    say!("… from here on only some increments are printed");
-                }
-                self.next = if self.lines < LINES { now } else { now + PAUSE };
+            Voice::Lines if tenths(share) > self.tenths => {
+                say!("{:3.0} %  {}", 100.0 * share, message(model, attempt, false));
+                self.tenths = tenths(share);
             }
+            Voice::Quiet | Voice::Lines | Voice::Terminal(_) => {}
         }
         Ok(())
     }
@@ -154,22 +153,18 @@ fn message(model: &Model, attempt: &Attempt, terse: bool) -> String {
             let contacts = if points > 0 { format!("  open {open} stick {stick} slip {slip}") } else { String::new() };
             format!("{}{solves}{contacts}", at(state.time))
         }
-        None => format!("{}  {}", at(attempt.old.time), given_up(attempt, terse)),
+        None => format!("{}  {}", at(attempt.old.time), given_up(attempt)),
     }
 }
 
-/// Text about a rejected attempt with its reason; in a `terse` line only the kind of failure.
-fn given_up(attempt: &Attempt, terse: bool) -> String {
+/// Text about a rejected attempt with the kind of its failure; `newton.csv` has the reason.
+fn given_up(attempt: &Attempt) -> String {
     let what = if attempt.verdict == Verdict::Unsolved { "rejected" } else { "repeated" };
     let when = match attempt.iterations.len() {
         0 => "before a solve".into(),
         solves => format!("after {}", count(solves, "iteration")),
     };
-    let why = match attempt.cause.map_or(attempt.verdict.kind(), IncrementFailure::kind) {
-        kind if terse => kind.into(),
-        kind => attempt.reason().unwrap_or_else(|| kind.into()),
-    };
-    format!("{what} {when}: {why}")
+    format!("{what} {when}: {}", attempt.cause.map_or(attempt.verdict.kind(), IncrementFailure::kind))
 }
 
 /// A time to so many digits that an increment shows.

@@ -12,7 +12,7 @@ use super::interrupt::Interrupt;
 use super::place::default_folder;
 use super::progress::{Progress, Voice};
 use super::threads::use_threads;
-use crate::case::job::{Callbacks, Job, Outcome, last};
+use crate::case::job::{Callbacks, Job, Outcome};
 use crate::case::{Opened, Written};
 use crate::model::Model;
 use crate::model::scheme::time_text;
@@ -29,9 +29,9 @@ pub struct Options {
     pub out: Option<PathBuf>,
     /// threads
     pub threads: Option<usize>,
-    /// whether nothing is printed
+    /// whether only warnings and the last line are printed
     pub quiet: bool,
-    /// whether the run resumes from the last checkpoint
+    /// whether the run resumes from the last checkpoint, if it has left one
     pub resume: bool,
 }
 
@@ -44,11 +44,14 @@ pub fn run(path: &Path, options: Options) -> Result<(), Failure> {
     use_threads(threads)?;
     let voice = Voice::new(quiet);
     let place = out.unwrap_or_else(|| default_folder(path));
-    let (opened, damage) = match resume {
-        true => last(&place, |checkpoint| Opened::resume(Written::read(path)?, checkpoint), &|text| voice.warn(text))?,
-        false => (Opened::begin(Written::read(path)?)?, None),
+    let opened = |checkpoint| match checkpoint {
+        Some(checkpoint) => Opened::resume(Written::read(path)?, checkpoint),
+        None => Opened::begin(Written::read(path)?),
     };
-    let mut job = Job::open(opened, damage, &place)?;
+    let mut job = match resume {
+        true => Job::resume(&place, opened, &|text| voice.warn(text))?,
+        false => Job::open(opened(None)?, &place)?,
+    };
     let messages = Messages::start(&job, &voice);
     let outcome = job.run(callbacks(&voice))?;
     messages.end(&outcome, &job);
@@ -65,7 +68,7 @@ pub fn run(path: &Path, options: Options) -> Result<(), Failure> {
 fn callbacks(voice: &Voice) -> Callbacks<'static> {
     let (speaker, interrupt) = (voice.clone(), Interrupt::watch());
     let progress =
-        (!matches!(voice, Voice::Silent)).then(|| Box::new(Progress::new(voice.clone())) as Box<dyn Observer>);
+        (!matches!(voice, Voice::Quiet)).then(|| Box::new(Progress::new(voice.clone())) as Box<dyn Observer>);
     Callbacks {
         warn: Arc::new(move |warning| speaker.warn(warning)),
         ends: Arc::new(move || interrupt.came().then_some(Error::Interrupted)),
@@ -78,7 +81,10 @@ struct Messages(Voice);
 
 impl Messages {
     /// Before the first increment: warnings and choices, or the state from which the run resumes.
-    pub fn start(Job { opened, model, saved, damage, .. }: &Job, voice: &Voice) -> Self {
+    pub fn start(Job { opened, model, folder, saved, damage, begins_anew }: &Job, voice: &Voice) -> Self {
+        if *begins_anew {
+            voice.say(&format!("{}: no checkpoint yet, the run begins anew", folder.path.display()));
+        }
         let saved = saved.as_ref().filter(|_| opened.resumes());
         if let Some(damage) = damage {
             voice.warn(&format!("{damage}; the previous checkpoint is used"));
@@ -96,15 +102,21 @@ impl Messages {
     }
 
     /// After the last increment.
-    pub fn end(&self, Outcome { summary, supplied, .. }: &Outcome, job: &Job) {
-        if !matches!(self.0, Voice::Silent) {
-            conclude(summary, &job.model, &job.folder.path, *supplied);
+    pub fn end(&self, Outcome { summary, supplied, ended, .. }: &Outcome, job: &Job) {
+        match (&self.0, ended) {
+            (Voice::Quiet, Ok(())) => conclude(summary, &job.model, &job.folder.path),
+            // The reason why it stopped is the last line.
+            (Voice::Quiet, Err(_)) => {}
+            _ => {
+                conclude(summary, &job.model, &job.folder.path);
+                account(summary, &job.model, *supplied);
+            }
         }
     }
 }
 
-/// The last lines of a run on stderr.
-fn conclude(summary: &Summary, model: &Model, folder: &Path, supplied: f64) {
+/// What a run took, and where its results are, in one line on stderr.
+fn conclude(summary: &Summary, model: &Model, folder: &Path) {
     let report = &summary.report;
     say!(
         "{} increments, {} cut-backs, {} rejected, {} linear solves of {} dofs in {:.2} s; results in {}",
@@ -116,6 +128,11 @@ fn conclude(summary: &Summary, model: &Model, folder: &Path, supplied: f64) {
         report.wall_s.total,
         folder.display()
     );
+}
+
+/// The lines after it: friction, rejected attempts, energies.
+fn account(summary: &Summary, model: &Model, supplied: f64) {
+    let report = &summary.report;
     summary.friction_course.iter().for_each(|(name, course)| say!("contact `{name}`: {course}"));
     if let Some(share) = summary.energy_in_penalties {
         say!("contact penalties: {:.2} % of the elastic energy when that was largest", 100.0 * share);

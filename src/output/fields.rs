@@ -15,6 +15,7 @@ use super::vtu::Grid;
 use super::{csv, files};
 use crate::linear::memory::room_for;
 use crate::model::Model;
+use crate::model::boundary::Span;
 use crate::model::state::State;
 use crate::run::error::Error;
 use crate::run::observer::{Attempt, Observer, Row};
@@ -37,13 +38,26 @@ pub struct Fields {
     writer: Option<JoinHandle<Result<(), Error>>>,
 }
 
-/// Selection of the frames to write.
+/// The frames to write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frames {
-    /// Frames with every n-th row of the history; `None` for those at times that the model names alone
-    pub every: Option<usize>,
+    /// The states that have frames
+    pub of: Selection,
     /// Whether the integration points have frames
     pub points: bool,
+    /// Whether values are written in double precision
+    pub exact: bool,
+}
+
+/// The states that have frames, besides the first, those at times that the model names, and the last of each step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Selection {
+    /// Every n-th row of the history
+    Rows(usize),
+    /// Of each step so many: the first row of the history at or after the end of each part of its duration
+    Parts(usize),
+    /// No others
+    Named,
 }
 
 /// Task for the thread that writes frames.
@@ -55,6 +69,9 @@ enum Task {
     /// Reply when everything is written
     Tell(SyncSender<()>),
 }
+
+/// Part of a time that may be lost to round-off.
+const ROUND_OFF: f64 = 1e-9;
 
 /// Frames that may wait for the writer; a run that is faster waits, so that memory stays bounded.
 const WAITING: usize = 1;
@@ -74,8 +91,7 @@ struct Collection {
 }
 
 impl Fields {
-    /// Start the series in `folder`, with the state at rest as the first frame; then that of every n-th row of
-    /// the history, those at the times that the model names, and the last of each step are written.
+    /// Start the series in `folder`, with the state at rest as the first frame.
     ///
     /// # Errors
     /// [`Error::Output`] when a file cannot be written.
@@ -93,7 +109,8 @@ impl Fields {
         let (frames_of, rows) = (frames, 0);
         let names = [("solid", true), ("contact", !model.contacts.is_empty()), ("points", frames_of.points)];
         let names: Vec<&str> = names.into_iter().filter(|(_, asked)| *asked).map(|(name, _)| name).collect();
-        let collections = names.iter().map(|name| Collection::create(folder, name)).collect::<Result<_, _>>()?;
+        let collection = |name: &&'static str| Collection::create(folder, name, frames_of.exact);
+        let collections = names.iter().map(collection).collect::<Result<_, _>>()?;
         let (frames, arriving): (_, Receiver<Task>) = sync_channel(WAITING);
         let (room, writer) = (Room::of(folder, &model), std::thread::Builder::new().name("frames".into()));
         let writer = writer.spawn(move || {
@@ -113,6 +130,14 @@ impl Fields {
         self.room.check()?;
         self.times.push(state.time);
         self.ask(Task::Show(Box::new(Shown::new(model, state))))
+    }
+
+    /// Whether no frame has come yet since the last of the equal parts of a step that have ended.
+    fn is_in_a_new_part(&self, span: Span, parts: usize, time: f64) -> bool {
+        let ended =
+            |time: f64| (parts as f64 * (time - span.start) / (span.end - span.start) * (1.0 + ROUND_OFF)).floor();
+        let last = self.times.last().copied().unwrap_or(span.start);
+        ended(time) > ended(last.max(span.start))
     }
 
     fn ask(&mut self, task: Task) -> Result<(), Error> {
@@ -163,8 +188,12 @@ impl Observer for Fields {
         let Some(state) = attempt.accepted else { return Ok(()) };
         let is_row = attempt.row != Row::Held;
         self.rows += usize::from(is_row);
-        let is_due = self.frames_of.every.is_some_and(|every| is_row && self.rows.is_multiple_of(every));
-        match is_due || attempt.ends_step(state) || model.is_output_time(state.time) {
+        let is_due = match self.frames_of.of {
+            Selection::Rows(every) => self.rows.is_multiple_of(every),
+            Selection::Parts(parts) => self.is_in_a_new_part(attempt.step.span, parts, state.time),
+            Selection::Named => false,
+        };
+        match is_due && is_row || attempt.ends_step(state) || model.is_output_time(state.time) {
             true => self.write(model, state),
             false => Ok(()),
         }
@@ -211,10 +240,10 @@ fn file(series: &str, number: usize) -> String {
 }
 
 impl Collection {
-    fn create(folder: &Path, name: &'static str) -> Result<Self, Error> {
+    fn create(folder: &Path, name: &'static str, exact: bool) -> Result<Self, Error> {
         let frames = folder.join(name);
         files::folder(&frames).map_err(|cause| failed(&frames, &cause))?;
-        Ok(Self { folder: folder.to_owned(), name, times: Vec::new(), listed: (0, None), grid: Grid::default() })
+        Ok(Self { folder: folder.to_owned(), name, times: Vec::new(), listed: (0, None), grid: Grid::new(exact) })
     }
 
     fn file(&self, number: usize) -> String {

@@ -6,12 +6,16 @@
 //! One process at a time writes into a folder. A lock names it: its number, the computer it runs on, and since when.
 //!
 //! The system holds the lock as long as the process lives, whatever ends it, so that what a killed one leaves is no lock any
-//! more. Where the system has no locks, or another computer wrote the file, what stands in it decides.
+//! more. Where the system has no locks, what stands in it decides. Locks of a network file system are not always seen from
+//! another computer: one that another computer wrote counts as left behind once the system's lock is free and its heartbeat,
+//! the time of the file, is over ten minutes old.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::thread::JoinHandle;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use serde::{Deserialize, Serialize};
 
@@ -151,11 +155,26 @@ pub const LOCK: &str = "fecontact.lock";
 /// Room that the lock keeps: given back when a disk is full, so that the end of a run can still be recorded [bytes].
 const RESERVE: usize = 64 << 10;
 
+/// Between two beats of a lock.
+const BEAT: Duration = Duration::from_secs(30);
+
+/// A lock of another computer without a beat for so long was left behind.
+const LEFT_BEHIND: Duration = Duration::from_secs(600);
+
 /// A folder is locked by this process until it is dropped.
 #[derive(Debug)]
 pub struct Lock {
     path: PathBuf,
     file: File,
+    _heart: Heart,
+}
+
+/// A thread that sets the time of a lock as long as the lock is held.
+#[derive(Debug)]
+struct Heart {
+    /// `None` once it is to stop
+    beating: Option<Sender<()>>,
+    thread: Option<JoinHandle<()>>,
 }
 
 /// Process that holds a lock.
@@ -173,6 +192,14 @@ impl Lock {
     /// # Errors
     /// Who is at work in it, or why the lock cannot be written.
     pub fn take(folder: &Path) -> Result<Self, String> {
+        Self::beating(folder, BEAT)
+    }
+
+    /// As [`take`](Self::take), with so long between two beats.
+    ///
+    /// # Errors
+    /// As [`take`](Self::take).
+    pub fn beating(folder: &Path, beat: Duration) -> Result<Self, String> {
         let path = folder.join(LOCK);
         let told = |cause: io::Error| format!("results cannot be written here: {LOCK}: {cause}");
         let mut file = open_lock(&path).map_err(told)?;
@@ -181,7 +208,20 @@ impl Lock {
         match (file.try_lock(), &holder) {
             (Err(TryLockError::WouldBlock), holder) => return Err(busy(holder.as_ref())),
             (Err(TryLockError::Error(_)), Some(holder)) if holder.lives(&me) => return Err(busy(Some(holder))),
-            (_, Some(holder)) if holder.computer != me.computer => return Err(elsewhere(holder)),
+            (_, Some(holder)) if holder.computer != me.computer => {
+                let silent = silent_for(&file);
+                if silent <= LEFT_BEHIND {
+                    return Err(elsewhere(holder, silent));
+                }
+                // Its holder, if it is at work after all, notices that another file stands in its place, and ends.
+                if same(&path, &file) {
+                    fs::remove_file(&path).map_err(told)?;
+                }
+                file = open_lock(&path).map_err(told)?;
+                if let Err(TryLockError::WouldBlock) = file.try_lock() {
+                    return Err(busy(Holder::read(&mut file).as_ref()));
+                }
+            }
             _ => {}
         }
         let mut text = serde_json::to_string(&me).unwrap_or_default();
@@ -193,7 +233,8 @@ impl Lock {
             file.write_all(text.as_bytes())
         };
         let written = write(&mut file);
-        let lock = Self { path, file };
+        let heart = Heart::of(&file, beat);
+        let lock = Self { path, file, _heart: heart };
         written.map_err(told)?;
         match lock.is_there() {
             true => Ok(lock),
@@ -212,6 +253,38 @@ impl Lock {
         // Without it there is just less room.
         let _ = self.file.set_len(512);
     }
+}
+
+impl Heart {
+    fn of(lock: &File, beat: Duration) -> Self {
+        let (beating, ends) = channel::<()>();
+        // Without it, the lock would only count as left behind too early, and only on another computer.
+        let beats = |lock: File| {
+            std::thread::Builder::new().name("lock".into()).spawn(move || {
+                while ends.recv_timeout(beat) == Err(RecvTimeoutError::Timeout) {
+                    let _ = lock.set_modified(SystemTime::now());
+                }
+            })
+        };
+        let thread = lock.try_clone().and_then(beats).ok();
+        Self { beating: Some(beating), thread }
+    }
+}
+
+impl Drop for Heart {
+    fn drop(&mut self) {
+        self.beating = None;
+        if let Some(thread) = self.thread.take() {
+            // It only sets times, and nobody needs what it returns.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Time since the last beat of a lock; none for one from a clock that is ahead, or without a time.
+fn silent_for(lock: &File) -> Duration {
+    let beat = lock.metadata().and_then(|known| known.modified());
+    beat.ok().and_then(|beat| SystemTime::now().duration_since(beat).ok()).unwrap_or_default()
 }
 
 /// Whether a process of this computer writes into a folder, as far as can be seen without disturbing it.
@@ -286,10 +359,12 @@ fn busy(holder: Option<&Holder>) -> String {
     format!("{who}: wait for its end, or choose another --out")
 }
 
-fn elsewhere(Holder { process, computer, .. }: &Holder) -> String {
+fn elsewhere(Holder { process, computer, .. }: &Holder, silent: Duration) -> String {
     format!(
-        "process {process} on {computer}, another computer, wrote into this folder and has not ended, or was killed: if it is \
-         gone, remove {LOCK}"
+        "process {process} on {computer}, another computer, was at work in this folder {} s ago: wait for its end, or choose \
+         another --out; if it was killed, remove {LOCK}, which counts as left behind {} min after its last sign of life",
+        silent.as_secs(),
+        LEFT_BEHIND.as_secs() / 60
     )
 }
 

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::files::Lock;
+use super::summary::SUMMARY;
 use super::{checkpoint, files, report, store};
 use crate::run::error::Error;
 
@@ -51,9 +52,6 @@ const OUR_FIGURE: &str = "data-drawn-by=\"fecontact\"";
 
 /// The store of the interfaces, a folder of its own kind.
 pub const INTERFACE: &str = "interface.zarr/";
-
-/// File that every folder of results has.
-pub const SUMMARY: &str = "summary.json";
 
 /// A folder that this process alone writes into.
 #[derive(Debug)]

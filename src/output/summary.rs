@@ -1,9 +1,11 @@
 //! `summary.json`: how a run or test ended, and what it took.
 
 use std::collections::BTreeMap;
+use std::io::ErrorKind;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use super::csv::failed;
 use super::files;
@@ -13,6 +15,9 @@ use crate::model::Model;
 use crate::run::control::RunReport;
 use crate::run::error::Error;
 use crate::run::law::LawReport;
+
+/// File that every folder of results has.
+pub const SUMMARY: &str = "summary.json";
 
 /// Origin of the results, and what their readers need to know of it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -35,6 +40,9 @@ pub struct About {
     pub front_slip_rate: Option<f64>,
     /// the case as `check` prints it: headings with their lines
     pub understood: Vec<(String, Vec<String>)>,
+    /// the case as it is written, but for a mesh given node by node; nothing for a law alone
+    #[serde(skip_serializing_if = "Value::is_null")]
+    pub given: Value,
 }
 
 /// Status of the run: the first lines of every `summary.json`.
@@ -150,9 +158,38 @@ impl Summary {
 /// # Errors
 /// [`Error::Output`] when it cannot be written.
 pub fn write(summary: &impl Serialize, folder: &Path) -> Result<(), Error> {
-    let path = folder.join("summary.json");
+    let path = folder.join(SUMMARY);
     let text = serde_json::to_string_pretty(summary).map_err(|cause| failed(&path, &cause))?;
     files::replace_for_good(&path, (text + "\n").as_bytes()).map_err(|cause| failed(&path, &cause))
+}
+
+/// The unfinished run that a folder holds; `None` where nothing is there.
+///
+/// # Errors
+/// What is there instead.
+pub fn unfinished(folder: &Path) -> Result<Option<About>, String> {
+    #[derive(Deserialize)]
+    struct Begun {
+        status: String,
+        #[serde(flatten)]
+        about: About,
+    }
+    // A run that was killed when it had just begun leaves its lock, and half a summary.
+    let passing = [files::LOCK.into(), files::aside(Path::new(SUMMARY)).into_os_string()];
+    let is_empty = match folder.read_dir() {
+        Ok(mut entries) => entries.all(|entry| entry.is_ok_and(|entry| passing.contains(&entry.file_name()))),
+        Err(cause) if cause.kind() == ErrorKind::NotFound => true,
+        Err(cause) => return Err(format!("the folder cannot be read ({cause})")),
+    };
+    if is_empty {
+        return Ok(None);
+    }
+    let text = std::fs::read_to_string(folder.join(SUMMARY)).unwrap_or_default();
+    match serde_json::from_str::<Begun>(&text) {
+        Err(_) => Err(format!("the folder holds files, but no readable {SUMMARY} of a run")),
+        Ok(Begun { status, .. }) if status == "completed" => Err("the run in the folder has completed".into()),
+        Ok(Begun { about, .. }) => Ok(Some(about)),
+    }
 }
 
 /// Largest resident set so far, from the Linux process status.

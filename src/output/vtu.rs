@@ -4,11 +4,9 @@
 //! base64(number of blocks, bytes of a block, bytes of the last one if it is shorter, compressed bytes of each)  base64(blocks)
 //! ```
 //!
-//! A frame is a grid that hardly ever changes, and values that do: the text of the grid is made once and kept, and values without
-//! a pattern, which compression would not make smaller, are only wrapped. That is why frames are written here and not by
-//! [`vtkio`], which reads them back. Of bodies with 90 601 nodes a frame takes 57 ms, 13 MB and 53 MiB of memory here; it would take
-//! 1240 ms, 13 MB and 105 MiB if vtkio compressed it, 200 ms, 29 MB and 171 MiB if vtkio left it as it is (20 frames one after the
-//! other, one thread, November 2026).
+//! A frame is a grid that hardly ever changes, and values that do: the text of the grid is made once and kept. That is why frames
+//! are written here and not by [`vtkio`], which reads them back. Places have 64 bits; values at points have 32, unless they are
+//! asked for as they are.
 //!
 //! Source: VTK file formats, "XML file formats", inline binary data,
 //! <https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html>.
@@ -19,7 +17,6 @@ use std::path::Path;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use miniz_oxide::deflate::compress_to_vec_zlib;
-use miniz_oxide::{MZ_ADLER32_INIT, mz_adler32_oxide};
 use nalgebra::Vector2;
 pub use vtkio::model::CellType;
 
@@ -31,9 +28,6 @@ const BLOCK: usize = 1 << 18;
 
 /// Level of zlib: the quickest, since frames are written while the run continues.
 const LEVEL: u8 = 1;
-
-/// Share of the words of a block that must say nothing new for its compression to be worth the time.
-const WORTHWHILE: f64 = 0.1;
 
 /// VTK's name of an element.
 pub fn cell_type(kind: ElementKind) -> CellType {
@@ -47,8 +41,10 @@ pub fn cell_type(kind: ElementKind) -> CellType {
 }
 
 /// An unstructured grid, and values at its points and cells.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Grid {
+    /// Whether values at points are written in double precision
+    exact: bool,
     mesh: Option<Mesh>,
     /// Arrays of values at points and cells
     values: [String; 2],
@@ -66,6 +62,11 @@ struct Mesh {
 const SECTIONS: [&str; 2] = ["PointData", "CellData"];
 
 impl Grid {
+    /// A grid, not filled yet; `exact`: whether values at points are written in double precision, and not in single.
+    pub fn new(exact: bool) -> Self {
+        Self { exact, mesh: None, values: Default::default() }
+    }
+
     /// Begin a frame; the grid is asked for once.
     pub fn begin(&mut self, grid: impl FnOnce() -> (Vec<Vector2<f64>>, Vec<(CellType, Vec<usize>)>)) {
         self.values.iter_mut().for_each(String::clear);
@@ -77,11 +78,14 @@ impl Grid {
 
     /// Values at the points, of some components each.
     pub fn at_points(&mut self, name: &str, components: usize, values: impl Iterator<Item = f64>) {
-        array(
-            &mut self.values[0],
-            Array { kind: "Float64", name, components, packed: quickly },
-            values.map(f64::to_le_bytes),
-        );
+        let text = &mut self.values[0];
+        match self.exact {
+            true => array(text, Array { kind: "Float64", name, components }, values.map(f64::to_le_bytes)),
+            false => {
+                let singles = values.map(|value| (value as f32).to_le_bytes());
+                array(text, Array { kind: "Float32", name, components }, singles);
+            }
+        }
     }
 
     /// Vectors at the points; VTK wants the third component, too.
@@ -91,11 +95,7 @@ impl Grid {
 
     /// Numbers of the cells.
     pub fn at_cells(&mut self, name: &str, values: impl Iterator<Item = i32>) {
-        array(
-            &mut self.values[1],
-            Array { kind: "Int32", name, components: 1, packed: quickly },
-            values.map(i32::to_le_bytes),
-        );
+        array(&mut self.values[1], Array { kind: "Int32", name, components: 1 }, values.map(i32::to_le_bytes));
     }
 
     /// Write the file.
@@ -129,9 +129,9 @@ impl Mesh {
             Some(*end)
         });
         let kinds = cells.iter().map(|(kind, _)| [*kind as u8]);
-        let of_one = |kind, name| Array { kind, name, components: 1, packed: compressed };
+        let of_one = |kind, name| Array { kind, name, components: 1 };
         let mut text = String::from("<Points>\n");
-        array(&mut text, Array { kind: "Float64", name: "Points", components: 3, packed: compressed }, places);
+        array(&mut text, Array { kind: "Float64", name: "Points", components: 3 }, places);
         text += "</Points>\n<Cells>\n";
         array(&mut text, of_one("UInt64", "connectivity"), connectivity);
         array(&mut text, of_one("UInt64", "offsets"), ends.map(number));
@@ -146,56 +146,24 @@ struct Array<'a> {
     kind: &'a str,
     name: &'a str,
     components: usize,
-    /// Packing of its blocks
-    packed: fn(&[u8]) -> Vec<u8>,
 }
 
 /// Append an array.
 fn array<const N: usize>(text: &mut String, is: Array, values: impl Iterator<Item = [u8; N]>) {
-    let Array { kind, name, components, packed } = is;
+    let Array { kind, name, components } = is;
     let bytes: Vec<u8> = values.flatten().collect();
     *text +=
         &format!("<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"binary\">");
-    encode(&bytes, packed, text);
+    encode(&bytes, text);
     *text += "</DataArray>\n";
 }
 
 /// Append packed bytes in base64.
-fn encode(bytes: &[u8], packed: fn(&[u8]) -> Vec<u8>, text: &mut String) {
-    let blocks: Vec<Vec<u8>> = bytes.chunks(BLOCK).map(packed).collect();
+fn encode(bytes: &[u8], text: &mut String) {
+    let blocks: Vec<Vec<u8>> = bytes.chunks(BLOCK).map(|block| compress_to_vec_zlib(block, LEVEL)).collect();
     let sizes = blocks.iter().map(Vec::len);
     let head = [blocks.len(), BLOCK, bytes.len() % BLOCK].into_iter().chain(sizes);
     let head: Vec<u8> = head.flat_map(|size| (size as u64).to_le_bytes()).collect();
     STANDARD.encode_string(head, text);
     STANDARD.encode_string(blocks.concat(), text);
-}
-
-/// A compressed block.
-fn compressed(block: &[u8]) -> Vec<u8> {
-    compress_to_vec_zlib(block, LEVEL)
-}
-
-/// A block of values; one of digits without a pattern is only wrapped.
-fn quickly(block: &[u8]) -> Vec<u8> {
-    let words = block.as_chunks::<8>().0;
-    // Zeros, such as the third component of vectors, and equal neighbours.
-    let known = words.iter().zip(&words[1.min(words.len())..]).filter(|(a, b)| **b == [0; 8] || a == b).count();
-    if (known as f64) < WORTHWHILE * words.len() as f64 { wrapped(block) } else { compressed(block) }
-}
-
-/// Bytes as zlib takes them uncompressed. Source: RFC 1950, and RFC 1951 section 3.2.4.
-fn wrapped(bytes: &[u8]) -> Vec<u8> {
-    let mut stream = Vec::with_capacity(bytes.len() + bytes.len() / 1000 + 16);
-    stream.extend([0x78, 0x01]);
-    let parts = bytes.chunks(u16::MAX.into());
-    let left = (0..parts.len()).rev();
-    for (part, left) in parts.zip(left) {
-        let length = part.len() as u16;
-        stream.push(u8::from(left == 0));
-        stream.extend(length.to_le_bytes());
-        stream.extend((!length).to_le_bytes());
-        stream.extend_from_slice(part);
-    }
-    stream.extend(mz_adler32_oxide(MZ_ADLER32_INIT, bytes).to_be_bytes());
-    stream
 }

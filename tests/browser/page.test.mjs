@@ -2,7 +2,7 @@
 import { after, before, test } from "node:test";
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { readFileSync, statSync } from "node:fs";
+import { readFileSync, readdirSync, statSync } from "node:fs";
 import { join } from "node:path";
 import { chromium } from "playwright-core";
 
@@ -35,7 +35,6 @@ const made = (name) => join(PAGES, `${name}.html`);
 
 async function close(page, picture) {
   if (PICTURES && picture) {
-    await page.evaluate(() => charts.forEach((chart) => chart.draw()));
     await page.waitForTimeout(400);
     await page.screenshot({ path: join(PICTURES, `${picture}.png`), fullPage: true });
   }
@@ -61,6 +60,78 @@ for (const name of ["block_on_ground", "tube", "slip_front", "spring_mass_3", "s
     await close(page, name);
   });
 }
+
+test("the first case has a page of at most 4 MB in a folder of at most 20 MB, and the page says what it leaves out", async () => {
+  const size = (folder) => readdirSync(folder, { withFileTypes: true }).reduce((sum, entry) => {
+    const path = join(folder, entry.name);
+    return sum + (entry.isDirectory() ? size(path) : statSync(path).size);
+  }, 0);
+  const [page_size, all] = [statSync(of("block_on_ground")).size, size(join(PAGES, "block_on_ground"))];
+  console.log(`block_on_ground: page ${(page_size / 1e6).toFixed(1)} MB, folder ${(all / 1e6).toFixed(1)} MB`);
+  assert.ok(page_size <= 4e6 && all <= 20e6);
+  const page = await open(of("block_on_ground"));
+  // Half a step of 2^-13, as a percentage.
+  assert.match(await text(page, "#bodies"), /Values are shown to 0\.006 % of the largest in each frame/);
+  // What is shown is what the file holds, to the error that is told.
+  const [range, shown] = await page.evaluate(() => {
+    const { range } = bodiesView.solid.frames.at(-1).fields.von_mises.components[0];
+    return [range, bounds(bodiesView.values)];
+  });
+  range.forEach((value, k) => assert.ok(Math.abs(value - shown[k]) <= range[1] / 16000, `${shown} of ${range}`));
+  await close(page);
+});
+
+test("all charts are there when the page is ready, whoever looks, and on paper", async () => {
+  for (const name of ["slip_front", "block_on_ground"]) {
+    const page = await open(of(name));
+    const [all, blank] = await page.evaluate(() => {
+      const seen = charts.filter((chart) => chart.series.length && chart.host.clientWidth);
+      const inked = ({ plot }) => {
+        const { canvas } = plot.ctx;
+        return new Set(new Uint32Array(plot.ctx.getImageData(0, 0, canvas.width, canvas.height).data.buffer)).size > 10;
+      };
+      return [seen.length, seen.filter((chart) => !chart.plot || !inked(chart)).map((chart) => chart.title)];
+    });
+    assert.ok(all > 10, `${all} charts`);
+    assert.deepEqual(blank, []);
+    await page.evaluate(() => addEventListener("beforeprint", () => (document.body.dataset.widths = charts.filter((one) => one.plot).map((one) => one.plot.width))));
+    await page.pdf({ format: "A4" });
+    const widths = (await page.evaluate(() => document.body.dataset.widths)).split(",");
+    // Two beside each other on 210 mm, at 96 pixels an inch, but for its margins.
+    assert.ok(widths.length === all && widths.every((width) => 2 * width < (210 / 25.4) * 96 - 76), widths.join());
+    assert.ok(await page.evaluate(() => charts.every((one) => !one.plot || one.plot.width === one.width())), "they are as before");
+    await close(page);
+  }
+});
+
+test("no title and no label is clipped, on the page and in a picture that is saved", async () => {
+  for (const [name, width] of [["slip_front", 1280], ["block_on_ground", 400]]) {
+    const page = await open(of(name), { viewport: { width, height: 900 } });
+    const clipped = await page.evaluate(async () => {
+      const found = [];
+      const [first] = charts;
+      first.set(first.series, "a long title ".repeat(12).trim(), { ...first.y, label: "a label that is longer than its axis is high [mm]" });
+      await new Promise((done) => setTimeout(done));
+      for (const chart of charts.filter((one) => one.plot)) {
+        const caption = chart.element.querySelector("figcaption");
+        if (caption.scrollWidth > caption.clientWidth + 1) found.push(`caption ${chart.title}`);
+        const host = el("div", { style: "position: absolute; left: 0; top: 0" });
+        host.innerHTML = svg(chart);
+        document.body.append(host);
+        const frame = host.firstChild.getBoundingClientRect();
+        for (const text of host.querySelectorAll("text")) {
+          const box = text.getBoundingClientRect();
+          const out = box.left < frame.left - 1 || box.right > frame.right + 1 || box.top < frame.top - 1 || box.bottom > frame.bottom + 1;
+          if (out) found.push(`${chart.title}: ${text.textContent}`);
+        }
+        host.remove();
+      }
+      return found;
+    });
+    assert.deepEqual(clipped, []);
+    await close(page);
+  }
+});
 
 test("the slider moves the mesh, and play goes on", async () => {
   const page = await open(of("tube"));
@@ -182,6 +253,36 @@ test("an event of the table is shown close up, with its fronts, at its time", as
   const [window, onset, time] = await page.evaluate(() => [interfaceView.window.t, +interfaceView.times[interfaceView.chosen.row], now.time]);
   const fronts = readFileSync(join(PAGES, "slip_front", "fronts.csv"), "utf8").trimEnd().split("\n").slice(1).map((line) => line.split(","));
   const first = Math.min(...fronts.filter((row) => row[11] === "1").map((row) => +row[6]));
+  // The table has the numbers of the file, and their units.
+  const [head, ...events] = readFileSync(join(PAGES, "slip_front", "events.csv"), "utf8").trimEnd().split("\n").map((line) => line.split(","));
+  const headings = await page.locator("#events thead th").allInnerTexts();
+  assert.equal(headings.length, head.length);
+  for (const [name, heading] of [["onset", /\[s\]$/], ["peak_slip_rate", /\[mm\/s\]$/], ["stress_drop", /\[N\/mm²\]$/], ["length", /\[mm\]$/]]) {
+    assert.match(headings[head.indexOf(name)], heading);
+  }
+  const cells = await page.locator("#events tbody tr").first().locator("td").allInnerTexts();
+  const number = (text) => +text.replace("−", "-").replace("−", "-");
+  for (const name of ["onset", "length", "stress_drop"]) {
+    const [shown, known] = [number(cells[head.indexOf(name)]), +events[0][head.indexOf(name)]];
+    assert.ok(Math.abs(shown - known) <= 1e-5 * Math.abs(known), `${name}: ${shown} of ${known}`);
+  }
+  // Fronts are drawn where they passed: without them it is another picture.
+  const drawn = await page.evaluate(() => {
+    const { canvas, settings } = interfaceView;
+    const white = () => {
+      const colours = new Uint32Array(canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data.buffer);
+      return colours.reduce((count, colour) => count + (colour === 0xffffffff ? 1 : 0), 0);
+    };
+    const counts = [true, false].map((fronts) => {
+      settings.fronts = fronts;
+      interfaceView.draw();
+      return white();
+    });
+    settings.fronts = true;
+    interfaceView.draw();
+    return counts;
+  });
+  assert.ok(drawn[0] > drawn[1] + 100, `${drawn} white pixels with and without fronts`);
   assert.ok(window[0] < first && first < window[1] && window[1] - window[0] < 0.01, `${window} about ${first}`);
   assert.ok(Math.abs(time - first) < 1e-9 && Math.abs(onset - first) < 1e-4);
   await close(page, "slip_front_event");
@@ -209,7 +310,7 @@ test("snapshots are rows of the interface at times of the picture, and follow it
   const drawn = () => page.evaluate(() => {
     const { snapshots, values, places, times } = interfaceView;
     return snapshots.series.filter((one) => !one.unlisted).map((one) => {
-      const row = times.findIndex((time) => one.name === `t = ${told(time, 7)}`);
+      const row = times.findIndex((time) => one.name === `t = ${told(time, 7)} s`);
       return { row, same: Array.from(one.y).every((value, k) => value === values[row * places.length + k]) };
     });
   });
@@ -217,7 +318,7 @@ test("snapshots are rows of the interface at times of the picture, and follow it
   assert.ok(before.length === 6 && before.every(({ same }) => same), JSON.stringify(before));
   assert.deepEqual([before[0].row, before[5].row], [0, await page.evaluate(() => interfaceView.times.length - 1)]);
   await page.getByRole("button", { name: "Zoom in at the chosen time and place" }).click();
-  await page.waitForFunction((row) => !interfaceView.snapshots.series[0].name.endsWith(`= ${told(interfaceView.times[row], 7)}`), before[0].row);
+  await page.waitForFunction((row) => !interfaceView.snapshots.series[0].name.endsWith(`= ${told(interfaceView.times[row], 7)} s`), before[0].row);
   assert.ok((await drawn()).every(({ same }) => same));
   await close(page);
 });
@@ -305,7 +406,7 @@ test("a law driven alone is shown", async () => {
   await close(page, "hold_slide_hold");
   const both = await open(made("two_laws"));
   const names = await both.evaluate(() => charts.find((one) => one.title === "Traction over slip").series.map((one) => one.name));
-  assert.deepEqual(names, ["hold_slide_hold", "pressure_steps"]);
+  assert.deepEqual(names.map((name) => name.split(":")[0]), ["hold_slide_hold", "pressure_steps"]);
   assert.ok(await both.getByText("Traction over pressure").count());
   await close(both, "two_laws");
   const mixed = await open(made("run_and_law"));
@@ -316,9 +417,20 @@ test("a law driven alone is shown", async () => {
 test("two runs are overlaid, and told apart", async () => {
   const page = await open(made("two"));
   assert.equal(await page.locator(".badge").count(), 2);
-  const series = await page.evaluate(() => charts.find((one) => one.title.startsWith("Normal force")).series.map((one) => [one.name, one.colour]));
-  assert.deepEqual(series.map(([name]) => name), ["tube", "tube_soft"]);
-  assert.notEqual(series[0][1], series[1][1]);
+  // By colour and dashes, as the legend shows them, and by what their cases differ in.
+  const chart = page.locator("figure.chart").filter({ hasText: "Normal force in bar" });
+  const rows = await chart.locator(".u-legend .u-series").evaluateAll((rows) => rows.slice(1).map((row) => {
+    const line = row.querySelector(".sample line");
+    return [row.querySelector(".u-label").innerText, line.getAttribute("stroke"), line.getAttribute("stroke-dasharray")];
+  }));
+  const series = await page.evaluate(() => charts.find((one) => one.title.startsWith("Normal force in bar")).series.map((one) => [one.colour, one.dash.join(" ")]));
+  assert.deepEqual(rows.map(([, ...look]) => look), series);
+  assert.ok(rows[0][1] !== rows[1][1] && rows[0][2] !== rows[1][2], JSON.stringify(rows));
+  for (const [k, name, parts] of [[0, "tube: ", ["tube.material.E = 4", "plate.material.E = 4000"]], [1, "tube_soft: ", ["tube.material.E = 3.6", "plate.material.E = 3600"]]]) {
+    assert.ok(rows[k][0].startsWith(name) && parts.every((part) => rows[k][0].includes(part)), rows[k][0]);
+  }
+  const told = await page.locator("table.differences tbody tr").allInnerTexts();
+  assert.deepEqual(told.sort(), ["bodies.plate.material.E\t4000\t3600", "bodies.tube.material.E\t4\t3.6"]);
   await page.locator("#bodies select").first().selectOption("1");
   await page.waitForFunction(() => bodiesView.run.name === "tube_soft" && bodiesView.frame != null);
   await close(page, "two");

@@ -960,7 +960,7 @@ fn results_are_overwritten_and_paths_may_hold_spaces() {
     for out in ["../my results", absolute.to_str().unwrap()] {
         let output = fecontact(&inside, &["run", "a case.json", "--quiet", "--out", out]);
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-        assert_eq!(stderr(&output), "");
+        assert!(stderr(&output).lines().count() == 1 && stderr(&output).contains("results in "), "{}", stderr(&output));
         assert_eq!(history_rows(&absolute), 2);
         assert!(absolute.join("solid/00002.vtu").exists() && absolute.join("solid.pvd").exists());
     }

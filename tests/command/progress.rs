@@ -62,14 +62,14 @@ fn a_terminal_shows_one_line_that_is_kept_up_to_date() {
 fn a_dumb_terminal_shows_lines() {
     let (folder, _) = soft(20);
     let text = on_terminal(folder.path(), "dumb", "run case.json --threads 1 --out out");
-    for line in ["press  t 0.25  dt 2.500e-1  ", "% of the slave's edge", "drag  t 5  "] {
+    for line in [" 20 %  press  t 1  dt 2.500e-1  ", "% of the slave's edge", "100 %  drag  t 5  "] {
         assert_eq!(text.matches(line).count(), 1, "{text}");
     }
 }
 
-/// Without a terminal there are lines; with `--quiet` there is nothing, and the warnings are in the summary all the same.
+/// Without a terminal there is a line every tenth of the run; with `--quiet` there are the warnings, and the line of the end.
 #[test]
-fn lines_elsewhere_and_nothing_where_nothing_is_wanted() {
+fn a_line_every_tenth_elsewhere_and_only_warnings_where_it_is_quiet() {
     let (folder, _) = soft(20);
     let run = |more: &[&str]| {
         let output = Command::new(PROGRAM).args(["run", "case.json"]).args(more).current_dir(folder.path()).output();
@@ -78,11 +78,17 @@ fn lines_elsewhere_and_nothing_where_nothing_is_wanted() {
         String::from_utf8(output.stderr).expect("text")
     };
     let told = run(&["--out", "out"]);
-    assert!(told.contains("press  t 0.25  dt 2.500e-1  "), "{told}");
+    // The first increment at or after every half of a unit of time: they are 0.25 up to t = 1, and 0.2 up to t = 5.
+    let shares: Vec<&str> =
+        told.lines().filter_map(|line| line.trim_start().split_once(" %  ")).map(|(n, _)| n).collect();
+    assert_eq!(shares, ["10", "20", "32", "40", "52", "60", "72", "80", "92", "100"], "{told}");
     assert_eq!(told.matches("% of the slave's edge").count(), 1, "{told}");
     let [warned, last] = ["% of the slave's edge", "drag  t 5  "].map(|what| told.find(what).expect(what));
     assert!(warned < last, "{told}");
-    assert_eq!(run(&["--out", "quiet", "--quiet"]), "");
+    let quiet = run(&["--out", "quiet", "--quiet"]);
+    let (warnings, end): (Vec<&str>, Vec<&str>) = quiet.lines().partition(|line| line.starts_with("warning: "));
+    assert_eq!(warnings.iter().filter(|line| line.contains("% of the slave's edge")).count(), 1, "{quiet}");
+    assert!(end.len() == 1 && end[0].ends_with("results in quiet"), "{quiet}");
     let summary = std::fs::read_to_string(folder.path().join("quiet/summary.json")).expect("a summary");
     assert!(summary.contains("% of the slave's edge"), "{summary}");
 }

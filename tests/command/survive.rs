@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 use crate::common::{Blocks, store};
 use fecontact::output::checkpoint;
@@ -314,9 +314,8 @@ fn a_checkpoint_changes_nothing() {
         let [with, without] = ["with", "without"].map(|name| folder.path().join(name));
         assert!(results(&with) == results(&without));
         assert!(with.join("checkpoint_prev.bin").exists() && !without.join("checkpoint.bin").exists());
-        assert!(
-            told(&run(folder.path(), "without", &["--resume"]), 2).contains("checkpoint.bin: --resume: there is none")
-        );
+        let told = told(&run(folder.path(), "without", &["--resume"]), 2);
+        assert!(told.contains("there is no checkpoint, and the run in the folder has completed"), "{told}");
     }
 }
 
@@ -361,7 +360,7 @@ fn signalled(case: &Value, signals: usize, seed: &mut u64) {
                 fs::remove_dir_all(&out).expect("it can go");
             }
             _ => {
-                assert_eq!(told(&output, 1), "stopped: interrupted\n");
+                assert!(told(&output, 1).ends_with("stopped: interrupted\n"), "{output:?}");
                 assert_eq!(summary(&out)["status"], "interrupted");
                 sent += 1;
             }
@@ -395,7 +394,7 @@ fn a_signal_ends_a_run_with_its_results_whole() {
         assert_eq!(summary(&out)["status"], "running");
         signal(&child, name);
         let output = child.wait_with_output().expect("it ends");
-        assert_eq!(told(&output, 1), "stopped: interrupted\n");
+        assert!(told(&output, 1).ends_with("stopped: interrupted\n"), "{output:?}");
         let summary = summary(&out);
         assert_eq!((&summary["status"], &summary["reason"]), (&json!("interrupted"), &json!("interrupted")));
         assert_eq!(summary["increments"].as_u64(), Some(rows(&out) as u64 - 1));
@@ -518,9 +517,8 @@ fn a_folder_has_one_run_at_a_time() {
     let lock = Lock::take(&out).expect("it is free");
     let told_of = format!("process {} on ", std::process::id());
     for more in [&[][..], &["--resume"]] {
-        let output = run(folder.path(), "out", more);
-        let told = told(&output, 2);
-        assert!(more == ["--resume"] || told.contains(&told_of) && told.contains("choose another --out"), "{told}");
+        let told = told(&run(folder.path(), "out", more), 2);
+        assert!(told.contains(&told_of) && told.contains("choose another --out"), "{told}");
     }
     assert_eq!(fs::read_dir(&out).expect("a folder").count(), 1, "only the lock is there");
     drop(lock);
@@ -534,6 +532,99 @@ fn a_folder_has_one_run_at_a_time() {
     fs::write(out.join("fecontact.lock"), holder("elsewhere")).expect("a file");
     let told = told(&run(folder.path(), "out", &[]), 2);
     assert!(told.contains("process 1 on elsewhere") && told.contains("remove fecontact.lock"), "{told}");
+    // It counts as left behind ten minutes after its last beat, and not before.
+    let silent = |seconds| {
+        let lock = fs::File::options().write(true).open(out.join("fecontact.lock")).expect("it is there");
+        lock.set_modified(SystemTime::now() - Duration::from_secs(seconds)).expect("a time");
+    };
+    silent(590);
+    self::told(&run(folder.path(), "out", &[]), 2);
+    silent(610);
+    done(&run(folder.path(), "out", &[]));
+}
+
+/// A lock beats as long as it is held. A holder of another computer that was silent for too long and comes back finds another
+/// lock in the place of its own, and takes it for its end.
+#[test]
+fn a_lock_beats_and_is_lost_to_another_when_it_does_not() {
+    let folder = TempDir::new().expect("a folder");
+    let path = folder.path().join("fecontact.lock");
+    let lock = Lock::beating(folder.path(), Duration::from_millis(20)).expect("it is free");
+    let old = SystemTime::now() - Duration::from_secs(3600);
+    fs::File::options().write(true).open(&path).expect("the lock").set_modified(old).expect("a time");
+    let start = Instant::now();
+    while path.metadata().and_then(|known| known.modified()).expect("a time") == old {
+        assert!(start.elapsed() < Duration::from_secs(60), "it does not beat");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    drop(lock);
+    assert!(!path.exists());
+
+    let holder = json!({"process": 1, "computer": "elsewhere", "since": 0}).to_string();
+    fs::write(&path, holder).expect("a file");
+    let held = fs::File::options().write(true).open(&path).expect("as its holder has it");
+    held.set_modified(old).expect("a time");
+    let lock = Lock::take(folder.path()).expect("it was left behind");
+    assert!(lock.is_there());
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        let number = |file: fs::Metadata| file.ino();
+        assert_ne!(number(held.metadata().expect("a file")), number(path.metadata().expect("a file")));
+    }
+}
+
+/// A job that is queued again always says `--resume`: where nothing is to be resumed yet it begins anew, and says so.
+#[test]
+fn a_requeued_job_begins_anew_where_there_is_no_checkpoint_yet() {
+    let folder = TempDir::new().expect("a folder");
+    let mut case = dragged(json!("static"), 40);
+    // No checkpoint comes before the end.
+    case["output"]["checkpoint"] = json!(1000);
+    written(folder.path(), &case);
+    done(&run(folder.path(), "straight", &[]));
+    let [straight, empty, killed] = ["straight", "empty", "killed"].map(|name| folder.path().join(name));
+    let spoken = |out: &str| {
+        let mut command = Command::new(PROGRAM);
+        command.current_dir(folder.path()).args(["run", "case.json", "--threads", "1", "--resume", "--out", out]);
+        told(&command.output().expect("the program runs"), 0)
+    };
+    // The folder is absent, or empty but for what a run leaves that was killed when it had hardly begun.
+    assert!(spoken("absent").starts_with("absent: no checkpoint yet, the run begins anew\n"));
+    fs::create_dir(&empty).expect("a folder");
+    fs::write(empty.join("fecontact.lock"), "").expect("a file");
+    fs::write(empty.join("summary.json.new"), "{").expect("a file");
+    done(&run(folder.path(), "empty", &["--resume"]));
+    // It holds this case's own run, killed before its first checkpoint.
+    let mut child = command(folder.path(), "killed", &[]).spawn().expect("it runs");
+    wait_for_rows(&mut child, &killed, 3);
+    child.kill().expect("it is killed");
+    child.wait().expect("it ends");
+    assert!(!killed.join("checkpoint.bin").exists() && summary(&killed)["status"] == "running");
+    // Another case begins neither in its place nor in that of foreign files.
+    let mut other = case.clone();
+    other["contacts"]["base"]["friction"]["mu_s"] = json!(0.41);
+    written(folder.path(), &other);
+    let before = results(&killed);
+    let told_of = |out: &str| told(&run(folder.path(), out, &["--resume"]), 2);
+    assert!(told_of("killed").contains("the folder holds the run of another case"), "{}", told_of("killed"));
+    assert!(results(&killed) == before);
+    // What is written may change: here, when checkpoints are.
+    case["output"]["checkpoint"] = json!(999);
+    written(folder.path(), &case);
+    assert!(spoken("killed").starts_with("killed: no checkpoint yet, the run begins anew\n"));
+    assert!(results(&straight) == results(&killed));
+    for out in [&folder.path().join("absent"), &empty] {
+        same(&straight, out);
+    }
+    fs::create_dir(folder.path().join("foreign")).expect("a folder");
+    fs::write(folder.path().join("foreign/notes.txt"), "mine").expect("a file");
+    assert!(told_of("foreign").contains("no readable summary.json"), "{}", told_of("foreign"));
+    assert_eq!(fs::read_dir(folder.path().join("foreign")).expect("a folder").count(), 1);
+    // A damaged checkpoint is one.
+    fs::remove_file(empty.join("checkpoint.bin")).expect("it was there");
+    fs::write(empty.join("checkpoint_prev.bin"), "damaged").expect("a file");
+    assert!(told_of("empty").contains("checkpoint.bin: --resume: there is none"), "{}", told_of("empty"));
 }
 
 /// Only what an earlier run wrote is replaced.
@@ -971,7 +1062,7 @@ fn a_refused_command_leaves_no_folder() {
     case["output"]["checkpoint"] = json!(-1);
     written(folder.path(), &case);
     assert!(told(&run(folder.path(), "out", &[]), 2).contains("output.checkpoint: is -1"));
-    assert!(told(&run(folder.path(), "out", &["--resume"]), 2).contains("there is none"));
+    assert!(told(&run(folder.path(), "out", &["--resume"]), 2).contains("output.checkpoint: is -1"));
     assert!(!folder.path().join("out").exists());
 }
 
@@ -986,12 +1077,17 @@ fn a_run_that_stops_keeps_its_last_state() {
     let folder = TempDir::new().expect("a folder");
     written(folder.path(), &case);
     let [straight, out] = ["straight", "out"].map(|name| folder.path().join(name));
-    let why = told(&run(folder.path(), "straight", &[]), 1);
+    // Warnings come before; the last line says why it stopped.
+    let last = |more: &[&str], out: &str| {
+        let told = told(&run(folder.path(), out, more), 1);
+        told.lines().last().unwrap_or_default().to_owned()
+    };
+    let why = last(&[], "straight");
     assert!(why.starts_with("stopped: step `drag` stopped at time "), "{why}");
     assert!(rows(&straight) > 5, "it stops too early to be of use: {why}");
     told(&run(folder.path(), "out", &[]), 1);
     assert!(out.join("checkpoint.bin").exists());
-    assert_eq!(told(&run(folder.path(), "out", &["--resume"]), 1), why);
+    assert_eq!(last(&["--resume"], "out"), why);
     same(&straight, &out);
 }
 
@@ -1027,7 +1123,7 @@ fn explicit_increments_pause_for_a_signal_and_for_a_checkpoint() {
             None => {}
             Some(0) => early = false,
             Some(_) => {
-                assert_eq!(told(&output, 1), "stopped: interrupted\n");
+                assert!(told(&output, 1).ends_with("stopped: interrupted\n"), "{output:?}");
                 between = rows(&out) == rows(&straight) - 1;
                 done(&run(folder.path(), "out", &["--resume"]));
                 same(&straight, &out);

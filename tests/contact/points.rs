@@ -9,7 +9,7 @@ use crate::common::{Blocks, Finished, close, distance, finish, model, turned};
 use fecontact::laws::friction::{FrictionParameters, FrictionState, Sliding};
 use fecontact::model::Model;
 use fecontact::model::state::State;
-use fecontact::output::fields::{Fields, Frames};
+use fecontact::output::fields::{Fields, Frames, Selection};
 use fecontact::output::history::History;
 use fecontact::output::warnings::Warnings;
 use fecontact::run::error::Error;
@@ -624,9 +624,13 @@ fn points_are_written_and_warned_of() {
     };
     let model = Arc::new(model(&slider.case()));
     let mut history = History::create(folder.path(), &model).unwrap();
-    let mut fields =
-        Fields::create(folder.path(), model.clone(), &model.initial_state(), Frames { every: Some(1), points: false })
-            .unwrap();
+    let mut fields = Fields::create(
+        folder.path(),
+        model.clone(),
+        &model.initial_state(),
+        Frames { of: Selection::Rows(1), points: false, exact: true },
+    )
+    .unwrap();
     let mut warnings = Warnings::default();
     let model = Arc::new(model);
     run(&model, &mut [&mut history, &mut fields, &mut warnings]).1.unwrap();

@@ -8,7 +8,7 @@ use crate::common::{self, Blocks, close, finish_at, linear};
 use fecontact::model::Model;
 use fecontact::model::builder::{Builder, LoadStep, Place, Support};
 use fecontact::model::state::State;
-use fecontact::output::fields::{Fields, Frames};
+use fecontact::output::fields::{Fields, Frames, Selection};
 use fecontact::output::fronts::{Fronts, FrontsInput};
 use fecontact::output::history::History;
 use fecontact::output::newton_log::NewtonLog;
@@ -487,8 +487,13 @@ fn observers_go_back_with_the_run() {
     let start = model.initial_state();
     let mut history = History::create(folder.path(), &model).expect("a table");
     let mut log = NewtonLog::create(folder.path(), &model).expect("a table");
-    let mut fields =
-        Fields::create(folder.path(), model.clone(), &start, Frames { every: Some(2), points: false }).expect("frames");
+    let mut fields = Fields::create(
+        folder.path(),
+        model.clone(),
+        &start,
+        Frames { of: Selection::Rows(2), points: false, exact: true },
+    )
+    .expect("frames");
     let mut fronts = Fronts::new(folder.path(), &model, &start, FrontsInput { slip_rate: 1e-3, arrival: None });
     let mut warnings = Warnings::default();
     let mut simulation = Simulation::new(model.clone());
@@ -524,8 +529,13 @@ fn observers_go_back_with_the_run() {
         Box::new(History::create(straight.path(), &model).expect("a table")),
         Box::new(NewtonLog::create(straight.path(), &model).expect("a table")),
         Box::new(
-            Fields::create(straight.path(), model.clone(), &start, Frames { every: Some(2), points: false })
-                .expect("frames"),
+            Fields::create(
+                straight.path(),
+                model.clone(),
+                &start,
+                Frames { of: Selection::Rows(2), points: false, exact: true },
+            )
+            .expect("frames"),
         ),
         Box::new(Fronts::new(straight.path(), &model, &start, FrontsInput { slip_rate: 1e-3, arrival: None })),
         Box::new(Warnings::default()),

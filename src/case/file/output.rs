@@ -3,17 +3,25 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::output::fields::{Frames, Selection};
 use crate::output::fronts::FrontsInput;
+
+/// Frames of a run, about, where the case asks for no others.
+const FRAMES: usize = 30;
 
 /// Output of a run.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct OutputInput {
-    /// Fields are written with every n-th row of the history, and at the end of each step; default: with every row, or
-    /// with none where `times` are given
+    /// Fields are written with every n-th row of the history, and at the end of each step; default: about 30 times in the
+    /// run, equally often in each step at equal parts of its duration, or only at `times` and ends of steps where `times` are
+    /// given
     pub every: Option<usize>,
     /// Whether fields are written at all
     pub fields: bool,
+    /// Whether fields are written as 64-bit numbers, as they are computed; default: as 32-bit numbers (relative error at
+    /// most 6e-8), in half the space. Undeformed coordinates are always 64-bit numbers
+    pub exact: bool,
     /// Explicit steps write a row of the history (and fields, every n-th time) at multiples of this since the start of the
     /// step [T]; a hundredth of the step unless given. Implicit steps write every increment or, if this is given, rows that
     /// are at least so far apart in time; where a contact point opens, closes, begins to slip or stops, the increments
@@ -34,9 +42,13 @@ pub struct OutputInput {
 }
 
 impl OutputInput {
-    /// Interval n of rows with fields; `None` for fields at requested times only.
-    pub fn every(&self) -> Option<usize> {
-        self.every.or(self.times.is_empty().then_some(1))
+    /// The frames of a run of so many steps.
+    pub fn frames(&self, steps: usize) -> Frames {
+        let some = match self.times.is_empty() {
+            true => Selection::Parts((FRAMES / steps.max(1)).max(1)),
+            false => Selection::Named,
+        };
+        Frames { of: self.every.map_or(some, Selection::Rows), points: self.points, exact: self.exact }
     }
 }
 
@@ -45,6 +57,7 @@ impl Default for OutputInput {
         Self {
             every: None,
             fields: true,
+            exact: false,
             interval: None,
             times: Vec::new(),
             points: false,

@@ -1,6 +1,6 @@
 //! A case run into a folder of results: from its beginning, from the end of another, or from its last checkpoint.
 //!
-//! [`Job::open`] reads, checks and locks the folder; [`Job::run`] solves and leaves results behind however it ends. Who asked for
+//! [`Job::open`] and [`Job::resume`] read, check and lock the folder; [`Job::run`] solves and leaves results behind however it ends. Who asked for
 //! it hears warnings, shows progress and may end it ([`Callbacks`]).
 //!
 //! Who watches a run.
@@ -13,12 +13,14 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use serde_json::Value;
 use thiserror::Error;
 
+use super::again::is_same;
 use super::report::understood;
 use super::{CaseError, Opened};
 use crate::model::Model;
-use crate::output::checkpoint::{self, Checkpoint};
+use crate::output::checkpoint::{self, Checkpoint, Unusable};
 use crate::output::events;
 use crate::output::folder::Folder;
 use crate::output::friction_history::FrictionHistory;
@@ -45,6 +47,11 @@ pub enum Refused {
     /// There is nothing to resume from.
     #[error("{}: --resume: {}", .0.display(), .1)]
     Checkpoint(PathBuf, checkpoint::Unusable),
+    /// There is no checkpoint, and what is in the folder is not this case's own unfinished run.
+    #[error(
+        "{}: --resume: there is no checkpoint, and {}: choose another --out, or leave --resume out to begin anew", .0.display(), .1
+    )]
+    Anew(PathBuf, String),
     /// The run cannot resume from the results in the folder.
     #[error(transparent)]
     Run(#[from] Error),
@@ -71,6 +78,8 @@ pub struct Job {
     pub saved: Option<SavedRun>,
     /// what was wrong with a newer checkpoint
     pub damage: Option<String>,
+    /// whether it was to resume a run that has left no checkpoint yet, and begins anew
+    pub begins_anew: bool,
 }
 
 /// Outcome of a job.
@@ -93,38 +102,61 @@ impl Outcome {
     }
 }
 
-/// A case with the last checkpoint of the folder of its results, and what was wrong with a newer one; `warn` reports
-/// where another version has written it.
-///
-/// # Errors
-/// [`Refused`].
-pub fn last(
-    folder: &Path,
-    open: impl FnOnce(Checkpoint) -> Result<Opened, CaseError>,
-    warn: &dyn Fn(&str),
-) -> Result<(Opened, Option<String>), Refused> {
-    let (checkpoint, damage) = checkpoint::newest(folder).map_err(|(file, why)| Refused::Checkpoint(file, why))?;
-    let Checkpoint { program, .. } = &checkpoint;
-    if program != env!("CARGO_PKG_VERSION") {
-        warn(&format!(
-            "the checkpoint is of version {program}: the last digits may differ from those of an uninterrupted run"
-        ));
-    }
-    Ok((open(checkpoint)?, damage))
-}
-
 impl Job {
     /// Build the model of a case, and lock the folder of its results.
     ///
     /// # Errors
     /// [`Refused`].
-    pub fn open(mut opened: Opened, damage: Option<String>, place: &Path) -> Result<Self, Refused> {
+    pub fn open(mut opened: Opened, place: &Path) -> Result<Self, Refused> {
         let (model, saved) = opened.build()?;
+        Self::claim(opened, model, saved, place)
+    }
+
+    /// Go on with the run in a folder: from its last checkpoint, or anew where the folder is absent or empty, or holds this
+    /// case's own unfinished run without a checkpoint yet, so that a job that is queued again always says the same. The case is
+    /// opened at the checkpoint, or at its beginning; `warn` is told where another version has written the checkpoint.
+    ///
+    /// # Errors
+    /// [`Refused`].
+    pub fn resume(
+        place: &Path,
+        open: impl FnOnce(Option<Checkpoint>) -> Result<Opened, CaseError>,
+        warn: &dyn Fn(&str),
+    ) -> Result<Self, Refused> {
+        let (checkpoint, damage) = match checkpoint::newest(place) {
+            Ok((checkpoint, damage)) => (Some(checkpoint), damage),
+            Err((_, Unusable::Missing)) if !place.join(checkpoint::PREVIOUS).exists() => (None, None),
+            Err((file, why)) => return Err(Refused::Checkpoint(file, why)),
+        };
+        let begins_anew = checkpoint.is_none();
+        if let Some(Checkpoint { program, .. }) =
+            checkpoint.as_ref().filter(|of| of.program != env!("CARGO_PKG_VERSION"))
+        {
+            warn(&format!(
+                "the checkpoint is of version {program}: the last digits may differ from those of an uninterrupted run"
+            ));
+        }
+        let mut opened = open(checkpoint)?;
+        let (model, saved) = opened.build()?;
+        if begins_anew {
+            let refused = |why: String| Refused::Anew(place.to_owned(), why);
+            let begun = summary::unfinished(place).map_err(refused)?;
+            if let Some(begun) = begun.filter(|begun| !is_same(&begun.given, &given(&opened.document))) {
+                return Err(refused(format!(
+                    "the folder holds the run of another case, or of this one before a change ({})",
+                    begun.case
+                )));
+            }
+        }
+        Ok(Self { damage, begins_anew, ..Self::claim(opened, model, saved, place)? })
+    }
+
+    fn claim(opened: Opened, model: Arc<Model>, saved: Option<SavedRun>, place: &Path) -> Result<Self, Refused> {
         let inputs: Vec<PathBuf> = opened.inputs.iter().cloned().chain([opened.path.clone()]).collect();
         let outputs = files(&opened.case, &model);
         let folder = Folder::claim(place, &inputs, &outputs, opened.resumes());
         let folder = folder.map_err(|(path, cause)| Refused::Folder(path, cause))?;
-        Ok(Self { opened, model, folder, saved, damage })
+        Ok(Self { opened, model, folder, saved, damage: None, begins_anew: false })
     }
 
     /// Run the job to its end, or until it stops.
@@ -132,8 +164,8 @@ impl Job {
     /// # Errors
     /// [`Refused::Run`] where it cannot go on from its checkpoint; nothing has changed then.
     pub fn run(&mut self, callbacks: Callbacks) -> Result<Outcome, Refused> {
-        let about = self.about();
-        let Self { opened, model, folder, saved, damage } = self;
+        let about = about(&self.opened, &self.model);
+        let Self { opened, model, folder, saved, damage, .. } = self;
         let summary = |ending, report, warnings| Summary::new(ending, about.clone(), model, report, warnings);
         let first = summary(Ending::running(&folder.files), RunReport::default(), model.warnings());
         let mut work = Work::default();
@@ -162,25 +194,35 @@ impl Job {
         let ended = result.map_err(Failed::Defect).and_then(|ended| ended.map_err(Failed::Stopped));
         Ok(Outcome { summary: last, supplied: work.supplied, ended, written })
     }
+}
 
-    /// Data about the case for readers of the results.
-    fn about(&self) -> About {
-        let Opened { case, path, .. } = &self.opened;
-        About {
-            case: path.display().to_string(),
-            title: case.title.clone(),
-            section: Some(self.model.mesh.section.to_string()),
-            units: case.units.clone(),
-            friction: case
-                .contacts
-                .iter()
-                .filter_map(|(name, contact)| Some((name.clone(), contact.friction.parameters()?.clone())))
-                .collect(),
-            wave_speeds: events::wave_speeds(&self.model),
-            front_slip_rate: case.output.fronts.map(|fronts| fronts.slip_rate),
-            understood: understood(case, &self.model),
-        }
+/// Data about the case for readers of the results.
+fn about(Opened { case, path, document, .. }: &Opened, model: &Model) -> About {
+    About {
+        case: path.display().to_string(),
+        title: case.title.clone(),
+        section: Some(model.mesh.section.to_string()),
+        units: case.units.clone(),
+        friction: case
+            .contacts
+            .iter()
+            .filter_map(|(name, contact)| Some((name.clone(), contact.friction.parameters()?.clone())))
+            .collect(),
+        wave_speeds: events::wave_speeds(model),
+        front_slip_rate: case.output.fronts.map(|fronts| fronts.slip_rate),
+        understood: understood(case, model),
+        given: given(document),
     }
+}
+
+/// A case as it is written, but for a mesh given node by node.
+fn given(document: &Value) -> Value {
+    let mut given = document.clone();
+    let is_of_nodes = document.get("mesh").is_some_and(|mesh| mesh.get("nodes").is_some());
+    if let Some(case) = given.as_object_mut().filter(|_| is_of_nodes) {
+        case.remove("mesh");
+    }
+    given
 }
 
 /// Results of a run that are kept however it ends.
@@ -217,7 +259,8 @@ impl Work {
             summary::write(first, &folder.path)?;
         }
         let warnings = Warnings::reporting(model.warnings(), warn);
-        let mut outputs = Outputs::open(&folder.path, model, &opened.case, saved.as_ref(), warnings)?;
+        let frames = opened.case.output.frames(opened.case.steps.len() - opened.taken_over);
+        let mut outputs = Outputs::open(&folder.path, model, &opened.case, frames, saved.as_ref(), warnings)?;
         let mut observers = outputs.observers();
         if let Some(progress) = &mut progress {
             observers.push(&mut **progress);

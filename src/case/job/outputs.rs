@@ -52,11 +52,6 @@ pub(super) fn files(case: &Case, model: &Model) -> Vec<&'static str> {
     files
 }
 
-/// The frames requested by a case.
-fn frames(case: &Case) -> Frames {
-    Frames { every: case.output.every(), points: case.output.points }
-}
-
 /// The observers of a run; all that the case asks for once it is open.
 pub(super) struct Outputs {
     history: Option<History>,
@@ -74,6 +69,7 @@ impl Outputs {
         folder: &Path,
         model: &Arc<Model>,
         case: &Case,
+        frames: Frames,
         saved: Option<&SavedRun>,
         warnings: Warnings,
     ) -> Result<Self, Error> {
@@ -81,7 +77,7 @@ impl Outputs {
         let goes_on = |name: &str| saved.is_some_and(|saved| saved.remembers(name));
         let (has_contacts, has_fields) = (!model.contacts.is_empty(), case.output.fields);
         let store = || InterfaceStore::reopen(folder, model, &start, &case.units);
-        let series = || Fields::reopen(folder, model.clone(), frames(case));
+        let series = || Fields::reopen(folder, model.clone(), frames);
         let mut outputs = Self {
             history: goes_on("history").then(|| History::reopen(folder, model)).transpose()?,
             newton_log: goes_on("newton").then(|| NewtonLog::reopen(folder, model)).transpose()?,
@@ -106,7 +102,7 @@ impl Outputs {
             outputs.probes = Some(Probes::create(folder, model)?);
         }
         if outputs.fields.is_none() && has_fields {
-            outputs.fields = Some(Fields::create(folder, model.clone(), &start, frames(case))?);
+            outputs.fields = Some(Fields::create(folder, model.clone(), &start, frames)?);
         }
         Ok(outputs)
     }

@@ -15,6 +15,7 @@ use crate::model::builder::{BodyInput, Formulation, LoadingPlateInput, Plate, Ri
 use crate::model::imposed::{InitialStress, Thermal};
 use crate::model::text::{count, number};
 use crate::model::{Damping, Model, PointMass};
+use crate::output::fields::Selection;
 use crate::output::fronts::ArrivalInput;
 
 /// A readable account of a checked case.
@@ -218,13 +219,19 @@ fn newton(case: &Case) -> String {
 }
 
 fn output(case: &Case, model: &Model) -> Vec<String> {
-    let fields = match (case.output.fields, case.output.every()) {
-        (false, _) => "no fields".into(),
-        (true, None) => "fields at the requested times, and at the end of each step".into(),
-        (true, Some(1)) => "fields with every row of the history".into(),
-        (true, Some(every)) => {
-            format!("fields with every {} row of the history, and at the end of each step", ordinal(every))
+    let frames = match case.output.frames(case.steps.len()).of {
+        Selection::Named => "at the requested times, and at the end of each step".into(),
+        Selection::Parts(1) => "at the end of each step".into(),
+        Selection::Parts(parts) => format!("{parts} times in each step"),
+        Selection::Rows(1) => "with every row of the history".into(),
+        Selection::Rows(every) => {
+            format!("with every {} row of the history, and at the end of each step", ordinal(every))
         }
+    };
+    let bits = if case.output.exact { 64 } else { 32 };
+    let fields = match case.output.fields {
+        true => format!("fields {frames}, in {bits} bits"),
+        false => "no fields".into(),
     };
     let names = match case.watch.iter().map(|place| watched(place, model)).collect::<Vec<_>>() {
         none if none.is_empty() => "none".into(),

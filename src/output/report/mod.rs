@@ -31,12 +31,13 @@ const OURS: &str = "<meta name=\"generator\" content=\"fecontact report\">";
 const ROOM: usize = 28_000_000;
 
 /// Scripts of the page, in the order of execution.
-const SCRIPTS: [&str; 18] = [
+const SCRIPTS: [&str; 19] = [
     include_str!("page/uplot/uPlot.iife.min.js"),
     include_str!("page/dom.js"),
     include_str!("page/data.js"),
     include_str!("page/colours.js"),
     include_str!("page/export.js"),
+    include_str!("page/differences.js"),
     include_str!("page/paper.js"),
     include_str!("page/chart.js"),
     include_str!("page/head.js"),

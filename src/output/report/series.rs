@@ -122,7 +122,7 @@ impl Series {
     fn packed(&self, (frame, grid): &(Frame, Grid), size: f64) -> PackedFrame {
         let moved = displacement(grid).map(|u| {
             let values: Vec<f64> = u.values.chunks_exact(u.components).flat_map(|u| [u[0], u[1]]).collect();
-            Packed::displacements(values.into_iter(), size)
+            Packed::stepped(&values, 2, size, DISPLACEMENT_ERROR)
         });
         let fields = grid.at_points.iter().filter(|array| array.name != DISPLACEMENT).map(|array| {
             // VTK has three components where the plane has two.
@@ -130,7 +130,9 @@ impl Series {
             let component = |i: usize| {
                 let values: Vec<f64> = array.values.iter().skip(i).step_by(array.components).copied().collect();
                 let all = || values.iter().copied();
-                (range(all()), most(all()), Packed::rounded(values.iter().copied()))
+                let [low, high] = range(all());
+                let size = low.abs().max(high.abs());
+                ([low, high], most(all()), Packed::stepped(&values, 1, size, FIELD_ERROR))
             };
             let components = (0..components).map(component).collect();
             Field { name: array.name.clone(), components, longest: longest(array) }
@@ -161,10 +163,17 @@ impl Series {
             "kinds": pack.add(&Packed::bytes(&grid.kinds)),
             "body": body,
             "largest": size,
+            "errors": { "fields": FIELD_ERROR, "displacement": DISPLACEMENT_ERROR },
             "frames": frames,
         })
     }
 }
+
+/// Error of a component of a field, over its largest value in the frame.
+const FIELD_ERROR: f64 = 1.0 / 16_384.0;
+
+/// Error of a component of a displacement, over the largest displacement of the run.
+const DISPLACEMENT_ERROR: f64 = 1.0 / 1_048_576.0;
 
 /// Frames of one kind at most.
 const MOST: usize = 2000;

@@ -10,7 +10,6 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
 use flate2::write::DeflateEncoder;
-use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::source::ReportError;
@@ -217,20 +216,24 @@ pub fn sheet(columns: impl IntoIterator<Item = Column>, pack: &mut Pack) -> Valu
     json!({ "rows": rows, "columns": packed })
 }
 
-/// Bits of the fraction that fields keep: their relative error is at most 2⁻¹².
+/// Bits of the fraction that maps of interfaces keep: their relative error is at most 2⁻¹².
 const BITS: u32 = 11;
 
-/// A displacement is kept to this part of the largest one.
-const PLACES: f64 = 1.0 / 1_048_576.0;
+/// Stands for what is no number among whole steps.
+const NO_NUMBER: i32 = i32::MIN;
 
 /// Packed numbers, by themselves.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Packed(String);
+pub struct Packed {
+    text: String,
+    /// of numbers in whole steps: the step, and how many belong to a point
+    steps: Option<(f64, usize)>,
+}
 
 impl Packed {
     /// Size of the packed numbers [bytes].
     pub fn size(&self) -> usize {
-        self.0.len()
+        self.text.len()
     }
 
     /// Doubles, as they are.
@@ -249,12 +252,20 @@ impl Packed {
         Self::of(values.map(|value| rounded(value, BITS).to_le_bytes()), count)
     }
 
-    /// Displacements, of which the largest is `size`.
-    pub fn displacements(values: impl ExactSizeIterator<Item = f64>, size: f64) -> Self {
-        let count = values.len();
-        // A power of two, so that rounding leaves zeros behind in every digit of a computer.
-        let step = if size > 0.0 && size.is_finite() { (size * PLACES).log2().ceil().exp2() } else { 1.0 };
-        Self::of(values.map(|value| (((value / step).round() * step) as f32).to_le_bytes()), count)
+    /// Values of some components a point, none above `size`, to `error` times `size`: in whole steps, of which the difference from
+    /// the point before is packed, since points that follow each other in a mesh are mostly neighbours.
+    pub fn stepped(values: &[f64], components: usize, size: f64, error: f64) -> Self {
+        let step = if size > 0.0 && size.is_finite() { 2.0 * error * size } else { 1.0 };
+        let mut last = vec![0; components];
+        let difference = |(k, value): (usize, &f64)| {
+            let last = &mut last[k % components];
+            let steps = (value / step).round();
+            let difference = if value.is_finite() { steps as i32 - *last } else { NO_NUMBER };
+            *last = if value.is_finite() { steps as i32 } else { *last };
+            difference.to_le_bytes()
+        };
+        let packed = Self::of(values.iter().enumerate().map(difference), values.len());
+        Self { steps: Some((step, components)), ..packed }
     }
 
     /// Pack whole numbers.
@@ -274,13 +285,9 @@ impl Packed {
         let mut encoder = DeflateEncoder::new(Vec::with_capacity(bytes.len() / 2), Compression::new(4));
         // Writing to a Vec cannot fail.
         let _ = encoder.write_all(&shuffled(&bytes, N));
-        Self(STANDARD.encode(encoder.finish().unwrap_or_default()))
+        Self { text: STANDARD.encode(encoder.finish().unwrap_or_default()), steps: None }
     }
 }
-
-/// Range of packed numbers among all of them: start, length.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Chunk(usize, usize);
 
 /// All packed numbers of a page.
 #[derive(Debug, Default)]
@@ -290,10 +297,14 @@ pub struct Pack {
 }
 
 impl Pack {
-    /// Add packed numbers; returns their range.
-    pub fn add(&mut self, packed: &Packed) -> Chunk {
+    /// Add packed numbers; returns their range among all: start, length; of numbers in whole steps also the step, and how many
+    /// belong to a point.
+    pub fn add(&mut self, packed: &Packed) -> Value {
         let start = self.text.len();
-        self.text += &packed.0;
-        Chunk(start, packed.size())
+        self.text += &packed.text;
+        match packed.steps {
+            None => json!([start, packed.size()]),
+            Some((step, components)) => json!([start, packed.size(), step, components]),
+        }
     }
 }

@@ -16,7 +16,8 @@ class Bodies extends BodiesPicture {
     this.clock = el("output", {});
     this.play = button("▶", "Play", () => this.toggle());
     this.controls = el("div", { class: "controls" });
-    host.append(this.controls, el("div", { class: "controls" }, this.play, this.slider, this.clock), this.stage, this.probe, this.bar.element);
+    this.precision = el("p", { class: "facts" });
+    host.append(this.controls, el("div", { class: "controls" }, this.play, this.slider, this.clock), this.stage, this.probe, this.bar.element, this.precision);
     this.stage.append(this.over);
     this.listen();
     now.hear(this, (time) => this.show(nearest(this.solid.frames.map((frame) => frame.time), time), true));
@@ -45,6 +46,9 @@ class Bodies extends BodiesPicture {
     const moving = this.fields.find((field) => field.name === "displacement" && field.part === "size");
     const stressed = this.fields.find((field) => field.name === "von_mises" && span(solid, field)[1] > 0);
     this.field = known || stressed || moving || this.fields[0];
+    const percent = (error) => `${told(100 * error, 1)} %`;
+    this.precision.textContent = `Values are shown to ${percent(solid.errors.fields)} of the largest in each frame, displacements to ` +
+      `${percent(solid.errors.displacement)} of the largest of the run; the files hold more digits.`;
     this.scale = niceScale(solid, bounds(places));
     this.slider.max = solid.frames.length - 1;
     this.makeControls();

@@ -1,10 +1,31 @@
 "use strict";
-// Charts: uPlot with zoom, read-off, keyboard and export. Each is drawn when it comes into sight.
+// Charts: uPlot with zoom, read-off, keyboard and export. Each is drawn when it comes into sight, all of them before the page is
+// ready, so that they are there when it is printed or captured.
 
 const charts = [];
 const watcher = new IntersectionObserver((entries) => {
   for (const entry of entries) if ((entry.target.chart.seen = entry.isIntersecting)) entry.target.chart.draw();
 }, { rootMargin: "300px" });
+
+/** Draw what has not been drawn yet and has room, a little at a time so that the page can be used meanwhile. */
+async function drawAll() {
+  let begun = performance.now();
+  for (const chart of charts) {
+    chart.draw();
+    if (performance.now() - begun < 50) continue;
+    await new Promise((done) => setTimeout(done));
+    begun = performance.now();
+  }
+}
+
+/** A line, or a point, as a curve is drawn. */
+function sample({ colour, dash, points }) {
+  const shape = points ? `<circle cx="14" cy="5" r="3.5" fill="${colour}"/>`
+    : `<line x1="0" y1="5" x2="28" y2="5" stroke="${colour}" stroke-width="2" stroke-dasharray="${(dash || []).join(" ")}"/>`;
+  const made = el("span", { class: "sample" });
+  made.innerHTML = `<svg width="28" height="10" aria-hidden="true">${shape}</svg>`;
+  return made;
+}
 
 /** Rows of several curves under one ascending x: `undefined` where a curve has no row, `null` where it has no number. */
 function aligned(series, shown) {
@@ -120,9 +141,12 @@ class Chart {
   options() {
     const [ink, grid] = [styled("--ink"), styled("--grid")];
     const line = (of) => ({ stroke: grid, width: 1, ...(of.log && { filter: (u, splits) => powers(splits) }) });
-    const axis = (of, size) => ({
+    // Numbers have as much room as the longest needs.
+    const besides = (u, texts) => Math.max(62, 30 + 6.5 * Math.max(0, ...(texts || []).map((text) => text.length)));
+    // A label that is longer than its axis is written smaller.
+    const axis = (of, size, room) => ({
       stroke: ink, grid: line(of), ticks: line(of), label: of.label, size, labelSize: 20,
-      font: "11px sans-serif", labelFont: "12px sans-serif",
+      font: "11px sans-serif", labelFont: `${Math.min(12, (12 * room) / (7 * of.label.length)).toFixed(1)}px sans-serif`,
       values: (u, splits) => (of.log ? splits.map((value) => (value == null ? "" : told(value, 2))) : tickTexts(splits)),
     });
     const series = this.series.map((one) => ({
@@ -142,7 +166,7 @@ class Chart {
           ...((this.path || !this.y.log) && { range: (u, low, high) => this.upwards(low, high, include) }),
         },
       },
-      axes: [axis(this.x, 42), axis(this.y, 62)],
+      axes: [axis(this.x, 42, this.width() - 86), axis(this.y, besides, this.height - 50)],
       series: [{ label: this.x.label, value: (u, value) => told(value, 8) }, ...series],
       cursor: {
         drag: { x: true, y: true, uni: 30 }, focus: { prox: 24 },
@@ -154,7 +178,10 @@ class Chart {
         ready: [(u) => {
           u.over.addEventListener("click", () => this.clicked(u));
           const rows = u.root.querySelectorAll(".u-legend .u-series");
-          this.series.forEach((one, k) => one.unlisted && (rows[k + 1].hidden = true));
+          this.series.forEach((one, k) => {
+            rows[k + 1].querySelector(".u-marker")?.replaceWith(sample(one));
+            rows[k + 1].hidden = Boolean(one.unlisted);
+          });
         }],
       },
     };
@@ -269,8 +296,18 @@ now.hear("charts", () => {
 let resizing = null;
 addEventListener("resize", () => {
   clearTimeout(resizing);
-  resizing = setTimeout(() => {
-    for (const chart of charts) if (chart.plot) chart.plot.setSize({ width: chart.width(), height: chart.height });
-  }, 100);
+  resizing = setTimeout(() => sized((chart) => chart.width()), 100);
 });
-addEventListener("beforeprint", () => charts.forEach((chart) => chart.draw()));
+
+function sized(width) {
+  for (const chart of charts) if (chart.plot) chart.plot.setSize({ width: width(chart), height: chart.height });
+}
+
+/** Width of a chart of which two stand beside each other on a sheet of A4 [px]. */
+const ON_PAPER = 340;
+
+addEventListener("beforeprint", () => {
+  charts.forEach((chart) => chart.draw());
+  sized(() => ON_PAPER);
+});
+addEventListener("afterprint", () => sized((chart) => chart.width()));

@@ -3,7 +3,7 @@
 
 const DATA = JSON.parse(document.getElementById("data").textContent);
 const NUMBERS = document.getElementById("numbers").textContent;
-const ARRAYS = { f64: Float64Array, f32: Float32Array, u32: Uint32Array, u8: Uint8Array };
+const ARRAYS = { f64: Float64Array, f32: Float32Array, i32: Int32Array, u32: Uint32Array, u8: Uint8Array };
 
 /** Unpacked arrays by where they start, the last used at the end; bytes in all. */
 const kept = new Map();
@@ -31,6 +31,14 @@ function joined(bytes, type) {
   return new ARRAYS[type](out.buffer);
 }
 
+/** Numbers in whole steps, of which there is the difference from the point before. */
+function summed(differences, step, components) {
+  const last = new Array(components).fill(0);
+  return Float32Array.from(differences, (difference, k) =>
+    difference === NO_STEPS ? NaN : step * (last[k % components] += difference));
+}
+const NO_STEPS = -(2 ** 31);
+
 /** The array of a chunk, if it is at hand. */
 function peek(chunk) {
   const entry = chunk && kept.get(chunk[0]);
@@ -39,7 +47,7 @@ function peek(chunk) {
 
 /** The array of a chunk. */
 function unpack(chunk, type = "f32") {
-  const [start, length] = chunk;
+  const [start, length, step, components] = chunk;
   const known = kept.get(start);
   if (known) {
     kept.delete(start);
@@ -50,7 +58,8 @@ function unpack(chunk, type = "f32") {
   entry.promise = (async () => {
     const stream = new Blob([decoded(NUMBERS.slice(start, start + length))]).stream();
     const bytes = await new Response(stream.pipeThrough(new DecompressionStream("deflate-raw"))).arrayBuffer();
-    entry.array = joined(new Uint8Array(bytes), type);
+    const packed = new Uint8Array(bytes);
+    entry.array = step ? summed(joined(packed, "i32"), step, components) : joined(packed, type);
     keptBytes += entry.array.byteLength;
     for (const [oldest, { array }] of kept) {
       if (keptBytes <= ROOM || oldest === start) break;

@@ -120,7 +120,7 @@ async function showEvents() {
     const events = await table(run.events);
     const fronts = await table(run.fronts);
     if (events && events.rows) {
-      const columns = events.names.map((key) => [key, (row) => events.get(key)[row], spoken(key)]);
+      const columns = events.names.map((key) => [key, (row) => events.get(key)[row], withUnit(spoken(key), fieldUnit(key))]);
       const time = ["onset", "time", "start"].find((key) => events.get(key));
       const rows = Array.from({ length: events.rows }, (_, row) => row);
       section.append(el("h3", {}, `${name}${events.rows} event${events.rows > 1 ? "s" : ""}`), tableOf(columns, rows, (row) => time && jump(run, events.get(time)[row],

@@ -48,19 +48,31 @@ function csv(names, columns) {
 
 const escaped = (text) => String(text).replace(/[&<>"]/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" })[c]);
 
+/** A text in lines of so many letters at most, as far as its words allow it. */
+function wrapped(text, most) {
+  const lines = [""];
+  for (const word of text.split(" ")) {
+    const line = `${lines.at(-1)} ${word}`.trimStart();
+    if (line.length <= most || !lines.at(-1)) lines[lines.length - 1] = line;
+    else lines.push(word);
+  }
+  return lines;
+}
+
 /** A chart as it is seen, zoom included, in black on white. */
 function svg(chart) {
   const { plot } = chart;
   const ratio = uPlot.pxRatio;
   const box = { x: plot.bbox.left / ratio, y: plot.bbox.top / ratio, w: plot.bbox.width / ratio, h: plot.bbox.height / ratio };
-  const title = 24;
+  const titles = wrapped(chart.title, (plot.width - box.x) / 8);
+  const title = 6 + 18 * titles.length;
   const shown = plot.series.map((series, k) => ({ series, k })).filter(({ series, k }) => k > 0 && series.show);
   const listed = shown.filter(({ k }) => !chart.series[k - 1].unlisted);
   const height = plot.height + title + 18 * listed.length + 8;
   const parts = [];
   const text = (x, y, words, anchor = "middle", more = "") =>
     parts.push(`<text x="${x.toFixed(1)}" y="${y.toFixed(1)}" text-anchor="${anchor}" ${more}>${escaped(words)}</text>`);
-  text(box.x, 16, chart.title, "start", 'font-weight="bold" font-size="14"');
+  titles.forEach((line, k) => text(box.x, 16 + 18 * k, line, "start", 'font-weight="bold" font-size="14"'));
   parts.push(`<g transform="translate(0 ${title})">`);
   const { x: bx, y: by, w, h } = box;
   plot.axes.forEach((axis, k) => {
@@ -80,7 +92,9 @@ function svg(chart) {
   });
   parts.push(`<rect x="${bx}" y="${by}" width="${w}" height="${h}" fill="none" stroke="#444"/>`);
   text(bx + w / 2, by + h + 36, chart.x.label);
-  parts.push(`<text transform="translate(14 ${by + h / 2}) rotate(-90)" text-anchor="middle">${escaped(chart.y.label)}</text>`);
+  // A label that is longer than its axis is written smaller.
+  const size = Math.min(11.5, (11.5 * (h + by)) / (6.5 * chart.y.label.length)).toFixed(1);
+  parts.push(`<text transform="translate(14 ${by + h / 2}) rotate(-90)" text-anchor="middle" font-size="${size}">${escaped(chart.y.label)}</text>`);
   parts.push(`<clipPath id="box"><rect x="${bx}" y="${by}" width="${w}" height="${h}"/></clipPath><g clip-path="url(#box)">`);
   for (const { series, k } of shown) {
     const colour = chart.series[k - 1].colour;

@@ -40,7 +40,7 @@ function facts(run) {
 }
 
 /** The peak of a law driven alone. */
-const peakOf = (peak) => (peak ? `peak |q|/p = ${told(peak.coefficient)} at t = ${told(peak.time)}` : null);
+const peakOf = (peak) => (peak ? `peak |q|/p = ${told(peak.coefficient)} at t = ${told(peak.time)} ${unitOf("time")}`.trimEnd() : null);
 
 const REASONS = {
   killed: "The summary says that the run is active, but no process of this computer writes to the folder any more: it was " +
@@ -48,7 +48,7 @@ const REASONS = {
   running: "The run is still active: this page shows what had been written when it was made. Make it again to see more.",
 };
 
-function runHead(run, several) {
+function runHead(run) {
   const { summary } = run;
   const reason = summary.reason || REASONS[statusOf(run)];
   const lines = [
@@ -86,7 +86,6 @@ addEventListener("theme", () => charts.forEach((chart) => chart.redraw()));
 
 function showHead() {
   const { runs } = DATA;
-  const several = runs.length > 1;
   const titles = [...new Set(runs.map((run) => run.summary.title || run.name))];
   document.title = `${titles.join(" · ")} – fecontact`;
   const cases = [...new Set(runs.map((run) => run.summary.case).filter(Boolean))];
@@ -94,7 +93,7 @@ function showHead() {
     themeButton(),
     el("h1", {}, several && titles.length > 1 ? runs.map((run) => run.name).join(" · ") : titles[0]),
     el("p", { class: "case" }, cases.join(", ")),
-    ...runs.map((run) => runHead(run, several)));
+    ...runs.map((run) => runHead(run)), ...differencesTable());
   const notes = runs.flatMap((run) => run.notes.map((note) => (several ? `${run.name}: ${note}` : note)));
   const faults = document.getElementById("faults");
   if (notes.length) {

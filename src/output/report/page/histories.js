@@ -1,18 +1,26 @@
 "use strict";
 // Histories of forces, displacements, slips and energies; convergence of Newton's method.
 
-const several = DATA.runs.length > 1;
+/** Dashes of the bounds of friction, the highest first. */
+const BOUNDS = [[3, 3], [9, 4]];
 
-/** Curves of some columns of every run that has them. Of several runs, runs differ in dashes and columns in colours; where there
- * is one column only, runs differ in colours, too. */
+/** Look of one of some columns of a run: of several runs, runs differ in colours and columns in dashes; where there is one column
+ * only, runs differ in dashes, too, so that curves on top of each other are seen. */
+function look(k, column, columns) {
+  return several ? { colour: curveColour(k), dash: dash(columns > 1 ? column : k) } : { colour: curveColour(column), dash: dash(column) };
+}
+
+/** Name of a column of a run in legends. */
+const nameOf = (label, run, columns) => (several ? (columns > 1 ? `${label} (${labelOf(run)})` : labelOf(run)) : label);
+
+/** Curves of some columns of every run that has them. */
 function curves(runs, columns, x = "time") {
   const drawn = [];
   columns.forEach(([name, label], column) => {
     for (const { run, k, history } of runs) {
       const [xs, ys] = [history.get(x), history.get(name)];
       if (!xs || !ys) continue;
-      const colour = curveColour(columns.length > 1 ? column : k);
-      drawn.push({ name: several ? (columns.length > 1 ? `${label} (${run.name})` : run.name) : label, x: xs, y: ys, colour, dash: dash(several ? k : column) });
+      drawn.push({ name: nameOf(label, run, columns.length), x: xs, y: ys, ...look(k, column, columns.length) });
     }
   });
   return drawn;
@@ -96,10 +104,10 @@ function ratioChart(runs, contact, limits) {
   const largest = sizeOf(series);
   if (!(largest > 0)) return null;
   const { x, y } = series[0];
-  const peak = several ? "" : `: largest ${told(largest)} at t = ${told(x[y.findIndex((ratio) => Math.abs(ratio) === largest)])}`;
+  const peak = several ? "" : `: largest ${told(largest)} at t = ${told(x[y.findIndex((ratio) => Math.abs(ratio) === largest)])} ${unitOf("time")}`.trimEnd();
   const backwards = series.some((one) => bounds(one.y)[0] < -0.25 * largest);
-  const lines = limits.flatMap(([name, mu]) => (backwards ? [1, -1] : [1]).map((sign) => (
-    { name: `${sign < 0 ? "−" : ""}${name}`, x: [x[0], x[x.length - 1]], y: [sign * mu, sign * mu], colour: styled("--soft"), dash: [3, 3], plain: true })));
+  const lines = limits.flatMap(([name, mu], k) => (backwards ? [1, -1] : [1]).map((sign) => (
+    { name: `${sign < 0 ? "−" : ""}${name}`, x: [x[0], x[x.length - 1]], y: [sign * mu, sign * mu], colour: styled("--soft"), dash: BOUNDS[k % BOUNDS.length], plain: true })));
   return new Chart({ title: `F_t/F_n of ${contact}${peak}`, x: timeAxis(), y: { label: "tangential over normal force" }, series: [...series, ...lines], time: true });
 }
 
@@ -110,15 +118,15 @@ function contactCharts(runs, contact) {
   const { history } = runs.find((one) => one.history.get(`${contact}.normal_force`)) || runs[0];
   const normal = history.get(`${contact}.normal_force`);
   const backwards = forces.some((one) => bounds(one.y)[0] < -0.25 * sizeOf(forces));
-  const bound = (x, y, name, colour) => ({ name, x, y, colour, dash: [3, 3], plain: true });
   const grey = styled("--soft");
+  const bound = (x, y, name, k) => ({ name, x, y, colour: grey, dash: BOUNDS[k % BOUNDS.length], plain: true });
   const path = curves(runs, of([["tangential_force", "friction"]]), `${contact}.normal_force`);
   const most = 1.05 * Math.max(0, ...path.map((one) => bounds(one.x)[1]));
-  for (const [name, mu] of limits) {
+  for (const [k, [name, mu]] of limits.entries()) {
     for (const sign of backwards ? [1, -1] : [1]) {
       const label = `${sign < 0 ? "−" : ""}${name} × normal force`;
-      if (normal) forces.push(bound(history.get("time"), normal.map((force) => sign * mu * force), label, grey));
-      path.push(bound([0, most], [0, sign * mu * most], label, grey));
+      if (normal) forces.push(bound(history.get("time"), normal.map((force) => sign * mu * force), label, k));
+      path.push(bound([0, most], [0, sign * mu * most], label, k));
     }
   }
   const force = unitOf("force");

@@ -82,7 +82,7 @@ class Interface extends InterfacePicture {
       const from = 4 * Math.round(60 + (150 * k) / Math.max(1, rows.length - 1));
       const colour = `rgb(${lut.slice(from, from + 3).join(" ")})`;
       const along = (of) => Float64Array.from(places, (_, i) => of(row * places.length + i));
-      const name = `t = ${told(this.times[row], 7)}`;
+      const name = `t = ${told(this.times[row], 7)} ${unitOf("time")}`.trimEnd();
       const profile = { name, x: places, y: along((i) => values[i]), colour, plain: true };
       if (factors.length < 2) return [profile];
       return [profile, { name: `μ p, ${name}`, x: places, y: along((i) => factors[0][i] * factors[1][i]), colour, dash: [3, 3], plain: true, unlisted: true }];
@@ -140,7 +140,7 @@ class Interface extends InterfacePicture {
     const others = this.maps.filter(({ map }) => map.contact === this.map.contact);
     const names = ["traction", "pressure"].includes(this.quantity.name) ? ["traction", "pressure", "μ p"] : [this.quantity.name];
     const time = this.times[row];
-    for (const [k, { run, map }] of others.entries()) {
+    for (const { run, map } of others) {
       const [times, places] = await Promise.all([unpack(map.times, "f64"), unpack(map.positions, "f64")]);
       const of = async (name) => {
         const packed = map.quantities.find((one) => one.name === name);
@@ -153,8 +153,7 @@ class Interface extends InterfacePicture {
         if (!first || (strength && !second)) continue;
         const at = (i) => (strength ? first[i] * second[i] : first[i]);
         const label = strength ? "μ p" : spoken(name);
-        const colour = curveColour(names.length > 1 ? column : k);
-        const common = { name: others.length > 1 ? `${label} (${run.name})` : label, colour, dash: dash(others.length > 1 ? k : column) };
+        const common = { name: nameOf(label, run, 2), ...look(DATA.runs.indexOf(run), column, names.length) };
         series.profile.push({ ...common, x: places, y: Float64Array.from(places, (_, i) => at(near * places.length + i)) });
         series.history.push({ ...common, x: times, y: Float64Array.from(times, (_, i) => at(i * places.length + beside)) });
       }
@@ -199,7 +198,8 @@ class Interface extends InterfacePicture {
     const { s, t } = this.window;
     const points = [...this.places.keys()].filter((k) => this.places[k] >= s[0] && this.places[k] <= s[1]);
     const rows = [...this.times.keys()].filter((k) => this.up(k) >= t[0] && this.up(k) <= t[1]);
-    const names = ["time", ...points.map((k) => `position ${this.places[k]}`)];
+    const length = unitOf("length");
+    const names = [withUnit("time", unitOf("time")), ...points.map((k) => `position ${this.places[k]} ${length}`.trimEnd())];
     return csv(names, [rows.map((row) => this.times[row]), ...points.map((k) => rows.map((row) => this.values[row * this.places.length + k]))]);
   }
 

@@ -14,11 +14,11 @@ function coefficientChart(runs, x) {
     const [time, pressure, traction, mu] = ["time", "pressure", "traction", "mu"].map((name) => history.get(name));
     if (!pressure || !traction || !mu) return [];
     const ratio = traction.map((q, row) => (pressure[row] > 0 ? q / pressure[row] : NaN));
-    const name = (what) => (several ? `${what} (${run.name})` : what);
-    const colour = curveColour(several ? k : 0);
+    const name = (what) => nameOf(what, run, 2);
+    const { colour, dash } = look(k, 0, 1);
     const bound = (what, y) => ({ name: name(what), x: time, y, colour: several ? colour : styled("--soft"), dash: [3, 3], plain: true });
     const below = ratio.some((value) => value < 0) ? [bound("−μ", mu.map((value) => -value))] : [];
-    return [{ name: name("q/p"), x: time, y: ratio, colour, dash: dash(several ? k : 0) }, bound("μ", mu), ...below];
+    return [{ name: name("q/p"), x: time, y: ratio, colour, dash }, bound("μ", mu), ...below];
   });
   return drawn.length ? new Chart({ title: "Friction coefficient over time", x, y: { label: "q/p, μ" }, series: drawn, time: true }) : null;
 }
@@ -29,7 +29,7 @@ function ageingChart(runs) {
     const holds = [...(run.summary.holds || [])].sort((a, b) => a.duration - b.duration);
     if (holds.length < FEWEST_HOLDS) return [];
     const [x, y] = [holds.map((hold) => hold.duration), holds.map((hold) => hold.peak.coefficient)];
-    return [{ name: several ? run.name : "peak |q|/p", x, y, colour: curveColour(k), points: true }];
+    return [{ name: several ? labelOf(run) : "peak |q|/p", x, y, colour: curveColour(k), points: true }];
   });
   const x = { label: withUnit("hold duration", unitOf("time")), log: true };
   return drawn.length ? new Chart({ title: "Peak friction after a hold", x, y: { label: "peak |q|/p" }, series: drawn }) : null;

@@ -33,6 +33,7 @@ async function showAll() {
   await part("events", showEvents);
   await part("convergence", () => showConvergence(runs));
   await bodies;
+  await drawAll();
   showNav();
   if (![...document.querySelectorAll("main section")].some((section) => !section.hidden && section.id !== "faults" && section.id !== "case")) {
     document.querySelector("main").prepend(el("p", { class: "none" }, "There are no results to show yet."));

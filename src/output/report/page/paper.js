@@ -109,13 +109,14 @@ class Paper {
 
 /** A picture as it is seen, between its title and its colour bar: `paint` draws it, so wide and high. */
 function pictured(title, bar, [width, height], paint) {
-  const above = 26;
+  const titles = wrapped(title, (width - 16) / 8);
+  const above = 8 + 18 * titles.length;
   const paper = new Paper(width, above + height + (bar ? 48 : 0));
   paper.fillStyle = styled("--paper");
   paper.fillRect(0, 0, paper.width, paper.height);
   paper.fillStyle = styled("--ink");
   paper.font = "bold 14px sans-serif";
-  paper.fillText(title, 8, 17);
+  titles.forEach((line, k) => paper.fillText(line, 8, 17 + 18 * k));
   paper.font = "11px sans-serif";
   paper.save();
   paper.translate(0, above);

@@ -116,6 +116,9 @@ class BodiesPicture {
   resize() {
     if (!this.canvas) return;
     const [w, h] = [this.stage.clientWidth, this.stage.clientHeight];
+    // What is seen from side to side stays the same.
+    if (this.camera && this.width > 0) this.camera.zoom *= w / this.width;
+    this.width = w;
     this.ratio = Math.min(devicePixelRatio || 1, this.solid.cells > 30000 ? 1 : 2);
     for (const canvas of [this.canvas, this.over]) [canvas.width, canvas.height] = [w * this.ratio, h * this.ratio];
     this.draw();
@@ -165,7 +168,7 @@ class BodiesPicture {
     const u = [0, 1].map((i) => told(moved[2 * best + i]));
     const value = isNumber(this.values[best]) ? told(this.values[best]) : "no number";
     this.probe.textContent = best < 0 ? "" :
-      `node ${best} at (${at.join(", ")}): ${this.field.label} ${value} ${this.field.unit}, displacement (${u.join(", ")}) ${unitOf("length")}`;
+      `node ${best} at (${at.join(", ")}) ${unitOf("length")}: ${this.field.label} ${value} ${this.field.unit}, displacement (${u.join(", ")}) ${unitOf("length")}`;
   }
 
   /** The picture as SVG; the bodies in it are pixels, as the graphics card has drawn them. */
@@ -189,6 +192,7 @@ class BodiesPicture {
     const of = (array, i, shift = 0) => Float64Array.from({ length: solid.points }, (_, k) => array[2 * k + i] + shift);
     const both = (array, shift) => [0, 1].map((i) => of(array, i, shift?.[i]));
     const shown = Array.from(values, (value) => (isNumber(value) ? value : NaN));
-    return csv(["x", "y", "displacement x", "displacement y", this.field.label], [...both(places, solid.origin), ...both(moved), shown]);
+    const names = ["x", "y", "displacement x", "displacement y"].map((name) => withUnit(name, unitOf("length")));
+    return csv([...names, withUnit(this.field.label, this.field.unit)], [...both(places, solid.origin), ...both(moved), shown]);
   }
 }
