@@ -124,11 +124,11 @@ fn ridge(slope: f64, mu: f64) -> Model {
     }))
 }
 
-/// A cantilever 10 long and 0.5 high, pushed on the end of one like it.
+/// A cantilever 10 long and 0.25 high, pushed on the end of one like it.
 fn cantilevers() -> Model {
     model(&json!({
         "mesh": Blocks::default()
-            .rectangle("lower", [40, 2], [0.0, -0.5], [10.0, 0.0]).rectangle("upper", [43, 2], [5.0, 0.0], [15.0, 0.5]).json(),
+            .rectangle("lower", [80, 2], [0.0, -0.25], [10.0, 0.0]).rectangle("upper", [83, 2], [5.0, 0.0], [15.0, 0.25]).json(),
         "bodies": {
             "lower": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
             "upper": {"material": {"model": "neo_hookean", "E": 1000, "nu": 0.3}},
@@ -198,7 +198,7 @@ const fn slow(name: &'static str, model: fn() -> Model) -> Case {
     Case { name, model, quick: false }
 }
 
-const CASES: [Case; 25] = [
+const CASES: [Case; 26] = [
     slow("coulomb_drag_5k", || committed("coulomb_drag_5k", as_it_is)),
     slow("coulomb_drag_20k", || committed("coulomb_drag_20k", as_it_is)),
     slow("block_on_ground", || committed("block_on_ground", |case| shorten(case, 1, 0.4))),
@@ -238,7 +238,7 @@ fn case(name: &str) -> &'static Case {
 /// An aid, and how to switch it off.
 type Switch = (&'static str, fn(&mut Aids));
 
-const SWITCHES: [Switch; 13] = [
+const SWITCHES: [Switch; 14] = [
     ("start", |aids| aids.start = false),
     ("promise", |aids| aids.promise = false),
     ("limit", |aids| aids.limit = false),
@@ -400,6 +400,14 @@ fn every_aid_saves_solves_or_a_failure() {
         let acted = |cost: &Cost| column.map_or(cost.solves - cost.factorizations, |column| cost.acted[column]);
         assert!(acted(&with) > 0 && acted(&without) == 0, "{aid}: {with:?}, without {without:?}");
     }
+}
+
+/// Two slender cantilevers that press on each other: with default penalties 2758 solves and 186 rejected attempts before points that a start
+/// value lifts a little stayed closed, and softer penalties were tried first.
+#[test]
+fn slender_bodies_press_on_each_other() {
+    let cost = cost(cantilevers());
+    assert!(!cost.stopped && cost.cutbacks <= 10 && cost.solves <= 400, "{cost:?}");
 }
 
 /// The table of `docs/aids.md`: rows in which an aid changes the cost by a twentieth or more, or what fails.
