@@ -54,7 +54,7 @@ class Law:
     """A friction law with its parameters, each a number, or an array of any shape: a set of parameters an entry."""
 
     def __init__(self, parameters: Mapping[str, Any]) -> None:
-        arrays = {name: numbers(value, name, "law") for name, value in parameters.items() if _is_array(value)}
+        arrays = {name: _array(name, value) for name, value in parameters.items() if _is_array(value)}
         try:
             self.shape: tuple[int, ...] = np.broadcast_shapes(*(array.shape for array in arrays.values()))
         except ValueError:
@@ -281,6 +281,14 @@ def friction_law(
         return function
 
     return register
+
+
+def _array(name: str, given: Any) -> NDArray[Any]:
+    """Values of a parameter, which may be texts."""
+    try:
+        return np.asarray(given)
+    except ValueError:
+        raise refused("law", name, f"is {given!r}: must be values in rows of one length") from None
 
 
 def _is_array(value: object) -> bool:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterator, Mapping
+from numbers import Real
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
-from ._plain import a_name, count, number, path, plain
+from ._plain import a_name, count, number, path, plain, refused
 from .case import Case
 
 Array = NDArray[np.float64]
@@ -245,8 +246,10 @@ class Simulation:
         Raises:
             CaseError: a bound is not positive, ``min`` is above ``max``, or they ask for increments without end, as of ``dt`` in a case.
         """
-        bounds = (None if bound is None else number(bound, name, "increments") for name, bound in (("max", max), ("min", min)))
-        self._native.increments(*bounds)
+        for name, bound in (("max", max), ("min", min)):
+            if not isinstance(bound, (Real, type(None))):
+                raise refused("increments", name, f"is {bound!r}: must be a number")
+        self._native.increments(max, min)
 
     def stop(self) -> None:
         """End it: no increment follows. What is saved goes on as if it had not been ended."""

@@ -18,6 +18,7 @@ import pytest
 from conftest import command, python
 
 import fecontact as fc
+from fecontact.case import _raise
 
 
 def broken(document: dict[str, Any], *places: Any, value: Any) -> dict[str, Any]:
@@ -95,7 +96,7 @@ COULOMB = fc.law("coulomb", mu=0.4, alpha_t=1e3)
     ("call", "message"),
     [
         (lambda: fc.law(3), "law: is a int: give the name of a law, or its parameters"),
-        (lambda: fc.law("coulomb", mu=[0.3, [0.4]], alpha_t=1.0), r"law: mu: is \[0.3, \[0.4\]\]: must be a number"),
+        (lambda: fc.law("coulomb", mu=[0.3, [0.4]], alpha_t=1.0), r"law: mu: is \[0.3, \[0.4\]\]: must be values in rows of one length"),
         (lambda: COULOMB.drive("x", [0, 1], 1.0), "law: time: is 'x': must be a number, or numbers in rows of one length"),
         (lambda: COULOMB.drive([0, 1], {}, 1.0), "law: slip: is {}: must be a number"),
         (lambda: COULOMB.drive([0, 1], [0, 1], 1.0, traction=[1, 2]), r"law: traction: is \[1, 2\]: must be a finite number"),
@@ -125,7 +126,7 @@ def test_arguments_of_a_simulation_are_named(document: dict[str, Any]) -> None:
         (lambda: simulation.lead("block_top", ux="x", by=1.0), "lead: ux: is 'x': must be a number"),
         (lambda: simulation.lead(3, ux=0.0, by=1.0), "lead: group: is 3: must be a name"),
         (lambda: simulation.load("block_top", pressure=1.0, by=[1, 2]), r"load: by: is \[1, 2\]: must be a finite number"),
-        (lambda: simulation.increments(max=float("nan")), "increments: max: is nan: must be a finite number"),
+        (lambda: simulation.increments(max="x"), "increments: max: is 'x': must be a number"),
         (lambda: simulation.reaction(3), "reaction: group: is 3: must be a name"),
         (lambda: simulation.write(3), "folder: is 3: must be a path"),
         (lambda: fc.Simulation.resume(document, 3), "saved: is a int: give what save"),
@@ -136,20 +137,13 @@ def test_arguments_of_a_simulation_are_named(document: dict[str, Any]) -> None:
             call()
 
 
-def test_notes_of_what_was_raised_are_kept(document: dict[str, Any]) -> None:
-    """What is raised while a run tells of its warnings ends it; its own notes stand before the folder."""
-    document["contacts"]["base"]["normal"] = {"alpha_n": 50.0}
-
-    def raised(*told: Any, **more: Any) -> None:
-        error = RuntimeError("not this one")
-        error.__notes__ = ["a note of its own"]
-        raise error
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("fecontact.case.warnings.warn", raised)
-        with pytest.raises(RuntimeError, match="not this one") as caught:
-            fc.Case(document).run(progress=False)
-    assert caught.value.__notes__[0] == "a note of its own" and "the results so far are in" in caught.value.__notes__[1]
+def test_notes_of_what_was_raised_are_kept(tmp_path: Path) -> None:
+    """What was raised while a run went on has the folder as its last note."""
+    error = RuntimeError("not this one")
+    error.__notes__ = ["a note of its own"]
+    with pytest.raises(RuntimeError, match="not this one") as caught:
+        _raise("interrupted", None, error, fc.Result(tmp_path))
+    assert caught.value.__notes__ == ["a note of its own", f"the results so far are in {tmp_path}"]
 
 
 @pytest.mark.parametrize("text", ["{\"status\": \"comp", "[1]", "\xff"])

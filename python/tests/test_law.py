@@ -309,6 +309,12 @@ def test_committed_law_test_is_read() -> None:
     assert fc.law(test["friction"]).drive([0, 1], [0, 0.1], 50.0).traction[-1] > 0
 
 
+def test_sets_of_parameters_may_differ_in_words() -> None:
+    both = fc.law({**PAPER, "approach": ["logarithmic", "cotangent"]}).drive(*wave(50)).traction
+    for one, approach in zip(both, ("logarithmic", "cotangent")):
+        np.testing.assert_array_equal(one, fc.law({**PAPER, "approach": approach}).drive(*wave(50)).traction)
+
+
 def test_drives_are_copied_and_pickled() -> None:
     drive = fc.law("coulomb", mu=[0.3, 0.4], alpha_t=1e3).drive([0.0, 1.0, 2.0], [0.0, 0.1, 0.0], 2.0)
     for other in (copy.copy(drive), copy.deepcopy(drive), pickle.loads(pickle.dumps(drive))):
