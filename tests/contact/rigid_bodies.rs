@@ -366,8 +366,8 @@ fn a_roller_turns_under_a_moment() {
     close("no reaction", moment_of_tool(&run, state), 0.0, 1e-10);
 }
 
-/// A disk flies, turns not, and meets a point aside of its path; both go on freely. Momentum and angular momentum stay, to round-off and to
-/// second order in the increment, and what friction takes is all that is lost; in implicit and explicit steps alike.
+/// A disk flies, turns not, and meets a point aside of its path; both go on freely. Momentum and angular momentum stay, and
+/// what friction takes is all that is lost; in implicit and explicit steps alike.
 #[test]
 fn a_disk_and_a_point_keep_their_momentum() {
     let (masses, inertia, area) = ([0.5, 2.0], 3.0, 0.1);
@@ -400,13 +400,13 @@ fn a_disk_and_a_point_keep_their_momentum() {
         let (first, last) = (velocities[0] * masses[0] + velocities[1] * masses[1], run.last());
         let (momentum, angular, spin) = momenta(last);
         assert!(spin.abs() > 1e-2, "{scheme}: friction turns the disk, {spin}");
-        close(&format!("{scheme}: momentum"), (momentum - first).norm(), 0.0, 1e-7);
+        close(&format!("{scheme}: momentum"), (momentum - first).norm(), 0.0, 1e-8);
         let start = Vector2::new(0.4, 1.25).perp(&(velocities[0] * masses[0]));
-        close(&format!("{scheme}: angular momentum"), angular, start, 1e-4);
+        close(&format!("{scheme}: angular momentum"), angular, start, 1e-8);
         assert!(last.contacts[0][0].friction.pressure == 0.0, "{scheme}: they part");
         let energy = last.energy;
         assert!(energy.friction_dissipation > 1e-3, "{scheme}: {energy:?}");
-        close(&format!("{scheme}: energy"), energy.error(), 0.0, 2e-3 * energy.initial);
+        close(&format!("{scheme}: energy"), energy.error(), 0.0, 5e-3 * energy.initial);
     }
 }
 
