@@ -545,6 +545,11 @@ fn rigid_bodies_that_are_refused() {
         block(true, on(plane())).step(step().support(Support::on("block_top").angle(0.1))),
         "steps[0].supports[1].angle: there is no rigid body `block_top`",
     );
+    // The nodes that carry its motion have no names of their own.
+    refused(
+        tool().step(step().support(path()).support(Support::on(Place::Node(29)).ux(0.1))),
+        "the mesh has no node 29",
+    );
     refused(
         tool().step(step().support(path()).support(Support::on(Place::Node(0)).angle(0.1))),
         "is for a rigid body, and node 0 is a node",

@@ -123,7 +123,7 @@ pub fn nodes_at(mesh: &Mesh, on: &Place, place: &str) -> Checked<Vec<usize>> {
     match on {
         Place::Group(name) => Ok(mesh.nodes_of(group(mesh, name, place)?)),
         Place::Near(point) => Ok(vec![nearest(mesh, *point).map_err(|message| ModelError::new(place, message))?]),
-        Place::Node(node) => match mesh.node_tags.iter().position(|tag| tag == node) {
+        Place::Node(node) => match mesh.node_tags[..mesh.own_nodes()].iter().position(|tag| tag == node) {
             Some(node) => Ok(vec![node]),
             None => Err(ModelError::new(place, format!("the mesh has no node {node}"))),
         },
