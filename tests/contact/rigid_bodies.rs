@@ -138,10 +138,13 @@ fn a_tool_that_moves_is_a_block_that_moves() {
 fn a_tool_that_turns_is_a_block_that_turns() {
     let about = [0.4, -1.0];
     let polyline = || MasterSide::Polyline { points: vec![[-2.0, -0.3], [-0.5, 0.0], [0.7, -0.01], [2.5, -0.2]] };
-    let shapes: [fn() -> MasterSide; 2] = [plane, polyline];
-    for (shape, method) in
-        shapes.iter().flat_map(|shape| [Method::GaussToSegment, Method::Mortar].map(|method| (shape, method)))
-    {
+    let shapes: [(fn() -> MasterSide, Method); 4] = [
+        (plane, Method::GaussToSegment),
+        (plane, Method::Mortar),
+        (polyline, Method::GaussToSegment),
+        (polyline, Method::NodeToSegment),
+    ];
+    for (shape, method) in shapes {
         let contact = || on(shape()).method(method);
         let what = format!("{:?}, {method:?}", shape());
         // Both begin with a press, and turn then.
@@ -190,6 +193,8 @@ fn a_tool_that_moves_steadily_is_a_block_that_does() {
         let step = || LoadStep::new("move", 0.4).scheme(scheme).dt(0.004);
         let down = || expression("-0.03*(1 - cos(7*t))");
         let drag = |v: f64| Drive::Rate(v);
+        // A little apart at first: whether surfaces touch that lie on each other, round-off says.
+        let plane = || MasterSide::Plane { point: [0.3, -0.002], normal: [0.0, 1.0] };
         let contact = || on(plane()).method(Method::NodeToSegment);
         let resting = run_through(
             block(true, contact())
@@ -361,8 +366,8 @@ fn a_roller_turns_under_a_moment() {
     close("no reaction", moment_of_tool(&run, state), 0.0, 1e-10);
 }
 
-/// A disk flies, turns not, and meets a point aside of its path; both go on freely. Momentum and angular momentum stay, to round-off and to
-/// second order in the increment, and what friction takes is all that is lost; in implicit and explicit steps alike.
+/// A disk flies, turns not, and meets a point aside of its path; both go on freely. Momentum and angular momentum stay, and
+/// what friction takes is all that is lost; in implicit and explicit steps alike.
 #[test]
 fn a_disk_and_a_point_keep_their_momentum() {
     let (masses, inertia, area) = ([0.5, 2.0], 3.0, 0.1);
@@ -395,13 +400,13 @@ fn a_disk_and_a_point_keep_their_momentum() {
         let (first, last) = (velocities[0] * masses[0] + velocities[1] * masses[1], run.last());
         let (momentum, angular, spin) = momenta(last);
         assert!(spin.abs() > 1e-2, "{scheme}: friction turns the disk, {spin}");
-        close(&format!("{scheme}: momentum"), (momentum - first).norm(), 0.0, 1e-7);
+        close(&format!("{scheme}: momentum"), (momentum - first).norm(), 0.0, 1e-8);
         let start = Vector2::new(0.4, 1.25).perp(&(velocities[0] * masses[0]));
-        close(&format!("{scheme}: angular momentum"), angular, start, 1e-4);
+        close(&format!("{scheme}: angular momentum"), angular, start, 1e-8);
         assert!(last.contacts[0][0].friction.pressure == 0.0, "{scheme}: they part");
         let energy = last.energy;
         assert!(energy.friction_dissipation > 1e-3, "{scheme}: {energy:?}");
-        close(&format!("{scheme}: energy"), energy.error(), 0.0, 2e-3 * energy.initial);
+        close(&format!("{scheme}: energy"), energy.error(), 0.0, 5e-3 * energy.initial);
     }
 }
 
@@ -539,6 +544,11 @@ fn rigid_bodies_that_are_refused() {
     refused(
         block(true, on(plane())).step(step().support(Support::on("block_top").angle(0.1))),
         "steps[0].supports[1].angle: there is no rigid body `block_top`",
+    );
+    // The nodes that carry its motion have no names of their own.
+    refused(
+        tool().step(step().support(path()).support(Support::on(Place::Node(29)).ux(0.1))),
+        "the mesh has no node 29",
     );
     refused(
         tool().step(step().support(path()).support(Support::on(Place::Node(0)).angle(0.1))),

@@ -1,4 +1,4 @@
-//! Rigid bodies as they are given: what rigid masters are parts of, and how supports move them.
+//! Rigid bodies as they are given: what rigid masters are parts of, how supports move them, and what is free of them.
 
 use nalgebra::Vector2;
 use schemars::JsonSchema;
@@ -45,9 +45,9 @@ pub fn add(given: &[(String, RigidBodyInput)], mesh: &mut Mesh) -> Checked<()> {
         let point = Vector2::from(*reference);
         let farthest = mesh.nodes.iter().map(|node| (node - point).norm()).fold(0.0, f64::max);
         let radius = if farthest > 0.0 { farthest } else { 1.0 };
-        let (node, tag) = (mesh.nodes.len(), mesh.node_tags.iter().max().map_or(0, |tag| tag + 1));
+        let (node, tag) = (mesh.nodes.len(), mesh.node_tags.iter().max().map_or(0, |tag| tag.saturating_add(1)));
         mesh.nodes.extend([point; 2]);
-        mesh.node_tags.extend([tag, tag + 1]);
+        mesh.node_tags.extend([tag, tag.saturating_add(1)]);
         mesh.groups.insert(name.clone(), Group::Nodes(vec![node]));
         mesh.rigid_bodies.push(RigidBody {
             name: name.clone(),
@@ -126,7 +126,7 @@ pub fn hold(in_force: &mut InForce, span: Span, model: &Model) {
     }
 }
 
-/// The turning node of the rigid body that a moment acts on.
+/// The rigid body that a moment acts on, if it is one.
 pub fn of_moment<'m>(on: &Place, model: &'m Model) -> Option<&'m RigidBody> {
     match on {
         Place::Group(name) => model.mesh.rigid_body(name),
