@@ -443,7 +443,7 @@ fn what_fails_before_a_solve_is_told_as_well() {
     assert!(row[verdict] == "unsolved" && row[reason].starts_with("element 0 of body `sled` is inverted (det F = -"));
     let told = String::from_utf8(output.stderr).unwrap();
     assert!(told.contains("\nrejected attempts: 2 × element inverted (see column `reason` of newton.csv)\n"), "{told}");
-    assert!(rows.iter().any(|row| row[reason].contains("is inverted (det F = -4.821e-1) at (0.5, 0.5)")), "{text}");
+    assert!(rows.iter().any(|row| row[reason].contains("is inverted (det F = -4.821e-1) at (0.5; 0.5)")), "{text}");
     let summary: Value = serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
     assert_eq!((&summary["given_up"], &summary["cutbacks"]), (&json!({"element inverted": 2}), &json!(2)));
     // Rows with a solve are as many as solves; and no file is listed that is not there.
