@@ -111,11 +111,10 @@ fn single_nodes_are_watched_as_groups_are() {
     let history = table(&folder.path().join("out/history.csv"));
     let column = |x: f64, name: &str| &history[&format!("near_{x}_0.51.{name}")];
     assert_eq!(history.keys().filter(|name| name.starts_with("near_")).count(), 4 * places.len());
-    for k in 0..history["time"].len() {
-        for (name, share) in [("ux", 1.0 / 6.0), ("uy", 1.0 / 6.0), ("fx", 1.0), ("fy", 1.0)] {
+    for (name, share) in [("ux", 1.0 / 6.0), ("uy", 1.0 / 6.0), ("fx", 1.0), ("fy", 1.0)] {
+        for (k, whole) in history[&format!("block_top.{name}")].iter().enumerate() {
             let sum: f64 = places.iter().map(|x| share * column(*x, name)[k]).sum();
-            let whole = history[&format!("block_top.{name}")][k];
-            close(name, sum, whole, 1e-12 * (1.0 + whole.abs()));
+            close(name, sum, *whole, 1e-12 * (1.0 + whole.abs()));
         }
     }
     let largest = column(0.4, "fy").iter().fold(0.0, |most: f64, force| most.max(force.abs()));
