@@ -9,12 +9,11 @@ use super::error::{Checked, ModelError, check_finite, check_positive};
 use super::groups::Place;
 use super::load::Change;
 use super::load_step::Support;
-use super::supports::InForce;
 use crate::mesh::rigid::RigidBody;
 use crate::mesh::{Group, Mesh};
 use crate::model::Model;
-use crate::model::boundary::{Drive, Span};
-use crate::model::support::{Motion, Prescribed};
+use crate::model::boundary::Span;
+use crate::model::support::Motion;
 
 /// A rigid body that moves: contacts with a rigid master name it; supports, forces and a moment `on` its name move it. Its mass is
 /// given as a point mass of its name, and is at the reference point
@@ -115,15 +114,13 @@ pub fn check_support(support: &Support, place: &str, mesh: &Mesh) -> Checked<()>
     }
 }
 
-/// Hold what does not move of rigid bodies: the second dof of their turning nodes, and of axisymmetric ones all but uy.
-pub fn hold(in_force: &mut InForce, span: Span, model: &Model) {
-    for RigidBody { reference, turning, .. } in &model.mesh.rigid_bodies {
-        let of_rings = model.mesh.section.is_axisymmetric().then_some([2 * reference, 2 * turning]);
-        for dof in of_rings.into_iter().flatten().chain([2 * turning + 1]) {
-            let held = || Prescribed::displacement(dof, Drive::Constant(0.0), span);
-            in_force.dofs.entry(dof).or_insert_with(held);
-        }
-    }
+/// Dofs of rigid bodies that never move: the second of their turning nodes, and of axisymmetric ones all but uy.
+pub fn still(model: &Model) -> impl Iterator<Item = usize> {
+    let of_rings = model.mesh.section.is_axisymmetric();
+    model.mesh.rigid_bodies.iter().flat_map(move |RigidBody { reference, turning, .. }| {
+        let aside = of_rings.then_some([2 * reference, 2 * turning]);
+        aside.into_iter().flatten().chain([2 * turning + 1])
+    })
 }
 
 /// The rigid body that a moment acts on, if it is one.

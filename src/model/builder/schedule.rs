@@ -74,7 +74,10 @@ impl Schedule<'_> {
             self.in_force.stay();
         }
         supports(&mut self.in_force, &given.supports, place, span, self.model)?;
-        rigid::hold(&mut self.in_force, span, self.model);
+        for dof in rigid::still(self.model) {
+            let held = || Prescribed::displacement(dof, Drive::Constant(0.0), span);
+            self.in_force.dofs.entry(dof).or_insert_with(held);
+        }
         hold_axis(&mut self.in_force.dofs, place, span, self.model)?;
         let before = std::mem::replace(&mut self.supports, self.in_force.all(place, self.model)?);
         // In motion there is no rest of the reaction: what held is gone.
