@@ -281,6 +281,8 @@ class Contact(dict[str, Any]):
             unbounded bodies. A number is η [F·T/L³]; true takes the impedances of the bodies, 1/η = 1/Z₁ + 1/Z₂
             with Z = ρ c_s of each side: G/(2 c_s) for equal bodies, Z on a rigid master. Dynamic and explicit
             steps have inertia, and omit it
+        rigid_body: Rigid body that a rigid master is a part of, and moves with: one of `rigid_bodies`. Without
+            it the master is at rest
         shrink_fit: Whether the initial overlap of the surfaces is applied gradually over the first step (shrink
             fit) instead of at once
         sliding: Sliding range: finite, or small compared with the distance between nodes
@@ -307,12 +309,13 @@ class Contact(dict[str, Any]):
         normal: Normal | Given = NOT_GIVEN,
         points: int | None | Given = NOT_GIVEN,
         radiation_damping: Radiation | Given = NOT_GIVEN,
+        rigid_body: str | None | Given = NOT_GIVEN,
         shrink_fit: bool | Given = NOT_GIVEN,
         sliding: Sliding | Given = NOT_GIVEN,
         smooth: bool | Given = NOT_GIVEN,
         wear: float | None | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"slave": slave, "master": master, "friction": friction, "along": along, "area": area, "dilatancy": dilatancy, "fluid_pressure": fluid_pressure, "initial": initial, "massless": massless, "method": method, "normal": normal, "points": points, "radiation_damping": radiation_damping, "shrink_fit": shrink_fit, "sliding": sliding, "smooth": smooth, "wear": wear}))
+        super().__init__(_given({"slave": slave, "master": master, "friction": friction, "along": along, "area": area, "dilatancy": dilatancy, "fluid_pressure": fluid_pressure, "initial": initial, "massless": massless, "method": method, "normal": normal, "points": points, "radiation_damping": radiation_damping, "rigid_body": rigid_body, "shrink_fit": shrink_fit, "sliding": sliding, "smooth": smooth, "wear": wear}))
 
 
 class Plane(dict[str, Any]):
@@ -615,12 +618,14 @@ class Normal(dict[str, Any]):
 
 class Blocks(dict[str, Any]):
     """A mesh of blocks: quadrilaterals with straight sides or arcs, each divided into rows and columns of elements.
-    Blocks of one body that share a whole side are joined there, with the same nodes; those of different bodies
-    never are.
+    Blocks of one body that share a whole side are joined there, with the same nodes; those of different bodies only
+    where `joined` says so.
 
     Args:
         blocks: Blocks; nodes are numbered in their order, row by row
         apart: Names of sides that are not joined to others, such as the two sides of a crack in one body
+        joined: Lists of bodies that are joined with each other, as one body is, where their blocks share a
+            whole side, such as two materials that are bonded
         parameters: Numbers with names of your choice, for the expressions of the blocks; a number, or an
             expression in other parameters
     """
@@ -630,9 +635,10 @@ class Blocks(dict[str, Any]):
         *,
         blocks: Sequence[Block],
         apart: Sequence[str] | Given = NOT_GIVEN,
+        joined: Sequence[Sequence[str]] | Given = NOT_GIVEN,
         parameters: Mapping[str, Amount] | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"blocks": blocks, "apart": apart, "parameters": parameters}))
+        super().__init__(_given({"blocks": blocks, "apart": apart, "joined": joined, "parameters": parameters}))
 
 
 class Block(dict[str, Any]):
@@ -648,6 +654,9 @@ class Block(dict[str, Any]):
             corners: it is the shorter arc
         grading: Grading of their sizes along side 0 and along side 1, as a geometric series; default: uniform
         kind: Kind of the elements
+        points: Points [x, y] by a name of your choice: the node of this block that is nearest to it is in the
+            group of nodes of that name, which points of other blocks may share. It must be the only one, and no
+            farther away than the elements there are long [L]
         sides: For each side its name, or null: edges of a name are a group for contacts, supports and loads
     """
 
@@ -660,9 +669,10 @@ class Block(dict[str, Any]):
         arcs: Sequence[Sequence[Amount] | None] | Given = NOT_GIVEN,
         grading: Sequence[Grading] | Given = NOT_GIVEN,
         kind: BlockKind | Given = NOT_GIVEN,
+        points: Mapping[str, Sequence[Amount]] | Given = NOT_GIVEN,
         sides: Sequence[str | None] | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"body": body, "corners": corners, "elements": elements, "arcs": arcs, "grading": grading, "kind": kind, "sides": sides}))
+        super().__init__(_given({"body": body, "corners": corners, "elements": elements, "arcs": arcs, "grading": grading, "kind": kind, "points": points, "sides": sides}))
 
 
 class Middle(dict[str, Any]):
@@ -704,8 +714,11 @@ class Output(dict[str, Any]):
         checkpoint: Minutes of wall time between checkpoints (checkpoint.bin), from which `run --resume`
             continues with bitwise identical results, however the run ended; the last one is written at the end.
             Default 5; null or 0 for none
-        every: Fields are written with every n-th row of the history, and at the end of each step; default: with
-            every row, or with none where `times` are given
+        every: Fields are written with every n-th row of the history, and at the end of each step; default:
+            about 30 times in the run, equally often in each step at equal parts of its duration, or only at
+            `times` and ends of steps where `times` are given
+        exact: Whether fields are written as 64-bit numbers, as they are computed; default: as 32-bit numbers
+            (relative error at most 6e-8), in half the space. Undeformed coordinates are always 64-bit numbers
         fields: Whether fields are written at all
         fronts: The fronts that run along contacts with friction (fronts.csv), and the events of slip that they
             make (events.csv)
@@ -725,6 +738,7 @@ class Output(dict[str, Any]):
         *,
         checkpoint: float | None | Given = NOT_GIVEN,
         every: int | None | Given = NOT_GIVEN,
+        exact: bool | Given = NOT_GIVEN,
         fields: bool | Given = NOT_GIVEN,
         fronts: Fronts | None | Given = NOT_GIVEN,
         interval: float | None | Given = NOT_GIVEN,
@@ -732,7 +746,7 @@ class Output(dict[str, Any]):
         report: bool | Given = NOT_GIVEN,
         times: Vector | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"checkpoint": checkpoint, "every": every, "fields": fields, "fronts": fronts, "interval": interval, "points": points, "report": report, "times": times}))
+        super().__init__(_given({"checkpoint": checkpoint, "every": every, "exact": exact, "fields": fields, "fronts": fronts, "interval": interval, "points": points, "report": report, "times": times}))
 
 
 class Fronts(dict[str, Any]):
@@ -823,6 +837,26 @@ class Probe(dict[str, Any]):
         to: Vector | None | Given = NOT_GIVEN,
     ) -> None:
         super().__init__(_given({"at": at, "body": body, "from_": from_, "number": number, "to": to}))
+
+
+class RigidBody(dict[str, Any]):
+    """A rigid body that moves: contacts with a rigid master name it; supports, forces and a moment `on` its name move
+    it. Its mass is given as a point mass of its name, and is at the reference point.
+
+    Args:
+        reference: Reference point [x, y]: `ux` and `uy` of a support are its displacement, `angle` is the
+            rotation about it, and the moment in the history is about it [L]
+        inertia: Moment of inertia about the reference point, which is then the centre of mass; needed in
+            dynamic steps unless supports give the `angle` [M L²]
+    """
+
+    def __init__(
+        self,
+        *,
+        reference: Vector,
+        inertia: float | None | Given = NOT_GIVEN,
+    ) -> None:
+        super().__init__(_given({"reference": reference, "inertia": inertia}))
 
 
 class PlaneStress(dict[str, Any]):
@@ -929,8 +963,8 @@ class Load(dict[str, Any]):
             positive toward the body [F/L²]
         force: Force on every node of the group [F]
         gravity: Acceleration of gravity on a body or on point masses [L/T²]
-        moment: Moment on a loading plate that moves as a rigid body, counter-clockwise; it rotates with the
-            plate [F L]
+        moment: Moment on a rigid body, or on a loading plate that moves as one, with which it rotates; counter-
+            clockwise [F L]
         pressure: Pressure on edges that follows the surface, positive toward the body [F/L²]
         spring: Spring at every node of the group, to the ground or to a moving driver; its work on the node
             counts as external work
@@ -1153,6 +1187,8 @@ class Support(dict[str, Any]):
     Args:
         on: Where
         along: Direction [x, y] of the displacement u; it need not be of unit length
+        angle: Rotation of a rigid body about its reference point, counter-clockwise; null releases it, see
+            `supports` [rad]
         rotation: Rigid rotation about a point, instead of all others; null releases it, see `supports`
         u: Displacement along the direction `along`; the perpendicular component is free, unless another support
             of the node constrains it: two directions at a node constrain both of its components. null releases
@@ -1169,13 +1205,14 @@ class Support(dict[str, Any]):
         *,
         on: Place,
         along: Vector | None | Given = NOT_GIVEN,
+        angle: Drive | None | Given = NOT_GIVEN,
         rotation: Rotation | None | Given = NOT_GIVEN,
         u: Drive | None | Given = NOT_GIVEN,
         un: Drive | None | Given = NOT_GIVEN,
         ux: Drive | None | Given = NOT_GIVEN,
         uy: Drive | None | Given = NOT_GIVEN,
     ) -> None:
-        super().__init__(_given({"on": on, "along": along, "rotation": rotation, "u": u, "un": un, "ux": ux, "uy": uy}))
+        super().__init__(_given({"on": on, "along": along, "angle": angle, "rotation": rotation, "u": u, "un": un, "ux": ux, "uy": uy}))
 
 
 class Rotation(dict[str, Any]):
@@ -1236,7 +1273,8 @@ InitialStress = Union[Geostatic, Components]
 # the same coordinate twice is a jump, and the second value holds there and beyond.
 Profile = Union[AlongX, AlongY, float, str]
 
-# The master side: a group of the mesh, or a rigid body at rest that is given by a formula.
+# The master side: a group of the mesh, or a rigid master given by a formula, at rest unless `rigid_body` says what it
+# moves with.
 Master = Union[Plane, Circle, Polyline, str]
 
 # A friction law and its parameters.
@@ -1264,7 +1302,7 @@ Radiation = Union[bool, float]
 Sliding = Union[Literal["finite"], Literal["small"]]
 
 # A mesh file or a mesh in place.
-MeshSource = Union[str, Blocks, Mapping[str, Any]]
+MeshSource = Union[str, Sequence[str], Blocks, Mapping[str, Any]]
 
 # A number that may depend on the parameters of the mesh.
 Amount = Union[float, str]
@@ -1314,8 +1352,8 @@ class CaseKeys(TypedDict, total=False):
     contacts: Mapping[str, Contact]
     # Initial velocity [x, y] of whole bodies; supported nodes follow their supports
     initial_velocity: Mapping[str, Vector]
-    # Path of a gmsh MSH 4.1 file relative to the case file, or a mesh given in place: as blocks that are divided
-    # into elements, or node by node
+    # Path of a gmsh file (MSH 4.1, or 2.2 ASCII) relative to the case file, a list of such paths, or a mesh given
+    # in place: as blocks that are divided into elements, or node by node
     mesh: Mesh | MeshSource
     # Stopping criteria of Newton's method
     newton: Newton
@@ -1335,6 +1373,10 @@ class CaseKeys(TypedDict, total=False):
     # Gauges by a name of your choice: displacement, velocity, strain and stress at points of the bodies, at every
     # row of the history (probes.csv)
     probes: Mapping[str, Probe]
+    # Rigid bodies that move, by a name of your choice: rigid masters of contacts are parts of them. Supports on the
+    # name give the path, `ux`, `uy` and `angle`, 0 where it rests; what they leave free moves under contact and
+    # loads on the name
+    rigid_bodies: Mapping[str, RigidBody]
     # Kind of plane section: "plane_strain", a plate {"plane_stress": {"thickness": …}}, or "axisymmetric"
     section: Section
     # Steps, one after the other
@@ -1343,5 +1385,6 @@ class CaseKeys(TypedDict, total=False):
     title: str
     # Labels of the units used, for readers; any consistent set will do
     units: Mapping[str, str]
-    # Groups whose mean displacement and reaction are written to the history
-    watch: Sequence[str]
+    # Groups, or single nodes {"near": [x, y]} or {"node": tag}, whose mean displacement and reaction are written to
+    # the history, under the name of the group, `near_X_Y` or `node_TAG`
+    watch: Sequence[Place]

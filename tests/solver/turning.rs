@@ -256,7 +256,7 @@ fn what_these_plates_cannot_do_is_refused() {
         (level().plate("block_right").step(step()), "plates[0]: node 19 is tied to others already"),
         (
             level().step(step().load(Load::moment("block_top", 1.0))),
-            "steps[0].loads[0].on: a moment acts on a plate that rotates, and block_top is none",
+            "steps[0].loads[0].on: a moment acts on a rigid body or a plate that rotates, and block_top is neither",
         ),
         (
             level().step(step().support(Support::on("block_top").along([1.0, 1.0], 0.0))),
