@@ -52,8 +52,10 @@ fn a_terminal_shows_one_line_that_is_kept_up_to_date() {
     assert_eq!(text.matches("% of the slave's edge").count(), 1, "{text}");
     let warned = text.find("% of the slave's edge").expect("a warning");
     assert!(warned < text.rfind(" dt ").expect("a state"), "{text}");
-    let last: Vec<&str> = text.trim_end().lines().rev().take(2).collect();
-    assert!(last[1].ends_with("results in out") && last[0].starts_with("contact `base`: "), "{text}");
+    let last: Vec<&str> = text.trim_end().lines().rev().take(3).collect();
+    let [penalties, contact, end] = last[..] else { panic!("{text}") };
+    assert!(end.ends_with("results in out") && contact.starts_with("contact `base`: "), "{text}");
+    assert!(penalties.starts_with("contact penalties: "), "{text}");
 }
 
 /// A terminal on which nothing can be written over has lines.
