@@ -78,8 +78,8 @@ fn main() -> ExitCode {
     defect::watch();
     let result = defect::catch(run).unwrap_or_else(|defect| Err(Failure::Defect(defect)));
     let Err(failure) = result else { return ExitCode::SUCCESS };
-    let (code, told) = failure.told();
-    cli::say(format_args!("{told}"));
+    let (code, message) = failure.code_and_message();
+    cli::say(format_args!("{message}"));
     ExitCode::from(code)
 }
 

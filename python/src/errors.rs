@@ -41,5 +41,5 @@ pub fn stopped(py: Python, message: &str) -> PyErr {
 
 /// `Defect`: the program itself is wrong.
 pub fn defect(py: Python, message: &str) -> PyErr {
-    exception(py, "Defect", (fecontact::case::job::defect::told(message),))
+    exception(py, "Defect", (fecontact::case::job::defect::message(message),))
 }

@@ -88,7 +88,7 @@ pub fn run<'py>(
         (Ok(()), Some(why)) => ("stopped", Some(why), raised),
         (Err(Failed::Stopped(Error::Interrupted)), _) => ("interrupted", Some(Error::Interrupted.to_string()), raised),
         (Err(Failed::Stopped(error)), _) => ("stopped", Some(error.to_string()), raised),
-        (Err(Failed::Defect(what)), _) => ("defect", Some(fecontact::case::job::defect::told(&what)), raised),
+        (Err(Failed::Defect(what)), _) => ("defect", Some(fecontact::case::job::defect::message(&what)), raised),
     })
 }
 

@@ -245,7 +245,7 @@ fn begun(document: &mut Value, source: &Path) -> Checked<(PathBuf, Checkpoint)> 
         }
     }
     differences.retain(|difference| !difference.is_variant());
-    told(differences, "this case cannot begin with the end of that run")?;
+    refuse(differences, "this case cannot begin with the end of that run")?;
     join(document, steps(&before));
     Ok((file, checkpoint))
 }
@@ -262,14 +262,14 @@ fn unchanged(before: &Value, now: &Value, begun: usize) -> Checked<()> {
     for k in 0..begun {
         compare(format!("steps[{k}]"), steps(&before).get(k), steps(&now).get(k), &mut differences);
     }
-    told(differences, "the case has changed since its checkpoint was written")
+    refuse(differences, "the case has changed since its checkpoint was written")
 }
 
 /// Parameters of friction that only the start of a run depends on, or that what is stored depends on.
 const STARTING: [&str; 4] = ["alpha_t", "law", "structure", "theta"];
 
 /// Differences listed in one message.
-const TOLD: usize = 5;
+const MOST_LISTED: usize = 5;
 
 /// A place where two cases differ.
 pub struct Difference {
@@ -291,7 +291,7 @@ impl Difference {
 }
 
 /// Refuse differences, if there are any.
-pub fn told(differences: Vec<Difference>, what: &str) -> Checked<()> {
+pub fn refuse(differences: Vec<Difference>, what: &str) -> Checked<()> {
     if differences.is_empty() {
         return Ok(());
     }
@@ -300,13 +300,16 @@ pub fn told(differences: Vec<Difference>, what: &str) -> Checked<()> {
         Some(Value::Number(number)) => number.as_f64().unwrap_or(f64::NAN).to_string(),
         Some(value) => clipped(&value.to_string()),
     };
-    let told = differences.iter().take(TOLD);
-    let told: Vec<String> = told
+    let first = differences.iter().take(MOST_LISTED);
+    let first: Vec<String> = first
         .map(|Difference { place, was, is }| format!("`{}` is {}, and was {}", clipped(place), value(is), value(was)))
         .collect();
-    let more =
-        if differences.len() > TOLD { format!(", and {} more", differences.len() - TOLD) } else { String::new() };
-    Err(ModelError::new("", format!("{what}: {}{more}", told.join("; "))))
+    let more = if differences.len() > MOST_LISTED {
+        format!(", and {} more", differences.len() - MOST_LISTED)
+    } else {
+        String::new()
+    };
+    Err(ModelError::new("", format!("{what}: {}{more}", first.join("; "))))
 }
 
 /// The keys of a value; none unless it is an object.

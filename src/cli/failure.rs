@@ -18,11 +18,11 @@ pub enum Failure {
 
 impl Failure {
     /// The exit code, and the text for stderr.
-    pub fn told(&self) -> (u8, String) {
+    pub fn code_and_message(&self) -> (u8, String) {
         match self {
             Self::Stopped(message) => (1, format!("stopped: {message}")),
             Self::BadInput(message) => (2, format!("error: {message}")),
-            Self::Defect(message) => (70, defect::told(message)),
+            Self::Defect(message) => (70, defect::message(message)),
         }
     }
 }

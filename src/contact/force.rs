@@ -83,7 +83,9 @@ impl<'a> PointEvaluation<'a> {
     /// # Errors
     /// [`LawFailure`] of a law that does not say where its surfaces part.
     pub fn new(
-        (pair, slave, law): (&'a ContactPair, &'a SlavePoint, &'a ContactLaw),
+        pair: &'a ContactPair,
+        slave: &'a SlavePoint,
+        law: &'a ContactLaw,
         old: &'a ContactState,
         increment: PointIncrement,
         place: PointPlace,

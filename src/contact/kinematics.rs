@@ -34,7 +34,7 @@ use nalgebra::Vector2;
 
 use super::master::{Master, Rigid};
 use super::projection::{Bound, FACING, Projection, normal_of, tangent_of};
-use super::surface::{MasterPoint, Path, SlavePoint, Surface};
+use super::surface::{MasterPoint, Path, PathPart, SlavePoint, Surface};
 use crate::mesh::configuration::Configuration;
 use crate::mesh::rigid::{RigidBody, turned};
 use crate::mesh::shape;
@@ -158,7 +158,7 @@ fn on_surface(
     k.list_slave(slave);
     k.list(curve.nodes());
     let parts = || path.into_iter().flat_map(Path::parts);
-    parts().for_each(|(j, ..)| k.list(surface.segments[j].nodes()));
+    parts().for_each(|part| k.list(surface.segments[part.segment].nodes()));
     k.take_slave(slave, x);
     let foot = curve.position(xi);
     for &(node, w) in &foot {
@@ -180,7 +180,7 @@ fn slides(surface: &Surface, path: &Path, projection: &Projection, x: &Configura
         let [a, b] = surface.segments[segment].ends;
         normal_of(x.between(a, b).normalize()).dot(&projection.normal) > -FACING
     };
-    surface.own_depth.is_none() || path.parts().all(|(segment, ..)| looks(segment))
+    surface.own_depth.is_none() || path.parts().all(|part| looks(part.segment))
 }
 
 impl Kinematics {
@@ -254,8 +254,9 @@ impl Kinematics {
     }
 
     /// ∫ J dξ along a part of a path, and ∫ s·δx′ dξ.
-    fn slide(&mut self, surface: &Surface, (j, start, end): (usize, f64, f64), x: &Configuration) {
-        let segment = &surface.segments[j];
+    fn slide(&mut self, surface: &Surface, part: PathPart, x: &Configuration) {
+        let PathPart { segment, start, end } = part;
+        let segment = &surface.segments[segment];
         let points = if segment.is_straight() { 1 } else { 4 };
         for (at, weight) in shape::gauss(points) {
             let slope = segment.slope(start + 0.5 * (1.0 + at) * (end - start));

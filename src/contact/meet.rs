@@ -129,21 +129,21 @@ impl ContactPair {
             _ => None,
         };
         let (mut room, mut weights) = (Room::default(), Weights::new());
-        let meet = |(k, slave): (usize, &SlavePoint)| {
+        let meet = |(point, slave): (usize, &SlavePoint)| {
             let mut found = Kinematics::new(varied);
-            let at = &mut found;
+            let k = &mut found;
             let met = match (&self.small, &self.mortar, &self.master) {
-                (Some(small), ..) => Some(small.points[k].as_ref()?.meet(x, x, at)),
-                (_, Some(mortar), Master::Rigid(body)) => mortar.meet_rigid(k, body, [x, x], (at, &mut room)),
+                (Some(small), ..) => Some(small.points[point].as_ref()?.meet(x, x, k)),
+                (_, Some(mortar), Master::Rigid(body)) => mortar.meet_rigid(point, body, [x, x], k, &mut room),
                 (_, Some(mortar), Master::Mesh(surface)) => {
-                    let overlaps = overlaps.as_ref()?;
-                    mortar.weigh(k, surface, overlaps, x, (&mut room, &mut weights));
+                    let facing = mortar.facing(surface, overlaps.as_ref()?);
+                    facing.weigh(point, x, &mut room, &mut weights);
                     let weights = Some(&weights).filter(|weights| varied && !weights.is_empty());
-                    mortar.meet(k, surface, overlaps, weights, x, (at, &mut room))
+                    facing.meet(point, weights, x, k, &mut room)
                 }
                 _ => {
                     let projection = index.project(slave, None, x)?;
-                    kinematics(slave, &self.master, &projection, None, x, at);
+                    kinematics(slave, &self.master, &projection, None, x, k);
                     Some(Meeting { gap: projection.gap, foot: projection.foot })
                 }
             };

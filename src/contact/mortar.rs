@@ -142,9 +142,8 @@ impl Mortar {
         rooms.resize_with(self.at.len().div_ceil(TOGETHER), Room::default);
         let parts = weights.par_chunks_mut(TOGETHER).zip(rooms).enumerate();
         parts.for_each(|(part, (weights, room))| {
-            for (k, weights) in weights.iter_mut().enumerate() {
-                self.weigh(TOGETHER * part + k, surface, overlaps, x, (room, weights));
-            }
+            let facing = self.facing(surface, overlaps);
+            weights.iter_mut().enumerate().for_each(|(k, weights)| facing.weigh(TOGETHER * part + k, x, room, weights));
         });
     }
 
@@ -155,47 +154,60 @@ impl Mortar {
         edges.for_each(|(edge, cut)| cut.cut(edge, surface, index, x));
     }
 
+    /// The slave edges as they face a mesh surface, cut in some configuration.
+    pub fn facing<'a>(&'a self, surface: &'a Surface, overlaps: &'a Overlaps) -> Facing<'a> {
+        Facing { mortar: self, surface, overlaps }
+    }
+}
+
+/// Slave edges, the mesh surface that they face, and the cuts between the two.
+#[derive(Clone, Copy, Debug)]
+pub struct Facing<'a> {
+    mortar: &'a Mortar,
+    surface: &'a Surface,
+    overlaps: &'a Overlaps,
+}
+
+impl Facing<'_> {
     /// Projection of a mortar point on the master and its kinematics; `None` without a projection. `old` are its
     /// weights in the committed configuration.
     pub fn meet(
         &self,
         point: usize,
-        surface: &Surface,
-        overlaps: &Overlaps,
         old: Option<&Weights>,
         x: &Configuration,
-        (k, room): (&mut Kinematics, &mut Room),
+        k: &mut Kinematics,
+        room: &mut Room,
     ) -> Option<Meeting> {
         match k.varied {
-            true => self.meet_by(point, surface, overlaps, old, x, (k, &mut room.duals)),
-            false => self.meet_by(point, surface, overlaps, old, x, (k, &mut room.values)),
+            true => self.meet_by(point, old, x, k, &mut room.duals),
+            false => self.meet_by(point, old, x, k, &mut room.values),
         }
     }
 
-    /// [`Mortar::meet`] in numbers with or without variations.
+    /// [`Facing::meet`] in numbers with or without variations.
     fn meet_by<N: Number>(
         &self,
         point: usize,
-        surface: &Surface,
-        overlaps: &Overlaps,
         old: Option<&Weights>,
         x: &Configuration,
-        (k, room): (&mut Kinematics, &mut Averaging<N>),
+        k: &mut Kinematics,
+        room: &mut Averaging<N>,
     ) -> Option<Meeting> {
-        let foot = self.foot(point, overlaps)?;
+        let foot = self.foot(point)?;
         let Averaging { frame, averages, relative } = room;
-        self.list(point, surface, overlaps, &mut frame.nodes);
+        self.list(point, &mut frame.nodes);
         for &(node, _) in old.into_iter().flatten() {
             if !frame.nodes.contains(&node) {
                 frame.nodes.push(node);
             }
         }
         frame.place(x);
-        if !self.average(point, surface, overlaps, frame, averages) {
+        if !self.average(point, frame, averages) {
             return None;
         }
         let Averages { weights, length } = averages;
-        let along = self.along(point, frame);
+        let along = self.mortar.along(point, frame);
         let (s, n) = (along.clone(), along.turned());
         relative.clear();
         relative.extend(weights.iter().map(|w| w.over(length)));
@@ -209,34 +221,27 @@ impl Mortar {
             }
             slip = s.dot(&moved.minus(&mean));
         }
-        let length = length.scaled(surface.share());
+        let length = length.scaled(self.surface.share());
         let met = Meeting { gap: gap.value(), foot };
         MeanPlace { nodes: &frame.nodes, relative, gap, slip, length, axes: [s, n] }.write(k);
         Some(met)
     }
 
     /// Write the weights of r_j in a configuration over `found`; none where no master faces the point.
-    pub fn weigh(
-        &self,
-        point: usize,
-        surface: &Surface,
-        overlaps: &Overlaps,
-        x: &Configuration,
-        (room, found): (&mut Room, &mut Weights),
-    ) {
+    pub fn weigh(&self, point: usize, x: &Configuration, room: &mut Room, found: &mut Weights) {
         let Averaging { frame, averages, .. } = &mut room.values;
-        self.list(point, surface, overlaps, &mut frame.nodes);
+        self.list(point, &mut frame.nodes);
         frame.place(x);
         found.clear();
-        if self.average(point, surface, overlaps, frame, averages) {
+        if self.average(point, frame, averages) {
             found.extend(frame.nodes.iter().zip(&averages.weights).map(|(&node, w)| (node, w / averages.length)));
         }
     }
 
     /// The facing segment nearest to a point along its edges.
-    fn foot(&self, point: usize, overlaps: &Overlaps) -> Option<MasterPoint> {
-        let station = [-1.0, 1.0, 0.0];
-        let all = self.at[point].iter().flat_map(|&(e, a)| overlaps.0[e].overlaps.iter().map(move |o| (o, station[a])));
+    fn foot(&self, point: usize) -> Option<MasterPoint> {
+        let of_edge = |&(e, a): &(usize, usize)| self.overlaps.0[e].overlaps.iter().map(move |o| (o, NODE_AT[a]));
+        let all = self.mortar.at[point].iter().flat_map(of_edge);
         let away = |o: &Overlap, at: f64| (at - at.clamp(o.ends[0].xi, o.ends[1].xi)).abs();
         let (nearest, at) = all.min_by(|a, b| away(a.0, a.1).total_cmp(&away(b.0, b.1)))?;
         // Master and slave have the same direction along s.
@@ -246,12 +251,13 @@ impl Mortar {
     }
 
     /// Write all nodes that take part in the average at a point over `nodes`.
-    fn list(&self, point: usize, surface: &Surface, overlaps: &Overlaps, nodes: &mut Vec<usize>) {
+    fn list(&self, point: usize, nodes: &mut Vec<usize>) {
         nodes.clear();
-        let edges = || self.at[point].iter().map(|&(e, _)| e);
-        let parts = || edges().flat_map(|e| &overlaps.0[e].overlaps);
-        let slaves = edges().flat_map(|e| self.edges[e].iter().copied());
-        let masters = parts().flat_map(|o| surface.segments[o.segment].nodes());
+        let Mortar { edges, at, .. } = self.mortar;
+        let own = || at[point].iter().map(|&(e, _)| e);
+        let parts = || own().flat_map(|e| &self.overlaps.0[e].overlaps);
+        let slaves = own().flat_map(|e| edges[e].iter().copied());
+        let masters = parts().flat_map(|o| self.surface.segments[o.segment].nodes());
         let cuts = parts().flat_map(|o| o.ends.iter().filter_map(|cut| cut.node));
         for node in slaves.chain(masters).chain(cuts) {
             if !nodes.contains(&node) {
@@ -260,36 +266,18 @@ impl Mortar {
         }
     }
 
-    /// s_j: mean direction ∫ φ_j dx of the edges at a point.
-    fn along<N: Number>(&self, point: usize, frame: &Frame<N>) -> DualVector<N> {
-        let mut sum = DualVector::default();
-        for LengthShare { factor, tangent, .. } in self.around[point].iter().flat_map(|at| &at.length) {
-            for &(node, slope) in tangent {
-                sum.add_scaled(&N::constant(factor * slope), frame.at(node));
-            }
-        }
-        sum.normalized()
-    }
-
     /// Write the average at a point over `averages`; whether a master faces enough of its edges.
-    fn average<N: Number>(
-        &self,
-        point: usize,
-        surface: &Surface,
-        overlaps: &Overlaps,
-        frame: &Frame<N>,
-        averages: &mut Averages<N>,
-    ) -> bool {
+    fn average<N: Number>(&self, point: usize, frame: &Frame<N>, averages: &mut Averages<N>) -> bool {
         averages.clear(frame.nodes.len());
         let mut whole = 0.0;
-        for &(e, a) in &self.at[point] {
-            let edge = &self.edges[e];
+        for &(e, a) in &self.mortar.at[point] {
+            let edge = &self.mortar.edges[e];
             let chord = frame.at(edge[1]).minus(frame.at(edge[0]));
             let depths = [0, 1].map(|end| frame.depth(frame.at(edge[end])).map_or(1.0, |depth| depth.value()));
             whole += chord.dot(&chord).value().sqrt() * 0.5 * (depths[0] + depths[1]);
             let along = chord.normalized();
-            for overlap in &overlaps.0[e].overlaps {
-                averages.integrate(edge, a, overlap, &surface.segments[overlap.segment], &along, frame);
+            for overlap in &self.overlaps.0[e].overlaps {
+                averages.integrate(edge, a, overlap, &self.surface.segments[overlap.segment], &along, frame);
             }
         }
         averages.length.value() > NEGLIGIBLE * whole
@@ -300,10 +288,13 @@ impl Mortar {
 /// lost in round-off.
 const NEGLIGIBLE: f64 = 1e-9;
 
+/// ξ of the nodes of an edge: its ends, then its middle.
+const NODE_AT: [f64; 3] = [-1.0, 1.0, 0.0];
+
 /// φ_a at ξ on an edge of n nodes, and its derivative: linear from node to node.
 fn hat(n: usize, a: usize, xi: f64) -> (f64, f64) {
-    let (place, width) = ([-1.0, 1.0, 0.0][a], if n == 2 { 2.0 } else { 1.0 });
-    let away: f64 = xi - place;
+    let width = if n == 2 { 2.0 } else { 1.0 };
+    let away: f64 = xi - NODE_AT[a];
     match away.abs() < width {
         true => (1.0 - away.abs() / width, -away.signum() / width),
         false => (0.0, 0.0),
@@ -431,12 +422,23 @@ struct Sums {
     gap: f64,
     slip: f64,
     along: Vector2<f64>,
-    /// That of the lever of a rigid body that moves
+    /// Sum of ℓ times the lever of a rigid body that moves
     arm: Vector2<f64>,
     foot: Option<MasterPoint>,
 }
 
 impl Mortar {
+    /// s_j: mean direction ∫ φ_j dx of the edges at a point.
+    fn along<N: Number>(&self, point: usize, frame: &Frame<N>) -> DualVector<N> {
+        let mut sum = DualVector::default();
+        for LengthShare { factor, tangent, .. } in self.around[point].iter().flat_map(|at| &at.length) {
+            for &(node, slope) in tangent {
+                sum.add_scaled(&N::constant(factor * slope), frame.at(node));
+            }
+        }
+        sum.normalized()
+    }
+
     /// Projection of a mortar point on a rigid body and its kinematics; `None` where no Gauss point has a projection.
     /// The configurations are the committed one and that of the trial.
     pub fn meet_rigid(
@@ -444,7 +446,8 @@ impl Mortar {
         point: usize,
         rigid: &Rigid,
         [before, x]: [&Configuration; 2],
-        (mean, room): (&mut Kinematics, &mut Room),
+        mean: &mut Kinematics,
+        room: &mut Room,
     ) -> Option<Meeting> {
         let around = &self.around[point];
         let meet = |slave: &SlavePoint, k: &mut Kinematics| meet(slave, rigid, [before, x], k);

@@ -242,7 +242,8 @@ impl ContactPair {
         &self,
         slave: &SlavePoint,
         [old, foreseen, now]: [&ContactState; 3],
-        (time, dt): (f64, f64),
+        time: f64,
+        dt: f64,
     ) -> Result<Option<Arrival>, LawFailure> {
         let pressure = now.friction.pressure;
         if pressure <= 0.0 || !old.apart(self.touch) {

@@ -72,9 +72,6 @@ impl PairResponse {
     }
 }
 
-/// Kinematics of a point to be filled in, and memory for averages.
-type At<'a> = (&'a mut Kinematics, &'a mut Room);
-
 /// Input of one evaluation for every point.
 struct Question<'a, P> {
     pair: &'a ContactPair,
@@ -105,7 +102,7 @@ impl ContactPair {
         let laws = self.laws_during(during.span())?;
         let question = Question { pair: self, laws, during, presumed, varied: request == Request::Tangent };
         if let Some(small) = &self.small {
-            return question.each(old, response, |k, slave, old, increment, (kinematics, _)| {
+            return question.each(old, response, |k, slave, old, increment, kinematics, _| {
                 let meeting = small.points[k].as_ref().map(|point| point.meet(before, x, kinematics));
                 averaged(self, slave, meeting, old, increment, x)
             });
@@ -129,10 +126,10 @@ impl ContactPair {
         if let (Some(mortar), Master::Mesh(surface)) = (&self.mortar, &self.master) {
             mortar.commit(&self.master, surface, before, committed);
             mortar.cut(surface, &index, x, overlaps);
-            let (committed, overlaps) = (&*committed, &*overlaps);
-            return question.each(old, response, |k, slave, old, increment, (kinematics, room)| {
+            let (committed, facing) = (&*committed, mortar.facing(surface, overlaps));
+            return question.each(old, response, |k, slave, old, increment, kinematics, room| {
                 let weights = committed.weights(k);
-                let meeting = mortar.meet(k, surface, overlaps, weights, x, (&mut *kinematics, room));
+                let meeting = facing.meet(k, weights, x, kinematics, room);
                 if meeting.is_some() && weights.is_none() {
                     kinematics.count_from(None, before, x);
                 }
@@ -140,11 +137,12 @@ impl ContactPair {
             });
         }
         if let (Some(mortar), Master::Rigid(body)) = (&self.mortar, &self.master) {
-            return question.each(old, response, |k, slave, old, increment, at| {
-                averaged(self, slave, mortar.meet_rigid(k, body, [before, x], at), old, increment, x)
+            return question.each(old, response, |k, slave, old, increment, kinematics, room| {
+                let meeting = mortar.meet_rigid(k, body, [before, x], kinematics, room);
+                averaged(self, slave, meeting, old, increment, x)
             });
         }
-        question.each(old, response, |_, slave, old, increment, (kinematics, _)| {
+        question.each(old, response, |_, slave, old, increment, kinematics, _| {
             let valley = increment.presumption.astride.and_then(|segments| index.in_valley(slave, segments, x));
             let projection = valley.or_else(|| index.project(slave, old.foot, x));
             place(self, slave, projection, old, increment, [before, x], kinematics)
@@ -159,7 +157,7 @@ impl<P: Fn(usize) -> Presumption + Sync> Question<'_, P> {
         &self,
         old: &[ContactState],
         response: &mut PairResponse,
-        place: impl Fn(usize, &SlavePoint, &ContactState, PointIncrement, At) -> PointPlace + Sync,
+        place: impl Fn(usize, &SlavePoint, &ContactState, PointIncrement, &mut Kinematics, &mut Room) -> PointPlace + Sync,
     ) -> Result<(), (usize, LawFailure)> {
         let points = &self.pair.points;
         let PairResponse { states, parts, .. } = response;
@@ -186,7 +184,7 @@ impl Chunk {
         numbers: std::ops::Range<usize>,
         old: &[ContactState],
         states: &mut [ContactState],
-        place: impl Fn(usize, &SlavePoint, &ContactState, PointIncrement, At) -> PointPlace,
+        place: impl Fn(usize, &SlavePoint, &ContactState, PointIncrement, &mut Kinematics, &mut Room) -> PointPlace,
     ) {
         let Question { pair, ref laws, during, .. } = *question;
         let Self { closed, kinematics, room, failure } = self;
@@ -201,8 +199,8 @@ impl Chunk {
                 let (slave, old) = (&points[i], &old[i]);
                 let increment = PointIncrement { during, presumption: (question.presumed)(first + i) };
                 kinematics.varied = question.varied;
-                let place = place(first + i, slave, old, increment, (&mut *kinematics, room));
-                match PointEvaluation::new((pair, slave, &laws[slave.law]), old, increment, place, kinematics) {
+                let place = place(first + i, slave, old, increment, kinematics, room);
+                match PointEvaluation::new(pair, slave, &laws[slave.law], old, increment, place, kinematics) {
                     Ok(loading) => {
                         sliding[i] = loading.sliding;
                         loadings[i] = Some(loading);

@@ -173,7 +173,7 @@ fn behind_ridge(
     x: &Configuration,
 ) -> Projection {
     let way = surface.path(nearest.foot, from).into_iter().flat_map(Path::parts);
-    let earlier = way.skip(1).map(|(segment, ..)| segment).take_while(|&segment| meets(segment));
+    let earlier = way.skip(1).map(|part| part.segment).take_while(|&segment| meets(segment));
     let behind = earlier.map(|segment| on_curve(slave, surface, segment, x));
     behind.take_while(|at| at.gap < 0.0 && (0.0..=1.0).contains(&at.foot.xi)).last().unwrap_or(nearest)
 }

@@ -143,6 +143,17 @@ struct Chain {
 /// A linear combination of the nodes of a segment.
 pub type SegmentWeights = Few<(usize, f64), 6>;
 
+/// A part of a path: from one coordinate of a segment to another.
+#[derive(Clone, Copy, Debug)]
+pub struct PathPart {
+    /// the segment
+    pub segment: usize,
+    /// ξ where it begins
+    pub start: f64,
+    /// ξ where it ends
+    pub end: f64,
+}
+
 /// The way along a surface from one material point to another.
 #[derive(Clone, Copy, Debug)]
 pub struct Path<'a> {
@@ -154,15 +165,16 @@ pub struct Path<'a> {
 }
 
 impl<'a> Path<'a> {
-    /// The segments along the path: (segment, from ξ, to ξ).
-    pub fn parts(self) -> impl Iterator<Item = (usize, f64, f64)> + use<'a> {
+    /// The parts of the path, in order.
+    pub fn parts(self) -> impl Iterator<Item = PathPart> + use<'a> {
         let Self { surface, from, to, ahead } = self;
         let (start, end) = if ahead { (0.0, 1.0) } else { (1.0, 0.0) };
         let next = move |at: usize| if ahead { surface.next(at) } else { surface.previous(at) };
         let segments = std::iter::successors(Some(from.segment), move |&at| next(at).filter(|_| at != to.segment));
-        segments.map(move |at| {
-            let first = if at == from.segment { from.xi } else { start };
-            (at, first, if at == to.segment { to.xi } else { end })
+        segments.map(move |segment| PathPart {
+            segment,
+            start: if segment == from.segment { from.xi } else { start },
+            end: if segment == to.segment { to.xi } else { end },
         })
     }
 }

@@ -1,4 +1,4 @@
-//! Who couples with whom: the pattern of the tangent, and where every element finds its own blocks in it.
+//! Which nodes couple: the pattern of the tangent, and where every element finds its own blocks in it.
 
 use std::sync::Arc;
 
@@ -186,7 +186,7 @@ impl Layout {
                 nodes.extend(pair.master.rigid_body().into_iter().flat_map(RigidBody::nodes));
                 if let Master::Mesh(surface) = &pair.master {
                     let way = old.foot.and_then(|from| surface.path(from, foot)).into_iter();
-                    let slip: f64 = way.flat_map(Path::parts).map(|(_, from, to)| to - from).sum();
+                    let slip: f64 = way.flat_map(Path::parts).map(|part| part.end - part.start).sum();
                     let [behind, ahead] = if slip < 0.0 { [ahead, 1] } else { [1, ahead] };
                     let back = std::iter::successors(Some(foot.segment), |&segment| surface.previous(segment));
                     let forth = std::iter::successors(Some(foot.segment), |&segment| surface.next(segment));

@@ -59,8 +59,9 @@ pub(super) struct Inertia {
     pub factors: Vec<f64>,
     /// rigid plates, of which the factors are not all
     turning: Vec<Turning>,
-    /// the scheme and Δt
-    scheme: (Coefficients, f64),
+    scheme: Coefficients,
+    /// Δt [T]
+    dt: f64,
 }
 
 impl Inertia {
@@ -92,7 +93,7 @@ impl Inertia {
         turning.iter().for_each(|plate| plate.weighted(scheme, rate, &mut weighted));
         links::spread_turning(model, rate, u, &mut weighted);
         let [force, weighted] = mass.multiply_all([&acceleration, &weighted]);
-        Some(Self { velocity, acceleration, force, weighted, factors, turning, scheme: (scheme, dt) })
+        Some(Self { velocity, acceleration, force, weighted, factors, turning, scheme, dt })
     }
 
     /// (1) of [`crate::model::scheme`]: blend the forces and their tangent, and add those of the masses.
@@ -103,7 +104,7 @@ impl Inertia {
         residual: &mut Vec<f64>,
         tangent: Option<(&mut SparseMatrix, &SparseMatrix)>,
     ) {
-        let alpha_f = self.scheme.0.alpha_f;
+        let alpha_f = self.scheme.alpha_f;
         residual.clear();
         let blended = old.iter().zip(force).map(|(&old, &force)| blend(alpha_f, old, force));
         residual.extend(blended.zip(&self.weighted).map(|(force, inertia)| force + inertia));
@@ -116,7 +117,7 @@ impl Inertia {
     /// Add the tangent of the weighted forces.
     pub fn stiffen(&self, model: &Model, mass: &SparseMatrix, tangent: &mut SparseMatrix) {
         tangent.add_columns(mass, &self.factors);
-        self.turning.iter().for_each(|plate| plate.stiffen(model, self.scheme, &self.factors, mass, tangent));
+        self.turning.iter().for_each(|plate| plate.stiffen(model, self.scheme, self.dt, &self.factors, mass, tangent));
     }
 }
 
@@ -129,8 +130,7 @@ pub fn kinetic_energy(mass: &SparseMatrix, velocity: &[f64]) -> f64 {
 /// Velocity and acceleration at `u`; prescribed dofs have those of their supports.
 fn rates(model: &Model, trial: Trial, u: &[f64], scheme: Coefficients) -> (Vec<f64>, Vec<f64>) {
     let Trial { old, step, dt, .. } = trial;
-    let free =
-        |dof: usize| scheme.rates(u[dof] - old.displacement[dof], (old.velocity[dof], old.acceleration[dof]), dt);
+    let free = |dof: usize| scheme.rates(u[dof] - old.displacement[dof], old.velocity[dof], old.acceleration[dof], dt);
     let (mut velocity, mut acceleration): (Vec<f64>, Vec<f64>) = (0..u.len()).map(free).unzip();
     for support in &step.supports {
         let places = trial.thirds(support, model);
@@ -188,7 +188,7 @@ pub(super) fn velocity(model: &Model, trial: Trial, u: &[f64], dof: usize) -> (f
     }
     let Some(scheme) = step.scheme.coefficients() else { return (increment / dt, 1.0 / dt) };
     let free =
-        |dof: usize| scheme.rates(u[dof] - old.displacement[dof], (old.velocity[dof], old.acceleration[dof]), dt).0;
+        |dof: usize| scheme.rates(u[dof] - old.displacement[dof], old.velocity[dof], old.acceleration[dof], dt).0;
     match step.support_at(dof) {
         Some(support) if support.at.inclined.is_some() => {
             let places = trial.thirds(support, model);

@@ -261,7 +261,7 @@ impl Turning {
         let (spin, angular) = turning(model, leaders, trial);
         let way = relative(leaders, u) - relative(leaders, &trial.old.displacement);
         let angle = e[0].perp(&way).atan2(e[0].norm_squared() + e[0].dot(&way));
-        let end = scheme.rates(angle, (spin, angular), trial.dt);
+        let end = scheme.rates(angle, spin, angular, trial.dt);
         let [before, way] = arms(model, leaders, u);
         let square = before.norm_squared();
         let stretch = way.dot(&(2.0 * before + way)) / (2.0 * square);
@@ -316,7 +316,8 @@ impl Turning {
     pub fn stiffen(
         &self,
         model: &Model,
-        (scheme, dt): (Coefficients, f64),
+        scheme: Coefficients,
+        dt: f64,
         factors: &[f64],
         mass: &SparseMatrix,
         tangent: &mut SparseMatrix,
@@ -387,7 +388,7 @@ pub fn turning_at_end(model: &Model, end: Trial, [ahead, found]: [&[f64]; 2], sc
         let (spin, angular) = turning(model, leaders, end);
         let e: Vector2<f64> = arms(model, leaders, ahead).iter().sum();
         let there = e.perp(&relative(leaders, found)) / e.norm_squared();
-        let angle = scheme.increment((spin, angular), angular + (there - angular) / end.step.scheme.theta(), end.dt);
+        let angle = scheme.increment(spin, angular, angular + (there - angular) / end.step.scheme.theta(), end.dt);
         let [before, way] = arms(model, leaders, &end.old.displacement);
         let turn = nalgebra::Rotation2::new(angle);
         give(leaders, reference(model, end, k), turn * (before + way) - before, u);

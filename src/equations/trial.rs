@@ -66,7 +66,7 @@ impl<'a> Trial<'a> {
     /// ū of a support at the start, thirds and end of the increment [L].
     pub fn thirds(&self, support: &Prescribed, model: &Model) -> [f64; 4] {
         let (position, start) = self.place(support, model);
-        support.thirds(position, (self.time - self.dt, self.moment()), self.step.span, start)
+        support.thirds(position, self.time - self.dt, self.moment(), self.step.span, start)
     }
 
     /// Reference position of a support, and its displacement at the start of the step.

@@ -49,12 +49,12 @@ pub(super) fn concerns(model: &Model) -> Vec<String> {
     let concern = |body: &Body| {
         let found = imbalance(model, step, &start, body);
         let later = imbalance(model, step, &end, body);
-        (found.share > OUT_OF_BALANCE).then(|| told(body, &found, &later, step))
+        (found.share > OUT_OF_BALANCE).then(|| message(body, &found, &later, step))
     };
     stressed().filter_map(concern).collect()
 }
 
-fn told(body: &Body, found: &Imbalance, later: &Imbalance, step: &Step) -> String {
+fn message(body: &Body, found: &Imbalance, later: &Imbalance, step: &Step) -> String {
     let rounded = |force: f64| if force.abs() < ROUND_OFF * found.resultant.norm() { 0.0 } else { force };
     let [x, y, percent] = [rounded(found.resultant.x), rounded(found.resultant.y), 100.0 * found.share].map(number);
     let cure = match later.share <= OUT_OF_BALANCE {

@@ -71,7 +71,7 @@ pub struct Thermal {
 }
 
 impl Thermal {
-    /// Of a body that is undeformed at the temperature 0.
+    /// Thermal expansion of a body that is undeformed at the temperature 0.
     pub fn new(expansion: f64) -> Self {
         Self { expansion, reference: 0.0 }
     }

@@ -264,13 +264,13 @@ impl Coefficients {
     }
 
     /// (v₁, a₁) of one dof from its displacement increment Δu and (v₀, a₀).
-    pub fn rates(&self, increment: f64, (v, a): (f64, f64), dt: f64) -> (f64, f64) {
+    pub fn rates(&self, increment: f64, v: f64, a: f64, dt: f64) -> (f64, f64) {
         let a1 = (increment - dt * v) / (self.beta * dt * dt) - (0.5 / self.beta - 1.0) * a;
         (v + dt * ((1.0 - self.gamma) * a + self.gamma * a1), a1)
     }
 
     /// Δu of one dof from (v₀, a₀) and a₁: equation (2) the other way round.
-    pub fn increment(&self, (v, a): (f64, f64), a1: f64, dt: f64) -> f64 {
+    pub fn increment(&self, v: f64, a: f64, a1: f64, dt: f64) -> f64 {
         dt * v + dt * dt * ((0.5 - self.beta) * a + self.beta * a1)
     }
 }

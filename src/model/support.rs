@@ -144,7 +144,8 @@ impl Prescribed {
     pub fn thirds(
         &self,
         position: Vector2<f64>,
-        (start_time, end): (f64, Moment),
+        start_time: f64,
+        end: Moment,
         step: Span,
         start: Vector2<f64>,
     ) -> [f64; 4] {

@@ -37,20 +37,20 @@ impl Model {
         };
         let of_model = coarse_positions(&self.mesh).into_iter().chain(lost_velocity(self)).chain(many_increments(self));
         let of_model = of_model.chain(idle_radiation(self)).chain(uncertain_times(self)).chain(balance::concerns(self));
-        let concerns = self.told_of_methods(|chosen| chosen.concern.map(String::from));
+        let concerns = self.about_methods(|chosen| chosen.concern.map(String::from));
         of_model.chain(concerns).chain(self.contacts.iter().flat_map(of_contact)).collect()
     }
 
     /// Methods chosen by the program, for contacts without a given method.
     #[doc(hidden)]
     pub fn choices(&self) -> Vec<String> {
-        self.told_of_methods(|chosen| chosen.because.map(|because| format!("{}, {because}", chosen.method.name())))
+        self.about_methods(|chosen| chosen.because.map(|because| format!("{}, {because}", chosen.method.name())))
     }
 
-    fn told_of_methods(&self, told: impl Fn(&Chosen) -> Option<String>) -> Vec<String> {
+    fn about_methods(&self, message: impl Fn(&Chosen) -> Option<String>) -> Vec<String> {
         let contacts = self.contacts.iter().zip(&self.methods);
         contacts
-            .filter_map(|(pair, chosen)| Some(format!("contact `{}`: {}", pair.name, told(chosen.as_ref()?)?)))
+            .filter_map(|(pair, chosen)| Some(format!("contact `{}`: {}", pair.name, message(chosen.as_ref()?)?)))
             .collect()
     }
 }
@@ -110,10 +110,12 @@ fn many_increments(model: &Model) -> Option<String> {
         steps.map(|step| (step.span.end - step.span.start) / longest(step)).sum()
     };
     let (implicit, explicit) = (of_steps(false), of_steps(true));
-    let told = |count: f64, why: &str| format!("the run takes at least {count:.1e} increments{why}");
+    let message = |count: f64, why: &str| format!("the run takes at least {count:.1e} increments{why}");
     match (implicit > MANY[0], explicit > MANY[1]) {
-        (true, _) => Some(told(implicit, ", each a row of history.csv: lengthen dt (initial, max) unless it is meant")),
-        (_, true) => Some(told(
+        (true, _) => {
+            Some(message(implicit, ", each a row of history.csv: lengthen dt (initial, max) unless it is meant"))
+        }
+        (_, true) => Some(message(
             explicit,
             ": explicit ones are no longer than a wave takes along the shortest side of an element",
         )),
@@ -178,7 +180,7 @@ pub fn gaps(model: &Model, pair: &ContactPair, farthest: f64, shrink_fit: bool) 
         (None, true) => "; shrink fit: the surfaces overlap nowhere".into(),
         (fit, _) => fit.unwrap_or_default(),
     };
-    gaps.told() + &fit
+    gaps.message() + &fit
 }
 
 /// Initial gaps of a contact; what is round-off of the positions is no gap and no overlap.
@@ -257,7 +259,7 @@ impl Gaps {
         warnings
     }
 
-    fn told(&self) -> String {
+    fn message(&self) -> String {
         let Self { facing, low: (low, _), high, .. } = *self;
         match facing {
             0 => format!("initial gap: {}, none with a projection on the master", self.beside()),

@@ -54,7 +54,7 @@ pub struct Frames {
 pub enum Selection {
     /// Every n-th row of the history
     Rows(usize),
-    /// Of each step so many: the first row of the history at or after the end of each part of its duration
+    /// So many per step: the first row of the history at or after the end of each part of its duration
     Parts(usize),
     /// No others
     Named,
@@ -325,7 +325,8 @@ impl Room {
     /// # Errors
     /// [`Error::Output`] with what it takes and what is free.
     pub fn check(&self) -> Result<(), Error> {
-        let told = |cause| failed(&self.folder, &format!("a frame takes {cause}; leave them out (\"fields\": false)"));
-        room_for(self.bytes, 0).map_err(told)
+        let message =
+            |cause| failed(&self.folder, &format!("a frame takes {cause}; leave them out (\"fields\": false)"));
+        room_for(self.bytes, 0).map_err(message)
     }
 }

@@ -190,7 +190,7 @@ impl Lock {
     /// Lock a folder.
     ///
     /// # Errors
-    /// Who is at work in it, or why the lock cannot be written.
+    /// Which process holds it, or why the lock cannot be written.
     pub fn take(folder: &Path) -> Result<Self, String> {
         Self::beating(folder, BEAT)
     }
@@ -201,8 +201,8 @@ impl Lock {
     /// As [`take`](Self::take).
     pub fn beating(folder: &Path, beat: Duration) -> Result<Self, String> {
         let path = folder.join(LOCK);
-        let told = |cause: io::Error| format!("results cannot be written here: {LOCK}: {cause}");
-        let mut file = open_lock(&path).map_err(told)?;
+        let message = |cause: io::Error| format!("results cannot be written here: {LOCK}: {cause}");
+        let mut file = open_lock(&path).map_err(message)?;
         let me = Holder::this();
         let holder = Holder::read(&mut file);
         match (file.try_lock(), &holder) {
@@ -215,9 +215,9 @@ impl Lock {
                 }
                 // Its holder, if it is at work after all, notices that another file stands in its place, and ends.
                 if same(&path, &file) {
-                    fs::remove_file(&path).map_err(told)?;
+                    fs::remove_file(&path).map_err(message)?;
                 }
-                file = open_lock(&path).map_err(told)?;
+                file = open_lock(&path).map_err(message)?;
                 if let Err(TryLockError::WouldBlock) = file.try_lock() {
                     return Err(busy(Holder::read(&mut file).as_ref()));
                 }
@@ -235,7 +235,7 @@ impl Lock {
         let written = write(&mut file);
         let heart = Heart::of(&file, beat);
         let lock = Self { path, file, _heart: heart };
-        written.map_err(told)?;
+        written.map_err(message)?;
         match lock.is_there() {
             true => Ok(lock),
             // Whoever held it has just ended and taken it away.

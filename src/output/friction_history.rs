@@ -35,7 +35,7 @@ pub struct FrictionHistory {
 
 impl FrictionHistory {
     /// Record the forces [F] and the slipping fraction of the closed length [-].
-    pub fn note(&mut self, time: f64, [normal, tangential]: [f64; 2], slipping: f64) {
+    pub fn note(&mut self, time: f64, normal: f64, tangential: f64, slipping: f64) {
         let ratio = if normal > 0.0 { tangential.abs() / normal } else { 0.0 };
         let borne = Borne { time, tangential_force: tangential, ratio };
         self.last = Some(borne);
@@ -69,14 +69,14 @@ impl fmt::Display for FrictionHistory {
             }
         }
         if let [Some(largest), Some(last)] = [self.largest, self.last] {
-            let told =
+            let line =
                 |borne: Borne| format!("{} ({:.4} of the normal force)", number(borne.tangential_force), borne.ratio);
             write!(
                 f,
                 "; peak tangential force {} at t = {}, {} at the end",
-                told(largest),
+                line(largest),
                 number(largest.time),
-                told(last)
+                line(last)
             )?;
         }
         Ok(())

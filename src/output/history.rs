@@ -102,7 +102,7 @@ impl Rows for HistoryRows {
         table.numbers(energy_row(&state.energy));
         for ((pair, states), course) in model.contacts.iter().zip(&state.contacts).zip(&mut memory.courses) {
             let row @ [normal, tangential, _, slipping, ..] = contact_row(pair, states);
-            course.note(state.time, [normal, tangential], slipping);
+            course.note(state.time, normal, tangential, slipping);
             table.numbers(row);
         }
         for set in &model.watch {

@@ -326,7 +326,7 @@ fn concerns(
     let limit = law.and_then(|law| law.uniqueness_limit()).filter(|limit| pressure > *limit);
     let several = limit.map(|limit| several_answers(pressure, limit));
     let deep = deep.map(|message| (Kind::DeepPenetration, message));
-    let yields = yields_work([&old.friction, &contact.friction]).map(|message| (Kind::YieldsWork, message));
+    let yields = yields_work(&old.friction, &contact.friction).map(|message| (Kind::YieldsWork, message));
     let coarse =
         law.and_then(|law| unresolved(pair, point, &law, contact, x)).map(|message| (Kind::Unresolved, message));
     deep.into_iter().chain(several.map(|message| (Kind::SeveralAnswers, message))).chain(coarse).chain(yields)
@@ -337,7 +337,7 @@ const GIVEN_BACK: f64 = 1e-9;
 
 /// Warning about a point whose dilatancy does more work than friction dissipates; possible with laws whose lowest
 /// coefficient is not known beforehand.
-fn yields_work([old, new]: [&FrictionState; 2]) -> Option<String> {
+fn yields_work(old: &FrictionState, new: &FrictionState) -> Option<String> {
     let [slip, opened] = [new.plastic_increment.abs(), new.opening - old.opening];
     let (friction, gained) = (new.traction.abs(), old.dissipation - new.dissipation);
     let yields = new.regime == Regime::Slip && opened > 0.0 && gained > GIVEN_BACK * friction * slip;

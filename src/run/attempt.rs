@@ -47,7 +47,7 @@ impl Simulation {
                     touching.give_up();
                 }
                 local_error = judgement.error;
-                judgement = judgement.after_output(number, [dt, wanted]);
+                judgement = judgement.after_output(number, dt, wanted);
                 judgement.next = on_ladder(step, judgement.next, work);
                 let ruptures = step.rupture.as_ref().is_some_and(|r| fastest_slip(model, old, &new) > r.slip_rate);
                 match judgement {

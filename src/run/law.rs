@@ -52,7 +52,7 @@ pub struct LawTest {
 }
 
 impl LawTest {
-    /// A law led along a path from rest, under the pressure at its start.
+    /// A law driven along a path from rest, under the pressure at its start.
     pub fn new(law: impl FrictionLaw + 'static, path: Vec<Phase>) -> Self {
         let pressure = path.first().map_or(0.0, |phase| phase.pressure(phase.start()));
         Self { start: law.initial_state(pressure, 0.0), law: Box::new(law), path }
@@ -64,17 +64,17 @@ impl LawTest {
     ///
     /// # Errors
     /// [`Error`] when the law cannot answer, or a row cannot be written.
-    pub fn run(&self, mut tell: impl FnMut(&LawRow) -> Result<(), Error>) -> (LawReport, Result<(), Error>) {
+    pub fn run(&self, mut record: impl FnMut(&LawRow) -> Result<(), Error>) -> (LawReport, Result<(), Error>) {
         let mut report = LawReport::default();
         let result = self.follow(|row| {
             report.note(row);
             self.warn(&mut report, row);
-            tell(row)
+            record(row)
         });
         (report, result)
     }
 
-    fn follow(&self, mut tell: impl FnMut(&LawRow) -> Result<(), Error>) -> Result<(), Error> {
+    fn follow(&self, mut record: impl FnMut(&LawRow) -> Result<(), Error>) -> Result<(), Error> {
         let Some(first) = self.path.first() else { return Ok(()) };
         let mut time = first.start();
         let mut slip = first.slip(time);
@@ -83,7 +83,7 @@ impl LawTest {
             let sliding = Sliding { slip: phase.slip(to) - slip, pressure: phase.pressure(to), dt: to - time };
             let response = self.law.respond(&state, sliding).map_err(|cause| Error::Law { time, cause })?;
             (time, slip, state) = (to, phase.slip(to), response.state);
-            tell(&self.row(time, slip, response))
+            record(&self.row(time, slip, response))
         };
         step(first.start(), first)?;
         self.path.iter().try_for_each(|phase| phase.times().try_for_each(|to| step(to, phase)))
@@ -386,7 +386,7 @@ pub struct PathPoint {
 
 impl PathPoint {
     /// A point of the path from the numbers of a row; the coefficient is 0 without pressure.
-    pub fn new([time, slip, pressure, traction, mu]: [f64; 5]) -> Self {
+    pub fn new(time: f64, slip: f64, pressure: f64, traction: f64, mu: f64) -> Self {
         let coefficient = if pressure > 0.0 { traction.abs() / pressure } else { 0.0 };
         Self { time, slip, coefficient, mu }
     }
@@ -461,7 +461,7 @@ impl LawReport {
         let FrictionState { pressure, traction, dissipation, .. } = state;
         // The first row is the start.
         self.steps += usize::from(self.peaks.last.is_some());
-        self.peaks.note(PathPoint::new([row.time, row.slip, pressure, traction, row.mu]));
+        self.peaks.note(PathPoint::new(row.time, row.slip, pressure, traction, row.mu));
         self.most_evaluations = self.most_evaluations.max(evaluations);
         self.dissipation = dissipation;
     }

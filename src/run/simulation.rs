@@ -9,7 +9,7 @@
 //!
 //! [`Simulation::try_increment`] finds a [`Candidate`] and changes nothing; [`Simulation::apply`] goes on as it says: to its new
 //! state if it was accepted, else to another attempt. A candidate that is dropped has never been: the next attempt finds it
-//! again, to the same bits.
+//! again, bit by bit.
 //!
 //! # Saved runs
 //!
@@ -33,7 +33,7 @@ use crate::time::quasi_dynamic::QuasiDynamic;
 pub type Pause = Arc<dyn Fn() -> bool + Send + Sync>;
 
 /// A run under way; see the example at the head of the library. To have an increment that is rejected made shorter, drop its
-/// candidate and set `increments.max` of the step by [`Simulation::change`]: dropped alone it is found again, to the same bits.
+/// candidate and set `increments.max` of the step by [`Simulation::change`]: dropped alone it is found again, bit by bit.
 pub struct Simulation {
     pub(super) model: Arc<Model>,
     /// The step under way, as its caller may have changed it
@@ -141,8 +141,8 @@ impl Simulation {
     }
 
     /// The attempt that observers receive for a candidate.
-    pub fn told<'a>(&'a self, candidate: &'a Candidate) -> Attempt<'a> {
-        let mut told = Attempt {
+    pub fn attempt_of<'a>(&'a self, candidate: &'a Candidate) -> Attempt<'a> {
+        let mut attempt = Attempt {
             step: self.step_now(),
             number: candidate.number,
             old: &self.state,
@@ -155,8 +155,8 @@ impl Simulation {
             local_error: candidate.local_error,
             doubt: candidate.doubt,
         };
-        told.row = told.row_after(&self.model, self.control.last_row);
-        told
+        attempt.row = attempt.row_after(&self.model, self.control.last_row);
+        attempt
     }
 
     /// Try the next increment; `None` after the last one. Nothing changes but that a step begins.
@@ -184,7 +184,7 @@ impl Simulation {
     /// # Errors
     /// [`Error`] when no other attempt can help.
     pub fn apply(&mut self, candidate: Candidate) -> Result<(), Error> {
-        let is_row = self.told(&candidate).row != Row::Held;
+        let is_row = self.attempt_of(&candidate).row != Row::Held;
         let Candidate { iterations, accepted, increments, outcome, coupling, explicit, .. } = candidate;
         if let Outcome::Paused(midway) = outcome {
             (self.control.coupling, self.explicit, self.midway) = (coupling, explicit, Some(midway));
@@ -344,7 +344,7 @@ impl Saved {
         postcard::to_allocvec(&run).map_err(|cause| Error::NotSaved(cause.to_string()))
     }
 
-    /// The run that the bytes tell of. Steps that had not begun may have changed since, or have come after the last one.
+    /// The run that the bytes describe. Steps that had not begun may have changed since, or have come after the last one.
     ///
     /// # Errors
     /// [`NotResumable`].

@@ -69,7 +69,7 @@ pub fn equilibrium(
     let result = condensed.unwrap_or_else(|| on_all(model, trial, start, &mut watch, work));
     let assembled = work.assembler.seconds.assembly + work.assembler.seconds.contact - spent;
     work.linear_seconds += clock.elapsed().as_secs_f64() - assembled;
-    let result = told(model, trial.old, watch.floating.take(), result, &work.system.tangent);
+    let result = explained(model, trial.old, watch.floating.take(), result, &work.system.tangent);
     (watch.records, result)
 }
 
@@ -175,7 +175,7 @@ fn round(
         Ok(x) => round.follow(nodes, u, &x),
         Err(NewtonFailure::Linear(LinearFailure::Varies)) => return None,
         Err(failure) => {
-            // What floats is told from the tangent of everything.
+            // What floats is found from the tangent of all equations.
             assemble_all(trial, &all, work)?;
             return Some(Err(failure));
         }
@@ -221,7 +221,7 @@ impl Watch {
         acted: Acted,
         foreseen: &mut Vec<Vec<ContactState>>,
     ) {
-        // The start value goes on with the last increment; where there is none, the first linear solve tells.
+        // The start value goes on with the last increment; where there is none, the first linear solve decides.
         let foresight = if self.extrapolated { 0 } else { 1 };
         if self.begins && self.records.is_empty() && request == Request::Residual && self.tangents == foresight {
             foreseen.clone_from(&assembler.evaluation.contacts);
@@ -257,7 +257,7 @@ impl Watch {
 }
 
 /// The solution, or why there is none: bodies that move freely say more than the equations.
-fn told(
+fn explained(
     model: &Model,
     old: &State,
     floating: Option<String>,
@@ -371,7 +371,7 @@ fn from_start_values(
     (iterations, result)
 }
 
-/// Solutions with better and better multipliers before an increment of the augmented Lagrangian is given up.
+/// Solutions with better and better multipliers before an increment of the augmented Lagrangian is rejected.
 const MOST_PASSES: usize = 100;
 
 /// A pass that leaves more than this share of the penetration is slow: the next one is stiffer.

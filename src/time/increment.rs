@@ -38,7 +38,7 @@ fn reach_end(model: &Model, end: Trial, beyond: Vec<f64>, work: &mut Workspace) 
     let ahead = &work.assembler.evaluation.acceleration;
     let reach = |dof: usize| {
         let (v, a) = (old.velocity[dof], old.acceleration[dof]);
-        old.displacement[dof] + scheme.increment((v, a), a + (ahead[dof] - a) / theta, dt)
+        old.displacement[dof] + scheme.increment(v, a, a + (ahead[dof] - a) / theta, dt)
     };
     let mut u: Vec<f64> = (0..beyond.len()).map(reach).collect();
     for support in &step.supports {

@@ -8,7 +8,7 @@
 //! - Else the increment is made in parts: up to the touch that was foreseen if nothing of the contact was closed before, else
 //!   as far as few enough points touch; then on to where it should have ended. The contact's force is the largest of
 //!   all attempts at the increment.
-//! - The shortest increment is accepted whatever its doubt, which is told as a warning.
+//! - The shortest increment is accepted whatever its doubt, which is reported in a warning.
 //! - A point that touches and parts again within one increment is not seen.
 
 use serde::{Deserialize, Serialize};
@@ -33,7 +33,7 @@ pub struct Touching {
     whole: Option<(f64, f64)>,
     /// Largest force of each contact in an attempt [F]
     forces: Vec<f64>,
-    /// Attempts given up
+    /// Rejected attempts
     refused: usize,
     /// Whether the attempt is to end where a contact touches
     ends_in_touch: bool,
@@ -90,8 +90,7 @@ impl Touching {
         let (mut share, mut meets) = (1.0f64, false);
         for (k, pair) in model.contacts.iter().enumerate() {
             let states = old.contacts[k].iter().zip(&foreseen[k]).zip(&new.contacts[k]).zip(&pair.points);
-            let arrival =
-                |(((old, foreseen), now), slave)| pair.arrival(slave, [old, foreseen, now], (new.time, new.dt));
+            let arrival = |(((old, foreseen), now), slave)| pair.arrival(slave, [old, foreseen, now], new.time, new.dt);
             let unknown = Some(Arrival { at: 0.0, doubt: f64::INFINITY });
             let arrivals: Vec<Arrival> = states.filter_map(|states| arrival(states).unwrap_or(unknown)).collect();
             let force = |state: &ContactState| state.friction.pressure.hypot(state.friction.traction) * state.length;

@@ -1051,7 +1051,7 @@ fn a_panic_is_told_as_a_defect() {
     use fecontact::cli::{Failure, defect};
     let caught = defect::catch(|| -> () { panic!("index {} is too large", 7) }).unwrap_err();
     assert_eq!(caught, "index 7 is too large");
-    let (code, told) = Failure::Defect(caught).told();
+    let (code, told) = Failure::Defect(caught).code_and_message();
     assert_eq!(code, 70);
     assert!(told.starts_with("defect: index 7 is too large\nThis is a defect of fecontact"), "{told}");
     assert_eq!(defect::catch(|| 3), Ok(3));

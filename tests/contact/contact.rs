@@ -161,7 +161,7 @@ fn finish(
 ) -> (ContactState, Option<Kept>) {
     let law = pair.law(&pair.points[k]);
     let loading =
-        PointEvaluation::new((pair, &pair.points[k], law), old, increment, place, kinematics).expect("a good law");
+        PointEvaluation::new(pair, &pair.points[k], law, old, increment, place, kinematics).expect("a good law");
     let answer = law.respond(&old.friction, loading.sliding);
     let mut closed = ClosedPoints::default();
     let state = loading.finish(answer, &mut closed).expect("a finite increment");
@@ -867,7 +867,8 @@ fn mortar_normal_is_the_mean_under_the_multiplier() {
     for (k, expected) in expected.into_iter().enumerate() {
         let mut met = Kinematics::new(false);
         mortar
-            .meet(k, &master, &overlaps, None, &configuration, (&mut met, &mut Room::default()))
+            .facing(&master, &overlaps)
+            .meet(k, None, &configuration, &mut met, &mut Room::default())
             .expect("the master faces the point");
         let away = (met.tangent - expected.normalize()).norm();
         assert!(away < 1e-6, "point {k}: {:?}, not {:?}", met.tangent, expected.normalize());
@@ -894,7 +895,7 @@ fn check_mortar_tangent(
     let before = Configuration::undeformed(before);
     let was = overlaps(pair, mortar, surface, &before);
     let (mut room, mut weights) = (Room::default(), Vec::new());
-    mortar.weigh(k, surface, &was, &before, (&mut room, &mut weights));
+    mortar.facing(surface, &was).weigh(k, &before, &mut room, &mut weights);
     let weights = Some(weights).filter(|weights| !weights.is_empty());
     let open = pair.laws[0].law.initial_state(0.0, 0.0);
     let friction = if gap > 0.0 { open } else { FrictionState { traction: 2.0, pressure: 20.0, ..open } };
@@ -904,7 +905,8 @@ fn check_mortar_tangent(
         let x = Configuration::undeformed(x);
         let is = overlaps(pair, mortar, surface, &x);
         let mut kinematics = Kinematics::new(true);
-        let met = mortar.meet(k, surface, &is, weights.as_ref(), &x, (&mut kinematics, &mut Room::default()));
+        let facing = mortar.facing(surface, &is);
+        let met = facing.meet(k, weights.as_ref(), &x, &mut kinematics, &mut Room::default());
         let met = met.expect("the master faces the point");
         closes(pair, &pair.points[k], met.gap, &old, increment).then(|| {
             let place = PointPlace { gap: met.gap, foot: Some(met.foot), closes: true, fluid: 0.0 };

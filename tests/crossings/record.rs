@@ -174,7 +174,7 @@ fn dropped(mut simulation: Simulation, outputs: &mut Outputs) -> Result<Led, Str
             Ok(None) => break Ok(()),
             Err(error) => break Err(error.to_string()),
             Ok(Some(candidate)) => {
-                let told = simulation.told(&candidate);
+                let told = simulation.attempt_of(&candidate);
                 outputs
                     .all()
                     .into_iter()
@@ -194,7 +194,7 @@ fn dropped(mut simulation: Simulation, outputs: &mut Outputs) -> Result<Led, Str
 fn attempts(simulation: &mut Simulation, outputs: &mut Outputs, number: usize) -> bool {
     for _ in 0..number {
         let Ok(Some(candidate)) = simulation.try_increment() else { return false };
-        let told = simulation.told(&candidate);
+        let told = simulation.attempt_of(&candidate);
         outputs
             .all()
             .into_iter()

@@ -118,7 +118,7 @@ fn direct(model: &Model, u: &[f64], v: &[f64]) -> Direct {
         };
         let mut viscous = vec![Vector2::zeros(); element.nodes.len()];
         if body.damping.retardation > 0.0 {
-            solid.viscous_forces((&*body.material, body.damping.retardation), [&local_u, &local_v], &mut viscous);
+            solid.viscous_forces(&*body.material, body.damping.retardation, [&local_u, &local_v], &mut viscous);
         }
         for (a, &i) in dofs.iter().enumerate() {
             let viscous = viscous[a / 2][a % 2];
@@ -292,7 +292,7 @@ fn direct_forces(model: &Model, u: &[f64], v: &[f64]) -> [Vec<f64>; 2] {
         });
         let [mut elastic, mut viscous] = [(); 2].map(|()| vec![Vector2::zeros(); u.len()]);
         model.solids[e].nodal_forces(&*body.material, &u, &mut elastic).expect("finite");
-        model.solids[e].viscous_forces((&*body.material, body.damping.retardation), [&u, &v], &mut viscous);
+        model.solids[e].viscous_forces(&*body.material, body.damping.retardation, [&u, &v], &mut viscous);
         for (a, &node) in element.nodes.iter().enumerate() {
             for i in 0..2 {
                 sums[0][2 * node + i] += elastic[a][i] + viscous[a][i];

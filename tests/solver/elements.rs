@@ -634,12 +634,12 @@ fn viscous_forces_of_rings_agree_with_differences() {
         let rates: Vec<f64> = (0..2 * nodes).map(|dof| 2.0 + (dof as f64).sin()).collect();
         for material in materials() {
             let mut tangent = vec![0.0; 4 * nodes * nodes];
-            element.viscous_tangent((&*material, tau), [&u, &v], &rates, &mut tangent);
+            element.viscous_tangent(&*material, tau, [&u, &v], &rates, &mut tangent);
             let at = |column: usize, h: f64| {
                 let (mut u, mut v, mut forces) = (u.clone(), v.clone(), vec![Vector2::zeros(); nodes]);
                 u[column / 2][column % 2] += h;
                 v[column / 2][column % 2] += rates[column] * h;
-                element.viscous_forces((&*material, tau), [&u, &v], &mut forces);
+                element.viscous_forces(&*material, tau, [&u, &v], &mut forces);
                 forces
             };
             for column in 0..2 * nodes {
@@ -651,7 +651,7 @@ fn viscous_forces_of_rings_agree_with_differences() {
                 }
             }
             let (up, mut forces) = (vec![Vector2::new(0.0, 3.0); nodes], vec![Vector2::zeros(); nodes]);
-            element.viscous_forces((&*material, tau), [&u, &up], &mut forces);
+            element.viscous_forces(&*material, tau, [&u, &up], &mut forces);
             assert!(forces.iter().all(|force| force.amax() < 1e-13 * E), "{kind:?} {material:?}: {forces:?}");
         }
     }

@@ -500,14 +500,14 @@ fn observers_go_back_with_the_run() {
     let mut observers: [&mut dyn Observer; 5] = [&mut history, &mut log, &mut fields, &mut fronts, &mut warnings];
     for _ in 0..4 {
         let candidate = simulation.try_increment().expect("it begins").expect("an increment");
-        let told = simulation.told(&candidate);
+        let told = simulation.attempt_of(&candidate);
         observers.iter_mut().for_each(|observer| observer.record(&model, &told).expect("it writes"));
         simulation.apply(candidate).expect("it goes on");
     }
     let saved = SavedRun::new(&simulation, &mut observers).expect("it is saved");
     let step = |simulation: &mut Simulation, observers: &mut [&mut dyn Observer]| {
         while let Some(candidate) = simulation.try_increment().expect("it begins") {
-            let told = simulation.told(&candidate);
+            let told = simulation.attempt_of(&candidate);
             observers.iter_mut().for_each(|observer| observer.record(&model, &told).expect("it writes"));
             simulation.apply(candidate).expect("it goes on");
         }

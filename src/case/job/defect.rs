@@ -24,7 +24,7 @@ pub fn watch() {
 pub fn catch<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     panic::catch_unwind(AssertUnwindSafe(work)).map_err(|payload| {
         let noted = LAST.lock().ok().and_then(|mut last| last.take());
-        noted.unwrap_or_else(|| message(&*payload).into())
+        noted.unwrap_or_else(|| payload_text(&*payload).into())
     })
 }
 
@@ -32,16 +32,16 @@ fn described(panic: &PanicHookInfo) -> String {
     let place = panic.location().map_or_else(String::new, |place| format!(" at {place}"));
     let trace = Backtrace::capture();
     let trace = if trace.status() == BacktraceStatus::Captured { format!("\n{trace}") } else { String::new() };
-    format!("{}{place}{trace}", message(panic.payload()))
+    format!("{}{place}{trace}", payload_text(panic.payload()))
 }
 
-fn message(payload: &(dyn std::any::Any + Send)) -> &str {
+fn payload_text(payload: &(dyn std::any::Any + Send)) -> &str {
     let text = payload.downcast_ref::<&str>().copied();
     text.or_else(|| payload.downcast_ref::<String>().map(String::as_str)).unwrap_or("it does not say why")
 }
 
 /// Text for the user.
-pub fn told(what: &str) -> String {
+pub fn message(what: &str) -> String {
     format!(
         "defect: {what}\nThis is a defect of fecontact {}, not of your input. Please report it with this text, the command, the \
          case file and its mesh; RUST_BACKTRACE=1 before the command adds where it came from. The results so far are kept.",

@@ -170,7 +170,7 @@ fn periodic(case: &Case, model: &Model) -> Vec<String> {
 }
 
 fn plates(case: &Case, model: &Model) -> Vec<String> {
-    let told = |(name, moves): (&str, Plate)| {
+    let line = |(name, moves): (&str, Plate)| {
         let nodes = model.mesh.group(name).map_or(0, |group| model.mesh.nodes_of(group).len());
         let moves = match moves {
             Plate::AsOne => "that translate together",
@@ -180,7 +180,7 @@ fn plates(case: &Case, model: &Model) -> Vec<String> {
         };
         format!("{name}: {} {moves}", count(nodes, "node"))
     };
-    case.plates.iter().map(LoadingPlateInput::parts).map(told).collect()
+    case.plates.iter().map(LoadingPlateInput::parts).map(line).collect()
 }
 
 fn rigid_bodies(case: &Case) -> Vec<String> {

@@ -20,26 +20,26 @@ pub fn steps(case: &Case, model: &Model) -> Vec<String> {
     let on = |place: &Place| on(place, model);
     for (step, input) in model.steps.iter().zip(&case.steps) {
         lines.push(step.name.clone());
-        let mut told = step_lines(step);
-        told.extend(input.velocity.iter().map(|(name, velocity)| {
+        let mut own = step_lines(step);
+        own.extend(input.velocity.iter().map(|(name, velocity)| {
             let [vx, vy] = velocity.map(number);
             format!("{name}: initial velocity ({vx}, {vy})")
         }));
-        told.extend(input.damping.iter().map(|(name, Damping { mass, retardation })| {
+        own.extend(input.damping.iter().map(|(name, Damping { mass, retardation })| {
             format!("damping of {name} from this step on: mass {}, stiffness {}", number(*mass), number(*retardation))
         }));
-        told.extend(
+        own.extend(
             input.temperature.iter().map(|(name, given)| format!("temperature of {name}: {}", drive(&given.into()))),
         );
         let fades = if step.scheme.is_dynamic() { "at once" } else { "its reaction fades over the step" };
         let released = supports.step(written_supports(input, on));
-        told.extend(released.map(|(on, kind)| format!("support {on}: {kind} released, {fades}")));
-        told.extend(loads.step(input.loads.iter().filter_map(|load| written_load(load, on))).map(|(on, kind)| {
+        own.extend(released.map(|(on, kind)| format!("support {on}: {kind} released, {fades}")));
+        own.extend(loads.step(input.loads.iter().filter_map(|load| written_load(load, on))).map(|(on, kind)| {
             let fades = if ENDS_AT_ONCE.contains(&kind) { "at once" } else { "it fades over the step" };
             format!("load {on}: {kind} ended, {fades}")
         }));
-        told.extend(supports.lines("support").into_iter().chain(loads.lines("load")));
-        lines.extend(told.into_iter().map(|line| format!("  {line}")));
+        own.extend(supports.lines("support").into_iter().chain(loads.lines("load")));
+        lines.extend(own.into_iter().map(|line| format!("  {line}")));
         lines.push(format!("  {} prescribed", count(step.supports.len(), "dof")));
     }
     lines

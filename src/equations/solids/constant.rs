@@ -136,7 +136,7 @@ impl Constant {
         let all = blocks.par_iter().zip(places).zip(energies).with_min_len(FEW_BLOCKS);
         all.for_each(|((block, (forces, others)), energy)| {
             let retardation = retardation[block.body];
-            *energy = block.evaluate((&stiffness[block.kind as usize], *ring), retardation, pass, [forces, others]);
+            *energy = block.evaluate(&stiffness[block.kind as usize], *ring, retardation, pass, [forces, others]);
         });
     }
 
@@ -156,12 +156,12 @@ impl Constant {
 
     /// Σ K_e on the current pattern; nothing if there are none.
     pub fn total(&mut self, model: &Model, layout: &Layout) -> Option<&SparseMatrix> {
-        kept(&mut self.total, (model, layout), &self.is, |_| 1.0)
+        kept(&mut self.total, model, layout, &self.is, |_| 1.0)
     }
 
     /// Σ τ K_e on the current pattern; nothing if there are none.
     pub fn viscous(&mut self, model: &Model, retardation: &[f64], layout: &Layout) -> Option<&SparseMatrix> {
-        kept(&mut self.viscous, (model, layout), &self.is, |body| retardation[body])
+        kept(&mut self.viscous, model, layout, &self.is, |body| retardation[body])
     }
 
     /// Have that sum found again: τ has changed.
@@ -173,7 +173,8 @@ impl Constant {
 /// The sum of the constant elements' matrices, each times what is said of its body: as it was found on this pattern, or anew.
 fn kept<'a>(
     sum: &'a mut Option<SparseMatrix>,
-    (model, layout): (&Model, &Layout),
+    model: &Model,
+    layout: &Layout,
     is: &[bool],
     factor: impl Fn(usize) -> f64,
 ) -> Option<&'a SparseMatrix> {
@@ -396,13 +397,7 @@ fn all(motion: &[f64]) -> &[[f64; 2]] {
 impl Block {
     /// Write what the elements put on the nodes, and what the pass asks for besides, over `sums`; returns what the first of
     /// its motions stores.
-    pub fn evaluate(
-        &self,
-        (stiffness, ring): (&[f64], bool),
-        tau: f64,
-        pass: Pass,
-        sums: [&mut [Vector2<f64>]; 2],
-    ) -> f64 {
+    pub fn evaluate(&self, stiffness: &[f64], ring: bool, tau: f64, pass: Pass, sums: [&mut [Vector2<f64>]; 2]) -> f64 {
         match ring {
             false => self.of_section::<false>(stiffness, tau, pass, sums),
             true => self.of_section::<true>(stiffness, tau, pass, sums),

@@ -121,6 +121,6 @@ impl Solids {
         if let Some(viscous) = constant.viscous(model, retardation, layout) {
             total.add_columns(viscous, dvelocity);
         }
-        others.viscous_tangents((model, retardation), motion, dvelocity, layout, total);
+        others.viscous_tangents(model, retardation, motion, dvelocity, layout, total);
     }
 }

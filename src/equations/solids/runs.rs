@@ -149,10 +149,10 @@ impl Runs {
     /// Viscous forces of all elements.
     pub fn evaluate_viscous(&mut self, model: &Model, retardation: &[f64], [u, v]: [&[f64]; 2]) {
         for run in &self.runs {
-            let law = (&*model.bodies[run.body].material, retardation[run.body]);
+            let (material, tau) = (&*model.bodies[run.body].material, retardation[run.body]);
             let one = |(e, forces): (usize, &mut [Vector2<f64>])| {
                 let [u, v] = [u, v].map(|all| nodal(model, e, all));
-                model.solids[e].viscous_forces(law, [&u[..run.nodes], &v[..run.nodes]], forces);
+                model.solids[e].viscous_forces(material, tau, [&u[..run.nodes], &v[..run.nodes]], forces);
             };
             let places = &mut self.forces[run.places()];
             match retardation[run.body] > 0.0 {
@@ -172,14 +172,15 @@ impl Runs {
     /// displacement.
     pub fn viscous_tangents(
         &mut self,
-        (model, retardation): (&Model, &[f64]),
+        model: &Model,
+        retardation: &[f64],
         [u, v]: [&[f64]; 2],
         dvelocity: &[f64],
         layout: &Layout,
         total: &mut SparseMatrix,
     ) {
         for run in self.runs.iter().filter(|run| retardation[run.body] > 0.0) {
-            let law = (&*model.bodies[run.body].material, retardation[run.body]);
+            let (material, tau) = (&*model.bodies[run.body].material, retardation[run.body]);
             let (n, size) = (run.nodes, 4 * run.nodes * run.nodes);
             self.tangents.resize(self.tangents.len().max(size * BATCH.min(run.elements.len())), 0.0);
             for first in run.elements.clone().step_by(BATCH) {
@@ -188,7 +189,7 @@ impl Runs {
                     let [u, v, rates] = [u, v, dvelocity].map(|all| nodal(model, e, all));
                     let mut own = [0.0; 18];
                     own.chunks_exact_mut(2).zip(&rates).for_each(|(own, rate)| own.copy_from_slice(rate.as_slice()));
-                    model.solids[e].viscous_tangent(law, [&u[..n], &v[..n]], &own[..2 * n], tangent);
+                    model.solids[e].viscous_tangent(material, tau, [&u[..n], &v[..n]], &own[..2 * n], tangent);
                 };
                 let all = elements.clone().into_par_iter().zip(self.tangents.par_chunks_exact_mut(size));
                 all.with_min_len(FEW).for_each(one);

@@ -174,7 +174,7 @@ impl ContactLaw {
     /// The answer to an increment, see [`FrictionLaw::respond`].
     ///
     /// # Errors
-    /// As of the law.
+    /// As for the law.
     pub fn respond(&self, old: &FrictionState, sliding: Sliding) -> Answer {
         self.moved(old, sliding, self.law.respond(old, sliding))
     }

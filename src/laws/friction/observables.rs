@@ -45,8 +45,8 @@ const TAKEN: [&str; 28] = [
 /// Longest name: with that of its contact it is one of a file.
 const LONGEST: usize = 64;
 
-/// Whether the names that a law gives can be those of columns, arrays and files, and are its own. They are told apart by more than
-/// capitals, as not all systems tell files apart by them.
+/// Whether the names that a law gives can be those of columns, arrays and files, and are its own. They differ by more than
+/// capitals, which not all systems distinguish in names of files.
 ///
 /// # Errors
 /// What is wrong with which name, and what to do.

@@ -1,4 +1,4 @@
-//! A root finder that cannot leave its bracket.
+//! A root finder that cannot leave its bracket, and the bracket of the first of several roots.
 
 /// Evaluations after which the bracket is only halved, which resolves any bracket in about fifty more: the search ends.
 const MOST_PROPOSALS: usize = 100;
@@ -19,7 +19,7 @@ pub(super) struct Argument {
 /// bracket is halved. The search ends where f says so or the argument is resolved. The last call of f is always at the
 /// answer, so a caller may keep what f computed there.
 #[inline]
-pub(super) fn bracketed_root((mut low, mut high): (f64, f64), guess: f64, mut f: impl FnMut(f64) -> Argument) {
+pub(super) fn bracketed_root([mut low, mut high]: [f64; 2], guess: f64, mut f: impl FnMut(f64) -> Argument) {
     let resolution = 8.0 * f64::EPSILON * low.abs().max(high.abs());
     let mut step = high - low;
     let mut x = if low < guess && guess < high { guess } else { low + 0.5 * step };
@@ -44,4 +44,55 @@ pub(super) fn bracketed_root((mut low, mut high): (f64, f64), guess: f64, mut f:
         }
         x = next;
     }
+}
+
+/// A piece of a bracket between two points at which f was evaluated, as [`first_root_bracket`] looks at it.
+pub(super) struct Piece {
+    /// The arguments at its ends
+    pub ends: [f64; 2],
+    /// f there
+    pub values: [f64; 2],
+    /// D₋ ≤ D ≤ D₊: bounds of −df/ds in between, s being any measure that grows with the argument
+    pub fall: [f64; 2],
+    /// Growth of s from end to end
+    pub way: f64,
+}
+
+/// Most pieces that are examined; many only where two roots are about to merge.
+const MOST_PIECES: usize = 1000;
+
+/// A bracket, up to the argument `end`, that holds the smallest root of f and no other unless they cannot be distinguished: pieces
+/// narrower than `resolved` hold such; the last point that it came to if it is not to be found. f is positive at `left`, and
+/// not positive at `end` but for round-off.
+///
+/// Pieces are examined from the left: one holds one root or none if D₋ > 0, none if f stays positive between the lines of
+/// slope −D₊ from its left end and −D₋ from its right, and is halved otherwise.
+pub(super) fn first_root_bracket<P>(
+    mut left: P,
+    mut right: P,
+    end: f64,
+    resolved: f64,
+    mut at: impl FnMut(f64) -> P,
+    piece: impl Fn(&P, &P) -> Piece,
+) -> Result<[f64; 2], P> {
+    for _ in 0..MOST_PIECES {
+        let Piece { ends: [low, high], values: [before, after], fall: [least, most], way } = piece(&left, &right);
+        let width = high - low;
+        let narrow = width <= resolved * (1.0 + low.abs());
+        if after <= 0.0 && (least > 0.0 || narrow) {
+            return Ok([low, high]);
+        }
+        let crossing_needs = before / most.max(0.0) + after / (-least).max(0.0);
+        let rootless = after > 0.0 && (least > 0.0 || crossing_needs > way);
+        if rootless || narrow {
+            if high >= end {
+                return Ok([low, end]);
+            }
+            left = right;
+            right = at((high + 2.0 * width).min(end));
+        } else {
+            right = at(low + 0.5 * width);
+        }
+    }
+    Err(left)
 }

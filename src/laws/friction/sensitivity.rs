@@ -44,7 +44,7 @@ pub trait SensitiveLaw: Debug + Send + Sync {
     /// Derivatives of the state at the end of an increment along two directions.
     ///
     /// # Errors
-    /// As of the answer itself.
+    /// As for the answer itself.
     fn vary(
         &self,
         old: &FrictionState,

@@ -252,8 +252,8 @@ fn explain(bytes: &[u8], encoding: Encoding, error: &mshio::MshParserError<&[u8]
         Encoding::Ascii => format!("line {}", 1 + bytes.iter().take(offset).filter(|&&b| b == b'\n').count()),
         _ => format!("byte {offset}"),
     };
-    let told = trace.into_iter().rev().filter(|message| !message.trim().is_empty()).collect::<Vec<_>>().join(", ");
-    let what = if told.is_empty() { unexpected(bytes, offset, encoding) } else { told };
+    let messages = trace.into_iter().rev().filter(|message| !message.trim().is_empty()).collect::<Vec<_>>().join(", ");
+    let what = if messages.is_empty() { unexpected(bytes, offset, encoding) } else { messages };
     MeshError::Malformed { at, what }
 }
 

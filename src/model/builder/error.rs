@@ -144,7 +144,7 @@ pub fn check_line(place: &str, text: &str) -> Checked<()> {
     }
 }
 
-/// That a body is not among those that there are.
+/// The error that there is no body of this name.
 pub fn no_body<'n>(name: &str, known: impl Iterator<Item = &'n str>, place: &str) -> ModelError {
     let known: Vec<&str> = known.collect();
     ModelError::new(place, format!("there is no body `{name}`; the bodies are {}", known.join(", ")))

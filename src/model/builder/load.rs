@@ -123,12 +123,12 @@ pub struct SpringLoad {
 }
 
 impl SpringLoad {
-    /// Of the stiffness along x and along y, to the ground [F/L].
+    /// A spring to the ground with the stiffness along x and along y [F/L].
     pub fn new(kx: f64, ky: f64) -> Self {
         Self { kx, ky, driver: None }
     }
 
-    /// To a far end that moves: its displacement [L].
+    /// With a far end that moves: its displacement [L].
     pub fn driver(self, driver: impl Into<Components>) -> Self {
         Self { driver: Some(driver.into()), ..self }
     }
@@ -152,12 +152,12 @@ pub struct DashpotLoad {
 }
 
 impl DashpotLoad {
-    /// Of the coefficient along x and along y, to the ground [F T/L].
+    /// A dashpot to the ground with the coefficient along x and along y [F T/L].
     pub fn new(cx: f64, cy: f64) -> Self {
         Self { cx, cy, driver: None }
     }
 
-    /// To a far end that moves: its velocity [L/T].
+    /// With a far end that moves: its velocity [L/T].
     pub fn driver(self, driver: impl Into<Components>) -> Self {
         Self { driver: Some(driver.into()), ..self }
     }

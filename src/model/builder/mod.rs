@@ -27,7 +27,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A load step takes over what the one before gave: scheme, increments, supports and loads. What is wrong is told with its
+//! A load step inherits what the one before gave: scheme, increments, supports and loads. An error names its
 //! place, in the words of a case file: `steps[1].supports[0].on: the mesh has no group …`.
 
 mod along;

@@ -311,7 +311,7 @@ fn check_step(place: &str, given: &LoadStep, step: &Step, model: &Model) -> Chec
     check_ramps(place, step, model)
 }
 
-/// What comes to a value over the whole of the step would go on coming to it in the next one.
+/// Refuse what reaches its value over the whole step, and would go on doing so in the next one.
 fn check_ramps(place: &str, step: &Step, model: &Model) -> Checked<()> {
     let refused = |what: &str, instead: &str| {
         let message = format!("may end the step early, before {what} is fully applied: {instead}");

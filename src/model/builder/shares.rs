@@ -17,12 +17,12 @@ pub fn edge_shares(mesh: &Mesh, edges: &[Edge]) -> Vec<Share> {
     along_edges(mesh, edges, |along| along.norm())
 }
 
-/// Those of a pressure along x and y: −∫ N_a w n̂ |X'| dξ with n̂ |X'| = (X'_y, −X'_x) out of the body, on the left of its edges.
+/// Nodal shares of a pressure along x and y: −∫ N_a w n̂ |X'| dξ with n̂ |X'| = (X'_y, −X'_x) out of the body, on the left of its edges.
 pub fn pressure_shares(mesh: &Mesh, edges: &[Edge]) -> [Vec<Share>; 2] {
     [along_edges(mesh, edges, |along| -along.y), along_edges(mesh, edges, |along| along.x)]
 }
 
-/// Those of a force on all edges together, as an even traction: what a traction has, over ∫ w |X'| dξ.
+/// Nodal shares of a force on all edges together, as a uniform traction: those of a traction over ∫ w |X'| dξ.
 pub fn even_shares(mesh: &Mesh, edges: &[Edge]) -> Vec<Share> {
     let shares = edge_shares(mesh, edges);
     let total: f64 = shares.iter().map(|(_, share, _)| share).sum();

@@ -139,16 +139,16 @@ fn check_on_plates(support: &Support, nodes: &[usize], model: &Model, place: &st
     let linked = |node: &usize| model.linkage.plates.iter().any(|(plate, _)| plate.binary_search(node).is_ok());
     let on_plate = |node: &usize| on_plate(node) || linked(node);
     let Some(node) = nodes.iter().find(|node| on_plate(node)) else { return Ok(()) };
-    let told = |key: &str, message: &str| {
+    let refused = |key: &str, message: &str| {
         let tag = model.mesh.node_tags[*node];
         Err(ModelError::new(format!("{place}.{key}"), format!("node {tag} is one of a plate, {message}")))
     };
     if let Some(Change::To(_)) = support.rotation {
-        return told("rotation", "which does not rotate: give ux and uy");
+        return refused("rotation", "which does not rotate: give ux and uy");
     }
     for (key, change) in support.displacements() {
         if change.given().is_some_and(Drive::depends_on_position) {
-            return told(key, "which moves as a whole: give it in t alone");
+            return refused(key, "which moves as a whole: give it in t alone");
         }
     }
     Ok(())

@@ -1,7 +1,7 @@
 //! The longest stable increment, (1) to (4) of [`super`], and when it has to be found again.
 //!
 //! An element has its own bound until its shape has changed: a node moved, against its first one, by more than the share
-//! [`CHANGED`] of the element's size, which is its area over its diagonal. That is told before the increment in which it
+//! [`CHANGED`] of the element's size, which is its area over its diagonal. That is known before the increment in which it
 //! happens, from the displacements at its end, which are known. All elements are compared as soon as nodes may have moved
 //! so far against each other that one has changed by [`LATEST`]. What contacts add is found again when a point meets another segment.
 //!
@@ -338,8 +338,8 @@ fn bounds(
         return Ok([elastic, 0.0]);
     }
     // What remains of the viscous tangent at rest is its derivative with respect to the velocities.
-    let (law, still) = ((&*body.material, retardation), vec![Vector2::zeros(); local.len()]);
-    model.solids[e].viscous_tangent(law, [local, &still], &vec![1.0; n], tangent.as_mut_slice());
+    let still = vec![Vector2::zeros(); local.len()];
+    model.solids[e].viscous_tangent(law, retardation, [local, &still], &vec![1.0; n], tangent.as_mut_slice());
     Ok([elastic, largest_eigenvalue(&tangent, &mass)])
 }
 

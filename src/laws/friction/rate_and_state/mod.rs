@@ -342,7 +342,7 @@ impl RateAndState {
     /// end.
     ///
     /// # Errors
-    /// As of the answer itself.
+    /// As for the answer itself.
     pub(super) fn increment(
         &self,
         old: &FrictionState,
@@ -364,7 +364,7 @@ impl RateAndState {
         let sign = trial.signum();
         let varied = |k: usize| {
             let (by, dpressure) = (&directions[k], dpressure[k]);
-            relaxation.vary(&found, by, (sign * dtrial(by), dpressure)).along(sign)
+            relaxation.vary(&found, by, sign * dtrial(by), dpressure).along(sign)
         };
         Ok((response, [varied(0), varied(1)]))
     }

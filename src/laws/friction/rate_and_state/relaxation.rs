@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::laws::friction::root::{Argument, bracketed_root};
+use crate::laws::friction::root::{Argument, Piece, bracketed_root, first_root_bracket};
 use crate::laws::friction::sensitivity::{Direction, Variation};
 use crate::laws::friction::{LEAST_SLOPE, LawFailure};
 
@@ -51,10 +51,7 @@ impl Coefficients {
 /// G is right to this share of |q_tr|.
 const PRECISION: f64 = 1e-14;
 
-/// Most pieces of the bracket that are examined for the first root; many only where two roots are about to merge.
-const MOST_PIECES: usize = 1000;
-
-/// Pieces of the bracket of ln Δλ narrower than this hold roots that cannot be told apart.
+/// Pieces of the bracket of ln Δλ narrower than this hold roots that cannot be distinguished.
 const LEAST_PIECE: f64 = 1e-13;
 
 /// Exponents above it would overflow.
@@ -244,48 +241,29 @@ impl Relaxation<'_> {
         if found.excess <= enough {
             return Ok((found, evaluations));
         }
-        let bracket = if self.is_monotone() { Some((found.log, 0.0)) } else { self.first_root_bracket(found, &mut at) };
-        let Some(bracket) = bracket else {
+        let bracket = match self.is_monotone() {
+            true => Ok([found.log, 0.0]),
+            // G changes with the square of the distance from where two roots merge: some dozens of pieces tell whether they have.
+            false => {
+                let right = at(0.0);
+                let piece = |left: &Relaxed, right: &Relaxed| Piece {
+                    ends: [left.log, right.log],
+                    values: [left.excess, right.excess],
+                    fall: self.fall_bounds(left, right),
+                    way: right.log - left.log,
+                };
+                first_root_bracket(found, right, 0.0, LEAST_PIECE, &mut at, piece)
+            }
+        };
+        let Ok(bracket) = bracket else {
             return Err(LawFailure::NotConverged { evaluations, rest: found.excess, trial: self.trial });
         };
-        bracketed_root(bracket, bracket.0, |log| {
+        bracketed_root(bracket, bracket[0], |log| {
             found = at(log);
             let step = found.excess / (found.slope * found.slip).max(f64::MIN_POSITIVE);
             Argument { value: found.excess, step, done: found.excess.abs() <= enough }
         });
         Ok((found, evaluations))
-    }
-
-    /// Two logarithms of Δλ that hold that of the smallest root between them, and no other unless they cannot be told
-    /// apart; none if it is not to be found.
-    ///
-    /// Pieces are examined from the left with bounds D₋ ≤ −∂G/∂ln Δλ ≤ D₊ on each: a piece holds one root or none if
-    /// D₋ > 0, none if G stays positive between the lines of slope −D₊ from its left end and −D₋ from its right, and is
-    /// halved otherwise. G changes with the square of the distance from where two roots merge, so that some dozens of
-    /// pieces tell whether they have.
-    fn first_root_bracket(&self, mut left: Relaxed, at: &mut impl FnMut(f64) -> Relaxed) -> Option<(f64, f64)> {
-        let mut right = at(0.0);
-        for _ in 0..MOST_PIECES {
-            let way = right.log - left.log;
-            let [least_fall, most_fall] = self.fall_bounds(&left, &right);
-            let narrow = way <= LEAST_PIECE * (1.0 + left.log.abs());
-            if right.excess <= 0.0 && (least_fall > 0.0 || narrow) {
-                return Some((left.log, right.log));
-            }
-            let crossing_needs = left.excess / most_fall.max(0.0) + right.excess / (-least_fall).max(0.0);
-            let rootless = right.excess > 0.0 && (least_fall > 0.0 || crossing_needs > way);
-            if rootless || narrow {
-                if right.log >= 0.0 {
-                    return Some((left.log, 0.0)); // but for round-off G is not positive there
-                }
-                let next = (right.log + 2.0 * way).min(0.0);
-                left = right;
-                right = at(next);
-            } else {
-                right = at(left.log + 0.5 * way);
-            }
-        }
-        None
     }
 }
 
@@ -298,7 +276,7 @@ impl Relaxation<'_> {
     /// d|q| = p (arsinh(eʷ) da + arsinh'(eʷ) (dψ − ψ da/a + a (dλ/λ − dV₀/V₀))) + |q| dp/p
     /// D dλ = d|q_tr| − λ dα_t − ∂|q|
     /// ```
-    pub(super) fn vary(&self, found: &Relaxed, by: &Direction, (dtrial, dpressure): (f64, f64)) -> Variation {
+    pub(super) fn vary(&self, found: &Relaxed, by: &Direction, dtrial: f64, dpressure: f64) -> Variation {
         let Coefficients { reference_rate, a, b, critical_slip, alpha_t, evolution, .. } = *self.law;
         let [df_0, drate, da, db, dcritical, dstiffness] =
             ["f_0", "V_0", "a", "b", "D_c", "alpha_t"].map(|name| by.of(name));

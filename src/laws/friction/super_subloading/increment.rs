@@ -7,7 +7,7 @@
 use super::SuperSubloading;
 use super::approach::{CurvePoint, SlidingCurve};
 use super::peak::{Peak, PeakShift};
-use crate::laws::friction::root::{Argument, bracketed_root};
+use crate::laws::friction::root::{Argument, Piece, bracketed_root, first_root_bracket};
 use crate::laws::friction::{LEAST_SLOPE, LawFailure, STEEPEST};
 
 /// Derivatives along two directions of what an answer depends on.
@@ -92,8 +92,10 @@ impl LoadPath<'_> {
     /// The beginning of the path.
     pub(super) fn start(
         &self,
-        (traction, dtraction): (f64, Derivative),
-        (mu, dmu): (f64, Derivative),
+        traction: f64,
+        dtraction: Derivative,
+        mu: f64,
+        dmu: Derivative,
         ratio: f64,
     ) -> PathState {
         let curve_point = self.law.curve.start(ratio);
@@ -144,8 +146,8 @@ impl LoadPath<'_> {
             dmu: [0, 1].map(|i| match &self.parameters {
                 None => by_old * from.dmu[i] + by_time * share * self.dtime[i],
                 Some(shifts) => {
-                    let by = [from.dmu[i], share * self.dtime[i]];
-                    self.law.evolution.rested_by(from.mu, self.time * share, by, &shifts[i].peak)
+                    let (dmu, dtime) = (from.dmu[i], share * self.dtime[i]);
+                    self.law.evolution.rested_by(from.mu, self.time * share, dmu, dtime, &shifts[i].peak)
                 }
             }),
             curve_point,
@@ -323,10 +325,7 @@ const LAST_STEP_OF_FIRST_ORDER: f64 = 1e-8;
 /// y below which Chebyshev's method from the start is no good guess, as U is too large.
 const SMALL_Y: f64 = 0.05;
 
-/// Most pieces of the bracket that are examined for the first root.
-const MAX_PIECES: usize = 1000;
-
-/// Pieces of the bracket narrower than this hold roots that cannot be told apart.
+/// Pieces of the bracket narrower than this hold roots that cannot be distinguished.
 const LEAST_PIECE: f64 = 1e-12;
 
 impl SlipEquation<'_> {
@@ -350,7 +349,7 @@ impl SlipEquation<'_> {
         let end = self.law.curve.beyond(self.trial / self.law.alpha_t, &self.start);
         let unique = self.pressure * self.law.evolution.weakening(start.peak.mu) < self.law.alpha_t;
         let bracket =
-            if unique { (self.start.coordinate, end) } else { self.first_root_bracket(start, end, &mut evaluations)? };
+            if unique { [self.start.coordinate, end] } else { self.first_root_bracket(start, end, &mut evaluations)? };
         let mut point = start;
         bracketed_root(bracket, self.guess(&start), |coordinate| {
             evaluations += 1;
@@ -420,46 +419,32 @@ impl SlipEquation<'_> {
         }
     }
 
-    /// A bracket that holds the smallest root, and no other unless they cannot be told apart.
-    ///
-    /// Pieces of the bracket are examined from the left with bounds D₋ ≤ D ≤ D₊ of the slope on each: it holds one
-    /// root or none if D₋ > 0, none if G stays positive between the lines of slope −D₊ from its left end and −D₋ from
-    /// its right, and is halved otherwise.
-    fn first_root_bracket(&self, start: Point, end: f64, evaluations: &mut usize) -> Result<(f64, f64), LawFailure> {
+    /// A bracket that holds the smallest root, found by plastic slip.
+    fn first_root_bracket(&self, start: Point, end: f64, evaluations: &mut usize) -> Result<[f64; 2], LawFailure> {
         let mut at = |coordinate| {
             *evaluations += 1;
             self.at(coordinate)
         };
-        let mut left = start;
         let near = start.curve_point.coordinate + 2.0 * start.step;
-        let mut right = at(if start.curve_point.coordinate < near && near < end { near } else { end });
-        for _ in 0..MAX_PIECES {
-            let (low, high) = (left.curve_point.coordinate, right.curve_point.coordinate);
-            let (least, most) = self.slope_bounds(&left, &right);
-            let narrow = high - low <= LEAST_PIECE * (1.0 + low.abs());
-            if right.residual <= 0.0 && (least > 0.0 || narrow) {
-                return Ok((low, high));
-            }
-            let crossing_needs = left.residual / most.max(0.0) + right.residual / (-least).max(0.0);
-            let rootless = right.residual > 0.0 && (least > 0.0 || crossing_needs > right.slip - left.slip);
-            if rootless || narrow {
-                if high >= end {
-                    return Ok((low, end)); // but for round-off G is not positive there
-                }
-                left = right;
-                right = at(end.min(high + 2.0 * (high - low)));
-            } else {
-                right = at(low + 0.5 * (high - low));
-            }
-        }
-        Err(LawFailure::NotConverged { evaluations: *evaluations, rest: left.residual, trial: self.trial })
+        let right = at(if start.curve_point.coordinate < near && near < end { near } else { end });
+        let piece = |left: &Point, right: &Point| Piece {
+            ends: [left.curve_point.coordinate, right.curve_point.coordinate],
+            values: [left.residual, right.residual],
+            fall: self.slope_bounds(left, right),
+            way: right.slip - left.slip,
+        };
+        first_root_bracket(start, right, end, LEAST_PIECE, at, piece).map_err(|left| LawFailure::NotConverged {
+            evaluations: *evaluations,
+            rest: left.residual,
+            trial: self.trial,
+        })
     }
 
     /// Least and greatest D between two points, from the monotony of U, R, μ and ∂μ/∂Δλ.
-    fn slope_bounds(&self, left: &Point, right: &Point) -> (f64, f64) {
+    fn slope_bounds(&self, left: &Point, right: &Point) -> [f64; 2] {
         let least = right.curve_point.rate * right.peak.mu + right.curve_point.ratio * left.peak.slope;
         let most = left.curve_point.rate * left.peak.mu + left.curve_point.ratio * right.peak.slope;
-        (self.law.alpha_t + self.pressure * least, self.law.alpha_t + self.pressure * most)
+        [least, most].map(|slope| self.law.alpha_t + self.pressure * slope)
     }
 }
 

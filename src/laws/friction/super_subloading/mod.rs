@@ -102,7 +102,7 @@ impl SuperSubloading {
             initial_mu: (mu_k * structure).min(mu_s),
             structure: parameters.structure,
             curve: SlidingCurve::new(approach, elastic_core, r),
-            evolution: PeakEvolution::new((mu_s, mu_k), (kappa, xi), (m, n), integration),
+            evolution: PeakEvolution::new(mu_s, mu_k, kappa, xi, m, n, integration),
             integration,
             tolerance,
         })

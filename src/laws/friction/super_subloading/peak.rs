@@ -66,13 +66,8 @@ pub(super) struct Peak {
 const LARGEST: f64 = 1e100;
 
 impl PeakEvolution {
-    /// (μ_s, μ_k) [-], (κ [1/L], ξ [1/T]), (m, n) [-]
-    pub(super) fn new(
-        (mu_s, mu_k): (f64, f64),
-        (kappa, xi): (f64, f64),
-        (m, n): (f64, f64),
-        integration: Integration,
-    ) -> Self {
+    /// The evolution with the parameters of a law.
+    pub(super) fn new(mu_s: f64, mu_k: f64, kappa: f64, xi: f64, m: f64, n: f64, integration: Integration) -> Self {
         Self { mu_s, mu_k, kappa, xi, m, n, per_mu_s: 1.0 / mu_s, per_mu_k: 1.0 / mu_k, integration }
     }
 
@@ -163,7 +158,7 @@ impl PeakEvolution {
     /// Root of the backward-Euler equation for exponents other than 1.
     fn solve(&self, old: f64, weakening: f64, recovery: f64) -> f64 {
         let mut mu = old;
-        bracketed_root((self.mu_k, self.mu_s), old, |trial| {
+        bracketed_root([self.mu_k, self.mu_s], old, |trial| {
             mu = trial;
             let ((loss, loss_slope), (gain, gain_slope)) = (self.loss(mu), self.gain(mu));
             let value = old - mu - weakening * loss + recovery * gain;
@@ -186,13 +181,13 @@ impl PeakEvolution {
     fn at_uniform_rate(&self, old: f64, slip: f64, dt: f64) -> Peak {
         let (kappa, xi) = (self.kappa * self.per_mu_k, self.xi * self.per_mu_s);
         if self.is_linear() {
-            return self.relax(old, (kappa, slip), (xi, dt)).0;
+            return self.relax(old, kappa, slip, xi, dt).0;
         }
         let half = self.backward_euler(old, 0.5 * slip, 0.5 * dt);
         let excess = ((half.mu - self.mu_k) * self.per_mu_k).max(f64::EPSILON);
         let deficit = ((self.mu_s - half.mu) * self.per_mu_s).max(f64::EPSILON);
         let (kappa, xi) = (kappa * excess.powf(self.m - 1.0), xi * deficit.powf(self.n - 1.0));
-        let (peak, (by_a, by_b)) = self.relax(old, (kappa, slip), (xi, dt));
+        let (peak, (by_a, by_b)) = self.relax(old, kappa, slip, xi, dt);
         let through_a = by_a * kappa * slip * (self.m - 1.0) * self.per_mu_k / excess;
         let through_b = by_b * xi * dt * (self.n - 1.0) * self.per_mu_s / deficit;
         let by_half = through_a - through_b;
@@ -205,9 +200,9 @@ impl PeakEvolution {
         }
     }
 
-    /// μ of [`Self::at_uniform_rate`] for given (κ̂/μ_k, Δλ) and (ξ̂/μ_s, Δt), and (∂μ/∂a, ∂μ/∂b).
+    /// μ of [`Self::at_uniform_rate`], `kappa` being κ̂/μ_k and `xi` ξ̂/μ_s, and (∂μ/∂a, ∂μ/∂b).
     #[inline(always)]
-    fn relax(&self, old: f64, (kappa, slip): (f64, f64), (xi, dt): (f64, f64)) -> (Peak, (f64, f64)) {
+    fn relax(&self, old: f64, kappa: f64, slip: f64, xi: f64, dt: f64) -> (Peak, (f64, f64)) {
         let (a, b) = ((kappa * slip).min(LARGEST), (xi * dt).min(LARGEST));
         let (to_kinetic, to_static) = (self.mu_k - old, self.mu_s - old);
         let drive = a * to_kinetic + b * to_static;
@@ -380,13 +375,13 @@ impl PeakEvolution {
         (drawn + gained - lost) / (1.0 + to_kinetic + to_static)
     }
 
-    /// dμ after the time `dt` without plastic slip, where μ at the start varies by `dold` and the time by `ddt`.
+    /// dμ after the time `dt` without plastic slip, where μ at the start varies by `dold`, the time by `ddt` and the parameters `by`.
     ///
     /// ```text
     /// d = 1 − μ/μ_s,   d^(1−n) = d₀^(1−n) + (n − 1) b,   b = ξ Δt/μ_s
     /// δd = (d/d₀)ⁿ δd₀ − dⁿ δb + ∂d/∂n δn,   ∂d/∂n = dⁿ (d^(1−n) ln d − d₀^(1−n) ln d₀ + b)/(1 − n)
     /// ```
-    pub(super) fn rested_by(&self, old: f64, dt: f64, [dold, ddt]: [f64; 2], by: &PeakShift) -> f64 {
+    pub(super) fn rested_by(&self, old: f64, dt: f64, dold: f64, ddt: f64, by: &PeakShift) -> f64 {
         let (xi, n) = (self.xi * self.per_mu_s, self.n);
         let b = xi * dt;
         let db = (by.xi * dt + self.xi * ddt) * self.per_mu_s - b * self.per_mu_s * by.mu_s;

@@ -311,12 +311,13 @@ impl SolidElement {
     /// the element's own gradients, F-bar or not.
     pub fn viscous_forces(
         &self,
-        (material, tau): (&dyn Material, f64),
+        material: &dyn Material,
+        tau: f64,
         [u, v]: [&[Vector2<f64>]; 2],
         forces: &mut [Vector2<f64>],
     ) {
         if self.hoop.is_some() {
-            return self.ring_viscous_forces((material, tau), [u, v], forces);
+            return self.ring_viscous_forces(material, tau, [u, v], forces);
         }
         forces.fill(Vector2::zeros());
         for (gradients, volume) in self.points() {
@@ -330,13 +331,14 @@ impl SolidElement {
     /// `dvelocity` times as much as its displacement.
     pub fn viscous_tangent(
         &self,
-        (material, tau): (&dyn Material, f64),
+        material: &dyn Material,
+        tau: f64,
         [u, v]: [&[Vector2<f64>]; 2],
         dvelocity: &[f64],
         tangent: &mut [f64],
     ) {
         if self.hoop.is_some() {
-            return self.ring_viscous_tangent((material, tau), [u, v], dvelocity, tangent);
+            return self.ring_viscous_tangent(material, tau, [u, v], dvelocity, tangent);
         }
         tangent.fill(0.0);
         let n = 2 * u.len();

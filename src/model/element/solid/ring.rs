@@ -121,7 +121,8 @@ impl SolidElement {
     /// Forces of a viscous stress of the time τ.
     pub(super) fn ring_viscous_forces(
         &self,
-        (material, tau): (&dyn Material, f64),
+        material: &dyn Material,
+        tau: f64,
         [u, v]: [&[Vector2<f64>]; 2],
         forces: &mut [Vector2<f64>],
     ) {
@@ -137,7 +138,8 @@ impl SolidElement {
     /// Derivative of the viscous forces with respect to `u`, column by column.
     pub(super) fn ring_viscous_tangent(
         &self,
-        (material, tau): (&dyn Material, f64),
+        material: &dyn Material,
+        tau: f64,
         [u, v]: [&[Vector2<f64>]; 2],
         dvelocity: &[f64],
         tangent: &mut [f64],
